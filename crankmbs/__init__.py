@@ -1,0 +1,75 @@
+"""Time-domain dynamics of the slider-crank and the engine crank train.
+
+>>> import crankmbs
+>>> result = crankmbs.simulate(crankmbs.load_scene("yi_diesel"))
+"""
+
+from crankmbs.choose import Choice, choose
+from crankmbs.compare import Budget, Comparison, budget, compare
+from crankmbs.drives import (
+    Constant,
+    Motion,
+    Oscillation,
+    Quadratic,
+    Ramp,
+    SpeedFile,
+    SpeedTable,
+    Start,
+    TimeTable,
+    Viscous,
+)
+from crankmbs.errors import (
+    CrankmbsError,
+    FormulationError,
+    InputError,
+    OutputError,
+    SceneError,
+)
+from crankmbs.machine import Crank, Cylinder, Gas, Gravity, Indicator, Layout, Piston, Rod
+from crankmbs.result import Cost, Error, Result
+from crankmbs.scene import Extent, Run, Scene
+from crankmbs.scene_io import load_scene, shipped_scenes
+from crankmbs.simulate import simulate
+from crankmbs.tables import Table
+
+__all__ = [
+    "Budget",
+    "Choice",
+    "Comparison",
+    "Constant",
+    "Cost",
+    "Crank",
+    "CrankmbsError",
+    "Cylinder",
+    "Error",
+    "Extent",
+    "FormulationError",
+    "Gas",
+    "Gravity",
+    "Indicator",
+    "InputError",
+    "Layout",
+    "Motion",
+    "Oscillation",
+    "OutputError",
+    "Piston",
+    "Quadratic",
+    "Ramp",
+    "Result",
+    "Rod",
+    "Run",
+    "Scene",
+    "SceneError",
+    "SpeedFile",
+    "SpeedTable",
+    "Start",
+    "Table",
+    "TimeTable",
+    "Viscous",
+    "budget",
+    "choose",
+    "compare",
+    "load_scene",
+    "shipped_scenes",
+    "simulate",
+]

@@ -1,0 +1,90 @@
+"""The bridge to pydantic: what a frozen part of a scene is, and the fields it may have.
+
+Rules are written once, as type annotations and ``__post_init__`` checks of the dataclasses in
+`crankmbs.scene`; they hold for a TOML file and for a call from Python alike. A validation context
+is given for a file only: its folder.
+"""
+
+from __future__ import annotations
+
+import math
+from numbers import Real
+from pathlib import Path
+from typing import Annotated, Any, TypeVar, dataclass_transform
+
+import pydantic
+from pydantic import BeforeValidator, ConfigDict, Strict, ValidationError, ValidationInfo
+
+from crankmbs.errors import InputError, shown
+from crankmbs.sentences import sentence
+from crankmbs.tables import Table, read_table
+from crankmbs.units import EXAMPLES, quantity
+
+__all__ = ["DEGREE", "Float", "dumped", "from_file", "part", "si"]
+
+T = TypeVar("T")
+_CONFIG = ConfigDict(
+    allow_inf_nan=False, extra="forbid", validate_by_name=True, validate_by_alias=True
+)
+
+DEGREE = math.pi / 180.0
+Float = Annotated[float, Strict()]  # lax mode would take true as 1.0 and "3" as 3.0
+
+
+@dataclass_transform(kw_only_default=True, frozen_default=True)
+def part(cls: type[T]) -> type[T]:
+    """Make a frozen, keyword-only, validated dataclass whose constructor raises InputError."""
+    made: Any = pydantic.dataclasses.dataclass(frozen=True, kw_only=True, config=_CONFIG)(cls)
+    validate = made.__init__
+
+    def __init__(self: Any, **values: Any) -> None:
+        try:
+            validate(self, **values)
+        except ValidationError as error:
+            raise InputError(sentence(error, made, values)) from None
+
+    made.__init__ = __init__
+    return made  # type: ignore[no-any-return]
+
+
+def si(dimension: str) -> BeforeValidator:
+    """Accept a quantity string of this dimension, or a bare SI number.
+
+    In a file an angle or an angular speed needs its unit: 90 could mean degrees.
+    """
+
+    def convert(value: Any, info: ValidationInfo) -> float:
+        if isinstance(value, str):
+            return quantity(value, dimension)
+        if isinstance(value, bool) or not isinstance(value, Real):
+            raise InputError(
+                f"must be one number and one unit, such as {EXAMPLES[dimension]}; "
+                f"{shown(value)} came"
+            )
+        if info.context is not None and dimension in {"angle", "angular speed"}:
+            raise InputError(f"needs a unit, such as {EXAMPLES[dimension]}; {shown(value)} came")
+        try:
+            return float(value)
+        except OverflowError:
+            return math.inf
+
+    return BeforeValidator(convert)
+
+
+def dumped(value: object, info: ValidationInfo) -> bool:
+    """Whether this is a dumped dataclass; a file writes it as a string."""
+    return isinstance(value, dict) and info.context is None
+
+
+def from_file(x_units: dict[str, float], y_units: dict[str, float]) -> BeforeValidator:
+    """Accept the path of a CSV file (relative to the scene file), or a `Table` in SI units."""
+
+    def convert(value: Any, info: ValidationInfo) -> Any:
+        if isinstance(value, Table) or dumped(value, info):
+            return value
+        if not isinstance(value, str | Path):
+            raise InputError(f"must be the name of a CSV file; {shown(value)} came")
+        folder = info.context["folder"] if info.context else Path()
+        return read_table(folder / value, x_units, y_units)
+
+    return BeforeValidator(convert)

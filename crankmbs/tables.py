@@ -1,0 +1,124 @@
+"""Tables of two columns: a frozen record, and its CSV reader."""
+
+from __future__ import annotations
+
+import csv
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+from crankmbs.errors import InputError, shown
+
+__all__ = ["Table", "read_table"]
+
+
+@dataclass(frozen=True)
+class Table:
+    """Rows (x, y) in SI units; ``source`` names where they came from.
+
+    x, y : equally long sequences of floats, kept as tuples; what they mean is said by the field
+        that holds the table
+
+    >>> Table([0.0, 1.0], [5.0, 5.0]).x
+    (0.0, 1.0)
+    """
+
+    x: tuple[float, ...]
+    y: tuple[float, ...]
+    source: str = "table"
+
+    def __post_init__(self) -> None:
+        for name in ("x", "y"):
+            try:
+                column = tuple(map(float, getattr(self, name)))
+            except (TypeError, ValueError):
+                raise InputError(
+                    f"{self.source}: {name} must be a sequence of numbers; "
+                    f"{shown(getattr(self, name))} came"
+                ) from None
+            object.__setattr__(self, name, column)
+        if len(self.x) != len(self.y):
+            raise InputError(
+                f"{self.source}: {len(self.x)} abscissae but {len(self.y)} ordinates; "
+                "a table needs as many of one as of the other"
+            )
+        if not all(map(math.isfinite, self.x + self.y)):
+            raise InputError(f"{self.source}: every value must be finite; a NaN or infinity came")
+
+
+def read_table(path: Path, x_units: dict[str, float], y_units: dict[str, float]) -> Table:
+    """Read two columns of a CSV file into SI units.
+
+    Parameters
+    ----------
+    path : the file; lines that start with ``#`` are comments, other columns are ignored
+    x_units, y_units : accepted column name -> factor to SI; exactly one of each must be there
+
+    Raises
+    ------
+    InputError : file missing or unreadable, header wrong, a cell empty or no finite number
+    """
+    rows = [
+        (number, cells)
+        for number, line in enumerate(_text(path).splitlines(), start=1)
+        if line.strip() and not line.lstrip().startswith("#")
+        for cells in [_cells(path, number, line)]
+    ]
+    if not rows:
+        raise InputError(f"file {path} is empty: it needs a header and rows")
+    header = rows[0][1]
+    i, x_factor = _column(path, header, x_units)
+    j, y_factor = _column(path, header, y_units)
+    x: list[float] = []
+    y: list[float] = []
+    for number, cells in rows[1:]:
+        if len(cells) > len(header):
+            raise InputError(
+                f"file {path}, line {number}: {len(cells)} cells under a header of {len(header)}; "
+                "commas separate the columns, the decimal sign is a point"
+            )
+        x.append(x_factor * _number(path, number, header[i], cells[i : i + 1]))
+        y.append(y_factor * _number(path, number, header[j], cells[j : j + 1]))
+    return Table(tuple(x), tuple(y), source=str(path))
+
+
+def _text(path: Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8-sig")
+    except FileNotFoundError:
+        raise InputError(f"file {path} is missing; paths are relative to the scene file") from None
+    except OSError as error:
+        raise InputError(f"file {path} cannot be read: {error.strerror}") from None
+    except UnicodeDecodeError:
+        raise InputError(f"file {path} is no UTF-8 text; save the table as CSV") from None
+    except ValueError:
+        raise InputError(f"{shown(str(path))} is no file name") from None
+
+
+def _cells(path: Path, line: int, text: str) -> list[str]:
+    try:
+        return [cell.strip() for cell in next(csv.reader([text], skipinitialspace=True))]
+    except csv.Error as error:
+        raise InputError(f"file {path}, line {line}: cannot be read as CSV: {error}") from None
+
+
+def _column(path: Path, header: list[str], units: dict[str, float]) -> tuple[int, float]:
+    found = [name for name in header if name in units]
+    if len(found) != 1:
+        raise InputError(
+            f"file {path}: the header must name exactly one column {' | '.join(units)}, with "
+            f"commas between the columns; {shown(','.join(header))} came"
+        )
+    return header.index(found[0]), units[found[0]]
+
+
+def _number(path: Path, line: int, name: str, cells: list[str]) -> float:
+    text = "".join(cells)
+    try:
+        value = math.nan if "_" in text else float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        came = shown(text) if text else "an empty cell"
+        raise InputError(f"file {path}, line {line}: {name} must be a finite number; {came} came")
+    return value

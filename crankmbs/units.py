@@ -1,0 +1,143 @@
+"""Quantity strings to SI floats: the only file that knows pint.
+
+A quantity is one number and one unit. The number is split off here, and only the unit is given
+to pint, which would otherwise evaluate expressions. Angles and angular speeds take a short list
+of units, because pint counts radians as pure numbers and people mean different things by Hz.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from functools import cache
+
+from crankmbs.errors import InputError, shown
+
+__all__ = ["EXAMPLES", "extent", "quantity"]
+
+_NUMBER_AND_UNIT = re.compile(
+    r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)(\s.*|[^\W\d_].*)"
+)
+_FACTOR = r"[^\W\d_]+(?:\s*(?:\*\*|\^)\s*-?[1-9])?"  # one exponent: pint would raise 9^9^9
+_UNIT = re.compile(rf"{_FACTOR}(?:(?:\s*[*/·]\s*|\s+){_FACTOR})*")
+_LONGEST_UNIT = 40
+
+_SI = {
+    "acceleration": "m/s^2",
+    "area": "m^2",
+    "inertia": "kg m^2",
+    "length": "m",
+    "mass": "kg",
+    "pressure": "Pa",
+    "quadratic coefficient": "N m s^2",
+    "time": "s",
+    "torque": "N m",
+    "viscous coefficient": "N m s",
+}
+_DEGREE = math.pi / 180.0
+_ANGLE = {"rad": 1.0, "deg": _DEGREE, "rev": 2.0 * math.pi}
+_ANGULAR_SPEED = {"rpm": math.pi / 30.0, "rad/s": 1.0, "deg/s": _DEGREE}
+_CYCLE = {"cycle", "cycles"}
+
+EXAMPLES = {
+    "acceleration": '"9.81 m/s^2"',
+    "angle": '"30 deg"',
+    "angular speed": '"3200 rpm"',
+    "area": '"57.08 cm^2"',
+    "extent": '"20 cycles", "10 rev" or "0.75 s"',
+    "inertia": '"0.15 kg m^2"',
+    "length": '"46 mm"',
+    "mass": '"1.14 kg"',
+    "pressure": '"1 bar"',
+    "quadratic coefficient": '"7.8e-4 N m s^2"',
+    "time": '"0.75 s"',
+    "torque": '"87 N m"',
+    "viscous coefficient": '"0.26 N m s"',
+}
+
+
+def quantity(text: str, dimension: str) -> float:
+    """Return the SI value of a quantity string such as ``"46 mm"``.
+
+    Parameters
+    ----------
+    text : one finite number and one unit; no arithmetic, no decimal comma
+    dimension : a name such as "length" or "angular speed"
+
+    Raises
+    ------
+    InputError : no number, no unit, or a unit of another dimension
+
+    >>> quantity("46 mm", "length")
+    0.046
+    """
+    number, unit = _split(text, dimension)
+    if dimension == "angle":
+        factor = _ANGLE.get(unit)
+    elif dimension == "angular speed":
+        factor = _ANGULAR_SPEED.get(unit)
+    else:
+        factor = _factor(unit, _SI[dimension])
+    if factor is None:
+        raise InputError(f"{shown(text)} is no {dimension} here: use {_units_for(dimension)}")
+    return number * factor
+
+
+def extent(text: str) -> tuple[float, str]:
+    """Return (value, unit) of a stretch of angle or time; the unit is "rad", "s" or "cycle".
+
+    >>> extent("20 cycles")
+    (20.0, 'cycle')
+    """
+    number, unit = _split(text, "extent")
+    if unit in _CYCLE:
+        return number, "cycle"
+    if unit in _ANGLE:
+        return number * _ANGLE[unit], "rad"
+    factor = _factor(unit, "s")
+    if factor is None:
+        raise InputError(f"{shown(text)} is no angle or time: use cycles, rev, deg, rad or s")
+    return number * factor, "s"
+
+
+def _split(text: str, dimension: str) -> tuple[float, str]:
+    match = _NUMBER_AND_UNIT.fullmatch(text)
+    if match is None:
+        raise InputError(
+            f"{shown(text)} is not a quantity: write one number and one unit, such as "
+            f"{EXAMPLES[dimension]}{_hint(text)}"
+        )
+    number = float(match[1])
+    if not math.isfinite(number):
+        raise InputError(f"must be finite; {shown(text)} came")
+    return number, match[2].strip()
+
+
+def _hint(text: str) -> str:
+    if re.search(r"\d,\d", text):
+        return "; the decimal sign is a point"
+    if re.search("[\N{MINUS SIGN}\N{EN DASH}\N{EM DASH}]", text):
+        return '; the minus sign is the plain "-"'
+    return ""
+
+
+def _units_for(dimension: str) -> str:
+    listed = {"angle": _ANGLE, "angular speed": _ANGULAR_SPEED}.get(dimension)
+    if listed is None:
+        return f"a unit such as in {EXAMPLES[dimension]}"
+    *most, last = listed
+    return f"{', '.join(most)} or {last}"
+
+
+@cache
+def _factor(unit: str, si: str) -> float | None:
+    """Factor to the SI unit, or None when ``unit`` is no unit of that dimension."""
+    if len(unit) > _LONGEST_UNIT or not _UNIT.fullmatch(unit):
+        return None
+    import pint  # a sixth of a second: only when a scene is read from text
+
+    registry = pint.application_registry
+    try:
+        return float(registry.Quantity(1.0, unit).to(si).magnitude)
+    except (pint.PintError, AttributeError, ValueError, TypeError, ArithmeticError):
+        return None

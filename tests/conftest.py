@@ -1,0 +1,21 @@
+"""Fixtures of several test files."""
+
+import pytest
+from scene_texts import GAS
+
+from crankmbs.errors import SceneError
+from crankmbs.scene_io import parse_scene
+
+
+@pytest.fixture
+def read(tmp_path):
+    """Parse a scene that lies beside a few tables; the folder is cut out of a message."""
+    (tmp_path / "gas.csv").write_text(GAS)
+
+    def parse(text):
+        try:
+            return parse_scene(text, tmp_path / "scene.toml")
+        except SceneError as error:
+            raise SceneError(str(error).replace(f"{tmp_path}/", "")) from None
+
+    return parse

@@ -1,0 +1,39 @@
+"""Inverting monotone functions, also where Newton alone would fail."""
+
+import numpy as np
+import pytest
+
+from crankmbs.roots import invert_monotone
+
+
+def cube(x):
+    return x**3, 3.0 * x**2
+
+
+def step_like(x):
+    return np.arctan(1e6 * (x - 0.3)), 1e6 / (1.0 + (1e6 * (x - 0.3)) ** 2)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+@pytest.mark.parametrize("function", [cube, step_like])
+def test_many_targets_at_once(function, sign):
+    exact = np.array([-1.0, -0.7, 0.0, 0.3, 0.3 + 1e-7, 0.9, 1.0])
+    target = sign * function(exact)[0]
+
+    def signed(x):
+        value, slope = function(x)
+        return sign * value, sign * slope
+
+    found = invert_monotone(signed, target, np.full(7, -1.0), np.full(7, 1.0))
+    value, slope = signed(found)
+    assert np.all(np.abs(value - target) <= 4e-16 * (np.abs(slope) + np.abs(target)) + 1e-40)
+
+
+def test_targets_at_the_ends_and_beyond_stay_in_the_bracket():
+    low, high = np.zeros(3), np.ones(3)
+    found = invert_monotone(cube, np.array([-1.0, 1.0, 2.0]), low, high)
+    np.testing.assert_allclose(found, [0.0, 1.0, 1.0], atol=1e-12)
+
+
+def test_nothing_to_find():
+    assert len(invert_monotone(cube, np.empty(0), np.empty(0), np.empty(0))) == 0
