@@ -1,0 +1,293 @@
+"""What the machine is made of: crank, rod, piston, cylinders, gas, gravity.
+
+Frozen dataclasses in SI units, each checking itself. Every quantity is a float in SI units, or a
+string with its unit (``"46 mm"``), which is converted on the way in.
+"""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+from typing import Annotated, Literal
+
+from annotated_types import Ge, Gt, Len
+from pydantic import Discriminator, Strict, Tag
+
+from crankmbs.errors import InputError, shown
+from crankmbs.schema import DEGREE, Float, from_file, part, si
+from crankmbs.tables import Table
+
+__all__ = ["Crank", "Cylinder", "Gas", "Gravity", "Indicator", "Layout", "Piston", "Rod"]
+
+Length = Annotated[Float, Gt(0), si("length")]
+Distance = Annotated[Float, si("length")]
+Mass = Annotated[Float, Ge(0), si("mass")]
+Inertia = Annotated[Float, Ge(0), si("inertia")]
+Area = Annotated[Float, Gt(0), si("area")]
+Angle = Annotated[Float, si("angle")]
+Pressure = Annotated[Float, Gt(0), si("pressure")]
+
+_PRESSURE_COLUMNS = {
+    "pressure_bar": 1e5,
+    "pressure_kPa": 1e3,
+    "pressure_Pa": 1.0,
+    "pressure_MPa": 1e6,
+    "pressure_kgf_cm2": 98066.5,
+}
+_SAME_ANGLE = 1e-9  # rad: two angles of a table closer than this are one
+
+
+def _number_or_word(value: object) -> str:
+    return "Word" if isinstance(value, str) and value[:1].isalpha() else "Number"
+
+
+RodInertia = Annotated[
+    Annotated[Inertia, Tag("Number")] | Annotated[Literal["two-mass"], Tag("Word")],
+    Discriminator(_number_or_word),
+]
+
+
+@part
+class Crank:
+    """Everything that turns with the crank, flywheel included.
+
+    radius [m]; inertia about the crank axis [kg m2]; mass [kg]; center_of_mass [m] from the axis
+    along the reference line, negative for a counterweight.
+    """
+
+    radius: Length
+    inertia: Inertia
+    mass: Mass = 0.0
+    center_of_mass: Distance = 0.0
+
+    def __post_init__(self) -> None:
+        least = self.mass * self.center_of_mass**2
+        if self.inertia < least * (1.0 - 1e-12):
+            raise InputError(
+                f"inertia about the crank axis must be at least mass * center_of_mass^2 = "
+                f"{least:.6g} kg m^2; {self.inertia:.6g} came"
+            )
+
+
+@part
+class Rod:
+    """The connecting rod.
+
+    length [m] between the pins; mass [kg]; center_of_mass [m] from the crank pin towards the
+    piston pin; inertia [kg m2] about the centre of mass, or "two-mass": m a (l - a), the inertia
+    of the lecture's two lumped masses.
+    """
+
+    length: Length
+    mass: Mass = 0.0
+    center_of_mass: Distance = 0.0
+    inertia: RodInertia = 0.0
+
+    def __post_init__(self) -> None:
+        if self.moment_of_inertia < 0.0:
+            raise InputError(
+                'the inertia "two-mass" needs a center_of_mass between the pins, 0 to '
+                f"{self.length:.6g} m; {self.center_of_mass:.6g} m came"
+            )
+
+    @property
+    def moment_of_inertia(self) -> float:
+        """Inertia about the centre of mass [kg m2], the word "two-mass" resolved."""
+        if self.inertia == "two-mass":
+            return self.mass * self.center_of_mass * (self.length - self.center_of_mass)
+        return float(self.inertia)
+
+
+@part
+class Piston:
+    """mass [kg]; bore [m] or area [m2], needed with gas; offset [m] of the cylinder axis in +Y."""
+
+    mass: Mass
+    bore: Length | None = None
+    area: Area | None = None
+    offset: Distance = 0.0
+
+    def __post_init__(self) -> None:
+        if self.bore is not None and self.area is not None:
+            raise InputError("give bore or area, not both; both came")
+
+    @property
+    def gas_area(self) -> float | None:
+        """Piston area [m2], or None when neither bore nor area is given."""
+        return self.area if self.bore is None else math.pi / 4.0 * self.bore**2
+
+
+@part
+class Cylinder:
+    """phase [rad]: its cycle angle at crank angle 0; bank [rad]: its axis from the engine's X."""
+
+    phase: Angle = 0.0
+    bank: Angle = 0.0
+
+
+@part
+class Layout:
+    """Where the cylinders stand: a firing order (even, in line) or a list of cylinders."""
+
+    firing_order: Annotated[tuple[Annotated[int, Strict()], ...], Len(1)] | None = None
+    cylinders: Annotated[tuple[Cylinder, ...], Len(1)] | None = None
+
+    def __post_init__(self) -> None:
+        if (self.firing_order is None) == (self.cylinders is None):
+            came = "neither" if self.cylinders is None else "both"
+            raise InputError(f"give firing_order or cylinders, exactly one of the two; {came} came")
+        order = self.firing_order
+        if order is not None and sorted(order) != list(range(1, len(order) + 1)):
+            raise InputError(
+                f"firing_order must name each of the cylinders 1 to {len(order)} once; "
+                f"{shown(list(order))} came"
+            )
+
+    def resolve(self, period: float) -> tuple[Cylinder, ...]:
+        """The cylinders, in the order of their numbers; the k-th to fire lags k period / n."""
+        if self.cylinders is not None:
+            return self.cylinders
+        assert self.firing_order is not None
+        n = len(self.firing_order)
+        lag = {number: k for k, number in enumerate(self.firing_order)}
+        return tuple(
+            Cylinder(phase=(n - lag[number]) % n * period / n) for number in range(1, n + 1)
+        )
+
+
+@part
+class Indicator:
+    """An indicator diagram from polytropes over the cylinder's exact volume.
+
+    compression_ratio [1]; n_compression, n_expansion [1]; intake_pressure, exhaust_pressure,
+    peak_pressure [Pa], absolute; pre_expansion [1]: volume after combustion at constant pressure
+    over the volume before. A two-stroke cycle needs no exhaust_pressure: its cylinder is emptied
+    and filled at the bottom dead centre.
+    """
+
+    compression_ratio: Annotated[Float, Gt(1)]
+    n_compression: Annotated[Float, Gt(0)]
+    n_expansion: Annotated[Float, Gt(0)]
+    intake_pressure: Pressure
+    exhaust_pressure: Pressure | None = None
+    peak_pressure: Pressure
+    pre_expansion: Annotated[Float, Ge(1)] = 1.0
+
+    def __post_init__(self) -> None:
+        if self.pre_expansion >= self.compression_ratio:
+            raise InputError(
+                f"pre_expansion must be below the compression_ratio {self.compression_ratio:.6g}, "
+                f"or nothing is left to expand; {self.pre_expansion:.6g} came"
+            )
+        reached = self.intake_pressure * self.compression_ratio**self.n_compression
+        if self.peak_pressure < reached * (1.0 - 1e-12):
+            raise InputError(
+                "peak_pressure must be at least what compression reaches, intake_pressure * "
+                f"compression_ratio^n_compression = {reached:.6g} Pa; {self.peak_pressure:.6g} came"
+            )
+
+
+@part
+class Gas:
+    """The gas in the cylinder: a periodic pressure table, or an indicator diagram.
+
+    pressure: table of crank angle [rad] and pressure [Pa]; absolute: whether the pressure is;
+    ambient [Pa]: crankcase side; stroke: 4 (period 720 degrees) or 2 (360); zero: the cycle angle
+    of the table's 0; interpolation between the rows.
+    """
+
+    pressure: Annotated[Table, from_file({"crank_angle_deg": DEGREE}, _PRESSURE_COLUMNS)] | None = (
+        None
+    )
+    indicator: Indicator | None = None
+    absolute: Annotated[bool, Strict()] = True
+    ambient: Pressure | None = None
+    stroke: Literal[2, 4] = 4
+    zero: Literal["gas_exchange_tdc", "firing_tdc"] = "gas_exchange_tdc"
+    interpolation: Literal["pchip", "linear", "cubic", "step"] = "pchip"
+
+    def __post_init__(self) -> None:
+        if (self.pressure is None) == (self.indicator is None):
+            came = "neither" if self.indicator is None else "both"
+            raise InputError(f"give pressure or indicator, exactly one of the two; {came} came")
+        if self.absolute and self.ambient is None:
+            raise InputError(
+                "an absolute pressure needs ambient, the crankcase side; "
+                'give ambient = "1 bar", or absolute = false when the file is gauge'
+            )
+        if not self.absolute and self.ambient is not None:
+            raise InputError(
+                "a gauge pressure has its ambient subtracted already; remove ambient, or give "
+                "absolute = true"
+            )
+        if self.pressure is not None:
+            self._check_rows(self.pressure)
+        if self.indicator is not None:
+            self._check_indicator(self.indicator)
+
+    @property
+    def period(self) -> float:
+        """Period of the pressure [rad]: 4 pi with stroke 4, 2 pi with stroke 2."""
+        return self.stroke * math.pi
+
+    def _check_indicator(self, indicator: Indicator) -> None:
+        if not self.absolute:
+            raise InputError("an indicator diagram is absolute; remove absolute = false")
+        if self.zero != "gas_exchange_tdc" or self.interpolation != "pchip":
+            raise InputError(
+                "zero and interpolation belong to a pressure file; remove them beside an indicator"
+            )
+        if self.stroke == 4 and indicator.exhaust_pressure is None:
+            raise InputError("indicator: a four-stroke cycle needs its exhaust_pressure; none came")
+
+    def _check_rows(self, table: Table) -> None:
+        where, angle, period = table.source, table.x, self.period
+        if len(angle) < 2:
+            raise InputError(f"{where}: a pressure table needs at least two rows")
+        gaps = [b - a for a, b in pairwise(angle)]
+        for k, gap in enumerate(gaps):
+            if gap <= _SAME_ANGLE:
+                raise InputError(
+                    f"{where}: crank angles must strictly increase; "
+                    f"{angle[k + 1] / DEGREE:g} follows {angle[k] / DEGREE:g} degrees"
+                )
+        span = angle[-1] - angle[0]
+        if span > period + _SAME_ANGLE:
+            raise InputError(
+                f"{where}: the rows span {span / DEGREE:g} degrees, more than the period of "
+                f"{period / DEGREE:g}; check stroke, {self.stroke} came"
+            )
+        if span > period - _SAME_ANGLE and table.y[-1] != table.y[0]:
+            raise InputError(
+                f"{where}: the closing row must equal the first one, as the pressure is periodic; "
+                f"{table.y[0]:.8g} Pa opens the period and {table.y[-1]:.8g} Pa closes it"
+            )
+        if (
+            self.stroke == 4
+            and abs(span - 0.5 * period) < _SAME_ANGLE
+            and table.y[-1] == table.y[0]
+        ):
+            raise InputError(
+                f"{where}: the rows close after {span / DEGREE:g} degrees, as a two-stroke cycle "
+                "does; give stroke = 2, or the other half of the four-stroke cycle"
+            )
+        widest = max([*gaps, period - span])
+        if widest > period / 2.0 + _SAME_ANGLE:
+            raise InputError(
+                f"{where}: a gap of {widest / DEGREE:g} degrees without a row; the table must "
+                f"span the cycle of {period / DEGREE:g} degrees with no gap above its half"
+            )
+        lowest = min(table.y)
+        if self.absolute and lowest < 0.0:
+            raise InputError(
+                f"{where}: an absolute pressure cannot be negative; {lowest:.6g} Pa came; "
+                "give absolute = false when the file is gauge"
+            )
+
+
+@part
+class Gravity:
+    """acceleration [m/s2] and the direction in which it pulls, angle [rad] from the engine's X."""
+
+    acceleration: Annotated[Float, Ge(0), si("acceleration")]
+    angle: Angle = math.pi
