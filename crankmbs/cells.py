@@ -1,0 +1,127 @@
+"""Cells of the crank angle over one period, and what depends on the angle alone, tabulated.
+
+No knot of the pressure lies inside a cell, so everything in it is smooth.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crankmbs.collocation import Rule, gauss
+from crankmbs.inertia import reduce
+from crankmbs.pressure import PeriodicPressure, crank_angle_knots
+from crankmbs.scene import Scene
+from crankmbs.schema import DEGREE
+
+__all__ = ["Grid", "Strip", "grid_of"]
+
+Array = NDArray[np.float64]
+
+_WIDEST = 6.0 * DEGREE
+_SLIVER = 1e-12  # rad: a start this close to an edge is on it
+
+
+@dataclass(frozen=True)
+class Strip:
+    """Consecutive cells in the sense of rotation.
+
+    cell : shape (m,), their numbers in the grid; width : shape (m,) [rad]
+    inertia, torque : shape (m, s), J [kg m2] and the torque of gas and gravity [N m] at the nodes
+    """
+
+    cell: NDArray[np.intp]
+    width: Array
+    inertia: Array
+    torque: Array
+
+    def first(self, m: int) -> Strip:
+        """The first m cells."""
+        return Strip(self.cell[:m], self.width[:m], self.inertia[:m], self.torque[:m])
+
+
+@dataclass(frozen=True)
+class Grid:
+    """edges : shape (n + 1,) [rad], from 0 to one period; tables for one collocation rule."""
+
+    scene: Scene
+    pressure: PeriodicPressure | None
+    edges: Array
+    rule: Rule
+
+    @cached_property
+    def tables(self) -> tuple[Array, Array]:
+        """J and torque of gas and gravity at the nodes of every cell, shape (n, s) each."""
+        return self._tabulate(self.edges[:-1], np.diff(self.edges))
+
+    @cached_property
+    def scale(self) -> Array:
+        """Largest torque of gas and gravity in and around each cell, shape (n,) [N m]."""
+        most = np.max(np.abs(self.tables[1]), axis=1)
+        middle = 0.5 * (self.edges[1:] + self.edges[:-1])
+        near = np.searchsorted(middle, middle - _WIDEST), np.searchsorted(middle, middle + _WIDEST)
+        return np.array([most[a:b].max() for a, b in zip(*near, strict=True)])
+
+    @cached_property
+    def finer(self) -> Grid:
+        """The same cells for a rule of two more stages, which checks this one."""
+        return Grid(self.scene, self.pressure, self.edges, gauss(len(self.rule.nodes) + 2))
+
+    def split(self, parts: NDArray[np.intp]) -> Grid:
+        """Every cell cut into equal parts, as many as ``parts``, shape (n,), says."""
+        pieces = [
+            np.linspace(a, b, count + 1)[:-1]
+            for a, b, count in zip(self.edges[:-1], self.edges[1:], parts, strict=True)
+        ]
+        edges = np.append(np.concatenate(pieces), self.edges[-1])
+        return Grid(self.scene, self.pressure, edges, self.rule)
+
+    def cell_at(self, theta: float, sense: float) -> int:
+        """Number of the cell that the motion is about to pass at a crank angle [rad]."""
+        local = theta % float(self.edges[-1])
+        k = int(np.searchsorted(self.edges, local + sense * _SLIVER, side="right")) - 1
+        return k % (len(self.edges) - 1)
+
+    def strip(self, theta: float, sense: float, count: int, bound: float) -> Strip:
+        """At most ``count`` cells from a crank angle on, in the sense of rotation, cut at the
+        angle ``bound``; the first and the last may be parts of cells."""
+        n, period = len(self.edges) - 1, float(self.edges[-1])
+        first = self.cell_at(theta, sense)
+        base = math.floor((theta + sense * _SLIVER) / period) * period
+        local = theta - base
+        cell = (first + int(sense) * np.arange(count)) % n
+        whole = np.diff(self.edges)
+        width = whole[cell]
+        width[0] = self.edges[first + 1] - local if sense > 0.0 else local - self.edges[first]
+        turned = np.cumsum(width)
+        last = int(np.searchsorted(turned, abs(bound - theta) - _SLIVER)) + 1
+        cell, width = cell[:last], width[:last].copy()
+        if turned[len(cell) - 1] > abs(bound - theta):
+            width[-1] -= turned[len(cell) - 1] - abs(bound - theta)
+        inertia, torque = (table[cell] for table in self.tables)
+        if sense < 0.0:
+            inertia, torque = inertia[:, ::-1].copy(), torque[:, ::-1].copy()
+        parts = [k for k in {0, len(cell) - 1} if width[k] != whole[cell[k]]]
+        if parts:
+            start = local + sense * np.append(0.0, turned)[parts]
+            inertia[parts], torque[parts] = self._tabulate(start, sense * width[parts])
+        return Strip(cell, width, inertia, torque)
+
+    def _tabulate(self, start: Array, width: Array) -> tuple[Array, Array]:
+        theta = start[:, None] + width[:, None] * self.rule.nodes
+        inertia, _, torque = reduce(self.scene, self.pressure, theta)
+        return inertia, torque
+
+
+def grid_of(scene: Scene, pressure: PeriodicPressure | None, rule: Rule) -> Grid:
+    """The coarsest grid of a scene: edges at the pressure's knots, no cell wider than 6 degrees."""
+    knots = crank_angle_knots(scene, pressure)
+    marks = np.unique(np.concatenate([[0.0], knots, [scene.period]]))
+    marks = marks[np.append(True, np.diff(marks) > _SLIVER)]
+    marks[-1] = scene.period
+    grid = Grid(scene, pressure, marks, rule)
+    return grid.split(np.ceil(np.diff(marks) / _WIDEST - 1e-9).astype(np.intp))

@@ -1,0 +1,54 @@
+"""Cells of the crank angle: no knot inside, tables true, the cell ahead in both directions."""
+
+import numpy as np
+import pytest
+
+from crankmbs import load_scene
+from crankmbs.cells import grid_of
+from crankmbs.collocation import gauss
+from crankmbs.inertia import reduce
+from crankmbs.pressure import crank_angle_knots, pressure_of
+from crankmbs.schema import DEGREE
+
+SCENE = load_scene("v_twin")
+PRESSURE = pressure_of(SCENE)
+GRID = grid_of(SCENE, PRESSURE, gauss(4))
+
+
+def test_no_knot_lies_inside_a_cell():
+    knots = crank_angle_knots(SCENE, PRESSURE)
+    gap = np.min(np.abs(knots[:, None] - GRID.edges), axis=1)
+    assert gap.max() <= 1e-12
+    assert np.all(np.diff(GRID.edges) > 0.0)
+    assert np.diff(GRID.edges).max() <= 6.0 * DEGREE * (1 + 1e-9)
+    assert (GRID.edges[0], GRID.edges[-1]) == (0.0, SCENE.period)
+
+
+def test_tables_hold_what_the_angle_gives():
+    at = GRID.edges[:-1, None] + np.diff(GRID.edges)[:, None] * GRID.rule.nodes
+    inertia, _, torque = reduce(SCENE, PRESSURE, at)
+    np.testing.assert_array_equal(GRID.tables[0], inertia)
+    np.testing.assert_array_equal(GRID.tables[1], torque)
+
+
+def test_cells_are_cut_into_equal_parts():
+    parts = np.ones(len(GRID.edges) - 1, dtype=np.intp)
+    parts[3] = 4
+    cut = GRID.split(parts)
+    assert len(cut.edges) == len(GRID.edges) + 3
+    quarter = np.diff(GRID.edges)[3] / 4
+    np.testing.assert_allclose(np.diff(cut.edges)[3:7], quarter, rtol=1e-9)
+
+
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+@pytest.mark.parametrize("theta", [0.0, 0.37, 12.1, -40.2])
+def test_cell_at_is_the_one_ahead(theta, sense):
+    k = GRID.cell_at(theta, sense)
+    ahead = (theta + sense * 1e-9) % SCENE.period
+    assert GRID.edges[k] <= ahead <= GRID.edges[k + 1]
+
+
+def test_without_gas():
+    coasting = load_scene("coasting")
+    grid = grid_of(coasting, None, gauss(3))
+    np.testing.assert_allclose(np.diff(grid.edges), 6.0 * DEGREE, rtol=1e-9)

@@ -1,0 +1,67 @@
+"""The reduced equation of motion against the bodies' own equations at 40 digits."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from random_scenes import random_scene
+
+from crankmbs import Gravity
+from crankmbs.geometry import close_loop
+from crankmbs.inertia import gravity_vector, reduce, rod_centre
+from crankmbs.pressure import pressure_of
+from validation.adapter import reference_variables
+from validation.oracles.arithmetic import multiprecision
+
+ANGLES = np.linspace(-6.0, 7.0, 6)
+DIGITS = multiprecision(40)
+
+
+def torque_from_outside(scene, omega, alpha):
+    """What the oracle needs from outside at a motion, shape (n,)."""
+    rest = np.zeros_like(ANGLES)
+    found = reference_variables(scene, ANGLES, rest + omega, rest + alpha, DIGITS)
+    return found["external_torque"]
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_every_term_of_the_equation_of_motion(seed):
+    """T = J alpha + J_1 omega^2 / 2 - torque, term by term: at rest, then with one rate alone."""
+    scene = random_scene(seed)
+    inertia, slope, torque = reduce(scene, pressure_of(scene), ANGLES)
+    held = torque_from_outside(scene, 0, 0)
+    expected = {
+        "torque": (torque, -held),
+        "inertia": (inertia, torque_from_outside(scene, 0, 1) - held),
+        "slope": (slope, 2 * (torque_from_outside(scene, 1, 0) - held)),
+    }
+    for name, (ours, exact) in expected.items():
+        exact = exact.astype(float)
+        floor = 1e-12 * inertia.max() if name == "slope" else 0.0
+        assert np.abs(ours - exact).max() <= 1e-12 * np.abs(exact).max() + floor, name
+
+
+def test_the_gas_is_left_out_on_request():
+    scene = replace(random_scene(0), gravity=None, torque=())
+    assert np.all(reduce(scene, None, ANGLES)[2] == 0.0)
+
+
+def test_gravity_turns_against_the_bank():
+    scene = replace(random_scene(0), gravity=Gravity(acceleration=10.0, angle=0.0))
+    assert gravity_vector(scene) == (10.0, 0.0)
+    assert gravity_vector(scene, 0.5 * np.pi) == pytest.approx((0.0, -10.0), abs=1e-14)
+    assert gravity_vector(replace(scene, gravity=None), 1.0) == (0.0, 0.0)
+
+
+def test_the_rods_ends_move_with_crank_and_piston():
+    loop = close_loop(ANGLES, 0.1, 0.3, 0.01)
+    throw, pin = rod_centre(loop, 0.1, 0.0), rod_centre(loop, 0.1, 0.3)
+    for ours, exact in (
+        (throw.x_1, -0.1 * np.sin(ANGLES)),
+        (throw.y_2, -0.1 * np.sin(ANGLES)),
+        (pin.x_1, loop.x_1),
+        (pin.x_2, loop.x_2),
+        (pin.y_1, 0.0 * ANGLES),
+        (pin.y_2, 0.0 * ANGLES),
+    ):
+        np.testing.assert_allclose(ours, exact, atol=1e-16)

@@ -1,0 +1,216 @@
+"""Laws of mechanics that every run obeys, on random machines."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from random_scenes import random_scene
+
+from crankmbs import Constant, Layout, Motion, Oscillation, Quadratic, Run, Start, Viscous, simulate
+from crankmbs.inertia import reduce
+from crankmbs.pressure import pressure_of
+from crankmbs.reactions import reactions
+from crankmbs.scene import Extent
+
+SEEDS = st.integers(0, 10_000)
+few = settings(max_examples=12, deadline=None, derandomize=True, database=None)
+RATE = 150.0  # rad/s: fast enough for these machines to turn through
+
+
+def turning(seed, turns=1.0, rtol=1e-10, **changes):
+    """A random machine that turns through, with smooth loads, sampled at a few angles."""
+    scene = random_scene(seed)
+    inertia, _, torque = reduce(scene, pressure_of(scene), np.linspace(0.0, 4 * np.pi, 500))
+    speed = math.copysign(
+        max(RATE, 8.0 * math.sqrt(np.abs(torque).max() / inertia.min())), 0.5 - seed % 2
+    )
+    brake = 0.02 * inertia.min()
+    loads = (
+        Constant(torque=0.01 * inertia.min() * speed**2),
+        Viscous(coefficient=brake * abs(speed)),
+        Quadratic(coefficient=brake),
+    )
+    run = Run(until=Extent(value=turns * 2 * np.pi, unit="rad"), every="31 deg", rtol=rtol)
+    start = Start(angle=0.3, speed=speed)
+    return replace(scene, start=start, torque=loads, run=run, **changes)
+
+
+def peak(values):
+    return float(np.max(np.abs(values)))
+
+
+def motion_of(data):
+    return [data[name].values for name in ("crank_angle", "crank_speed", "crank_acceleration")]
+
+
+@few
+@given(SEEDS, st.sampled_from(["crank_angle", "minimal"]))
+def test_energy_closes(seed, formulation):
+    scene = turning(seed, rtol=1e-8)
+    data = simulate(scene, formulation=formulation).data
+    assert peak(data["energy_residual"]) < 1e-8 * peak(data["kinetic_energy"])
+
+
+@few
+@given(SEEDS, st.sampled_from(["crank_angle", "minimal"]))
+def test_inverse_after_forward_is_the_identity(seed, formulation):
+    """The torque from outside that the motion needs is the one that the loads gave."""
+    scene = turning(seed)
+    data = simulate(scene, formulation=formulation).data
+    theta, omega, alpha = motion_of(data)
+    constant, viscous, quadratic = scene.torque
+    given_torque = (
+        constant.torque - viscous.coefficient * omega - quadratic.coefficient * omega * abs(omega)
+    )
+    needed = reactions(scene, pressure_of(scene), theta, omega, alpha)
+    scale = peak(needed["crank_torque"]) + peak(alpha) * scene.crank.inertia + peak(given_torque)
+    assert peak(needed["external_torque"] - given_torque) < 1e-12 * scale
+    assert peak(data["external_torque"].values - given_torque) < 1e-12 * scale
+
+
+@few
+@given(SEEDS)
+def test_forward_after_inverse_is_the_identity(seed):
+    """The acceleration that the drive torque gives is the prescribed one, sample by sample."""
+    speed = Oscillation(mean=RATE * (-1) ** seed, amplitude=40.0, order=2.0)
+    scene = replace(turning(seed), start=None, torque=(), motion=Motion(speed=speed, angle=1.0))
+    data = simulate(scene).data
+    theta, omega, alpha = motion_of(data)
+    inertia, slope, torque = reduce(scene, pressure_of(scene), theta)
+    forward = (data["external_torque"].values + torque - 0.5 * slope * omega**2) / inertia
+    scale = peak(alpha) + peak(torque / inertia) + peak(slope * omega**2 / inertia)
+    assert peak(forward - alpha) < 1e-12 * scale
+
+
+@few
+@given(SEEDS)
+def test_power_flows(seed):
+    """The rate of the kinetic energy is the power of gas, weight and outside at every instant."""
+    scene = turning(seed)
+    pressure = pressure_of(scene)
+    theta, omega, alpha = np.linspace(0.0, 6.0, 9), np.linspace(-200.0, 200.0, 9), 3e3
+    found = reactions(scene, pressure, theta, omega, alpha + 0.0 * theta)
+    inertia, slope, _ = reduce(scene, pressure, theta)
+    rate = inertia * omega * alpha + 0.5 * slope * omega**3
+    gas = (found["gas_force"] * found["piston_velocity"]).sum(axis=1)
+    weight = reduce(scene, None, theta)[2] * omega
+    outside = found["external_torque"] * omega
+    scale = peak(rate) + peak(gas) + peak(weight) + peak(outside)
+    assert peak(rate - gas - weight - outside) < 1e-12 * scale
+    np.testing.assert_allclose(found["kinetic_energy"], 0.5 * inertia * omega**2, rtol=1e-13)
+
+
+@few
+@given(SEEDS)
+def test_joint_forces_do_no_net_work(seed):
+    """What the crank gives to the rods, the pistons take, less what rods and weights keep."""
+    scene = replace(turning(seed), gravity=None)
+    rod = replace(scene.rod, mass=0.0, inertia=0.0)
+    scene = replace(scene, rod=rod)
+    theta, omega = np.linspace(0.0, 6.0, 9), np.linspace(-200.0, 200.0, 9)
+    found = reactions(scene, pressure_of(scene), theta, omega, 2e3 + 0.0 * theta)
+    into_rods = -found["crank_torque"] * omega[:, None]
+    out_of_rods = -found["piston_pin_force_x"] * found["piston_velocity"]
+    np.testing.assert_allclose(into_rods, out_of_rods, atol=1e-12 * peak(into_rods) + 1e-300)
+
+
+@few
+@given(SEEDS)
+def test_mirror(seed):
+    """Without offset and gravity a machine run backwards from -theta is the mirrored one."""
+    scene = turning(seed, gravity=None, gas=None, layout=Layout(firing_order=(1,)))
+    scene = replace(scene, piston=replace(scene.piston, offset=0.0))
+    start = Start(angle=-scene.start.angle, speed=-scene.start.speed)
+    push = Constant(torque=-scene.torque[0].torque)
+    mirrored = replace(scene, start=start, torque=(push, *scene.torque[1:]))
+    one, other = simulate(scene).data, simulate(mirrored).data
+    np.testing.assert_allclose(one["time"], other["time"], rtol=1e-9)
+    for name, sign in (("crank_angle", -1), ("side_force", -1), ("crank_pin_force_x", 1)):
+        difference = one[name].values - sign * other[name].values
+        assert peak(difference) <= 1e-9 * peak(one[name])
+
+
+@few
+@given(SEEDS, st.floats(0.1, 10.0))
+def test_scaling_of_mass(seed, factor):
+    """All masses, pressures and loads times a factor: the same motion, forces times the factor."""
+    scene = turning(seed, gas=None)
+    crank, rod, piston = scene.crank, scene.rod, scene.piston
+    spin = rod.inertia if rod.inertia == "two-mass" else factor * rod.inertia
+    constant, viscous, quadratic = scene.torque
+    heavier = replace(
+        scene,
+        crank=replace(crank, mass=factor * crank.mass, inertia=factor * crank.inertia),
+        rod=replace(rod, mass=factor * rod.mass, inertia=spin),
+        piston=replace(piston, mass=factor * piston.mass),
+        torque=(
+            Constant(torque=factor * constant.torque),
+            Viscous(coefficient=factor * viscous.coefficient),
+            Quadratic(coefficient=factor * quadratic.coefficient),
+        ),
+    )
+    one, other = simulate(scene).data, simulate(heavier).data
+    np.testing.assert_allclose(one["time"], other["time"], rtol=1e-9)
+    for name in ("main_bearing_force_x", "crank_pin_force_y", "kinetic_energy"):
+        assert peak(factor * one[name].values - other[name].values) < 2e-9 * peak(other[name])
+
+
+@few
+@given(SEEDS, st.floats(0.1, 10.0))
+def test_scaling_of_length(seed, factor):
+    """All lengths times f, inertias times f^2, no weight: forces f, torques f^2 times as large."""
+    scene, motion = turning(seed, gravity=None, gas=None), (np.linspace(0, 6, 9), 100.0, 2e3)
+    crank, rod, piston = scene.crank, scene.rod, scene.piston
+    spin = rod.inertia if rod.inertia == "two-mass" else factor**2 * rod.inertia
+    larger = replace(
+        scene,
+        crank=replace(
+            crank,
+            radius=factor * crank.radius,
+            inertia=factor**2 * crank.inertia,
+            center_of_mass=factor * crank.center_of_mass,
+        ),
+        rod=replace(
+            rod,
+            length=factor * rod.length,
+            center_of_mass=factor * rod.center_of_mass,
+            inertia=spin,
+        ),
+        piston=replace(piston, offset=factor * piston.offset),
+    )
+    one, other = (reactions(s, None, *np.broadcast_arrays(*motion)) for s in (scene, larger))
+    for name, power in (("crank_pin_force_x", 1), ("side_force", 1), ("external_torque", 2)):
+        assert peak(factor**power * one[name] - other[name]) < 1e-9 * peak(other[name]), name
+
+
+@pytest.mark.parametrize("ratio", [1e-3, 1e-5])
+def test_a_long_rod_gives_the_harmonic_slider(ratio):
+    """x = l + r cos(phi) up to r^2 / (2 l), whatever the rod weighs at its big end."""
+    scene = replace(random_scene(0), gravity=None, gas=None)
+    r = scene.crank.radius
+    rod = replace(scene.rod, length=r / ratio, mass=0.0, inertia=0.0)
+    scene = replace(scene, rod=rod, piston=replace(scene.piston, offset=0.0))
+    theta = np.linspace(0.0, 6.0, 50)
+    phi = theta[:, None] + np.array([c.phase for c in scene.cylinders])
+    found = reactions(scene, None, theta, 10.0 + 0.0 * theta, 0.0 * theta)
+    assert peak(found["piston_position"] - r / ratio - r * np.cos(phi)) <= 0.5 * ratio * r * 1.01
+    harmonic = 100.0 * r * np.cos(phi)
+    assert peak(found["piston_acceleration"] - harmonic) <= 100.0 * r * ratio * 1.01
+    assert peak(found["piston_acceleration"] - harmonic) >= 100.0 * r * ratio * 0.9
+
+
+@few
+@given(SEEDS, st.sampled_from(["crank_angle", "minimal"]))
+def test_time_reversal(seed, formulation):
+    """Without losses a machine stopped and sent back runs back to where it came from."""
+    scene = turning(seed)
+    scene = replace(scene, torque=scene.torque[:1])
+    there = simulate(scene, formulation=formulation).data.isel(time=-1)
+    back = Start(angle=there["crank_angle"].item(), speed=-there["crank_speed"].item())
+    again = simulate(replace(scene, start=back), formulation=formulation).data.isel(time=-1)
+    assert again["crank_angle"].item() == pytest.approx(scene.start.angle, abs=1e-12)
+    assert again["time"].item() == pytest.approx(there["time"].item(), rel=1e-8)
+    assert again["crank_speed"].item() == pytest.approx(-scene.start.speed, rel=1e-8)

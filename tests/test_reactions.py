@@ -1,0 +1,67 @@
+"""Newton-Euler body by body against all bodies' equations at once, at 40 digits."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from random_scenes import random_scene
+
+from crankmbs import load_scene
+from crankmbs.pressure import pressure_of
+from crankmbs.reactions import reactions
+from validation.adapter import reference_variables
+from validation.oracles.arithmetic import multiprecision
+
+DIGITS = multiprecision(40)
+
+
+def motion(seed, samples=7):
+    """Angles, speeds and accelerations of both signs."""
+    rng = np.random.default_rng(seed)
+    theta = rng.uniform(-13.0, 13.0, samples)
+    return theta, rng.uniform(-300.0, 300.0, samples), rng.uniform(-2e4, 2e4, samples)
+
+
+def misfit(scene, state, exact):
+    """Largest error of each variable relative to its peak; of a force, to that of the vector."""
+    ours = reactions(scene, pressure_of(scene), *state)
+    assert ours.keys() == exact.keys()
+    peaks = {name: np.abs(values.astype(float)).max() for name, values in exact.items()}
+    worst = {}
+    for name, values in exact.items():
+        vector = {name, name.replace("_force_x", "_force_y"), name.replace("_force_y", "_force_x")}
+        error = np.abs(ours[name] - values.astype(float)).max()
+        worst[name] = error / (max(peaks[part] for part in vector) or 1.0)
+    return worst
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_every_variable_of_random_machines(seed):
+    scene, state = random_scene(seed), motion(seed)
+    worst = misfit(scene, state, reference_variables(scene, *state, DIGITS))
+    assert max(worst.values()) < 1e-12, worst
+
+
+@pytest.mark.parametrize("name", ["yi_diesel", "compressor", "v_twin", "coasting", "torque_driven"])
+def test_every_variable_of_shipped_machines(name):
+    scene, state = load_scene(name), motion(1)
+    worst = misfit(scene, state, reference_variables(scene, *state, DIGITS))
+    assert max(worst.values()) < 1e-12, worst
+
+
+@pytest.mark.parametrize("part", ["rod.length", "piston.mass", "gravity.angle", "rod.inertia"])
+def test_a_shifted_parameter_is_seen(part):
+    """One part in 1e11 more of one parameter is more than the tolerance lets pass."""
+    scene, state = load_scene("compressor"), motion(2)
+    owner, field = part.split(".")
+    old = getattr(scene, owner)
+    changed = replace(scene, **{owner: replace(old, **{field: getattr(old, field) * (1 + 1e-10)})})
+    worst = misfit(changed, state, reference_variables(scene, *state, DIGITS))
+    assert max(worst.values()) > 1e-12
+
+
+def test_a_state_of_any_length():
+    scene = load_scene("v_twin")
+    found = reactions(scene, pressure_of(scene), [0.1], [1.0], [0.0])
+    assert found["main_bearing_force_x"].shape == (1,)
+    assert found["side_force"].shape == (1, 2)
