@@ -1,0 +1,69 @@
+"""Which formulation a scene needs: the smallest that is exact, and why. Pure; runs nothing."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from crankmbs.errors import FormulationError
+from crankmbs.scene import Scene
+
+__all__ = ["Choice", "choose"]
+
+_SERVES_PRESCRIBED = ("kinetostatic", "multibody")
+_SERVES_FREE = ("crank_angle", "minimal", "multibody")
+
+
+class Choice(NamedTuple):
+    """The formulation, and the sentences that say why."""
+
+    formulation: str
+    reasons: tuple[str, ...]
+
+
+def choose(scene: Scene, formulation: str = "auto") -> Choice:
+    """Choose the formulation of a scene, or check the one asked for.
+
+    Raises
+    ------
+    FormulationError : the one asked for cannot serve the scene; says which can
+
+    >>> choose(load_scene("propeller")).formulation
+    'crank_angle'
+    """
+    prescribed = scene.motion is not None
+    serves = _SERVES_PRESCRIBED if prescribed else _SERVES_FREE
+    if formulation == "auto":
+        return Choice(serves[0], _reasons(scene))
+    if formulation not in serves:
+        known = formulation in _SERVES_PRESCRIBED + _SERVES_FREE
+        why = (
+            f"the speed is {'prescribed' if prescribed else 'free'}"
+            if known
+            else "no such formulation"
+        )
+        raise FormulationError(
+            f"formulation {formulation!r} cannot serve this scene: {why}; "
+            f"choose auto, {', '.join(serves[:-1])} or {serves[-1]}"
+        )
+    return Choice(formulation, (f"asked for; auto would choose {serves[0]}",))
+
+
+def _reasons(scene: Scene) -> tuple[str, ...]:
+    if scene.motion is not None:
+        return (
+            "the speed is prescribed, so nothing has to be integrated: algebra gives every joint "
+            "force and the torque that the drive must give",
+        )
+    n = len(scene.cylinders)
+    parts = "crank, rod and piston are" if n == 1 else f"crank, {n} rods and {n} pistons are"
+    reasons = [
+        f"{parts} rigid and closed in loops, so one free rotation describes them exactly; with "
+        "the crank angle as the variable no step crosses a knot of the pressure table"
+        if scene.gas is not None
+        else f"{parts} rigid and closed in loops, so one free rotation describes them exactly"
+    ]
+    if scene.start is not None and scene.start.speed == 0.0:
+        reasons.append(
+            "it starts from rest, where time must be the variable: minimal carries it off"
+        )
+    return tuple(reasons)

@@ -1,0 +1,232 @@
+"""Solved cells of the crank angle: the motion between their edges, and what they err."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crankmbs import kernels
+from crankmbs.cells import Grid, Strip
+from crankmbs.formulations.base import NOWHERE, Array, Samples, State
+from crankmbs.inertia import reduce
+from crankmbs.roots import invert_monotone
+from crankmbs.sampling import Plan
+from crankmbs.torque import Branch
+
+__all__ = ["Window"]
+
+Index = NDArray[np.intp]
+
+
+@dataclass(frozen=True)
+class Window:
+    """Consecutive solved cells on one branch of the loads.
+
+    edges : shape (m + 1,) [rad], angle turned since the beginning, u >= 0; energy and time at
+    them; torque : shape (m, s), Q at the nodes [N m]; slowness : shape (m, s), dt/du [s/rad];
+    stop : cell and position in it, 0 to 1, where the window ends; landed : what is exact there;
+    skipped : cells of whole periods passed before it and not kept.
+    """
+
+    grid: Grid
+    strip: Strip
+    branch: Branch
+    sense: float
+    begin: State
+    edges: Array
+    energy: Array
+    time: Array
+    torque: Array
+    slowness: Array
+    stop: tuple[int, float]
+    landed: State = NOWHERE
+    skipped: int = 0
+
+    def sample(self, plan: Plan) -> Samples:
+        """The samples of the plan after the beginning, up to the end and with it."""
+        if plan.in_time:
+            t = plan.between(self.begin.time, self.end.time)
+            k, x = self._locate_time(t)
+            return self._samples(k, self._theta(k, x), t, self._energy(k, x))
+        theta = plan.between(self.begin.theta, self.end.theta)
+        u = self.sense * (theta - self.begin.theta)
+        repeats = _repeats(plan.every, float(self.grid.edges[-1]))
+        if kernels.are_compiled:
+            k, (t, energy) = np.empty(len(u), np.intp), np.empty((2, len(u)))
+            at_edges, at_nodes = (self.energy, self.time), (self.torque, self.slowness)
+            solved = self.edges, self.strip.width, *at_edges, *at_nodes
+            kernels.at_angles(u, self.sense, self.grid.rule.to_legendre, solved, k, t, energy)
+        else:
+            k = np.clip(np.searchsorted(self.edges, u, side="left") - 1, 0, len(self.torque) - 1)
+            x = (u - self.edges[k]) / self.strip.width[k]
+            rows = self.grid.rule.integrals(x)
+            t, energy = self._time(k, x, rows), self._energy(k, x, rows)
+        return self._samples(k, theta, t, energy, repeats)
+
+    def last(self) -> Samples:
+        """The one sample at the end."""
+        return self._last
+
+    @cached_property
+    def _last(self) -> Samples:
+        k, x = np.array([self.stop[0]]), np.array([self.stop[1]])
+        theta = _exact(self.landed.theta, self._theta(k, x))
+        t = _exact(self.landed.time, self._time(k, x))
+        at = self._samples(k, theta, t, self._energy(k, x))
+        return replace(at, omega=_exact(self.landed.omega, at.omega))
+
+    @property
+    def steps(self) -> int:
+        """Cells in the window and before it."""
+        return self.skipped + len(self.torque)
+
+    @property
+    def evaluations(self) -> int:
+        """Nodes in the window and before it."""
+        return self.steps * len(self.grid.rule.nodes)
+
+    @cached_property
+    def end(self) -> State:
+        """The state where the window ends."""
+        at = self.last()
+        rows = (at.time, at.theta, at.omega, at.energy_residual)
+        return State(*(float(q[0]) for q in rows))
+
+    @cached_property
+    def errors(self) -> tuple[Array, Array]:
+        """Errors of the energy [J] and the time [s] gained in each cell, shape (m, s + 3) each:
+        what a finer Gauss rule along the solution gives, at its nodes and at the cell's end."""
+        rule, finer = self.grid.rule, self.grid.finer.rule
+        bound = self.begin.theta + self.sense * float(self.edges[-1])
+        strip = self.grid.finer.strip(self.begin.theta, self.sense, len(self.torque), bound)
+        inside = rule.integrals(finer.nodes).T
+        to_nodes = np.vstack([finer.matrix, finer.weights]).T
+        own = np.column_stack([inside, rule.weights])
+        if kernels.are_compiled:
+            branch, tables = self.branch, (strip.inertia, strip.torque)
+            loads = branch.c0, branch.ct, branch.c1, branch.c2
+            solved = self.strip.width, self.energy, self.time, self.torque, self.slowness
+            gained, late = np.empty((2, len(self.torque), len(finer.nodes) + 1))
+            rules = inside, to_nodes, own
+            kernels.errors(loads, self.sense, rules, tables, solved, gained, late)
+            return gained, late
+        width = self.strip.width[:, None]
+        energy = self.energy[:-1, None] + self.sense * width * (self.torque @ inside)
+        t = self.time[:-1, None] + width * (self.slowness @ inside)
+        with np.errstate(divide="ignore"):
+            slowness = np.sqrt(0.5 * strip.inertia / np.maximum(energy, 0.0))
+            torque = strip.torque + self.branch(t, self.sense / slowness)
+        gained = self.sense * width * (torque @ to_nodes - self.torque @ own)
+        return gained, width * (slowness @ to_nodes - self.slowness @ own)
+
+    @property
+    def relative_errors(self) -> tuple[Array, Array]:
+        """Worst of energy and time in each cell, relative, at its end and inside, shape (m,)."""
+        energy, late = (np.abs(error) for error in self.errors)
+        per_time = np.maximum(1.0 / self.slowness.max(axis=1), 1.0 / self.time[1:])
+        both = energy / self.energy[1:, None] + late * per_time[:, None]
+        return both[:, -1], both.max(axis=1)
+
+    def cut(self, t_end: float, bound: float) -> Window:
+        """End where time, speed or angle leaves its bounds, whichever comes first."""
+        nowhere = self.landed
+        whole = self.begin.theta + self.sense * self.edges[-1]
+        at_bound = math.isfinite(bound) and abs(whole - bound) <= 1e-12 * max(1.0, abs(bound))
+        stops = [(self.stop, nowhere._replace(theta=bound) if at_bound else nowhere)]
+        if self.time[-1] >= t_end:
+            k, x = self._locate_time(np.array([t_end]))
+            stops.append(((int(k[0]), float(x[0])), nowhere._replace(time=t_end)))
+        for limit, above in ((self.branch.omega_low, False), (self.branch.omega_high, True)):
+            if math.isfinite(limit) and limit * self.sense > 0.0:
+                stop = self._crossing(limit, above=above)
+                if stop is not None:
+                    stops.append((stop, nowhere._replace(omega=limit)))
+        (k_stop, x_stop), landed = min(stops, key=lambda item: item[0])
+        m = k_stop + 1
+        return replace(
+            self,
+            strip=self.strip.first(m),
+            edges=self.edges[: m + 1],
+            energy=self.energy[: m + 1],
+            time=self.time[: m + 1],
+            torque=self.torque[:m],
+            slowness=self.slowness[:m],
+            stop=(k_stop, x_stop),
+            landed=landed,
+        )
+
+    def _crossing(self, limit: float, *, above: bool) -> tuple[int, float] | None:
+        """Cell and position where the speed first leaves its branch through ``limit``."""
+        theta = self.begin.theta + self.sense * self.edges[1:]
+        inertia = reduce(self.grid.scene, None, theta)[0]
+        at_edges = self.sense * np.sqrt(2.0 * self.energy[1:] / inertia)
+        omega = np.column_stack([self.sense / self.slowness, at_edges])
+        outside = omega > limit if above else omega < limit
+        if not outside.any():
+            return None
+        first = int(np.argmax(outside.ravel()))
+        k, j = divmod(first, omega.shape[1])
+        positions = np.concatenate([[0.0], self.grid.rule.nodes, [1.0]])
+        at = np.array([k])
+
+        def speed(x: Array) -> tuple[Array, Array]:
+            state = self._theta(at, x), self._time(at, x), self._energy(at, x)
+            there = self._samples(at, *state)
+            return there.omega, self.strip.width[k] * there.alpha / np.abs(there.omega)
+
+        x = invert_monotone(
+            speed, np.array([limit]), positions[j : j + 1], positions[j + 1 : j + 2]
+        )
+        return k, float(x[0])
+
+    def _energy(self, k: Index, x: Array, rows: Array | None = None) -> Array:
+        """Kinetic energy [J]; rows : the rule's integrals up to x, if they are known."""
+        rows = self.grid.rule.integrals(x) if rows is None else rows
+        gained = self.strip.width[k] * np.einsum("ns,ns->n", rows, self.torque[k])
+        return np.asarray(self.energy[k] + self.sense * gained)
+
+    def _time(self, k: Index, x: Array, rows: Array | None = None) -> Array:
+        rows = self.grid.rule.integrals(x) if rows is None else rows
+        spent = self.strip.width[k] * np.einsum("ns,ns->n", rows, self.slowness[k])
+        return np.asarray(self.time[k] + spent)
+
+    def _theta(self, k: Index, x: Array) -> Array:
+        turned = self.edges[k] + x * self.strip.width[k]
+        return np.asarray(self.begin.theta + self.sense * turned)
+
+    def _locate_time(self, t: Array) -> tuple[Index, Array]:
+        k = np.clip(np.searchsorted(self.time, t, side="left") - 1, 0, len(self.torque) - 1)
+
+        def elapsed(x: Array) -> tuple[Array, Array]:
+            slope = np.einsum("ns,ns->n", self.grid.rule.values(x), self.slowness[k])
+            return self._time(k, x), self.strip.width[k] * slope
+
+        return k, invert_monotone(elapsed, t, np.zeros_like(t), np.ones_like(t))
+
+    def _samples(
+        self, k: Index, theta: Array, t: Array, energy: Array, repeats: int = 0
+    ) -> Samples:
+        """Samples in the cells k; repeats : as many in a period, 0 when they do not repeat."""
+        once = theta[:repeats] if 0 < repeats < len(theta) else theta
+        of_angle = reduce(self.grid.scene, self.grid.pressure, once)
+        inertia, slope, torque = (np.resize(part, theta.shape) for part in of_angle)
+        omega = self.sense * np.sqrt(2.0 * np.maximum(energy, 0.0) / inertia)
+        outside = self.branch(t, omega)
+        alpha = (torque + outside - 0.5 * slope * omega**2) / inertia
+        gone = np.concatenate([[0.0], np.cumsum(self.errors[0][:, -1])])
+        residual = self.begin.residual - gone[k]
+        return Samples(t, theta, omega, alpha, residual, {"external_torque": outside})
+
+
+def _repeats(every: float, period: float) -> int:
+    """Samples in one period when it is a whole number, else 0."""
+    count = round(period / every)
+    return count if abs(count * every - period) < 1e-15 * period else 0
+
+
+def _exact(landed: float, computed: Array) -> Array:
+    return computed if math.isnan(landed) else np.array([landed])

@@ -1,0 +1,82 @@
+"""The one verb: choose, run, refine until the asked error is met, and label the result."""
+
+from __future__ import annotations
+
+import time as clock
+
+from crankmbs import free
+from crankmbs.assemble import Assembled, assemble, dataset
+from crankmbs.choose import choose
+from crankmbs.errors import InputError
+from crankmbs.formulations import kinetostatic
+from crankmbs.pressure import PeriodicPressure, pressure_of
+from crankmbs.result import Cost, Error, Result
+from crankmbs.scene import Scene
+
+__all__ = ["simulate"]
+
+_MULTIBODY_RTOL = 1e-5  # second order: more costs minutes, and is to be asked for
+
+
+def simulate(
+    scene: Scene,
+    *,
+    formulation: str | None = None,
+    rtol: float | None = None,
+    cost_cap: float = 10.0,
+) -> Result:
+    """Run a scene and state the error of every variable.
+
+    Parameters
+    ----------
+    formulation : None takes the scene's; "auto" the smallest exact one
+    rtol : relative global error asked for, 1e-13 to 1e-2; None takes the scene's, for
+        "multibody" at least 1e-5
+    cost_cap : wall time [s] at which "multibody" stops refining
+
+    Returns
+    -------
+    Result : status 0, 1 or -1 with a sentence; bad input raises
+
+    Raises
+    ------
+    FormulationError : the formulation cannot serve the scene
+    InputError : rtol or cost_cap out of range, a table that ends before the run
+
+    >>> print(simulate(load_scene("torque_driven")).status)
+    0
+    """
+    if rtol is not None and not 1e-13 <= rtol <= 1e-2:
+        raise InputError(f"rtol must be from 1e-13 to 1e-2; {rtol!r} came")
+    if not cost_cap > 0.0:
+        raise InputError(f"cost_cap must be a time above 0 s; {cost_cap!r} came")
+    begin = clock.perf_counter()
+    choice = choose(scene, formulation or scene.run.formulation)
+    pressure = pressure_of(scene)
+    asked = scene.run.rtol if rtol is None else rtol
+    if choice.formulation == "multibody" and rtol is None:
+        asked = max(asked, _MULTIBODY_RTOL)
+    assembled = _solve(scene, pressure, choice.formulation, asked, cost_cap)
+    solution = assembled.solution
+    return Result(
+        scene=scene,
+        data=dataset(assembled),
+        formulation=choice.formulation,
+        reasons=choice.reasons + solution.reasons,
+        status=solution.status,
+        message=solution.message,
+        cost=Cost(clock.perf_counter() - begin, solution.evaluations, solution.steps),
+        error=Error(asked, assembled.relative_error),
+    )
+
+
+def _solve(
+    scene: Scene, pressure: PeriodicPressure | None, formulation: str, asked: float, cost_cap: float
+) -> Assembled:
+    if formulation == "kinetostatic":
+        return assemble(scene, pressure, kinetostatic.run(scene, pressure))
+    if formulation != "multibody":
+        return free.run(scene, pressure, formulation, asked)
+    from crankmbs.formulations import multibody  # exudyn is imported only when it is used
+
+    return assemble(scene, pressure, multibody.run(scene, asked, cost_cap))

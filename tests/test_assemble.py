@@ -1,0 +1,72 @@
+"""From two answers to variables with errors, and to a labelled dataset."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from crankmbs import load_scene
+from crankmbs.assemble import assemble, dataset
+from crankmbs.formulations.base import Samples, Solution
+from crankmbs.result import VARIABLES
+
+SCENE = load_scene("v_twin")
+TIME = np.linspace(0.0, 0.1, 11)
+OMEGA = 100.0 + np.cos(TIME)
+
+
+def samples(theta_off=0.0, time_off=0.0):
+    return Samples(TIME + time_off, 100.0 * TIME + theta_off, OMEGA, -np.sin(TIME), 0.0 * TIME)
+
+
+def solution(better=None, **more):
+    return Solution(samples(), 0, "done", 1, 1, better, **more)
+
+
+def test_every_variable_has_its_name_shape_and_labels():
+    data = dataset(assemble(SCENE, None, solution()))
+    assert set(data.variables) == VARIABLES.keys() | {"cylinder"}
+    for name, about in VARIABLES.items():
+        assert data[name].dims == (("time", "cylinder") if about.per_cylinder else ("time",))
+        assert data[name].attrs["units"] == about.units
+        assert data[name].attrs["long_name"] == about.long_name
+        assert isinstance(data[name].attrs["error_estimate"], float)
+    assert data["cylinder"].values.tolist() == [1, 2]
+
+
+def test_an_exact_answer_errs_by_rounding_only():
+    assembled = assemble(SCENE, None, solution())
+    assert 0.0 < assembled.relative_error < 1e-13
+
+
+def test_the_difference_to_the_better_answer_is_the_error():
+    assembled = assemble(SCENE, None, solution(samples(theta_off=1e-6)))
+    assert assembled.errors["crank_angle"] == pytest.approx(1e-6, rel=1e-6)
+    loop = assembled.variables["piston_velocity"] / OMEGA[:, None]
+    moved = 1e-6 * np.abs(loop).max()
+    assert assembled.errors["piston_position"] == pytest.approx(moved, rel=1e-2)
+    assert assembled.errors["time"] < 1e-14
+    assert assembled.relative_error > 1e-7
+
+
+def test_the_crank_angle_errs_at_equal_time():
+    """A sample on a crank angle that is passed too late is an error of time and of angle."""
+    assembled = assemble(SCENE, None, solution(samples(time_off=1e-6)))
+    assert assembled.errors["time"] == pytest.approx(1e-6, rel=1e-6)
+    assert assembled.errors["crank_angle"] == pytest.approx(1e-6 * OMEGA.max(), rel=1e-6)
+
+
+def test_errors_that_a_formulation_states_are_taken():
+    stated = dict.fromkeys(VARIABLES, 0.25)
+    assert assemble(SCENE, None, solution(errors=stated)).errors == stated
+
+
+def test_what_a_formulation_computed_itself_is_taken():
+    own = replace(samples(), own={"external_torque": 7.0 + 0.0 * TIME})
+    variables = assemble(SCENE, None, Solution(own, 0, "done", 1, 1)).variables
+    assert np.all(variables["external_torque"] == 7.0)
+
+
+def test_a_run_that_did_not_move_has_no_error():
+    first = samples().select(slice(1))
+    assert assemble(SCENE, None, Solution(first, 1, "stuck", 0, 0)).relative_error == 0.0

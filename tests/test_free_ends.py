@@ -1,0 +1,57 @@
+"""Runs of a free crank that end before their end, and what is then still stated."""
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+from crankmbs import Run, Start, load_scene, simulate
+from crankmbs.formulations import minimal
+from crankmbs.result import VARIABLES
+
+COASTING = load_scene("coasting")
+
+
+def stated(result, name):
+    return float(result.data[name].attrs["error_estimate"])
+
+
+def test_too_many_evaluations_stop_the_run_with_the_samples_of_both_passes(monkeypatch):
+    whole = simulate(COASTING, formulation="minimal")
+    monkeypatch.setattr(minimal, "_MOST_EVALUATIONS", 2000)
+    result = simulate(COASTING, formulation="minimal")
+    assert result.status == -1
+    assert "takes more than" in result.message
+    n = result.data.sizes["time"]
+    assert 10 < n < whole.data.sizes["time"]
+    difference = np.abs(result.data["time"].values - whole.data["time"].values[:n])
+    assert difference.max() <= stated(result, "time") + stated(whole, "time")
+    last = math.degrees(float(result.data["crank_angle"][-1]))
+    assert f"stopped at {last:.6g} degrees" in result.message
+
+
+def test_an_error_that_cannot_be_known_is_infinite(monkeypatch):
+    monkeypatch.setattr(minimal, "_MOST_EVALUATIONS", 2000)
+    scene = dataclasses.replace(COASTING, run=Run(until="1000 rev", every="none"))
+    result = simulate(scene, formulation="minimal")
+    assert result.status == -1
+    assert all(stated(result, name) == math.inf for name in VARIABLES)
+
+
+def test_a_stop_says_what_was_reached():
+    start = Start(angle=1.0, speed=0.0)
+    scene = dataclasses.replace(COASTING, start=start, run=Run(until="3 rev", rtol=1e-13))
+    result = simulate(scene)
+    assert result.status == 1
+    assert "swings without reaching the end" in result.message
+    assert "asked for 1e-13, reached" in result.message
+
+
+@pytest.mark.parametrize("turns", [1, 1000])
+def test_the_acceleration_is_stated_no_closer_than_its_angle_has_digits(turns):
+    run = Run(until=f"{turns} rev", every="none")
+    data = simulate(dataclasses.replace(COASTING, gravity=None, run=run)).data
+    angle, alpha = data["crank_angle"].values, data["crank_acceleration"]
+    steepest = np.max(np.abs(np.diff(alpha.values) / np.diff(angle)))
+    assert alpha.attrs["error_estimate"] > 0.9 * steepest * np.spacing(angle[-1])

@@ -1,0 +1,46 @@
+"""On every shipped free scene the stated errors are honest and not idle caution."""
+
+from dataclasses import replace
+from functools import cache
+
+import pytest
+from references import reference_at_angles, true_errors
+
+from crankmbs import Run, load_scene, shipped_scenes, simulate
+from crankmbs.sampling import plan_of
+
+RUNS = {
+    "coasting": Run(until="2 rev", every="15 deg"),
+    "propeller": Run(until="2 cycles", every="15 deg"),
+    "torque_driven": Run(until="2 rev", every="15 deg"),
+    "v_twin": Run(until="1 rev", every="15 deg"),
+    "yi_diesel_free": Run(until="1 rev", every="15 deg"),
+}
+IDLE = 100.0
+TINY = 1e-12  # of the peak: so small a stated error needs no reason
+
+
+def test_every_free_scene_is_here():
+    free = {name for name in shipped_scenes() if load_scene(name).start is not None}
+    assert free == RUNS.keys()
+
+
+@cache
+def exact(name):
+    """The oracle's motion at every angle of a run; it does not depend on the run."""
+    scene = replace(load_scene(name), run=RUNS[name])
+    plan = plan_of(scene)
+    return reference_at_angles(scene, plan.between(plan.start - 1e-9, plan.start + plan.until))
+
+
+@pytest.mark.parametrize("formulation", ["crank_angle", "minimal"])
+@pytest.mark.parametrize("rtol", [1e-6, 1e-10])
+@pytest.mark.parametrize("name", RUNS)
+def test_stated_errors(name, rtol, formulation):
+    scene = replace(load_scene(name), run=RUNS[name])
+    result = simulate(scene, formulation=formulation, rtol=rtol)
+    assert result.status == 0
+    assert result.error.estimated <= rtol
+    for variable, error in true_errors(result, exact(name)).items():
+        assert error.true <= 2.0 * error.stated + TINY * error.peak, (variable, error)
+        assert error.stated <= IDLE * error.true + TINY * error.peak, (variable, error)

@@ -1,0 +1,109 @@
+"""The compiled loops against the arrays, to rounding; and when they are loaded."""
+
+import dataclasses
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from crankmbs import (
+    Quadratic,
+    Result,
+    Run,
+    Scene,
+    SpeedTable,
+    Start,
+    Table,
+    TimeTable,
+    Viscous,
+    kernels,
+    load_scene,
+    simulate,
+)
+from crankmbs.drives import Torque
+
+LOADS: dict[str, tuple[Torque, ...]] = {
+    "none": (),
+    "quadratic": (Quadratic(coefficient=9.5e-5),),
+    "viscous": (Viscous(coefficient=0.02),),
+    "time": (TimeTable(file=Table((0.0, 0.02, 0.05, 9.0), (0.0, -20.0, 5.0, -5.0))),),
+    "speed": (SpeedTable(file=Table((0.0, 200.0, 300.0, 400.0), (0.0, 5.0, -20.0, -30.0))),),
+}
+
+
+def scene_with(loads: tuple[Torque, ...], speed: float, every: str) -> Scene:
+    return dataclasses.replace(
+        load_scene("propeller"),
+        torque=loads,
+        start=Start(angle=0.7, speed=speed),
+        run=Run(until="4 cycles", every=every, rtol=1e-9),
+    )
+
+
+def both_ways(scene: Scene, patch: pytest.MonkeyPatch) -> tuple[Result, Result]:
+    """The scene run with arrays only, and with compiled loops only."""
+    patch.setattr(kernels, "are_compiled", False)
+    patch.setattr(kernels, "pay", lambda _: False)
+    arrays = simulate(scene)
+    patch.undo()
+    import numba  # noqa: F401
+
+    assert kernels.pay(0.0)
+    return arrays, simulate(scene)
+
+
+@pytest.mark.parametrize("every", ["1 deg", "0.1 ms"])
+@pytest.mark.parametrize("speed", [330.0, -330.0])
+@pytest.mark.parametrize("loads", LOADS)
+def test_arrays_and_compiled_loops_agree(
+    loads: str, speed: float, every: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    arrays, compiled = both_ways(scene_with(LOADS[loads], speed, every), monkeypatch)
+    assert arrays.status == compiled.status
+    assert arrays.message == compiled.message
+    for name in ("time", "crank_angle", "crank_speed", "crank_acceleration", "side_force"):
+        a, b = np.asarray(arrays.data[name]), np.asarray(compiled.data[name])
+        assert a.shape == b.shape
+        assert np.max(np.abs(a - b)) < 2e-12 * np.max(np.abs(a)), name
+    a, b = (r.error.estimated for r in (arrays, compiled))
+    assert a is not None
+    assert b is not None
+    assert 0.5 < a / b < 2.0 or max(a, b) < 1e-11
+
+
+SHORT = """
+import sys, crankmbs
+crankmbs.simulate(crankmbs.load_scene("propeller"))
+assert "numba" not in sys.modules
+"""
+LONG = """
+import sys, crankmbs
+from crankmbs import kernels
+assert not kernels.pay(0.4) and "numba" not in sys.modules
+assert kernels.pay(0.4) and kernels.are_compiled
+"""
+
+
+@pytest.mark.parametrize("code", [SHORT, LONG], ids=["a short run does not", "a long one does"])
+def test_numba_is_loaded_where_it_pays(code: str) -> None:
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+
+
+def test_kernels_work_where_nothing_can_be_cached() -> None:
+    """numba raises when neither the package's folder nor the home folder can be written."""
+    code = (
+        "import numba\n"
+        "plain = numba.njit\n"
+        "def njit(*args, **options):\n"
+        "    if options.pop('cache', False):\n"
+        "        raise RuntimeError('cannot cache function: no locator available')\n"
+        "    return plain(*args, **options)\n"
+        "numba.njit = njit\n"
+        "from crankmbs import kernels, load_scene, simulate\n"
+        "assert kernels.pay(0.0)\n"
+        "assert simulate(load_scene('coasting')).status == 0\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr

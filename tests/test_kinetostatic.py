@@ -1,0 +1,82 @@
+"""Prescribed speeds: exact samples, the drive's torque, and where a law stops short."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from crankmbs import (
+    InputError,
+    Motion,
+    Oscillation,
+    Ramp,
+    Run,
+    SpeedFile,
+    Table,
+    load_scene,
+    simulate,
+)
+from validation.adapter import reference_variables
+
+BASE = load_scene("yi_diesel")
+SPEEDS = {
+    "constant": 300.0,
+    "backwards": -300.0,
+    "oscillation": Oscillation(mean=300.0, amplitude=20.0, order=2.0, phase=0.4),
+    "ramp": Ramp(start=200.0, to=400.0, over=0.02),
+    "table": SpeedFile(file=Table((0.0, 0.01, 0.03, 0.2), (200.0, 300.0, 250.0, 400.0))),
+    "reversing": Ramp(start=300.0, to=-300.0, over=0.04),
+}
+
+
+def scene(speed, until="40 ms", every="1 ms"):
+    return replace(BASE, motion=Motion(speed=speed), run=Run(until=until, every=every))
+
+
+@pytest.mark.parametrize("name", SPEEDS)
+def test_every_variable_and_its_error(name):
+    """Against the oracle at the same motion; the stated error bounds what rounding leaves."""
+    result = simulate(scene(SPEEDS[name]))
+    assert (result.status, result.formulation) == (0, "kinetostatic")
+    motion = ("crank_angle", "crank_speed", "crank_acceleration")
+    state = [result.data[part].values for part in motion]
+    for variable, exact in reference_variables(result.scene, *state).items():
+        ours = result.data[variable]
+        error = np.abs(ours.values - exact.astype(float)).max()
+        assert error <= 2.0 * ours.attrs["error_estimate"], variable
+        assert ours.attrs["error_estimate"] <= 1e-11 * np.abs(ours.values).max(), variable
+    assert result.error.estimated < 1e-11
+
+
+@pytest.mark.parametrize("name", SPEEDS)
+def test_energy_closes(name):
+    data = simulate(scene(SPEEDS[name])).data
+    work = np.ptp(data["kinetic_energy"].values) + data["kinetic_energy"].values.max()
+    assert np.abs(data["energy_residual"].values).max() < 1e-11 * work
+
+
+def test_a_reversing_crank_is_sampled_in_angle_on_both_ways():
+    angle = simulate(scene(SPEEDS["reversing"], every="30 deg")).data["crank_angle"].values
+    turn = int(np.argmax(angle))
+    assert 0 < turn < len(angle) - 1
+    np.testing.assert_allclose(angle[:turn], angle[-1 : turn + 1 : -1][:turn], atol=1e-9)
+
+
+def test_a_speed_that_comes_to_rest_ends_the_run():
+    result = simulate(scene(Ramp(start=300.0, to=0.0, over=0.02), until="3 rev", every="10 deg"))
+    assert result.status == 1
+    assert "the prescribed speed comes to rest at 171.887 degrees" in result.message
+    assert result.data["crank_angle"].values[-1] == pytest.approx(3.0, rel=1e-14)
+
+
+def test_a_table_that_ends_before_the_run():
+    with pytest.raises(InputError, match=r"the speed table ends at 0.2 s, before the run does"):
+        simulate(scene(SPEEDS["table"], until="30 rev"))
+
+
+@pytest.mark.parametrize("every", ["1 deg", "1 ms"])
+def test_at_rest_for_a_time(every):
+    result = simulate(scene(0.0, until="10 ms", every=every))
+    assert result.status == 0
+    assert result.data["time"].values[-1] == 0.01
+    assert np.all(result.data["crank_angle"] == 0.0)

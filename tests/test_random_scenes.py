@@ -1,0 +1,39 @@
+"""Random scenes: every run ends as it should, and no true error exceeds twice the stated one."""
+
+import numpy as np
+import pytest
+from make_random_references import SCENES, stored
+from random_scenes import random_scene
+from references import true_errors
+
+from crankmbs import simulate
+
+EXACT = stored()
+
+
+def test_the_scenes_are_all_here_and_of_every_kind():
+    assert len(EXACT) == SCENES
+    scenes = [random_scene(seed) for seed in EXACT]
+    loads = {load.kind for scene in scenes for load in scene.torque}
+    assert loads == {"constant", "viscous", "quadratic", "time_table", "speed_table"}
+    tables = {scene.gas.interpolation for scene in scenes if scene.gas}
+    assert tables == {"pchip", "linear", "cubic", "step"}
+    assert {len(scene.cylinders) for scene in scenes} == {1, 2, 3, 4}
+    assert any(scene.start.speed == 0.0 for scene in scenes)
+    assert any(np.ptp(np.sign(exact.omega)) == 2.0 for _, exact in EXACT.values())
+
+
+@pytest.mark.parametrize("formulation", ["crank_angle", "minimal"])
+@pytest.mark.parametrize("seed", EXACT)
+def test_errors_are_honest(seed, formulation):
+    status, exact = EXACT[seed]
+    scene = random_scene(seed)
+    result = simulate(scene, formulation=formulation)
+    assert result.status == status, result.message
+    time = result.data["time"].values
+    assert len(time) == len(exact.time) + (status == 1)
+    assert np.all(np.diff(time) > 0.0)
+    short = result.error.estimated > scene.run.rtol
+    assert short == ("asked for" in result.message)
+    ratios = {name: error.ratio for name, error in true_errors(result, exact).items()}
+    assert max(ratios.values()) <= 2.0, (max(ratios, key=ratios.get), ratios)
