@@ -1,0 +1,133 @@
+"""Gas forces over the crank angle, smooth between the angles at which one of them jumps.
+
+A step of the pressure would ring in the solver. So a run is cut where a cylinder's pressure jumps,
+and on a stretch between two jumps the forces go on without them.
+"""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_right
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from crankmbs.formulations.base import Array
+from crankmbs.pressure import PeriodicPressure
+from crankmbs.scene import Scene
+
+__all__ = ["Gas", "GasStretch"]
+
+Force = Callable[[float], float]
+
+_NEAR = 1e-9  # rad: a knot so close ahead is reached, as in PeriodicPressure
+_JUMP = 1e-9  # of the highest pressure: less is rounding
+_MOST_JUMPS = 60  # in a period; a table of more steps is run over as it is
+
+
+class Gas:
+    """The gas forces of a scene; without gas all zero."""
+
+    def __init__(self, scene: Scene, pressure: PeriodicPressure | None) -> None:
+        self.phases = np.array([cylinder.phase for cylinder in scene.cylinders])
+        self._pressure, self._period = pressure, scene.period
+        self._area = scene.piston.gas_area or 0.0
+        self._angles, self._rises = self._jumps()
+
+    def force(self, theta: Array) -> Array:
+        """Gas forces [N] towards the crank, shape (m, n), at crank angles of shape (m,)."""
+        angles = theta[:, None] + self.phases
+        if self._pressure is None:
+            return np.zeros_like(angles)
+        return np.asarray(self._area * self._pressure(angles))
+
+    def scalar(self) -> Force:
+        """The force [N] over the cycle angle [rad], from number to number.
+
+        A bisection and a cubic in plain Python take 0.7 us; a symbolic tree of branches in
+        exudyn's generic object, the only other way, costs 9 us a step.
+        """
+        assert self._pressure is not None
+        first, period = float(self._pressure.knots[0]) - _NEAR, self._pressure.period
+        knots = (self._pressure.knots[:-1] - self._pressure.knots[0]).tolist()
+        pieces = (self._area * self._pressure.coefficients.T).tolist()
+
+        def force(angle: float) -> float:
+            x = (angle - first) % period
+            k = bisect_right(knots, x) - 1
+            a, b, c, d = pieces[k]
+            x -= knots[k] + _NEAR
+            return float(((a * x + b) * x + c) * x + d)
+
+        return force
+
+    def stretch(self, theta: float, sense: float) -> GasStretch:
+        """The stretch that a motion of this sense (its sign) enters at a crank angle [rad]."""
+        if len(self._angles) == 0:
+            return GasStretch(self, -math.inf, math.inf, np.zeros((2, len(self.phases))))
+        at = theta + math.copysign(_NEAR, sense)
+        turns = np.floor(at / self._period) + np.array([-1.0, 0.0, 1.0])
+        angles = (self._angles + self._period * turns[:, None]).ravel()
+        k = int(np.searchsorted(angles, at, side="right"))
+        ends = np.array([k - 1, k])
+        low, high = angles[ends]
+        return GasStretch(self, float(low), float(high), self._rises[ends % len(self._angles)])
+
+    def _jumps(self) -> tuple[Array, Array]:
+        """Crank angles in a period at which a force jumps; what each cylinder's rises by there."""
+        none = np.empty(0), np.empty((0, len(self.phases)))
+        if self._pressure is None:
+            return none
+        knots, pieces = self._pressure.knots, self._pressure.coefficients
+        width = np.diff(knots)
+        before = np.roll(
+            ((pieces[0] * width + pieces[1]) * width + pieces[2]) * width + pieces[3], 1
+        )
+        rise = pieces[3] - before
+        found = np.flatnonzero(np.abs(rise) > _JUMP * np.max(np.abs(pieces[3])))
+        if not 0 < len(found) * len(self.phases) <= _MOST_JUMPS:
+            return none
+        angles = np.mod(knots[found][:, None] - self.phases, self._period)
+        rises = self._area * rise[found][:, None, None] * np.eye(len(self.phases))
+        angles, rises = angles.ravel(), rises.reshape(-1, len(self.phases))
+        order = np.argsort(angles)
+        angles, rises = angles[order], rises[order]
+        apart = np.flatnonzero(np.diff(angles, prepend=-1.0) > _NEAR)
+        return angles[apart], np.add.reduceat(rises, apart, axis=0)
+
+
+@dataclass(frozen=True)
+class GasStretch:
+    """Gas forces between the crank angles ``low`` and ``high`` [rad], and smoothly beyond.
+
+    rises : shape (2, n) [N], what each cylinder's force rises by at low and at high
+    """
+
+    gas: Gas
+    low: float
+    high: float
+    rises: Array
+
+    def force(self, theta: Array) -> Array:
+        """Gas forces [N] towards the crank, shape (m, n), at crank angles of shape (m,)."""
+        below, above = theta < self.low - _NEAR, theta >= self.high - _NEAR
+        lifted = below[:, None] * self.rises[0] - above[:, None] * self.rises[1]
+        return np.asarray(self.gas.force(theta) + lifted)
+
+    def functions(self) -> list[Force]:
+        """The same cylinder by cylinder, from crank angle to force."""
+        return [self._function(k, self.gas.scalar()) for k in range(len(self.gas.phases))]
+
+    def _function(self, k: int, force: Force) -> Force:
+        phase = float(self.gas.phases[k])
+        low, high = self.low - _NEAR, self.high - _NEAR
+        at_low, at_high = (float(rise) for rise in self.rises[:, k])
+        if at_low == 0.0 and at_high == 0.0:
+            return lambda theta: force(theta + phase)
+
+        def without_jumps(theta: float) -> float:
+            lifted = at_low if theta < low else -at_high if theta >= high else 0.0
+            return force(theta + phase) + lifted
+
+        return without_jumps

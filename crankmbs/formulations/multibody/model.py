@@ -1,0 +1,186 @@
+"""The system of a scene in exudyn, to be run from any start, and what a run of it recorded."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from crankmbs.formulations.base import Array
+from crankmbs.formulations.multibody.loads import Load
+from crankmbs.formulations.multibody.parts import Assembly, exu
+from crankmbs.formulations.multibody.start import SPECTRAL_RADIUS, Start
+from crankmbs.scene import Scene
+
+__all__ = ["Model", "Record"]
+
+_EPS = float(np.finfo(float).eps)
+
+
+class Record(NamedTuple):
+    """What exudyn knows at the steps of a run: m steps, n cylinders, global axes.
+
+    time : shape (m,) [s]
+    position, velocity, acceleration : shape (m, 3 + 5 n), coordinates as in `Start`
+    bearing : shape (m, 2); crank_pin, piston_pin : shape (m, n, 2); side : shape (m, n) [N]
+    drive : shape (m,) [N m], the torque that keeps a prescribed speed
+    complete : whether the solver went through
+    iterations : of Newton's method
+    """
+
+    time: Array
+    position: Array
+    velocity: Array
+    acceleration: Array
+    bearing: Array
+    crank_pin: Array
+    piston_pin: Array
+    side: Array
+    drive: Array
+    complete: bool
+    iterations: int
+
+    def rows(self) -> dict[str, Array]:
+        """What was recorded step by step, by name."""
+        return dict(zip(self._fields[:-2], self[:-2], strict=True))
+
+
+class Model:
+    """The system of a scene. Set its loads, then run it.
+
+    gas : per cylinder the gas force [N] over the crank angle [rad]; empty without gas
+    torque : torque [N m] on a free crank over time [s] and speed [rad/s]
+    angle : crank angle [rad] of a prescribed motion over the number of the step
+    stiff : whether Newton's method shall know how the loads change; 2.7 times as slow
+    """
+
+    def __init__(self, scene: Scene, reference: Start, *, gas: bool, free: bool) -> None:
+        self.gas: Sequence[Callable[[float], float]] = ()
+        self.torque: Load = lambda time, omega: 0.0
+        self.angle: Callable[[int], float] = lambda step: 0.0
+        self.stiff = False
+        self._container = exu.SystemContainer()
+        self._system = self._container.AddSystem()
+        self._reference = reference.position
+        self._zero = float(reference.position[2])
+        self._begin, self._step = 0.0, 1.0  # solver time counts from the first step
+        assembly = Assembly(self._system, scene, reference.position)
+        self._sensors = assembly.sensors
+        if not free:
+            assembly.drive(lambda time: self.angle(round(time / self._step)) - self._zero)
+        elif scene.torque:
+            assembly.load(lambda time: self.torque(self._begin + time, self._v.item(2)))
+        for k in range(len(scene.cylinders) if gas else 0):
+            assembly.push(k, self._gas_force(k))
+        self._system.Assemble()
+        data = self._system.systemData
+        self._q, self._v = (  # exudyn's own memory: always the current state
+            data.GetODE2Coordinates(copy=False),
+            data.GetODE2Coordinates_t(copy=False),
+        )
+
+    def close(self) -> None:
+        """Let go of what exudyn holds: it and this model refer to each other."""
+        self._system.Reset()
+
+    def run(
+        self,
+        start: Start,
+        begin: float,
+        step: float,
+        steps: int,
+        proceed: Callable[[float], bool] | None = None,
+        lead: int = 0,
+    ) -> Record:
+        """Solve from ``start`` at time ``begin`` [s].
+
+        proceed(crank angle) : asked before every step but the first ``lead``; False ends the run
+        """
+        self._set(start, begin, step)
+        asked = (lead - 0.5) * step
+
+        def ask(_: object, time: float) -> bool:
+            return time < asked or proceed is None or proceed(self._zero + self._q.item(2))
+
+        self._system.SetPreStepUserFunction(ask)
+        return self._solve(_settings(step, steps))
+
+    def consistent(self, start: Start, time: float) -> Record:
+        """One row: accelerations and forces of a free start, without a step; to seven digits."""
+        self._set(start, time, 1e-9)
+        self._system.SetPreStepUserFunction(0)
+        settings = _settings(1e-9, 1)
+        settings.timeIntegration.generalizedAlpha.computeInitialAccelerations = True
+        return self._solve(settings)
+
+    def _gas_force(self, k: int) -> Callable[[], float]:
+        return lambda: self.gas[k](self._zero + self._q.item(2))
+
+    def _set(self, start: Start, begin: float, step: float) -> None:
+        self._begin, self._step = begin, step
+        data, initial = self._system.systemData, exu.ConfigurationType.Initial
+        data.SetODE2Coordinates(start.position - self._reference, initial)
+        data.SetODE2Coordinates_t(start.velocity, initial)
+        data.SetODE2Coordinates_tt(start.acceleration, initial)
+
+    def _solve(self, settings: Any) -> Record:
+        settings.timeIntegration.computeLoadsJacobian = 2 if self.stiff else 0
+        with _quiet():
+            try:
+                complete = bool(self._system.SolveDynamic(settings))
+            except (RuntimeError, ValueError):  # Newton's method fails, or a matrix is singular
+                complete = False
+        bodies = {name: self._stored(name) for name in ("position", "velocity", "acceleration")}
+        joints = {name: self._stored(name) for name in ("bearing", "crank_pin", "piston_pin")}
+        m = len(bodies["position"][0])
+        position, velocity, acceleration = (np.hstack(parts) for parts in bodies.values())
+        bearing, crank_pin, piston_pin = (-np.stack(p, axis=1)[..., :2] for p in joints.values())
+        return Record(
+            time=self._begin + self._step * np.arange(m, dtype=np.float64),
+            position=position + self._reference,
+            velocity=velocity,
+            acceleration=acceleration,
+            bearing=bearing[:, 0],
+            crank_pin=crank_pin,
+            piston_pin=piston_pin,
+            side=-np.hstack(self._stored("side")),
+            drive=-self._stored("drive")[0][:, 0] if "drive" in self._sensors else np.zeros(m),
+            complete=complete,
+            iterations=int(self._system.sys["dynamicSolver"].it.newtonStepsCount),
+        )
+
+    def _stored(self, name: str) -> list[Array]:
+        """Per sensor the recorded values, shape (m, its components)."""
+        return [self._system.GetSensorStoredData(s)[:, 1:] for s in self._sensors[name]]
+
+
+def _settings(step: float, steps: int) -> Any:
+    settings = exu.SimulationSettings()
+    integration = settings.timeIntegration
+    integration.endTime = steps * step
+    integration.numberOfSteps = steps
+    integration.adaptiveStep = False  # it may succeed with nonsense near a singular position
+    integration.verboseMode = 0
+    integration.generalizedAlpha.spectralRadius = SPECTRAL_RADIUS
+    integration.generalizedAlpha.computeInitialAccelerations = False
+    integration.generalizedAlpha.resetAccelerations = False
+    integration.newton.useModifiedNewton = True
+    integration.newton.modifiedNewtonJacUpdatePerStep = True  # a third less time than full Newton
+    integration.newton.relativeTolerance = 1e-10
+    integration.newton.absoluteTolerance = 1e-12
+    settings.solution.file.write = False
+    settings.solution.sensors.writePeriod = 0.5 * step  # every step, whatever the rounding
+    settings.linearSolver.solverType = exu.LinearSolverType.EXUdense
+    return settings
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    before = exu.config.printToConsole
+    exu.config.printToConsole = False
+    try:
+        yield
+    finally:
+        exu.config.printToConsole = before

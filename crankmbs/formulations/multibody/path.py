@@ -1,0 +1,106 @@
+"""One run at one step size, from start to end.
+
+It is made of stretches, cut where something jumps: a load or the prescribed acceleration, at a
+time known beforehand; the gas force of a cylinder, at a crank angle.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from crankmbs.drives import TimeTable
+from crankmbs.formulations.multibody.model import Model
+from crankmbs.formulations.multibody.problem import Problem, jump_times
+from crankmbs.formulations.multibody.start import coordinates
+from crankmbs.formulations.multibody.stretch import LEAST_STEPS, Walk, initial_acceleration
+from crankmbs.formulations.multibody.table import Table
+
+__all__ = ["Path", "coarsest_step", "model_of", "solve"]
+
+_ENDLESS = 1_000_000_000
+_SAME = 1e-12  # relative: times nearer than this are one
+_STEPS_PER_TURN = 125  # of the coarsest run
+_STEPS = 125  # of the coarsest run, at least
+_STUCK = 1e-9  # rad/s2
+
+
+class Path(NamedTuple):
+    """A run at one step size.
+
+    tables : the stretches, one after the other
+    ending : "complete", "called off", or "failed" where the solver gave up
+    steps, iterations : what it cost
+    """
+
+    tables: tuple[Table, ...]
+    ending: str
+    steps: int
+    iterations: int
+
+
+def model_of(problem: Problem) -> Model:
+    """exudyn's system for a problem."""
+    reference = coordinates(problem.scene, problem.start[0], 0.0)
+    gas = problem.scene.gas is not None
+    return Model(problem.scene, reference, gas=gas, free=problem.law is None)
+
+
+def solve(
+    problem: Problem, model: Model, step: float, halvings: int, go_on: Callable[[], bool]
+) -> Path:
+    """Run from time 0 to the end with ``step`` halved so often.
+
+    go_on : asked now and then; False calls the run off
+    """
+    walk = Walk(problem, model, go_on)
+    jumps = jump_times(problem)
+    ends = [*(t for t in jumps if t < problem.end * (1.0 - _SAME)), problem.end]
+    bounds, bound = problem.plan.angle_bounds, None
+    while True:
+        h, count = _steps(ends[0] - walk.time, step, halvings)
+        bound, ending = walk.stretch(ends[0], h, count, bounds, with_run_up=bound is None)
+        if ending != "complete":
+            return Path(tuple(walk.tables), ending, walk.steps, walk.iterations)
+        while ends and walk.time >= ends[0] * (1.0 - _SAME):
+            ends.pop(0)
+        if bound in bounds or not ends:
+            break
+    if walk.is_at_gas_jump() or any(math.isclose(walk.time, t, rel_tol=_SAME) for t in jumps):
+        # what comes after the jump is asked for at the end, too
+        beyond = walk.time + LEAST_STEPS * h
+        walk.stretch(beyond, h, LEAST_STEPS, (-math.inf, math.inf), with_run_up=False)
+        walk.tables[-1] = walk.tables[-1]._replace(until=walk.tables[-1].after)
+    return Path(tuple(walk.tables), "complete", walk.steps, walk.iterations)
+
+
+def coarsest_step(problem: Problem, model: Model) -> tuple[float, bool]:
+    """A step [s] to begin with, and whether the crank will move at all.
+
+    It resolves a turn at a speed that the run will come near: the fastest prescribed one, that at
+    the start, or from rest the speed after one turn at the first acceleration.
+    """
+    omega = problem.start[1]
+    moves, speed = True, abs(omega)
+    if problem.law is not None:
+        speeds = problem.law.at_time(problem.end * np.linspace(0.0, 1.0, 1001))[1]
+        speed = float(np.max(np.abs(speeds)))
+    elif omega == 0.0:
+        alpha = abs(initial_acceleration(problem, model))
+        loads_change = any(isinstance(load, TimeTable) for load in problem.scene.torque)
+        moves = alpha > _STUCK or loads_change
+        speed = min(math.sqrt(4.0 * math.pi * alpha), alpha * problem.end)
+    turn = 2.0 * math.pi / speed if speed > 0.0 else math.inf
+    longest = 1.0 if math.isinf(problem.end) else problem.end
+    return min(turn / _STEPS_PER_TURN, longest / _STEPS), moves
+
+
+def _steps(duration: float, step: float, halvings: int) -> tuple[float, int]:
+    """Step [s] and number of steps for a stretch."""
+    if math.isinf(duration):
+        return step / 2**halvings, _ENDLESS
+    count = max(math.ceil(duration / step - 1e-9) * 2**halvings, LEAST_STEPS)
+    return duration / count, count

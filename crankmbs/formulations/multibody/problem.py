@@ -1,0 +1,95 @@
+"""What a multibody run has to solve: where it ends, and where it jumps."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from crankmbs.drives import TimeTable
+from crankmbs.errors import InputError
+from crankmbs.formulations.multibody.gas import Gas
+from crankmbs.pressure import pressure_of
+from crankmbs.sampling import Plan, plan_of
+from crankmbs.scene import Scene
+from crankmbs.speed import SpeedLaw, speed_law
+
+__all__ = ["Problem", "jump_times", "problem_of"]
+
+
+class Problem(NamedTuple):
+    """A free crank, or one on a prescribed law.
+
+    end [s] : infinite where only the crank angle ends the run
+    rests : the law comes to rest at ``end``, before the end of the run
+    """
+
+    scene: Scene
+    plan: Plan
+    gas: Gas
+    law: SpeedLaw | None
+    end: float
+    rests: bool
+
+    @property
+    def start(self) -> tuple[float, float]:
+        """Crank angle [rad] and speed [rad/s] at time 0."""
+        if self.law is None:
+            assert self.scene.start is not None
+            return self.scene.start.angle, self.scene.start.speed
+        theta, omega, _ = self.law.at_time(0.0)
+        return float(theta), float(omega)
+
+
+def problem_of(scene: Scene) -> Problem:
+    """The problem of a scene.
+
+    Raises
+    ------
+    InputError : a speed table that ends before the run does
+    """
+    plan, gas = plan_of(scene), Gas(scene, pressure_of(scene))
+    if scene.motion is None:
+        return Problem(scene, plan, gas, None, plan.time_bound, False)
+    law = speed_law(scene.motion)
+    end, rests = _end_of(law, plan)
+    return Problem(scene, plan, gas, law, end, rests)
+
+
+def jump_times(problem: Problem) -> list[float]:
+    """Times [s] above 0 at which a load or the prescribed acceleration jumps."""
+    times: set[float] = set()
+    for load in problem.scene.torque:
+        if isinstance(load, TimeTable):
+            x, y = load.file.x, load.file.y
+            times |= {x[k] for k in range(1, len(x)) if x[k] == x[k - 1] and y[k] != y[k - 1]}
+    if problem.law is not None:
+        for corner in problem.law.corners:
+            before, after = problem.law.at_time(corner * np.array([1.0 - 1e-9, 1.0 + 1e-9]))[2]
+            if abs(after - before) > 1e-6 * max(abs(after), abs(before)):
+                times.add(corner)
+    return sorted(t for t in times if t > 0.0)
+
+
+def _end_of(law: SpeedLaw, plan: Plan) -> tuple[float, bool]:
+    """Time [s] at which the prescribed motion ends, and whether it comes to rest there."""
+    begin = 0.0
+    for turn in law.turning_times:
+        end = min(turn, plan.time_bound)
+        inside = begin + 1.0 if math.isinf(end) else 0.5 * (begin + end)
+        sense = float(np.sign(law.at_time(inside)[1]))
+        bound = plan.angle_bounds[1 if sense > 0.0 else 0]
+        if sense != 0.0 and math.isfinite(bound):
+            passed = math.inf if math.isinf(end) else sense * (float(law.at_time(end)[0]) - bound)
+            if passed >= -1e-13 * abs(bound):
+                return float(law.time_at(bound, begin, end)[0]), False
+        if sense == 0.0 and math.isinf(end):
+            return begin, True
+        if end == plan.time_bound:
+            return end, False
+        begin = end
+    raise InputError(
+        f"motion.speed: the speed table ends at {begin:g} s, before the run does; "
+        "lengthen the table or shorten the run"
+    )

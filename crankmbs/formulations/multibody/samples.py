@@ -1,0 +1,159 @@
+"""The samples of a plan on a run, and the variables of several runs at the same samples."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from crankmbs.formulations.base import Array
+from crankmbs.formulations.multibody.path import Path
+from crankmbs.formulations.multibody.problem import Problem
+from crankmbs.formulations.multibody.table import Table
+from crankmbs.roots import invert_monotone
+
+__all__ = ["aligned_variables", "reached", "slowed"]
+
+_NEWTON = 5  # steps from the straight line between two rows
+_LEFT = 1e-13  # of what Newton may leave
+_NEAR = 1e-9  # of the sample spacing, and rad: what is nearer is one
+
+
+class _Samples(NamedTuple):
+    """Times [s], crank angles [rad], and the number of the stretch each one lies in."""
+
+    time: Array
+    theta: Array
+    stretch: Array
+
+
+def aligned_variables(problem: Problem, paths: list[Path]) -> list[dict[str, Array]]:
+    """The variables of each run at the same samples, at the same crank angles or times.
+
+    At the same angles each run has times of its own. Runs that pass the grid of angles differently
+    often, near a reversal, are compared at the times of the finest, and only the last two of them,
+    so that nothing is extrapolated. "ahead" is the crank angle at the finest run's times.
+    """
+    samples = [_samples(problem, path) for path in paths]
+    finest = samples[-1]
+    by_angle = not problem.plan.in_time and len({len(s.time) for s in samples}) == 1
+    if not by_angle:
+        paths = paths if problem.plan.in_time else paths[-2:]
+        samples = [finest] * len(paths)
+    runs = [_variables_at(problem, p, s, by_angle) for p, s in zip(paths, samples, strict=True)]
+    speed = runs[-1]["crank_speed"]
+    for variables in runs:
+        variables["ahead"] = variables["crank_angle"] - speed * (variables["time"] - finest.time)
+        if not by_angle and not problem.plan.in_time:  # the time at which it has the sample's angle
+            off = variables["crank_angle"] - finest.theta
+            early = np.divide(off, speed, out=np.zeros_like(off), where=speed != 0.0)
+            variables["time"] = finest.time - early
+    return runs
+
+
+def reached(path: Path) -> tuple[float, float]:
+    """Time [s] and crank angle [rad] where a run ends."""
+    last = path.tables[-1]
+    return last.until, float(last.one_at("crank_angle", np.array([last.until]))[0])
+
+
+def slowed(path: Path) -> float:
+    """The fastest speed in the last tenth of a run, relative to the fastest of all."""
+    speeds = np.abs(np.concatenate([table.column("crank_speed") for table in path.tables]))
+    return float(np.max(speeds[-(len(speeds) // 10) :]) / np.max(speeds))
+
+
+def _samples(problem: Problem, path: Path) -> _Samples:
+    """Where the plan wants samples on this run, the start and the end included."""
+    plan = problem.plan
+    end, theta_end = reached(path)
+    for bound in plan.angle_bounds:
+        theta_end = bound if abs(theta_end - bound) < _NEAR else theta_end
+    times, angles, stretches = [np.zeros(1)], [np.array([problem.start[0]])], [np.zeros(1, int)]
+    for k, table in enumerate(path.tables):
+        for begin, until in _monotone(table):
+            theta_begin, theta_until = table.one_at("crank_angle", np.array([begin, until]))
+            if plan.in_time:
+                t = _grid(0.0, plan.every, begin, until)
+                theta = table.one_at("crank_angle", t)
+            else:
+                theta = _grid(plan.start, plan.every, theta_begin, theta_until)
+                t = _times_of(table, theta, begin, until)
+            new = slice(1 if begin == 0.0 else 0, None)  # the first is the start, which is there
+            times.append(t[new])
+            angles.append(theta[new])
+            stretches.append(np.full(len(t[new]), k))
+    time = np.append(np.concatenate(times), end)
+    theta = np.append(np.concatenate(angles), theta_end)
+    stretch = np.append(np.concatenate(stretches), len(path.tables) - 1)
+    far = np.flatnonzero(np.abs(theta - theta_end) > plan.last * (1.0 + 1e-12))
+    first = int(far[-1]) + 1 if len(far) else 0
+    return _Samples(time[first:], theta[first:], stretch[first:])
+
+
+def _grid(origin: float, every: float, begin: float, end: float) -> Array:
+    """Grid values from ``begin`` on and before ``end``, in the order in which they are passed."""
+    sign = 1.0 if end >= begin else -1.0
+    first, last = (math.ceil(sign * (x - origin) / every - _NEAR) for x in (begin, end))
+    return np.asarray(origin + sign * every * np.arange(first, last))
+
+
+def _monotone(table: Table) -> list[tuple[float, float]]:
+    """Times between which the crank does not reverse."""
+    times, speed = table.times, table.column("crank_speed")
+    moving = (times > table.after) & (times < table.until)
+    moving &= np.abs(speed) > _NEAR * np.max(np.abs(speed))
+    times, speed = times[moving], speed[moving]
+    k = np.flatnonzero(speed[:-1] * speed[1:] < 0.0)
+
+    def value(time: Array) -> tuple[Array, Array]:
+        return table.one_at("crank_speed", time), table.one_at("crank_acceleration", time)
+
+    turns = invert_monotone(value, np.zeros(len(k)), times[k], times[k + 1]).tolist()
+    return list(itertools.pairwise([table.after, *turns, table.until]))
+
+
+def _times_of(table: Table, theta: Array, begin: float, end: float) -> Array:
+    """Times at which the crank comes to the angles, where it does not reverse."""
+    times = table.times
+    edges = np.concatenate([[begin], times[(times > begin) & (times < end)], [end]])
+    reached = table.one_at("crank_angle", edges)
+    sign = 1.0 if reached[-1] >= reached[0] else -1.0
+    k = np.clip(np.searchsorted(sign * reached, sign * theta) - 1, 0, len(edges) - 2)
+
+    def value(time: Array) -> tuple[Array, Array]:
+        return table.one_at("crank_angle", time), table.one_at("crank_speed", time)
+
+    low, high, (at_low, at_high) = edges[k], edges[k + 1], (reached[k], reached[k + 1])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = np.nan_to_num((theta - at_low) / (at_high - at_low))
+        time = low + (high - low) * np.clip(share, 0.0, 1.0)
+        for _ in range(_NEWTON):
+            angle, speed = value(time)
+            off = theta - angle
+            time = np.clip(time + np.nan_to_num(off / speed), low, high)
+    slow = np.abs(off) > _LEFT * (1.0 + np.abs(theta))  # next to a reversal
+    if slow.any():
+        time[slow] = invert_monotone(value, theta[slow], low[slow], high[slow])
+    return np.asarray(time)
+
+
+def _variables_at(
+    problem: Problem, path: Path, samples: _Samples, by_angle: bool
+) -> dict[str, Array]:
+    parts = []
+    stretch = np.minimum(samples.stretch, len(path.tables) - 1)  # a coarser run may have fewer
+    for k, table in enumerate(path.tables):
+        here = stretch == k
+        time, theta = samples.time[here], samples.theta[here]
+        part = {"time": time, **table.at(time)}
+        if problem.law is not None:
+            part["crank_speed"], part["crank_acceleration"] = problem.law.at_time(time)[1:]
+        if by_angle:
+            part["crank_angle"] = theta
+        part["gas_force"] = table.gas.force(part["crank_angle"])
+        part["gas_pressure"] = part["gas_force"] / (problem.scene.piston.gas_area or 1.0)
+        parts.append(part)
+    return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
