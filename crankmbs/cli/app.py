@@ -1,0 +1,195 @@
+"""The commands and their options."""
+
+from __future__ import annotations
+
+import sys
+from importlib import metadata
+from io import TextIOWrapper
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from typer.core import TyperGroup
+
+from crankmbs.choose import choose
+from crankmbs.cli.check import describe
+from crankmbs.cli.run import run_scene
+from crankmbs.cli.validate import validate_scene
+from crankmbs.cli.work_precision import measure_scene
+from crankmbs.errors import CrankmbsError, InputError, OutputError
+from crankmbs.result import write_in_one_move
+from crankmbs.scene_io import load_scene, scene_path, shipped_scenes
+
+__all__ = ["app", "main"]
+
+
+class _Commands(TyperGroup):
+    """Turns the package's errors and an interrupt into a message and an exit status."""
+
+    def invoke(self, ctx: Any) -> Any:
+        try:
+            return super().invoke(ctx)
+        except CrankmbsError as error:
+            typer.echo(f"error: {error}", err=True)
+            raise typer.Exit(2) from None
+        except KeyboardInterrupt:
+            typer.echo("interrupted", err=True)
+            raise typer.Exit(130) from None
+
+
+app = typer.Typer(
+    cls=_Commands,
+    no_args_is_help=True,
+    add_completion=False,
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
+)
+
+_Scene = Annotated[
+    str, typer.Argument(metavar="SCENE", help="A scene file, or the name of a shipped scene.")
+]
+
+_CostCap = Annotated[float, typer.Option(help="Seconds at which multibody stops refining.")]
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(metadata.version("crankmbs"))
+        raise typer.Exit
+
+
+@app.callback()
+def crankmbs(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version.")
+    ] = False,
+) -> None:
+    """Time-domain dynamics of the slider-crank and the engine crank train."""
+
+
+@app.command()
+def run(
+    scene: _Scene,
+    formulation: Annotated[
+        str | None,
+        typer.Option(help="auto, kinetostatic, crank_angle, minimal or multibody."),
+    ] = None,
+    rtol: Annotated[float | None, typer.Option(help="Relative global error asked for.")] = None,
+    until: Annotated[
+        str | None, typer.Option(help='End of the run: "20 cycles", "10 rev" or "0.75 s".')
+    ] = None,
+    every: Annotated[
+        str | None, typer.Option(help='Output spacing: "1 deg", "0.1 ms" or "none".')
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder of the results; default results/NAME.")
+    ] = None,
+    no_figures: Annotated[bool, typer.Option("--no-figures", help="Draw no figures.")] = False,
+    confirm: Annotated[
+        bool,
+        typer.Option("--confirm", help="Run the multibody model too and show the difference."),
+    ] = False,
+    cost_cap: _CostCap = 10.0,
+) -> None:
+    """Run a scene: print its measures, write data and figures."""
+    options = {"formulation": formulation, "rtol": rtol, "until": until, "every": every}
+    given = {name: value for name, value in options.items() if value is not None}
+    complete = run_scene(
+        scene, given, out=out, figures=not no_figures, confirm=confirm, cost_cap=cost_cap
+    )
+    if not complete:
+        raise typer.Exit(3)
+
+
+@app.command()
+def validate(
+    scene: _Scene,
+    formulation: Annotated[
+        str, typer.Option(help="Which run is compared; only multibody is independent.")
+    ] = "multibody",
+    rtol: Annotated[float | None, typer.Option(help="Relative global error asked for.")] = None,
+    until: Annotated[
+        str | None, typer.Option(help='End of the run: "20 cycles", "10 rev" or "0.75 s".')
+    ] = None,
+    cost_cap: _CostCap = 10.0,
+    cylinder: Annotated[int, typer.Option(help="Number of the cylinder compared.")] = 1,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder of the results; default results/NAME.")
+    ] = None,
+    no_figures: Annotated[bool, typer.Option("--no-figures", help="Draw no figures.")] = False,
+) -> None:
+    """Compare a run with closed form and lectures; split the lectures' error into its causes."""
+    options = {"rtol": rtol, "until": until}
+    given = {name: value for name, value in options.items() if value is not None}
+    complete = validate_scene(
+        scene,
+        given,
+        formulation=formulation,
+        cost_cap=cost_cap,
+        cylinder=cylinder,
+        out=out,
+        figures=not no_figures,
+    )
+    if not complete:
+        raise typer.Exit(3)
+
+
+@app.command("work-precision")
+def work_precision(
+    scene: _Scene,
+    peers: Annotated[
+        bool, typer.Option("--peers", help="Run other tools too, where they are installed.")
+    ] = False,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder of the results; default results/NAME.")
+    ] = None,
+) -> None:
+    """Measure speed against error of every formulation; compare with other tools."""
+    if not measure_scene(scene, peers=peers, out=out):
+        raise typer.Exit(3)
+
+
+@app.command()
+def check(scene: _Scene) -> None:
+    """Read a scene and say how it would be run; run nothing."""
+    path = scene_path(scene)
+    loaded = load_scene(path)
+    typer.echo(describe(str(path), loaded, choose(loaded, loaded.run.formulation)))
+
+
+@app.command()
+def scenes() -> None:
+    """List the shipped scenes."""
+    shipped = shipped_scenes()
+    width = max(map(len, shipped), default=0)
+    for name, path in shipped.items():
+        typer.echo(f"{name:<{width}}  {load_scene(path).title}")
+
+
+@app.command()
+def new(
+    name: Annotated[str, typer.Argument(metavar="NAME", help="Name or path of the new scene.")],
+) -> None:
+    """Write a commented scene to start from."""
+    from crankmbs.template import template
+
+    path = Path(name if name.endswith(".toml") else f"{name}.toml")
+    if path.name == ".toml":
+        raise InputError(f"NAME: a scene needs a name, such as my_engine; {name!r} came")
+    if path.exists():
+        raise OutputError(f"{path}: exists already and is not overwritten; choose another name")
+    text = template(path.stem)
+    write_in_one_move(path, lambda part: _write(part, text))
+    typer.echo(f"wrote {path}; check it with: crankmbs check {path}")
+
+
+def main() -> None:
+    """Entry point of the command ``crankmbs``."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):
+            stream.reconfigure(errors="replace")  # a title the terminal cannot show is no crash
+    app()
+
+
+def _write(path: Path, text: str) -> None:
+    path.write_text(text, encoding="utf-8")

@@ -1,0 +1,155 @@
+"""What ``run`` prints."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from crankmbs.cli.text import digits, error_digits, table
+from crankmbs.confirm import Difference
+from crankmbs.measures import Estimate, JointForce, Measures
+from crankmbs.result import Result
+
+__all__ = ["comparison", "report"]
+
+_RPM = 30.0 / math.pi
+
+
+def report(name: str, result: Result, measures: Measures) -> str:
+    """The run in words, its measures and its joint forces, as two tables."""
+    title = f"{name}: {result.scene.title}" if result.scene.title else name
+    parts = [
+        f"{title}\n",
+        _about(result, measures),
+        "",
+        table([f"over the {measures.window.kind}", "value", "error"], _values(measures)),
+        "",
+        table(_FORCE_HEADINGS, [_force(result, joint) for joint in measures.joints]),
+    ]
+    return "\n".join(parts)
+
+
+def comparison(result: Result, check: Result, rows: Sequence[Difference]) -> str:
+    """The largest differences between a run and its check, beside what both say of their error."""
+    several = result.data.sizes["cylinder"] > 1
+    headings = [
+        "difference",
+        "largest",
+        "at crank angle [deg]",
+        f"error {result.formulation}",
+        f"error {check.formulation}",
+        "share",
+    ]
+    lines = []
+    for row in rows:
+        largest, sample, column = row.largest
+        cylinder = f" {column + 1}" if several and row.size.shape[1] > 1 else ""
+        where = _degrees(float(row.crank_angle[sample]), result.scene.period)
+        errors = [error_digits(error) for error in row.errors]
+        share = f"{row.share:.2g}"
+        size = error_digits(largest)
+        lines.append([f"{row.quantity}{cylinder} [{row.units}]", size, where, *errors, share])
+    worst = max(rows, key=lambda row: row.share)
+    verdict = (
+        "every difference lies within the sum of both stated errors"
+        if worst.share <= 1.0
+        else f"{worst.quantity} differs by {worst.share:.2g} times the sum of both stated errors"
+    )
+    return "\n".join(
+        [
+            "",
+            f"check by {check.formulation}: {check.message}",
+            _error_line(check),
+            _cost_line(check),
+            "",
+            table(headings, lines),
+            "share: the largest difference over the sum of both stated errors",
+            verdict,
+        ]
+    )
+
+
+_FORCE_HEADINGS = [
+    "joint force [N]",
+    "peak",
+    "error",
+    "at crank angle [deg]",
+    "cycle angle [deg]",
+    "mean",
+    "error",
+]
+
+
+def _about(result: Result, measures: Measures) -> str:
+    time, angle = result.data["time"].values, result.data["crank_angle"].values
+    turned = (angle[-1] - angle[0]) / (2.0 * math.pi)
+    kept = "" if result.scene.run.every is not None else "; only the last cycle is kept"
+    samples = f"{len(time)}, {time[0]:.6g} to {time[-1]:.6g} s, {turned:.6g} rev{kept}"
+    return "\n".join(
+        [
+            *(
+                f"{'formulation' if k == 0 else '':<12} {text}"
+                for k, text in enumerate([result.formulation, *result.reasons])
+            ),
+            f"{'end':<12} {result.message}",
+            f"{'samples':<12} {samples}",
+            _error_line(result),
+            f"{'energy':<12} closes to {measures.energy_closure:.1e} of the peak kinetic energy",
+            _cost_line(result),
+        ]
+    )
+
+
+def _error_line(result: Result) -> str:
+    error = result.error
+    return f"{'error':<12} {error.estimated:.1e} relative, {error.asked:.0e} asked for"
+
+
+def _cost_line(result: Result) -> str:
+    cost = result.cost
+    return (
+        f"{'cost':<12} {digits(cost.wall_time, most=2)} s, {cost.evaluations} evaluations, "
+        f"{cost.steps} steps"
+    )
+
+
+def _values(measures: Measures) -> list[list[str]]:
+    rows = [
+        _value("mean speed [rpm]", measures.mean_speed, _RPM),
+        _value("coefficient of fluctuation, (max - min)/mean [1]", measures.fluctuation),
+        _value("mean torque of the rods on the crank [N m]", measures.crank_torque),
+        _value("mean torque from outside [N m]", measures.external_torque),
+    ]
+    if measures.indicated_power is not None:
+        rows.append(_value("indicated power [kW]", measures.indicated_power, 1e-3))
+    pressures = measures.imep or ()
+    for number, imep in enumerate(pressures, start=1):
+        whose = f", cylinder {number}" if len(pressures) > 1 else ""
+        rows.append(_value(f"indicated mean effective pressure{whose} [bar]", imep, 1e-5))
+    return rows
+
+
+def _value(name: str, estimate: Estimate, scale: float = 1.0) -> list[str]:
+    value, error = estimate.value * scale, estimate.error * scale
+    return [name, digits(value, error), error_digits(error)]
+
+
+def _force(result: Result, joint: JointForce) -> list[str]:
+    period = result.scene.period
+    several = result.data.sizes["cylinder"] > 1
+    name = f"{joint.joint} {joint.cylinder}" if several and joint.cylinder else joint.joint
+    cycle = "" if joint.cycle_angle is None else _degrees(joint.cycle_angle, period)
+    return [
+        name,
+        digits(*joint.peak),
+        error_digits(joint.peak.error),
+        _degrees(joint.crank_angle, period),
+        cycle,
+        digits(*joint.mean),
+        error_digits(joint.mean.error),
+    ]
+
+
+def _degrees(angle: float, period: float) -> str:
+    """An angle within one period, in degrees."""
+    return f"{round(math.degrees(angle), 3) % round(math.degrees(period)):.6g}"

@@ -1,0 +1,110 @@
+"""The command ``run``: a scene in, files and a report out."""
+
+from __future__ import annotations
+
+import dataclasses
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import typer
+
+from crankmbs.choose import choose
+from crankmbs.cli.progress import progress
+from crankmbs.cli.report import comparison, report
+from crankmbs.confirm import differences
+from crankmbs.errors import InputError, OutputError
+from crankmbs.measures import measure
+from crankmbs.result import Result
+from crankmbs.scene import Scene
+from crankmbs.scene_io import load_scene, scene_path
+from crankmbs.simulate import simulate
+
+__all__ = ["override", "run_scene", "writable"]
+
+
+def run_scene(
+    name: str,
+    options: Mapping[str, Any],
+    *,
+    out: Path | None,
+    figures: bool,
+    confirm: bool,
+    cost_cap: float,
+) -> bool:
+    """Run a scene, write its results, print its report; return whether it reached its end.
+
+    Parameters
+    ----------
+    options : those of [run] that the command line overrides
+    out : folder of the results; None: results/NAME
+    confirm : run the multibody model too, print and draw the difference
+    cost_cap : wall time [s] at which multibody stops refining
+
+    Raises
+    ------
+    CrankmbsError : bad scene, option or folder; before anything runs
+    """
+    path = scene_path(name)
+    scene = override(load_scene(path), options)
+    choice = choose(scene, scene.run.formulation)
+    if confirm and choice.formulation == "multibody":
+        raise InputError(
+            "--confirm compares a run with multibody, and this run is multibody itself; "
+            "leave out --confirm or choose another formulation"
+        )
+    folder = writable(Path("results", path.stem) if out is None else out)
+
+    result = _simulate(scene, cost_cap, rtol=options.get("rtol"))
+    result.save(folder)
+    typer.echo(report(path.stem, result, measure(result)))
+    written = ["result.nc", "motion.csv"]
+    complete = result.status == 0
+    if figures:
+        from crankmbs.figures import save_figures  # matplotlib is imported only when it is used
+
+        with progress("figures"):
+            written += [file.name for file in save_figures(result, folder)]
+    if confirm:
+        check = _simulate(scene, cost_cap, formulation="multibody")
+        complete = complete and check.status == 0
+        rows = differences(result, check)
+        typer.echo(comparison(result, check, rows))
+        if figures:
+            from crankmbs.figures import save_differences
+
+            written.append(save_differences(result, rows, folder).name)
+    typer.echo(f"\nwrote {folder}: {', '.join(written)}")
+    return complete
+
+
+def override(scene: Scene, options: Mapping[str, Any]) -> Scene:
+    """The scene with options of [run] replaced; an error names the option."""
+    try:
+        run = dataclasses.replace(scene.run, **options)
+    except InputError as error:
+        raise InputError(f"--{error}") from None  # it begins with the name
+    try:
+        return dataclasses.replace(scene, run=run)
+    except InputError as error:
+        raise InputError(f"--until {options.get('until')}: {error}") from None
+
+
+def writable(folder: Path) -> Path:
+    """Make the folder and try it, so that a run is not lost at its end."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            return folder
+    except OSError as error:
+        raise OutputError(
+            f"{folder}: cannot be written ({error.strerror}); choose another folder with --out"
+        ) from None
+
+
+def _simulate(
+    scene: Scene, cost_cap: float, *, formulation: str | None = None, rtol: float | None = None
+) -> Result:
+    with progress(formulation or "running"):
+        return simulate(scene, formulation=formulation, rtol=rtol, cost_cap=cost_cap)

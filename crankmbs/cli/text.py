@@ -1,0 +1,55 @@
+"""Numbers and tables as plain ASCII text."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+__all__ = ["digits", "error_digits", "table"]
+
+
+def digits(value: float, error: float = 0.0, most: int = 6) -> str:
+    """A number without digits beyond the leading one of its error, nor beyond ``most``.
+
+    >>> digits(1234.5678, 0.03)
+    '1234.57'
+    >>> digits(1234.5678, 20.0)
+    '1230'
+    """
+    if not math.isfinite(value):
+        return "-"
+    if value == 0.0:
+        return "0"
+    size = int(f"{value:.{most - 1}e}".split("e")[1])  # the exponent after rounding
+    last = size - most + 1
+    if error > 0.0:
+        last = max(last, math.floor(math.log10(error)))
+    rounded = round(value, -last)
+    if rounded == 0.0:
+        return "0"
+    if -4 <= size < 7:
+        return f"{rounded:.{max(-last, 0)}f}"
+    return f"{rounded:.{max(size - last, 0)}e}"
+
+
+def error_digits(error: float) -> str:
+    """An error to two digits.
+
+    >>> error_digits(0.0123)
+    '0.012'
+    """
+    return digits(error, most=2)
+
+
+def table(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """Columns two blanks apart; the first flush left, the others flush right."""
+    lines = [headings, *rows]
+    widths = [max(len(line[k]) for line in lines) for k in range(len(headings))]
+    rule = ["-" * width for width in widths]
+    return "\n".join(
+        "  ".join(
+            cell.ljust(width) if k == 0 else cell.rjust(width)
+            for k, (cell, width) in enumerate(zip(line, widths, strict=True))
+        ).rstrip()
+        for line in (headings, rule, *rows)
+    )

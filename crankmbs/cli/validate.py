@@ -1,0 +1,141 @@
+"""The command ``validate``: a run against closed form and lectures, and the error budget."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import typer
+
+from crankmbs.cli.progress import progress
+from crankmbs.cli.run import override, writable
+from crankmbs.cli.text import digits, table
+from crankmbs.compare import (
+    CAUSES,
+    QUANTITIES,
+    Budget,
+    Comparison,
+    LeftOut,
+    Stretch,
+    budget,
+    check_cylinder,
+    compare,
+    percent,
+    save_budget,
+    save_comparison,
+)
+from crankmbs.scene_io import load_scene, scene_path
+from crankmbs.simulate import simulate
+
+__all__ = ["validate_scene"]
+
+
+def validate_scene(
+    name: str,
+    options: Mapping[str, Any],
+    *,
+    formulation: str,
+    cost_cap: float,
+    cylinder: int,
+    out: Path | None,
+    figures: bool,
+) -> bool:
+    """Run a scene, print and write how far formulas are from it; return whether it reached its end.
+
+    Parameters
+    ----------
+    options : those of [run] that the command line overrides; rtol among them is also asked of
+        "multibody", which else is content with 1e-5
+    out : folder of the results; None: results/NAME
+
+    Raises
+    ------
+    CrankmbsError : bad scene, option or folder; before anything runs
+    """
+    path = scene_path(name)
+    scene = override(load_scene(path), options)
+    check_cylinder(scene, cylinder)
+    folder = writable(Path("results", path.stem) if out is None else out)
+    with progress(formulation):
+        result = simulate(
+            scene, formulation=formulation, rtol=options.get("rtol"), cost_cap=cost_cap
+        )
+    comparison, split = compare(result, cylinder), budget(result, cylinder)
+    written = [save_comparison(comparison, folder), save_budget(split, folder)]
+    typer.echo(f"{result}\n\n{_about(comparison.stretch)}\n")
+    for reference in comparison.references:
+        typer.echo(f"{_against(comparison, reference)}\n")
+    typer.echo(f"{_causes(split)}\n\n{_words(split)}")
+    for line in _left_out((*comparison.left_out, *split.left_out)):
+        typer.echo(line)
+    if figures:
+        from crankmbs.figures import save_validation  # matplotlib only when it is used
+
+        with progress("figures"):
+            written += save_validation(comparison, split, folder)
+    typer.echo(f"\nwrote {folder}: {', '.join(file.name for file in written)}")
+    return result.status == 0
+
+
+def _about(stretch: Stretch) -> str:
+    count = len(stretch.result.scene.cylinders)
+    rpm = stretch.mean_speed * 30.0 / math.pi
+    inside = stretch.result.data.sizes["time"] - stretch.window.inside
+    folded = len(stretch.samples) < inside
+    return (
+        f"over the {stretch.window.kind}"
+        f"{' but for where the rod folds onto the crank' if folded else ''}, "
+        f"cylinder {stretch.cylinder} of {count}, mean speed {digits(rpm)} rpm\n"
+        "angles: cycle angle of the cylinder, for the main bearing the crank angle\n"
+        "peak: the largest magnitude in the run; in the budget that of any answer on the way to it"
+    )
+
+
+def _against(comparison: Comparison, reference: str) -> str:
+    headings = [f"against: {reference}", "peak", "max", "% of peak", "at [deg]", "rms", "% of peak"]
+    rows = [
+        [
+            f"{row.quantity} [{QUANTITIES[row.quantity].units}]",
+            digits(row.peak),
+            digits(row.size.largest, most=4),
+            _share(percent(row.size.largest, row.peak)),
+            f"{math.degrees(row.size.angle):.1f}",
+            digits(row.size.rms, most=4),
+            _share(percent(row.size.rms, row.peak)),
+        ]
+        for row in comparison.rows
+        if row.reference == reference
+    ]
+    return table(headings, rows)
+
+
+def _causes(split: Budget) -> str:
+    """Every cause's peak in percent of the quantity's."""
+    named = [*CAUSES, "total"]
+    headings = ["error budget, peaks in %", *named]
+    rows = []
+    for row in split.splits:
+        shares = {cause.name: row.share(cause) for cause in (*row.causes, row.total)}
+        rows.append([row.quantity, *(_share(shares.get(name, math.nan)) for name in named)])
+    return table(headings, rows)
+
+
+def _words(split: Budget) -> str:
+    return "\n".join(line for row in split.splits for line in row.sentences())
+
+
+def _left_out(entries: Sequence[LeftOut]) -> list[str]:
+    """One line for each reason, naming its quantities."""
+    grouped: dict[tuple[str, str], list[str]] = {}
+    for entry in dict.fromkeys(entries):
+        grouped.setdefault((entry.what, entry.reason), []).append(entry.quantity)
+    return [
+        f"left out{f' of {what!r}' if what else ''}: {', '.join(quantities)}: {reason}"
+        for (what, reason), quantities in grouped.items()
+    ]
+
+
+def _share(percentage: float) -> str:
+    return digits(percentage, most=3)

@@ -1,0 +1,102 @@
+"""The command ``work-precision``: speed against error, as tables, a CSV file and a figure."""
+
+from __future__ import annotations
+
+import textwrap
+from pathlib import Path
+
+import typer
+
+from crankmbs.cli.progress import progress
+from crankmbs.cli.run import writable
+from crankmbs.cli.text import error_digits, table
+from crankmbs.scene_io import load_scene, scene_path
+from crankmbs.work_precision import (
+    TARGETS,
+    Row,
+    WorkPrecision,
+    save_work_precision,
+    work_precision,
+)
+
+__all__ = ["measure_scene"]
+
+
+def measure_scene(name: str, *, peers: bool, out: Path | None) -> bool:
+    """Compare what can serve a scene, print and write it; return whether the scene reached its end.
+
+    Parameters
+    ----------
+    peers : run other tools and a limit in C too
+    out : folder of the results; None: results/NAME
+
+    Raises
+    ------
+    CrankmbsError : bad scene or folder; before anything runs
+    """
+    path = scene_path(name)
+    scene = load_scene(path)
+    folder = writable(Path("results", path.stem) if out is None else out)
+    with progress("speed against error"):
+        outcome = work_precision(scene, peers=peers)
+    typer.echo(f"{path.stem}: {scene.title}\n\n{_errors(outcome)}\n")
+    if scene.motion is None:  # a prescribed motion is exact in all of them
+        typer.echo(f"{_times(outcome)}\n")
+    for sentence in _sentences(outcome):
+        typer.echo(textwrap.fill(sentence, 100, subsequent_indent="  "))
+    with progress("figure"):
+        from crankmbs.figures.work_precision import save_figure  # matplotlib only when it is used
+
+        written = [save_work_precision(outcome, folder), save_figure(outcome, folder)]
+    typer.echo(f"\nwrote {folder}: {', '.join(file.name for file in written)}")
+    return outcome.reference.result.status == 0
+
+
+def _errors(outcome: WorkPrecision) -> str:
+    """A line for every contender at every setting."""
+    names = outcome.quantities
+    headings = ["relative error", "setting", "stated", *names, "time [ms]", "runs", "evaluations"]
+    floors = [error_digits(outcome.reference.floors[name]) for name in names]
+    rows = [[row.contender, _setting(row), *_numbers(row, names)] for row in outcome.rows]
+    return table(headings, [*rows, ["reference itself", "", "", *floors, "", "", ""]])
+
+
+def _numbers(row: Row, names: tuple[str, ...]) -> list[str]:
+    errors = [_error(value) for value in (row.stated, *(row.errors.get(name) for name in names))]
+    return [*errors, _milliseconds(row.time), str(len(row.times)), str(row.evaluations)]
+
+
+def _times(outcome: WorkPrecision) -> str:
+    """Least time of a setting that keeps the state at the end within an error."""
+    headings = ["time [ms] to an end within", *(f"{target:g}" for target in TARGETS)]
+    return table(
+        headings,
+        [
+            [name, *(_milliseconds(outcome.time_to(name, target)) for target in TARGETS)]
+            for name in outcome.contenders
+        ],
+    )
+
+
+def _sentences(outcome: WorkPrecision) -> list[str]:
+    return [
+        f"reference: {outcome.reference.sentence()}; smaller differences say nothing",
+        "motion: crank angle per radian turned and speed over its peak, the worse; reactions: "
+        "vectors, over their peak",
+        "time: median wall time of rounds in which all take their turns; compilation and "
+        "derivation are not in it",
+        *outcome.notes,
+        *outcome.machine,
+    ]
+
+
+def _setting(row: Row) -> str:
+    return f"{row.knob} {row.setting:g}"
+
+
+def _error(value: float | None) -> str:
+    return "" if value is None else error_digits(value)
+
+
+def _milliseconds(time: float | None) -> str:
+    return "-" if time is None else f"{time * 1e3:.3g}"

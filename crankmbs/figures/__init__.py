@@ -1,0 +1,74 @@
+"""Figures of a result, drawn with matplotlib and without its global state."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from matplotlib.figure import Figure
+
+from crankmbs.confirm import Difference
+from crankmbs.figures.compare import budget_figure, comparison_figure, save_validation
+from crankmbs.figures.difference import difference_figure
+from crankmbs.figures.polar import crank_pin_figure, main_bearing_figure, piston_pin_figure
+from crankmbs.figures.strips import (
+    forces_figure,
+    piston_motion_figure,
+    speed_figure,
+    torque_figure,
+)
+from crankmbs.figures.view import View, last_view
+from crankmbs.result import Result, write_in_one_move
+
+__all__ = [
+    "budget_figure",
+    "comparison_figure",
+    "crank_pin_figure",
+    "difference_figure",
+    "forces_figure",
+    "last_view",
+    "main_bearing_figure",
+    "piston_motion_figure",
+    "piston_pin_figure",
+    "save_differences",
+    "save_figures",
+    "save_validation",
+    "speed_figure",
+    "torque_figure",
+]
+
+_FIGURES: dict[str, Callable[[View], Figure]] = {
+    "speed": speed_figure,
+    "piston_motion": piston_motion_figure,
+    "gas_and_side_force": forces_figure,
+    "main_bearing": main_bearing_figure,
+    "crank_pin": crank_pin_figure,
+    "piston_pin": piston_pin_figure,
+    "torque": torque_figure,
+}
+
+
+def save_figures(result: Result, folder: Path) -> list[Path]:
+    """Draw every figure of a result into PNG files, each replaced in one move.
+
+    Raises
+    ------
+    OutputError : the folder cannot be made or written
+    """
+    view = last_view(result)
+    return [_save(draw(view), folder / f"{name}.png") for name, draw in _FIGURES.items()]
+
+
+def save_differences(result: Result, differences: tuple[Difference, ...], folder: Path) -> Path:
+    """Draw the differences between two runs of a scene into difference.png.
+
+    Raises
+    ------
+    OutputError : the folder cannot be made or written
+    """
+    return _save(difference_figure(result, differences), folder / "difference.png")
+
+
+def _save(figure: Figure, file: Path) -> Path:
+    write_in_one_move(file, lambda part: figure.savefig(part, format="png"))
+    return file

@@ -1,0 +1,152 @@
+"""A run against its references, and the causes of the lectures' errors, over the crank angle."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from crankmbs.compare import CAUSES, CLOSED_FORM, LECTURES, QUANTITIES, Budget, Comparison, Stretch
+from crankmbs.figures.style import STYLE, crank_axis, footer, force_scale, line_of, panels
+from crankmbs.figures.view import last_view
+from crankmbs.result import write_in_one_move
+
+__all__ = ["FAMILIES", "budget_figure", "comparison_figure", "save_validation"]
+
+Array = NDArray[np.float64]
+
+FAMILIES = {
+    "motion": ("piston displacement", "piston velocity", "piston acceleration"),
+    "rod": ("net force", "side thrust", "rod force"),
+    "throw": ("tangential force", "radial force"),
+    "torque": ("torque", "gas torque"),
+    "piston_pin": ("piston pin force x", "piston pin force y"),
+    "crank_pin": ("crank pin force x", "crank pin force y"),
+    "main_bearing": ("main bearing force x", "main bearing force y"),
+}
+"""The quantities that are drawn side by side, by the name of their figure."""
+
+_SHOWN = {"m": (1e-3, "mm"), "m/s^2": (1.0, "m/s$^2$")}  # unit -> divisor and unit on an axis
+_STYLES: dict[str, dict[str, Any]] = {
+    "run": {"color": "black", "linewidth": 2.5},
+    "lecture": {"color": "0.5", "linestyle": (0, (4, 2))},
+    "sum of the causes": {"color": "0.65", "linewidth": 5.0},
+    **{name: line_of(k) for k, name in enumerate((CLOSED_FORM, *LECTURES))},
+    **{name: line_of(k) for k, name in enumerate(CAUSES)},
+}
+
+
+def save_validation(comparison: Comparison, budget: Budget, folder: Path) -> list[Path]:
+    """Draw comparison and budget of every family into PNG files, each replaced in one move.
+
+    Raises
+    ------
+    OutputError : the folder cannot be made or written
+    """
+    files = []
+    for family, quantities in FAMILIES.items():
+        drawn = {
+            f"comparison_{family}.png": comparison_figure(comparison, quantities),
+            f"budget_{family}.png": budget_figure(budget, quantities),
+        }
+        for name, figure in drawn.items():
+            if figure is not None:
+                _save(figure, folder / name)
+                files.append(folder / name)
+    return files
+
+
+@rc_context(STYLE)
+def comparison_figure(comparison: Comparison, quantities: tuple[str, ...]) -> Figure | None:
+    """Run, closed form and truncated lecture above, the error of every reference below.
+
+    None where none of the quantities could be compared.
+    """
+    shown = [name for name in quantities if name in comparison.simulated]
+    if not shown:
+        return None
+    drawn = {CLOSED_FORM, comparison.references[-1]}  # the last lecture truncates most
+    columns = []
+    for name in shown:
+        rows = [comparison.row(name, reference) for reference in comparison.references]
+        above = {row.reference: row.values for row in rows if row.reference in drawn}
+        errors = {row.reference: row.error for row in rows}
+        columns.append((name, {"run": comparison.simulated[name], **above}, errors))
+    return _figure(comparison.stretch, columns, "formula minus run", "run against formulas")
+
+
+@rc_context(STYLE)
+def budget_figure(budget: Budget, quantities: tuple[str, ...]) -> Figure | None:
+    """Truncated lecture and run above, below their difference and the causes it is made of.
+
+    None where none of the quantities could be split.
+    """
+    columns = [
+        (
+            split.quantity,
+            {"run": split.simulated, "lecture": split.lecture},
+            {"sum of the causes": split.total.curve}
+            | {cause.name: cause.curve for cause in split.causes},
+        )
+        for split in budget.splits
+        if split.quantity in quantities
+    ]
+    if not columns:
+        return None
+    return _figure(budget.stretch, columns, "lecture minus run", "error budget of the lecture")
+
+
+def _figure(
+    stretch: Stretch,
+    columns: list[tuple[str, dict[str, Array], dict[str, Array]]],
+    below: str,
+    about: str,
+) -> Figure:
+    """A column for each quantity: its curves above, its errors below, one crank-angle axis."""
+    n = len(columns)
+    figure, axes = panels(2, n, max(9.0, 5.6 * n), 8.0)
+    view = last_view(stretch.result)
+    degrees = view.degrees[stretch.samples - stretch.window.first]
+    several = len(stretch.result.scene.cylinders) > 1
+    above_marks = 40.0 if several else 24.0  # points; marks of several cylinders have two lines
+    for k, (name, curves, errors) in enumerate(columns):
+        top, bottom = axes[k], axes[n + k]
+        _panel(top, name, degrees, curves, "")
+        _panel(bottom, name, degrees, errors, f"{below} ")
+        crank_axis([top, bottom], view)
+        symbol = QUANTITIES[name].symbol
+        top.set_title(f"{name} ${symbol}$" if symbol else name, loc="left", pad=above_marks)
+    handles = {
+        str(line.get_label()): line
+        for ax in (axes[0], axes[n])
+        for line in ax.lines
+        if str(line.get_label()) in _STYLES
+    }
+    figure.legend(
+        list(handles.values()),
+        list(handles),
+        loc="outside upper center",
+        ncols=min(len(handles), int(figure.get_figwidth() / 3.0)),
+    )
+    footer(figure, stretch.result, f"{about}, cylinder {stretch.cylinder}" if several else about)
+    return figure
+
+
+def _panel(ax: Axes, quantity: str, degrees: Array, curves: dict[str, Array], what: str) -> None:
+    units = QUANTITIES[quantity].units
+    scale, unit = _SHOWN.get(units, (1.0, units))
+    if units == "N":
+        scale, unit = force_scale(*curves.values())
+    ax.axhline(0.0, color="0.55", linewidth=1.0)
+    for label, curve in curves.items():
+        ax.plot(degrees, curve / scale, **_STYLES[label], label=label)
+    ax.set_ylabel(f"{what}[{unit}]")
+
+
+def _save(figure: Figure, file: Path) -> None:
+    write_in_one_move(file, lambda part: figure.savefig(part, format="png"))

@@ -1,0 +1,63 @@
+"""How far two runs of one scene differ, beside what each says about its own error."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from crankmbs.confirm import Difference
+from crankmbs.figures.style import STYLE, footer, legend, line_of, name_of, panels
+from crankmbs.result import Result
+
+__all__ = ["difference_figure"]
+
+_COLUMNS = 3
+_ROUNDING = 1e-17  # of the peak: nothing below it is shown
+
+
+@rc_context(STYLE)
+def difference_figure(result: Result, differences: tuple[Difference, ...]) -> Figure:
+    """Every difference over the run, relative to the quantity's peak, on one logarithmic scale."""
+    rows = -(-len(differences) // _COLUMNS)
+    figure, axes = panels(rows, _COLUMNS, 15.0, 2.9 * rows)
+    low, high = _limits(differences)
+    for ax, row in zip(axes, differences, strict=False):
+        _draw(ax, row, low)
+        ax.set_ylim(low, high)
+    for ax in axes[len(differences) :]:
+        ax.set_visible(False)
+    for ax in axes[-_COLUMNS:]:
+        ax.set_xlabel("crank angle [rev]")
+    figure.supylabel("difference / peak of the quantity [1]")
+    legend(figure, max(axes, key=lambda ax: len(ax.lines)))
+    footer(figure, result, f"difference from {differences[0].formulations[1]}")
+    return figure
+
+
+def _draw(ax: Axes, row: Difference, floor: float) -> None:
+    peak = row.peak or 1.0
+    several = row.size.shape[1] > 1
+    for k in range(row.size.shape[1]):
+        size = np.maximum(row.size[:, k] / peak, floor)
+        label = name_of(k) if several else "difference"
+        turned = row.crank_angle / (2.0 * math.pi)
+        ax.semilogy(turned, size, **line_of(k), linewidth=1.2, label=label)
+    for error, name, dashes in zip(row.errors, row.formulations, (":", "--"), strict=True):
+        ax.axhline(error / peak, color="black", linestyle=dashes, label=f"error {name}")
+    ax.set_title(row.quantity, loc="left")
+
+
+def _limits(differences: tuple[Difference, ...]) -> tuple[float, float]:
+    """Whole decades around all that is drawn, differences that pass through zero cut off."""
+    shown = [
+        value / (row.peak or 1.0)
+        for row in differences
+        for value in (row.largest[0], *row.errors)
+        if value > 0.0
+    ] or [_ROUNDING]
+    low = 10.0 ** math.floor(math.log10(max(min(shown), _ROUNDING)))
+    return low, 10.0 ** math.ceil(math.log10(max([*shown, low])) + 0.5)

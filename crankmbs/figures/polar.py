@@ -1,0 +1,163 @@
+"""Polar load diagrams: the force in a bearing as a curve in the plane.
+
+X points up and Y to the left, so that counter-clockwise on paper is counter-clockwise in the
+engine. The force is that of the earlier body on the later one, in the order ground, crank, rod,
+piston; the load on the earlier body is its opposite.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from crankmbs.figures.style import STYLE, footer, force_scale, legend, line_of, name_of, panels
+from crankmbs.figures.view import View
+
+__all__ = ["crank_pin_figure", "main_bearing_figure", "piston_pin_figure"]
+
+Array = NDArray[np.float64]
+
+_CYLINDER = ("X, from crank to head", "Y, 90 deg ahead of X")
+_ENGINE = ("engine's X", "engine's Y, 90 deg ahead of X")
+_THROW = ("radial, outwards along the throw", "tangential, in the sense of +theta")
+_CLOSE = 0.02  # of the curve's size: marks nearer than this share one label
+_GAP, _LINE, _LETTER = 0.04, 0.045, 0.017  # of the axes: to the labels; their height and width
+
+
+@dataclass(frozen=True)
+class _Mark:
+    left: float
+    up: float
+    angles: list[int]
+
+    @property
+    def text(self) -> str:
+        return ", ".join(map(str, sorted(self.angles)))
+
+
+@rc_context(STYLE)
+def main_bearing_figure(view: View) -> Figure:
+    """Force of the main bearings on the crank, all cylinders, in the engine's frame."""
+    figure, (ax,) = panels(1, 1, 8.0, 8.0)
+    x, y = view.values("main_bearing_force_x"), view.values("main_bearing_force_y")
+    _draw(ax, [x], [y], [view.degrees], _ENGINE)
+    ax.set_title("main bearing: bearing on crank, engine's frame")
+    footer(figure, view.result, f"marks: crank angle [deg], {view.window.kind}")
+    return figure
+
+
+@rc_context(STYLE)
+def crank_pin_figure(view: View) -> Figure:
+    """Force of the crank on the rod: in the cylinder's frame, and turning with the crank."""
+    figure, (fixed, turning) = panels(1, 2, 14.0, 8.0)
+    x, y, cycles = _columns(view, "crank_pin_force")
+    _draw(fixed, x, y, cycles, _CYLINDER)
+    fixed.set_title("crank pin: crank on rod, cylinder's frame")
+    angle = [np.radians(cycle) for cycle in cycles]
+    radial = [np.cos(a) * u + np.sin(a) * v for a, u, v in zip(angle, x, y, strict=True)]
+    tangential = [np.cos(a) * v - np.sin(a) * u for a, u, v in zip(angle, x, y, strict=True)]
+    _draw(turning, radial, tangential, cycles, _THROW)
+    turning.set_title("crank pin: crank on rod, turning with the crank")
+    _finish(figure, fixed, view)
+    return figure
+
+
+@rc_context(STYLE)
+def piston_pin_figure(view: View) -> Figure:
+    """Force of the rod on the piston in the cylinder's frame."""
+    figure, (ax,) = panels(1, 1, 8.0, 8.0)
+    x, y, cycles = _columns(view, "piston_pin_force")
+    _draw(ax, x, y, cycles, _CYLINDER)
+    ax.set_title("piston pin: rod on piston, cylinder's frame")
+    _finish(figure, ax, view)
+    return figure
+
+
+def _columns(view: View, name: str) -> tuple[list[Array], list[Array], list[Array]]:
+    x, y = view.values(f"{name}_x"), view.values(f"{name}_y")
+    count = x.shape[1]
+    return list(x.T), list(y.T), [view.cycle_degrees(k) for k in range(count)]
+
+
+def _finish(figure: Figure, ax: Axes, view: View) -> None:
+    several = len(view.scene.cylinders) > 1
+    if several:
+        legend(figure, ax)
+    whose = "cycle angle of cylinder 1" if several else "cycle angle"
+    footer(figure, view.result, f"marks: {whose} [deg], {view.window.kind}")
+
+
+def _draw(
+    ax: Axes, up: list[Array], left: list[Array], degrees: list[Array], sense: tuple[str, str]
+) -> None:
+    """Draw one curve per cylinder and mark the first one at every 90 degrees."""
+    scale, unit = force_scale(*up, *left)
+    for k, (x, y) in enumerate(zip(up, left, strict=True)):
+        ax.plot(y / scale, x / scale, **line_of(k), linewidth=1.8, label=name_of(k))
+    ax.axhline(0.0, color="0.55", linewidth=1.0, zorder=1)
+    ax.axvline(0.0, color="0.55", linewidth=1.0, zorder=1)
+    ax.set_ylabel(f"{sense[0]} [{unit}]")
+    ax.set_xlabel(f"{sense[1]} [{unit}]")
+    marks = _marks(left[0] / scale, up[0] / scale, degrees[0])
+    _frame(ax, np.concatenate(left) / scale, np.concatenate(up) / scale, marks)
+
+
+def _marks(left: Array, up: Array, degrees: Array) -> list[_Mark]:
+    """The samples nearest to every 90 degrees, those on one spot together."""
+    near = _CLOSE * max(float(np.ptp(left)), float(np.ptp(up)))
+    low, high = float(degrees.min()), float(degrees.max())
+    first = math.ceil(low / 90.0 - 1e-6) * 90
+    marks: list[_Mark] = []
+    for angle in range(first, min(math.floor(high + 1e-6), first + 719) + 1, 90):
+        k = int(np.argmin(np.abs(degrees - angle)))
+        a, b = float(left[k]), float(up[k])
+        same = next((m for m in marks if math.hypot(m.left - a, m.up - b) <= near), None)
+        if same is None:
+            same = _Mark(a, b, [])
+            marks.append(same)
+        same.angles.append(angle % 720)
+    return marks
+
+
+def _frame(ax: Axes, left: Array, up: Array, marks: list[_Mark]) -> None:
+    """Square limits around curve and origin, with the labels in a column on either side."""
+    low, high = min(float(left.min()), 0.0), max(float(left.max()), 0.0)
+    bottom, top = min(float(up.min()), 0.0), max(float(up.max()), 0.0)
+    letters = max((len(mark.text) for mark in marks), default=0)
+    share = 1.0 - 2.0 * (_GAP + _LETTER * letters)
+    span = max((high - low) / share, 1.1 * (top - bottom)) or 1.0
+    middle, centre = 0.5 * (low + high), 0.5 * (bottom + top)
+    ax.set_xlim(middle + 0.5 * span, middle - 0.5 * span)  # Y to the left
+    ax.set_ylim(centre - 0.5 * span, centre + 0.5 * span)
+    ax.set_aspect("equal")
+    weight = 0.5 * (float(left.min()) + float(left.max()))
+    for side, edge in ((1.0, high), (-1.0, low)):
+        column = [mark for mark in marks if (mark.left > weight) == (side > 0.0)]
+        _label(ax, column, edge + side * _GAP * span, side, span)
+
+
+def _label(ax: Axes, marks: list[_Mark], at: float, side: float, span: float) -> None:
+    """Write the labels of one side below one another, each joined to its mark by a thin line."""
+    ordered = sorted(marks, key=lambda mark: -mark.up)
+    low, high = ax.get_ylim()
+    height = high
+    for k, mark in enumerate(ordered):
+        below = _LINE * span * (len(ordered) - k - 1)
+        height = max(min(mark.up, height - _LINE * span), low + below + 0.5 * _LINE * span)
+        ax.plot([mark.left, at], [mark.up, height], color="0.4", linewidth=0.7, zorder=3)
+        ax.plot(mark.left, mark.up, "o", color="black", markersize=6, zorder=4)
+        ax.text(
+            at,
+            height,
+            f" {mark.text} ",
+            ha="right" if side > 0.0 else "left",
+            va="center",
+            fontsize=12,
+            bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5},
+        )

@@ -1,0 +1,122 @@
+"""Quantities over the crank angle: speed, piston motion, forces along and across, torque."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from crankmbs.figures.style import (
+    STYLE,
+    crank_axis,
+    footer,
+    force_scale,
+    legend,
+    line_of,
+    name_of,
+    panels,
+)
+from crankmbs.figures.view import View
+
+__all__ = ["forces_figure", "piston_motion_figure", "speed_figure", "torque_figure"]
+
+Array = NDArray[np.float64]
+
+_RPM = 30.0 / math.pi
+_FLAT = 1e-6  # of the mean: a speed that varies less is drawn as constant
+
+
+@rc_context(STYLE)
+def speed_figure(view: View) -> Figure:
+    """Crank speed over the crank angle: the last cycle, and above it the whole run if longer."""
+    longer = view.window.first > 0
+    figure, axes = panels(1 + longer, 1, 10.0, 7.0 if longer else 5.0)
+    if longer:
+        data = view.result.data
+        _speed(axes[0], np.degrees(data["crank_angle"].values) / 360.0, data["crank_speed"].values)
+        axes[0].set_xlabel("crank angle [rev], whole run")
+    _speed(axes[-1], view.degrees, view.values("crank_speed"))
+    crank_axis(axes[-1:], view)
+    footer(figure, view.result, "crank speed")
+    return figure
+
+
+@rc_context(STYLE)
+def piston_motion_figure(view: View) -> Figure:
+    """Piston displacement, velocity and acceleration over the crank angle."""
+    figure, axes = panels(3, 1, 10.0, 9.0)
+    rows = (
+        ("piston_displacement", 1e3, "displacement\nfrom TDC [mm]"),
+        ("piston_velocity", 1.0, "velocity towards\nthe crank [m/s]"),
+        ("piston_acceleration", 1.0, "acceleration towards\nthe crank [m/s$^2$]"),
+    )
+    for ax, (name, scale, label) in zip(axes, rows, strict=True):
+        _per_cylinder(ax, view, view.values(name) * scale)
+        ax.set_ylabel(label)
+    crank_axis(axes, view)
+    legend(figure, axes[0])
+    figure.align_ylabels(axes)
+    footer(figure, view.result, "piston motion")
+    return figure
+
+
+@rc_context(STYLE)
+def forces_figure(view: View) -> Figure:
+    """Gas force and side force over the crank angle; without gas the side force alone."""
+    names = {
+        "gas_force": "gas on piston,\ntowards the crank",
+        "side_force": "cylinder wall on\npiston, along Y",
+    }
+    if view.scene.gas is None:
+        del names["gas_force"]
+    figure, axes = panels(len(names), 1, 10.0, 3.5 * len(names))
+    for ax, (name, label) in zip(axes, names.items(), strict=True):
+        scale, unit = force_scale(view.values(name))
+        _per_cylinder(ax, view, view.values(name) / scale)
+        ax.set_ylabel(f"{label} [{unit}]")
+    crank_axis(axes, view)
+    legend(figure, axes[0])
+    figure.align_ylabels(axes)
+    footer(figure, view.result, "gas and side force" if len(axes) > 1 else "side force")
+    return figure
+
+
+@rc_context(STYLE)
+def torque_figure(view: View) -> Figure:
+    """Torque of the rods on the crank, their sum, and the torque from outside."""
+    figure, (ax,) = panels(1, 1, 10.0, 6.0)
+    torque = view.values("crank_torque")
+    several = torque.shape[1] > 1
+    for k in range(torque.shape[1]):
+        label = name_of(k) if several else "rod on crank"
+        width = 1.2 if several else 2.0
+        ax.plot(view.degrees, torque[:, k], **line_of(k), linewidth=width, label=label)
+    if several:
+        ax.plot(view.degrees, torque.sum(axis=1), color="black", linewidth=2.5, label="all rods")
+    outside = view.values("external_torque")
+    ax.plot(view.degrees, outside, color="0.45", linestyle=(0, (5, 2)), label="from outside")
+    ax.set_ylabel("torque, positive in the\nsense of rotation +theta [N m]")
+    crank_axis([ax], view)
+    legend(figure, ax)
+    footer(figure, view.result, "torque on the crank")
+    return figure
+
+
+def _per_cylinder(ax: Axes, view: View, values: Array) -> None:
+    ax.axhline(0.0, color="0.55", linewidth=1.0)
+    for k in range(values.shape[1]):
+        label = name_of(k) if values.shape[1] > 1 else None
+        ax.plot(view.degrees, values[:, k], **line_of(k), label=label)
+
+
+def _speed(ax: Axes, angle: Array, speed: Array) -> None:
+    ax.plot(angle, speed * _RPM, **line_of(0))
+    ax.set_ylabel("crank speed [rpm]")
+    mean = abs(float(np.mean(speed))) * _RPM
+    if np.ptp(speed) * _RPM <= _FLAT * mean:  # keep rounding from being blown up to a curve
+        middle, margin = float(speed[0]) * _RPM, 0.01 * mean or 1.0
+        ax.set_ylim(middle - margin, middle + margin)

@@ -1,0 +1,111 @@
+"""One style for all figures: large type, colours that a colour-blind reader tells apart."""
+
+from __future__ import annotations
+
+import math
+import textwrap
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from crankmbs.figures.view import View
+from crankmbs.result import Result
+
+__all__ = ["STYLE", "crank_axis", "footer", "force_scale", "legend", "line_of", "name_of", "panels"]
+
+# Okabe and Ito's palette without its yellow, which is too pale on white
+_COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00")
+_DASHES = ("-", (0, (6, 2)), (0, (6, 2, 1.5, 2)), (0, (2.5, 1.5)))
+_GREY = "0.55"
+
+STYLE: Any = {
+    "figure.dpi": 150,
+    "savefig.dpi": 150,
+    "font.size": 13,
+    "axes.titlesize": 14,
+    "axes.labelsize": 14,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "axes.formatter.useoffset": False,
+    "grid.color": "0.9",
+    "legend.fontsize": 12,
+    "legend.framealpha": 0.9,
+    "lines.linewidth": 2.0,
+    "lines.solid_joinstyle": "round",
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+}
+
+
+def panels(rows: int, columns: int, width: float, height: float) -> tuple[Figure, list[Axes]]:
+    """A figure [inch] with its axes, row by row; it belongs to no window and no global state."""
+    figure = Figure(figsize=(width, height), layout="constrained")
+    FigureCanvasAgg(figure)
+    grid = figure.subplots(rows, columns, squeeze=False)
+    return figure, [axes for row in grid for axes in row]
+
+
+def line_of(cylinder: int) -> dict[str, Any]:
+    """Colour and dashes of a cylinder, counted from 0."""
+    return {
+        "color": _COLOURS[cylinder % len(_COLOURS)],
+        "linestyle": _DASHES[cylinder % len(_DASHES)],  # curves on one another show through
+    }
+
+
+def name_of(cylinder: int) -> str:
+    """Legend entry of a cylinder, counted from 0."""
+    return f"cylinder {cylinder + 1}"
+
+
+def force_scale(*forces: NDArray[np.float64]) -> tuple[float, str]:
+    """Divisor and unit in which forces read well: N or kN."""
+    peak = max(float(np.max(np.abs(force), initial=0.0)) for force in forces)
+    return (1e3, "kN") if peak >= 1e3 else (1.0, "N")
+
+
+def crank_axis(axes: list[Axes], view: View) -> None:
+    """Give stacked panels one crank-angle axis, with the dead centres marked."""
+    span = view.high - view.low
+    step = next((s for s in (15, 30, 90, 180) if span <= 8.5 * s), 360)
+    ticks = np.arange(math.ceil(view.low / step) * step, view.high + 1e-6, step)
+    period = round(math.degrees(view.scene.period))
+    labels = view.dead_centre_labels()
+    for ax in axes:
+        ax.set_xlim(view.low, view.high)
+        ax.set_xticks(ticks, [f"{tick if tick <= period else tick - period:g}" for tick in ticks])
+        ax.tick_params(labelbottom=ax is axes[-1])
+        for at in labels:
+            ax.axvline(at, color=_GREY, linewidth=1.0, linestyle=(0, (6, 4)), zorder=1)
+    for at, text in labels.items():
+        axes[0].annotate(
+            text,
+            (at, 1.0),
+            xycoords=("data", "axes fraction"),
+            xytext=(0, 3),
+            textcoords="offset points",
+            ha="center",
+            va="bottom",
+            fontsize=11,
+            color="0.35",
+        )
+    axes[-1].set_xlabel(f"crank angle [deg], {view.window.kind}")
+
+
+def legend(figure: Figure, ax: Axes) -> None:
+    """One legend above the panels, out of the way of the curves."""
+    handles, labels = ax.get_legend_handles_labels()
+    if handles:
+        columns = min(len(handles), int(figure.get_figwidth() / 1.65))
+        figure.legend(handles, labels, loc="outside upper center", ncols=columns)
+
+
+def footer(figure: Figure, result: Result, about: str) -> None:
+    """Say under the figure which run it shows."""
+    lines = textwrap.wrap(result.scene.title, 80, max_lines=2, placeholder=" ...")
+    lines.append(f"{about} ({result.formulation})")
+    figure.supxlabel("\n".join(lines), fontsize=11, color="0.35")

@@ -1,0 +1,117 @@
+"""What the figures draw: the last cycle of a result, its angles in degrees."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crankmbs.geometry import dead_centres
+from crankmbs.measures import Window, last_window
+from crankmbs.result import Result
+from crankmbs.scene import Scene
+from crankmbs.schema import DEGREE
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["View", "last_view"]
+
+Array = NDArray[np.float64]
+
+_SAME = 0.5  # deg: dead centres closer than this share one line
+
+
+@dataclass(frozen=True)
+class View:
+    """The last cycle of a result.
+
+    data : its samples; degrees : shape (n,), crank angle less whole periods
+    low, high [deg] : the stretch of crank angle shown
+    """
+
+    result: Result
+    window: Window
+    data: xr.Dataset
+    degrees: Array
+    low: float
+    high: float
+
+    @property
+    def scene(self) -> Scene:
+        """The scene of the result."""
+        return self.result.scene
+
+    def values(self, name: str) -> Array:
+        """A variable over the cycle, shape (n,) or (n, cylinders)."""
+        values: Array = self.data[name].values
+        return values
+
+    def cycle_degrees(self, cylinder: int) -> Array:
+        """Cycle angle of a cylinder, counted from 0, at the samples [deg]."""
+        return self.degrees + math.degrees(self.scene.cylinders[cylinder].phase)
+
+    def dead_centre_labels(self) -> dict[float, str]:
+        """Crank angles [deg] of the dead centres that are shown, and what they are.
+
+        A single cylinder shows both; several show the top ones, named by cylinder number.
+        """
+        crank, rod, piston = self.scene.crank, self.scene.rod, self.scene.piston
+        top, bottom = dead_centres(crank.radius, rod.length, piston.offset)
+        cylinders = self.scene.cylinders
+        if len(cylinders) == 1:
+            phase = cylinders[0].phase
+            labels = dict.fromkeys(self._passes(bottom - phase), "BDC")
+            for at in self._passes(top - phase):
+                labels[at] = "firing TDC" if self._fires(at, phase) else "TDC"
+            return labels
+        passes = sorted(
+            (at, number)
+            for number, cylinder in enumerate(cylinders, start=1)
+            for at in self._passes(top - cylinder.phase)
+        )
+        groups: dict[float, list[int]] = {}
+        for at, number in passes:
+            last = next(reversed(groups), -math.inf)
+            groups.setdefault(last if at - last < _SAME else at, []).append(number)
+        return {at: "TDC\n" + ", ".join(map(str, sorted(g))) for at, g in groups.items()}
+
+    def _passes(self, angle: float) -> list[float]:
+        first = math.degrees(angle)
+        k = np.arange(
+            math.ceil((self.low - first) / 360.0 - 1e-9),
+            math.floor((self.high - first) / 360.0 + 1e-9) + 1,
+        )
+        return [float(at) for at in first + 360.0 * k]
+
+    def _fires(self, at: float, phase: float) -> bool:
+        gas = self.scene.gas
+        if gas is None or gas.stroke == 2:
+            return False
+        return 180.0 < (at + math.degrees(phase)) % 720.0 < 540.0
+
+
+def last_view(result: Result) -> View:
+    """The view of a result's last cycle, or of what there is."""
+    window = last_window(result)
+    data = result.data.isel(time=slice(window.first, None))
+    angle = data["crank_angle"].values
+    end = float(angle[-1])
+    low, high = sorted((end - window.angle, end))
+    if window.kind == "whole run":
+        low, high = float(angle.min()), float(angle.max())
+        if low == high:  # the crank stands still
+            low, high = low - DEGREE, high + DEGREE
+    period = result.scene.period
+    shift = math.floor(low / period + 1e-9) * period
+    return View(
+        result=result,
+        window=window,
+        data=data,
+        degrees=np.degrees(angle - shift),
+        low=math.degrees(low - shift),
+        high=math.degrees(high - shift),
+    )

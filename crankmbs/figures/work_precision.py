@@ -1,0 +1,112 @@
+"""Speed against error: a panel for the state at the end, for the motion and for every reaction."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+from matplotlib import rc_context
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from crankmbs.figures.style import STYLE, panels
+from crankmbs.result import write_in_one_move
+from crankmbs.work_precision import END, MOTION, WorkPrecision
+
+__all__ = ["save_figure", "work_precision_figure"]
+
+_COLUMNS = 3
+_TITLES = {END: "state at the end", MOTION: "motion over the run"}
+_OWN = {"crank_angle": "#D55E00", "minimal": "#0072B2", "multibody": "#009E73"}
+_PEERS = ("black", "0.45", "#56B4E9", "#CC79A7", "#E69F00", "#7A5230", "#8A8AC0", "#5B8C5A")
+_MARKS = "^vsDPX<>"
+
+
+def save_figure(outcome: WorkPrecision, folder: Path) -> Path:
+    """Draw the figure into work_precision.png, replaced in one move.
+
+    Raises
+    ------
+    OutputError : the folder cannot be made or written
+    """
+    figure = work_precision_figure(outcome)
+    target = folder / "work_precision.png"
+    write_in_one_move(target, lambda part: figure.savefig(part, format="png"))
+    return target
+
+
+@rc_context(STYLE)
+def work_precision_figure(outcome: WorkPrecision) -> Figure:
+    """Wall time over relative error: lower and further left is better.
+
+    Grey is below what the reference states of its own error; what lies there is drawn on its edge.
+    """
+    names = outcome.quantities
+    rows = -(-len(names) // _COLUMNS)
+    figure, axes = panels(rows, _COLUMNS, 16.0, 4.7 * rows + 2.0)
+    styles = _styles(outcome)
+    left, right = _decades([*_errors(outcome), *outcome.reference.floors.values()])
+    limits = _decades([row.time for row in outcome.rows])
+    for k, ax in enumerate(axes):
+        if k >= len(names):
+            ax.set_visible(False)
+            continue
+        _draw(ax, outcome, names[k], styles)
+        ax.set_xlim(left, min(right, 1.0))
+        ax.set_ylim(limits)
+        if k + _COLUMNS >= len(names):
+            ax.set_xlabel("relative error [1]")
+        if k % _COLUMNS == 0:
+            ax.set_ylabel("wall time [s]")
+    handles, labels = axes[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside upper center", ncols=min(len(labels), 5))
+    figure.supxlabel(
+        "\n".join([outcome.reference.result.scene.title, *outcome.machine]),
+        fontsize=11,
+        color="0.35",
+    )
+    return figure
+
+
+def _draw(ax: Axes, outcome: WorkPrecision, name: str, styles: dict[str, dict[str, Any]]) -> None:
+    floor = outcome.reference.floors[name]
+    ax.axvspan(1e-30, floor, color="0.9", zorder=0)
+    for contender, rows in outcome.contenders.items():
+        points = [(max(row.errors[name], floor), row.time) for row in rows if name in row.errors]
+        if points:
+            ax.loglog(*zip(*points, strict=True), **styles[contender], label=contender)
+    ax.set_title(_TITLES.get(name, name), loc="left")
+
+
+def _styles(outcome: WorkPrecision) -> dict[str, dict[str, Any]]:
+    """Formulations in strong lines, dashed for the end only; peers thin, each with its mark."""
+    styles: dict[str, dict[str, Any]] = {}
+    peers = 0
+    for contender, rows in outcome.contenders.items():
+        if rows[0].is_peer:
+            k = peers % len(_PEERS)
+            styles[contender] = {"color": _PEERS[k], "marker": _MARKS[k], "linewidth": 1.2}
+            peers += 1
+        else:
+            name, _, part = contender.partition(",")
+            styles[contender] = {
+                "color": _OWN.get(name, _OWN["crank_angle"]),
+                "marker": "o",
+                "linewidth": 2.5,
+                "linestyle": "--" if part else "-",
+                "markerfacecolor": "white" if part else None,
+            }
+    return styles
+
+
+def _errors(outcome: WorkPrecision) -> list[float]:
+    """All errors, those below the reference's own set to it."""
+    floors = outcome.reference.floors
+    return [max(error, floors[name]) for row in outcome.rows for name, error in row.errors.items()]
+
+
+def _decades(values: list[float]) -> tuple[float, float]:
+    """Whole decades around values."""
+    low, high = math.log10(min(values)), math.log10(max(values))
+    return 10.0 ** math.floor(low - 0.1), 10.0 ** math.ceil(high + 0.1)

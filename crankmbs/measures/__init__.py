@@ -1,0 +1,16 @@
+"""What a run amounts to: means, peaks, power and orders, from the samples of a result."""
+
+from crankmbs.measures.orders import Orders, orders
+from crankmbs.measures.summary import Estimate, JointForce, Measures, measure
+from crankmbs.measures.window import Window, last_window
+
+__all__ = [
+    "Estimate",
+    "JointForce",
+    "Measures",
+    "Orders",
+    "Window",
+    "last_window",
+    "measure",
+    "orders",
+]

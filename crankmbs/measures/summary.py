@@ -1,0 +1,210 @@
+"""Summary measures of a run over its last cycle, each with its error."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crankmbs.geometry import close_loop, dead_centres
+from crankmbs.measures.peak import rise
+from crankmbs.measures.window import Window, integral, last_window
+from crankmbs.result import Result
+
+__all__ = ["Estimate", "JointForce", "Measures", "measure"]
+
+Array = NDArray[np.float64]
+
+
+class Estimate(NamedTuple):
+    """A value and an absolute bound for its error, in one unit."""
+
+    value: float
+    error: float
+
+
+@dataclass(frozen=True)
+class JointForce:
+    """Magnitude of one joint's force over the window.
+
+    joint : "main bearing", "crank pin", "piston pin" or "side force"
+    cylinder : its number; None for the main bearing, which carries all of them
+    peak [N] : largest sample; crank_angle [rad], unwrapped, and cycle_angle [rad] of its cylinder
+        say where
+    mean [N] : over time
+    """
+
+    joint: str
+    cylinder: int | None
+    peak: Estimate
+    mean: Estimate
+    crank_angle: float
+    cycle_angle: float | None
+
+
+@dataclass(frozen=True)
+class Measures:
+    """What a run amounts to over its window. Means of forces are over time.
+
+    mean_speed [rad/s]; fluctuation : (max - min) / |mean speed|
+    crank_torque [N m] : moment of all rods on the crank, external_torque [N m] : from outside;
+        both means are work per angle turned, so that torque times mean speed is power
+    indicated_power [W] : work of the gas on all pistons per time; None without gas
+    imep [Pa] : work of the gas in one cycle over the displaced volume, per cylinder; None without
+        gas or without a whole cycle
+    energy_closure : max |energy residual| / peak kinetic energy over the whole run
+    """
+
+    window: Window
+    mean_speed: Estimate
+    fluctuation: Estimate
+    joints: tuple[JointForce, ...]
+    crank_torque: Estimate
+    external_torque: Estimate
+    indicated_power: Estimate | None
+    imep: tuple[Estimate, ...] | None
+    energy_closure: float
+
+
+def measure(result: Result) -> Measures:
+    """Sum up a run over its last whole cycle (or revolution, or the run).
+
+    The error of a value is the stated error of the variables in it, plus that of the quadrature
+    (the spline through all samples against that through every second one), plus, for a peak, how
+    far it may rise above the largest sample (`crankmbs.measures.peak.rise`).
+
+    >>> measure(simulate(load_scene("propeller"))).window.kind
+    'last cycle'
+    """
+    window = last_window(result)
+    power, imep = _indicated(result, window)
+    rods = result.data["crank_torque"]
+    rods_error = _stated(result, "crank_torque") * rods.sizes["cylinder"]
+    outside = result.data["external_torque"].values
+    return Measures(
+        window=window,
+        mean_speed=_mean_speed(result, window),
+        fluctuation=_fluctuation(result, window),
+        joints=tuple(_joints(result, window)),
+        crank_torque=_mean_torque(result, window, rods.values.sum(axis=1), rods_error),
+        external_torque=_mean_torque(result, window, outside, _stated(result, "external_torque")),
+        indicated_power=power,
+        imep=imep,
+        energy_closure=_energy_closure(result),
+    )
+
+
+def _mean_speed(result: Result, window: Window) -> Estimate:
+    """The angle turned over the time it took: no quadrature."""
+    if window.duration == 0.0:
+        speed = float(result.data["crank_speed"].values[-1])
+        return Estimate(speed, _stated(result, "crank_speed"))
+    mean = window.angle / window.duration
+    ends = _stated(result, "crank_angle") + abs(mean) * _stated(result, "time")
+    return Estimate(mean, 2.0 * ends / window.duration)
+
+
+def _fluctuation(result: Result, window: Window) -> Estimate:
+    speed = result.data["crank_speed"].values
+    mean = abs(_mean_speed(result, window).value)
+    if mean == 0.0:
+        return Estimate(math.nan, math.nan)
+    high = window.inside + int(np.argmax(speed[window.inside :]))
+    low = window.inside + int(np.argmin(speed[window.inside :]))
+    error = 2.0 * _stated(result, "crank_speed") + rise(speed, high) + rise(-speed, low)
+    return Estimate(float(speed[high] - speed[low]) / mean, error / mean)
+
+
+def _joints(result: Result, window: Window) -> list[JointForce]:
+    rows = [_joint(result, window, "main bearing", "main_bearing_force", None)]
+    for joint, name in (("crank pin", "crank_pin_force"), ("piston pin", "piston_pin_force")):
+        rows += [_joint(result, window, joint, name, k) for k in _numbers(result)]
+    rows += [_joint(result, window, "side force", "side_force", k) for k in _numbers(result)]
+    return rows
+
+
+def _joint(result: Result, window: Window, joint: str, name: str, number: int | None) -> JointForce:
+    parts = [name] if name in result.data else [f"{name}_x", f"{name}_y"]
+    columns = [result.data[part].values for part in parts]
+    if number is not None:
+        columns = [column[:, number - 1] for column in columns]
+    size = np.sqrt(sum(column**2 for column in columns))
+    stated = math.hypot(*(_stated(result, part) for part in parts))
+    at = window.inside + int(np.argmax(size[window.inside :]))
+    crank_angle = float(result.data["crank_angle"].values[at])
+    cycle_angle = None
+    if number is not None:
+        phase = result.scene.cylinders[number - 1].phase
+        cycle_angle = (crank_angle + phase) % result.scene.period
+    mean = _mean(result, window, size)
+    return JointForce(
+        joint=joint,
+        cylinder=number,
+        peak=Estimate(float(size[at]), stated + rise(size, at)),
+        mean=Estimate(mean.value, mean.error + stated),
+        crank_angle=crank_angle,
+        cycle_angle=cycle_angle,
+    )
+
+
+def _indicated(
+    result: Result, window: Window
+) -> tuple[Estimate | None, tuple[Estimate, ...] | None]:
+    """Work of the gas force on the piston velocity: indicated power and imep."""
+    scene = result.scene
+    area = scene.piston.gas_area
+    if scene.gas is None or area is None or window.duration == 0.0:
+        return None, None
+    force, velocity = (result.data[name].values for name in ("gas_force", "piston_velocity"))
+    work, quadrature = integral(result, window, force * velocity)
+    stated = np.mean(np.abs(force), axis=0) * _stated(result, "piston_velocity")
+    stated = stated + np.mean(np.abs(velocity), axis=0) * _stated(result, "gas_force")
+    error = quadrature + stated * window.duration
+    power = Estimate(float(work.sum()) / window.duration, float(error.sum()) / window.duration)
+    if window.kind != "last cycle":
+        return power, None
+    r, l, e = scene.crank.radius, scene.rod.length, scene.piston.offset
+    top, bottom = close_loop(dead_centres(r, l, e), r, l, e).x
+    volume = area * float(top - bottom)
+    return power, tuple(
+        Estimate(float(w) / volume, float(d) / volume) for w, d in zip(work, error, strict=True)
+    )
+
+
+def _energy_closure(result: Result) -> float:
+    peak = float(np.max(result.data["kinetic_energy"].values))
+    worst = float(np.max(np.abs(result.data["energy_residual"].values)))
+    return worst / peak if peak > 0.0 else 0.0
+
+
+def _mean_torque(result: Result, window: Window, torque: Array, stated: float) -> Estimate:
+    """Work per angle turned; where none is turned, the mean over time."""
+    if window.angle == 0.0:
+        mean = _mean(result, window, torque)
+        return Estimate(mean.value, mean.error + stated)
+    speed = result.data["crank_speed"].values
+    work, quadrature = integral(result, window, torque * speed)
+    error = float(quadrature) + window.duration * (
+        stated * float(np.max(np.abs(speed)))
+        + float(np.max(np.abs(torque))) * _stated(result, "crank_speed")
+    )
+    return Estimate(float(work) / window.angle, error / abs(window.angle))
+
+
+def _mean(result: Result, window: Window, values: Array) -> Estimate:
+    """Mean over time with the error of its quadrature."""
+    if window.duration == 0.0:
+        return Estimate(float(values[-1]), 0.0)
+    total, error = integral(result, window, values)
+    return Estimate(float(total) / window.duration, float(error) / window.duration)
+
+
+def _stated(result: Result, name: str) -> float:
+    return float(result.data[name].attrs["error_estimate"])
+
+
+def _numbers(result: Result) -> list[int]:
+    return [int(number) for number in result.data["cylinder"].values]

@@ -1,0 +1,303 @@
+"""The command line: what it prints, what it writes, and its exit status."""
+
+import dataclasses
+import json
+import re
+import subprocess
+import sys
+from importlib import metadata
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import crankmbs.cli.run
+from crankmbs import Result, simulate
+from crankmbs.cli import app
+from crankmbs.scene_io import models_folder
+
+PRESSURE = models_folder() / "pressure" / "made_up_diesel.csv"
+SCENE = f"""
+title = "driven [red] engine"
+
+[crank]
+radius = "46 mm"
+inertia = "0.02 kg m^2"
+
+[rod]
+length = "153 mm"
+mass = "1.4 kg"
+center_of_mass = "43 mm"
+inertia = "two-mass"
+
+[piston]
+mass = "1.1 kg"
+bore = "85 mm"
+
+[gas]
+pressure = {json.dumps(str(PRESSURE))}
+absolute = false
+
+[motion]
+speed = "3000 rpm"
+
+[run]
+until = "2 cycles"
+"""
+COMES_TO_REST = SCENE.replace('"3000 rpm"', '{ from = "900 rpm", to = "0 rpm", over = "0.1 s" }')
+DRAWN = ["speed", "piston_motion", "gas_and_side_force", "main_bearing", "crank_pin", "piston_pin"]
+FIGURES = {f"{name}.png" for name in [*DRAWN, "torque"]}
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path, monkeypatch):
+    """Run in an empty folder with one scene in it."""
+    monkeypatch.chdir(tmp_path)
+    Path("engine.toml").write_text(SCENE)
+    return tmp_path
+
+
+def crankmbs_(*words):
+    return CliRunner().invoke(app, list(words))
+
+
+def refused(*words):
+    """The one message of a command that must be refused."""
+    result = crankmbs_(*words)
+    assert result.exit_code == 2, result.output
+    assert result.stdout == ""
+    (message,) = result.stderr.strip().splitlines()
+    assert message.startswith("error: ")
+    return message.removeprefix("error: ")
+
+
+def names(path):
+    return {file.name for file in Path(path).iterdir()}
+
+
+def test_run_writes_into_results_by_name_and_reports():
+    result = crankmbs_("run", "engine.toml")
+    assert result.exit_code == 0, result.output
+    assert names("results/engine") == {"result.nc", "motion.csv"} | FIGURES
+    for words in (
+        "driven [red] engine",
+        "kinetostatic",
+        "the speed is prescribed",
+        "over the last cycle",
+        "mean speed [rpm]",
+        "coefficient of fluctuation",
+        "indicated power [kW]",
+        "mean torque from outside [N m]",
+        "peak kinetic energy",
+        "asked for",
+        "evaluations",
+        "wrote results/engine: result.nc, motion.csv",
+    ):
+        assert words in result.stdout
+    assert result.stderr == ""
+    assert result.stdout.isascii()
+
+
+def test_report_carries_the_numbers_of_the_result():
+    out = crankmbs_("run", "engine.toml", "--no-figures").stdout
+    data = Result.load("results/engine").data
+    (row,) = re.findall(r"^side force +(.*)$", out, re.MULTILINE)
+    peak, error, crank_angle, cycle_angle, *_ = map(float, row.split())
+    side = np.abs(data["side_force"].values[720:, 0])
+    assert abs(peak - side.max()) <= error
+    assert crank_angle == cycle_angle == np.argmax(side)
+    (speed,) = re.findall(r"^mean speed \[rpm\] +(\S+)", out, re.MULTILINE)
+    assert float(speed) == 3000.0
+
+
+def test_no_figures_draws_none_and_out_says_where():
+    result = crankmbs_("run", "engine.toml", "--no-figures", "--out", "here/there")
+    assert result.exit_code == 0
+    assert names("here/there") == {"result.nc", "motion.csv"}
+    assert not Path("results").exists()
+
+
+def test_options_override_the_scene():
+    words = ["--until", "0.02 s", "--every", "1 ms", "--rtol", "1e-6", "--formulation", "auto"]
+    assert crankmbs_("run", "engine.toml", "--no-figures", *words).exit_code == 0
+    result = Result.load("results/engine")
+    assert result.data["time"].values == pytest.approx(np.arange(21) * 1e-3)
+    assert result.error.asked == 1e-6
+
+
+def test_every_none_keeps_the_last_cycle_only():
+    out = crankmbs_("run", "engine.toml", "--no-figures", "--every", "none").stdout
+    assert "only the last cycle is kept" in out
+    assert Result.load("results/engine").data.sizes["time"] == 721
+
+
+def test_a_run_cut_short_writes_its_results_and_exits_with_3():
+    Path("stops.toml").write_text(COMES_TO_REST)
+    result = crankmbs_("run", "stops.toml", "--no-figures")
+    assert result.exit_code == 3
+    assert "comes to rest" in result.stdout
+    assert Result.load("results/stops").status == 1
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["--rtol", "1"], "--rtol: "),
+        (["--rtol", "nan"], "--rtol: "),
+        (["--until", "3 cyclos"], "--until: "),
+        (["--until", "0 s"], "--until: "),
+        (["--every", "-1 deg"], "--every: "),
+        (["--formulation", "minmal"], "--formulation: .*minimal"),
+        (["--formulation", "minimal"], "cannot serve this scene"),
+        (["--formulation", "multibody", "--confirm"], "--confirm"),
+    ],
+)
+def test_bad_options_are_refused_by_name_before_anything_is_written(words, message):
+    assert re.search(message, refused("run", "engine.toml", *words))
+    assert not Path("results").exists()
+
+
+def test_an_option_that_does_not_fit_the_scene_is_named():
+    Path("speed.csv").write_text("time_s,speed_rpm\n0,800\n1,3000\n")
+    Path("table.toml").write_text(SCENE.replace('"3000 rpm"', '{ file = "speed.csv" }'))
+    assert refused("run", "table.toml", "--until", "2 s").startswith("--until 2 s: ")
+
+
+@pytest.mark.parametrize("command", ["run", "check"])
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (SCENE.replace("radius", "radus"), 'did you mean "radius"'),
+        (SCENE.replace('"46 mm"', '"3200 kg"'), "crank.radius"),
+        (SCENE.replace("[crank]", "[[["), "not valid TOML"),
+    ],
+)
+def test_a_bad_scene_is_one_message_with_its_file(command, text, message):
+    Path("bad[red].toml").write_text(text)
+    found = refused(command, "bad[red].toml")
+    assert found.startswith("bad[red].toml: ")
+    assert message in found
+
+
+@pytest.mark.parametrize("command", ["run", "check"])
+def test_a_scene_that_is_not_there_is_refused_with_the_nearest_name(command):
+    assert 'did you mean "propeller"' in refused(command, "propelle")
+
+
+@pytest.mark.parametrize("words", [["run"], ["run", "engine.toml", "--fast"], ["fly"]])
+def test_wrong_usage_exits_with_2(words):
+    assert crankmbs_(*words).exit_code == 2
+
+
+def test_a_folder_that_cannot_be_written_is_refused_before_the_run(monkeypatch):
+    monkeypatch.setattr(crankmbs.cli.run, "simulate", lambda *_, **__: pytest.fail("it ran"))
+    Path("taken").write_text("")
+    assert "cannot be written" in refused("run", "engine.toml", "--out", "taken/here")
+    assert "cannot be written" in refused("run", "engine.toml", "--out", "taken")
+
+
+@pytest.mark.parametrize("where", ["simulate", "_write_netcdf", "_write_csv"])
+def test_an_interrupt_exits_with_130_and_leaves_nothing_half_written(where, monkeypatch):
+    def interrupt(*_, **__):
+        raise KeyboardInterrupt
+
+    owner = crankmbs.cli.run if where == "simulate" else Result
+    monkeypatch.setattr(owner, where, interrupt)
+    result = crankmbs_("run", "engine.toml", "--no-figures")
+    assert result.exit_code == 130
+    assert result.stderr.strip() == "interrupted"
+    assert names("results/engine") <= {"result.nc"}
+
+
+@pytest.fixture
+def imitated(monkeypatch):
+    """A multibody run that is off by a known amount and says so."""
+
+    def run(scene, *, formulation=None, rtol=None, **_):
+        result = simulate(scene, rtol=rtol)
+        if formulation != "multibody":
+            return result
+        data = result.data.copy(deep=True)
+        data["side_force"].values[90, 0] += 4.0
+        data["side_force"].attrs["error_estimate"] = 5.0
+        data["crank_speed"].values[30] += 1e-3
+        data["crank_speed"].attrs["error_estimate"] = 1e-2
+        return dataclasses.replace(result, data=data, formulation="multibody")
+
+    monkeypatch.setattr(crankmbs.cli.run, "simulate", run)
+
+
+@pytest.mark.usefixtures("imitated")
+def test_confirm_prints_and_draws_the_difference_beside_both_errors():
+    result = crankmbs_("run", "engine.toml", "--confirm")
+    assert result.exit_code == 0
+    (row,) = re.findall(r"^side force \[N\] +(.*)$", result.stdout, re.MULTILINE)
+    largest, angle, ours, theirs, share = map(float, row.split())
+    assert (largest, angle, theirs) == (4.0, 90.0, 5.0)
+    assert ours < 1e-6
+    assert share == 0.8
+    assert "within the sum of both stated errors" in result.stdout
+    assert names("results/engine") == {"result.nc", "motion.csv", "difference.png"} | FIGURES
+
+
+@pytest.mark.usefixtures("imitated")
+def test_confirm_says_when_the_stated_errors_do_not_cover_the_difference(monkeypatch):
+    inner = crankmbs.cli.run.simulate
+
+    def proud(scene, **options):
+        result = inner(scene, **options)
+        result.data["side_force"].attrs["error_estimate"] = 1.0
+        return result
+
+    monkeypatch.setattr(crankmbs.cli.run, "simulate", proud)
+    result = crankmbs_("run", "engine.toml", "--confirm", "--no-figures")
+    assert "side force differs by 2 times the sum" in result.stdout
+    assert names("results/engine") == {"result.nc", "motion.csv"}
+
+
+def test_check_explains_and_runs_nothing(monkeypatch):
+    monkeypatch.setattr(crankmbs.cli.run, "simulate", lambda *_, **__: pytest.fail("it ran"))
+    result = crankmbs_("check", "engine.toml")
+    assert result.exit_code == 0
+    assert "kinetostatic" in result.stdout
+    assert "stroke 92 mm" in result.stdout
+    assert "until 2 cycles, every 1 deg" in result.stdout
+    assert names(".") == {"engine.toml"}
+
+
+def test_scenes_lists_what_ships_and_every_one_can_be_checked():
+    lines = crankmbs_("scenes").stdout.splitlines()
+    shipped = sorted(path.stem for path in models_folder().glob("*.toml"))
+    assert [line.split()[0] for line in lines] == shipped
+    assert all(len(line.split()) > 1 for line in lines)
+    for name in shipped:
+        assert crankmbs_("check", name).exit_code == 0
+
+
+def test_new_writes_a_scene_that_checks_and_overwrites_nothing():
+    assert crankmbs_("new", "my.engine").exit_code == 0
+    assert crankmbs_("check", "my.engine.toml").exit_code == 0
+    assert "exists already" in refused("new", "my.engine.toml")
+    assert "needs a name" in refused("new", "")
+
+
+def test_a_small_run_loads_neither_matplotlib_nor_exudyn():
+    code = (
+        "import sys; from crankmbs.cli import app;"
+        "app(['run', 'engine.toml', '--no-figures'], standalone_mode=False);"
+        "print(sorted({'matplotlib', 'exudyn', 'rich', 'numba'} & set(sys.modules)))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=60
+    )
+    assert done.stdout.splitlines()[-1] == "[]"
+
+
+def test_version_is_that_of_the_package():
+    assert crankmbs_("--version").output.strip() == metadata.version("crankmbs")
+
+
+def test_a_cost_cap_that_cannot_be_is_refused():
+    message = refused("run", "coasting", "--cost-cap", "0")
+    assert message == "cost_cap must be a time above 0 s; 0.0 came"

@@ -1,0 +1,253 @@
+"""What the figures say: their data, marks and labels; that nothing global is touched."""
+
+import dataclasses
+import math
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+from PIL import Image
+
+from crankmbs import Cylinder, Layout, Motion, Oscillation, Ramp, Run, load_scene, simulate
+from crankmbs.confirm import differences
+from crankmbs.errors import InputError, OutputError
+from crankmbs.figures import (
+    crank_pin_figure,
+    difference_figure,
+    forces_figure,
+    last_view,
+    main_bearing_figure,
+    piston_motion_figure,
+    piston_pin_figure,
+    save_figures,
+    speed_figure,
+    torque_figure,
+)
+
+FIRED = load_scene("propeller")
+FOUR = Layout(firing_order=(1, 3, 4, 2))
+FIGURES = [
+    speed_figure,
+    piston_motion_figure,
+    forces_figure,
+    main_bearing_figure,
+    crank_pin_figure,
+    piston_pin_figure,
+    torque_figure,
+]
+
+
+def driven(speed="3200 rpm", *, base=FIRED, until="2 cycles", every="1 deg", **parts):
+    run, motion = Run(until=until, every=every), Motion(speed=speed)
+    return dataclasses.replace(base, start=None, torque=(), motion=motion, run=run, **parts)
+
+
+@pytest.fixture(scope="module")
+def one():
+    return last_view(simulate(driven()))
+
+
+@pytest.fixture(scope="module")
+def four():
+    return last_view(
+        simulate(driven(Oscillation(mean=300.0, amplitude=12.0, order=2.0), layout=FOUR))
+    )
+
+
+def texts(ax):
+    return [text.get_text().strip() for text in ax.texts]
+
+
+def legend_of(figure):
+    return [text.get_text() for legend in figure.legends for text in legend.get_texts()]
+
+
+@pytest.mark.parametrize("draw", FIGURES)
+def test_every_axis_names_its_quantity_and_unit(draw, four):
+    figure = draw(four)
+    for ax in figure.axes:
+        assert "[" in ax.get_ylabel()
+        assert ax.get_ylabel().endswith("]")
+    bottom = figure.axes[-1].get_xlabel()
+    assert "[" in bottom
+    assert "]" in bottom
+
+
+@pytest.mark.parametrize("draw", [torque_figure, crank_pin_figure, piston_motion_figure])
+def test_several_cylinders_are_told_apart(draw, four):
+    figure = draw(four)
+    assert legend_of(figure)[:4] == [f"cylinder {k}" for k in range(1, 5)]
+    lines = [line for line in figure.axes[0].lines if line.get_label().startswith("cylinder")]
+    assert len({(line.get_color(), str(line._dash_pattern)) for line in lines}) == 4
+
+
+def test_only_the_last_cycle_is_shown_and_from_a_whole_number_of_periods(one):
+    (ax,) = torque_figure(one).axes
+    assert ax.get_xlim() == pytest.approx((0.0, 720.0))
+    assert ax.lines[0].get_xdata()[[0, -1]] == pytest.approx([0.0, 720.0])
+
+
+def test_speed_shows_the_whole_run_as_well(four):
+    whole, last = speed_figure(four).axes
+    assert whole.lines[0].get_xdata()[[0, -1]] == pytest.approx([0.0, 4.0])
+    assert whole.lines[0].get_ydata()[0] == pytest.approx(312.0 * 30.0 / math.pi)
+    assert last.get_xlim() == pytest.approx((0.0, 720.0))
+
+
+def test_constant_speed_is_drawn_flat(one):
+    for ax in speed_figure(one).axes:
+        low, high = ax.get_ylim()
+        assert (low, high) == pytest.approx((3168.0, 3232.0))
+
+
+def test_dead_centres_of_one_cylinder_are_the_true_ones():
+    piston = dataclasses.replace(FIRED.piston, offset=0.02)
+    view = last_view(simulate(driven(piston=piston, until="725 deg")))
+    marked = view.dead_centre_labels()
+    displacement = view.values("piston_displacement")[:, 0]
+    for at, label in marked.items():
+        here = np.interp(at, view.degrees, displacement)
+        extreme = displacement.max() if label == "BDC" else 0.0
+        assert here == pytest.approx(extreme, abs=2e-6)
+    assert sorted(marked.values()) == ["BDC", "BDC", "TDC", "firing TDC"]
+    (fires,) = [at for at, label in marked.items() if label == "firing TDC"]
+    assert 360.0 < fires < 370.0
+
+
+def test_dead_centres_of_several_cylinders_carry_their_numbers(four):
+    assert [text.replace("\n", " ") for text in four.dead_centre_labels().values()] == [
+        "TDC 1, 4",
+        "TDC 2, 3",
+        "TDC 1, 4",
+        "TDC 2, 3",
+        "TDC 1, 4",
+    ]
+
+
+def test_polar_diagrams_have_equal_axes_with_counter_clockwise_as_in_the_engine(one):
+    for draw in (main_bearing_figure, crank_pin_figure, piston_pin_figure):
+        for ax in draw(one).axes:
+            left, right = ax.get_xlim()
+            low, high = ax.get_ylim()
+            assert ax.get_aspect() == 1.0
+            assert left - right == pytest.approx(high - low)
+            assert left > right
+
+
+def test_polar_diagram_marks_every_quarter_turn_on_the_curve(one):
+    (ax,) = main_bearing_figure(one).axes
+    found = sorted(int(angle) for text in texts(ax) for angle in text.split(", "))
+    assert found == list(range(0, 720, 90))
+    dots = [line.get_xydata()[0] for line in ax.lines if line.get_marker() == "o"]
+    curve = ax.lines[0].get_xydata()
+    for dot in dots:
+        assert np.min(np.hypot(*(curve - dot).T)) == 0.0
+
+
+def test_labels_of_a_polar_diagram_do_not_overlap(one):
+    figure = piston_pin_figure(one)
+    figure.draw_without_rendering()
+    boxes = [text.get_window_extent() for text in figure.axes[0].texts]
+    area = figure.axes[0].get_window_extent()
+    for k, box in enumerate(boxes):
+        assert area.x0 <= box.x0
+        assert box.x1 <= area.x1
+        assert not any(box.overlaps(other) for other in boxes[k + 1 :])
+
+
+def test_crank_pin_turning_with_the_crank_is_the_fixed_one_turned(one):
+    fixed, turning = crank_pin_figure(one).axes
+    y, x = fixed.lines[0].get_xydata().T
+    tangential, radial = turning.lines[0].get_xydata().T
+    turned = (radial + 1j * tangential) * np.exp(1j * np.radians(one.degrees))
+    assert turned == pytest.approx(x + 1j * y, abs=1e-9)
+
+
+def test_without_gas_only_the_side_force_is_drawn():
+    view = last_view(simulate(driven(base=load_scene("coasting"))))
+    assert len(forces_figure(view).axes) == 1
+
+
+@pytest.mark.parametrize(
+    ("speed", "until", "parts"),
+    [
+        (Ramp(start=80.0, to=-300.0, over=0.2), "0.2 s", {}),  # reverses
+        (80.0, "3 deg", {}),
+        (-300.0, "2 cycles", {"layout": FOUR}),
+        (0.0, "1 s", {}),  # stands still: two samples on one angle
+        (
+            300.0,
+            "1 rev",
+            {"layout": Layout(cylinders=(Cylinder(bank=-0.5), Cylinder(phase=5.0, bank=0.5)))},
+        ),
+    ],
+)
+@pytest.mark.parametrize("draw", FIGURES)
+def test_unusual_runs_are_drawn_without_a_warning(draw, speed, until, parts):
+    view = last_view(simulate(driven(speed, until=until, **parts)))
+    draw(view).draw_without_rendering()
+
+
+def test_figures_are_saved_as_png_and_no_global_state_is_touched(tmp_path, one):
+    before = dict(mpl.rcParams)
+    files = save_figures(one.result, tmp_path / "new")
+    assert dict(mpl.rcParams) == before
+    assert sorted(file.name for file in files) == sorted(
+        file.name for file in (tmp_path / "new").iterdir()
+    )
+    assert len(files) == len(FIGURES)
+    for file in files:
+        with Image.open(file) as image:
+            assert image.format == "PNG"
+            assert min(image.size) >= 700
+
+
+def test_figures_that_cannot_be_saved_are_an_output_error(tmp_path, one):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(OutputError, match="cannot be written"):
+        save_figures(one.result, tmp_path / "file")
+
+
+def shifted(result, name, amount):
+    data = result.data.copy(deep=True)
+    data[name].values[5] += amount
+    return dataclasses.replace(result, data=data)
+
+
+def test_difference_finds_where_two_runs_part(four):
+    result = four.result
+    rows = differences(result, shifted(result, "crank_pin_force_y", [0.0, 0.0, 3.0, 0.0]))
+    by_name = {row.quantity: row for row in rows}
+    assert by_name["crank pin"].largest == (pytest.approx(3.0, rel=1e-9), 5, 2)
+    stated = result.data["crank_pin_force_x"].attrs["error_estimate"]
+    stated = math.hypot(stated, result.data["crank_pin_force_y"].attrs["error_estimate"])
+    assert by_name["crank pin"].errors == pytest.approx((stated, stated))
+    assert by_name["crank pin"].share == pytest.approx(3.0 / (2.0 * stated))
+    assert [row.share for row in rows if row.quantity != "crank pin"] == [0.0] * (len(rows) - 1)
+
+
+def test_difference_figure_shows_every_quantity_beside_both_errors(four):
+    other = shifted(four.result, "crank_speed", 1e-3)
+    rows = differences(four.result, other)
+    figure = difference_figure(four.result, rows)
+    shown = [ax.get_title(loc="left") for ax in figure.axes if ax.get_visible()]
+    assert shown == [row.quantity for row in rows]
+    for ax, row in zip(figure.axes, rows, strict=False):
+        levels = [line.get_ydata()[0] for line in ax.lines if line.get_label().startswith("error")]
+        assert ax.get_yscale() == "log"
+        assert levels == pytest.approx([error / row.peak for error in row.errors])
+    figure.draw_without_rendering()
+
+
+def test_runs_of_different_scenes_are_not_compared(one, four):
+    with pytest.raises(InputError, match="one scene"):
+        differences(one.result, four.result)
+
+
+def test_ticks_beyond_a_cycle_start_again():
+    (ax,) = torque_figure(last_view(simulate(driven(until="1000 deg")))).axes
+    shown = [text.get_text() for text in ax.get_xticklabels()]
+    labels = dict(zip(ax.get_xticks(), shown, strict=True))
+    assert labels[360.0] == "360"
+    assert labels[720.0] == "720"
+    assert labels[810.0] == "90"
