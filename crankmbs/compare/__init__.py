@@ -1,0 +1,31 @@
+"""Simulation against exact and against lecture formula, and the error budget of the latter."""
+
+from crankmbs.compare.against import CLOSED_FORM, Comparison, Deviation, compare
+from crankmbs.compare.causes import CAUSES, Budget, Cause, Split, budget
+from crankmbs.compare.files import save_budget, save_comparison
+from crankmbs.compare.lectured import LECTURES
+from crankmbs.compare.quantities import QUANTITIES, Quantity
+from crankmbs.compare.size import Size, percent
+from crankmbs.compare.stretch import LeftOut, Stretch, check_cylinder
+
+__all__ = [
+    "CAUSES",
+    "CLOSED_FORM",
+    "LECTURES",
+    "QUANTITIES",
+    "Budget",
+    "Cause",
+    "Comparison",
+    "Deviation",
+    "LeftOut",
+    "Quantity",
+    "Size",
+    "Split",
+    "Stretch",
+    "budget",
+    "check_cylinder",
+    "compare",
+    "percent",
+    "save_budget",
+    "save_comparison",
+]

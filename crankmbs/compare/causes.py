@@ -1,0 +1,209 @@
+"""The error budget: what a lecture's answer is wrong by, split into causes that add up to it."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crankmbs import lecture
+from crankmbs.compare.lectured import S1, UNTRUNCATED
+from crankmbs.compare.size import Size, percent
+from crankmbs.compare.stretch import Answer, LeftOut, Stretch, stretch_of, vanishing
+from crankmbs.errors import InputError
+from crankmbs.result import Result
+
+__all__ = ["CAUSES", "Budget", "Cause", "Split", "budget"]
+
+Array = NDArray[np.float64]
+
+CAUSES = {
+    "series": "the truncated series",
+    "datum": "the datum",
+    "constant speed": "the constant speed",
+    "two-mass rod": "the two-mass rod",
+    "gravity": "gravity",
+    "solver": "the solver",
+}
+"""The causes in their order, and how a sentence names them."""
+
+_NOTHING = 1e-10  # percent of the peak: rounding, and no cause
+
+
+@dataclass(frozen=True)
+class Cause:
+    """curve : shape (n,) [unit], what the cause adds to the lecture's answer; size : of it."""
+
+    name: str
+    curve: Array
+    size: Size
+
+
+@dataclass(frozen=True)
+class Split:
+    """The error of one quantity, cause by cause.
+
+    lecture, simulated : shape (n,) [unit]; their difference is `total`, the sum of the causes
+    peak [unit] : largest magnitude that any of the answers between the two reaches
+    """
+
+    quantity: str
+    lecture: Array
+    simulated: Array
+    causes: tuple[Cause, ...]
+    total: Cause
+    peak: float
+
+    def cause(self, name: str) -> Cause:
+        """One of the causes.
+
+        Raises
+        ------
+        InputError : there is none of this name
+        """
+        for cause in self.causes:
+            if cause.name == name:
+                return cause
+        raise InputError(
+            f"no cause {name!r} here: {', '.join(cause.name for cause in self.causes)}"
+        )
+
+    def share(self, cause: Cause) -> float:
+        """The peak of a cause in percent of the quantity's; 0 where it is but rounding."""
+        share = percent(cause.size.largest, self.peak)
+        return share if share > _NOTHING else 0.0
+
+    def sentences(self) -> tuple[str, ...]:
+        """The peak of each cause in words; what is worth nothing comes last."""
+        lines = []
+        nothing = []
+        for cause in self.causes:
+            share = self.share(cause)
+            if share == 0.0:
+                nothing.append(CAUSES[cause.name])
+                continue
+            at = round(math.degrees(cause.size.angle), 1)
+            lines.append(
+                f"{self.quantity}: {CAUSES[cause.name]} is worth up to {_readable(share)} % "
+                f"of the peak, at {at:g} degrees"
+            )
+        if nothing:
+            lines.append(f"{self.quantity}: nothing comes from {_listed(nothing)}")
+        return tuple(lines)
+
+
+@dataclass(frozen=True)
+class Budget:
+    """The error of every quantity; left_out : quantity, missing cause (or all) and reason."""
+
+    stretch: Stretch
+    splits: tuple[Split, ...]
+    left_out: tuple[LeftOut, ...]
+
+    def split(self, quantity: str) -> Split:
+        """The split of one quantity.
+
+        Raises
+        ------
+        InputError : there is none
+        """
+        for split in self.splits:
+            if split.quantity == quantity:
+                return split
+        raise InputError(
+            f"no {quantity!r} here; quantities: {', '.join(s.quantity for s in self.splits)}"
+        )
+
+
+def budget(result: Result, cylinder: int = 1) -> Budget:
+    """Split the error of the lectures' truncated formulas (S1's) into named causes.
+
+    At every sample of the run's last whole cycle, each cause is the difference of two neighbours:
+
+        truncated formula
+            series          exact closed form, lecture's datum, mean speed, two-mass rod
+            datum           the same, displacement from the true top dead centre
+            constant speed  the same, at the run's own omega and alpha
+            two-mass rod    with the rigid rod, whose couple (m a b - I) beta'' two masses lack
+            gravity         with gravity
+            solver          the run
+
+    so that they add up to formula minus run, to rounding. The mean speed is the time mean.
+
+    Parameters
+    ----------
+    result : any formulation; cylinder : number of the one looked at, the main bearing carries all
+
+    Returns
+    -------
+    Budget : in SI units; with a rod ratio of 1 it starts from the closed form, without "series"
+
+    Raises
+    ------
+    InputError : no such cylinder
+
+    >>> print(budget(simulate(load_scene("yi_diesel"))).split("side thrust").sentences()[1])
+    side thrust: the two-mass rod is worth up to 16.7 % of the peak, at 270 degrees
+    """
+    stretch = stretch_of(result, cylinder)
+    answers: dict[str, Answer] = {}
+    left_out = [LeftOut(name, "", reason) for name, reason in stretch.left_out().items()]
+    simulated = stretch.simulated()
+    try:
+        answers["series"] = stretch.lecture(S1, constant_speed=True)
+    except InputError as error:
+        left_out += [LeftOut(name, "series", str(error)) for name in simulated]
+    scene = result.scene
+    answers["datum"] = stretch.lecture(UNTRUNCATED, constant_speed=True)
+    answers["constant speed"] = _from_top(stretch, answers["datum"])
+    own_motion = stretch.lecture(UNTRUNCATED, constant_speed=False)
+    answers["two-mass rod"] = _from_top(stretch, own_motion)
+    answers["gravity"] = stretch.newton_euler(dataclasses.replace(scene, gravity=None))
+    answers["solver"] = stretch.newton_euler(scene)
+    nothing = vanishing([*answers.values(), simulated])
+    left_out += [LeftOut(name, "", reason) for name, reason in nothing.items()]
+    splits = tuple(
+        _split(stretch, name, {cause: answers[cause][name] for cause in answers}, simulated[name])
+        for name in simulated
+        if name not in nothing
+    )
+    return Budget(stretch, splits, tuple(left_out))
+
+
+def _from_top(stretch: Stretch, answer: Answer) -> Answer:
+    """The answer with its displacement counted from the true top dead centre."""
+    scene = stretch.result.scene
+    shift = lecture.datum_shift(
+        crank_radius=scene.crank.radius, rod_length=scene.rod.length, offset=scene.piston.offset
+    )
+    return {**answer, "piston displacement": answer["piston displacement"] - shift}
+
+
+def _split(stretch: Stretch, quantity: str, before: Answer, simulated: Array) -> Split:
+    """``before`` holds, by cause, the answer that the cause still spoils."""
+    chain = [*before.values(), simulated]
+    curves = [a - b for a, b in pairwise(chain)]
+    return Split(
+        quantity=quantity,
+        lecture=chain[0],
+        simulated=simulated,
+        causes=tuple(
+            Cause(name, curve, stretch.size(quantity, curve))
+            for name, curve in zip(before, curves, strict=True)
+        ),
+        total=Cause("total", chain[0] - simulated, stretch.size(quantity, chain[0] - simulated)),
+        peak=max(float(np.max(np.abs(answer))) for answer in chain),
+    )
+
+
+def _readable(share: float) -> str:
+    return f"{share:.3g}" if share >= 1e-3 else f"{share:.0e}"
+
+
+def _listed(words: list[str]) -> str:
+    *most, last = words
+    return f"{', '.join(most)} and {last}" if most else last

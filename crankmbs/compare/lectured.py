@@ -1,0 +1,203 @@
+"""What the lectures answer for a scene at given crank angles: truncated, or exact for two masses.
+
+Their model: gas and inertia force of the reciprocating mass act along the cylinder, the rod is two
+masses on a bar without mass, the crank a mass at its radius, nothing has weight.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crankmbs import lecture
+from crankmbs.compare.quantities import cycle_angles
+from crankmbs.pressure import PeriodicPressure
+from crankmbs.scene import Scene
+
+__all__ = ["LECTURES", "S0", "S1", "UNTRUNCATED", "Formulas", "lectured"]
+
+Array = NDArray[np.float64]
+
+
+class _Gear(NamedTuple):
+    crank_radius: float
+    rod_length: float
+    offset: float
+
+
+class _Motion(NamedTuple):
+    displacement: Array
+    velocity: Array
+    acceleration: Array
+
+
+class _RodForces(NamedTuple):
+    side_thrust: Array
+    rod: Array
+    tangential: Array
+    radial: Array
+
+
+class Formulas(NamedTuple):
+    """A choice among the lectures' formulas: how the piston moves, and how its force goes on."""
+
+    motion: Callable[[Array, _Gear, Array, Array], _Motion]
+    forces: Callable[[Array, _Gear, Array], _RodForces]
+
+
+def _exact_motion(phi: Array, gear: _Gear, omega: Array, alpha: Array) -> _Motion:
+    where = gear._asdict()
+    return _Motion(
+        np.asarray(lecture.piston_displacement(phi, **where)),
+        np.asarray(lecture.piston_velocity(phi, omega=omega, **where)),
+        np.asarray(lecture.piston_acceleration(phi, omega=omega, alpha=alpha, **where)),
+    )
+
+
+def _truncated_motion(phi: Array, gear: _Gear, omega: Array, _: Array) -> _Motion:
+    where = gear._asdict()
+    return _Motion(
+        np.asarray(lecture.piston_displacement_series(phi, **where)),
+        np.asarray(lecture.piston_velocity_series(phi, omega=omega, **where)),
+        np.asarray(lecture.piston_acceleration_series(phi, omega=omega, **where)),
+    )
+
+
+def _exact_forces(phi: Array, gear: _Gear, net: Array) -> _RodForces:
+    where = gear._asdict()
+    rod = lecture.rod_force(phi, net_force=net, **where)
+    return _RodForces(
+        np.asarray(lecture.side_thrust(phi, net_force=net, **where)),
+        np.asarray(rod),
+        np.asarray(lecture.tangential_force(phi, rod_force=rod, **where)),
+        np.asarray(lecture.radial_force(phi, rod_force=rod, **where)),
+    )
+
+
+def _truncated_forces(phi: Array, gear: _Gear, net: Array) -> _RodForces:
+    where = gear._asdict()
+    central = {"crank_radius": gear.crank_radius, "rod_length": gear.rod_length}
+    return _RodForces(
+        np.asarray(lecture.side_thrust_series(phi, net_force=net, **where)),
+        np.asarray(lecture.rod_force_series(phi, net_force=net, **central)),
+        np.asarray(lecture.tangential_force_series(phi, net_force=net, **where)),
+        np.asarray(lecture.radial_force_series(phi, net_force=net, **where)),
+    )
+
+
+UNTRUNCATED = Formulas(_exact_motion, _exact_forces)
+S0 = Formulas(_truncated_motion, _exact_forces)
+S1 = Formulas(_truncated_motion, _truncated_forces)
+
+LECTURES = {
+    "untruncated lecture": UNTRUNCATED,
+    "S0 (motion truncated)": S0,
+    "S1 (motion and forces truncated)": S1,
+}
+"""The lectures' formulas by the names under which they are compared; the last truncates most."""
+
+
+def lectured(
+    formulas: Formulas,
+    scene: Scene,
+    pressure: PeriodicPressure | None,
+    theta: Array,
+    omega: Array,
+    alpha: Array,
+) -> dict[str, Array]:
+    """The compared quantities by the lectures' formulas.
+
+    Exact for the two-mass rod without gravity if UNTRUNCATED; S0 and S1 then take alpha as 0.
+
+    Parameters
+    ----------
+    pressure : of the scene, the difference to ambient; None without gas
+    theta, omega, alpha : shape (n,) [rad, rad/s, rad/s2]
+
+    Returns
+    -------
+    dict over `crankmbs.compare.quantities.QUANTITIES`, in the shapes of `observed`; displacement
+    from the lectures' datum l + r
+
+    Raises
+    ------
+    InputError : truncated formulas with a rod ratio of 1
+    """
+    crank, rod, piston = scene.crank, scene.rod, scene.piston
+    r = crank.radius
+    gear = _Gear(r, rod.length, piston.offset)
+    phi, speed, rate = cycle_angles(scene, theta), omega[:, None], alpha[:, None]
+    masses = lecture.two_mass_rod(
+        rod_mass=rod.mass, rod_length=rod.length, center_of_mass=rod.center_of_mass
+    )
+    mass = lecture.reciprocating_mass(
+        piston_mass=piston.mass, rod_piston_pin_mass=masses.piston_pin
+    )
+    difference = np.zeros_like(phi) if pressure is None else pressure(phi)
+    gas = np.asarray(
+        lecture.gas_force(
+            gas_pressure=difference, ambient_pressure=0.0, piston_area=piston.gas_area or 0.0
+        )
+    )
+    motion = formulas.motion(phi, gear, speed, rate)
+
+    def force_with(moving: float) -> Array:
+        inertia = lecture.inertia_force(
+            reciprocating_mass=moving, piston_acceleration=motion.acceleration
+        )
+        return np.asarray(lecture.net_force(gas_force=gas, inertia_force=inertia))
+
+    net = force_with(float(mass))
+    forces = formulas.forces(phi, gear, net)
+    turning_x, turning_y = _inertia_at_throw(float(masses.crank_pin), r, phi, speed, rate)
+    throw_x, throw_y = net + turning_x, turning_y - forces.side_thrust
+    drive = np.asarray(lecture.crank_torque(tangential_force=forces.tangential, crank_radius=r))
+    bearing_x, bearing_y = _main_bearing(scene, theta, omega, alpha, throw_x, throw_y)
+    from_gas = formulas.forces(phi, gear, gas).tangential
+    return {
+        "piston displacement": motion.displacement,
+        "piston velocity": motion.velocity,
+        "piston acceleration": motion.acceleration,
+        "net force": net,
+        "side thrust": forces.side_thrust,
+        "rod force": forces.rod,
+        "tangential force": forces.tangential,
+        "radial force": forces.radial,
+        "torque": drive - masses.crank_pin * r**2 * rate,
+        "gas torque": np.asarray(lecture.crank_torque(tangential_force=from_gas, crank_radius=r)),
+        "piston pin force x": force_with(piston.mass),
+        "piston pin force y": -forces.side_thrust,
+        "crank pin force x": throw_x,
+        "crank pin force y": throw_y,
+        "main bearing force x": bearing_x,
+        "main bearing force y": bearing_y,
+    }
+
+
+def _inertia_at_throw(
+    mass: float, radius: float, angle: Array, omega: Array, alpha: Array
+) -> tuple[Array, Array]:
+    """Force that a mass turning at the crank radius needs: inwards, and forwards with alpha."""
+    inwards = np.asarray(
+        lecture.rotating_inertia_force(rotating_mass=mass, crank_radius=radius, omega=omega)
+    )
+    forwards = mass * radius * alpha
+    sin, cos = np.sin(angle), np.cos(angle)
+    return -inwards * cos - forwards * sin, -inwards * sin + forwards * cos
+
+
+def _main_bearing(
+    scene: Scene, theta: Array, omega: Array, alpha: Array, throw_x: Array, throw_y: Array
+) -> tuple[Array, Array]:
+    """Every throw's force turned into the engine's frame, and the crank's own reduced mass."""
+    crank = scene.crank
+    mass = lecture.reduced_web_mass(
+        web_mass=crank.mass, center_of_mass=crank.center_of_mass, crank_radius=crank.radius
+    )
+    own_x, own_y = _inertia_at_throw(float(mass), crank.radius, theta, omega, alpha)
+    bank = np.array([cylinder.bank for cylinder in scene.cylinders])
+    sin, cos = np.sin(bank), np.cos(bank)
+    return own_x + throw_x @ cos - throw_y @ sin, own_y + throw_x @ sin + throw_y @ cos

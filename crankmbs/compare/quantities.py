@@ -1,0 +1,109 @@
+"""What is compared: the lectures' quantities, and how they follow from a run's own variables.
+
+The lectures' net force, rod force, tangential and radial force belong to a rod without mass. A
+rod of any inertia has them too: they are what is left of the crank pin force when the inertia
+force of the mass m_or, which the two-mass rod puts on the crank pin, is taken out of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crankmbs.lecture import two_mass_rod
+from crankmbs.scene import Scene
+
+__all__ = ["QUANTITIES", "Quantity", "cycle_angles", "observed"]
+
+Array = NDArray[np.float64]
+
+
+class Quantity(NamedTuple):
+    """units; the lectures' symbol in TeX, if they have one; ``per_cylinder`` or of the engine."""
+
+    units: str
+    symbol: str = ""
+    per_cylinder: bool = True
+
+
+QUANTITIES = {
+    "piston displacement": Quantity("m", "s"),
+    "piston velocity": Quantity("m/s", "v"),
+    "piston acceleration": Quantity("m/s^2", "a"),
+    "net force": Quantity("N", "F_v"),
+    "side thrust": Quantity("N", "N"),
+    "rod force": Quantity("N", "F_{oj}"),
+    "tangential force": Quantity("N", "F_T"),
+    "radial force": Quantity("N", "F_R"),
+    "torque": Quantity("N m", "M_k"),
+    "gas torque": Quantity("N m"),
+    "piston pin force x": Quantity("N"),
+    "piston pin force y": Quantity("N"),
+    "crank pin force x": Quantity("N"),
+    "crank pin force y": Quantity("N"),
+    "main bearing force x": Quantity("N", per_cylinder=False),
+    "main bearing force y": Quantity("N", per_cylinder=False),
+}
+
+
+def cycle_angles(scene: Scene, theta: Array) -> Array:
+    """Cycle angle of every cylinder at the crank angles, shape (n, cylinders) [rad]."""
+    phases = np.array([cylinder.phase for cylinder in scene.cylinders], dtype=np.float64)
+    return np.asarray(theta[:, None] + phases)
+
+
+def observed(
+    scene: Scene, variables: Mapping[str, Array], theta: Array, omega: Array, alpha: Array
+) -> dict[str, Array]:
+    """The compared quantities of a run, or of `crankmbs.reactions.reactions`.
+
+    With S the crank pin force and C the crank pin, the load through the rod is S - m_or C'':
+
+        F_v = X part,  F_oj = part along the rod,  F_T = R sin(phi) - part across the throw, ...
+
+    Exact for any rigid rod.
+
+    Parameters
+    ----------
+    variables : by name, as in `crankmbs.result.VARIABLES`, SI units
+    theta, omega, alpha : shape (n,) [rad, rad/s, rad/s2], the motion they belong to
+
+    Returns
+    -------
+    dict over QUANTITIES: shape (n, cylinders), those of the whole engine (n,); "gas torque" is
+    the gas force's power over omega, no number where the crank stands still
+    """
+    phi = cycle_angles(scene, theta)
+    sin_phi, cos_phi = np.sin(phi), np.cos(phi)
+    square, rate = omega[:, None] ** 2, alpha[:, None]
+    rod, r = scene.rod, scene.crank.radius
+    masses = two_mass_rod(
+        rod_mass=rod.mass, rod_length=rod.length, center_of_mass=rod.center_of_mass
+    )
+    turning = float(masses.crank_pin) * r
+    through_x = variables["crank_pin_force_x"] + turning * (cos_phi * square + sin_phi * rate)
+    through_y = variables["crank_pin_force_y"] + turning * (sin_phi * square - cos_phi * rate)
+    beta = variables["rod_angle"]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        gas_torque = variables["gas_force"] * variables["piston_velocity"] / omega[:, None]
+    return {
+        "piston displacement": variables["piston_displacement"],
+        "piston velocity": variables["piston_velocity"],
+        "piston acceleration": variables["piston_acceleration"],
+        "net force": through_x,
+        "side thrust": variables["side_force"],
+        "rod force": through_x * np.cos(beta) - through_y * np.sin(beta),
+        "tangential force": through_x * sin_phi - through_y * cos_phi,
+        "radial force": through_x * cos_phi + through_y * sin_phi,
+        "torque": variables["crank_torque"],
+        "gas torque": gas_torque,
+        "piston pin force x": variables["piston_pin_force_x"],
+        "piston pin force y": variables["piston_pin_force_y"],
+        "crank pin force x": variables["crank_pin_force_x"],
+        "crank pin force y": variables["crank_pin_force_y"],
+        "main bearing force x": variables["main_bearing_force_x"],
+        "main bearing force y": variables["main_bearing_force_y"],
+    }

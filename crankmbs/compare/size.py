@@ -1,0 +1,53 @@
+"""How large a curve is over a stretch of a run: its maximum, where that is, and its RMS."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Size", "percent", "size_of"]
+
+Array = NDArray[np.float64]
+
+_TIE = 1e-9  # relative: the same peak in two turns differs by rounding, the first one counts
+
+
+class Size(NamedTuple):
+    """largest, rms [unit of the curve]; angle [rad], within one period, of the largest.
+
+    The RMS is taken over the crank angle.
+    """
+
+    largest: float
+    rms: float
+    angle: float
+
+
+def size_of(curve: Array, angle: Array, period: float) -> Size:
+    """Measure a curve over angles, both of shape (n,), [unit] and [rad]."""
+    size = np.abs(curve)
+    largest = float(np.max(size))
+    within = _within(angle, period)
+    at = float(np.min(within[size >= largest * (1.0 - _TIE)]))
+    widths = np.abs(np.diff(angle))
+    turned = float(np.sum(widths))
+    scaled = (size / largest) ** 2 if largest > 0.0 else size  # no overflow, no underflow
+    if turned > 0.0:
+        mean = float(np.sum(widths * (scaled[1:] + scaled[:-1]))) / (2.0 * turned)
+    else:
+        mean = float(np.mean(scaled))
+    return Size(largest, largest * math.sqrt(mean), at)
+
+
+def percent(part: float, peak: float) -> float:
+    """``part`` in percent of ``peak``; no number where the peak is zero."""
+    return 100.0 * part / peak if peak > 0.0 else math.nan
+
+
+def _within(angle: Array, period: float) -> Array:
+    """Angles within one period, those a rounding below its end at 0."""
+    folded = np.mod(angle, period)
+    return np.where(period - folded < _TIE, 0.0, folded)

@@ -1,0 +1,153 @@
+"""The stretch of a run that is compared: its last cycle, seen from one cylinder."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crankmbs.compare.lectured import Formulas, lectured
+from crankmbs.compare.quantities import QUANTITIES, observed
+from crankmbs.compare.size import Size, size_of
+from crankmbs.errors import InputError
+from crankmbs.measures import Window, last_window
+from crankmbs.pressure import PeriodicPressure, pressure_of
+from crankmbs.reactions import reactions
+from crankmbs.result import VARIABLES, Result
+from crankmbs.scene import Scene
+
+__all__ = ["Answer", "LeftOut", "Stretch", "check_cylinder", "stretch_of", "vanishing"]
+
+Array = NDArray[np.float64]
+Answer = dict[str, Array]
+
+_NOTHING = 1e-9  # of the largest quantity of the same unit
+_FOLD = 0.01  # cosine of the rod angle; below it the formulas lose digits with its third power
+
+
+class LeftOut(NamedTuple):
+    """A quantity that could not be compared with a reference, or split into a cause, and why."""
+
+    quantity: str
+    what: str
+    reason: str
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """The samples of a run's last whole cycle (or revolution, or the run), and one cylinder.
+
+    samples : shape (n,), numbers of the samples; those within 0.6 degrees of a rod square to its
+        cylinder, where it folds onto the crank and the formulas lose their digits, are left out
+    theta, omega, alpha : shape (n,) [rad, rad/s, rad/s2], the run's own
+    mean_speed [rad/s] : over time
+    cylinder : number of the one that is compared
+    """
+
+    result: Result
+    window: Window
+    cylinder: int
+    samples: NDArray[np.intp]
+    theta: Array
+    omega: Array
+    alpha: Array
+    mean_speed: float
+    pressure: PeriodicPressure | None
+
+    def simulated(self) -> Answer:
+        """What the run says, in the lectures' quantities."""
+        data = self.result.data.isel(time=self.samples)
+        return self._of({name: data[name].values for name in VARIABLES if name in data})
+
+    def newton_euler(self, scene: Scene) -> Answer:
+        """The exact closed form at the run's own theta, omega, alpha; ``scene`` may differ."""
+        return self._of(reactions(scene, self.pressure, self.theta, self.omega, self.alpha))
+
+    def lecture(self, formulas: Formulas, *, constant_speed: bool) -> Answer:
+        """The lectures' formulas at the run's own theta, at its mean or its own speed."""
+        still = np.zeros_like(self.alpha)
+        speed = still + self.mean_speed if constant_speed else self.omega
+        rate = still if constant_speed else self.alpha
+        scene = self.result.scene
+        return self._seen(lectured(formulas, scene, self.pressure, self.theta, speed, rate))
+
+    def angles(self, quantity: str) -> Array:
+        """Cycle angle of the cylinder, for the whole engine's quantities the crank angle [rad]."""
+        if not QUANTITIES[quantity].per_cylinder:
+            return self.theta
+        return self.theta + self.result.scene.cylinders[self.cylinder - 1].phase
+
+    def size(self, quantity: str, curve: Array) -> Size:
+        """Measure a curve of this stretch."""
+        return size_of(curve, self.angles(quantity), self.result.scene.period)
+
+    def _of(self, variables: dict[str, Array]) -> Answer:
+        return self._seen(
+            observed(self.result.scene, variables, self.theta, self.omega, self.alpha)
+        )
+
+    def _seen(self, answer: Answer) -> Answer:
+        """The curves of the one cylinder and of the whole engine, without those left out."""
+        missing = self.left_out()
+        return {
+            name: curve[:, self.cylinder - 1] if QUANTITIES[name].per_cylinder else curve
+            for name, curve in answer.items()
+            if name not in missing
+        }
+
+    def left_out(self) -> dict[str, str]:
+        """Quantities that this run does not have, and why."""
+        if self.pressure is None:
+            return {"gas torque": "the scene has no gas"}
+        if np.any(self.omega == 0.0):
+            return {"gas torque": "the crank stands still, and it is gas power over speed"}
+        return {}
+
+
+def vanishing(answers: Iterable[Answer]) -> dict[str, str]:
+    """Quantities that are zero but for rounding in every answer, and why they are left out."""
+    peaks: dict[str, float] = {}
+    for answer in answers:
+        for name, curve in answer.items():
+            peaks[name] = max(peaks.get(name, 0.0), float(np.max(np.abs(curve))))
+    largest: dict[str, float] = {}
+    for name, peak in peaks.items():
+        units = QUANTITIES[name].units
+        largest[units] = max(largest.get(units, 0.0), peak)
+    return {
+        name: "it is zero but for rounding"
+        for name, peak in peaks.items()
+        if peak <= _NOTHING * largest[QUANTITIES[name].units]
+    }
+
+
+def check_cylinder(scene: Scene, cylinder: int) -> None:
+    """Raise InputError unless the scene has a cylinder of this number, counted from 1."""
+    count = len(scene.cylinders)
+    if not 1 <= cylinder <= count:
+        raise InputError(f"cylinder must be from 1 to {count}; {cylinder} came")
+
+
+def stretch_of(result: Result, cylinder: int) -> Stretch:
+    """The last cycle of a run, seen from a cylinder, counted from 1.
+
+    Raises
+    ------
+    InputError : no such cylinder, or no sample but at a fold
+    """
+    check_cylinder(result.scene, cylinder)
+    window = last_window(result)
+    folded = np.min(np.cos(result.data["rod_angle"].values), axis=1) < _FOLD
+    samples = np.flatnonzero(~folded[window.inside :]) + window.inside
+    if len(samples) == 0:
+        raise InputError("the rod is folded onto the crank all the time: nothing can be compared")
+    theta, omega, alpha = (
+        result.data[name].values[samples]
+        for name in ("crank_angle", "crank_speed", "crank_acceleration")
+    )
+    mean = window.angle / window.duration if window.duration > 0.0 else float(omega[-1])
+    pressure = pressure_of(result.scene)
+    return Stretch(result, window, cylinder, samples, theta, omega, alpha, mean, pressure)

@@ -1,0 +1,216 @@
+"""The error budget: causes that add up, each of them what it says, and the published size."""
+
+import csv
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+from crankmbs import Crank, Motion, Piston, Rod, Run, Scene, budget, load_scene, simulate
+from crankmbs.compare import CAUSES, QUANTITIES, save_budget
+from crankmbs.errors import InputError
+from crankmbs.geometry import close_loop
+from crankmbs.lecture import datum_shift
+from crankmbs.scene_io import shipped_scenes
+
+ROUNDING = 1e-12  # of the peak
+
+
+def short(name):
+    """A shipped scene, cut to two cycles where it turns longer."""
+    scene = load_scene(name)
+    return dataclasses.replace(scene, run=Run(until="2 cycles"))
+
+
+def worth(split, name):
+    return split.cause(name).size.largest / split.peak
+
+
+@pytest.fixture(scope="module")
+def yi():
+    return budget(simulate(load_scene("yi_diesel")))
+
+
+@pytest.fixture(scope="module")
+def swinging():
+    """The rigid rod of yi_diesel at a speed that swings, upright under gravity."""
+    base = load_scene("yi_diesel")
+    motion = Motion(speed={"mean": 300.0, "amplitude": 9.0, "order": 2.0})
+    return simulate(
+        dataclasses.replace(base, motion=motion, gravity=load_scene("coasting").gravity)
+    )
+
+
+@pytest.mark.parametrize("name", sorted(shipped_scenes()))
+def test_the_causes_add_up_to_the_lecture_minus_the_run(name):
+    found = budget(simulate(short(name)))
+    assert [split.quantity for split in found.splits] == [
+        quantity
+        for quantity in QUANTITIES
+        if quantity not in {entry.quantity for entry in found.left_out}
+    ]
+    for split in found.splits:
+        assert [cause.name for cause in split.causes] == list(CAUSES)
+        total = sum(cause.curve for cause in split.causes)
+        error = split.lecture - split.simulated
+        assert np.array_equal(split.total.curve, error)
+        assert np.max(np.abs(total - error)) <= 1e-15 * len(CAUSES) * split.peak
+
+
+def test_no_cause_can_be_spared(swinging):
+    split = budget(swinging).split("side thrust")
+    for spared in split.causes:
+        if spared.name in ("datum", "solver"):  # nothing to this quantity, and to this formulation
+            continue
+        total = sum(cause.curve for cause in split.causes if cause is not spared)
+        assert np.max(np.abs(total - split.total.curve)) > 1e-3 * split.peak
+
+
+def test_the_two_mass_rod_of_the_diesel_costs_a_sixth_of_the_side_thrust(yi):
+    cause = yi.split("side thrust").cause("two-mass rod")
+    assert cause.size.largest == pytest.approx(297.1, abs=0.05)
+    assert math.degrees(cause.size.angle) == pytest.approx(270.0, abs=1e-6)
+    assert (
+        "side thrust: the two-mass rod is worth up to 16.7 % of the peak, at 270 degrees"
+        in yi.split("side thrust").sentences()
+    )
+
+
+@pytest.mark.parametrize(
+    ("quantity", "cause", "size"),
+    [
+        ("side thrust", "series", 95.0),
+        ("torque", "series", 5.90),
+        ("torque", "two-mass rod", 6.21),
+    ],
+)
+def test_other_causes_of_the_diesel_have_their_size(yi, quantity, cause, size):
+    # derived apart from this package, for the same engine and pressure table
+    assert yi.split(quantity).cause(cause).size.largest == pytest.approx(size, rel=5e-3)
+
+
+def test_the_missing_couple_is_what_the_two_mass_rod_costs(swinging):
+    found = budget(swinging)
+    scene, stretch = swinging.scene, found.stretch
+    rod, r = scene.rod, scene.crank.radius
+    loop = close_loop(stretch.theta, r, rod.length, scene.piston.offset)
+    lacking = rod.mass * rod.center_of_mass * (rod.length - rod.center_of_mass) - rod.inertia
+    turning = loop.beta_2 * stretch.omega**2 + loop.beta_1 * stretch.alpha
+    couple = lacking * turning
+    expected = {
+        "side thrust": -couple / (rod.length * loop.cos_beta),
+        "piston pin force y": couple / (rod.length * loop.cos_beta),
+        "crank pin force y": couple / (rod.length * loop.cos_beta),
+        "main bearing force y": couple / (rod.length * loop.cos_beta),
+        "torque": -couple * loop.beta_1,
+    }
+    for quantity, curve in expected.items():
+        split = found.split(quantity)
+        difference = split.cause("two-mass rod").curve - curve
+        assert np.max(np.abs(difference)) < ROUNDING * split.peak
+    for quantity in ("net force", "piston pin force x", "crank pin force x", "piston velocity"):
+        assert worth(found.split(quantity), "two-mass rod") < ROUNDING
+
+
+def test_gravity_is_the_weight_of_piston_and_rod(swinging):
+    found = budget(swinging)
+    scene = swinging.scene
+    weight = 9.81 * (scene.piston.mass + scene.rod.mass)
+    assert found.split("net force").cause("gravity").curve == pytest.approx(-weight, rel=1e-9)
+    whole = weight + 9.81 * scene.crank.mass
+    bearing = found.split("main bearing force x").cause("gravity").curve
+    assert bearing == pytest.approx(-whole, rel=1e-9)
+
+
+def test_the_datum_shifts_the_displacement_and_nothing_else(swinging):
+    found = budget(swinging)
+    scene = swinging.scene
+    shift = datum_shift(
+        crank_radius=scene.crank.radius, rod_length=scene.rod.length, offset=scene.piston.offset
+    )
+    for split in found.splits:
+        datum = split.cause("datum").curve
+        expected = shift if split.quantity == "piston displacement" else 0.0
+        assert np.max(np.abs(datum - expected)) < ROUNDING * split.peak
+
+
+def test_constant_speed_is_the_time_mean(swinging):
+    found = budget(swinging)
+    loop = close_loop(found.stretch.theta, 0.046, swinging.scene.rod.length, 0.0012972)
+    time = swinging.data["time"].values
+    mean = 4.0 * math.pi / (time[-1] - time[0])
+    assert mean < 299.9  # the mean over the angle is 300
+    velocity = found.split("piston velocity").cause("constant speed").curve
+    expected = -loop.x_1 * (mean - found.stretch.omega)
+    assert velocity == pytest.approx(expected, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("cause", "parts"),
+    [
+        ("gravity", {"gravity": None}),
+        ("constant speed", {"motion": Motion(speed=300.0)}),
+        (
+            "two-mass rod",
+            {"rod": dataclasses.replace(load_scene("yi_diesel").rod, inertia="two-mass")},
+        ),
+        ("solver", {}),
+    ],
+)
+def test_a_cause_that_is_not_there_is_worth_nothing(swinging, cause, parts):
+    found = budget(simulate(dataclasses.replace(swinging.scene, **parts)))
+    assert max(worth(split, cause) for split in found.splits) < ROUNDING
+    if parts:
+        assert max(worth(split, cause) for split in budget(swinging).splits) > 1e-3
+    thrust = found.split("side thrust").sentences()
+    assert thrust[-1].startswith("side thrust: nothing comes from ")
+    assert CAUSES[cause] in thrust[-1]
+
+
+def test_the_solver_of_a_multibody_run_is_a_cause():
+    scene = dataclasses.replace(load_scene("coasting"), run=Run(until="1 rev"))
+    found = budget(simulate(scene, formulation="multibody"))
+    for split in found.splits:
+        assert worth(split, "solver") < 1e-6
+    assert worth(found.split("side thrust"), "solver") > ROUNDING
+    assert any("the solver is worth up to" in line for line in found.split("torque").sentences())
+
+
+def test_without_a_series_the_budget_starts_from_the_closed_form():
+    scene = Scene(
+        crank=Crank(radius=0.1, inertia=0.01),
+        rod=Rod(length=0.1, mass=0.2, center_of_mass=0.05, inertia=1e-4),
+        piston=Piston(mass=0.3),
+        motion=Motion(speed={"mean": 10.0, "amplitude": 2.0, "order": 2.0}),
+        run=Run(until="60 deg"),
+    )
+    found = budget(simulate(scene))
+    split = found.split("side thrust")
+    assert [cause.name for cause in split.causes] == list(CAUSES)[1:]
+    assert np.max(np.abs(sum(c.curve for c in split.causes) - split.total.curve)) < 1e-15
+    assert worth(split, "two-mass rod") > 0.01
+    missing = [entry for entry in found.left_out if entry.what == "series"]
+    assert {"side thrust", "torque"} <= {entry.quantity for entry in missing}
+    with pytest.raises(InputError, match="no cause 'series' here: datum, constant speed"):
+        split.cause("series")
+
+
+def test_a_quantity_that_was_left_out_is_named():
+    found = budget(simulate(short("coasting")))
+    with pytest.raises(InputError, match="no 'gas torque' here; quantities: piston displacement"):
+        found.split("gas torque")
+
+
+def test_the_file_says_what_the_budget_says(yi, tmp_path):
+    with save_budget(yi, tmp_path).open(newline="") as stream:
+        lines = list(csv.DictReader(stream))
+    assert len(lines) == len(QUANTITIES) * (len(CAUSES) + 1)
+    (line,) = (
+        line
+        for line in lines
+        if (line["quantity"], line["cause"]) == ("side thrust", "two-mass rod")
+    )
+    assert float(line["max"]) == pytest.approx(297.1, abs=0.05)
+    assert float(line["max_percent"]) == pytest.approx(16.73, abs=0.01)
+    assert float(line["angle_deg"]) == pytest.approx(270.0, abs=1e-6)

@@ -1,0 +1,198 @@
+"""The command ``validate``: what it prints and writes, its figures, and its exit status."""
+
+import csv
+import dataclasses
+import re
+
+import numpy as np
+import pytest
+from PIL import Image
+from typer.testing import CliRunner
+
+import crankmbs.figures.compare as drawing
+from crankmbs import Run, budget, compare, load_scene, simulate
+from crankmbs.cli import app
+from crankmbs.compare import CAUSES, CLOSED_FORM, LECTURES, QUANTITIES
+from crankmbs.figures import budget_figure, comparison_figure
+
+FOLDING = """
+[crank]
+radius = "100 mm"
+inertia = "0.01 kg m^2"
+
+[rod]
+length = "100 mm"
+
+[piston]
+mass = "0.3 kg"
+
+[start]
+angle = "0 deg"
+speed = "100 rpm"
+
+[run]
+until = "1 rev"
+"""
+
+
+def validate(*arguments):
+    return CliRunner().invoke(app, ["validate", *map(str, arguments)])
+
+
+def lines_of(file):
+    with file.open(newline="") as stream:
+        return list(csv.DictReader(stream))
+
+
+@pytest.fixture(scope="module")
+def diesel(tmp_path_factory):
+    """The printed text and the folder of one command."""
+    folder = tmp_path_factory.mktemp("diesel")
+    options = ["--formulation", "kinetostatic", "--no-figures", "--out", folder]
+    outcome = validate("yi_diesel", *options)
+    assert outcome.exit_code == 0, outcome.output
+    return outcome.stdout, folder
+
+
+@pytest.fixture(scope="module")
+def four():
+    scene = dataclasses.replace(load_scene("yi_diesel_free"), run=Run(until="2 cycles"))
+    return simulate(scene)
+
+
+def test_it_prints_a_table_for_every_reference_and_every_cause_in_words(diesel):
+    text, _ = diesel
+    for reference in (CLOSED_FORM, *LECTURES):
+        assert f"against: {reference} " in text
+    for quantity, about in QUANTITIES.items():
+        assert text.count(f"\n{quantity} [{about.units}] ") == 1 + len(LECTURES)
+    assert "over the last cycle, cylinder 1 of 1, mean speed 3200.00 rpm" in text
+    sentence = "side thrust: the two-mass rod is worth up to 16.7 % of the peak, at 270 degrees"
+    assert sentence in text.splitlines()
+
+
+def test_the_budget_table_has_the_causes_in_their_order(diesel):
+    lines = diesel[0].splitlines()
+    heading = next(line for line in lines if line.startswith("error budget"))
+    assert re.split(r"\s{2,}", heading) == ["error budget, peaks in %", *CAUSES, "total"]
+    (row,) = (line for line in lines if re.match(r"side thrust +\d", line))
+    assert row.split()[2:] == ["5.37", "0", "0", "16.7", "0", "0", "15.4"]
+
+
+def test_it_writes_both_tables(diesel):
+    _, folder = diesel
+    assert sorted(file.name for file in folder.iterdir()) == ["budget.csv", "comparison.csv"]
+    assert len(lines_of(folder / "comparison.csv")) == len(QUANTITIES) * (1 + len(LECTURES))
+    causes = [line["cause"] for line in lines_of(folder / "budget.csv")]
+    assert causes == [*CAUSES, "total"] * len(QUANTITIES)
+
+
+def test_multibody_is_compared_unless_told_otherwise(tmp_path):
+    outcome = validate("coasting", "--until", "0.02 s", "--no-figures", "--out", tmp_path)
+    assert outcome.exit_code == 0, outcome.output
+    assert ": multibody, status 0" in outcome.stdout
+    assert "left out: gas torque: the scene has no gas" in outcome.stdout
+    assert "over the whole run" in outcome.stdout
+    errors = [
+        float(line["max_percent"])
+        for line in lines_of(tmp_path / "comparison.csv")
+        if line["reference"] == CLOSED_FORM
+    ]
+    assert 1e-12 < max(errors) < 1e-3
+
+
+def test_a_run_that_ends_early_is_compared_and_exits_with_3(tmp_path):
+    scene = tmp_path / "folding.toml"
+    scene.write_text(FOLDING)
+    outcome = validate(scene, "--formulation", "auto", "--no-figures", "--out", tmp_path)
+    assert outcome.exit_code == 3, outcome.output
+    assert "over the whole run but for where the rod folds onto the crank, " in outcome.stdout
+    (missing,) = (line for line in outcome.stdout.splitlines() if "'series'" in line)
+    assert "side thrust" in missing
+    assert "rod ratio" in missing
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["yi_diesel", "--cylinder", "2"], "cylinder must be from 1 to 1; 2 came"),
+        (["yi_diesel", "--cylinder", "0"], "cylinder must be from 1 to 1; 0 came"),
+        (["yi_diesel", "--until", "no end"], "--until"),
+        (["yi_diesel", "--rtol", "1"], "--rtol"),
+        (["yi_diesel", "--cost-cap", "0"], "cost_cap must be a time above 0 s"),
+        (["no_such_scene"], "no_such_scene"),
+    ],
+)
+def test_bad_input_is_refused_before_anything_runs(tmp_path, arguments, message):
+    outcome = validate(*arguments, "--no-figures", "--out", tmp_path)
+    assert outcome.exit_code == 2
+    assert outcome.stderr.startswith("error: ")
+    assert message in outcome.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_figures_are_drawn_of_what_can_be_compared(tmp_path, monkeypatch):
+    families = {"torque": ("torque", "gas torque"), "gas": ("gas torque",)}
+    monkeypatch.setattr(drawing, "FAMILIES", families)
+    outcome = validate("coasting", "--formulation", "auto", "--until", "1 cycle", "--out", tmp_path)
+    assert outcome.exit_code == 0, outcome.output
+    drawn = sorted(file.name for file in tmp_path.glob("*.png"))
+    assert drawn == ["budget_torque.png", "comparison_torque.png"]
+    with Image.open(tmp_path / drawn[0]) as picture:
+        assert picture.size == (1350, 1200)
+
+
+def test_every_quantity_has_a_figure():
+    shown = [quantity for family in drawing.FAMILIES.values() for quantity in family]
+    assert shown == list(QUANTITIES)
+
+
+def curves(ax):
+    """The labelled curves of a panel."""
+    return {line.get_label(): line for line in ax.lines if not line.get_label().startswith("_")}
+
+
+def test_a_comparison_figure_has_curves_above_and_errors_below(four):
+    comparison = compare(four, 2)
+    figure = comparison_figure(comparison, ("piston displacement", "side thrust"))
+    tops, bottoms = figure.axes[:2], figure.axes[2:]
+    s1 = list(LECTURES)[-1]
+    assert list(curves(tops[1])) == ["run", CLOSED_FORM, s1]
+    assert list(curves(bottoms[1])) == [CLOSED_FORM, *LECTURES]
+    for ax, quantity, scale in (
+        (tops[0], "piston displacement", 1e3),
+        (tops[1], "side thrust", 1e-3),
+    ):
+        drawn = curves(ax)["run"].get_ydata()
+        assert np.allclose(drawn, comparison.simulated[quantity] * scale, rtol=1e-12)
+    error = curves(bottoms[1])[s1].get_ydata()
+    assert np.array_equal(error, comparison.row("side thrust", s1).error)
+    assert [ax.get_ylabel() for ax in (*tops, *bottoms)] == [
+        "[mm]",
+        "[kN]",
+        "formula minus run [mm]",
+        "formula minus run [N]",
+    ]
+    assert "cylinder 2" in figure.get_supxlabel()
+    assert len(figure.legends[0].get_texts()) == 2 + len(LECTURES)
+
+
+def test_the_curves_of_a_budget_figure_add_up_to_the_thick_one(four):
+    split = budget(four)
+    figure = budget_figure(split, ("torque",))
+    top, bottom = figure.axes
+    drawn = {label: line.get_ydata() for label, line in curves(bottom).items()}
+    total = drawn.pop("sum of the causes")
+    assert list(drawn) == list(CAUSES)
+    assert np.allclose(sum(drawn.values()), total, rtol=0.0, atol=1e-12)
+    above = {label: line.get_ydata() for label, line in curves(top).items()}
+    assert np.allclose(above["lecture"] - above["run"], total, rtol=0.0, atol=1e-12)
+    degrees = curves(bottom)["series"].get_xdata()
+    assert (degrees[0], degrees[-1]) == pytest.approx((0.0, 720.0))
+
+
+def test_nothing_to_draw_is_no_figure():
+    scene = dataclasses.replace(load_scene("coasting"), run=Run(until="1 rev"))
+    result = simulate(scene)
+    assert comparison_figure(compare(result), ("gas torque",)) is None
+    assert budget_figure(budget(result), ("gas torque",)) is None
