@@ -1,0 +1,58 @@
+"""The formulations that can serve a scene, as contenders."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+
+from crankmbs.errors import CrankmbsError
+from crankmbs.scene import Scene
+from crankmbs.simulate import simulate
+from crankmbs.work_precision.contender import Answer, Contender, ContenderFailed
+from crankmbs.work_precision.reference import Reference
+from crankmbs.work_precision.track import track_of
+
+__all__ = ["formulations_of"]
+
+_LADDER = (1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-12, 1e-13)
+_ALGEBRA = (1e-8,)  # nothing to set
+
+
+def formulations_of(scene: Scene, reference: Reference) -> tuple[Contender, ...]:
+    """Every formulation that can serve the scene, over its settings, with all it gives.
+
+    Those that integrate one rotation come a second time, for the state at the end alone: that is
+    what a bare integrator gives. ``multibody`` keeps every step anyway.
+    """
+
+    def contender(name: str, *, end_only: bool = False) -> Contender:
+        return Contender(
+            name=f"{name}, end only" if end_only else name,
+            knob="rtol",
+            settings=_ALGEBRA if name == "kinetostatic" else _LADDER,
+            run=partial(_run, scene, name, end_only, reference.result.status),
+            reference=reference.track,
+        )
+
+    if scene.motion is not None:
+        return contender("kinetostatic"), contender("multibody")
+    return (
+        contender("crank_angle"),
+        contender("crank_angle", end_only=True),
+        contender("minimal"),
+        contender("minimal", end_only=True),
+        contender("multibody"),
+    )
+
+
+def _run(scene: Scene, name: str, end_only: bool, status: int, rtol: float) -> Answer:
+    run = replace(scene.run, every=scene.run.until) if end_only else scene.run
+    try:
+        result = simulate(replace(scene, run=run), formulation=name, rtol=rtol)
+    except CrankmbsError as error:
+        raise ContenderFailed(str(error)) from None
+    if result.status != status:
+        raise ContenderFailed(result.message)
+    track = track_of(result)
+    answer = track.end() if end_only else track
+    return Answer(answer, result.cost.evaluations, result.error.estimated)
