@@ -1,0 +1,1 @@
+"""What the project claims, checked against sources and against independent oracles."""

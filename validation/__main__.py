@@ -1,0 +1,40 @@
+"""`python -m validation [--quick]`: judge every claim; exit status 1 unless all of them hold."""
+
+import argparse
+import sys
+import time
+
+from validation.case import load_cases
+from validation.judge import Verdict, judge
+from validation.report import write_report
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Print one line a claim. A full run also writes REPORT.md and the figures."""
+    parser = argparse.ArgumentParser(prog="python -m validation", description=__doc__)
+    parser.add_argument(
+        "--quick",
+        action="store_true",
+        help="leave out the claims that take long (under two minutes), and write nothing",
+    )
+    quick = parser.parse_args(arguments).quick
+    verdicts: list[Verdict] = []
+    begin = time.perf_counter()
+    for case in load_cases():
+        if case.quick or not quick:
+            verdict = judge(case)
+            verdicts.append(verdict)
+            print(
+                f"{verdict.word:12} {case.name:40} {verdict.outcome.error:9.2e} of "
+                f"{case.tolerance:7.1e}  {verdict.outcome.detail}",
+                flush=True,
+            )
+    red = sum(not verdict.green for verdict in verdicts)
+    print(f"{len(verdicts)} claims, {red} red, {time.perf_counter() - begin:.0f} s")
+    if not quick:
+        print(f"written: {write_report(verdicts)}")
+    return 1 if red or not verdicts else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,222 @@
+"""From a scene to the oracles' machine, in the very floats of the scene, and back to its names.
+
+The oracles share nothing with crankmbs: rows of a table go over as the scene stores them, and the
+oracle interpolates them anew. Only an indicator diagram goes over as crankmbs' own cubic pieces;
+those are held against the polytropes in a claim of their own.
+"""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crankmbs.drives import (
+    Constant,
+    Oscillation,
+    Quadratic,
+    Ramp,
+    SpeedFile,
+    SpeedTable,
+    TimeTable,
+    Torque,
+    Viscous,
+)
+from crankmbs.drives import Motion as Prescribed
+from crankmbs.machine import Gas
+from crankmbs.pressure import pressure_of
+from crankmbs.result import Result
+from crankmbs.scene import Scene
+from crankmbs.tables import Table
+from validation.oracles.arithmetic import LONG, Arithmetic, Array, Number
+from validation.oracles.energy import kinetic_energy
+from validation.oracles.free_motion import Motion, free_motion
+from validation.oracles.loads import torque_at
+from validation.oracles.machine import Loads, LoadTable, Machine, PressurePieces, PressureTable
+from validation.oracles.newton_euler import newton_euler
+from validation.oracles.prescribed import oscillating_motion, pchip, polynomial_motion
+
+__all__ = ["at_jumps", "load_torque", "machine_of", "reference_motion", "reference_variables"]
+
+_TOWARDS_CRANK = ("piston_velocity", "piston_acceleration")  # the oracle's point away from it
+_SAME_ANGLE = 1e-9
+_SAME_PRESSURE = 1e-9
+
+
+def machine_of(scene: Scene) -> Machine:
+    """The machine of a scene, with the loads of its free crank."""
+    crank, rod, piston = scene.crank, scene.rod, scene.piston
+    gx = gy = 0.0
+    if scene.gravity is not None:
+        gx = scene.gravity.acceleration * math.cos(scene.gravity.angle)
+        gy = scene.gravity.acceleration * math.sin(scene.gravity.angle)
+    return Machine(
+        crank_radius=crank.radius,
+        crank_inertia=crank.inertia,
+        crank_mass=crank.mass,
+        crank_center_of_mass=crank.center_of_mass,
+        rod_length=rod.length,
+        rod_mass=rod.mass,
+        rod_center_of_mass=rod.center_of_mass,
+        rod_inertia=rod.moment_of_inertia,
+        piston_mass=piston.mass,
+        piston_area=piston.gas_area or 0.0,
+        offset=piston.offset,
+        cylinders=tuple((c.phase, c.bank) for c in scene.cylinders),
+        pressure=_pressure(scene),
+        gravity=(gx, gy),
+        loads=_loads(scene.torque),
+    )
+
+
+def reference_motion(
+    result: Result, scene: Scene | None = None, arithmetic: Arithmetic = LONG
+) -> Motion:
+    """The oracle's motion at the samples of a result, of its own scene or of a given one.
+
+    Samples that lie on crank angles are compared at equal angles: of a free motion the oracle is
+    run to the result's times and once more to those moved by the angle that is still missing.
+    """
+    scene = scene or result.scene
+    if scene.motion is not None:
+        return _prescribed(result, scene.motion)
+    assert scene.start is not None
+    machine, start = machine_of(scene), scene.start
+    times = arithmetic.array(result.data["time"].values)
+    after = times[0] == 0
+    if times[-1] == 0:
+        return _start(machine, scene, arithmetic, arithmetic.number(2.0**-60))
+    wanted = times[1:] if after else times
+
+    def run() -> Motion:
+        return free_motion(
+            machine, start.angle, start.speed, times=wanted.tolist(), arithmetic=arithmetic
+        )
+
+    motion = run()
+    if scene.run.every is not None and scene.run.every.unit != "s":
+        moving = slice(None) if scene.run.until.unit != "s" else slice(-1)
+        missing = arithmetic.array(result.data["crank_angle"].values)[1 if after else 0 :]
+        late = (missing - motion.theta)[moving] / motion.omega[moving]
+        wanted = wanted.copy()
+        wanted[moving] = wanted[moving] + late
+        motion = run()
+    return _with_start(motion, machine, scene, arithmetic) if after else motion
+
+
+def reference_variables(
+    scene: Scene, theta: Array, omega: Array, alpha: Array, arithmetic: Arithmetic = LONG
+) -> dict[str, Array]:
+    """Every force and every motion of the parts at a given motion, named and signed as in a result.
+
+    theta [rad], omega [rad/s], alpha [rad/s2] : shape (n,). Returns shape (n,) or (n, cylinders).
+    """
+    machine = machine_of(scene)
+    reactions = newton_euler(machine, theta, omega, alpha, arithmetic)
+    variables = dict(vars(reactions))
+    for name in _TOWARDS_CRANK:
+        variables[name] = -variables[name]
+    variables["kinetic_energy"] = kinetic_energy(machine, theta, omega, arithmetic)
+    return variables
+
+
+def load_torque(scene: Scene, motion: Motion, arithmetic: Arithmetic = LONG) -> Array:
+    """The torque of all loads on a free crank. Inverse dynamics give it too, but with a heavy
+    flywheel or near a fold as the small difference of large numbers."""
+    return torque_at(_loads(scene.torque), motion.time, motion.omega, arithmetic)
+
+
+def at_jumps(scene: Scene, theta: Array) -> NDArray[np.bool_]:
+    """Which crank angles lie on a jump of a cylinder's pressure: there two values are right."""
+    pressure = pressure_of(scene)
+    on = np.zeros(len(theta), dtype=bool)
+    if pressure is None:
+        return on
+    width = np.diff(pressure.knots)
+    before = np.roll(pressure.piece(np.arange(len(width)), width), 1)
+    after = pressure.coefficients[-1]
+    jumps = np.abs(after - before) > _SAME_PRESSURE * np.abs(after).max()
+    for knot in pressure.knots[:-1][jumps]:
+        for cylinder in scene.cylinders:
+            beside = (np.asarray(theta, dtype=np.float64) + cylinder.phase - knot) % scene.period
+            on |= np.minimum(beside, scene.period - beside) < _SAME_ANGLE
+    return on
+
+
+def _prescribed(result: Result, motion: Prescribed) -> Motion:
+    """At the result's angles; of a ramp or a table over time, at its times."""
+    angles, speed = result.data["crank_angle"].values, motion.speed
+    match speed:
+        case Oscillation():
+            law = (speed.mean, speed.amplitude, speed.order, speed.phase)
+            return oscillating_motion(angles, *law)
+        case Ramp():
+            breaks: tuple[float, ...] = (0.0, speed.over)
+            rise = (LONG.number(speed.to) - speed.start) / LONG.number(speed.over)
+            pieces = [LONG.array([speed.start, rise]), LONG.array([speed.to])]
+        case SpeedFile():
+            breaks, pieces = speed.file.x[:-1], pchip(speed.file.x, speed.file.y)
+        case _:
+            breaks, pieces = (0.0,), [LONG.array([speed])]
+    return polynomial_motion(result.data["time"].values, breaks, pieces, motion.angle)
+
+
+def _with_start(motion: Motion, machine: Machine, scene: Scene, arithmetic: Arithmetic) -> Motion:
+    """The motion with its initial state in front."""
+    start = _start(machine, scene, arithmetic, arithmetic.number(2.0**-60) * motion.time[0])
+    return Motion(
+        time=np.append(start.time, motion.time),
+        theta=np.append(start.theta, motion.theta),
+        omega=np.append(start.omega, motion.omega),
+        alpha=np.append(start.alpha, motion.alpha),
+        steps=motion.steps,
+    )
+
+
+def _start(machine: Machine, scene: Scene, arithmetic: Arithmetic, soon: Number) -> Motion:
+    """The initial state alone, from a motion that ends soon after it."""
+    assert scene.start is not None
+    start = free_motion(
+        machine, scene.start.angle, scene.start.speed, times=[0, soon], arithmetic=arithmetic
+    )
+    return Motion(start.time[:1], start.theta[:1], start.omega[:1], start.alpha[:1], start.steps)
+
+
+def _pressure(scene: Scene) -> PressureTable | PressurePieces | None:
+    gas = scene.gas
+    if gas is None:
+        return None
+    if gas.pressure is None:
+        pieces = pressure_of(scene)
+        assert pieces is not None
+        coefficients = tuple(map(tuple, pieces.coefficients[::-1].T.tolist()))
+        return PressurePieces(tuple(pieces.knots[:-1].tolist()), coefficients, scene.period)
+    return _table(gas, gas.pressure)
+
+
+def _table(gas: Gas, rows: Table) -> PressureTable:
+    angles, values = rows.x, rows.y
+    if angles[-1] - angles[0] > gas.period - _SAME_ANGLE:
+        angles, values = angles[:-1], values[:-1]
+    if gas.zero == "firing_tdc" and gas.stroke == 4:
+        angles = tuple(angle + 2.0 * math.pi for angle in angles)
+    gauge = tuple(value - (gas.ambient or 0.0) for value in values)
+    return PressureTable(angles, gauge, gas.period, gas.interpolation)
+
+
+def _loads(torques: tuple[Torque, ...]) -> Loads:
+    constant = viscous = quadratic = 0.0
+    time_tables: list[LoadTable] = []
+    speed_tables: list[LoadTable] = []
+    for load in torques:
+        match load:
+            case Constant():
+                constant += load.torque
+            case Viscous():
+                viscous += load.coefficient
+            case Quadratic():
+                quadratic += load.coefficient
+            case TimeTable():
+                time_tables.append(LoadTable(load.file.x, load.file.y))
+            case SpeedTable():
+                speed_tables.append(LoadTable(load.file.x, load.file.y))
+    return Loads(constant, viscous, quadratic, tuple(time_tables), tuple(speed_tables))

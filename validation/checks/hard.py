@@ -1,0 +1,164 @@
+"""Hard cases: every formulation is right within its stated error, or stops and says why."""
+
+from __future__ import annotations
+
+import math
+import tracemalloc
+import warnings
+from dataclasses import replace
+from typing import NamedTuple
+
+from crankmbs.errors import FormulationError, InputError
+from crankmbs.result import VARIABLES, Result
+from crankmbs.scene import Extent, Scene
+from crankmbs.simulate import simulate
+from validation.adapter import machine_of
+from validation.case import Case, driven, shifted
+from validation.checks.honest import true_errors
+from validation.judge import Outcome
+from validation.oracles.arithmetic import LONG, multiprecision
+from validation.oracles.many_turns import many_turns
+
+__all__ = ["every_formulation", "flat_memory", "refused"]
+
+_FORMULATIONS = ("kinetostatic", "crank_angle", "minimal", "multibody")
+_CAP = 3.0  # s, for multibody
+_STOPS_OF_MULTIBODY = ("above the cost cap", "Newton iteration does not converge")
+_TOO_SMALL = 2.0  # the true error may be this many times the stated one
+_FLOOR = 1e-12  # of the peak of what has the same unit: rounding
+_HEAD = ("| case |" + "".join(f" {name} |" for name in _FORMULATIONS), "|---" * 5 + "|")
+
+
+class _Answer(NamedTuple):
+    """How far a formulation is from the truth in units of what it may be, and what it says."""
+
+    error: float
+    text: str
+
+
+def every_formulation(case: Case) -> Outcome:
+    """The worst true error over twice the stated one, over all formulations and variables.
+
+    A run that stops is measured up to there; infinite for a stop that the case does not know, for
+    an error that is no refusal and for a warning. Parameters of the case: `stops`, what the
+    sentence of a stop has to contain; `constant_speed`, what kinetostatic is given in place of a
+    free crank; `many_turns`, the oracle for long runs; `digits` of the other; `held`, at a stop
+    whose last sample is left out, as the oracle cannot hold a speed; `cost_cap` [s] of multibody.
+    """
+    answers: dict[str, _Answer] = {}
+    for name in _FORMULATIONS:
+        answers[name] = _answer(case, name)
+        if case.mutated and not answers[name].error <= case.tolerance:
+            break  # one is enough to turn the claim red
+    return _outcome(case, answers)
+
+
+def refused(case: Case) -> Outcome:
+    """Number of values of the key that are not refused with the message of the case.
+
+    The values are all numbers among the parameters.
+    """
+    key, says = case.word("key"), case.word("says")
+    messages, accepted = [], 0
+    for name, number in case.parameters.items():
+        if isinstance(number, float):
+            value = case.number(name)
+            try:
+                shifted(case.theirs(), key, lambda _, value=value: value)
+            except InputError as error:
+                messages.append(str(error))
+                accepted += says not in str(error)
+            else:
+                accepted += 1
+    answer = _Answer(accepted, "refused: " + "; ".join(messages))
+    return _outcome(case, dict.fromkeys(_FORMULATIONS, answer))
+
+
+def flat_memory(case: Case) -> Outcome:
+    """Peak memory of the run over that of a run a tenth as long (every = "none")."""
+    scene, name = case.ours(), case.word("formulation")
+    until, long = scene.run.until, case.number("length")
+    peaks = []
+    for length in (0.1 * until.value, long * until.value):
+        shorter = replace(scene.run, until=Extent(value=length, unit=until.unit))
+        tracemalloc.start()
+        simulate(replace(scene, run=shorter), formulation=name)
+        peaks.append(tracemalloc.get_traced_memory()[1])
+        tracemalloc.stop()
+    short, whole = (peak / 1e6 for peak in peaks)
+    return Outcome(whole / short, f"peak {whole:.3g} MB, of a tenth of the run {short:.3g} MB")
+
+
+def _answer(case: Case, formulation: str) -> _Answer:
+    ours, theirs = case.ours(), case.theirs()
+    note = ""
+    if formulation == "kinetostatic" and case.parameters.get("constant_speed"):
+        ours, theirs = driven(ours, "constant"), driven(theirs, "constant")
+        note = "at constant speed, "
+    cap = float(case.parameters.get("cost_cap", _CAP))
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            result = simulate(ours, formulation=formulation, cost_cap=cap)
+        return _judged(case, result, theirs, note)
+    except FormulationError as error:
+        return _Answer(0.0, f"refused: {error}")
+    except Exception as error:
+        return _Answer(math.inf, f"broken: {type(error).__name__}: {error}")
+
+
+def _judged(case: Case, result: Result, scene: Scene, note: str) -> _Answer:
+    worst, numbers = _compared(case, result, scene)
+    right = f"right: {numbers}" if worst <= 1.0 else f"WRONG: {numbers}"
+    if result.status == 0:
+        return _Answer(worst, note + right + _shortfall(result))
+    known = [str(case.parameters["stops"])] if "stops" in case.parameters else []
+    if result.formulation == "multibody" and result.status == -1:
+        known += _STOPS_OF_MULTIBODY
+    told = any(part in result.message for part in known)
+    text = f"{note}stopped (status {result.status}): {result.message}; before it {right}"
+    return _Answer(worst if told else math.inf, text)
+
+
+def _shortfall(result: Result) -> str:
+    """What the message of a run to the end says beyond it."""
+    _, _, more = result.message.partition("; ")
+    return f"; {more}" if more else ""
+
+
+def _compared(case: Case, result: Result, scene: Scene) -> tuple[float, str]:
+    """The worst true error over what it may be, and that variable's numbers."""
+    digits = case.parameters.get("digits")
+    arithmetic = multiprecision(digits) if digits else LONG
+    motion = None
+    if scene.start is not None and case.parameters.get("many_turns"):
+        angles = result.data["crank_angle"].values
+        motion = many_turns(machine_of(scene), scene.start.angle, scene.start.speed, angles)
+    if result.status == 1 and case.parameters.get("held"):  # where the oracle does not go
+        result = replace(result, data=result.data.isel(time=slice(-1)))
+    true, peaks = true_errors(result, scene, motion, arithmetic)
+    largest: dict[str, float] = {}
+    for name, peak in peaks.items():
+        unit = VARIABLES[name].units
+        largest[unit] = max(peak, largest.get(unit, 0.0))
+    shares = dict.fromkeys(true, 0.0)
+    for name, error in true.items():
+        stated = float(result.data[name].attrs["error_estimate"])
+        allowed = _TOO_SMALL * stated + _FLOOR * largest[VARIABLES[name].units]
+        share = error / allowed if error else 0.0
+        shares[name] = share if math.isfinite(share) else math.inf
+    worst = max(shares, key=lambda name: shares[name])
+    stated = float(result.data[worst].attrs["error_estimate"])
+    numbers = f"{worst} {true[worst]:.1e}, stated {stated:.1e} {VARIABLES[worst].units}"
+    return shares[worst], numbers
+
+
+def _outcome(case: Case, answers: dict[str, _Answer]) -> Outcome:
+    worst = max(answers, key=lambda name: answers[name].error)
+    served = any(not answer.text.startswith("refused") for answer in answers.values())
+    cells = [answers[name].text if name in answers else "" for name in _FORMULATIONS]
+    row = f"| {case.claim} |" + "".join(f" {cell} |" for cell in cells)
+    error = answers[worst].error
+    if not served and case.check == "hard.every_formulation":
+        error = math.inf
+    return Outcome(error, f"{worst} {answers[worst].text}", table=(*_HEAD, row))

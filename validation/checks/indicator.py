@@ -1,0 +1,47 @@
+"""The cubic pieces of an indicator diagram against its polytropes."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from crankmbs.pressure import pressure_of
+from validation.case import Case
+from validation.judge import Outcome
+from validation.oracles.arithmetic import LONG
+from validation.oracles.indicator import Diagram, absolute_pressure, dead_centres
+
+__all__ = ["pieces"]
+
+_SAMPLES = 20011
+_BESIDE = 1e-8  # rad: at a dead centre the diagram jumps
+
+
+def pieces(case: Case) -> Outcome:
+    """Largest difference over the absolute pressure, one period, dead centres left out."""
+    scene = case.theirs()
+    gas = scene.gas
+    assert gas is not None
+    given = gas.indicator
+    assert given is not None
+    diagram = Diagram(
+        crank_radius=scene.crank.radius,
+        rod_length=scene.rod.length,
+        offset=scene.piston.offset,
+        compression_ratio=given.compression_ratio,
+        n_compression=given.n_compression,
+        n_expansion=given.n_expansion,
+        intake=given.intake_pressure,
+        peak=given.peak_pressure,
+        exhaust=given.exhaust_pressure,
+        pre_expansion=given.pre_expansion,
+    )
+    ours = pressure_of(case.ours())
+    assert ours is not None
+    angle = np.linspace(0.0, scene.period, _SAMPLES)
+    beside = [(angle - float(at)) % (2.0 * np.pi) for at in dead_centres(diagram)]
+    smooth = [(x > _BESIDE) & (x < 2.0 * np.pi - _BESIDE) for x in beside]
+    angle = angle[smooth[0] & smooth[1]]
+    exact = absolute_pressure(diagram, angle)
+    error = np.abs(ours(angle) + LONG.number(gas.ambient or 0.0) - exact) / exact
+    worst = int(np.argmax(error))
+    return Outcome(float(error[worst]), f"worst at {np.degrees(angle[worst]):.1f} deg")

@@ -1,0 +1,1 @@
+"""Independent references of high precision; nothing here imports crankmbs."""

@@ -1,0 +1,103 @@
+"""What the oracles take: plain records of SI numbers, with nothing derived."""
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Literal, get_args
+
+from validation.oracles.arithmetic import Number
+
+Interpolation = Literal["linear", "step", "pchip", "cubic"]
+
+
+@dataclass(frozen=True)
+class PressureTable:
+    """Pressure difference across the piston over the cycle angle, periodic, no closing row.
+
+    angles strictly increase [rad] and span less than `period` [rad]; pressures in Pa.
+    """
+
+    angles: tuple[Number, ...]
+    pressures: tuple[Number, ...]
+    period: Number
+    interpolation: Interpolation
+
+    def __post_init__(self) -> None:
+        if self.interpolation not in get_args(Interpolation):
+            raise ValueError(f"interpolation must be one of {get_args(Interpolation)}")
+        if len(self.angles) != len(self.pressures) or len(self.angles) < 3:
+            raise ValueError("a pressure table needs three or more angles, one pressure each")
+        floats = [float(angle) for angle in self.angles]
+        if any(b <= a for a, b in pairwise(floats)):
+            raise ValueError("angles must strictly increase")
+        if floats[-1] - floats[0] >= float(self.period):
+            raise ValueError("angles must span less than one period (leave the closing row out)")
+
+
+@dataclass(frozen=True)
+class PressurePieces:
+    """Pressure difference across the piston as cubics that are given, periodic.
+
+    coefficients[i][j] multiplies (angle - knots[i])**j from knot i to the next; the last piece
+    ends one period [rad] behind the first knot.
+    """
+
+    knots: tuple[Number, ...]
+    coefficients: tuple[tuple[Number, ...], ...]
+    period: Number
+
+
+@dataclass(frozen=True)
+class LoadTable:
+    """Torque [N m] over time [s] or speed [rad/s]: linear, a repeated abscissa is a jump."""
+
+    abscissae: tuple[Number, ...]
+    torques: tuple[Number, ...]
+
+    def __post_init__(self) -> None:
+        floats = [float(value) for value in self.abscissae]
+        if len(floats) != len(self.torques) or len(set(floats)) < 2:
+            raise ValueError("a load table needs two or more abscissae, one torque each")
+        if any(b < a for a, b in pairwise(floats)):
+            raise ValueError("abscissae must not decrease")
+
+
+@dataclass(frozen=True)
+class Loads:
+    """Torques on the crank, positive in the sense of +theta.
+
+    constant - viscous omega - quadratic omega |omega| + time tables + speed tables. A time table
+    must cover the run; a speed table holds its end values.
+    """
+
+    constant: Number = 0.0
+    viscous: Number = 0.0
+    quadratic: Number = 0.0
+    time_tables: tuple[LoadTable, ...] = ()
+    speed_tables: tuple[LoadTable, ...] = ()
+
+
+@dataclass(frozen=True)
+class Machine:
+    """Crank, rods and pistons; every cylinder has the same rod, piston, offset and pressure.
+
+    crank_center_of_mass lies on the reference line, from the axis; crank_inertia is about the axis.
+    rod_center_of_mass is measured from the crank pin, rod_inertia about it. cylinders holds
+    (phase, bank) [rad]. gravity is (gx, gy) [m/s2] in the engine's frame. The time of the loads'
+    time tables is that of the run, which starts at 0.
+    """
+
+    crank_radius: Number
+    crank_inertia: Number
+    rod_length: Number
+    crank_mass: Number = 0.0
+    crank_center_of_mass: Number = 0.0
+    rod_mass: Number = 0.0
+    rod_center_of_mass: Number = 0.0
+    rod_inertia: Number = 0.0
+    piston_mass: Number = 0.0
+    piston_area: Number = 0.0
+    offset: Number = 0.0
+    cylinders: tuple[tuple[Number, Number], ...] = ((0.0, 0.0),)
+    pressure: PressureTable | PressurePieces | None = None
+    gravity: tuple[Number, Number] = (0.0, 0.0)
+    loads: Loads = Loads()

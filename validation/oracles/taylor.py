@@ -1,0 +1,106 @@
+"""Taylor series of the free motion about one instant, from the absolute-coordinate equations."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from validation.oracles.arithmetic import Arithmetic, Array, Number
+from validation.oracles.bodies import ALPHA, PER_CYLINDER, ROD_SPIN, System
+from validation.oracles.linear import solve
+from validation.oracles.loads import LoadPiece
+
+
+@dataclass(frozen=True)
+class GasPiece:
+    """Gas force of each cylinder: cubic coefficients (cylinders, 4) in theta - origin."""
+
+    coefficients: Array
+    origin: Array
+
+
+def evaluate(series: Array, at: Number) -> Number:
+    """Horner's rule; `at` a number or an array."""
+    total = series[-1] + at * 0
+    for coefficient in series[-2::-1]:
+        total = total * at + coefficient
+    return total
+
+
+def derivative(series: Array) -> Array:
+    """The series of the derivative, one term shorter."""
+    result: Array = series[1:] * np.arange(1, len(series))
+    return result
+
+
+def motion_series(
+    system: System,
+    angle: Array,
+    rate: Array,
+    load: LoadPiece,
+    gas: GasPiece | None,
+    order: int,
+    arithmetic: Arithmetic,
+) -> Array:
+    """Coefficients 0 .. order of theta(t) about now, for bodies at `angle` turning at `rate`.
+
+    The unknown accelerations and forces obey matrix(t) z(t) = right(t). With the coefficients of
+    matrix and right known up to order k (they need the motion up to order k + 1 only),
+    matrix_0 z_k = right_k - sum over j = 1 .. k of matrix_j z_(k-j) gives the next ones. Cosines
+    and sines come from (cos a)' = -a' sin a and (sin a)' = a' cos a. Exact but for truncation
+    and rounding.
+    """
+    bodies, cylinders = len(angle), (len(angle) - 1) // 2
+    turn = arithmetic.zeros(order + 1, bodies)  # angles
+    speed = arithmetic.zeros(order, bodies)  # their rates
+    speed2, cosine, sine, cosine2, sine2 = (arithmetic.zeros(order, bodies) for _ in range(5))
+    entry = arithmetic.zeros(order, len(system.entry_row))
+    unknown = arithmetic.zeros(order, len(system.right))
+    local = arithmetic.zeros(order, cylinders)  # theta - origin and its powers, for the gas
+    square, cube = (arithmetic.zeros(order, cylinders) for _ in range(2))
+
+    turn[0], speed[0] = angle, rate
+    cosine[0], sine[0] = arithmetic.cos(angle), arithmetic.sin(angle)
+    size = len(system.right)
+    identity = arithmetic.zeros(size, size)
+    identity[np.arange(size), np.arange(size)] += 1
+    inverse = solve(system.matrix(cosine[:1], sine[:1]), identity[None])[0]
+    accelerating = [ALPHA] * (1 + cylinders) + [
+        ROD_SPIN + PER_CYLINDER * k for k in range(cylinders)
+    ]
+
+    for k in range(order - 1):
+        if k > 0:
+            cosine[k] = -_product(speed, sine, k - 1) / k
+            sine[k] = _product(speed, cosine, k - 1) / k
+        speed2[k] = _product(speed, speed, k)
+        cosine2[k], sine2[k] = _product(cosine, speed2, k), _product(sine, speed2, k)
+        entry[k] = system.entries(cosine[k], sine[k])
+
+        right = system.right.copy() if k == 0 else system.right * 0
+        np.add.at(right, system.turn_row, system.turning(cosine2[k], sine2[k]))
+        torque = load.per_speed * speed[k, 0] + load.per_speed2 * speed2[k, 0]
+        torque += load.constant if k == 0 else (load.per_time if k == 1 else 0)
+        right[system.given_row] += torque
+        if gas is not None:
+            local[k] = turn[0, 0] - gas.origin if k == 0 else turn[k, 0]
+            square[k] = _product(local, local, k)
+            cube[k] = _product(local, square, k)
+            terms = gas.coefficients
+            force = terms[:, 1] * local[k] + terms[:, 2] * square[k] + terms[:, 3] * cube[k]
+            right[system.gas_row] -= force + terms[:, 0] if k == 0 else force
+        if k > 0:
+            known = (entry[1 : k + 1] * unknown[k - 1 :: -1, system.entry_column]).sum(axis=0)
+            np.subtract.at(right, system.entry_row, known)
+        unknown[k] = inverse @ right
+
+        turn[k + 1] = speed[k] / (k + 1)
+        speed[k + 1] = unknown[k, accelerating] / (k + 1)
+    turn[order] = speed[order - 1] / order
+    theta: Array = turn[:, 0]
+    return theta
+
+
+def _product(a: Array, b: Array, k: int) -> Array:
+    """Coefficient k of the product of two series."""
+    result: Array = (a[: k + 1] * b[k::-1]).sum(axis=0)
+    return result
