@@ -96,7 +96,9 @@ def reference_motion(
     if scene.run.every is not None and scene.run.every.unit != "s":
         moving = slice(None) if scene.run.until.unit != "s" else slice(-1)
         missing = arithmetic.array(result.data["crank_angle"].values)[1 if after else 0 :]
-        late = (missing - motion.theta)[moving] / motion.omega[moving]
+        omega, alpha = motion.omega[moving], motion.alpha[moving]
+        late = (missing - motion.theta)[moving] / omega
+        late = late - alpha * late * late / (2 * omega)  # to second order: once is enough
         wanted = wanted.copy()
         wanted[moving] = wanted[moving] + late
         motion = run()

@@ -200,7 +200,7 @@ class _Integrator:
     def start(self, t: float, y: Array, h: float) -> Solver:
         """A solver at (t, y) with the first step h [s]; infinite lets it choose."""
         halved = self.equation.reduced.halved
-        most = 0.5 * (self.bound - t) if halved and math.isfinite(self.bound) else math.inf
+        most = 0.505 * (self.bound - t) if halved and math.isfinite(self.bound) else math.inf
         return self._solver(t, y, self.bound, min(h, most), most, self.atol)
 
     def again(self, solver: Solver, t: float) -> Dense:
@@ -210,7 +210,8 @@ class _Integrator:
         atol = self.atol if self.stiff else np.full(3, math.inf)
         first = (t - begin) * (0.5 if self.equation.reduced.halved else 1.0)
         y = np.asarray(solver.y_old)
-        shorter = self._solver(begin, y, t, first, first, atol)
+        most = 1.01 * first  # no sliver is left at the end, where its polynomial means nothing
+        shorter = self._solver(begin, y, t, first, most, atol)
         parts: list[DenseOutput[np.float64]] = []
         while shorter.status == "running":
             shorter.step()
