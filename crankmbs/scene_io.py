@@ -41,6 +41,8 @@ def scene_path(name: str | Path) -> Path:
         return shipped[str(name)]
     if path.is_dir():
         raise SceneError(f"{path}: a folder came; give the scene file in it")
+    if path.with_name(f"{path.name}.toml").is_file():
+        raise SceneError(f'{name}: no such scene file; did you mean "{name}.toml"?')
     hint = did_you_mean(path.stem, list(shipped)) or f"; shipped are {', '.join(shipped)}"
     raise SceneError(f"{name}: no such scene file and no shipped scene{hint}")
 
@@ -73,7 +75,9 @@ def parse_scene(text: str, path: Path) -> Scene:
     try:
         raw: dict[str, Any] = tomllib.loads(text)
     except (ValueError, RecursionError) as error:  # a number of 5000 digits is a ValueError
-        raise SceneError(f"{path}: not valid TOML: {error}") from None
+        raise SceneError(
+            f"{path}: not valid TOML: {error}; crankmbs new NAME writes a scene to compare with"
+        ) from None
     try:
         scene: Scene = _SCENE.validate_python(raw, context={"folder": path.parent}, by_name=False)
     except ValidationError as error:

@@ -294,6 +294,23 @@ def test_a_small_run_loads_neither_matplotlib_nor_exudyn():
     assert done.stdout.splitlines()[-1] == "[]"
 
 
+def test_check_says_where_throws_stand_and_when_cylinders_fire():
+    stdout = crankmbs_("check", "v_twin").stdout
+    assert "phase 300 deg, bank 30 deg, throw at 330 deg, fires at 60 deg" in stdout
+
+
+def test_the_report_names_the_last_sample_and_a_crank_that_turns_backwards():
+    text = (models_folder() / "coasting.toml").read_text()
+    Path("back.toml").write_text(re.sub(r'(?m)^speed = ".*"', 'speed = "-100 rad/s"', text))
+    stdout = crankmbs_("run", "back.toml", "--until", "1 rev", "--no-figures").stdout
+    assert "-1 rev, backwards" in stdout
+    assert re.search(r"^last sample +-?[\d.]+ deg, -[\d.]+ rpm$", stdout, re.MULTILINE)
+
+
+def test_a_scene_named_without_its_suffix_is_pointed_to():
+    assert refused("run", "engine") == 'engine: no such scene file; did you mean "engine.toml"?'
+
+
 def test_version_is_that_of_the_package():
     assert crankmbs_("--version").output.strip() == metadata.version("crankmbs")
 

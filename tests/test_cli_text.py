@@ -42,15 +42,16 @@ def test_progress_is_silent_when_quick_or_not_on_a_terminal(monkeypatch, stream)
     ("value", "error", "text"),
     [
         (1234.5678, 0.0, "1234.57"),
-        (1234.5678, 0.3, "1234.6"),
-        (1234.5678, 20.0, "1230"),
-        (-1234.5678, 2000.0, "-1000"),
+        (1234.5678, 0.3, "1234.57"),
+        (1234.5678, 3.0, "1234.6"),
+        (1234.5678, 20.0, "1235"),
+        (-1234.5678, 2000.0, "-1200"),
         (12.0, 5000.0, "0"),
         (0.0, 0.1, "0"),
         (-0.004, 0.1, "0"),
-        (9.9996, 0.001, "10.000"),
+        (9.9996, 0.01, "10.000"),
         (0.0999999999, 1e-15, "0.100000"),
-        (1.234567e-9, 1e-12, "1.235e-09"),
+        (1.234567e-9, 1e-12, "1.2346e-09"),
         (1.234567e9, 0.0, "1.23457e+09"),
         (float("nan"), 0.0, "-"),
     ],
@@ -59,12 +60,12 @@ def test_digits_end_at_the_error(value, error, text):
     assert digits(value, error) == text
 
 
-def test_errors_have_two_digits():
+def test_errors_have_two_digits_rounded_up():
     assert [error_digits(e) for e in (0.0123, 123.0, 4.0, 1.23e-9)] == [
-        "0.012",
-        "120",
+        "0.013",
+        "130",
         "4.0",
-        "1.2e-09",
+        "1.3e-09",
     ]
 
 
@@ -75,3 +76,10 @@ def test_tables_are_aligned():
         "long   1",
         "b     22",
     ]
+
+
+@pytest.mark.parametrize("value", [1234.5678, 20.049999, -0.0312345])
+@pytest.mark.parametrize("error", [0.3, 0.019, 7.1e-3])
+def test_what_is_printed_does_not_exclude_the_truth(value, error):
+    truth = value + 0.95 * error
+    assert abs(float(digits(value, error)) - truth) <= float(error_digits(error))

@@ -51,9 +51,12 @@ def _dead_centres(scene: Scene) -> str:
 
 
 def _cylinders(scene: Scene) -> str:
+    fired = scene.gas is not None and scene.gas.stroke == 4
     each = [
         f"phase {math.degrees(c.phase):.6g} deg"
         + (f", bank {math.degrees(c.bank):.6g} deg" if c.bank else "")
+        + f", throw at {math.degrees(c.phase + c.bank) % 360.0:.6g} deg"
+        + (f", fires at {(360.0 - math.degrees(c.phase)) % 720.0:.6g} deg" if fired else "")
         for c in scene.cylinders
     ]
     return f"{len(each)}: " + "; ".join(each)

@@ -22,7 +22,9 @@ def report(name: str, result: Result, measures: Measures) -> str:
         f"{title}\n",
         _about(result, measures),
         "",
-        table([f"over the {measures.window.kind}", "value", "error"], _values(measures)),
+        table(
+            [f"over the {measures.window.kind}", "value, to 6 digits", "error"], _values(measures)
+        ),
         "",
         table(_FORCE_HEADINGS, [_force(result, joint) for joint in measures.joints]),
     ]
@@ -82,9 +84,11 @@ _FORCE_HEADINGS = [
 
 def _about(result: Result, measures: Measures) -> str:
     time, angle = result.data["time"].values, result.data["crank_angle"].values
+    speed = result.data["crank_speed"].values
     turned = (angle[-1] - angle[0]) / (2.0 * math.pi)
     kept = "" if result.scene.run.every is not None else "; only the last cycle is kept"
-    samples = f"{len(time)}, {time[0]:.6g} to {time[-1]:.6g} s, {turned:.6g} rev{kept}"
+    sense = ", backwards" if turned < 0.0 else ""
+    samples = f"{len(time)}, {time[0]:.6g} to {time[-1]:.6g} s, {turned:.6g} rev{sense}{kept}"
     return "\n".join(
         [
             *(
@@ -93,6 +97,7 @@ def _about(result: Result, measures: Measures) -> str:
             ),
             f"{'end':<12} {result.message}",
             f"{'samples':<12} {samples}",
+            f"{'last sample':<12} {math.degrees(angle[-1]):.6g} deg, {speed[-1] * _RPM:.6g} rpm",
             _error_line(result),
             f"{'energy':<12} closes to {measures.energy_closure:.1e} of the peak kinetic energy",
             _cost_line(result),
@@ -108,8 +113,8 @@ def _error_line(result: Result) -> str:
 def _cost_line(result: Result) -> str:
     cost = result.cost
     return (
-        f"{'cost':<12} {digits(cost.wall_time, most=2)} s, {cost.evaluations} evaluations, "
-        f"{cost.steps} steps"
+        f"{'cost':<12} {digits(cost.wall_time, most=2)} s of computing, "
+        f"{cost.evaluations} evaluations, {cost.steps} steps"
     )
 
 

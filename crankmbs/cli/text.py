@@ -9,12 +9,12 @@ __all__ = ["digits", "error_digits", "table"]
 
 
 def digits(value: float, error: float = 0.0, most: int = 6) -> str:
-    """A number without digits beyond the leading one of its error, nor beyond ``most``.
+    """A number to the second digit of its error, and to ``most`` digits at most.
 
-    >>> digits(1234.5678, 0.03)
+    >>> digits(1234.5678, 0.3)
     '1234.57'
     >>> digits(1234.5678, 20.0)
-    '1230'
+    '1235'
     """
     if not math.isfinite(value):
         return "-"
@@ -23,7 +23,7 @@ def digits(value: float, error: float = 0.0, most: int = 6) -> str:
     size = int(f"{value:.{most - 1}e}".split("e")[1])  # the exponent after rounding
     last = size - most + 1
     if error > 0.0:
-        last = max(last, math.floor(math.log10(error)))
+        last = max(last, math.floor(math.log10(error)) - 1)
     rounded = round(value, -last)
     if rounded == 0.0:
         return "0"
@@ -33,12 +33,15 @@ def digits(value: float, error: float = 0.0, most: int = 6) -> str:
 
 
 def error_digits(error: float) -> str:
-    """An error to two digits.
+    """An error to two digits, rounded up.
 
     >>> error_digits(0.0123)
-    '0.012'
+    '0.013'
     """
-    return digits(error, most=2)
+    if not 0.0 < error < math.inf:
+        return digits(error)
+    unit = 10.0 ** (math.floor(math.log10(error)) - 1)
+    return digits(math.ceil(error / unit * (1.0 - 1e-12)) * unit, most=2)
 
 
 def table(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> str:

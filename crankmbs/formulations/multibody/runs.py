@@ -90,7 +90,7 @@ class Runs:
             return said + "a finer step brings no more"
         order = min(math.log2(gain), 4.0)
         cost = self._spent() + 2.0 * self._cost * (worst / rtol) ** (1.0 / order)
-        return said + f"that would take about {cost:.2g} s, {self._above()}"
+        return said + f"that would take about {_seconds(cost)}, {self._above()}"
 
     def _run(self, budget: float) -> Path:
         begin = clock.perf_counter()
@@ -147,4 +147,11 @@ class Runs:
         if slowed(path) < _AT_REST:
             return 1, f"came to rest {where}, before the end of the run"
         whole = self._cost / share / _SHARE
-        return -1, f"stopped {where}: the whole run would take about {whole:.2g} s, {self._above()}"
+        return (
+            -1,
+            f"stopped {where}: the whole run would take about {_seconds(whole)}, {self._above()}",
+        )
+
+
+def _seconds(cost: float) -> str:
+    return f"{float(f'{cost:.2g}'):g} s"
