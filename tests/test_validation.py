@@ -102,6 +102,19 @@ def test_report(monkeypatch, tmp_path):
         assert case.source in text
 
 
+def test_the_hard_cases_share_one_table(tmp_path):
+    head = ("| case | kinetostatic |", "|---|---|")
+    cases = [case for case in CASES.values() if case.check == "hard.every_formulation"]
+    verdicts = [
+        Verdict(case, "holds", Outcome(0.0, "right", (*head, f"| {case.claim} | right |")))
+        for case in cases
+    ]
+    text = write_report(verdicts, tmp_path).read_text(encoding="utf-8")
+    _, _, table = text.partition("## Hard cases")
+    assert table.count(head[0]) == 1
+    assert all(table.count(f"| {case.claim} | right |") == 1 for case in cases)
+
+
 def test_a_case_file_with_an_unknown_key(tmp_path):
     path = tmp_path / "case.toml"
     path.write_text('clam = "typo"\n[mutant]\nparameter = "rod.length"\nfactor = 2.0\n')

@@ -1,4 +1,4 @@
-"""REPORT.md: one row a claim, then the tables cell by cell and the figures."""
+"""REPORT.md: one row a claim, the hard cases in one table, then cell by cell and the figures."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -24,6 +24,7 @@ def write_report(verdicts: Sequence[Verdict], folder: Path = REPORT.parent) -> P
     lines = [_INTRODUCTION, f"{green} of {len(verdicts)} claims hold.", ""]
     lines += ["| claim | scene | measured | tolerance | verdict |", "|---|---|---|---|---|"]
     lines += [_row(verdict) for verdict in verdicts]
+    lines += _hard_cases(verdicts)
     for verdict in verdicts:
         lines += ["", *_section(verdict)]
     (folder / "figures").mkdir(exist_ok=True)
@@ -47,6 +48,19 @@ def _row(verdict: Verdict) -> str:
     return f"| {' | '.join(cells)} |"
 
 
+def _hard_cases(verdicts: Sequence[Verdict]) -> list[str]:
+    """One table of what every formulation makes of the hard cases."""
+    tables = [v.outcome.table for v in verdicts if _is_hard(v) and v.outcome.table]
+    if not tables:
+        return []
+    lines = ["", "## Hard cases", "", "Right within twice the stated error, or stopped and why."]
+    return [*lines, "", *tables[0][:2], *(row for table in tables for row in table[2:])]
+
+
+def _is_hard(verdict: Verdict) -> bool:
+    return verdict.case.check.startswith("hard.")
+
+
 def _section(verdict: Verdict) -> list[str]:
     case, outcome = verdict.case, verdict.outcome
     lines = [
@@ -59,7 +73,7 @@ def _section(verdict: Verdict) -> list[str]:
         f"- source: {case.source}",
         f"- turns red with: {case.mutant.parameter} times {case.mutant.factor:.10g}",
     ]
-    if outcome.table:
+    if outcome.table and not _is_hard(verdict):
         lines += ["", *outcome.table]
     for name in outcome.figures:
         lines += ["", f"![{case.claim}](figures/{name}.png)"]
