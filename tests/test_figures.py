@@ -114,13 +114,13 @@ def test_dead_centres_of_one_cylinder_are_the_true_ones():
     assert 360.0 < fires < 370.0
 
 
-def test_dead_centres_of_several_cylinders_carry_their_numbers(four):
-    assert [text.replace("\n", " ") for text in four.dead_centre_labels().values()] == [
-        "TDC 1, 4",
-        "TDC 2, 3",
-        "TDC 1, 4",
-        "TDC 2, 3",
-        "TDC 1, 4",
+def test_dead_centres_of_several_cylinders_carry_their_numbers_and_which_fires(four):
+    assert list(four.dead_centre_labels().values()) == [
+        "TDC 1, 4\n4 fires",
+        "TDC 2, 3\n2 fires",
+        "TDC 1, 4\n1 fires",
+        "TDC 2, 3\n3 fires",
+        "TDC 1, 4\n4 fires",
     ]
 
 

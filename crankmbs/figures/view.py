@@ -57,7 +57,8 @@ class View:
     def dead_centre_labels(self) -> dict[float, str]:
         """Crank angles [deg] of the dead centres that are shown, and what they are.
 
-        A single cylinder shows both; several show the top ones, named by cylinder number.
+        A single cylinder shows both; several show the top ones, named by cylinder number, and which
+        of a four-stroke's fires.
         """
         crank, rod, piston = self.scene.crank, self.scene.rod, self.scene.piston
         top, bottom = dead_centres(crank.radius, rod.length, piston.offset)
@@ -69,15 +70,15 @@ class View:
                 labels[at] = "firing TDC" if self._fires(at, phase) else "TDC"
             return labels
         passes = sorted(
-            (at, number)
+            (at, number, self._fires(at, cylinder.phase))
             for number, cylinder in enumerate(cylinders, start=1)
             for at in self._passes(top - cylinder.phase)
         )
-        groups: dict[float, list[int]] = {}
-        for at, number in passes:
+        groups: dict[float, dict[int, bool]] = {}
+        for at, number, fires in passes:
             last = next(reversed(groups), -math.inf)
-            groups.setdefault(last if at - last < _SAME else at, []).append(number)
-        return {at: "TDC\n" + ", ".join(map(str, sorted(g))) for at, g in groups.items()}
+            groups.setdefault(last if at - last < _SAME else at, {})[number] = fires
+        return {at: _top_centres(group) for at, group in groups.items()}
 
     def _passes(self, angle: float) -> list[float]:
         first = math.degrees(angle)
@@ -92,6 +93,13 @@ class View:
         if gas is None or gas.stroke == 2:
             return False
         return 180.0 < (at + math.degrees(phase)) % 720.0 < 540.0
+
+
+def _top_centres(fires: dict[int, bool]) -> str:
+    """What stands over a top dead centre of several cylinders, by number whether it fires."""
+    firing = ", ".join(str(number) for number in sorted(fires) if fires[number])
+    numbers = "TDC " + ", ".join(map(str, sorted(fires)))
+    return f"{numbers}\n{firing} fires" if firing else numbers
 
 
 def last_view(result: Result) -> View:
