@@ -89,7 +89,7 @@ def _about(stretch: Stretch) -> str:
         f"{' but for where the rod folds onto the crank' if folded else ''}, "
         f"cylinder {stretch.cylinder} of {count}, mean speed {digits(rpm)} rpm\n"
         "angles: cycle angle of the cylinder, for the main bearing the crank angle\n"
-        "peak: the largest magnitude in the run; in the budget that of any answer on the way to it\n"
+        "peak: the largest magnitude in the run; in the budget of any answer on the way to it\n"
         "lectures: S0 is Grega's, S1 that of Yi, Win and Htay; the budget splits the error of S1"
     )
 
