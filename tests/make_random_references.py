@@ -1,8 +1,8 @@
 """Store the oracles' motion of random scenes: PYTHONPATH=. python tests/make_random_references.py
 
-A scene is taken where `random_scenes` draws one that a crank-angle run of rtol 1e-11 carries
-through with few evaluations, so that the tests stay quick. That run only says when to look; the
-motion at these instants is the oracles', in 80-bit floats. About ten minutes.
+A scene is taken where `validation.random_scenes` draws one that a crank-angle run of rtol 1e-11
+carries through with few evaluations, so that the tests stay quick. That run only says when to look;
+the motion at these instants is the oracles', in 80-bit floats. About ten minutes.
 """
 
 from collections.abc import Iterator
@@ -11,10 +11,10 @@ from itertools import count
 from pathlib import Path
 
 import numpy as np
-from random_scenes import random_scene
 from references import Reference, reference_of
 
 from crankmbs import Result, simulate
+from validation.random_scenes import random_scene
 
 PATH = Path(__file__).parent / "data" / "random_references.csv"
 SCENES = 300
@@ -22,7 +22,7 @@ MOST_EVALUATIONS = 15_000
 MOST_SAMPLES = 60
 ENDLESS = {300}  # seeds of a swing that the loads pump up over hundreds of reversals
 HEADER = """\
-# Free motions of random scenes (tests/random_scenes.py) by seed, in rad and s; see the recipe.
+# Free motions of random scenes (validation/random_scenes.py) by seed, in rad and s; see the recipe.
 # Source: Taylor series of the absolute-coordinate equations, validation/oracles/free_motion.py.
 # Rewritten by: PYTHONPATH=. python tests/make_random_references.py
 # status: 0 the run reaches its end; 1 it does not, and its last sample is left out.

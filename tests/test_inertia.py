@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from random_scenes import random_scene
 
 from crankmbs import Gravity
 from crankmbs.geometry import close_loop
@@ -12,6 +11,7 @@ from crankmbs.inertia import gravity_vector, reduce, rod_centre
 from crankmbs.pressure import pressure_of
 from validation.adapter import reference_variables
 from validation.oracles.arithmetic import multiprecision
+from validation.random_scenes import random_scene
 
 ANGLES = np.linspace(-6.0, 7.0, 6)
 DIGITS = multiprecision(40)

@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from random_scenes import random_scene
 
 from crankmbs import Constant, Layout, Motion, Oscillation, Quadratic, Run, Start, Viscous, simulate
 from crankmbs.inertia import reduce
 from crankmbs.pressure import pressure_of
 from crankmbs.reactions import reactions
 from crankmbs.scene import Extent
+from validation.random_scenes import random_scene
 
 SEEDS = st.integers(0, 10_000)
 few = settings(max_examples=12, deadline=None, derandomize=True, database=None)

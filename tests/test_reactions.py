@@ -4,13 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from random_scenes import random_scene
 
 from crankmbs import load_scene
 from crankmbs.pressure import pressure_of
 from crankmbs.reactions import reactions
 from validation.adapter import reference_variables
 from validation.oracles.arithmetic import multiprecision
+from validation.random_scenes import random_scene
 
 DIGITS = multiprecision(40)
 

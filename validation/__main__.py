@@ -1,4 +1,4 @@
-"""`python -m validation [--quick]`: judge every claim; exit status 1 unless all of them hold."""
+"""`python -m validation [--quick | --long [N]]`: judge claims; exit status 1 unless all hold."""
 
 import argparse
 import sys
@@ -6,6 +6,7 @@ import time
 
 from validation.case import load_cases
 from validation.judge import Verdict, judge
+from validation.many import run_many
 from validation.report import write_report
 
 
@@ -17,7 +18,18 @@ def main(arguments: list[str] | None = None) -> int:
         action="store_true",
         help="leave out the claims that take long (under two minutes), and write nothing",
     )
-    quick = parser.parse_args(arguments).quick
+    parser.add_argument(
+        "--long",
+        nargs="?",
+        type=int,
+        const=10_000,
+        metavar="N",
+        help="judge N random scenes instead, 10,000 without a number (hours), and write nothing",
+    )
+    asked = parser.parse_args(arguments)
+    if asked.long is not None:
+        return 0 if run_many(asked.long) else 1
+    quick = asked.quick
     verdicts: list[Verdict] = []
     begin = time.perf_counter()
     for case in load_cases():

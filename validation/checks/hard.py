@@ -14,7 +14,7 @@ from crankmbs.scene import Extent, Scene
 from crankmbs.simulate import simulate
 from validation.adapter import machine_of
 from validation.case import Case, driven, shifted
-from validation.checks.honest import true_errors
+from validation.checks.honest import scales, true_errors
 from validation.judge import Outcome
 from validation.oracles.arithmetic import LONG, multiprecision
 from validation.oracles.many_turns import many_turns
@@ -137,14 +137,11 @@ def _compared(case: Case, result: Result, scene: Scene) -> tuple[float, str]:
     if result.status == 1 and case.parameters.get("held"):  # where the oracle does not go
         result = replace(result, data=result.data.isel(time=slice(-1)))
     true, peaks = true_errors(result, scene, motion, arithmetic)
-    largest: dict[str, float] = {}
-    for name, peak in peaks.items():
-        unit = VARIABLES[name].units
-        largest[unit] = max(peak, largest.get(unit, 0.0))
+    scale = scales(peaks)
     shares = dict.fromkeys(true, 0.0)
     for name, error in true.items():
         stated = float(result.data[name].attrs["error_estimate"])
-        allowed = _TOO_SMALL * stated + _FLOOR * largest[VARIABLES[name].units]
+        allowed = _TOO_SMALL * stated + _FLOOR * scale[name]
         share = error / allowed if error else 0.0
         shares[name] = share if math.isfinite(share) else math.inf
     worst = max(shares, key=lambda name: shares[name])

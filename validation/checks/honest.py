@@ -13,7 +13,7 @@ from validation.oracles.arithmetic import LONG, Arithmetic, Array
 from validation.oracles.free_motion import Motion
 from validation.runs import run
 
-__all__ = ["stated_errors"]
+__all__ = ["scales", "stated_errors", "true_errors"]
 
 _TOO_SMALL = 2.0  # the true error may be this many times the stated one
 _TOO_LARGE = 100.0  # the stated error may be this many times the true one
@@ -27,21 +27,17 @@ def stated_errors(case: Case) -> Outcome:
     """
     result, scene = run(case.ours(), case.word("formulation")), case.theirs()
     true, peaks = true_errors(result, scene)
-    largest = _by_unit(peaks)
+    scale = scales(peaks)
     worst, what = 0.0, "every error is zero"
     for name, error in true.items():
         stated = float(result.data[name].attrs["error_estimate"])
-        floor = _FLOOR * largest[VARIABLES[name].units]
+        floor = _FLOOR * scale[name]
         low = error / (_TOO_SMALL * stated + floor) if error > 0.0 else 0.0
         high = stated / (_TOO_LARGE * error + floor) if stated > 0.0 else 0.0
         if max(low, high) > worst:
             worst = max(low, high)
             what = f"{name}: true {error:.2e}, stated {stated:.2e} {VARIABLES[name].units}"
-    relative = max(
-        error / largest[VARIABLES[name].units]
-        for name, error in true.items()
-        if largest[VARIABLES[name].units] > 0.0
-    )
+    relative = max(error / scale[name] for name, error in true.items() if scale[name] > 0.0)
     return Outcome(worst, f"{what}; largest true error {relative:.1e} of a peak")
 
 
@@ -64,6 +60,15 @@ def true_errors(
     return true, {name: _largest(data[name].values) for name in true}
 
 
+def scales(peaks: dict[str, float]) -> dict[str, float]:
+    """For every variable the highest of the peaks of those with its unit."""
+    largest: dict[str, float] = {}
+    for name, peak in peaks.items():
+        unit = VARIABLES[name].units
+        largest[unit] = max(peak, largest.get(unit, 0.0))
+    return {name: largest[VARIABLES[name].units] for name in peaks}
+
+
 def _of_motion(result: Result, motion: Motion) -> tuple[float, float]:
     """Errors of time and crank angle; the angle's is taken at equal times."""
     late = motion.time - result.data["time"].values
@@ -73,11 +78,3 @@ def _of_motion(result: Result, motion: Motion) -> tuple[float, float]:
 
 def _largest(values: Array) -> float:
     return float(np.max(np.abs(values)))
-
-
-def _by_unit(peaks: dict[str, float]) -> dict[str, float]:
-    largest: dict[str, float] = {}
-    for name, peak in peaks.items():
-        unit = VARIABLES[name].units
-        largest[unit] = max(peak, largest.get(unit, 0.0))
-    return largest

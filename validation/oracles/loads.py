@@ -71,6 +71,6 @@ def _line(table: LoadTable, at: Number, arithmetic: Arithmetic) -> tuple[Number,
         return y[0], arithmetic.number(0)
     if at > x[-1]:
         return y[-1], arithmetic.number(0)
-    right = next(i for i in range(len(x)) if x[i] > at)
+    right = next((i for i in range(len(x)) if x[i] > at), len(x) - 1)  # at its end the last piece
     slope = (y[right] - y[right - 1]) / (x[right] - x[right - 1])
     return y[right - 1] + slope * (at - x[right - 1]), slope

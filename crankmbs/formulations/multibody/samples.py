@@ -34,14 +34,18 @@ def aligned_variables(problem: Problem, paths: list[Path]) -> list[dict[str, Arr
 
     At the same angles each run has times of its own. Runs that pass the grid of angles differently
     often, near a reversal, are compared at the times of the finest, and only the last two of them,
-    so that nothing is extrapolated. "ahead" is the crank angle at the finest run's times.
+    so that nothing is extrapolated. An end at a crank angle each run reaches at a time of its own.
+    "ahead" is the crank angle at the finest run's times.
     """
     samples = [_samples(problem, path) for path in paths]
     finest = samples[-1]
     by_angle = not problem.plan.in_time and len({len(s.time) for s in samples}) == 1
     if not by_angle:
         paths = paths if problem.plan.in_time else paths[-2:]
+        ends = samples[-len(paths) :]
         samples = [finest] * len(paths)
+        if problem.plan.in_time and not problem.plan.until_time:
+            samples = [_ending_as(end, finest) for end in ends]
     runs = [_variables_at(problem, p, s, by_angle) for p, s in zip(paths, samples, strict=True)]
     speed = runs[-1]["crank_speed"]
     for variables in runs:
@@ -51,6 +55,12 @@ def aligned_variables(problem: Problem, paths: list[Path]) -> list[dict[str, Arr
             early = np.divide(off, speed, out=np.zeros_like(off), where=speed != 0.0)
             variables["time"] = finest.time - early
     return runs
+
+
+def _ending_as(run: _Samples, finest: _Samples) -> _Samples:
+    """The samples of the finest run, the last one where this run ends."""
+    joined = (np.append(q[:-1], end[-1]) for q, end in zip(finest, run, strict=True))
+    return _Samples(*joined)
 
 
 def reached(path: Path) -> tuple[float, float]:

@@ -6,6 +6,8 @@ back or tear away.
 """
 
 import math
+from collections.abc import Mapping
+from typing import Literal, TypeVar
 
 import numpy as np
 
@@ -18,8 +20,20 @@ from crankmbs.tables import Table
 
 __all__ = ["random_scene"]
 
+T = TypeVar("T")
+
 STARTS = {1.0: 6, -1.0: 3, 0.0: 2, 0.1: 1, -0.1: 1}  # of the speed, and how often
-INTERPOLATIONS = ("pchip", "linear", "cubic", "step")
+STROKES: dict[Literal[2, 4], int] = {4: 2, 2: 1}
+ZEROS: dict[Literal["gas_exchange_tdc", "firing_tdc"], int] = {
+    "gas_exchange_tdc": 1,
+    "firing_tdc": 1,
+}
+INTERPOLATIONS: tuple[Literal["pchip", "linear", "cubic", "step"], ...] = (
+    "pchip",
+    "linear",
+    "cubic",
+    "step",
+)
 
 
 def random_scene(seed: int) -> Scene:
@@ -38,7 +52,8 @@ class _Draw:
         swung = rod.mass * crank.radius**2 + piston.mass * crank.radius**2
         inertia = crank.inertia + swung * len(layout.resolve(4 * math.pi))
         energy = 0.5 * inertia * speed**2
-        gas = self._gas(energy / (piston.gas_area * crank.radius)) if self._chance(0.75) else None
+        assert piston.area is not None
+        gas = self._gas(energy / (piston.area * crank.radius)) if self._chance(0.75) else None
         turns = self._uniform(1.0, 3.0)
         duration = turns * 2.0 * math.pi / speed
         torque = self._loads(energy, speed, duration)
@@ -64,7 +79,9 @@ class _Draw:
         mass = usual * self._log(0.1, 3.0) * self._pick({1.0: 8, 1e-9: 1, 0.0: 1})
         centre = length * self._uniform(-0.1, 1.1)
         turned = mass * length**2 * self._log(0.01, 0.3)
-        centre, inertia = self._pick({(centre, turned): 4, (0.3 * length, "two-mass"): 1})
+        rods: dict[tuple[float, float | Literal["two-mass"]], int]
+        rods = {(centre, turned): 4, (0.3 * length, "two-mass"): 1}
+        centre, inertia = self._pick(rods)
         flywheel = radius**2 * usual * self._log(0.1, 100.0) * self._pick({1.0: 9, 1e4: 1})
         heavy = self._pick({0.0: 1, usual * self._log(0.1, 10.0): 2})
         reach = math.sqrt(flywheel / heavy) if heavy else 0.0
@@ -85,7 +102,7 @@ class _Draw:
     def _gas(self, most: float) -> Gas:
         """A gas whose work over one stroke is up to a few times that of the pressure ``most``."""
         scale = most * self._log(1e-3, 3.0)
-        stroke = self._pick({4: 2, 2: 1})
+        stroke = self._pick(STROKES)
         if self._chance(0.05):
             ratio, intake = self._uniform(4.0, 18.0), 0.02 * scale
             indicator = Indicator(
@@ -106,7 +123,7 @@ class _Draw:
             even = np.sort(np.append(even, even[k] + self._log(1e-7, 1e-3)))
         value = scale * self._rng.uniform(-0.3, 1.0, len(even)) ** 3
         table = Table(even.tolist(), value.tolist())
-        zero = self._pick({"gas_exchange_tdc": 1, "firing_tdc": 1})
+        zero = self._pick(ZEROS)
         kind = INTERPOLATIONS[self._between(0, 4)]
         return Gas(pressure=table, absolute=False, stroke=stroke, zero=zero, interpolation=kind)
 
@@ -160,7 +177,7 @@ class _Draw:
     def _part(self, most: float) -> float:
         return most * self._uniform(-1.0, 1.0)
 
-    def _pick(self, weights):
+    def _pick(self, weights: Mapping[T, int]) -> T:
         choices, shares = list(weights), np.array(list(weights.values()), dtype=float)
         return choices[int(self._rng.choice(len(choices), p=shares / shares.sum()))]
 
