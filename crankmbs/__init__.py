@@ -4,6 +4,7 @@
 >>> result = crankmbs.simulate(crankmbs.load_scene("yi_diesel"))
 """
 
+from crankmbs.accumulate import accumulated_torque
 from crankmbs.choose import Choice, choose
 from crankmbs.compare import Budget, Comparison, budget, compare
 from crankmbs.drives import (
@@ -66,6 +67,7 @@ __all__ = [
     "Table",
     "TimeTable",
     "Viscous",
+    "accumulated_torque",
     "budget",
     "choose",
     "compare",
