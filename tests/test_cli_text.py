@@ -8,7 +8,8 @@ import pytest
 
 import crankmbs.cli.progress
 from crankmbs.cli.progress import progress
-from crankmbs.cli.text import digits, error_digits, table
+from crankmbs.cli.text import table
+from crankmbs.digits import digits, error_digits
 
 
 class Terminal(io.StringIO):

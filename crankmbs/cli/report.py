@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from crankmbs.cli.text import digits, error_digits, table
+from crankmbs.cli.text import table
 from crankmbs.confirm import Difference
+from crankmbs.digits import digits, error_digits
 from crankmbs.measures import Estimate, JointForce, Measures
 from crankmbs.result import Result
 

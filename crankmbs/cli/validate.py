@@ -11,7 +11,7 @@ import typer
 
 from crankmbs.cli.progress import progress
 from crankmbs.cli.run import override, writable
-from crankmbs.cli.text import digits, table
+from crankmbs.cli.text import table
 from crankmbs.compare import (
     CAUSES,
     QUANTITIES,
@@ -26,6 +26,7 @@ from crankmbs.compare import (
     save_budget,
     save_comparison,
 )
+from crankmbs.digits import digits
 from crankmbs.scene_io import load_scene, scene_path
 from crankmbs.simulate import simulate
 

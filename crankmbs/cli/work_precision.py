@@ -9,7 +9,8 @@ import typer
 
 from crankmbs.cli.progress import progress
 from crankmbs.cli.run import writable
-from crankmbs.cli.text import error_digits, table
+from crankmbs.cli.text import table
+from crankmbs.digits import error_digits
 from crankmbs.scene_io import load_scene, scene_path
 from crankmbs.work_precision import (
     TARGETS,

@@ -41,11 +41,16 @@ STYLE: Any = {
 }
 
 
-def panels(rows: int, columns: int, width: float, height: float) -> tuple[Figure, list[Axes]]:
-    """A figure [inch] with its axes, row by row; it belongs to no window and no global state."""
+def panels(
+    rows: int, columns: int, width: float, height: float, ratios: tuple[float, ...] | None = None
+) -> tuple[Figure, list[Axes]]:
+    """A figure [inch] with its axes, row by row; it belongs to no window and no global state.
+
+    ratios : widths of the columns to one another; None: all alike
+    """
     figure = Figure(figsize=(width, height), layout="constrained")
     FigureCanvasAgg(figure)
-    grid = figure.subplots(rows, columns, squeeze=False)
+    grid = figure.subplots(rows, columns, squeeze=False, width_ratios=ratios)
     return figure, [axes for row in grid for axes in row]
 
 

@@ -1,0 +1,123 @@
+"""The mechanism as matplotlib artists, to scale, X upwards and Y to the left."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+from matplotlib.patches import Circle, Polygon
+from numpy.typing import NDArray
+
+from crankmbs.figures.style import line_of
+from crankmbs.mechanism import Mechanism
+from crankmbs.scene import Scene
+
+__all__ = ["Drawing", "slices"]
+
+Array = NDArray[np.float64]
+
+_MM = 1e3
+_METAL, _EDGE, _GAS = "0.75", "0.25", "#E69F00"
+_MARGIN = 0.06  # of the drawing's size, around it
+_STROKE_WIDTH = 0.14  # of the crank radius: rod and throw
+
+
+def slices(scene: Scene) -> list[list[int]]:
+    """Cylinders, counted from 0, that one cut across the crankshaft shows: one of each bank.
+
+    >>> slices(load_scene("v_twin"))
+    [[0, 1]]
+    """
+    rows: dict[float, list[int]] = {}
+    for k, cylinder in enumerate(scene.cylinders):
+        rows.setdefault(cylinder.bank, []).append(k)
+    depth = max(map(len, rows.values()))
+    return [[row[j] for row in rows.values() if j < len(row)] for j in range(depth)]
+
+
+class Drawing:
+    """Some cylinders of a machine on axes of their own, movable from sample to sample.
+
+    Parameters
+    ----------
+    parts : of the whole machine at every sample; cylinders : those drawn, counted from 0
+    heat : shape (n, cylinders) [1], from 0 to 1, how strongly the gas is coloured; None: not
+    """
+
+    def __init__(
+        self, ax: Axes, parts: Mechanism, cylinders: list[int], heat: Array | None = None
+    ) -> None:
+        self._parts, self._cylinders, self._heat = parts, cylinders, heat
+        radius = float(np.hypot(*parts.crank_pin[0, cylinders[0]])) * _MM
+        self._frame(ax, radius)
+        width = self._points(ax, _STROKE_WIDTH * radius)
+        throw = {"color": _EDGE, "linewidth": width, "solid_capstyle": "round"}
+        self._gases: list[Polygon] = []
+        self._pistons: list[Polygon] = []
+        self._rods: list[Line2D] = []
+        self._throws: list[Line2D] = []
+        ax.add_patch(Circle((0.0, 0.0), radius, fill=False, color="0.7", linestyle=(0, (4, 4))))
+        for k in cylinders:
+            ax.plot(*_on_paper(parts.liner[k]), color=_EDGE, linewidth=2.5, zorder=4)
+            corners = np.zeros((4, 2))
+            gas = Polygon(corners, facecolor=_GAS, edgecolor="none", alpha=0.0, zorder=1)
+            piston = Polygon(corners, facecolor=_METAL, edgecolor=_EDGE, linewidth=1.2, zorder=2)
+            ax.add_patch(gas)
+            ax.add_patch(piston)
+            self._gases.append(gas)
+            self._pistons.append(piston)
+            self._throws += ax.plot([], [], **throw, zorder=5)
+            colour = line_of(k)["color"]
+            self._rods += ax.plot(
+                [],
+                [],
+                color=colour,
+                linewidth=0.8 * width,
+                marker="o",
+                markersize=0.9 * width,
+                markerfacecolor="white",
+                markeredgewidth=1.5,
+                zorder=6 + k,
+            )
+        ax.plot(0.0, 0.0, "o", color=_EDGE, markersize=1.3 * width, zorder=20)
+        self.move(0)
+
+    def move(self, sample: int) -> None:
+        """Put every part where it is at a sample."""
+        parts = self._parts
+        for j, k in enumerate(self._cylinders):
+            crank_pin, piston_pin = parts.crank_pin[sample, k], parts.piston_pin[sample, k]
+            self._throws[j].set_data(*_on_paper(np.stack([np.zeros(2), crank_pin])))
+            self._rods[j].set_data(*_on_paper(np.stack([crank_pin, piston_pin])))
+            self._pistons[j].set_xy(np.stack(_on_paper(parts.piston[sample, k]), axis=-1))
+            self._gases[j].set_xy(np.stack(_on_paper(parts.gas[sample, k]), axis=-1))
+            if self._heat is not None:
+                self._gases[j].set_alpha(float(self._heat[sample, k]))
+
+    def _frame(self, ax: Axes, radius: float) -> None:
+        """Limits that hold every position of the cylinders drawn."""
+        parts, chosen = self._parts, self._cylinders
+        shapes = [*parts.piston[:, chosen].reshape(-1, 2), *parts.liner[chosen].reshape(-1, 2)]
+        across, up = _on_paper(np.array(shapes))
+        edge = radius * (1.0 + _STROKE_WIDTH)
+        left, right = min(across.min(), -edge), max(across.max(), edge)
+        low, high = min(up.min(), -edge), max(up.max(), edge)
+        margin = _MARGIN * max(right - left, high - low)
+        ax.set_xlim(left - margin, right + margin)
+        ax.set_ylim(low - margin, high + margin)
+        ax.set_aspect("equal")
+        ax.axis("off")
+
+    @staticmethod
+    def _points(ax: Axes, length: float) -> float:
+        """A length on the axes [mm] in points, as line widths are given."""
+        figure = ax.get_figure()
+        assert figure is not None
+        figure.draw_without_rendering()  # the layout decides the scale
+        (x0, _), (x1, _) = ax.transData.transform([(0.0, 0.0), (length, 0.0)])
+        return float(x1 - x0) * 72.0 / float(figure.dpi)
+
+
+def _on_paper(points: Array) -> tuple[Array, Array]:
+    """Points [m] of shape (..., 2) as abscissae and ordinates [mm]."""
+    return -points[..., 1] * _MM, points[..., 0] * _MM
