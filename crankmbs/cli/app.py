@@ -13,6 +13,7 @@ from typer.core import TyperGroup
 
 from crankmbs.choose import choose
 from crankmbs.cli.check import describe
+from crankmbs.cli.lesson import list_lessons, make_lesson
 from crankmbs.cli.run import run_scene
 from crankmbs.cli.validate import validate_scene
 from crankmbs.cli.work_precision import measure_scene
@@ -181,6 +182,25 @@ def new(
     text = template(path.stem)
     write_in_one_move(path, lambda part: _write(part, text))
     typer.echo(f"wrote {path}; check it with: crankmbs check {path}")
+
+
+@app.command()
+def lesson(
+    name: Annotated[
+        str, typer.Argument(metavar="NAME", help="Its name; the command lessons lists them.")
+    ],
+    out: Annotated[
+        Path, typer.Option("--out", "-o", metavar="DIR", help="Folder of the page.")
+    ] = Path("lessons"),
+) -> None:
+    """Write a lesson: a page with the lecture's formula, the simulation on top, and questions."""
+    make_lesson(name, out)
+
+
+@app.command()
+def lessons() -> None:
+    """List the lessons."""
+    list_lessons()
 
 
 def main() -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
@@ -51,7 +53,11 @@ class Drawing:
         radius = float(np.hypot(*parts.crank_pin[0, cylinders[0]])) * _MM
         self._frame(ax, radius)
         width = self._points(ax, _STROKE_WIDTH * radius)
-        throw = {"color": _EDGE, "linewidth": width, "solid_capstyle": "round"}
+        throw: dict[str, Any] = {
+            "color": _EDGE,
+            "linewidth": width,
+            "solid_capstyle": "round",
+        }
         self._gases: list[Polygon] = []
         self._pistons: list[Polygon] = []
         self._rods: list[Line2D] = []
@@ -111,7 +117,7 @@ class Drawing:
     @staticmethod
     def _points(ax: Axes, length: float) -> float:
         """A length on the axes [mm] in points, as line widths are given."""
-        figure = ax.get_figure()
+        figure = ax.get_figure(root=True)
         assert figure is not None
         figure.draw_without_rendering()  # the layout decides the scale
         (x0, _), (x1, _) = ax.transData.transform([(0.0, 0.0), (length, 0.0)])

@@ -58,7 +58,7 @@ def lesson() -> Lesson:
             Step(
                 title=f"It leaves at {_LIMIT:.4f}; the truncated formula says 1/4",
                 figures=(_fork(scene),),
-                caption="Crank angle of the least acceleration over the rod ratio; dots: simulated.",
+                caption="Crank angle of the least acceleration over the rod ratio.",
                 formulas=(
                     Formula(
                         r"a \approx r\omega^2\,(\cos\varphi+\lambda\,\cos 2\varphi)",
@@ -184,9 +184,10 @@ def _fastest(result: Result) -> Question:
     found = peak_angle(result, "piston_velocity", 0.0, 180.0)
     return Question(
         "How fast does the piston get, and where?",
-        f"{exact('speed_root', root, 'm/s', most=6)} by $r\\omega\\sqrt{{1+\\lambda^2}}$ (S0-F13, the "
-        f"speed where the rod is square to the crank), {exact('speed_exact', formula, 'm/s', most=6)} "
-        f"exactly, at {exact('speed_angle', math.degrees(angle), '°')}. Simulated: {fastest}, at "
+        f"{exact('speed_root', root, 'm/s', most=6)} by $r\\omega\\sqrt{{1+\\lambda^2}}$ (S0-F13), "
+        "which is the speed where the rod is square to the crank; "
+        f"{exact('speed_exact', formula, 'm/s', most=6)} exactly, at "
+        f"{exact('speed_angle', math.degrees(angle), '°')}. Simulated: {fastest}, at "
         f"{simulated('fastest_at', found, '°')}.",
     )
 

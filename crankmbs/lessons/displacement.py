@@ -174,9 +174,11 @@ def _long_rod(result: Result) -> Question:
     at = sample(run, "piston_displacement", 90)
     share = Estimate((at.value - r) / (2.0 * r), at.error / (2.0 * r))
     return Question(
-        f"How long must the rod be to keep the Brix correction at {100.0 * _SHARE:g} % of the stroke?",
+        "How long must the rod be to keep the Brix correction at "
+        f"{100.0 * _SHARE:g} % of the stroke?",
         rf"$\lambda/4$ = {_SHARE:g} gives "
         f"{exact('rod_series', r / (4.0 * _SHARE), 'mm', 1e3)}; exactly it is "
-        f"{exact('rod_exact', length, 'mm', 1e3, 5)}, twelve and a half crank radii, where an engine has three "
-        f"to four. Simulated with it: {simulated('share', share, '%', 100.0, 6)} of the stroke.",
+        f"{exact('rod_exact', length, 'mm', 1e3, 5)}, twelve and a half crank radii, "
+        "where an engine has three to four. "
+        f"Simulated with it: {simulated('share', share, '%', 100.0, 6)} of the stroke.",
     )

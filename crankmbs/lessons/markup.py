@@ -14,7 +14,8 @@ __all__ = ["formula", "prose", "svg"]
 
 _TEX = re.compile(r"\$([^$]+)\$")
 _FUNCTION = re.compile(  # browsers leave no gap behind them
-    r"(<msup><mi>(?:sin|cos|tan)</mi><mrow>.*?</mrow></msup>|(?<!<msup>)<mi>(?:sin|cos|tan)</mi>)(?!<mo)"
+    r"(?:<msup><mi>(?:sin|cos|tan)</mi><mn>\d</mn></msup>"
+    r"|(?<!<msup>)<mi>(?:sin|cos|tan)</mi>)(?!<mo)"
 )
 _NAMES = re.compile(r'(\bid="|xlink:href="#|url\(#)')
 
@@ -34,7 +35,7 @@ def formula(tex: str) -> Markup:
 
 
 def svg(figure: Figure, name: str) -> Markup:
-    """A figure as an SVG element whose ids all begin with ``name``, so that no two figures share any.
+    """A figure as an SVG element whose ids all begin with ``name``, no two figures share any.
 
     Letters are drawn as outlines: the page looks the same on every machine.
     """

@@ -12,7 +12,7 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from crankmbs.digits import digits, error_digits
-from crankmbs.measures import Estimate
+from crankmbs.measures import Estimate, measure
 from crankmbs.result import Result
 
 __all__ = ["Formula", "Lesson", "Number", "Question", "Slider", "Step", "exact", "simulated"]
@@ -137,14 +137,18 @@ class Lesson:
     @property
     def facts(self) -> str:
         """The run behind the page, in a line."""
-        crank, rod, piston = (getattr(self.result.scene, p) for p in ("crank", "rod", "piston"))
-        speed = float(self.result.data["crank_speed"].values.mean()) * 30.0 / math.pi
-        offset = f", offset {digits(piston.offset * 1e3, most=4)} mm" if piston.offset else ""
-        return (
-            f"r = {digits(crank.radius * 1e3, most=4)} mm, l = {digits(rod.length * 1e3, most=4)} "
-            f"mm, λ = {digits(crank.radius / rod.length, most=4)}{offset}, about {speed:.0f} rpm; "
-            f"{self.result.formulation}, relative error {_powers(f'{self.result.error.estimated:.0e}')}"
-        )
+        scene, result = self.result.scene, self.result
+        radius, length, offset = scene.crank.radius, scene.rod.length, scene.piston.offset
+        speed = measure(result).mean_speed.value * 30.0 / math.pi
+        parts = [
+            f"r = {digits(radius * 1e3, most=4)} mm",
+            f"l = {digits(length * 1e3, most=4)} mm",
+            f"λ = {digits(radius / length, most=4)}",
+            *([f"offset {digits(offset * 1e3, most=4)} mm"] if offset else []),
+            f"{digits(speed, most=5)} rpm",
+            f"{result.formulation}, relative error {_powers(f'{result.error.estimated:.0e}')}",
+        ]
+        return ", ".join(parts)
 
 
 def _powers(number: str) -> str:
