@@ -12,6 +12,7 @@ import typer
 from typer.core import TyperGroup
 
 from crankmbs.choose import choose
+from crankmbs.cli.animate import animate_scene
 from crankmbs.cli.check import describe
 from crankmbs.cli.lesson import list_lessons, make_lesson
 from crankmbs.cli.run import run_scene
@@ -182,6 +183,21 @@ def new(
     text = template(path.stem)
     write_in_one_move(path, lambda part: _write(part, text))
     typer.echo(f"wrote {path}; check it with: crankmbs check {path}")
+
+
+@app.command()
+def animate(
+    scene: _Scene,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            "--out", "-o", metavar="FILE", help=".gif or .mp4; default results/NAME/animation.gif."
+        ),
+    ] = None,
+) -> None:
+    """Film the mechanism and its speed over the last cycle, for slides."""
+    if not animate_scene(scene, out):
+        raise typer.Exit(3)
 
 
 @app.command()

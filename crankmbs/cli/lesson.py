@@ -1,4 +1,4 @@
-"""The commands ``lesson`` and ``lessons``: a lesson's page as a file, and what lessons there are."""
+"""The commands ``lesson`` and ``lessons``: the page of a lesson, and which there are."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ from crankmbs.figures.style import line_of
 from crankmbs.mechanism import Mechanism
 from crankmbs.scene import Scene
 
-__all__ = ["Drawing", "slices"]
+__all__ = ["Drawing", "on_paper", "slices"]
 
 Array = NDArray[np.float64]
 
@@ -64,7 +64,7 @@ class Drawing:
         self._throws: list[Line2D] = []
         ax.add_patch(Circle((0.0, 0.0), radius, fill=False, color="0.7", linestyle=(0, (4, 4))))
         for k in cylinders:
-            ax.plot(*_on_paper(parts.liner[k]), color=_EDGE, linewidth=2.5, zorder=4)
+            ax.plot(*on_paper(parts.liner[k]), color=_EDGE, linewidth=2.5, zorder=4)
             corners = np.zeros((4, 2))
             gas = Polygon(corners, facecolor=_GAS, edgecolor="none", alpha=0.0, zorder=1)
             piston = Polygon(corners, facecolor=_METAL, edgecolor=_EDGE, linewidth=1.2, zorder=2)
@@ -93,10 +93,10 @@ class Drawing:
         parts = self._parts
         for j, k in enumerate(self._cylinders):
             crank_pin, piston_pin = parts.crank_pin[sample, k], parts.piston_pin[sample, k]
-            self._throws[j].set_data(*_on_paper(np.stack([np.zeros(2), crank_pin])))
-            self._rods[j].set_data(*_on_paper(np.stack([crank_pin, piston_pin])))
-            self._pistons[j].set_xy(np.stack(_on_paper(parts.piston[sample, k]), axis=-1))
-            self._gases[j].set_xy(np.stack(_on_paper(parts.gas[sample, k]), axis=-1))
+            self._throws[j].set_data(*on_paper(np.stack([np.zeros(2), crank_pin])))
+            self._rods[j].set_data(*on_paper(np.stack([crank_pin, piston_pin])))
+            self._pistons[j].set_xy(np.stack(on_paper(parts.piston[sample, k]), axis=-1))
+            self._gases[j].set_xy(np.stack(on_paper(parts.gas[sample, k]), axis=-1))
             if self._heat is not None:
                 self._gases[j].set_alpha(float(self._heat[sample, k]))
 
@@ -104,7 +104,7 @@ class Drawing:
         """Limits that hold every position of the cylinders drawn."""
         parts, chosen = self._parts, self._cylinders
         shapes = [*parts.piston[:, chosen].reshape(-1, 2), *parts.liner[chosen].reshape(-1, 2)]
-        across, up = _on_paper(np.array(shapes))
+        across, up = on_paper(np.array(shapes))
         edge = radius * (1.0 + _STROKE_WIDTH)
         left, right = min(across.min(), -edge), max(across.max(), edge)
         low, high = min(up.min(), -edge), max(up.max(), edge)
@@ -124,6 +124,6 @@ class Drawing:
         return float(x1 - x0) * 72.0 / float(figure.dpi)
 
 
-def _on_paper(points: Array) -> tuple[Array, Array]:
+def on_paper(points: Array) -> tuple[Array, Array]:
     """Points [m] of shape (..., 2) as abscissae and ordinates [mm]."""
     return -points[..., 1] * _MM, points[..., 0] * _MM

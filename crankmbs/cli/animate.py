@@ -1,0 +1,40 @@
+"""The command ``animate``: a run's last cycle as a moving picture."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import typer
+
+from crankmbs.cli.progress import progress
+from crankmbs.cli.run import writable
+from crankmbs.scene_io import load_scene, scene_path
+from crankmbs.simulate import simulate
+
+__all__ = ["animate_scene"]
+
+
+def animate_scene(name: str, out: Path | None) -> bool:
+    """Run a scene and film its last cycle; return whether it reached its end.
+
+    Parameters
+    ----------
+    out : .gif or .mp4 file; None: results/NAME/animation.gif
+
+    Raises
+    ------
+    CrankmbsError : bad scene, an ending that cannot be written, or folder; before anything runs
+    """
+    path = scene_path(name)
+    scene = load_scene(path)
+    from crankmbs.figures.animation import check_format, save_animation  # matplotlib only here
+
+    file = Path("results", path.stem, "animation.gif") if out is None else out
+    check_format(file)
+    writable(file.parent)
+    with progress("running"):
+        result = simulate(scene)
+    with progress("filming"):
+        save_animation(result, file)
+    typer.echo(f"{result}\n\nwrote {file}, {file.stat().st_size / 1e6:.1f} MB")
+    return result.status == 0

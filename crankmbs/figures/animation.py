@@ -1,0 +1,226 @@
+"""The mechanism and the speed over the last cycle as a moving picture, for slides."""
+
+from __future__ import annotations
+
+import io
+import math
+import subprocess
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.text import Text
+from numpy.typing import NDArray
+from scipy.interpolate import CubicHermiteSpline
+
+from crankmbs.digits import digits
+from crankmbs.errors import InputError, OutputError
+from crankmbs.figures.mechanism import Drawing, on_paper, slices
+from crankmbs.figures.style import STYLE, crank_axis, footer, line_of
+from crankmbs.figures.view import View, last_view
+from crankmbs.mechanism import mechanism
+from crankmbs.result import Result, write_in_one_move
+
+__all__ = ["Frames", "check_format", "frames_of", "save_animation"]
+
+Array = NDArray[np.float64]
+
+_RPM = 30.0 / math.pi
+_LASTS = 6.0  # s, about: one cycle on the screen
+_RATES = {".gif": 20, ".mp4": 25}  # frames per second; whole hundredths of a second a frame
+_DPI = {".gif": 62.5, ".mp4": 100.0}  # 800 x 450 and 1280 x 720 pixels
+_SIZE = (12.8, 7.2)  # inch
+_FLAT = 0.002  # of the mean: the least half height of the speed's axis
+_RING: Any = {
+    "marker": "o",
+    "color": "black",
+    "markerfacecolor": "none",
+    "markersize": 17,
+    "markeredgewidth": 1.8,
+    "zorder": 30,
+}
+_HOTTEST = 0.9  # opacity of the gas at the highest pressure
+
+
+@dataclass(frozen=True)
+class Frames:
+    """Instants of the last cycle, equally spaced in time; the last leads on to the first.
+
+    time [s] since the cycle began, angle [rad] unwrapped, speed [rad/s] : shape (n,)
+    mean [rad/s] : over the cycle; slower : times that the film is slower than the machine
+    """
+
+    time: Array
+    angle: Array
+    speed: Array
+    mean: float
+    slower: float
+
+
+def check_format(file: Path) -> None:
+    """Refuse a file that cannot be written here, before anything runs.
+
+    Raises
+    ------
+    InputError : neither .gif nor .mp4; or .mp4 where there is no ffmpeg
+    """
+    suffix = file.suffix.lower()
+    if suffix not in _RATES:
+        raise InputError(
+            f"{file}: the name of an animation must end with .gif or .mp4; "
+            f"{suffix or 'no ending'} came"
+        )
+    if suffix == ".mp4" and not FFMpegWriter.isAvailable():
+        raise InputError(
+            f"{file}: an mp4 needs the program ffmpeg, which is not on this machine; "
+            f"install it, or write {file.with_suffix('.gif').name}"
+        )
+
+
+def frames_of(result: Result, rate: float) -> Frames:
+    """The last cycle at ``rate`` frames a second, slowed down to last about six seconds.
+
+    Between samples the angle is the cubic through their angles and speeds; exact to fourth order
+    in the spacing.
+
+    Raises
+    ------
+    InputError : the run has no stretch of time
+    """
+    window = last_view(result).window
+    if window.duration <= 0.0:
+        raise InputError(f"nothing moves that could be animated: {result.message}")
+    slower = float(f"{_LASTS / window.duration:.2g}")
+    count = max(2, round(window.duration * slower * rate))
+    data = result.data.isel(time=slice(window.first, None))
+    time, angle, speed = (data[name].values for name in ("time", "crank_angle", "crank_speed"))
+    path = CubicHermiteSpline(time, angle, speed)
+    at = np.arange(count, dtype=np.float64) * (window.duration / count)
+    instants = window.begin + at
+    mean = window.angle / window.duration
+    return Frames(at, path(instants), path(instants, 1), mean, slower)
+
+
+@rc_context(STYLE)
+def save_animation(result: Result, file: Path) -> Path:
+    """Film the last cycle into a .gif or .mp4 file, replaced in one move.
+
+    Raises
+    ------
+    InputError : another ending, no ffmpeg for .mp4, or nothing that moves
+    OutputError : the file cannot be written
+    """
+    check_format(file)
+    suffix = file.suffix.lower()
+    frames = frames_of(result, _RATES[suffix])
+    film = _Film(result, frames, _DPI[suffix])
+    writer = (PillowWriter if suffix == ".gif" else FFMpegWriter)(fps=_RATES[suffix])
+    write_in_one_move(file, lambda part: film.write(writer, part))
+    return file
+
+
+class _Film:
+    """The figure whose frames are filmed."""
+
+    def __init__(self, result: Result, frames: Frames, dpi: float) -> None:
+        self._frames, self._dpi = frames, dpi
+        self._figure = Figure(figsize=_SIZE, dpi=dpi, layout="constrained")
+        FigureCanvasAgg(self._figure)
+        cuts = slices(result.scene)
+        machines, trace = _places(self._figure, len(cuts))
+        view = last_view(result)
+        self._shift = float(view.degrees[0]) - math.degrees(float(view.data["crank_angle"][0]))
+        _speed_axis(trace, view, frames.mean)
+        about = f"{view.window.kind}, {digits(frames.slower, most=2)} times slower than the machine"
+        footer(self._figure, result, f"{about}; ring: the crank at the mean speed")
+        still = _pixels(self._figure)  # drawn once: text takes most of a frame's time
+        self._figure.set_layout_engine(None)  # it stays as it is now
+        for artist in (*trace.get_children(), *self._figure.findobj(Text)):
+            artist.set_visible(False)
+        self._figure.figimage(still, zorder=-1)
+        (self._cursor,) = trace.plot([], [], "o", color="black", markersize=11)
+        self._now = trace.text(
+            0.99, 0.03, "", transform=trace.transAxes, ha="right", family="monospace"
+        )
+        parts, heat = mechanism(result.scene, frames.angle), _heat(view, frames)
+        even = mechanism(result.scene, frames.angle[0] + frames.mean * frames.time).crank_pin
+        self._drawings = [
+            Drawing(ax, parts, cut, heat) for ax, cut in zip(machines, cuts, strict=True)
+        ]
+        self._rings = [
+            (ax.plot([], [], **_RING)[0], even[:, cut[0]])
+            for ax, cut in zip(machines, cuts, strict=True)
+        ]
+
+    def write(self, writer: AbstractMovieWriter, file: Path) -> None:
+        """Film every frame."""
+        try:
+            with writer.saving(self._figure, str(file), self._dpi):
+                for k in range(len(self._frames.time)):
+                    self._show(k)
+                    writer.grab_frame()
+        except subprocess.CalledProcessError as error:
+            raise OutputError(
+                f"ffmpeg failed with exit status {error.returncode}; write a .gif instead"
+            ) from None
+
+    def _show(self, k: int) -> None:
+        frames = self._frames
+        degrees = math.degrees(frames.angle[k]) + self._shift
+        rpm = frames.speed[k] * _RPM
+        self._cursor.set_data([degrees], [rpm])
+        self._now.set_text(f"{frames.time[k] * 1e3:7.2f} ms  {rpm:7.1f} rpm")
+        for drawing, (ring, pin) in zip(self._drawings, self._rings, strict=True):
+            drawing.move(k)
+            ring.set_data(*on_paper(pin[k : k + 1]))
+
+
+def _pixels(figure: Figure) -> NDArray[np.uint8]:
+    """The figure as it is, shape (height, width, 4)."""
+    file = io.BytesIO()
+    figure.savefig(file, format="rgba", dpi=figure.dpi)
+    height, width = (round(side * figure.dpi) for side in figure.get_size_inches()[::-1])
+    return np.frombuffer(file.getvalue(), dtype=np.uint8).reshape(height, width, 4)
+
+
+def _places(figure: Figure, cuts: int) -> tuple[list[Axes], Axes]:
+    """Axes of the mechanisms and of the speed: beside them, or below where they are many."""
+    if cuts <= 2:
+        grid = figure.add_gridspec(1, cuts + 1, width_ratios=[*[1.0] * cuts, 1.8])
+        machines = [figure.add_subplot(grid[0, k]) for k in range(cuts)]
+        trace = figure.add_subplot(grid[0, cuts])
+    else:
+        grid = figure.add_gridspec(2, cuts, height_ratios=[1.9, 1.0])
+        machines = [figure.add_subplot(grid[0, k]) for k in range(cuts)]
+        trace = figure.add_subplot(grid[1, :])
+    for ax in machines:
+        ax.axis("off")
+    return machines, trace
+
+
+def _speed_axis(ax: Axes, view: View, mean: float) -> None:
+    speed = view.values("crank_speed") * _RPM
+    ax.plot(view.degrees, speed, **line_of(0), label="crank speed")
+    ax.axhline(mean * _RPM, color="0.5", linestyle=(0, (4, 2)), label="mean over time")
+    half = max(0.6 * float(np.ptp(speed)), _FLAT * abs(mean) * _RPM)
+    middle = 0.5 * float(speed.min() + speed.max())
+    ax.set_ylim(middle - 1.4 * half, middle + 1.4 * half)  # room for numbers and legend
+    ax.set_ylabel("crank speed [rpm]")
+    crank_axis([ax], view)
+    ax.legend(loc="upper right", ncols=2)
+
+
+def _heat(view: View, frames: Frames) -> Array | None:
+    """How strongly the gas is coloured, by its pressure over the highest; None without gas."""
+    if view.scene.gas is None:
+        return None
+    pressure = np.maximum(view.values("gas_pressure"), 0.0)
+    time = view.data["time"].values - view.window.begin
+    at = [np.interp(frames.time, time, column) for column in pressure.T]
+    return _HOTTEST * np.sqrt(np.stack(at, axis=-1) / (float(pressure.max()) or 1.0))
