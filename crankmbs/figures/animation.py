@@ -137,6 +137,9 @@ class _Film:
         view = last_view(result)
         self._shift = float(view.degrees[0]) - math.degrees(float(view.data["crank_angle"][0]))
         _speed_axis(trace, view, frames.mean)
+        if len(result.scene.cylinders) > 1:
+            for ax, cut in zip(machines, cuts, strict=True):
+                ax.set_title(", ".join(str(k + 1) for k in cut))
         about = f"{view.window.kind}, {digits(frames.slower, most=2)} times slower than the machine"
         footer(self._figure, result, f"{about}; ring: the crank at the mean speed")
         still = _pixels(self._figure)  # drawn once: text takes most of a frame's time
@@ -210,10 +213,10 @@ def _speed_axis(ax: Axes, view: View, mean: float) -> None:
     ax.axhline(mean * _RPM, color="0.5", linestyle=(0, (4, 2)), label="mean over time")
     half = max(0.6 * float(np.ptp(speed)), _FLAT * abs(mean) * _RPM)
     middle = 0.5 * float(speed.min() + speed.max())
-    ax.set_ylim(middle - 1.4 * half, middle + 1.4 * half)  # room for numbers and legend
+    ax.set_ylim(middle - 1.7 * half, middle + 1.1 * half)  # room for legend and numbers below
     ax.set_ylabel("crank speed [rpm]")
     crank_axis([ax], view)
-    ax.legend(loc="upper right", ncols=2)
+    ax.legend(loc="lower left", ncols=2, frameon=False)
 
 
 def _heat(view: View, frames: Frames) -> Array | None:

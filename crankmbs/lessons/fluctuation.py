@@ -67,7 +67,7 @@ def lesson() -> Lesson:
                 formulas=(
                     Formula(
                         r"\delta=\frac{\omega_{\max}-\omega_{\min}}{\omega_m}",
-                        note="The coefficient of fluctuation. Exact, a definition.",
+                        note="Exact: the definition of the coefficient of fluctuation. Source: textbooks.",
                     ),
                     Formula(r"\delta \approx \frac{W}{J\,\omega_m^2}", note=_NOTE),
                 ),
