@@ -162,12 +162,12 @@ def test_a_film_that_fails_leaves_the_old_file_alone(tmp_path, swinging, short, 
     assert [path.name for path in old.parent.iterdir()] == ["swing.mp4"]
 
 
-def test_command_writes_beside_the_results_and_says_what(tmp_path, monkeypatch, short):
+def test_command_writes_the_film_of_its_scene_and_says_so(tmp_path, monkeypatch, short):
     monkeypatch.chdir(tmp_path)
     result = CliRunner().invoke(app, ["animate", "yi_diesel"])
     assert result.exit_code == 0, result.output
-    assert "wrote results/yi_diesel/animation.gif, 0." in result.stdout
-    assert Path("results/yi_diesel/animation.gif").stat().st_size > 1000
+    assert "wrote yi_diesel.gif, 0." in result.stdout
+    assert Path("yi_diesel.gif").stat().st_size > 1000
 
 
 def test_command_refuses_a_wrong_ending_before_it_runs(tmp_path, monkeypatch):

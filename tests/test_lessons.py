@@ -89,6 +89,7 @@ def test_a_number_shows_its_digits_unit_and_error():
     assert "± 2.1·10⁻⁹\u00a0N" in shown
     assert 'value="1234.5678"' in shown
     assert "±" not in str(Number("force", 1234.5678, "N"))
+    assert ">−2.500°<" in str(Number("angle", -2.5, "°"))
 
 
 def test_a_formula_says_how_exact_it_is_in_the_lectures_words():

@@ -19,7 +19,7 @@ def animate_scene(name: str, out: Path | None) -> bool:
 
     Parameters
     ----------
-    out : .gif or .mp4 file; None: results/NAME/animation.gif
+    out : .gif or .mp4 file; None: NAME.gif
 
     Raises
     ------
@@ -29,7 +29,7 @@ def animate_scene(name: str, out: Path | None) -> bool:
     scene = load_scene(path)
     from crankmbs.figures.animation import check_format, save_animation  # matplotlib only here
 
-    file = Path("results", path.stem, "animation.gif") if out is None else out
+    file = Path(f"{path.stem}.gif") if out is None else out
     check_format(file)
     writable(file.parent)
     with progress("running"):

@@ -190,9 +190,7 @@ def animate(
     scene: _Scene,
     out: Annotated[
         Path | None,
-        typer.Option(
-            "--out", "-o", metavar="FILE", help=".gif or .mp4; default results/NAME/animation.gif."
-        ),
+        typer.Option("--out", "-o", metavar="FILE", help=".gif or .mp4; default NAME.gif."),
     ] = None,
 ) -> None:
     """Film the mechanism and its speed over the last cycle, for slides."""

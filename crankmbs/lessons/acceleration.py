@@ -38,8 +38,8 @@ def lesson() -> Lesson:
                 title="The valley of the acceleration becomes two",
                 figures=tuple(map(_motion, runs)),
                 caption="Velocity and acceleration at constant speed, in parts of $r\\omega$ and "
-                "$r\\omega^2$. Dots: the least acceleration. Move the slider across "
-                f"{_LIMIT_SERIES:g} and {_LIMIT:.4f}.",
+                "$r\\omega^2$; right: the valley enlarged, with its lowest points. Move the slider "
+                f"across {_LIMIT_SERIES:g} and {_LIMIT:.4f}.",
                 slider=Slider(
                     r"rod ratio $\lambda = r/l$", tuple(f"{x:.4g}" for x in _RATIOS), _SCENE
                 ),
@@ -85,44 +85,50 @@ def lesson() -> Lesson:
 
 @rc_context(STYLE)
 def _motion(result: Result) -> Figure:
-    figure, (above, below) = panels(2, 1, 11.0, 5.6)
+    """Velocity and acceleration over a turn, and the acceleration's valley enlarged."""
+    figure = Figure(figsize=(11.0, 5.4), layout="constrained")
+    axes = figure.subplot_mosaic([["v", "valley"], ["a", "valley"]], width_ratios=[1.6, 1.0])
     view, scene = last_view(result), result.scene
     gear = {"crank_radius": scene.crank.radius, "rod_length": scene.rod.length}
     angle, omega = np.radians(view.degrees), float(view.values("crank_speed")[0])
     unit = scene.crank.radius * omega
+    velocity = view.values("piston_velocity")[:, 0] / unit
+    acceleration = view.values("piston_acceleration")[:, 0] / (unit * omega)
     rows = (
-        (
-            above,
-            "piston_velocity",
-            lecture.piston_velocity_series,
-            unit,
-            "velocity / $r\\omega$ [1]",
-        ),
-        (
-            below,
-            "piston_acceleration",
-            lecture.piston_acceleration_series,
-            unit * omega,
-            "acceleration /\n$r\\omega^2$ [1]",
+        ("v", velocity, lecture.piston_velocity_series(angle, omega=omega, **gear) / unit),
+        *(
+            (
+                name,
+                acceleration,
+                lecture.piston_acceleration_series(angle, omega=omega, **gear) / (unit * omega),
+            )
+            for name in ("a", "valley")
         ),
     )
-    for ax, name, series, scale, label in rows:
-        ax.axhline(0.0, color="0.55", linewidth=1.0)
-        ax.plot(view.degrees, view.values(name)[:, 0] / scale, **line_of(0), label="simulated")
-        truncated = series(angle, omega=omega, **gear) / scale
-        ax.plot(view.degrees, truncated, **line_of(1), label="truncated formula")
-        ax.set_ylabel(label)
-    above.set_ylim(-1.25, 1.25)
-    below.set_ylim(-1.1, 1.6)
-    ratio = scene.crank.radius / scene.rod.length
-    least = math.degrees(float(lecture.acceleration_minimum_angle(rod_ratio=ratio)))
-    shape = view.values("piston_acceleration")[:, 0] / (unit * omega)
-    for at in {least, 360.0 - least}:
-        below.plot(at, np.interp(at, view.degrees, shape), "o", color="black", markersize=8)
-    crank_axis([above, below], view)
-    below.set_xlabel("crank angle [deg]")
-    figure.align_ylabels([above, below])
-    legend(figure, above)
+    for name, simulated_, series in rows:
+        axes[name].plot(view.degrees, simulated_, **line_of(0), label="simulated")
+        axes[name].plot(view.degrees, series, **line_of(1), label="truncated formula")
+    least = lecture.acceleration_minimum_angle(rod_ratio=scene.crank.radius / scene.rod.length)
+    for at in {math.degrees(float(least)), 360.0 - math.degrees(float(least))}:
+        depth = np.interp(at, view.degrees, acceleration)
+        axes["valley"].plot(at, depth, "o", color="black", markersize=8)
+    crank_axis([axes["v"], axes["a"]], view)
+    for name, label, limits in (
+        ("v", "velocity / $r\\omega$ [1]", (-1.25, 1.25)),
+        ("a", "acceleration /\n$r\\omega^2$ [1]", (-1.1, 1.6)),
+        ("valley", "", (-0.9, -0.5)),
+    ):
+        axes[name].set_ylabel(label)
+        axes[name].set_ylim(limits)
+    axes["a"].set_xlabel("crank angle [deg]")
+    valley = axes["valley"]
+    valley.set_title("acceleration near BDC", loc="left")
+    valley.axvline(180.0, color="0.55", linewidth=1.0, linestyle=(0, (6, 4)), zorder=1)
+    valley.set_xlim(110.0, 250.0)
+    valley.set_xticks(range(120, 241, 30))
+    valley.set_xlabel("crank angle [deg]")
+    figure.align_ylabels([axes["v"], axes["a"]])
+    legend(figure, axes["v"])
     return figure
 
 

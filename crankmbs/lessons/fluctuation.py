@@ -67,7 +67,7 @@ def lesson() -> Lesson:
                 formulas=(
                     Formula(
                         r"\delta=\frac{\omega_{\max}-\omega_{\min}}{\omega_m}",
-                        note="Exact: the definition of the coefficient of fluctuation. Source: textbooks.",
+                        note="Exact: what is called coefficient of fluctuation. Source: textbooks.",
                     ),
                     Formula(r"\delta \approx \frac{W}{J\,\omega_m^2}", note=_NOTE),
                 ),

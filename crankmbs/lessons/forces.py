@@ -68,8 +68,9 @@ def lesson() -> Lesson:
                     Formula(r"I_2 = m\,a\,b,\quad b=l-a", lecture.two_mass_rod_inertia),
                 ),
                 words=r"A rod with less inertia than $m\,a\,b$ needs a smaller couple "
-                r"$I\,\ddot\beta$ to swing. The wall gives it with the lever $l\cos\beta$, so two "
-                r"masses miss $(m\,a\,b-I)\,\ddot\beta/(l\cos\beta)$.",
+                r"$I\,\varepsilon$ for its angular acceleration $\varepsilon$. The wall gives it "
+                r"with the lever $l\,\cos\beta$, so two masses are wrong by "
+                r"$(m\,a\,b-I)\,\varepsilon/(l\,\cos\beta)$.",
             ),
             Step(
                 title="What each simplification is worth",
@@ -188,7 +189,7 @@ def _missing(result: Result, split: Budget) -> Question:
     return Question(
         "How much of the side thrust do the two masses make up, and where?",
         f"At {exact('missing_angle', math.degrees(cause.size.angle), '°')} the rod swings hardest, "
-        rf"$|\ddot\beta|=\lambda\omega^2/\cos\beta$, and the couple too much is "
+        rf"$|\varepsilon|=\lambda\omega^2/\cos\beta$, and the couple too much is "
         f"{exact('couple', couple, 'N m')}: {exact('missing_formula', couple / l / cosine, 'N')} "
         f"at the wall. The error budget finds {simulated('missing', found, 'N')}, "
         f"{exact('missing_share', row.share(cause), '%', most=3)} of the peak.",

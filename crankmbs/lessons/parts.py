@@ -152,12 +152,13 @@ class Lesson:
 
 
 def _powers(number: str) -> str:
-    """1.5e-12 as 1.5·10⁻¹².
+    """A number as it is printed: -1.5e-12 as −1.5·10⁻¹².
 
     >>> _powers("1.5e-12")
     '1.5·10⁻¹²'
     """
     mantissa, mark, exponent = number.partition("e")
+    mantissa = mantissa.replace("-", "\N{MINUS SIGN}")
     return f"{mantissa}·10{str(int(exponent)).translate(_RAISED)}" if mark else mantissa
 
 
