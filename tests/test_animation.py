@@ -11,11 +11,12 @@ import pytest
 from PIL import Image
 from typer.testing import CliRunner
 
-import crankmbs.figures.animation as animation
-from crankmbs import Cylinder, Layout, Motion, Oscillation, Run, load_scene, simulate
+import crankmbs.figures.frames
+from crankmbs import Cylinder, Layout, Motion, Oscillation, Ramp, Run, load_scene, simulate
 from crankmbs.cli import app
 from crankmbs.errors import InputError, OutputError
-from crankmbs.figures.animation import check_format, frames_of, save_animation
+from crankmbs.figures.animation import check_format, save_animation
+from crankmbs.figures.frames import frames_of
 from crankmbs.figures.mechanism import Drawing, slices
 from crankmbs.figures.style import panels
 from crankmbs.mechanism import mechanism
@@ -43,7 +44,7 @@ def swinging():
 @pytest.fixture
 def short(monkeypatch):
     """Films of a quarter of a second, so that a test is quick."""
-    monkeypatch.setattr(animation, "_LASTS", 0.25)
+    monkeypatch.setattr(crankmbs.figures.frames, "_LASTS", 0.25)
 
 
 def test_frames_are_even_in_time_and_lie_on_the_motion(swinging):
@@ -63,6 +64,13 @@ def test_the_slow_motion_is_what_makes_a_cycle_last_its_time(swinging):
     seconds = len(frames.time) / 20.0
     assert seconds == pytest.approx(PERIOD * frames.slower, abs=0.05)
     assert seconds == pytest.approx(6.0, rel=0.1)
+    assert frames.pace == "130 times slower than the machine"  # 6 s for 46 ms
+
+
+def test_a_slow_machine_is_filmed_faster():
+    run, motion = Run(until="1 rev", every="5 deg"), Motion(speed="1 rpm")
+    slow = dataclasses.replace(SWINGING, motion=motion, run=run)
+    assert frames_of(simulate(slow), 20.0).pace == "10 times faster than the machine"
 
 
 def test_gif_has_its_frames_and_they_move(tmp_path, swinging, short):
@@ -120,6 +128,17 @@ def test_every_cylinder_of_an_engine_in_line_is_drawn(tmp_path, short):
     for colour in ((0, 114, 178), (213, 94, 0), (0, 158, 115)):  # of their rods
         near = np.abs(pixels[:250] - colour).sum(axis=-1) < 40
         assert near.sum() > 50
+
+
+@pytest.mark.parametrize(
+    ("speed", "until"), [(Ramp(start=80.0, to=-300.0, over=0.2), "0.2 s"), (0.0, "0.1 s")]
+)
+def test_a_reversal_and_a_machine_at_rest_are_filmed_too(tmp_path, short, speed, until):
+    run = Run(until=until, every="5 ms")
+    scene = dataclasses.replace(SWINGING, motion=Motion(speed=speed), run=run)
+    file = save_animation(simulate(scene), tmp_path / "unusual.gif")
+    with Image.open(file) as film:
+        assert film.n_frames == 5
 
 
 @pytest.mark.skipif(shutil.which("ffmpeg") is None, reason="ffmpeg is not on this machine")

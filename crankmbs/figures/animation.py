@@ -5,7 +5,6 @@ from __future__ import annotations
 import io
 import math
 import subprocess
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -17,22 +16,20 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 from numpy.typing import NDArray
-from scipy.interpolate import CubicHermiteSpline
 
-from crankmbs.digits import digits
 from crankmbs.errors import InputError, OutputError
+from crankmbs.figures.frames import Frames, frames_of
 from crankmbs.figures.mechanism import Drawing, on_paper, slices
 from crankmbs.figures.style import STYLE, crank_axis, footer, line_of
 from crankmbs.figures.view import View, last_view
 from crankmbs.mechanism import mechanism
 from crankmbs.result import Result, write_in_one_move
 
-__all__ = ["Frames", "check_format", "frames_of", "save_animation"]
+__all__ = ["check_format", "save_animation"]
 
 Array = NDArray[np.float64]
 
 _RPM = 30.0 / math.pi
-_LASTS = 6.0  # s, about: one cycle on the screen
 _RATES = {".gif": 20, ".mp4": 25}  # frames per second; whole hundredths of a second a frame
 _DPI = {".gif": 62.5, ".mp4": 100.0}  # 800 x 450 and 1280 x 720 pixels
 _SIZE = (12.8, 7.2)  # inch
@@ -46,21 +43,6 @@ _RING: Any = {
     "zorder": 30,
 }
 _HOTTEST = 0.9  # opacity of the gas at the highest pressure
-
-
-@dataclass(frozen=True)
-class Frames:
-    """Instants of the last cycle, equally spaced in time; the last leads on to the first.
-
-    time [s] since the cycle began, angle [rad] unwrapped, speed [rad/s] : shape (n,)
-    mean [rad/s] : over the cycle; slower : times that the film is slower than the machine
-    """
-
-    time: Array
-    angle: Array
-    speed: Array
-    mean: float
-    slower: float
 
 
 def check_format(file: Path) -> None:
@@ -81,30 +63,6 @@ def check_format(file: Path) -> None:
             f"{file}: an mp4 needs the program ffmpeg, which is not on this machine; "
             f"install it, or write {file.with_suffix('.gif').name}"
         )
-
-
-def frames_of(result: Result, rate: float) -> Frames:
-    """The last cycle at ``rate`` frames a second, slowed down to last about six seconds.
-
-    Between samples the angle is the cubic through their angles and speeds; exact to fourth order
-    in the spacing.
-
-    Raises
-    ------
-    InputError : the run has no stretch of time
-    """
-    window = last_view(result).window
-    if window.duration <= 0.0:
-        raise InputError(f"nothing moves that could be animated: {result.message}")
-    slower = float(f"{_LASTS / window.duration:.2g}")
-    count = max(2, round(window.duration * slower * rate))
-    data = result.data.isel(time=slice(window.first, None))
-    time, angle, speed = (data[name].values for name in ("time", "crank_angle", "crank_speed"))
-    path = CubicHermiteSpline(time, angle, speed)
-    at = np.arange(count, dtype=np.float64) * (window.duration / count)
-    instants = window.begin + at
-    mean = window.angle / window.duration
-    return Frames(at, path(instants), path(instants, 1), mean, slower)
 
 
 @rc_context(STYLE)
@@ -140,8 +98,8 @@ class _Film:
         if len(result.scene.cylinders) > 1:
             for ax, cut in zip(machines, cuts, strict=True):
                 ax.set_title(", ".join(str(k + 1) for k in cut))
-        about = f"{view.window.kind}, {digits(frames.slower, most=2)} times slower than the machine"
-        footer(self._figure, result, f"{about}; ring: the crank at the mean speed")
+        about = f"{view.window.kind}, {frames.pace}; ring: the crank at the mean speed"
+        footer(self._figure, result, about)
         still = _pixels(self._figure)  # drawn once: text takes most of a frame's time
         self._figure.set_layout_engine(None)  # it stays as it is now
         for artist in (*trace.get_children(), *self._figure.findobj(Text)):
@@ -211,7 +169,7 @@ def _speed_axis(ax: Axes, view: View, mean: float) -> None:
     speed = view.values("crank_speed") * _RPM
     ax.plot(view.degrees, speed, **line_of(0), label="crank speed")
     ax.axhline(mean * _RPM, color="0.5", linestyle=(0, (4, 2)), label="mean over time")
-    half = max(0.6 * float(np.ptp(speed)), _FLAT * abs(mean) * _RPM)
+    half = max(0.6 * float(np.ptp(speed)), _FLAT * abs(mean) * _RPM) or 1.0  # rpm, at rest
     middle = 0.5 * float(speed.min() + speed.max())
     ax.set_ylim(middle - 1.7 * half, middle + 1.1 * half)  # room for legend and numbers below
     ax.set_ylabel("crank speed [rpm]")

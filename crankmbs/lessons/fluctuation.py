@@ -2,27 +2,24 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 
 import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from scipy.integrate import cumulative_simpson
 from scipy.optimize import brentq
 
 from crankmbs import lecture
 from crankmbs.compare import budget
-from crankmbs.drives import Motion
 from crankmbs.figures.style import STYLE, crank_axis, legend, line_of, panels
 from crankmbs.figures.view import last_view
+from crankmbs.lessons.flywheel import estimate, excess, held, with_inertia
 from crankmbs.lessons.parts import Formula, Lesson, Question, Slider, Step, exact, simulated
-from crankmbs.lessons.runs import changed
 from crankmbs.measures import Estimate, measure
 from crankmbs.measures.peak import rise
 from crankmbs.result import Result
-from crankmbs.scene import Extent, Scene
+from crankmbs.scene import Scene
 from crankmbs.scene_io import load_scene
 from crankmbs.simulate import simulate
 
@@ -48,7 +45,7 @@ _NOTE = (
 def lesson() -> Lesson:
     """Run the lesson's scene and its variants and put the page together."""
     scene = load_scene("yi_diesel_free")
-    runs = [simulate(_with(scene, inertia)) for inertia in _INERTIAS]
+    runs = [simulate(with_inertia(scene, inertia)) for inertia in _INERTIAS]
     result = runs[_SCENE]
     return Lesson(
         idea="The torque of the cylinders comes in pulses, the load takes it evenly: the speed "
@@ -100,35 +97,9 @@ def lesson() -> Lesson:
     )
 
 
-def _with(scene: Scene, inertia: float) -> Scene:
-    return changed(scene, crank={"inertia": inertia})
-
-
-def _held(result: Result) -> Result:
-    """One cycle of the same machine at the constant mean speed of a run."""
-    run = dataclasses.replace(result.scene.run, until=Extent(value=1.0, unit="cycle"))
-    motion = Motion(speed=measure(result).mean_speed.value)
-    return simulate(
-        dataclasses.replace(result.scene, start=None, torque=(), motion=motion, run=run)
-    )
-
-
-def _excess(held: Result) -> tuple[float, float]:
-    """(W [J], J omega^2 [J]) of the textbook formula, from a run at constant speed."""
-    angle = held.data["crank_angle"].values
-    work = cumulative_simpson(held.data["crank_torque"].values.sum(axis=1), x=angle, initial=0.0)
-    excess = work - work[-1] * (angle - angle[0]) / (angle[-1] - angle[0])
-    return float(np.ptp(excess)), 2.0 * float(held.data["kinetic_energy"].values.mean())
-
-
-def _estimate(result: Result) -> float:
-    work, energy = _excess(_held(result))
-    return work / energy
-
-
 def _off(runs: list[Result]) -> float:
     """Largest relative error of the textbook formula."""
-    return max(abs(_estimate(run) / measure(run).fluctuation.value - 1.0) for run in runs)
+    return max(abs(estimate(run) / measure(run).fluctuation.value - 1.0) for run in runs)
 
 
 @rc_context(STYLE)
@@ -160,7 +131,7 @@ def _speed(result: Result, widest: Result) -> Figure:
 def _fall(runs: list[Result]) -> Figure:
     figure, (ax,) = panels(1, 1, 11.0, 4.4)
     simulated_ = [measure(run).fluctuation.value for run in runs]
-    ax.loglog(_INERTIAS, [_estimate(run) for run in runs], **line_of(1), label="$W/(J\\omega_m^2)$")
+    ax.loglog(_INERTIAS, [estimate(run) for run in runs], **line_of(1), label="$W/(J\\omega_m^2)$")
     ax.loglog(_INERTIAS, simulated_, "o", color="black", label="simulated")
     _inertia_axis(ax)
     ax.set_ylabel(r"coefficient of fluctuation $\delta$ [1]")
@@ -197,18 +168,18 @@ def _own(result: Result) -> Question:
         "fluctuation?",
         f"{simulated('fluctuation', measures.fluctuation, '%', 100.0)} at a mean of "
         f"{simulated('mean_speed', measures.mean_speed, 'rpm', _RPM, 6)}; "
-        f"$W/(J\\omega_m^2)$ gives {exact('formula', _estimate(result), '%', 100.0)}.",
+        f"$W/(J\\omega_m^2)$ gives {exact('formula', estimate(result), '%', 100.0)}.",
     )
 
 
 def _flywheel(scene: Scene) -> Question:
     def swing(inertia: float) -> float:
-        return measure(simulate(_with(scene, inertia))).fluctuation.value - _WANTED
+        return measure(simulate(with_inertia(scene, inertia))).fluctuation.value - _WANTED
 
     found = brentq(swing, 0.3, 0.6, xtol=1e-6)
-    result = simulate(_with(scene, found))
+    result = simulate(with_inertia(scene, found))
     error = measure(result).fluctuation.error + abs(swing(found))
-    work, energy = _excess(_held(result))
+    work, energy = excess(held(result))
     omega = measure(result).mean_speed.value
     moving = energy / omega**2 - found  # rods and pistons
     formula = work / (_WANTED * omega**2) - moving
@@ -221,9 +192,9 @@ def _flywheel(scene: Scene) -> Question:
 
 
 def _lightest(result: Result) -> Question:
-    held = _held(result)
+    even_run = held(result)
     numbers = []
-    for name, variable in (("free", result), ("held", held)):
+    for name, variable in (("free", result), ("held", even_run)):
         joint = next(j for j in measure(variable).joints if j.joint == "crank pin")
         acceleration = variable.data["piston_acceleration"]
         last = acceleration.values[-721:, 0]
