@@ -74,7 +74,7 @@ def lesson() -> Lesson:
                 figures=(_fall(runs),),
                 caption="Coefficient of fluctuation over the inertia, both logarithmic. With the "
                 "torque of constant speed the formula is within "
-                f"{exact('formula_error', _off(runs), '%', 100.0, 2)} of the simulation here.",
+                f"{simulated('formula_error', _off(runs), '%', 100.0, 2)} of the simulation here.",
             ),
             Step(
                 title="What constant speed costs",
@@ -97,9 +97,13 @@ def lesson() -> Lesson:
     )
 
 
-def _off(runs: list[Result]) -> float:
+def _off(runs: list[Result]) -> Estimate:
     """Largest relative error of the textbook formula."""
-    return max(abs(estimate(run) / measure(run).fluctuation.value - 1.0) for run in runs)
+    found = [measure(run).fluctuation for run in runs]
+    return max(
+        Estimate(abs(estimate(run) / value - 1.0), error / value)
+        for run, (value, error) in zip(runs, found, strict=True)
+    )
 
 
 @rc_context(STYLE)
@@ -185,8 +189,8 @@ def _flywheel(scene: Scene) -> Question:
     formula = work / (_WANTED * omega**2) - moving
     return Question(
         f"Which inertia keeps the speed within {100.0 * _WANTED:g} %?",
-        f"{exact('inertia_formula', formula, 'kg m²')} by $J=W/(\\delta\\omega_m^2)$, less the "
-        f"{exact('moving', moving, 'kg m²', most=3)} of rods and pistons. Found by runs: "
+        f"$J=W/(\\delta\\omega_m^2)$, less the {exact('moving', moving, 'kg m²', most=3)} of rods and "
+        f"pistons, is {exact('inertia_formula', formula, 'kg m²')}. Found by runs: "
         f"{simulated('inertia', Estimate(found, found * error / _WANTED), 'kg m²')}.",
     )
 

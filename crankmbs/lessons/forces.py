@@ -23,13 +23,14 @@ from crankmbs.simulate import simulate
 __all__ = ["lesson"]
 
 _SHARES = (0.6, 0.7, 0.8, 0.9, 1.0, 1.1)  # of the two masses' inertia
+_SPACING = 0.1  # deg, of the samples
 _FORCES = ("net force", "side thrust", "rod force", "torque")
 
 
 def lesson() -> Lesson:
     """Run the lesson's scene and its variants and put the page together."""
     scene = load_scene("yi_diesel")
-    result = finely(scene, 0.1)
+    result = finely(scene, _SPACING)
     own = scene.rod.moment_of_inertia / _two_masses(scene)
     shares = sorted((*_SHARES, own))
     runs = [
@@ -167,8 +168,8 @@ def _greatest(result: Result) -> Question:
         "How hard does the piston press against the wall towards +Y, and when?",
         f"{simulated('side_peak', thrust, 'kN', 1e-3, 5)} at "
         f"{simulated('side_angle', at, '°')}, just after firing. The lecture says "
-        f"{exact('side_two_masses', two.values.max(), 'kN', 1e-3, 5)} with two masses, and at "
-        f"{exact('side_two_angle', where, '°')}; "
+        f"{exact('side_two_masses', two.values.max(), 'kN', 1e-3, 5)} with two masses, at "
+        f"{simulated('side_two_angle', Estimate(where, _SPACING), '°')}, and "
         f"{exact('side_truncated', truncated.values.max(), 'kN', 1e-3, 5)} truncated.",
     )
 
@@ -182,17 +183,19 @@ def _missing(result: Result, split: Budget) -> Question:
     found = Estimate(
         cause.size.largest, 2.0 * float(result.data["side_force"].attrs["error_estimate"])
     )
+    where = Estimate(math.degrees(cause.size.angle), _SPACING)
+    share = Estimate(row.share(cause), 100.0 * found.error / row.peak)
     sine = (r + abs(e)) / l
     cosine = math.sqrt(1.0 - sine**2)
     swing = r / l * omega**2 / cosine  # at 270 degrees, where beta' is 0
     couple = (_two_masses(scene) - scene.rod.moment_of_inertia) * swing
     return Question(
         "How much of the side thrust do the two masses make up, and where?",
-        f"At {exact('missing_angle', math.degrees(cause.size.angle), '°')} the rod swings hardest, "
+        f"At {simulated('missing_angle', where, '°')} the rod swings hardest, "
         rf"$|\varepsilon|=\lambda\omega^2/\cos\beta$, and the couple too much is "
         f"{exact('couple', couple, 'N m')}: {exact('missing_formula', couple / l / cosine, 'N')} "
         f"at the wall. The error budget finds {simulated('missing', found, 'N')}, "
-        f"{exact('missing_share', row.share(cause), '%', most=3)} of the peak.",
+        f"{simulated('missing_share', share, '%', most=3)} of the peak.",
     )
 
 
