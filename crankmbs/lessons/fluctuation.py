@@ -189,8 +189,8 @@ def _flywheel(scene: Scene) -> Question:
     formula = work / (_WANTED * omega**2) - moving
     return Question(
         f"Which inertia keeps the speed within {100.0 * _WANTED:g} %?",
-        f"$J=W/(\\delta\\omega_m^2)$, less the {exact('moving', moving, 'kg m²', most=3)} of rods and "
-        f"pistons, is {exact('inertia_formula', formula, 'kg m²')}. Found by runs: "
+        f"$J=W/(\\delta\\omega_m^2)$, less the {exact('moving', moving, 'kg m²', most=3)} of rods "
+        f"and pistons, is {exact('inertia_formula', formula, 'kg m²')}. Found by runs: "
         f"{simulated('inertia', Estimate(found, found * error / _WANTED), 'kg m²')}.",
     )
 
