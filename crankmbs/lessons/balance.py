@@ -38,8 +38,8 @@ def lesson() -> Lesson:
     most_shake = 1.1e-3 * _largest(twins, *FRAME)
     count = tuple(str(len(order)) for order in _FIRING)
     return Lesson(
-        idea="Each cylinder shakes the engine and drives it in the same orders. With several, evenly "
-        "spaced, most orders cancel; those that are left add up, and are higher.",
+        idea="Each cylinder shakes the engine and drives it in the same orders. With several, "
+        "evenly spaced, most orders cancel; those that are left add up, and are higher.",
         steps=(
             Step(
                 title="Four cylinders cancel the first order and add up the second",
