@@ -25,7 +25,7 @@ from crankmbs.inertia import reduce
 from crankmbs.pressure import PeriodicPressure
 from crankmbs.reduced import Reduced
 from crankmbs.result import VARIABLES
-from crankmbs.sampling import Plan, plan_of
+from crankmbs.sampling import FOLDED, Plan, plan_of
 from crankmbs.scene import Scene
 from crankmbs.torque import Branch, branch_at, branch_of
 
@@ -48,10 +48,7 @@ _ENDS = {
         1,
         "swings without reaching the end: {reversals} reversals, the last at {angle:.6g} degrees",
     ),
-    "fold": (
-        1,
-        "the rod folds onto the crank at {angle:.6g} degrees, where the motion is not determined",
-    ),
+    "fold": (1, FOLDED),
     "costly": (
         -1,
         "stopped at {angle:.6g} degrees: to follow the motion over time beyond it takes more than "
@@ -145,10 +142,10 @@ def run(
     grid = grid_of(scene, pressure, gauss(stages))
     best: Assembled | None = None
     local, least = rtol, math.inf
-    for _ in range(_PASSES):
+    for left in reversed(range(_PASSES)):
         answer = _travel(grid, local, by_angle=by_angle)
         parts = _parts(grid, answer.local, local)
-        if parts.max() > 1 and len(grid.edges) < _MOST_CELLS:
+        if left and parts.max() > 1 and len(grid.edges) < _MOST_CELLS:
             grid = grid.split(parts)
             continue
         better = _travel(grid.finer, 1e-3 * local, by_angle=by_angle, better=True)
@@ -207,7 +204,7 @@ def _travel(grid: Grid, local: float, *, by_angle: bool, better: bool = False) -
             ending = path.follow(steps)
         else:
             ending = path.follow(windows(path.state or state))
-    if ending == "end" and (path.state or state).theta in plan.folds:
+    if ending == "end" and plan.folds_at((path.state or state).theta):
         ending = "fold"
     return _Pass(path.samples(), ending, path, worst, tuple(carried) if by_angle else ())
 

@@ -14,6 +14,7 @@ from crankmbs import (
     Table,
     TimeTable,
     Viscous,
+    free,
     load_scene,
     simulate,
 )
@@ -113,6 +114,14 @@ def test_the_tolerance_is_kept(formulation, rtol):
     result = simulate(loaded, formulation=formulation, rtol=rtol)
     assert result.error.asked == rtol
     assert 0.0 < result.error.estimated <= rtol
+
+
+def test_the_last_pass_gives_an_answer_where_cells_could_still_be_split(monkeypatch):
+    monkeypatch.setattr(free, "_PASSES", 3)
+    monkeypatch.setattr(free, "_parts", lambda grid, *_: np.full(len(grid.edges) - 1, 2))
+    result = simulate(COASTING, formulation="crank_angle")
+    assert result.status == 0
+    assert 0.0 < result.error.estimated < 1e-9
 
 
 @pytest.mark.parametrize("load", [Quadratic(coefficient=1e-4), Viscous(coefficient=1e-3)])
