@@ -1,8 +1,8 @@
 """Loops over cells of the crank angle, compiled by numba where that pays.
 
 Loading numba takes longer than most single runs, so the arrays of the formulations come first and
-these loops second: `pay` decides. Both give the same to rounding. All kernels are in this file,
-because numba's cache does not see a change in another one.
+these loops second: `pay` decides. Both give the same to rounding. Kernels of one file call none of
+another (`crankmbs.stepper`), because numba's cache does not see a change there.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["affine", "at_angles", "errors", "newton", "pay"]
+__all__ = ["affine", "at_angles", "errors", "kernel", "newton", "pay"]
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -55,7 +55,7 @@ def _compile() -> None:
             compiled = njit(cache=True, error_model="numpy")(function)
         except RuntimeError:  # neither the package's folder nor the home folder can be written
             compiled = njit(error_model="numpy")(function)
-        globals()[function.__name__] = compiled
+        setattr(sys.modules[function.__module__], function.__name__, compiled)
     are_compiled = True
 
 

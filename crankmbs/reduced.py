@@ -1,8 +1,6 @@
-"""The crank train reduced to one rotation, in plain floats at one crank angle.
+"""The crank train reduced to one rotation, at one crank angle: what `crankmbs.stepper` works on.
 
-Written out in scalars apart from the arrays of `crankmbs.inertia`: neither shares code with the
-other, so they check each other. The pressure is given as the polynomials between two knots, which
-can be continued beyond them.
+The pressure is given as the polynomials between two knots, which can be continued beyond them.
 """
 
 from __future__ import annotations
@@ -12,26 +10,26 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
+from crankmbs import stepper
 from crankmbs.drives import Constant, SpeedTable, TimeTable
-from crankmbs.machine import Cylinder
 from crankmbs.pressure import PeriodicPressure, crank_angle_knots
 from crankmbs.scene import Scene
+from crankmbs.system import Machine
 
 __all__ = ["Between", "Reduced"]
 
-Polynomial = tuple[float, float, float, float, float]  # knot [rad], then powers 3, 2, 1, 0 [Pa]
-
-_NO_GAS: Polynomial = (0.0, 0.0, 0.0, 0.0, 0.0)
-_PASSED = 1e-9  # rad: a knot this close ahead has been passed
+Array = NDArray[np.float64]
 
 
 class Between(NamedTuple):
-    """Two neighbouring knots [rad], and the pressure of every cylinder between them."""
+    """Two neighbouring knots [rad], and the pressure of every cylinder between them, as
+    `crankmbs.stepper.enter` says."""
 
     low: float
     high: float
-    pieces: tuple[Polynomial, ...]
+    pieces: Array
 
 
 class Reduced:
@@ -46,42 +44,46 @@ class Reduced:
     ) -> None:
         crank, rod, piston = scene.crank, scene.rod, scene.piston
         self.scene, self.pressure, self.halved = scene, pressure, halved
-        self.knots = crank_angle_knots(scene, pressure)
-        if halved and len(self.knots):
-            ends = np.append(self.knots, self.knots[0] + scene.period)
+        knots = crank_angle_knots(scene, pressure)
+        if halved and len(knots):
+            ends = np.append(knots, knots[0] + scene.period)
             middles = 0.5 * (ends[1:] + ends[:-1])
-            self.knots = np.unique(np.concatenate([self.knots, middles % scene.period]))
+            knots = np.unique(np.concatenate([knots, middles % scene.period]))
         elif halved:
-            self.knots = np.arange(0.0, scene.period, 0.5)
-        self._r, self._l, self._a, self._e = (
-            crank.radius,
-            rod.length,
-            rod.center_of_mass,
-            piston.offset,
-        )
-        self._j0, self._m_rod, self._i_rod = crank.inertia, rod.mass, rod.moment_of_inertia
-        self._m_piston, self._area = piston.mass, piston.gas_area or 0.0
-        self._first_moment = crank.mass * crank.center_of_mass
+            knots = np.arange(0.0, scene.period, 0.5)
         g = scene.gravity.acceleration if scene.gravity else 0.0
         pull = scene.gravity.angle if scene.gravity else 0.0
-        self._g = (g * math.cos(pull), g * math.sin(pull))
-        self._cylinders = [
-            (c, g * math.cos(pull - c.bank), g * math.sin(pull - c.bank)) for c in scene.cylinders
+        axes = [
+            (c.phase, g * math.cos(pull - c.bank), g * math.sin(pull - c.bank))
+            for c in scene.cylinders
         ]
+        first = float(pressure.knots[0]) if pressure else 0.0
+        self.machine = Machine(
+            radius=crank.radius,
+            rod_length=rod.length,
+            center_of_mass=rod.center_of_mass,
+            offset=piston.offset,
+            crank_inertia=crank.inertia,
+            rod_inertia=rod.moment_of_inertia,
+            rod_mass=rod.mass,
+            piston_mass=piston.mass,
+            area=piston.gas_area or 0.0,
+            first_moment=crank.mass * crank.center_of_mass,
+            gravity_x=g * math.cos(pull),
+            gravity_y=g * math.sin(pull),
+            cylinders=np.array(axes),
+            knots=knots,
+            period=scene.period,
+            first=first,
+            starts=pressure.knots - first if pressure else np.empty(0),
+            coefficients=pressure.coefficients.copy() if pressure else np.empty((4, 0)),
+        )
 
     def around(self, theta: float, sense: float) -> Between:
         """The knots next to theta in the sense of rotation, and the polynomials between them."""
-        if not len(self.knots):
-            return Between(-math.inf, math.inf, (_NO_GAS,) * len(self._cylinders))
-        period, knots = self.scene.period, self.knots
-        ahead = theta + sense * _PASSED
-        turn = math.floor(ahead / period)
-        k = int(np.searchsorted(knots, ahead - turn * period, side="right"))
-        low = knots[k - 1] if k > 0 else knots[-1] - period
-        high = knots[k] if k < len(knots) else knots[0] + period
-        middle = 0.5 * (low + high)
-        pieces = tuple(self._piece(c, turn * period, middle) for c, *_ in self._cylinders)
-        return Between(turn * period + low, turn * period + high, pieces)
+        pieces = np.zeros((len(self.machine.cylinders), 5))
+        low, high = stepper.enter(theta, sense, self.machine, pieces)
+        return Between(low, high, pieces)
 
     @cached_property
     def torque_scale(self) -> float:
@@ -96,52 +98,6 @@ class Reduced:
         torques = [abs(self(a, self.around(a, 1.0).pieces)[2]) for a in angles.tolist()]
         return load + max(torques)
 
-    def _piece(self, cylinder: Cylinder, base: float, middle: float) -> Polynomial:
-        """Knot (as a crank angle) and coefficients of the piece around base + middle."""
-        if self.pressure is None:
-            return _NO_GAS
-        knots, coefficients = self.pressure.knots, self.pressure.coefficients
-        within = (middle + cylinder.phase - knots[0]) % self.pressure.period
-        i = int(np.searchsorted(knots - knots[0], within, side="right")) - 1
-        knot = base + middle - (within - (knots[i] - knots[0]))
-        a, b, c, d = (float(q) for q in coefficients[:, i])
-        return float(knot), a, b, c, d
-
-    def __call__(self, theta: float, pieces: tuple[Polynomial, ...]) -> tuple[float, float, float]:
+    def __call__(self, theta: float, pieces: Array) -> tuple[float, float, float]:
         """J [kg m2], dJ/dtheta [kg m2/rad], torque of gas and gravity [N m]."""
-        r, l, a, e = self._r, self._l, self._a, self._e
-        spare, far = max(l - r - abs(e), 0.0), abs(e)
-        inertia, slope = self._j0, 0.0
-        gx, gy = self._g
-        torque = self._first_moment * (gy * math.cos(theta) - gx * math.sin(theta))
-        for (cylinder, gx, gy), (knot, c3, c2, c1, c0) in zip(self._cylinders, pieces, strict=True):
-            phi = theta + cylinder.phase
-            sin_p, cos_p = math.sin(phi), math.cos(phi)
-            sin_b = (r * sin_p - e) / l
-            wide = 1.0 + abs(sin_p)
-            narrow = cos_p * cos_p / wide
-            above, below = (narrow, wide) if sin_p > 0.0 else (wide, narrow)  # 1 - sin_p, 1 + sin_p
-            cos_b = math.sqrt((spare + far + e + r * above) * (spare + far - e + r * below)) / l
-            b1 = r * cos_p / (l * cos_b)
-            towards = (below if e >= 0.0 else above) / l
-            bend = sin_p * (spare / l) * (1.0 + (r + far) / l) + e * r * towards * towards
-            b2 = -r * bend / (l * cos_b**3)
-            x1 = -r * sin_p - l * sin_b * b1
-            x2 = -r * cos_p - l * (cos_b * b1 * b1 + sin_b * b2)
-            gx1, gy1 = -r * sin_p - a * sin_b * b1, r * cos_p - a * cos_b * b1
-            gx2 = -r * cos_p - a * (cos_b * b1 * b1 + sin_b * b2)
-            gy2 = -r * sin_p - a * (cos_b * b2 - sin_b * b1 * b1)
-            inertia += (
-                self._m_piston * x1 * x1
-                + self._m_rod * (gx1 * gx1 + gy1 * gy1)
-                + self._i_rod * b1 * b1
-            )
-            slope += 2.0 * (
-                self._m_piston * x1 * x2
-                + self._m_rod * (gx1 * gx2 + gy1 * gy2)
-                + self._i_rod * b1 * b2
-            )
-            d = theta - knot
-            gas = self._area * (((c3 * d + c2) * d + c1) * d + c0)
-            torque += (self._m_piston * gx - gas) * x1 + self._m_rod * (gx * gx1 + gy * gy1)
-        return inertia, slope, torque
+        return stepper.reduced(theta, self.machine, pieces)

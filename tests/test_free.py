@@ -124,6 +124,12 @@ def test_the_last_pass_gives_an_answer_where_cells_could_still_be_split(monkeypa
     assert 0.0 < result.error.estimated < 1e-9
 
 
+@pytest.mark.parametrize("rtol", [1e-9, 1e-12])
+@pytest.mark.parametrize("name", ["torque_driven", "coasting"])
+def test_time_as_the_variable_reaches_a_tight_tolerance(name, rtol):
+    assert simulate(load_scene(name), formulation="minimal", rtol=rtol).error.estimated <= rtol
+
+
 @pytest.mark.parametrize("load", [Quadratic(coefficient=1e-4), Viscous(coefficient=1e-3)])
 def test_tighter_costs_more(load):
     loaded = scene(PROPELLER, torque=(load,))

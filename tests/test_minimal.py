@@ -18,7 +18,7 @@ from crankmbs import (
     load_scene,
     simulate,
 )
-from crankmbs.formulations.minimal import Equation
+from crankmbs.formulations.stretch import Equation
 from crankmbs.pressure import pressure_of
 from crankmbs.reactions import reactions
 from crankmbs.reduced import Reduced
@@ -89,6 +89,17 @@ def test_on_a_step_of_the_pressure_the_value_after_it_counts(speed):
     needed = reactions(stepped, pressure_of(stepped), *(found[name].values for name in names))
     scale = np.abs(found["crank_torque"]).max().item()
     assert np.abs(needed["external_torque"] - found["external_torque"]).max() < 1e-12 * scale
+
+
+@pytest.mark.parametrize("rtol", [1e-4, 1e-9])
+def test_a_start_that_soon_turns_passes_its_first_angle_again(rtol):
+    """However long the first step, the reversal in it is found."""
+    load = TimeTable(file=Table((0.0, 0.02, 9.0), (-1e-2, 1e-2, 1e-2)))
+    begin = scene(gravity=None, start=Start(angle=0.5, speed=0.0), torque=(load,))
+    run = Run(until="1 s", every="30 deg", rtol=rtol)
+    found = simulate(replace(begin, run=run), formulation="minimal").data
+    assert found["crank_angle"].values[:2].tolist() == [0.5, 0.5]
+    assert found["time"].values[1] == pytest.approx(0.03, rel=0.3)
 
 
 @pytest.mark.parametrize("rtol", [1e-4, 1e-7, 1e-10])

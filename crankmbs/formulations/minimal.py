@@ -2,132 +2,34 @@
 
     alpha = (T_gas + T_gravity + T_outside - J_1 omega^2 / 2) / J
 
-SciPy's DOP853 integrates piece by piece: between two knots of the pressure each cylinder keeps its
-polynomial, continued beyond the knot, and the piece is cut exactly at the knot; likewise at a
+`crankmbs.stepper` integrates piece by piece: between two knots of the pressure each cylinder keeps
+its polynomial, continued beyond the knot, and the piece is cut exactly at the knot; likewise at a
 bound of the loads' branch and at a reversal. Where a load damps the speed far faster than the crank
-turns, Radau takes its place.
+turns, SciPy's Radau takes its place.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Generator
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.integrate import DOP853, DenseOutput, Radau
-from scipy.optimize import brentq
+from scipy.integrate import Radau
 
-from crankmbs.formulations.base import NOWHERE, Array, Samples, State
-from crankmbs.inertia import reduce
-from crankmbs.reduced import Between, Reduced
-from crankmbs.roots import invert_monotone
+from crankmbs import kernels, stepper
+from crankmbs.formulations.base import Array, State
+from crankmbs.formulations.stretch import BALANCED, Equation, Stretch, Track
+from crankmbs.reduced import Reduced
 from crankmbs.sampling import Plan
-from crankmbs.schema import DEGREE
 from crankmbs.torque import Branch, branch_at, branch_of
 
-__all__ = ["Equation", "Step", "advance"]
+__all__ = ["advance"]
 
-if TYPE_CHECKING:
-    Solver = DOP853[np.float64] | Radau
-    Dense = Callable[[float | Array], Array]  # (theta, omega, work) at times, shape (3, ...)
-
-_MOST_EVALUATIONS = 2_000_000
-_BALANCED = 1e-13  # of the largest torque: what the rounding of an angle leaves at a dead centre
-
-
-@dataclass(frozen=True)
-class Equation:
-    """The equation of motion on one piece: between two knots and on one branch of the loads."""
-
-    reduced: Reduced
-    between: Between
-    branch: Branch
-
-    def __call__(self, t: float, y: Array) -> Array:
-        """Slopes of (theta, omega, work) in time."""
-        theta, omega = float(y[0]), float(y[1])
-        if not math.isfinite(theta * omega):  # a trial step far too long: it is refused
-            return np.full(3, math.nan)
-        inertia, slope, torque = self.reduced(theta, self.between.pieces)
-        torque += self.outside(float(t), omega)
-        alpha, power = (torque - 0.5 * slope * omega * omega) / inertia, torque * omega
-        return (
-            np.array([omega, alpha, power])
-            if math.isfinite(alpha * power)
-            else np.full(3, math.nan)
-        )
-
-    def outside(self, t: float, omega: float) -> float:
-        """Torque from outside [N m]."""
-        b = self.branch
-        return b.c0 + b.ct * t + (b.c1 + b.c2 * omega) * omega
-
-    def is_stiff(self, state: State, inertia: float) -> bool:
-        """Whether the loads damp the speed a thousand times while the crank turns 5 degrees, and
-        what they had to damp is gone: while it still dies away small steps are needed anyway."""
-        damping = abs(self.branch.c1 + 2.0 * self.branch.c2 * state.omega) / inertia
-        strong = damping * 5.0 * DEGREE > 1e3 * abs(state.omega)
-        return strong and abs(self.pull(state)) < 0.01 * inertia * damping * abs(state.omega)
-
-    def is_balanced(self, state: State, scale: float) -> bool:
-        """Whether no torque acts on a crank at rest here, now or later."""
-        changes = self.branch.ct != 0.0 or math.isfinite(self.branch.t_end)
-        return not changes and abs(self.pull(state)) <= _BALANCED * scale
-
-    def pull(self, state: State) -> float:
-        """Torque of gas, gravity and loads at a state [N m]."""
-        torque = self.reduced(state.theta, self.between.pieces)[2]
-        return torque + self.outside(state.time, state.omega)
-
-    def kinetic(self, theta: float, omega: float) -> float:
-        """Kinetic energy [J]."""
-        return 0.5 * self.reduced(theta, self.between.pieces)[0] * omega * omega
-
-
-@dataclass(frozen=True)
-class Step:
-    """One accepted step of the integrator, cut where the motion leaves its piece."""
-
-    equation: Equation
-    dense: Dense
-    begin: State
-    end: State
-    evaluations: int
-    steps: int = 1
-
-    def sample(self, plan: Plan) -> Samples:
-        """The samples of the plan after the beginning, up to the end and with it."""
-        if plan.in_time:
-            t = plan.between(self.begin.time, self.end.time)
-            return self._samples(t, self.dense(t)[0])
-        theta = plan.between(self.begin.theta, self.end.theta)
-        low, high = (np.full_like(theta, q) for q in (self.begin.time, self.end.time))
-
-        def angle(t: Array) -> tuple[Array, Array]:
-            y = self.dense(t)
-            return y[0], y[1]
-
-        return self._samples(invert_monotone(angle, theta, low, high), theta)
-
-    def last(self) -> Samples:
-        """The one sample at the end."""
-        at = self._samples(np.array([self.end.time]), np.array([self.end.theta]))
-        return replace(at, omega=np.array([self.end.omega]))
-
-    def _samples(self, t: Array, theta: Array) -> Samples:
-        _, omega, work = self.dense(t)
-        equation, branch = self.equation, self.equation.branch
-        # on a step of the pressure the value after it counts, here as in the joint forces
-        scene, pressure = equation.reduced.scene, equation.reduced.pressure
-        inertia, slope, torque = reduce(scene, pressure, theta)
-        outside = branch(t, omega)
-        alpha = (torque + outside - 0.5 * slope * omega**2) / inertia
-        start = equation.kinetic(self.begin.theta, self.begin.omega)
-        work = work - float(self.dense(np.array([self.begin.time]))[2, 0])
-        residual = self.begin.residual + 0.5 * inertia * omega**2 - start - work
-        return Samples(t, theta, omega, alpha, residual, {"external_torque": outside})
+_MOST_EVALUATIONS = 5_000_000
+_MOST_STEPS = 512  # of one stretch
+_RADAU = 1e-13  # finest tolerance of a step, half of it where steps are halved; SciPy's is 2.3e-14
+_PLAIN_TIME = 5e-4  # s a step that is not compiled
 
 
 def advance(
@@ -136,8 +38,8 @@ def advance(
     plan: Plan,
     tolerance: float,
     is_fast: Callable[[State, Branch], bool],
-) -> Generator[Step, None, str]:
-    """Carry the motion on, step by step.
+) -> Generator[Stretch, None, str]:
+    """Carry the motion on, in stretches of ever more steps: a short crossing is soon over.
 
     tolerance : relative, of each step; is_fast : whether the crank angle can take over again
 
@@ -148,84 +50,36 @@ def advance(
     "failed" when no step is short enough
     """
     scale = reduced.torque_scale
-    evaluations, most, h = 0, 0.0, math.inf
+    evaluations, most, h, room = 0, 0.0, math.inf, 1
     while evaluations < _MOST_EVALUATIONS:
         equation = _enter(reduced, state, scale)
         if isinstance(equation, str):
             return equation
-        bound = min(plan.time_bound, equation.branch.t_end)
         inertia = reduced(state.theta, equation.between.pieces)[0]
-        speed = max(abs(state.omega), math.sqrt(2.0 * scale / inertia))
-        # the work takes no part in the error: DOP853 divides by a third-order estimate that is
-        # summed over all components, and the one of the work would hide the error of the speed
-        atol = np.array([tolerance, tolerance * speed, math.inf])
-        integrator = _Integrator(
-            equation, bound, tolerance, atol, equation.is_stiff(state, inertia)
-        )
-        y = np.array([state.theta, state.omega, 0.0])
-        solver = integrator.start(state.time, y, h)
-        leaves = False
-        while not leaves:
-            before = solver.nfev
-            solver.step()
-            if solver.status == "failed":
-                return "failed"
-            step, leaves = _cut(integrator, solver, state, plan, solver.nfev - before)
-            yield step
-            state, h = step.end, solver.h_abs
-            evaluations += step.evaluations
-            kinetic = equation.kinetic(state.theta, state.omega)
-            most = max(most, kinetic)
-            if state.time >= plan.time_bound or state.theta in plan.angle_bounds:
-                return "end"
-            if kinetic <= tolerance**2 * most and equation.is_balanced(state, scale):
-                return "rest"
-            if is_fast(state, equation.branch):
-                return "fast"
-            leaves = leaves or solver.status == "finished" or evaluations > _MOST_EVALUATIONS
-            leaves = leaves or integrator.stiff != equation.is_stiff(state, inertia)
+        speed = max(abs(state.omega), math.sqrt(2.0 * scale / inertia), 1e-150)
+        h = tolerance**0.125 / speed if math.isinf(h) else h
+        bound = min(plan.time_bound, equation.branch.t_end)
+        room = min(room, (_MOST_EVALUATIONS - evaluations) // 12 + 1)
+        control = _Control(tolerance, speed, bound, h, most, room)
+        speeds = (0.0, equation.branch.omega_low, equation.branch.omega_high)
+        limits = np.array([*equation.between[:2], *plan.angle_bounds, *speeds])
+        kernels.pay(room * _PLAIN_TIME)
+        method = _radau if equation.is_stiff(state, inertia) else _dop853
+        track = method(equation, state, control, limits)
+        if len(track.widths) == 0:
+            return "failed"
+        stretch = Stretch.of(equation, track, state)
+        yield stretch
+        state, h, most = stretch.end, track.next_step, track.most
+        evaluations, room = evaluations + track.evaluations, min(2 * room, _MOST_STEPS)
+        if state.time >= plan.time_bound or state.theta in plan.angle_bounds:
+            return "end"
+        kinetic = equation.kinetic(state.theta, state.omega)
+        if kinetic <= tolerance**2 * most and equation.is_balanced(state, scale):
+            return "rest"
+        if is_fast(state, equation.branch):
+            return "fast"
     return "costly"
-
-
-@dataclass(frozen=True)
-class _Integrator:
-    """DOP853 on one piece, with its tolerances."""
-
-    equation: Equation
-    bound: float
-    rtol: float
-    atol: Array
-    stiff: bool
-
-    def start(self, t: float, y: Array, h: float) -> Solver:
-        """A solver at (t, y) with the first step h [s]; infinite lets it choose."""
-        halved = self.equation.reduced.halved
-        most = 0.505 * (self.bound - t) if halved and math.isfinite(self.bound) else math.inf
-        return self._solver(t, y, self.bound, min(h, most), most, self.atol)
-
-    def again(self, solver: Solver, t: float) -> Dense:
-        """The last step again, up to t only: its end is more exact than its inside."""
-        begin = float(solver.t_old or 0.0)
-        # shorter than a step that was accepted: DOP853 has nothing to refuse
-        atol = self.atol if self.stiff else np.full(3, math.inf)
-        first = (t - begin) * (0.5 if self.equation.reduced.halved else 1.0)
-        y = np.asarray(solver.y_old)
-        most = 1.01 * first  # no sliver is left at the end, where its polynomial means nothing
-        shorter = self._solver(begin, y, t, first, most, atol)
-        parts: list[DenseOutput[np.float64]] = []
-        while shorter.status == "running":
-            shorter.step()
-            parts.append(shorter.dense_output())
-        return _joined(parts)
-
-    def _solver(
-        self, t: float, y: Array, bound: float, first: float, most: float, atol: Array
-    ) -> Solver:
-        method: Any = Radau if self.stiff else DOP853
-        first_step = min(first, bound - t) if math.isfinite(first) else None
-        options = {"rtol": self.rtol, "atol": atol, "max_step": most, "first_step": first_step}
-        solver: Solver = method(self.equation, t, y, bound, **options)
-        return solver
 
 
 def _enter(reduced: Reduced, state: State, scale: float) -> Equation | str:
@@ -242,74 +96,89 @@ def _enter(reduced: Reduced, state: State, scale: float) -> Equation | str:
         branch = branch_of(torques, state.time, 0.0, rising=sense > 0.0)
         equation = Equation(reduced, reduced.around(state.theta, sense), branch)
         pull = equation.pull(state)
-        if pull * sense > _BALANCED * scale:
+        if pull * sense > BALANCED * scale:
             return equation
-        resisted = resisted or pull * sense < -_BALANCED * scale
+        resisted = resisted or pull * sense < -BALANCED * scale
         if not resisted and not equation.is_balanced(state, scale):  # a load that begins later
             return equation
     return "held" if resisted else "stuck"
 
 
-def _cut(
-    integrator: _Integrator, solver: Solver, begin: State, plan: Plan, evaluations: int
-) -> tuple[Step, bool]:
-    """The step up to where the motion first leaves its piece, and whether it does."""
-    equation = integrator.equation
-    dense: Dense = solver.dense_output()
-    theta, omega, _ = (float(q) for q in solver.y)
-    sense = math.copysign(1.0, begin.omega or theta - begin.theta)
-    exits: list[tuple[float, State]] = []
-    low, high = plan.angle_bounds
-    exits += [
-        (_root(solver, dense, 0, limit), NOWHERE._replace(theta=limit))
-        for limit in {equation.between.low, equation.between.high, low, high}
-        if (theta - limit) * (begin.theta - limit) < 0.0 or theta == limit != begin.theta
-    ]
-    for limit in {0.0, equation.branch.omega_low, equation.branch.omega_high}:
-        inside = (begin.omega - limit) or (sense if limit == 0.0 else 0.0)
-        if (omega - limit) * inside < 0.0:
-            exits.append((_root(solver, dense, 1, limit), NOWHERE._replace(omega=limit)))
-    t, landed = min(exits, key=lambda item: item[0], default=(float(solver.t), NOWHERE))
-    if exits and t > begin.time:
-        dense, evaluations = integrator.again(solver, t), evaluations + 12
-    theta, omega, work = (float(q) for q in dense(t))
-    alpha = equation(t, np.array([theta, omega]))[1]
-    if not math.isnan(landed.theta):
-        late = (landed.theta - theta) / omega
-        t, theta, omega = t + late, landed.theta, omega + alpha * late
-    elif not math.isnan(landed.omega):
-        late = (landed.omega - omega) / alpha
-        t, theta, omega = t + late, theta + omega * late, landed.omega
-    gained = equation.kinetic(theta, omega) - equation.kinetic(begin.theta, begin.omega)
-    worked = work - float(dense(begin.time)[2])
-    end = State(t, theta, omega, begin.residual + gained - worked)
-    return Step(equation, dense, begin, end, evaluations), bool(exits)
+class _Control(NamedTuple):
+    """Tolerance of a step, speed [rad/s] to which it is relative, end in time [s], next step [s],
+    largest kinetic energy so far [J], most steps."""
+
+    tolerance: float
+    speed: float
+    bound: float
+    h: float
+    most: float
+    room: int
 
 
-def _joined(parts: list[DenseOutput[np.float64]]) -> Dense:
-    """The motion over steps that follow one another."""
-    begins = np.array([part.t_min for part in parts])
+def _dop853(equation: Equation, begin: State, control: _Control, limits: Array) -> Track:
+    """Steps of order 8."""
+    begins, widths = np.empty((2, control.room + 1))
+    rows, y = np.empty((control.room + 1, 8, 3)), np.array([begin.theta, begin.omega, 0.0])
+    asked = (*control[:3], 2 if equation.reduced.halved else 1)
+    start = (begin.time, control.h, control.most)
+    with np.errstate(all="ignore"):
+        n, t, h, most, evaluations = stepper.travel(
+            equation.system, asked, start, y, limits, (begins, widths, rows)
+        )
+    return Track(begins[:n], widths[:n], rows[:n], t, y, h, most, evaluations)
 
-    def dense(t: float | Array) -> Array:
-        step = np.maximum(np.searchsorted(begins, t, side="left") - 1, 0)
-        every = np.stack([part(np.asarray(t)) for part in parts])
-        return np.asarray(np.choose(step, every))
 
-    return parts[0] if len(parts) == 1 else dense
+def _radau(equation: Equation, begin: State, control: _Control, limits: Array) -> Track:
+    """Steps of SciPy's Radau, up to the end of the piece."""
+    parts = 2 if equation.reduced.halved else 1
+    tolerance = max(control.tolerance, _RADAU / parts)
+    atol = np.array([tolerance, tolerance * control.speed, math.inf])
+    options: dict[str, Any] = {"rtol": tolerance, "atol": atol}
+
+    def start(t: float, y: Array, bound: float, first: float, longest: float) -> Radau:
+        first = min(first, longest, bound - t)
+        return Radau(equation, t, y, bound, first_step=first, max_step=longest, **options)
+
+    track: list[tuple[float, float, Array]] = []
+    most, evaluations, y = control.most, 0, np.array([begin.theta, begin.omega, 0.0])
+    longest = (control.bound - begin.time) / parts if parts > 1 else math.inf
+    solver = start(begin.time, y, control.bound, control.h, longest)
+    t, h, i = begin.time, control.h, -1
+    while solver.status == "running" and len(track) < control.room and i < 0:
+        if solver.step():  # a sentence why it failed
+            break
+        track.append(_interpolant(solver))
+        x, i = stepper.first_exit(track[-1][2], solver.y, limits)
+        if i < 0:
+            t, y, h = float(solver.t), solver.y, solver.h_abs
+        elif x > 0.0:  # again, up to there only: its end is more exact than its inside
+            t, width, row = track.pop()
+            y = row[0]
+            again = start(t, y, t + x * width, x * width / parts, x * width / parts)
+            while again.status == "running" and not again.step():
+                track.append(_interpolant(again))
+            t, y, evaluations = float(again.t), again.y, evaluations + again.nfev
+        state = State(t, float(y[0]), float(y[1]), 0.0)
+        kinetic = equation.kinetic(state.theta, state.omega)
+        most = max(most, kinetic)
+        inertia = equation.reduced(state.theta, equation.between.pieces)[0]
+        if kinetic <= control.tolerance**2 * most or not equation.is_stiff(state, inertia):
+            break
+    y = np.array(y)
+    if i >= 0:
+        t = stepper.land(t, y, equation(t, y), 0 if i < 4 else 1, limits[i])
+    begins, widths, rows = ([step[part] for step in track] for part in range(3))
+    arrays = np.array(begins), np.array(widths), np.array(rows)
+    return Track(*arrays, t, y, h, most, evaluations + solver.nfev)
 
 
-def _root(solver: Solver, dense: Dense, index: int, limit: float) -> float:
-    """Time in the last step at which a component reaches a limit that it crosses there."""
-
-    def distance(t: float) -> float:
-        return float(dense(t)[index]) - limit
-
-    begin, end = float(solver.t_old or 0.0), float(solver.t)
-    beyond = math.copysign(1.0, distance(end))
-    if distance(begin) * beyond >= 0.0:  # it starts on the limit and comes back to it
-        inside = [float(t) for t in np.linspace(begin, end, 34)[1:-1]]
-        far = min(inside, key=lambda t: distance(t) * beyond)
-        if distance(far) * beyond >= 0.0:  # it leaves at once, but for rounding
-            return begin
-        begin = far
-    return float(brentq(distance, begin, end, xtol=1e-300, rtol=8.9e-16))
+def _interpolant(solver: Radau) -> tuple[float, float, Array]:
+    """Beginning and length of the last step, and its cubic as `crankmbs.stepper` takes it."""
+    dense = solver.dense_output()
+    begin, width, row = float(dense.t_min), float(dense.t_max - dense.t_min), np.zeros((8, 3))
+    old = np.asarray(solver.y_old)
+    rise = solver.y - old
+    near, far = (4.5 * (dense(begin + x * width) - old - x * rise) for x in (1 / 3, 2 / 3))
+    row[:4] = old, rise, 2.0 * near - far, 3.0 * (far - near)
+    return begin, width, row

@@ -1,0 +1,299 @@
+"""Steps over time of one free rotation, compiled by numba where that pays (`crankmbs.kernels`).
+
+Here is everything that is evaluated step by step: the crank train reduced to one rotation, in
+plain floats at one crank angle, and the method of Dormand and Prince of order 8 with its
+interpolant. Written out in scalars apart from the arrays of `crankmbs.inertia`: neither shares code
+with the other, so they check each other.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crankmbs.kernels import kernel
+from crankmbs.system import Machine, Method, System
+
+__all__ = ["enter", "first_exit", "land", "reduced", "slopes", "travel"]
+
+Array = NDArray[np.float64]
+Steps = tuple[Array, Array, Array]  # beginnings and lengths [s], and rows as in `first_exit`
+
+_PASSED = 1e-9  # rad: a knot this close ahead has been passed
+_BISECTIONS, _SCAN = 60, 33
+_HARD = 1e3 / math.radians(5.0)  # 1/rad: damped a thousand times while the crank turns 5 degrees
+
+
+@kernel
+def enter(theta: float, sense: float, machine: Machine, pieces: Array) -> tuple[float, float]:
+    """The knots next to theta in the sense of rotation; fills ``pieces``.
+
+    pieces : shape (cylinders, 5), of every cylinder's pressure between the two: the crank angle
+        [rad] where its cubic begins, and the coefficients [Pa], highest power first
+    """
+    knots = machine.knots
+    if len(knots) == 0:
+        return -math.inf, math.inf
+    ahead = theta + sense * _PASSED
+    base = math.floor(ahead / machine.period) * machine.period
+    k = _passed(knots, ahead - base)
+    low = knots[k - 1] if k > 0 else knots[-1] - machine.period
+    high = knots[k] if k < len(knots) else knots[0] + machine.period
+    middle, starts = 0.5 * (low + high), machine.starts
+    for j in range(len(pieces) if len(starts) > 0 else 0):
+        within = (middle + machine.cylinders[j, 0] - machine.first) % starts[-1]
+        i = min(_passed(starts, within), len(starts) - 1) - 1
+        pieces[j, 0] = base + middle - (within - starts[i])
+        for power in range(4):
+            pieces[j, 1 + power] = machine.coefficients[power, i]
+    return float(base + low), float(base + high)
+
+
+@kernel
+def _passed(knots: Array, value: float) -> int:
+    """How many of the increasing knots are not above a value."""
+    low, high = -1, len(knots)
+    while high - low > 1:
+        middle = (low + high) // 2
+        low, high = (middle, high) if knots[middle] <= value else (low, middle)
+    return high
+
+
+@kernel
+def reduced(theta: float, machine: Machine, pieces: Array) -> tuple[float, float, float]:
+    """J [kg m2], dJ/dtheta [kg m2/rad], torque of gas and gravity [N m]."""
+    r, l, a, e = machine.radius, machine.rod_length, machine.center_of_mass, machine.offset
+    m_piston, m_rod, i_rod = machine.piston_mass, machine.rod_mass, machine.rod_inertia
+    spare, far = max(l - r - abs(e), 0.0), abs(e)
+    inertia, slope = machine.crank_inertia, 0.0
+    gx, gy = machine.gravity_x, machine.gravity_y
+    torque = machine.first_moment * (gy * math.cos(theta) - gx * math.sin(theta))
+    for j in range(len(pieces)):
+        phi = theta + float(machine.cylinders[j, 0])
+        gx, gy = float(machine.cylinders[j, 1]), float(machine.cylinders[j, 2])
+        sin_p, cos_p = math.sin(phi), math.cos(phi)
+        sin_b = (r * sin_p - e) / l
+        wide = 1.0 + abs(sin_p)
+        narrow = cos_p * cos_p / wide
+        above, below = (narrow, wide) if sin_p > 0.0 else (wide, narrow)  # 1 - sin_p, 1 + sin_p
+        cos_b = math.sqrt((spare + far + e + r * above) * (spare + far - e + r * below)) / l
+        b1 = r * cos_p / (l * cos_b)
+        towards = (below if e >= 0.0 else above) / l
+        bend = sin_p * (spare / l) * (1.0 + (r + far) / l) + e * r * towards * towards
+        b2 = -r * bend / (l * cos_b * cos_b * cos_b)
+        x1 = -r * sin_p - l * sin_b * b1
+        x2 = -r * cos_p - l * (cos_b * b1 * b1 + sin_b * b2)
+        gx1, gy1 = -r * sin_p - a * sin_b * b1, r * cos_p - a * cos_b * b1
+        gx2 = -r * cos_p - a * (cos_b * b1 * b1 + sin_b * b2)
+        gy2 = -r * sin_p - a * (cos_b * b2 - sin_b * b1 * b1)
+        inertia += m_piston * x1 * x1 + m_rod * (gx1 * gx1 + gy1 * gy1) + i_rod * b1 * b1
+        slope += 2.0 * (m_piston * x1 * x2 + m_rod * (gx1 * gx2 + gy1 * gy2) + i_rod * b1 * b2)
+        d = theta - float(pieces[j, 0])
+        cubic = (float(pieces[j, 1]) * d + float(pieces[j, 2])) * d + float(pieces[j, 3])
+        gas = machine.area * (cubic * d + float(pieces[j, 4]))
+        torque += (m_piston * gx - gas) * x1 + m_rod * (gx * gx1 + gy * gy1)
+    return inertia, slope, torque
+
+
+@kernel
+def slopes(t: float, y: Array, system: System, out: Array) -> None:
+    """Slopes of (theta, omega, work) in time; no numbers where a trial step went far too far."""
+    theta, omega, load = float(y[0]), float(y[1]), system.load
+    out[0] = out[1] = out[2] = math.nan
+    if math.isfinite(theta * omega):
+        inertia, slope, torque = reduced(theta, system.machine, system.pieces)
+        torque += load[0] + load[1] * t + (load[2] + load[3] * omega) * omega
+        alpha, power = (torque - 0.5 * slope * omega * omega) / inertia, torque * omega
+        if math.isfinite(alpha * power):
+            out[0], out[1], out[2] = omega, alpha, power
+
+
+@kernel
+def _stages(
+    which: range, t: float, h: float, y: Array, system: System, k: Array, at: Array
+) -> None:
+    """The slopes k of some stages of a step from y; leaves the state of the last one in ``at``."""
+    a, c = system.method.a, system.method.c
+    for s in which:
+        for q in range(3):
+            rise = 0.0
+            for i in range(s):
+                rise += float(a[s, i]) * float(k[i, q])
+            at[q] = float(y[q]) + h * rise
+        slopes(t + h * float(c[s]), at, system, k[s])
+
+
+@kernel
+def _error(h: float, method: Method, k: Array, allowed: tuple[float, float]) -> float:
+    """A step's error over what is allowed of angle and speed, from estimates of order 5 and 3.
+
+    The work takes no part: the order 3 estimate is summed over all components, and the one of the
+    work would hide the error of the speed.
+    """
+    five = three = 0.0
+    for q in range(2):
+        by_five = by_three = 0.0
+        for i in range(13):
+            by_five += float(method.e5[i]) * float(k[i, q])
+            by_three += float(method.e3[i]) * float(k[i, q])
+        by_five, by_three = by_five / allowed[q], by_three / allowed[q]
+        five, three = five + by_five * by_five, three + by_three * by_three
+    return h * five / math.sqrt(2.0 * (five + 0.01 * three)) if five != 0.0 else 0.0
+
+
+@kernel
+def _interpolate(
+    t: float, h: float, y: Array, new: Array, system: System, k: Array, row: Array
+) -> None:
+    """The interpolant of order 7 of a step from y to ``new``, as `first_exit` takes it."""
+    _stages(range(13, 16), t, h, y, system, k, row[0])
+    for q in range(3):
+        rise, first, last = new[q] - y[q], h * k[0, q], h * k[12, q]
+        row[0, q], row[1, q], row[2, q] = y[q], rise, first - rise
+        row[3, q] = 2.0 * rise - first - last
+        for p in range(4):
+            total = 0.0
+            for i in range(16):
+                total += float(system.method.d[p, i]) * float(k[i, q])
+            row[4 + p, q] = h * total
+
+
+@kernel
+def _value(row: Array, q: int, x: float) -> float:
+    """Component q of an interpolant at the fraction x of its step."""
+    y = 0.0
+    for i in range(7):
+        y = (y + float(row[7 - i, q])) * (x if i % 2 == 0 else 1.0 - x)
+    return float(row[0, q]) + y
+
+
+@kernel
+def first_exit(row: Array, new: Array, limits: Array) -> tuple[float, int]:
+    """Where in a step the motion first leaves what the limits bound.
+
+    row : shape (8, 3), of (theta, omega, work): the value y at the beginning, then f with
+        y + x (f1 + (1 - x) (f2 + x (f3 + (1 - x) (...)))) at the fraction x of the step
+    new : shape (3,), the values at the end
+    limits : shape (7,), four crank angles [rad], then three speeds [rad/s], of which one is 0
+
+    Returns
+    -------
+    fraction of the step, number of the limit; or (1, -1)
+    """
+    first, which = 1.0, -1
+    push = float(row[1, 1] + row[2, 1])  # the acceleration gives the sense of a start at rest
+    for i in range(7):
+        limit, q = float(limits[i]), 0 if i < 4 else 1
+        begin, end = float(row[0, q]) - limit, float(new[q]) - limit
+        rests = i >= 4 and begin == 0.0 and limit == 0.0
+        begin = push if rests else begin
+        if not (begin * end < 0.0 or (i < 4 and end == 0.0 and begin != 0.0)):
+            continue
+        low, high, side = 0.0, 1.0, math.copysign(1.0, end)
+        if end != 0.0 and (float(row[0, q]) - limit) * side >= 0.0:
+            least = 0.0  # it starts on the limit and returns to it
+            for j in range(1, _SCAN):
+                inside = (_value(row, q, j / _SCAN) - limit) * side
+                if inside < least:
+                    low, least = j / _SCAN, inside
+            if least == 0.0 and rests:  # it leaves to this side, but for rounding
+                continue
+            high = 0.0 if least == 0.0 else 1.0  # or at once
+        for _ in range(_BISECTIONS):
+            middle = 0.5 * (low + high)
+            beyond = end != 0.0 and (_value(row, q, middle) - limit) * side > 0.0
+            low, high = (low, middle) if beyond else (middle, high)
+        if high < first or which < 0:
+            first, which = high, i
+    return first, which
+
+
+@kernel
+def land(t: float, y: Array, slope: Array, q: int, limit: float) -> float:
+    """Put component q of a state exactly on a limit that it is close to; the time of that."""
+    late = (limit - float(y[q])) / float(slope[q]) if slope[q] != 0.0 else 0.0
+    y[0], y[1] = y[0] + slope[0] * late, y[1] + slope[1] * late
+    y[q] = limit
+    return t + late
+
+
+@kernel
+def travel(
+    system: System,
+    control: tuple[float, float, float, int],
+    start: tuple[float, float, float],
+    y: Array,
+    limits: Array,
+    steps: Steps,
+) -> tuple[int, float, float, float, int]:
+    """Step from knot to knot while the loads keep their branch; fill ``steps``.
+
+    Every piece is integrated with its own cubics, continued beyond the knot, and cut at the knot:
+    there the step is taken again, as its end is more exact than its inside. It ends where all room
+    is used, at any other limit, at the end in time, where no step is short enough, and where the
+    motion dies away or is damped hard.
+
+    control : tolerance of a step, speed [rad/s] to which it is relative, end in time [s], and in
+        how many steps at least a stretch between two knots is passed
+    start : time [s], next step [s], largest kinetic energy so far [J]
+    y : shape (3,), theta, omega, work; limits : as in `first_exit`; carried on, as the pieces are
+
+    Returns
+    -------
+    number of steps; time, next step, largest kinetic energy; evaluations
+    """
+    (tolerance, speed, t_bound, parts), (t, h, most), (begins, widths, rows) = control, start, steps
+    k, new, load = np.empty((16, 3)), np.empty(3), system.load
+    n, evaluations, longest, entered = 0, 0, t_bound, True
+    while n + parts <= len(widths):
+        if entered:
+            slopes(t, y, system, k[0])
+            longest, evaluations, entered = (t_bound - t) / parts, evaluations + 1, False
+        least, refused = 2e-15 * t, False
+        h = max(min(h, longest), least)
+        while True:
+            width = min(h, t_bound - t)
+            _stages(range(1, 13), t, width, y, system, k, new)
+            fastest = speed + max(abs(float(y[1])), abs(float(new[1])))
+            error = _error(width, system.method, k, (tolerance, tolerance * fastest))
+            evaluations += 12
+            if error < 1.0:
+                break
+            shrunk, refused = 0.9 * error**-0.125, True
+            h = width * (shrunk if shrunk > 0.2 else 0.2)
+            if h <= least:
+                return n, t, h, most, evaluations
+        grown = min(10.0, 0.9 * error**-0.125) if error > 0.0 else 10.0
+        h = width * (min(grown, 1.0) if refused else grown)
+        _interpolate(t, width, y, new, system, k, rows[n])
+        evaluations += 3
+        x, i = first_exit(rows[n], new, limits)
+        end = t_bound if width == t_bound - t else t + width
+        cut = i >= 0 and x > 0.0
+        width = x * width / parts if cut else width
+        for _ in range(parts if cut else 1):
+            if cut:
+                _stages(range(1, 13), t, width, y, system, k, new)
+                _interpolate(t, width, y, new, system, k, rows[n])
+                end, evaluations = t + width, evaluations + 15
+            begins[n], widths[n] = t, width
+            n += 1
+            if cut or i < 0:  # and not where the motion leaves at once
+                t = end
+                for q in range(3):
+                    y[q], k[0, q] = new[q], k[12, q]
+        if i >= 0:
+            t = land(t, y, k[0], 0 if i < 4 else 1, float(limits[i]))
+            ends = i > 1 or y[0] == limits[2] or y[0] == limits[3]
+            if ends or y[1] == 0.0 or not limits[5] < y[1] < limits[6]:
+                break
+            sense, entered = math.copysign(1.0, y[1]), True
+            limits[0], limits[1] = enter(float(y[0]), sense, system.machine, system.pieces)
+        inertia, omega = reduced(float(y[0]), system.machine, system.pieces)[0], float(y[1])
+        kinetic, damping = 0.5 * inertia * omega * omega, load[2] + 2.0 * load[3] * omega
+        most, hard = max(most, kinetic), abs(damping) > _HARD * inertia * abs(omega)
+        if hard or kinetic <= tolerance * tolerance * most or t >= t_bound:
+            break
+    return n, t, h, most, evaluations
