@@ -196,12 +196,14 @@ KEYS = "crank, rod, piston, run, layout, gas, gravity, motion, start, torque, ti
         (
             "title",
             "[[[",
-            "not valid TOML: Invalid initial character for a key part (at line 2, column 3)",
+            "not valid TOML: Invalid initial character for a key part (at line 2, column 3)"
+            "; crankmbs new NAME writes a scene to compare with",
         ),
         (
             '"46 mm"',
             '"46 mm"\nradius = 1',
-            "not valid TOML: Cannot overwrite a value (at line 6, column 11)",
+            "not valid TOML: Cannot overwrite a value (at line 6, column 11)"
+            "; crankmbs new NAME writes a scene to compare with",
         ),
     ],
 )
