@@ -13,6 +13,7 @@ from typer.core import TyperGroup
 
 from crankmbs.choose import choose
 from crankmbs.cli.check import describe
+from crankmbs.cli.demo import demonstrate
 from crankmbs.cli.run import run_scene
 from crankmbs.cli.validate import validate_scene
 from crankmbs.cli.work_precision import measure_scene
@@ -147,6 +148,20 @@ def work_precision(
     """Measure speed against error of every formulation; compare with other tools."""
     if not measure_scene(scene, peers=peers, out=out):
         raise typer.Exit(3)
+
+
+@app.command()
+def demo(
+    scene: Annotated[
+        str, typer.Argument(metavar="SCENE", help="A scene file, or the name of a shipped scene.")
+    ] = "yi_diesel_free",
+    port: Annotated[int, typer.Option(help="Port of the page; 0: a free one.")] = 5006,
+    no_browser: Annotated[
+        bool, typer.Option("--no-browser", help="Serve only, open no browser.")
+    ] = False,
+) -> None:
+    """Serve a page that shows the mechanism moving, and what each knob changes."""
+    demonstrate(scene, port=port, browser=not no_browser)
 
 
 @app.command()
