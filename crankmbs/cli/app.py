@@ -13,7 +13,7 @@ from typer.core import TyperGroup
 
 from crankmbs.choose import choose
 from crankmbs.cli.check import describe
-from crankmbs.cli.demo import demonstrate
+from crankmbs.cli.demo import demonstrate, write_page
 from crankmbs.cli.run import run_scene
 from crankmbs.cli.validate import validate_scene
 from crankmbs.cli.work_precision import measure_scene
@@ -162,6 +162,21 @@ def demo(
 ) -> None:
     """Serve a page that shows the mechanism moving, and what each knob changes."""
     demonstrate(scene, port=port, browser=not no_browser)
+
+
+@app.command()
+def page(
+    scene: _Scene,
+    out: Annotated[
+        Path | None, typer.Option("-o", "--out", help="The file; default NAME.html.")
+    ] = None,
+    vary: Annotated[
+        list[str] | None,
+        typer.Option(help="A knob of the page; may be given twice. Default: flywheel."),
+    ] = None,
+) -> None:
+    """Write the page as one file for a course: no server, no network."""
+    write_page(scene, varied=vary or [], out=out)
 
 
 @app.command()

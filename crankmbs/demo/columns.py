@@ -1,6 +1,6 @@
 """The numbers that the page draws: named columns for each of its views.
 
-A column's name says what it is; `UNITS` and the outcome's force unit say in what.
+A column's name says what it is, `unit_of` in what unit.
 """
 
 from __future__ import annotations
@@ -30,6 +30,7 @@ __all__ = [
     "shapes",
     "speeds",
     "thrusts",
+    "unit_of",
 ]
 
 Array = NDArray[np.float64]
@@ -62,6 +63,13 @@ SCALES = {
 """Quantity -> divisor and unit in which it is shown; the others are forces."""
 
 _EXACT, *_, _TRUNCATED = LECTURES
+
+
+def unit_of(column: str, force_unit: str) -> str:
+    """Unit of a column of the tabs."""
+    quantity = column.split(", ")[0].split(": ")[0]
+    named = {"degrees": "deg", "speed": "rpm"}
+    return named.get(quantity) or SCALES.get(quantity, (1.0, force_unit))[1]
 
 
 def frames(outcome: Outcome, force: float) -> Columns:

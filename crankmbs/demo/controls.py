@@ -5,14 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from bokeh.layouts import column, row
-from bokeh.models import Div, RadioButtonGroup, Select, Slider, UIElement
+from bokeh.models import Div, InlineStyleSheet, RadioButtonGroup, Select, Slider, UIElement
 
 from crankmbs.demo.knobs import AS_GIVEN, FIRING_ORDERS, Knob
 
-__all__ = ["RODS", "cylinders_choice", "knob_area", "rod_choice", "slider_of"]
+__all__ = ["RODS", "TITLE", "cylinders_choice", "knob_area", "rod_choice", "slider_of"]
 
 RODS = ("rigid", "two-mass")
-_WIDTH, _ACROSS = 232, 4  # px; sliders in a row
+TITLE = InlineStyleSheet(css=".bk-slider-title { font-size: 15px; }")
+_WIDTH, _ACROSS = 220, 4  # px; sliders in a row
 
 
 def slider_of(knob: Knob) -> Slider:
@@ -27,6 +28,7 @@ def slider_of(knob: Knob) -> Slider:
         width=_WIDTH,
         name=knob.name,
         syncable=False,
+        stylesheets=[TITLE],
     )
 
 
@@ -38,7 +40,7 @@ def rod_choice(active: int) -> RadioButtonGroup:
 def cylinders_choice(count: int) -> Select:
     """The scene's own cylinders, or a number of them in line."""
     options = [(AS_GIVEN, f"{AS_GIVEN} ({count})"), *((n, n) for n in FIRING_ORDERS)]
-    return Select(options=options, value=AS_GIVEN, name="cylinders", syncable=False, width=110)
+    return Select(options=options, value=AS_GIVEN, name="cylinders", syncable=False, width=106)
 
 
 def knob_area(
@@ -49,10 +51,10 @@ def knob_area(
     rows = [row(*each[k : k + _ACROSS], spacing=12) for k in range(0, len(each), _ACROSS)]
     choices = column(
         row(_name("rod inertia"), rod),
-        row(_name("cylinders"), cylinders, _name("shown", 44), cylinder),
+        row(_name("cylinders"), cylinders, _name("shown", 42), cylinder),
     )
     return row(column(*rows, spacing=4), choices, spacing=20)
 
 
 def _name(text: str, width: int = 74) -> Div:
-    return Div(text=text, width=width, styles={"line-height": "31px"})
+    return Div(text=text, width=width, styles={"line-height": "31px", "font-size": "14px"})

@@ -16,6 +16,7 @@ from bokeh.models import (
     ColumnDataSource,
     CustomJS,
     Div,
+    InlineStyleSheet,
     Select,
     Slider,
     Tabs,
@@ -24,16 +25,18 @@ from bokeh.models import (
 )
 
 from crankmbs.demo.columns import FORCES
+from crankmbs.demo.controls import TITLE
 from crankmbs.demo.outcome import Outcome
 from crankmbs.demo.stage import ARROWS, stage
-from crankmbs.demo.state import state_of
+from crankmbs.demo.state import Data
 from crankmbs.demo.views import STORES, views
 from crankmbs.figures.style import force_scale
 
 __all__ = ["Page", "add_page", "add_script", "force_of"]
 
 _JS = Path(__file__).parent / "js"
-_LEFT, _RIGHT, _HEIGHT = 390, 860, 560  # px
+_LEFT, _RIGHT, _HEIGHT = 390, 860, 580  # px
+_TABS = InlineStyleSheet(css=".bk-tab { font-size: 16px; padding: 5px 14px; }")
 _SECONDS = 6.0  # that a cycle takes on the page, at first
 _SLOW = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 
@@ -57,19 +60,18 @@ def force_of(outcome: Outcome) -> tuple[float, str]:
 def add_page(
     document: Document,
     outcome: Outcome,
+    state: Data,
     knobs: UIElement,
     buttons: UIElement,
     kept: tuple[ColumnDataSource, ...],
 ) -> Page:
     """Fill a document with the page of an outcome, knobs below and buttons above.
 
-    kept : sources that nothing draws
+    state : of the outcome, with all tabs; kept : sources that nothing draws
     """
     scene = outcome.result.scene
-    force, unit = force_of(outcome)
-    sources = {
-        name: ColumnDataSource(data, name=name) for name, data in state_of(outcome, force).items()
-    }
+    _, unit = force_of(outcome)
+    sources = {name: ColumnDataSource(data, name=name) for name, data in state.items()}
     peak = float(np.max(outcome.view.values("gas_pressure"), initial=1e-9)) / 1e5
     drawn = stage(scene, max(peak, 1e-9), sources["shapes"], _LEFT, _HEIGHT - 96 - 88)
     view = outcome.view
@@ -82,7 +84,7 @@ def add_page(
         _RIGHT,
         _HEIGHT - 36,
     )
-    tabs = Tabs(tabs=shown.panels, width=_RIGHT, height=_HEIGHT, name="tabs")
+    tabs = Tabs(tabs=shown.panels, width=_RIGHT, height=_HEIGHT, name="tabs", stylesheets=[_TABS])
     message = Div(
         text="",
         width=_LEFT + _RIGHT,
@@ -92,13 +94,13 @@ def add_page(
     )
     title = Div(
         text=f"<b>{html.escape(scene.title or 'scene')}</b>",
-        width=_LEFT + _RIGHT - 330,
+        width=_LEFT + _RIGHT - 420,
         height=24,
         styles={"font-size": "18px", "overflow": "hidden", "white-space": "nowrap"},
     )
     numbers = Div(
         text=sources["numbers"].data["text"][0],
-        width=_LEFT + _RIGHT - 330,
+        width=_LEFT + _RIGHT - 420,
         height=24,
         name="numbers",
         styles={"font-size": "15px", "white-space": "nowrap"},
@@ -181,6 +183,7 @@ def _player(low: float, high: float, seconds: float) -> dict[str, Any]:
             format="0",
             width=_LEFT - 20,
             name="angle",
+            stylesheets=[TITLE],
         ),
     }
     for model in made.values():

@@ -51,7 +51,7 @@ def knobs_of(scene: Scene) -> tuple[Knob, ...]:
     offset = scene.piston.offset * 1e3
     far = max(_above(0.5 * r), abs(offset))
     knobs = [
-        Knob("rod_ratio", "rod ratio r/l", 0.1, 1.0, 0.005, ratio, "0.000"),
+        Knob("rod_ratio", "rod ratio r/l", 0.1, 0.9, 0.005, ratio, "0.000"),
         Knob("offset", "offset [mm]", -far, far, far / 100.0, offset, "0.0"),
         Knob("rod_mass", "rod mass [kg]", 0.0, heaviest, heaviest / 150.0, rod.mass, "0.00"),
     ]

@@ -14,12 +14,14 @@ from crankmbs.demo.controls import RODS, cylinders_choice, knob_area, rod_choice
 from crankmbs.demo.document import Page, add_page, add_script, force_of
 from crankmbs.demo.export import data_file, download, scene_file
 from crankmbs.demo.knobs import knobs_of, turned
-from crankmbs.demo.outcome import Outcome, run
+from crankmbs.demo.outcome import Outcome
 from crankmbs.demo.state import state_of
 from crankmbs.errors import CrankmbsError
 from crankmbs.scene import Scene
 
 __all__ = ["Live"]
+
+_SMALL = {"font-size": "13px", "color": "#555555", "line-height": "31px"}
 
 
 class Live:
@@ -36,7 +38,7 @@ class Live:
         self._request = ColumnDataSource({"json": [""]}, name="request")
         self._reply = ColumnDataSource({"number": [0]}, name="reply")
         self._download = ColumnDataSource({"name": [""], "base64": [""]}, name="download")
-        self._cylinder = Select(name="cylinder", width=90, syncable=False)
+        self._cylinder = Select(name="cylinder", width=52, syncable=False)
         self._offer_cylinders()
         self._page: Page
 
@@ -49,10 +51,10 @@ class Live:
             "rod": rod_choice(RODS.index("rigid" if rigid else "two-mass")),
             "cylinders": cylinders_choice(len(self._scene.cylinders)),
         }
-        reset = Button(label="reset", name="reset", width=70)
+        reset = Button(label="reset", name="reset", width=60)
         toml = Button(label="scene TOML", name="toml", width=100)
         csv = Button(label="data CSV", name="csv", width=90)
-        latency = Div(text="", name="latency", width=130, syncable=False)
+        latency = Div(text="", name="latency", width=126, syncable=False, styles=_SMALL)
         toml.on_click(lambda: self._give(*scene_file(self._outcome.result.scene, self._stem)))
         csv.on_click(lambda: self._give(*data_file(self._outcome.result, self._stem)))
         self._request.on_change("data", lambda _attr, _old, _new: self._answer())
@@ -60,6 +62,7 @@ class Live:
         self._page = add_page(
             document,
             self._outcome,
+            state_of(self._outcome, self._force),
             below,
             row(latency, reset, toml, csv),
             (self._request, self._reply, self._download),
@@ -79,8 +82,9 @@ class Live:
     def _answer(self) -> None:
         asked: dict[str, Any] = json.loads(self._request.data["json"][0])
         try:
-            scene = turned(self._scene, asked["values"])
-            self._outcome = run(scene, asked["cylinder"])
+            self._outcome = self._outcome.followed_by(
+                turned(self._scene, asked["values"]), asked["cylinder"]
+            )
             self._page.message.text = ""
             self._offer_cylinders()
             state = state_of(self._outcome, self._force, [asked["tab"]])

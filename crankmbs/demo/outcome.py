@@ -22,6 +22,18 @@ class Outcome:
     result: Result
     cylinder: int
 
+    def followed_by(self, scene: Scene, cylinder: int) -> Outcome:
+        """The outcome of a scene and a cylinder, which may be this one's.
+
+        Raises
+        ------
+        CrankmbsError : as for `run`
+        """
+        result = self.result if scene == self.result.scene else _finished(scene)
+        cylinder = min(cylinder, len(scene.cylinders))
+        same = result is self.result and cylinder == self.cylinder
+        return self if same else Outcome(result, cylinder)
+
     @cached_property
     def view(self) -> View:
         """The last cycle."""
@@ -56,15 +68,19 @@ def prepared(scene: Scene) -> Scene:
     return dataclasses.replace(scene, run=run)
 
 
-def run(scene: Scene, cylinder: int = 1) -> Outcome:
-    """Simulate a scene.
+def run(scene: Scene) -> Outcome:
+    """Simulate a prepared scene, seen from its first cylinder.
 
     Raises
     ------
     InputError : the run stops before its end; the message is its sentence
     CrankmbsError : a scene that cannot be run
     """
+    return Outcome(_finished(scene), 1)
+
+
+def _finished(scene: Scene) -> Result:
     result = simulate(scene)
     if result.status != 0:
         raise InputError(result.message)
-    return Outcome(result, min(cylinder, len(scene.cylinders)))
+    return result

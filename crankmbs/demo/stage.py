@@ -8,12 +8,12 @@ from bokeh.models import ColumnDataSource, LinearColorMapper, Range1d
 from bokeh.plotting import figure
 
 from crankmbs.demo.columns import FORCES
-from crankmbs.demo.style import BLUE, GREEN, ORANGE, PINK, scratch
+from crankmbs.demo.style import BLUE, GREEN, ORANGE, SKY, scratch
 from crankmbs.scene import Scene
 
 __all__ = ["ARROWS", "Stage", "stage"]
 
-ARROWS = dict(zip(FORCES, (PINK, BLUE, GREEN, "#B07A00", ORANGE), strict=True))
+ARROWS = dict(zip(FORCES, (BLUE, SKY, GREEN, "#B07A00", ORANGE), strict=True))
 """Colour of a force's arrow."""
 
 _PALE_TO_RED = (
@@ -115,7 +115,7 @@ def stage(scene: Scene, peak: float, shapes: ColumnDataSource, width: int, heigh
         line_color="colour",
     )
     numbers, readout = _numbers(width)
-    return Stage(drawing, numbers, parts, shapes, readout, 1.5 * r)
+    return Stage(drawing, numbers, parts, shapes, readout, 2.4 * r)
 
 
 def _canvas(width: int, height: int) -> figure:

@@ -65,7 +65,7 @@ export default ({fits, budget, polar, dead, tops, numbers}) => {
   budget.select.properties.value.change.connect(stack)
   stack()
 
-  let shownBearing = "", half = 0
+  let shownBearing = ""
   const choose = () => {
     const {store, shown, marks, select, x_range, y_range} = polar
     const part = (axis, curve) => store.data[`${select.value} force ${axis}, ${curve}`]
@@ -77,25 +77,34 @@ export default ({fits, budget, polar, dead, tops, numbers}) => {
       "lecture x": part("x", "lecture"), "lecture y": part("y", "lecture"),
     }
     shown.data = columns
-    const quarter = {x: [], y: [], label: []}
+    const bounds = (names) => {  // the origin belongs to it
+      let low = 0, high = 0
+      for (const name of names) {
+        for (const value of columns[name]) {
+          if (value < low) low = value
+          if (value > high) high = value
+        }
+      }
+      return {low, high, middle: (low + high) / 2}
+    }
+    const up = bounds(["simulated x", "lecture x"]), left = bounds(["simulated y", "lecture y"])
+    const need = Math.max(up.high - up.low, left.high - left.low) || 1
+    const inside = y_range.start <= up.low && up.high <= y_range.end &&
+      x_range.end <= left.low && left.high <= x_range.start
+    if (select.value !== shownBearing || !inside || need < 0.4 * (y_range.end - y_range.start)) {
+      shownBearing = select.value
+      x_range.setv({start: left.middle + 0.57 * need, end: left.middle - 0.57 * need})
+      y_range.setv({start: up.middle - 0.57 * need, end: up.middle + 0.57 * need})
+    }
+    const quarters = []
     for (let k = 0; k < degrees.length - 1; k++) {
       if (Math.abs(Math.round(degrees[k] / 90) * 90 - degrees[k]) > 1e-6) continue
-      quarter.x.push(columns["simulated y"][k])
-      quarter.y.push(columns["simulated x"][k])
-      quarter.label.push(`${Math.round(degrees[k])}`)
+      const [x, y] = [columns["simulated y"][k], columns["simulated x"][k]]
+      const near = quarters.find((q) => Math.hypot(q.x - x, q.y - y) < 0.05 * need)
+      if (near === undefined) quarters.push({x, y, label: `${Math.round(degrees[k])}`})
+      else near.label += `, ${Math.round(degrees[k])}`
     }
-    marks.data = quarter
-    let most = 0
-    for (const [name, column] of Object.entries(columns)) {
-      if (name === "degrees") continue
-      for (const value of column) if (Math.abs(value) > most) most = Math.abs(value)
-    }
-    if (select.value !== shownBearing || most > half || most < 0.4 * half) {
-      shownBearing = select.value
-      half = 1.12 * (most || 1)
-      x_range.setv({start: half, end: -half})
-      y_range.setv({start: -half, end: half})
-    }
+    marks.data = Object.fromEntries(["x", "y", "label"].map((key) => [key, quarters.map((q) => q[key])]))
   }
   polar.store.properties.data.change.connect(choose)
   polar.select.properties.value.change.connect(choose)

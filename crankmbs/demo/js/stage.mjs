@@ -91,8 +91,8 @@ export default ({frames, shapes, chosen, angle, play, back, forward, slow, parts
   }
 
   const frame = () => {  // equal scales, with room for every cylinder and for the arrows
-    const along = [-1.6 * radius, 1.3 * radius, ...shapes.data["liner x"].flatMap((l) => Array.from(l))]
-    const across = [-1.7 * radius, 1.7 * radius, ...shapes.data["liner y"].flatMap((l) => Array.from(l))]
+    const along = [-1.5 * radius, 1.3 * radius, ...shapes.data["liner x"].flatMap((l) => Array.from(l))]
+    const across = [-1.9 * radius, 1.9 * radius, ...shapes.data["liner y"].flatMap((l) => Array.from(l))]
     const middle = (v) => (Math.max(...v) + Math.min(...v)) / 2
     const half = (v) => (Math.max(...v) - Math.min(...v)) / 2
     const scale = 1.04 * Math.max(half(along) / canvas.height, half(across) / canvas.width)
