@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from bokeh.layouts import column, row
-from bokeh.models import Div, InlineStyleSheet, RadioButtonGroup, Select, Slider, UIElement
+from bokeh.models import Div, RadioButtonGroup, Select, Slider, UIElement
 
 from crankmbs.demo.knobs import AS_GIVEN, FIRING_ORDERS, Knob
 
 __all__ = ["RODS", "TITLE", "cylinders_choice", "knob_area", "rod_choice", "slider_of"]
 
 RODS = ("rigid", "two-mass")
-TITLE = InlineStyleSheet(css=".bk-slider-title { font-size: 15px; }")
-_WIDTH, _ACROSS = 220, 4  # px; sliders in a row
+TITLE = ".bk-slider-title { font-size: 15px; }"
+_WIDTH, _ACROSS = 214, 4  # px; sliders in a row
 
 
 def slider_of(knob: Knob) -> Slider:
@@ -48,12 +48,12 @@ def knob_area(
 ) -> UIElement:
     """Sliders in rows, the choices beside them."""
     each = list(sliders.values())
-    rows = [row(*each[k : k + _ACROSS], spacing=12) for k in range(0, len(each), _ACROSS)]
+    rows = [row(*each[k : k + _ACROSS], spacing=8) for k in range(0, len(each), _ACROSS)]
     choices = column(
         row(_name("rod inertia"), rod),
         row(_name("cylinders"), cylinders, _name("shown", 42), cylinder),
     )
-    return row(column(*rows, spacing=4), choices, spacing=20)
+    return row(column(*rows, spacing=4), choices, spacing=14)
 
 
 def _name(text: str, width: int = 74) -> Div:

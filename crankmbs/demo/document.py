@@ -16,7 +16,6 @@ from bokeh.models import (
     ColumnDataSource,
     CustomJS,
     Div,
-    InlineStyleSheet,
     Select,
     Slider,
     Tabs,
@@ -36,7 +35,7 @@ __all__ = ["Page", "add_page", "add_script", "force_of"]
 
 _JS = Path(__file__).parent / "js"
 _LEFT, _RIGHT, _HEIGHT = 390, 860, 580  # px
-_TABS = InlineStyleSheet(css=".bk-tab { font-size: 16px; padding: 5px 14px; }")
+_TABS = ".bk-tab { font-size: 16px; padding: 5px 14px; }"
 _SECONDS = 6.0  # that a cycle takes on the page, at first
 _SLOW = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 
@@ -71,7 +70,7 @@ def add_page(
     """
     scene = outcome.result.scene
     _, unit = force_of(outcome)
-    sources = {name: ColumnDataSource(data, name=name) for name, data in state.items()}
+    sources = {name: ColumnDataSource(data, name=f"{name} data") for name, data in state.items()}
     peak = float(np.max(outcome.view.values("gas_pressure"), initial=1e-9)) / 1e5
     drawn = stage(scene, max(peak, 1e-9), sources["shapes"], _LEFT, _HEIGHT - 96 - 88)
     view = outcome.view

@@ -168,7 +168,9 @@ def _budget(
     height: int,
 ) -> None:
     select = Select(options=list(BUDGETED), value=BUDGETED[0], width=220, name="quantity")
-    sentences = Div(text="", width=width - 250, height=66, name="sentences")
+    sentences = Div(
+        text="", width=width - 250, height=66, name="sentences", styles={"font-size": "14px"}
+    )
     sentences.syncable = False
     ends = [f"{side}{k} {end}" for k in range(len(_CAUSES)) for side in _SIDES for end in _ENDS]
     shown = scratch("degrees", "total", *ends)

@@ -2,7 +2,10 @@
 // Between two samples everything is interpolated; the time of the run says how fast it turns.
 export default ({frames, shapes, chosen, angle, play, back, forward, slow, parts, cursors, readout,
                  polar, tip, canvas, radius, colours, names, unit, reach}) => {
-  const between = (degrees = frames.data["degrees"]) => {
+  // sources change one after the other, the chosen cylinder last: only then all fit together
+  let run = frames.data, outlines = shapes.data, own = chosen.data["cylinder"][0] - 1
+
+  const between = (degrees = run["degrees"]) => {
     const sense = degrees[degrees.length - 1] >= degrees[0] ? 1 : -1
     let low = 0, high = degrees.length - 1
     while (high - low > 1) {
@@ -25,7 +28,7 @@ export default ({frames, shapes, chosen, angle, play, back, forward, slow, parts
   const rescale = () => {  // arrows keep their scale until they outgrow it or become tiny
     let peak = 0
     for (const name of names) {
-      const x = frames.data[`${name} x`], y = frames.data[`${name} y`]
+      const x = run[`${name} x`], y = run[`${name} y`]
       for (let k = 0; k < x.length; k++) peak = Math.max(peak, Math.hypot(x[k], y[k]))
     }
     if (peak > longest || peak < 0.3 * longest || longest === 1) longest = peak || 1
@@ -34,19 +37,18 @@ export default ({frames, shapes, chosen, angle, play, back, forward, slow, parts
   const draw = () => {
     const [low, high, share] = between()
     const at = (name) => {
-      const column = frames.data[name]
+      const column = run[name]
       return column[low] + share * (column[high] - column[low])
     }
-    const own = chosen.data["cylinder"][0] - 1
-    const count = shapes.data["piston x"].length
+    const count = outlines["piston x"].length
     const order = [...Array(count).keys()].filter((k) => k !== own).concat(own)
     const crank = order.map((k) => [at(`crank x${k}`), at(`crank y${k}`)])
     const pin = order.map((k) => [at(`piston x${k}`), at(`piston y${k}`)])
     const alpha = order.map((k) => (k === own ? 1 : 0.22))
-    const piston = (axis, i) => order.map((k, j) => Array.from(shapes.data[`piston ${axis}`][k], (v) => v + pin[j][i]))
+    const piston = (axis, i) => order.map((k, j) => Array.from(outlines[`piston ${axis}`][k], (v) => v + pin[j][i]))
     const px = piston("x", 0), py = piston("y", 1)
     const gas = (axis, corners) => order.map((k, j) => {
-      const liner = shapes.data[`liner ${axis}`][k]
+      const liner = outlines[`liner ${axis}`][k]
       return [corners[j][1], liner[1], liner[2], corners[j][2]]
     })
     // a figure's x axis is the engine's Y, drawn to the left
@@ -91,8 +93,8 @@ export default ({frames, shapes, chosen, angle, play, back, forward, slow, parts
   }
 
   const frame = () => {  // equal scales, with room for every cylinder and for the arrows
-    const along = [-1.5 * radius, 1.3 * radius, ...shapes.data["liner x"].flatMap((l) => Array.from(l))]
-    const across = [-1.9 * radius, 1.9 * radius, ...shapes.data["liner y"].flatMap((l) => Array.from(l))]
+    const along = [-1.5 * radius, 1.3 * radius, ...outlines["liner x"].flatMap((l) => Array.from(l))]
+    const across = [-1.9 * radius, 1.9 * radius, ...outlines["liner y"].flatMap((l) => Array.from(l))]
     const middle = (v) => (Math.max(...v) + Math.min(...v)) / 2
     const half = (v) => (Math.max(...v) - Math.min(...v)) / 2
     const scale = 1.04 * Math.max(half(along) / canvas.height, half(across) / canvas.width)
@@ -102,11 +104,11 @@ export default ({frames, shapes, chosen, angle, play, back, forward, slow, parts
   }
 
   const time = () => {
-    const [low, high, share] = between(), column = frames.data["time"]
+    const [low, high, share] = between(), column = run["time"]
     return column[low] + share * (column[high] - column[low])
   }
   const angleAt = (t) => {
-    const {time: column, degrees} = frames.data
+    const {time: column, degrees} = run
     let low = 0, high = column.length - 1
     while (high - low > 1) {
       const middle = (low + high) >> 1
@@ -118,7 +120,7 @@ export default ({frames, shapes, chosen, angle, play, back, forward, slow, parts
   let before = 0
   const turn = (now) => {
     if (!play.active) return
-    const column = frames.data["time"], whole = column[column.length - 1]
+    const column = run["time"], whole = column[column.length - 1]
     angle.value = angleAt((time() + (now - before) / 1000 / Number(slow.value)) % whole)
     before = now
     requestAnimationFrame(turn)
@@ -138,8 +140,12 @@ export default ({frames, shapes, chosen, angle, play, back, forward, slow, parts
   forward.on_event("button_click", step(1))
   angle.properties.value.change.connect(draw)
   polar.properties.data.change.connect(draw)
-  frames.properties.data.change.connect(() => { rescale(); draw() })
-  shapes.properties.data.change.connect(frame)
+  chosen.properties.data.change.connect(() => {
+    [run, outlines, own] = [frames.data, shapes.data, chosen.data["cylinder"][0] - 1]
+    frame()
+    rescale()
+    draw()
+  })
   frame()
   rescale()
   draw()
