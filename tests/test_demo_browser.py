@@ -185,6 +185,18 @@ def test_the_crank_turns_as_fast_as_the_run_has_it(live):
     assert np.ptp(np.diff(angles)) > 1.0  # the speed swings
 
 
+def test_the_mechanism_is_drawn_to_scale(live, scene):
+    live.set("angle", "value", 77)
+    for ratio in (0.2, 0.45):
+        live.set("rod_ratio", "value", ratio)
+        live.settled()
+        x0, y0, x1, y1 = (live.column("rod drawn", end)[0] for end in ("x0", "y0", "x1", "y1"))
+        r = scene.crank.radius
+        assert (y0, x0) == pytest.approx((r * np.cos(np.radians(77)), r * np.sin(np.radians(77))))
+        assert np.hypot(x1 - x0, y1 - y0) == pytest.approx(r / ratio)
+        assert x1 == pytest.approx(scene.piston.offset, abs=1e-12)
+
+
 def test_dragging_the_flywheel_draws_what_simulate_gives(live, scene):
     drawn = live.fluctuation()
     slider = live.page.locator(".bk-Slider").filter(has_text="flywheel")

@@ -154,7 +154,7 @@ def work_precision(
 def demo(
     scene: Annotated[
         str, typer.Argument(metavar="SCENE", help="A scene file, or the name of a shipped scene.")
-    ] = "yi_diesel_free",
+    ] = "propeller",
     port: Annotated[int, typer.Option(help="Port of the page; 0: a free one.")] = 5006,
     no_browser: Annotated[
         bool, typer.Option("--no-browser", help="Serve only, open no browser.")

@@ -129,6 +129,7 @@ def add_page(
         chosen=sources["chosen"],
         **player,
         parts=drawn.parts,
+        tabs=tabs,
         cursors=shown.cursors,
         readout=drawn.readout,
         polar=shown.polar["shown"],

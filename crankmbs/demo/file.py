@@ -160,6 +160,7 @@ def _document(
         knobs=knobs,
         states=states,
         sources=page.sources,
+        tabs=page.tabs,
         message=page.message,
         reset=reset,
         toml=toml,

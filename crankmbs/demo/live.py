@@ -8,7 +8,7 @@ from typing import Any
 
 from bokeh.document import Document
 from bokeh.layouts import row
-from bokeh.models import Button, ColumnDataSource, Div, Select
+from bokeh.models import Button, ColumnDataSource, Select
 
 from crankmbs.demo.controls import RODS, cylinders_choice, knob_area, rod_choice, slider_of
 from crankmbs.demo.document import Page, add_page, add_script, force_of
@@ -20,8 +20,6 @@ from crankmbs.errors import CrankmbsError
 from crankmbs.scene import Scene
 
 __all__ = ["Live"]
-
-_SMALL = {"font-size": "13px", "color": "#555555", "line-height": "31px"}
 
 
 class Live:
@@ -54,7 +52,6 @@ class Live:
         reset = Button(label="reset", name="reset", width=60)
         toml = Button(label="scene TOML", name="toml", width=100)
         csv = Button(label="data CSV", name="csv", width=90)
-        latency = Div(text="", name="latency", width=126, syncable=False, styles=_SMALL)
         toml.on_click(lambda: self._give(*scene_file(self._outcome.result.scene, self._stem)))
         csv.on_click(lambda: self._give(*data_file(self._outcome.result, self._stem)))
         self._request.on_change("data", lambda _attr, _old, _new: self._answer())
@@ -64,7 +61,7 @@ class Live:
             self._outcome,
             state_of(self._outcome, self._force),
             below,
-            row(latency, reset, toml, csv),
+            row(reset, toml, csv),
             (self._request, self._reply, self._download),
         )
         add_script(
@@ -75,7 +72,6 @@ class Live:
             reset=reset,
             request=self._request,
             reply=self._reply,
-            latency=latency,
         )
         add_script(document, "download", download=self._download)
 

@@ -59,7 +59,7 @@ def stage(scene: Scene, peak: float, shapes: ColumnDataSource, width: int, heigh
 
     X, to the head, points up and Y to the left, so that counter-clockwise stays so.
     """
-    parts = {name: scratch(*columns) for name, columns in _PARTS.items()}
+    parts = {name: scratch(*columns, name=f"{name} drawn") for name, columns in _PARTS.items()}
     drawing = _canvas(width, height)
     pressures = LinearColorMapper(palette=_PALE_TO_RED, low=0.0, high=peak)
     r = scene.crank.radius

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import html
+import itertools
+import math
 from collections.abc import Callable, Iterable
 from typing import Any
 
@@ -17,8 +19,9 @@ __all__ = ["ALL", "Data", "state_of"]
 Data = dict[str, dict[str, Any]]
 
 ALL = range(len(STORES))
+_SERIAL = itertools.count()
 
-_RPM = 0.10471975511965977
+_RPM = math.pi / 30.0
 
 
 def state_of(outcome: Outcome, force: float, tabs: Iterable[int] = ALL) -> Data:
@@ -37,7 +40,7 @@ def state_of(outcome: Outcome, force: float, tabs: Iterable[int] = ALL) -> Data:
     state: Data = {
         "frames": columns.frames(outcome, force),
         "shapes": columns.shapes(outcome),
-        "chosen": {"cylinder": [outcome.cylinder]},
+        "chosen": {"cylinder": [outcome.cylinder], "serial": [next(_SERIAL)]},  # never unchanged
         "dead": {"x": list(marks), "label": [text.replace("\n", " ") for text in marks.values()]},
         "numbers": {"text": [_numbers(outcome)]},
     }

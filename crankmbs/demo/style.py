@@ -118,6 +118,6 @@ def legend(place: figure, entries: list[tuple[str, list[Any]]]) -> None:
     )
 
 
-def scratch(*columns: str) -> ColumnDataSource:
+def scratch(*columns: str, name: str | None = None) -> ColumnDataSource:
     """An empty source that a script of the page fills; the server never sees it."""
-    return ColumnDataSource({name: [] for name in columns}, syncable=False)
+    return ColumnDataSource({column: [] for column in columns}, name=name, syncable=False)

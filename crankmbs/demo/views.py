@@ -55,7 +55,7 @@ class Views:
     stores: dict[str, ColumnDataSource]
     dead: ColumnDataSource
     panels: list[TabPanel] = field(default_factory=list)
-    cursors: list[Span] = field(default_factory=list)
+    cursors: list[list[Span]] = field(default_factory=list)
     tops: list[LinearAxis] = field(default_factory=list)
     fits: list[dict[str, Any]] = field(default_factory=list)
     budget: dict[str, Any] = field(default_factory=dict)
@@ -95,7 +95,7 @@ def views(
 
 def _axis(made: Views, plots: list[figure], angles: tuple[float, float]) -> None:
     cursors, top = angle_axis(plots, *angles, made.dead)
-    made.cursors += cursors
+    made.cursors.append(cursors)
     made.tops.append(top)
 
 
@@ -250,4 +250,5 @@ def _bearing(made: Views, force_unit: str, width: int, height: int) -> None:
         width=width - side - 90,
         styles={"font-size": "15px"},
     )
+    made.cursors.append([])
     _panel(made, row(place, column(select, about)), "bearing load")

@@ -1,15 +1,14 @@
 // The knobs: one request is under way at a time, and when its answer comes the newest one goes out.
-export default ({knobs, choices, reset, request, reply, latency}) => {
+export default ({knobs, choices, reset, request, reply}) => {
   const value = (knob) => ("labels" in knob ? knob.labels[knob.active] : knob.value)
   const initial = Object.fromEntries(Object.entries(knobs).map(([name, knob]) => [
     name, "labels" in knob ? knob.active : knob.value,
   ]))
-  let waiting = false, stale = false, number = 0, sent = 0
+  let waiting = false, stale = false, number = 0
   const send = () => {
     stale = waiting
     if (waiting) return
     waiting = true
-    sent = performance.now()
     number += 1
     const values = Object.fromEntries(Object.entries(knobs).map(([name, knob]) => [name, value(knob)]))
     const {cylinder, tabs} = choices
@@ -22,7 +21,6 @@ export default ({knobs, choices, reset, request, reply, latency}) => {
   choices.tabs.properties.active.change.connect(send)
   reply.properties.data.change.connect(() => {
     waiting = false
-    latency.text = `answered in ${Math.round(performance.now() - sent)} ms`
     if (stale) send()
   })
   reset.on_event("button_click", () => {

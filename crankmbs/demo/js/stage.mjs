@@ -1,6 +1,6 @@
 // The mechanism: draws it at the angle of the slider, and turns it in slow motion.
 // Between two samples everything is interpolated; the time of the run says how fast it turns.
-export default ({frames, shapes, chosen, angle, play, back, forward, slow, parts, cursors, readout,
+export default ({frames, shapes, chosen, angle, play, back, forward, slow, parts, tabs, cursors, readout,
                  polar, tip, canvas, radius, colours, names, unit, reach}) => {
   // sources change one after the other, the chosen cylinder last: only then all fit together
   let run = frames.data, outlines = shapes.data, own = chosen.data["cylinder"][0] - 1
@@ -32,6 +32,13 @@ export default ({frames, shapes, chosen, angle, play, back, forward, slow, parts
       for (let k = 0; k < x.length; k++) peak = Math.max(peak, Math.hypot(x[k], y[k]))
     }
     if (peak > longest || peak < 0.3 * longest || longest === 1) longest = peak || 1
+  }
+
+  const follow = () => {  // only what is in sight: every change is a figure painted anew
+    for (const cursor of cursors[tabs.active]) cursor.location = angle.value
+    if (cursors[tabs.active].length > 0) return
+    const {x, y} = polarTip()
+    tip.data = {x0: [0], y0: [0], x1: [y], y1: [x]}
   }
 
   const draw = () => {
@@ -87,9 +94,7 @@ export default ({frames, shapes, chosen, angle, play, back, forward, slow, parts
     parts.arrows.data = arrows
     words.push(`pressure ${at("pressure").toFixed(2)} bar`, `speed ${at("speed").toFixed(1)} rpm`)
     readout.data = {...readout.data, text: words}
-    for (const cursor of cursors) cursor.location = angle.value
-    const {x, y} = polarTip()
-    tip.data = {x0: [0], y0: [0], x1: [y], y1: [x]}
+    follow()
   }
 
   const frame = () => {  // equal scales, with room for every cylinder and for the arrows
@@ -139,7 +144,8 @@ export default ({frames, shapes, chosen, angle, play, back, forward, slow, parts
   back.on_event("button_click", step(-1))
   forward.on_event("button_click", step(1))
   angle.properties.value.change.connect(draw)
-  polar.properties.data.change.connect(draw)
+  polar.properties.data.change.connect(follow)
+  tabs.properties.active.change.connect(follow)
   chosen.properties.data.change.connect(() => {
     [run, outlines, own] = [frames.data, shapes.data, chosen.data["cylinder"][0] - 1]
     frame()
