@@ -1,0 +1,291 @@
+"""What the page is given: scenes from knobs, columns from a run, files to take away."""
+
+import dataclasses
+import io
+import json
+import socket
+import subprocess
+import sys
+import zipfile
+
+import numpy as np
+import pytest
+from bokeh.document import Document
+
+from crankmbs import (
+    Constant,
+    InputError,
+    Motion,
+    Oscillation,
+    OutputError,
+    Run,
+    SpeedTable,
+    Table,
+    TimeTable,
+    Viscous,
+    budget,
+    compare,
+    load_scene,
+    shipped_scenes,
+    simulate,
+)
+from crankmbs.compare import CAUSES
+from crankmbs.demo import columns
+from crankmbs.demo.export import data_file, scene_file
+from crankmbs.demo.file import save_page
+from crankmbs.demo.knobs import FIRING_ORDERS, knobs_of, turned
+from crankmbs.demo.live import Live
+from crankmbs.demo.outcome import prepared, run
+from crankmbs.demo.state import state_of
+from crankmbs.measures import measure
+
+SINGLE, DIESEL = load_scene("propeller"), load_scene("yi_diesel_free")
+RPM = np.pi / 30.0
+
+
+@pytest.fixture(scope="module")
+def diesel():
+    return run(prepared(DIESEL))
+
+
+@pytest.mark.parametrize("name", shipped_scenes())
+def test_knobs_at_their_values_leave_the_scene_alone(name):
+    scene = load_scene(name)
+    assert turned(scene, {knob.name: knob.value for knob in knobs_of(scene)}) is scene
+    for knob in knobs_of(scene):
+        assert knob.start <= knob.value <= knob.end
+        assert knob.step > 0.0
+
+
+def test_only_knobs_that_mean_something_are_there():
+    assert {k.name for k in knobs_of(DIESEL)} == {
+        "rod_ratio", "offset", "rod_mass", "flywheel", "speed", "load", "pressure",
+    }  # fmt: skip
+    assert {k.name for k in knobs_of(load_scene("grega_lecture"))} == {
+        "rod_ratio", "offset", "rod_mass", "speed", "pressure",
+    }  # fmt: skip
+    assert {k.name for k in knobs_of(load_scene("torque_driven"))} == {
+        "rod_ratio", "offset", "rod_mass", "flywheel", "load",
+    }  # fmt: skip
+
+
+def test_another_rod_keeps_its_shape():
+    rod = turned(SINGLE, {"rod_ratio": 0.25, "rod_mass": 2.0}).rod
+    old = SINGLE.rod
+    assert rod.length == pytest.approx(SINGLE.crank.radius / 0.25)
+    assert rod.center_of_mass / rod.length == pytest.approx(old.center_of_mass / old.length)
+    assert rod.inertia / (rod.mass * rod.length**2) == pytest.approx(
+        old.inertia / (old.mass * old.length**2)
+    )
+
+
+def test_the_rod_is_rigid_or_two_masses():
+    assert turned(SINGLE, {"rod": "two-mass"}).rod.inertia == "two-mass"
+    assert turned(SINGLE, {"rod": "rigid"}) == SINGLE
+    lumped = load_scene("grega_lecture")
+    bar = turned(lumped, {"rod": "rigid"}).rod
+    assert bar.inertia == pytest.approx(bar.mass * bar.length**2 / 12.0)
+    assert turned(lumped, {"rod_ratio": 0.2}).rod.inertia == "two-mass"
+
+
+def test_more_cylinders_share_the_load_evenly():
+    scene = turned(SINGLE, {"cylinders": "6", "load": 50})
+    assert scene.layout.firing_order == FIRING_ORDERS["6"]
+    assert scene.torque[0].coefficient == pytest.approx(3.0 * SINGLE.torque[0].coefficient)
+    for number, order in FIRING_ORDERS.items():
+        assert sorted(order) == list(range(1, int(number) + 1))
+
+
+def test_loads_are_the_same_torque_at_another_speed():
+    loads = (
+        Constant(torque=-3.0),
+        Viscous(coefficient=0.1),
+        *SINGLE.torque,
+        SpeedTable(file=Table((0.0, 300.0), (0.0, -5.0))),
+        TimeTable(file=Table((0.0, 5.0), (-1.0, -1.0))),
+    )
+    scene = dataclasses.replace(SINGLE, torque=loads)
+    new = turned(scene, {"speed": 0.5 * scene.start.speed / RPM})
+    constant, viscous, quadratic, table, over_time = new.torque
+    assert new.start.speed == pytest.approx(0.5 * scene.start.speed)
+    assert constant.torque == -3.0
+    assert viscous.coefficient == pytest.approx(0.2)
+    assert quadratic.coefficient == pytest.approx(4.0 * SINGLE.torque[0].coefficient)
+    assert (table.file.x[1], table.file.y[1]) == pytest.approx((150.0, -5.0))
+    assert over_time == loads[-1]
+
+
+def test_a_swinging_speed_keeps_its_share_of_swing():
+    swing = Oscillation(mean=300.0, amplitude=30.0, order=2.0)
+    scene = dataclasses.replace(
+        SINGLE, start=None, torque=(), motion=Motion(speed=swing), run=Run(until="1 cycle")
+    )
+    speed = turned(scene, {"speed": 100.0 / RPM}).motion.speed
+    assert (speed.mean, speed.amplitude) == pytest.approx((100.0, 10.0))
+
+
+def test_pressure_scales_table_and_diagram():
+    table = turned(DIESEL, {"pressure": 150}).gas
+    assert table.pressure.y == pytest.approx(tuple(1.5 * p for p in DIESEL.gas.pressure.y))
+    assert table.ambient == DIESEL.gas.ambient
+    twin = load_scene("v_twin")
+    diagram = turned(twin, {"pressure": 50}).gas.indicator
+    assert diagram.peak_pressure == pytest.approx(0.5 * twin.gas.indicator.peak_pressure)
+    assert diagram.intake_pressure == pytest.approx(0.5 * twin.gas.indicator.intake_pressure)
+
+
+def test_a_scene_that_cannot_be_is_refused():
+    with pytest.raises(InputError, match=r"rod\.length must be at least"):
+        turned(SINGLE, {"rod_ratio": 0.9, "offset": 20.0})
+
+
+def test_a_run_over_time_becomes_one_over_whole_cycles():
+    assert prepared(SINGLE).run.until.unit == "cycle"
+    assert prepared(SINGLE).run.until.value == 19.0
+    assert prepared(DIESEL).run.until == DIESEL.run.until
+    assert len(run(prepared(SINGLE)).result.data["time"]) == 721
+
+
+def test_a_run_that_stops_is_an_error_with_its_sentence():
+    scene = turned(prepared(SINGLE), {"flywheel": 8e-4})
+    message = simulate(scene).message
+    with pytest.raises(InputError) as caught:
+        run(scene)
+    assert str(caught.value) == message
+
+
+def test_the_same_scene_is_not_run_again(diesel):
+    scene = diesel.result.scene
+    assert diesel.followed_by(scene, 1) is diesel
+    third = diesel.followed_by(scene, 3)
+    assert third.result is diesel.result
+    assert third.cylinder == 3
+    assert third.followed_by(turned(scene, {"cylinders": "2"}), 3).cylinder == 2
+
+
+def test_columns_are_those_of_simulate_compare_and_budget(diesel):
+    result = diesel.result
+    shown = state_of(diesel, 1e3)
+    measured = measure(result)
+    assert shown["speed"]["speed, simulated"] == pytest.approx(
+        result.data["crank_speed"].values / RPM, rel=1e-14
+    )
+    assert shown["speed"]["speed, constant"][0] * RPM == pytest.approx(measured.mean_speed.value)
+    assert f"{100.0 * measured.fluctuation.value:.3f} %" in shown["numbers"]["text"][0]
+    rows = compare(result)
+    for quantity, store, scale in (
+        ("piston displacement", "motion", 1e-3),
+        ("torque", "thrust", 1.0),
+        ("side thrust", "thrust", 1e3),
+        ("crank pin force x", "bearing", 1e3),
+    ):
+        lecture = rows.row(quantity, rows.references[-1])
+        at = f"{quantity}, "
+        assert shown[store][f"{at}lecture"] * scale == pytest.approx(lecture.values)
+        assert shown[store][f"{at}simulated"] * scale == pytest.approx(rows.simulated[quantity])
+    split = budget(result).split("side thrust")
+    causes = [shown["budget"][f"side thrust: {cause}"] for cause in CAUSES]
+    assert sum(causes) * 1e3 == pytest.approx(split.total.curve)
+    assert "two-mass rod is worth up to" in shown["words"]["side thrust"][0]
+
+
+def test_forces_on_the_mechanism_balance_the_piston():
+    outcome = run(prepared(load_scene("v_twin"))).followed_by(prepared(load_scene("v_twin")), 2)
+    frames = columns.frames(outcome, 1.0)
+    data, scene = outcome.result.data, outcome.result.scene
+    push = scene.piston.mass * data["piston_acceleration"].values[:, 1]  # towards the crank
+    bank = scene.cylinders[1].bank
+    for axis, along in (("x", np.cos(bank)), ("y", np.sin(bank))):
+        forces = sum(frames[f"{name} {axis}"] for name in ("piston pin", "cylinder wall", "gas"))
+        assert forces == pytest.approx(-push * along, abs=1e-6)
+
+
+def test_every_column_has_a_unit(diesel):
+    assert columns.unit_of("degrees", "kN") == "deg"
+    assert columns.unit_of("speed, simulated", "kN") == "rpm"
+    assert columns.unit_of("piston displacement: datum", "kN") == "mm"
+    assert columns.unit_of("main bearing force x, lecture", "kN") == "kN"
+
+
+def test_the_scene_is_packed_with_its_tables(diesel):
+    name, content = scene_file(diesel.result.scene, "mine")
+    with zipfile.ZipFile(io.BytesIO(content)) as packed:
+        assert packed.namelist() == ["mine.toml", "mine_pressure.csv"]
+    assert name == "mine.zip"
+    assert scene_file(load_scene("coasting"), "free")[0] == "free.toml"
+    name, content = data_file(diesel.result, "mine")
+    assert name == "mine.csv"
+    assert content.startswith(b"time [s],crank_angle [rad],crank_speed [rad/s]")
+
+
+def ask(document, number, values, *, cylinder=1, tab=0):
+    request = document.get_model_by_name("request")
+    asked = {"number": number, "values": values, "cylinder": cylinder, "tab": tab}
+    request.data = {"json": [json.dumps(asked)]}
+    assert document.get_model_by_name("reply").data == {"number": [number]}
+
+
+def test_the_live_page_answers_and_keeps_its_last_good_state():
+    document, outcome = Document(), run(prepared(SINGLE))
+    Live(outcome.result.scene, outcome, "mine").add_to(document)
+    speed = document.get_model_by_name("speed data")
+    message = document.get_model_by_name("message")
+    before = np.ptp(speed.data["speed, simulated"])
+    ask(document, 1, {"flywheel": 0.04})
+    held = np.ptp(speed.data["speed, simulated"])
+    assert held == pytest.approx(before * 0.52, rel=0.1)
+    ask(document, 2, {"rod_ratio": 0.9, "offset": 23.0})
+    assert message.text.startswith("error: rod.length must be at least")
+    ask(document, 3, {"flywheel": 8e-4})
+    assert message.text.startswith("error: swings without reaching the end")
+    assert np.ptp(speed.data["speed, simulated"]) == held
+    ask(document, 4, {"cylinders": "2"}, cylinder=2)
+    assert message.text == ""
+    assert document.get_model_by_name("cylinder").options == ["1", "2"]
+    assert document.get_model_by_name("chosen data").data["cylinder"] == [2]
+
+
+def test_two_visitors_have_a_page_each(diesel):
+    documents = [Document(), Document()]
+    for document in documents:
+        Live(diesel.result.scene, diesel, "mine").add_to(document)
+    ask(documents[0], 1, {"flywheel": 0.3})
+    first, second = (
+        np.ptp(d.get_model_by_name("speed data").data["speed, simulated"]) for d in documents
+    )
+    assert first < second
+
+
+@pytest.mark.parametrize(
+    ("varied", "message"),
+    [
+        (["flywhel"], '--vary: this scene has rod_ratio, .*cylinders; "flywhel" came'),
+        (["load", "load"], "--vary: one knob or two different ones; load, load came"),
+        (["load", "rod", "offset"], "--vary: one knob or two different ones"),
+    ],
+)
+def test_what_a_page_cannot_vary_is_refused(varied, message, tmp_path):
+    with pytest.raises(InputError, match=message):
+        save_page(SINGLE, "mine", varied, tmp_path / "page.html")
+
+
+def test_a_page_holds_every_state_of_its_grid(tmp_path):
+    scene = load_scene("compressor")
+    target = tmp_path / "page.html"
+    assert save_page(scene, "mine", ["rod", "cylinders"], target) == 2 * len(FIRING_ORDERS)
+    assert target.stat().st_size > 1e6
+    (tmp_path / "taken").write_text("")
+    with pytest.raises(OutputError):
+        save_page(scene, "mine", ["rod"], tmp_path / "taken" / "page.html")
+
+
+def test_a_taken_port_is_refused():
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        port = str(taken.getsockname()[1])
+        command = [sys.executable, "-c", "from crankmbs.cli import main; main()", "demo"]
+        command += ["coasting", "--no-browser", "--port", port]
+        ended = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert ended.returncode == 2
+    assert f"error: --port {port}: cannot be used" in ended.stderr
