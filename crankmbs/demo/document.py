@@ -72,13 +72,14 @@ def add_page(
     _, unit = force_of(outcome)
     sources = {name: ColumnDataSource(data, name=f"{name} data") for name, data in state.items()}
     peak = float(np.max(outcome.view.values("gas_pressure"), initial=1e-9)) / 1e5
-    drawn = stage(scene, max(peak, 1e-9), sources["shapes"], _LEFT, _HEIGHT - 96 - 88)
+    drawn = stage(scene, max(peak, 1e-9), sources["shapes"], _LEFT, _HEIGHT - 88)
     view = outcome.view
+    low, high = round(view.low, 6), round(view.high, 6)
     shown = views(
         {name: sources[name] for name in STORES},
         sources["dead"],
         sources["words"],
-        (view.low, view.high),
+        (low, high),
         unit,
         _RIGHT,
         _HEIGHT - 36,
@@ -104,7 +105,7 @@ def add_page(
         name="numbers",
         styles={"font-size": "15px", "white-space": "nowrap"},
     )
-    player = _player(view.low, view.high, float(view.values("time")[-1] - view.values("time")[0]))
+    player = _player(low, high, float(view.values("time")[-1] - view.values("time")[0]))
     left = column(
         drawn.drawing,
         drawn.numbers,
@@ -136,6 +137,7 @@ def add_page(
         tip=shown.tip,
         canvas=drawn.drawing,
         radius=scene.crank.radius,
+        gassed=scene.gas is not None,
         colours=list(ARROWS.values()),
         names=list(FORCES),
         unit=unit,

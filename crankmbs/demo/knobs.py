@@ -58,7 +58,7 @@ def knobs_of(scene: Scene) -> tuple[Knob, ...]:
     if scene.start is not None:
         inertia = scene.crank.inertia or 1e-3
         most = _above(4.0 * inertia)
-        title = "flywheel and crank [kg m²]"
+        title = "flywheel [kg m²]"
         least = most / 100.0
         knobs.append(
             Knob("flywheel", title, least, most, least, scene.crank.inertia, _format(most))
@@ -67,7 +67,7 @@ def knobs_of(scene: Scene) -> tuple[Knob, ...]:
     if speed:
         rpm = speed / _RPM
         low, high = sorted((0.25 * rpm, _above(1.75 * abs(rpm)) * math.copysign(1.0, rpm)))
-        knobs.append(Knob("speed", "mean speed [rpm]", low, high, abs(rpm) / 100.0, rpm, "0"))
+        knobs.append(Knob("speed", "speed [rpm]", low, high, abs(rpm) / 100.0, rpm, "0"))
     if scene.torque:
         knobs.append(Knob("load", "load [%]", 0.0, 200.0, 1.0, 100.0, "0"))
     if scene.gas is not None:

@@ -26,6 +26,7 @@ _PALE_TO_RED = (
     "#dd7131",
     "#c9531a",
 )
+_NUMBERS = 74  # px, height
 _ENDS = ("x0", "y0", "x1", "y1")
 _PARTS = {
     "gas": ("x", "y", "pressure", "alpha"),
@@ -34,6 +35,7 @@ _PARTS = {
     "crank": (*_ENDS, "alpha"),
     "pins": ("x", "y", "alpha"),
     "arrows": (*_ENDS, "turn", "size", "colour"),
+    "label": ("x", "y", "text"),
 }
 
 
@@ -53,14 +55,16 @@ class Stage:
 
 
 def stage(scene: Scene, peak: float, shapes: ColumnDataSource, width: int, height: int) -> Stage:
-    """Draw the mechanism of a scene into a figure of this size [px]; the animation moves it.
+    """Draw the mechanism of a scene and its numbers, together of this size [px].
+
+    The animation moves it all.
 
     peak [bar] : the pressure of the deepest colour
 
     X, to the head, points up and Y to the left, so that counter-clockwise stays so.
     """
     parts = {name: scratch(*columns, name=f"{name} drawn") for name, columns in _PARTS.items()}
-    drawing = _canvas(width, height)
+    drawing = _canvas(width, height - _NUMBERS)
     pressures = LinearColorMapper(palette=_PALE_TO_RED, low=0.0, high=peak)
     r = scene.crank.radius
     drawing.circle(0.0, 0.0, radius=r, fill_color=None, line_color="#c8c8c8", line_dash=[4, 4])
@@ -114,6 +118,15 @@ def stage(scene: Scene, peak: float, shapes: ColumnDataSource, width: int, heigh
         fill_color="colour",
         line_color="colour",
     )
+    drawing.text(
+        "x",
+        "y",
+        text="text",
+        source=parts["label"],
+        text_font_size="15px",
+        text_align="center",
+        text_baseline="middle",
+    )
     numbers, readout = _numbers(width)
     return Stage(drawing, numbers, parts, shapes, readout, 2.4 * r)
 
@@ -136,19 +149,19 @@ def _canvas(width: int, height: int) -> figure:
 
 
 def _numbers(width: int) -> tuple[figure, ColumnDataSource]:
-    """The forces in the colours of their arrows, pressure and speed, in two columns."""
-    count = len(FORCES) + 2
+    """The forces in the colours of their arrows, and the speed, in two columns."""
+    count = len(FORCES) + 1
     readout = ColumnDataSource(
         {
             "x": [k % 2 for k in range(count)],
             "y": [-(k // 2) for k in range(count)],
-            "colour": [*ARROWS.values(), "#333333", "#333333"],
+            "colour": [*ARROWS.values(), "#333333"],
             "text": [""] * count,
         },
         syncable=False,
     )
-    made = _canvas(width, 96)
-    made.x_range, made.y_range = Range1d(-0.05, 2.0), Range1d(-3.6, 0.6)
+    made = _canvas(width, _NUMBERS)
+    made.x_range, made.y_range = Range1d(-0.05, 2.0), Range1d(-2.6, 0.6)
     made.text(
         "x",
         "y",

@@ -169,12 +169,12 @@ def _budget(
 ) -> None:
     select = Select(options=list(BUDGETED), value=BUDGETED[0], width=220, name="quantity")
     sentences = Div(
-        text="", width=width - 250, height=66, name="sentences", styles={"font-size": "14px"}
+        text="", width=width - 250, height=84, name="sentences", styles={"font-size": "14px"}
     )
     sentences.syncable = False
     ends = [f"{side}{k} {end}" for k in range(len(_CAUSES)) for side in _SIDES for end in _ENDS]
     shown = scratch("degrees", "total", *ends)
-    place = plot(width, height - 78, "")
+    place = plot(width, height - 96, "")
     _axis(made, [place], angles)
     entries = []
     for k, (cause, colour) in enumerate(_CAUSES.items()):
@@ -229,7 +229,17 @@ def _bearing(made: Views, force_unit: str, width: int, height: int) -> None:
             line_dash=look["dash"],
         )
     place.scatter("x", "y", source=marks, size=8, color="black")
-    place.text("x", "y", text="label", source=marks, text_font_size="14px", x_offset=7, y_offset=-5)
+    place.text(
+        "x",
+        "y",
+        text="label",
+        source=marks,
+        text_font_size="14px",
+        x_offset=10,
+        y_offset=-7,
+        background_fill_color="white",
+        background_fill_alpha=0.85,
+    )
     place.segment("x0", "y0", "x1", "y1", source=made.tip, line_color=PINK, line_width=3)
     place.scatter("x1", "y1", source=made.tip, size=12, color=PINK)
     legend(place, [(_NAMES[curve], [lines[curve]]) for curve in ("simulated", "lecture")])

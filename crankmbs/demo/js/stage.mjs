@@ -1,7 +1,7 @@
 // The mechanism: draws it at the angle of the slider, and turns it in slow motion.
 // Between two samples everything is interpolated; the time of the run says how fast it turns.
 export default ({frames, shapes, chosen, angle, play, back, forward, slow, parts, tabs, cursors, readout,
-                 polar, tip, canvas, radius, colours, names, unit, reach}) => {
+                 polar, tip, canvas, radius, gassed, colours, names, unit, reach}) => {
   // sources change one after the other, the chosen cylinder last: only then all fit together
   let run = frames.data, outlines = shapes.data, own = chosen.data["cylinder"][0] - 1
 
@@ -92,20 +92,28 @@ export default ({frames, shapes, chosen, angle, play, back, forward, slow, parts
       words.push(`${name} ${force.toFixed(force < 10 ? 2 : 1)} ${unit}`)
     })
     parts.arrows.data = arrows
-    words.push(`pressure ${at("pressure").toFixed(2)} bar`, `speed ${at("speed").toFixed(1)} rpm`)
+    words.push(`speed ${at("speed").toFixed(1)} rpm`)
+    const [x, y] = above[own]
+    parts.label.data = {x: [y], y: [x], text: gassed ? [`${at("pressure").toFixed(1)} bar`] : [""]}
     readout.data = {...readout.data, text: words}
     follow()
   }
 
+  let above = []  // middle of a little beyond every head
   const frame = () => {  // equal scales, with room for every cylinder and for the arrows
-    const along = [-1.5 * radius, 1.3 * radius, ...outlines["liner x"].flatMap((l) => Array.from(l))]
+    const {"liner x": x, "liner y": y} = outlines
+    above = x.map((line, k) => {
+      const beyond = (v) => (v[1] + v[2]) / 2 + (0.22 * radius * (v[1] - v[0])) / Math.hypot(line[1] - line[0], y[k][1] - y[k][0])
+      return [beyond(line), beyond(y[k])]
+    })
+    const along = [-1.5 * radius, 1.3 * radius, ...above.map((p) => p[0] + 0.12 * radius), ...outlines["liner x"].flatMap((l) => Array.from(l))]
     const across = [-1.9 * radius, 1.9 * radius, ...outlines["liner y"].flatMap((l) => Array.from(l))]
     const middle = (v) => (Math.max(...v) + Math.min(...v)) / 2
     const half = (v) => (Math.max(...v) - Math.min(...v)) / 2
     const scale = 1.04 * Math.max(half(along) / canvas.height, half(across) / canvas.width)
-    const [x, y, dx, dy] = [middle(across), middle(along), scale * canvas.width, scale * canvas.height]
-    canvas.x_range.setv({start: x + dx, end: x - dx})
-    canvas.y_range.setv({start: y - dy, end: y + dy})
+    const [mx, my, dx, dy] = [middle(across), middle(along), scale * canvas.width, scale * canvas.height]
+    canvas.x_range.setv({start: mx + dx, end: mx - dx})
+    canvas.y_range.setv({start: my - dy, end: my + dy})
   }
 
   const time = () => {
