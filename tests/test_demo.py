@@ -18,6 +18,7 @@ from crankmbs import (
     Motion,
     Oscillation,
     OutputError,
+    Rod,
     Run,
     SpeedTable,
     Table,
@@ -82,6 +83,8 @@ def test_another_rod_keeps_its_shape():
 def test_the_rod_is_rigid_or_two_masses():
     assert turned(SINGLE, {"rod": "two-mass"}).rod.inertia == "two-mass"
     assert turned(SINGLE, {"rod": "rigid"}) == SINGLE
+    bare = dataclasses.replace(SINGLE, rod=Rod(length=0.15, inertia=1e-3))
+    assert turned(bare, {"rod": "rigid"}) == bare  # no mass, yet an inertia
     lumped = load_scene("grega_lecture")
     bar = turned(lumped, {"rod": "rigid"}).rod
     assert bar.inertia == pytest.approx(bar.mass * bar.length**2 / 12.0)

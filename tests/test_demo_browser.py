@@ -2,15 +2,15 @@
 
 import io
 import re
+import signal
 import subprocess
 import sys
 import zipfile
-from contextlib import contextmanager
 from urllib.parse import urlsplit
 
 import numpy as np
 import pytest
-from browser import chromium
+from browser import chromium, visiting
 from playwright.sync_api import sync_playwright
 from typer.testing import CliRunner
 
@@ -22,64 +22,6 @@ from crankmbs.measures import measure
 from crankmbs.scene_writer import scene_files
 
 SCENE = "propeller"
-READY = "window.Bokeh && Bokeh.documents.length > 0 && Bokeh.documents[0].is_idle"
-MODEL = "(name) => Bokeh.documents[0].get_model_by_name(name)"
-
-
-class Visit:
-    """A page in the browser: reads and sets its models by name, and notes what it asks for."""
-
-    def __init__(self, page):
-        self.page = page
-        self.requests, self.errors = [], []
-        page.on("request", lambda request: self.requests.append(request.url))
-        page.on("pageerror", lambda error: self.errors.append(str(error)))
-        page.on("console", self._console)
-
-    def _console(self, message):
-        if message.type in ("error", "warning"):
-            self.errors.append(message.text)
-
-    def open(self, url):
-        self.page.goto(url)
-        self.page.wait_for_function(READY)
-        return self
-
-    def get(self, name, key):
-        return self.page.evaluate(f"([n, k]) => ({MODEL})(n)[k]", [name, key])
-
-    def set(self, name, key, value):
-        self.page.evaluate(f"([n, k, v]) => {{ ({MODEL})(n)[k] = v }}", [name, key, value])
-
-    def column(self, source, column):
-        return np.array(
-            self.page.evaluate(f"([n, c]) => Array.from(({MODEL})(n).data[c])", [source, column])
-        )
-
-    def settled(self):
-        """Wait until the answer to the last turn of a knob is there."""
-        self.page.wait_for_function(
-            f"() => {{ const asked = ({MODEL})('request').data.json[0] || '{{\"number\": 0}}';"
-            f" return JSON.parse(asked).number === ({MODEL})('reply').data.number[0] }}"
-        )
-        return self
-
-    def wait(self, condition):
-        self.page.wait_for_function(f"() => {{ const model = {MODEL}; return {condition} }}")
-
-    def click(self, button):
-        self.page.get_by_role("button", name=button, exact=True).click()
-
-    def saved(self, button):
-        """The file that a button hands out: its name and content."""
-        with self.page.expect_download() as started:
-            self.click(button)
-        return started.value.suggested_filename, started.value.path().read_bytes()
-
-    def fluctuation(self):
-        """Of the curve that is drawn."""
-        speed = self.column("speed data", "speed, simulated")
-        return np.ptp(speed) / self.column("speed data", "speed, constant")[0]
 
 
 @pytest.fixture(scope="module")
@@ -88,20 +30,6 @@ def browser():
         opened = playwright.chromium.launch(executable_path=chromium(), args=["--no-sandbox"])
         yield opened
         opened.close()
-
-
-@contextmanager
-def visiting(browser, *, offline=False):
-    context = browser.new_context(viewport={"width": 1280, "height": 800}, offline=offline)
-    try:
-        context.set_default_timeout(20e3)
-        visit = Visit(context.new_page())
-        yield visit
-        hosts = {urlsplit(url).hostname for url in visit.requests} - {None}
-        assert hosts <= {"localhost"}
-        assert visit.errors == []
-    finally:
-        context.close()
 
 
 @pytest.fixture(scope="module")
@@ -114,8 +42,10 @@ def address():
     ) as server:
         try:
             yield re.search(r"http://localhost:\d+/", server.stdout.readline())[0]
+            server.send_signal(signal.SIGINT)
+            assert server.wait(timeout=60) == 0
         finally:
-            server.terminate()
+            server.kill()
 
 
 @pytest.fixture(scope="module")

@@ -123,10 +123,11 @@ def _rod(scene: Scene, new: dict[str, float], changed: set[str], kind: str) -> A
     mass, stretch = new["rod_mass"], length / rod.length
     inertia: float | Literal["two-mass"] = "two-mass"
     if kind != "two-mass" and not (kind == "" and rod.inertia == "two-mass"):
-        if rod.inertia == "two-mass" or rod.mass == 0.0:  # the scene knows none: a uniform bar's
-            inertia = mass * length**2 / 12.0
+        if rod.inertia == "two-mass" or (rod.mass == 0.0 and mass > 0.0):
+            inertia = mass * length**2 / 12.0  # the scene knows none: a uniform bar's
         else:
-            inertia = float(rod.inertia) * (mass / rod.mass) * stretch**2
+            heavier = mass / rod.mass if rod.mass > 0.0 else 1.0
+            inertia = float(rod.inertia) * heavier * stretch**2
     return dataclasses.replace(
         rod,
         length=length,

@@ -55,10 +55,6 @@ def prepared(scene: Scene) -> Scene:
 
     A run over time becomes one over as many whole cycles as it has, at least one, so that the
     crank angles shown are the same at every speed.
-
-    Raises
-    ------
-    InputError : the run stops before its end
     """
     run = dataclasses.replace(scene.run, every=None)
     if run.until.unit == "s":

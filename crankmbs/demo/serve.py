@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 
 from bokeh.document import Document
 from bokeh.server.server import Server
@@ -40,7 +41,6 @@ def serve(scene: Scene, stem: str, port: int, ready: Callable[[str, Server], Non
         ) from None
     server.start()
     ready(f"http://localhost:{server.port}/", server)
-    try:
+    with suppress(KeyboardInterrupt):  # the way to end it
         server.io_loop.start()
-    finally:
-        server.stop()
+    server.stop()

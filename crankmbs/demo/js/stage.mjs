@@ -99,14 +99,15 @@ export default ({frames, shapes, chosen, angle, play, back, forward, slow, parts
     follow()
   }
 
-  let above = []  // middle of a little beyond every head
+  let above = []  // a little beyond the left end of every head, clear of the arrow of the gas
   const frame = () => {  // equal scales, with room for every cylinder and for the arrows
     const {"liner x": x, "liner y": y} = outlines
+    const far = 0.045 * (1.5 * radius + Math.max(...x.flatMap((line) => Array.from(line))))
     above = x.map((line, k) => {
-      const beyond = (v) => (v[1] + v[2]) / 2 + (0.22 * radius * (v[1] - v[0])) / Math.hypot(line[1] - line[0], y[k][1] - y[k][0])
-      return [beyond(line), beyond(y[k])]
+      const [dx, dy] = [line[1] - line[0], y[k][1] - y[k][0]], length = Math.hypot(dx, dy)
+      return [line[1] + (far * dx) / length, y[k][1] + (far * dy) / length]
     })
-    const along = [-1.5 * radius, 1.3 * radius, ...above.map((p) => p[0] + 0.12 * radius), ...outlines["liner x"].flatMap((l) => Array.from(l))]
+    const along = [-1.5 * radius, 1.3 * radius, ...above.map((p) => p[0] + far / 2), ...outlines["liner x"].flatMap((l) => Array.from(l))]
     const across = [-1.9 * radius, 1.9 * radius, ...outlines["liner y"].flatMap((l) => Array.from(l))]
     const middle = (v) => (Math.max(...v) + Math.min(...v)) / 2
     const half = (v) => (Math.max(...v) - Math.min(...v)) / 2
