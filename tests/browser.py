@@ -69,10 +69,9 @@ class Visit:
 
     def settled(self):
         """Wait until the answer to the last turn of a knob is there."""
-        self.page.wait_for_function(
-            f"() => {{ const asked = ({MODEL})('request').data.json[0] || '{{\"number\": 0}}';"
-            f" return JSON.parse(asked).number === ({MODEL})('reply').data.number[0] }}"
-        )
+        number = "JSON.parse(model(NAME).data.json[0] || '{\"number\": 0}').number"
+        asked, answered = (number.replace("NAME", f"'{n}'") for n in ("request", "answer"))
+        self.wait(f"{asked} === {answered}")
         return self
 
     def wait(self, condition):

@@ -9,7 +9,15 @@ from bokeh.models import Div, RadioButtonGroup, Select, Slider, UIElement
 
 from crankmbs.demo.knobs import AS_GIVEN, FIRING_ORDERS, Knob
 
-__all__ = ["RODS", "TITLE", "cylinders_choice", "knob_area", "rod_choice", "slider_of"]
+__all__ = [
+    "RODS",
+    "TITLE",
+    "cylinder_choice",
+    "cylinders_choice",
+    "knob_area",
+    "rod_choice",
+    "slider_of",
+]
 
 RODS = ("rigid", "two-mass")
 TITLE = ".bk-slider-title { font-size: 15px; }"
@@ -41,6 +49,12 @@ def cylinders_choice(count: int) -> Select:
     """The scene's own cylinders, or a number of them in line."""
     options = [(AS_GIVEN, f"{AS_GIVEN} ({count})"), *((n, n) for n in FIRING_ORDERS)]
     return Select(options=options, value=AS_GIVEN, name="cylinders", syncable=False, width=106)
+
+
+def cylinder_choice(count: int) -> Select:
+    """The cylinder from which the page is seen."""
+    options = [str(number) for number in range(1, count + 1)]
+    return Select(options=options, value="1", name="cylinder", syncable=False, width=52)
 
 
 def knob_area(

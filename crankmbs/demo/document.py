@@ -70,7 +70,10 @@ def add_page(
     """
     scene = outcome.result.scene
     _, unit = force_of(outcome)
-    sources = {name: ColumnDataSource(data, name=f"{name} data") for name, data in state.items()}
+    sources = {
+        name: ColumnDataSource(data, name=f"{name} data", syncable=False)
+        for name, data in state.items()
+    }
     peak = float(np.max(outcome.view.values("gas_pressure"), initial=1e-9)) / 1e5
     drawn = stage(scene, max(peak, 1e-9), sources["shapes"], _LEFT, _HEIGHT - 88)
     view = outcome.view
