@@ -1,4 +1,4 @@
-"""What the page is given: scenes from knobs, columns from a run, files to take away."""
+"""What the page is given: columns from a run, answers, files to take away."""
 
 import dataclasses
 import io
@@ -13,21 +13,12 @@ import pytest
 from bokeh.document import Document
 
 from crankmbs import (
-    Constant,
     InputError,
-    Motion,
-    Oscillation,
     OutputError,
     Rod,
-    Run,
-    SpeedTable,
-    Table,
-    TimeTable,
-    Viscous,
     budget,
     compare,
     load_scene,
-    shipped_scenes,
     simulate,
 )
 from crankmbs.compare import CAUSES
@@ -35,10 +26,11 @@ from crankmbs.demo import columns
 from crankmbs.demo.answer import unpacked
 from crankmbs.demo.export import data_file, scene_file
 from crankmbs.demo.file import save_page
-from crankmbs.demo.knobs import FIRING_ORDERS, knobs_of, turned
+from crankmbs.demo.knobs import FIRING_ORDERS, turned
 from crankmbs.demo.live import Live
 from crankmbs.demo.outcome import prepared, run
 from crankmbs.demo.state import state_of
+from crankmbs.demo.views import STORES
 from crankmbs.measures import measure
 
 SINGLE, DIESEL = load_scene("propeller"), load_scene("yi_diesel_free")
@@ -48,99 +40,6 @@ RPM = np.pi / 30.0
 @pytest.fixture(scope="module")
 def diesel():
     return run(prepared(DIESEL))
-
-
-@pytest.mark.parametrize("name", shipped_scenes())
-def test_knobs_at_their_values_leave_the_scene_alone(name):
-    scene = load_scene(name)
-    assert turned(scene, {knob.name: knob.value for knob in knobs_of(scene)}) is scene
-    for knob in knobs_of(scene):
-        assert knob.start <= knob.value <= knob.end
-        assert knob.step > 0.0
-
-
-def test_only_knobs_that_mean_something_are_there():
-    assert {k.name for k in knobs_of(DIESEL)} == {
-        "rod_ratio", "offset", "rod_mass", "flywheel", "speed", "load", "pressure",
-    }  # fmt: skip
-    assert {k.name for k in knobs_of(load_scene("grega_lecture"))} == {
-        "rod_ratio", "offset", "rod_mass", "speed", "pressure",
-    }  # fmt: skip
-    assert {k.name for k in knobs_of(load_scene("torque_driven"))} == {
-        "rod_ratio", "offset", "rod_mass", "flywheel", "load",
-    }  # fmt: skip
-
-
-def test_another_rod_keeps_its_shape():
-    rod = turned(SINGLE, {"rod_ratio": 0.25, "rod_mass": 2.0}).rod
-    old = SINGLE.rod
-    assert rod.length == pytest.approx(SINGLE.crank.radius / 0.25)
-    assert rod.center_of_mass / rod.length == pytest.approx(old.center_of_mass / old.length)
-    assert rod.inertia / (rod.mass * rod.length**2) == pytest.approx(
-        old.inertia / (old.mass * old.length**2)
-    )
-
-
-def test_the_rod_is_rigid_or_two_masses():
-    assert turned(SINGLE, {"rod": "two-mass"}).rod.inertia == "two-mass"
-    assert turned(SINGLE, {"rod": "rigid"}) == SINGLE
-    bare = dataclasses.replace(SINGLE, rod=Rod(length=0.15, inertia=1e-3))
-    assert turned(bare, {"rod": "rigid"}) == bare  # no mass, yet an inertia
-    lumped = load_scene("grega_lecture")
-    bar = turned(lumped, {"rod": "rigid"}).rod
-    assert bar.inertia == pytest.approx(bar.mass * bar.length**2 / 12.0)
-    assert turned(lumped, {"rod_ratio": 0.2}).rod.inertia == "two-mass"
-
-
-def test_more_cylinders_share_the_load_evenly():
-    scene = turned(SINGLE, {"cylinders": "6", "load": 50})
-    assert scene.layout.firing_order == FIRING_ORDERS["6"]
-    assert scene.torque[0].coefficient == pytest.approx(3.0 * SINGLE.torque[0].coefficient)
-    for number, order in FIRING_ORDERS.items():
-        assert sorted(order) == list(range(1, int(number) + 1))
-
-
-def test_loads_are_the_same_torque_at_another_speed():
-    loads = (
-        Constant(torque=-3.0),
-        Viscous(coefficient=0.1),
-        *SINGLE.torque,
-        SpeedTable(file=Table((0.0, 300.0), (0.0, -5.0))),
-        TimeTable(file=Table((0.0, 5.0), (-1.0, -1.0))),
-    )
-    scene = dataclasses.replace(SINGLE, torque=loads)
-    new = turned(scene, {"speed": 0.5 * scene.start.speed / RPM})
-    constant, viscous, quadratic, table, over_time = new.torque
-    assert new.start.speed == pytest.approx(0.5 * scene.start.speed)
-    assert constant.torque == -3.0
-    assert viscous.coefficient == pytest.approx(0.2)
-    assert quadratic.coefficient == pytest.approx(4.0 * SINGLE.torque[0].coefficient)
-    assert (table.file.x[1], table.file.y[1]) == pytest.approx((150.0, -5.0))
-    assert over_time == loads[-1]
-
-
-def test_a_swinging_speed_keeps_its_share_of_swing():
-    swing = Oscillation(mean=300.0, amplitude=30.0, order=2.0)
-    scene = dataclasses.replace(
-        SINGLE, start=None, torque=(), motion=Motion(speed=swing), run=Run(until="1 cycle")
-    )
-    speed = turned(scene, {"speed": 100.0 / RPM}).motion.speed
-    assert (speed.mean, speed.amplitude) == pytest.approx((100.0, 10.0))
-
-
-def test_pressure_scales_table_and_diagram():
-    table = turned(DIESEL, {"pressure": 150}).gas
-    assert table.pressure.y == pytest.approx(tuple(1.5 * p for p in DIESEL.gas.pressure.y))
-    assert table.ambient == DIESEL.gas.ambient
-    twin = load_scene("v_twin")
-    diagram = turned(twin, {"pressure": 50}).gas.indicator
-    assert diagram.peak_pressure == pytest.approx(0.5 * twin.gas.indicator.peak_pressure)
-    assert diagram.intake_pressure == pytest.approx(0.5 * twin.gas.indicator.intake_pressure)
-
-
-def test_a_scene_that_cannot_be_is_refused():
-    with pytest.raises(InputError, match=r"rod\.length must be at least"):
-        turned(SINGLE, {"rod_ratio": 0.9, "offset": 20.0})
 
 
 def test_a_run_over_time_becomes_one_over_whole_cycles():
@@ -193,6 +92,18 @@ def test_columns_are_those_of_simulate_compare_and_budget(diesel):
     assert "two-mass rod is worth up to" in shown["words"]["side thrust"][0]
 
 
+def test_a_quantity_that_vanishes_has_an_empty_budget():
+    scene = load_scene("coasting")
+    outcome = run(prepared(dataclasses.replace(scene, rod=Rod(length=0.15), gravity=None)))
+    massless = dataclasses.replace(scene.piston, mass=0.0)
+    outcome = outcome.followed_by(
+        dataclasses.replace(outcome.result.scene, piston=massless), cylinder=1
+    )
+    shown = columns.budgets(outcome, 1.0)
+    assert not np.any(shown["side thrust: lecture minus run"])
+    assert not np.any(columns.thrusts(outcome, 1.0)["side thrust, simulated"])
+
+
 def test_forces_on_the_mechanism_balance_the_piston():
     outcome = run(prepared(load_scene("v_twin"))).followed_by(prepared(load_scene("v_twin")), 2)
     frames = columns.frames(outcome, 1.0)
@@ -243,12 +154,13 @@ def test_the_live_page_answers_and_says_what_cannot_run():
     assert error == ""
     error, state = ask(document, 2, {"flywheel": 0.04})
     assert (error, swing(state)) == ("", pytest.approx(0.52 * swing(before), rel=0.1))
+    good = swing(state)
     error, state = ask(document, 3, {"rod_ratio": 0.9, "offset": 23.0})
     assert error.startswith("error: rod.length must be at least")
-    assert state == {}
-    error, state = ask(document, 4, {"flywheel": 8e-4})
+    assert swing(state) == good  # the last good one
+    error, state = ask(document, 4, {"flywheel": 8e-4}, tab=2)
     assert error.startswith("error: swings without reaching the end")
-    assert state == {}
+    assert set(state) & set(STORES) == {"thrust"}
     error, state = ask(document, 5, {"cylinders": "2"}, cylinder=2, tab=3)
     assert error == ""
     assert state["chosen"]["cylinder"] == [2]

@@ -19,7 +19,7 @@ def packed(number: int, error: str, state: Data) -> dict[str, list[Any]]:
 
     Parameters
     ----------
-    number : of the request; error : empty, or why there is no new state
+    number : of the request; error : empty, or why the state is still the last good one
     """
     plan: dict[str, dict[str, Any]] = {}
     parts = [np.empty(0)]

@@ -6,6 +6,7 @@ A column's name says what it is, `unit_of` in what unit.
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 
 import numpy as np
 from numpy.typing import NDArray
@@ -157,15 +158,15 @@ def budgets(outcome: Outcome, force: float) -> Columns:
     columns = {"degrees": _degrees(outcome, budget.stretch.samples)}
     for name in BUDGETED:
         scale = SCALES.get(name, (force, ""))[0]
-        try:
+        nothing = np.zeros_like(columns["degrees"])
+        curves, total = {}, nothing
+        with suppress(InputError):  # zero but for rounding: no split
             split = budget.split(name)
-        except InputError:  # zero but for rounding
-            continue
-        curves = {cause.name: cause.curve / scale for cause in split.causes}
-        nothing = np.zeros_like(split.total.curve)
+            curves = {cause.name: cause.curve / scale for cause in split.causes}
+            total = split.total.curve / scale
         for cause in CAUSES:
             columns[f"{name}: {cause}"] = curves.get(cause, nothing)
-        columns[f"{name}: lecture minus run"] = split.total.curve / scale
+        columns[f"{name}: lecture minus run"] = total
     return columns
 
 

@@ -85,13 +85,13 @@ class Live:
 
     def _reply(self) -> None:
         asked: dict[str, Any] = json.loads(self._request.data["json"][0])
-        error, state = "", {}
+        error = ""
         try:
             scene = turned(self._scene, asked["values"])
             self._outcome = self._outcome.followed_by(scene, asked["cylinder"])
-            state = state_of(self._outcome, self._force, [asked["tab"]])
         except CrankmbsError as refusal:
             error = html.escape(f"error: {refusal}")
+        state = state_of(self._outcome, self._force, [asked["tab"]])
         self._answer.data = packed(asked["number"], error, state)
 
     def _give(self, name: str, content: bytes) -> None:

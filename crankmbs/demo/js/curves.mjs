@@ -37,7 +37,6 @@ export default ({fits, budget, polar, dead, tops, numbers}) => {
   const stack = () => {
     const {store, shown, select, causes, range, axis, units, words, sentences} = budget
     const name = select.value, data = store.data
-    if (!(`${name}: ${causes[0]}` in data)) return
     const n = data["degrees"].length
     const up = new Float64Array(n), down = new Float64Array(n)
     const columns = {degrees: data["degrees"], total: data[`${name}: lecture minus run`]}

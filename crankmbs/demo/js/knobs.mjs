@@ -35,7 +35,7 @@ export default ({knobs, choices, reset, request, answer, sources, message}) => {
   answer.properties.data.change.connect(() => {
     const {error, state} = JSON.parse(answer.data["json"][0])
     message.text = error
-    if (!error) show(state)
+    show(state)
     waiting = false
     if (stale) send()
   })
