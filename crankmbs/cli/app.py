@@ -14,6 +14,7 @@ from typer.core import TyperGroup
 from crankmbs.choose import choose
 from crankmbs.cli.animate import animate_scene
 from crankmbs.cli.check import describe
+from crankmbs.cli.demo import demonstrate, write_page
 from crankmbs.cli.lesson import list_lessons, make_lesson
 from crankmbs.cli.run import run_scene
 from crankmbs.cli.validate import validate_scene
@@ -149,6 +150,35 @@ def work_precision(
     """Measure speed against error of every formulation; compare with other tools."""
     if not measure_scene(scene, peers=peers, out=out):
         raise typer.Exit(3)
+
+
+@app.command()
+def demo(
+    scene: Annotated[
+        str, typer.Argument(metavar="SCENE", help="A scene file, or the name of a shipped scene.")
+    ] = "propeller",
+    port: Annotated[int, typer.Option(help="Port of the page; 0: a free one.")] = 5006,
+    no_browser: Annotated[
+        bool, typer.Option("--no-browser", help="Serve only, open no browser.")
+    ] = False,
+) -> None:
+    """Serve a page that shows the mechanism moving, and what each knob changes."""
+    demonstrate(scene, port=port, browser=not no_browser)
+
+
+@app.command()
+def page(
+    scene: _Scene,
+    out: Annotated[
+        Path | None, typer.Option("-o", "--out", help="The file; default NAME.html.")
+    ] = None,
+    vary: Annotated[
+        list[str] | None,
+        typer.Option(help="A knob of the page; may be given twice. Default: flywheel."),
+    ] = None,
+) -> None:
+    """Write the page as one file for a course: no server, no network."""
+    write_page(scene, varied=vary or [], out=out)
 
 
 @app.command()

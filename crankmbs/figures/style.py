@@ -15,10 +15,20 @@ from numpy.typing import NDArray
 from crankmbs.figures.view import View
 from crankmbs.result import Result
 
-__all__ = ["STYLE", "crank_axis", "footer", "force_scale", "legend", "line_of", "name_of", "panels"]
+__all__ = [
+    "COLOURS",
+    "STYLE",
+    "crank_axis",
+    "footer",
+    "force_scale",
+    "legend",
+    "line_of",
+    "name_of",
+    "panels",
+]
 
 # Okabe and Ito's palette without its yellow, which is too pale on white
-_COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00")
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00")
 _DASHES = ("-", (0, (6, 2)), (0, (6, 2, 1.5, 2)), (0, (2.5, 1.5)))
 _GREY = "0.55"
 
@@ -57,7 +67,7 @@ def panels(
 def line_of(cylinder: int) -> dict[str, Any]:
     """Colour and dashes of a cylinder, counted from 0."""
     return {
-        "color": _COLOURS[cylinder % len(_COLOURS)],
+        "color": COLOURS[cylinder % len(COLOURS)],
         "linestyle": _DASHES[cylinder % len(_DASHES)],  # curves on one another show through
     }
 

@@ -1,7 +1,14 @@
 """What a run amounts to: means, peaks, power and orders, from the samples of a result."""
 
 from crankmbs.measures.orders import Orders, orders
-from crankmbs.measures.summary import Estimate, JointForce, Measures, measure
+from crankmbs.measures.summary import (
+    Estimate,
+    JointForce,
+    Measures,
+    fluctuation,
+    mean_speed,
+    measure,
+)
 from crankmbs.measures.window import Window, last_window
 
 __all__ = [
@@ -10,7 +17,9 @@ __all__ = [
     "Measures",
     "Orders",
     "Window",
+    "fluctuation",
     "last_window",
+    "mean_speed",
     "measure",
     "orders",
 ]

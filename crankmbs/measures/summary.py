@@ -14,7 +14,7 @@ from crankmbs.measures.peak import rise
 from crankmbs.measures.window import Window, integral, last_window
 from crankmbs.result import Result
 
-__all__ = ["Estimate", "JointForce", "Measures", "measure"]
+__all__ = ["Estimate", "JointForce", "Measures", "fluctuation", "mean_speed", "measure"]
 
 Array = NDArray[np.float64]
 
@@ -86,8 +86,8 @@ def measure(result: Result) -> Measures:
     outside = result.data["external_torque"].values
     return Measures(
         window=window,
-        mean_speed=_mean_speed(result, window),
-        fluctuation=_fluctuation(result, window),
+        mean_speed=mean_speed(result, window),
+        fluctuation=fluctuation(result, window),
         joints=tuple(_joints(result, window)),
         crank_torque=_mean_torque(result, window, rods.values.sum(axis=1), rods_error),
         external_torque=_mean_torque(result, window, outside, _stated(result, "external_torque")),
@@ -97,8 +97,8 @@ def measure(result: Result) -> Measures:
     )
 
 
-def _mean_speed(result: Result, window: Window) -> Estimate:
-    """The angle turned over the time it took: no quadrature."""
+def mean_speed(result: Result, window: Window) -> Estimate:
+    """Mean speed over a window [rad/s]: the angle turned over the time it took, no quadrature."""
     if window.duration == 0.0:
         speed = float(result.data["crank_speed"].values[-1])
         return Estimate(speed, _stated(result, "crank_speed"))
@@ -107,9 +107,10 @@ def _mean_speed(result: Result, window: Window) -> Estimate:
     return Estimate(mean, 2.0 * ends / window.duration)
 
 
-def _fluctuation(result: Result, window: Window) -> Estimate:
+def fluctuation(result: Result, window: Window) -> Estimate:
+    """Coefficient of fluctuation over a window [1]: (max - min) / |mean speed|; NaN at rest."""
     speed = result.data["crank_speed"].values
-    mean = abs(_mean_speed(result, window).value)
+    mean = abs(mean_speed(result, window).value)
     if mean == 0.0:
         return Estimate(math.nan, math.nan)
     high = window.inside + int(np.argmax(speed[window.inside :]))

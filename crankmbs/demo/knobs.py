@@ -1,0 +1,196 @@
+"""What can be turned on the page, and the scene that it gives."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Mapping
+from typing import Any, Literal
+
+from crankmbs.drives import Oscillation, Quadratic, SpeedTable, TimeTable, Torque, Viscous
+from crankmbs.machine import Gas, Layout
+from crankmbs.scene import Scene
+from crankmbs.tables import Table
+
+__all__ = ["AS_GIVEN", "FIRING_ORDERS", "Knob", "Values", "knobs_of", "turned"]
+
+Values = Mapping[str, float | str]
+
+AS_GIVEN = "as given"
+FIRING_ORDERS = {
+    "1": (1,),
+    "2": (1, 2),
+    "3": (1, 3, 2),
+    "4": (1, 3, 4, 2),
+    "5": (1, 2, 4, 5, 3),
+    "6": (1, 5, 3, 6, 2, 4),
+}
+"""Usual firing orders, evenly spaced, in line."""
+
+_RPM = math.pi / 30.0
+
+
+@dataclasses.dataclass(frozen=True)
+class Knob:
+    """A slider: its title with unit, its ends and step, and the value that the scene has."""
+
+    name: str
+    title: str
+    start: float
+    end: float
+    step: float
+    value: float
+    format: str
+
+
+def knobs_of(scene: Scene) -> tuple[Knob, ...]:
+    """The sliders that mean something for a scene."""
+    r, rod = scene.crank.radius * 1e3, scene.rod
+    ratio = scene.crank.radius / rod.length
+    heaviest = _above(3.0 * rod.mass or scene.piston.mass or 1.0)
+    offset = scene.piston.offset * 1e3
+    far = max(_above(0.5 * r), abs(offset))
+    knobs = [
+        Knob("rod_ratio", "rod ratio r/l", 0.1, 0.9, 0.005, ratio, "0.000"),
+        Knob("offset", "offset [mm]", -far, far, far / 100.0, offset, "0.0"),
+        Knob("rod_mass", "rod mass [kg]", 0.0, heaviest, heaviest / 150.0, rod.mass, "0.00"),
+    ]
+    if scene.start is not None:
+        inertia = scene.crank.inertia or 1e-3
+        most = _above(4.0 * inertia)
+        title = "flywheel [kg m²]"
+        least = most / 100.0
+        knobs.append(
+            Knob("flywheel", title, least, most, least, scene.crank.inertia, _format(most))
+        )
+    speed = _speed(scene)
+    if speed:
+        rpm = speed / _RPM
+        low, high = sorted((0.25 * rpm, _above(1.75 * abs(rpm)) * math.copysign(1.0, rpm)))
+        knobs.append(Knob("speed", "speed [rpm]", low, high, abs(rpm) / 100.0, rpm, "0"))
+    if scene.torque:
+        knobs.append(Knob("load", "load [%]", 0.0, 200.0, 1.0, 100.0, "0"))
+    if scene.gas is not None:
+        knobs.append(Knob("pressure", "pressure [%]", 20.0, 200.0, 1.0, 100.0, "0"))
+    return tuple(knobs)
+
+
+def turned(scene: Scene, values: Values) -> Scene:
+    """The scene with its knobs at other values; what stays at its value stays to the last bit.
+
+    With another rod ratio the rod keeps its mass, the place of its centre of mass and its shape;
+    with another mass its shape. Other loads than constant ones are the same torque at the new
+    speed, per cylinder.
+
+    Parameters
+    ----------
+    values : knob -> its value, in the knob's unit; besides, "rod" -> "rigid" or "two-mass",
+        "cylinders" -> "as given" or a key of `FIRING_ORDERS`; what is missing stays
+
+    Raises
+    ------
+    InputError : a scene that cannot be
+    """
+    new = {k.name: float(values.get(k.name, k.value)) for k in knobs_of(scene)}
+    changed = {k.name for k in knobs_of(scene) if new[k.name] != k.value}
+    parts: dict[str, Any] = {}
+    if changed & {"rod_ratio", "rod_mass"} or "rod" in values:
+        parts["rod"] = _rod(scene, new, changed, str(values.get("rod", "")))
+    if "offset" in changed:
+        parts["piston"] = dataclasses.replace(scene.piston, offset=new["offset"] * 1e-3)
+    if "flywheel" in changed:
+        parts["crank"] = dataclasses.replace(scene.crank, inertia=new["flywheel"])
+    faster = 1.0
+    if "speed" in changed:
+        faster = new["speed"] * _RPM / _speed(scene)
+        parts |= _sped(scene, new["speed"] * _RPM, faster)
+    cylinders = str(values.get("cylinders", AS_GIVEN))
+    share = new.get("load", 100.0) / 100.0
+    if cylinders != AS_GIVEN:
+        order = FIRING_ORDERS[cylinders]
+        parts["layout"] = Layout(firing_order=order)
+        share *= len(order) / len(scene.cylinders)
+    if share != 1.0 or faster != 1.0:
+        parts["torque"] = tuple(_loaded(load, share, faster) for load in scene.torque)
+    if scene.gas is not None and "pressure" in changed:
+        parts["gas"] = _pressed(scene.gas, new["pressure"] / 100.0)
+    return dataclasses.replace(scene, **parts) if parts else scene
+
+
+def _rod(scene: Scene, new: dict[str, float], changed: set[str], kind: str) -> Any:
+    rod = scene.rod
+    length = scene.crank.radius / new["rod_ratio"] if "rod_ratio" in changed else rod.length
+    mass, stretch = new["rod_mass"], length / rod.length
+    inertia: float | Literal["two-mass"] = "two-mass"
+    if kind != "two-mass" and not (kind == "" and rod.inertia == "two-mass"):
+        if rod.inertia == "two-mass" or (rod.mass == 0.0 and mass > 0.0):
+            inertia = mass * length**2 / 12.0  # the scene knows none: a uniform bar's
+        else:
+            heavier = mass / rod.mass if rod.mass > 0.0 else 1.0
+            inertia = float(rod.inertia) * heavier * stretch**2
+    return dataclasses.replace(
+        rod,
+        length=length,
+        mass=mass,
+        center_of_mass=rod.center_of_mass * stretch,
+        inertia=inertia,
+    )
+
+
+def _speed(scene: Scene) -> float:
+    """The speed [rad/s] that the knob turns; 0 where there is none to turn."""
+    if scene.start is not None:
+        return scene.start.speed
+    assert scene.motion is not None
+    speed = scene.motion.speed
+    if isinstance(speed, Oscillation):
+        return speed.mean
+    return speed if isinstance(speed, float) else 0.0
+
+
+def _sped(scene: Scene, speed: float, faster: float) -> dict[str, Any]:
+    if scene.start is not None:
+        return {"start": dataclasses.replace(scene.start, speed=speed)}
+    assert scene.motion is not None
+    swing = scene.motion.speed
+    if not isinstance(swing, Oscillation):
+        return {"motion": dataclasses.replace(scene.motion, speed=speed)}
+    swing = dataclasses.replace(swing, mean=speed, amplitude=swing.amplitude * abs(faster))
+    return {"motion": dataclasses.replace(scene.motion, speed=swing)}
+
+
+def _loaded(load: Torque, share: float, faster: float) -> Torque:
+    """A load times a share; the same torque as before at a speed so much higher."""
+    if isinstance(load, TimeTable):
+        return TimeTable(file=_scaled(load.file, share))
+    if isinstance(load, SpeedTable):
+        return SpeedTable(file=_scaled(load.file, share, faster))
+    if isinstance(load, Quadratic | Viscous):
+        power = 2 if isinstance(load, Quadratic) else 1
+        return dataclasses.replace(load, coefficient=load.coefficient * share / faster**power)
+    return dataclasses.replace(load, torque=load.torque * share)
+
+
+def _scaled(table: Table, y: float, x: float = 1.0) -> Table:
+    return Table(tuple(x * v for v in table.x), tuple(y * v for v in table.y), table.source)
+
+
+def _pressed(gas: Gas, factor: float) -> Gas:
+    """The pressures of the table or of the diagram times the factor; ambient stays."""
+    if gas.pressure is not None:
+        return dataclasses.replace(gas, pressure=_scaled(gas.pressure, factor))
+    assert gas.indicator is not None
+    names = ("intake_pressure", "exhaust_pressure", "peak_pressure")
+    old = {name: getattr(gas.indicator, name) for name in names}
+    new = {name: p * factor for name, p in old.items() if p is not None}
+    return dataclasses.replace(gas, indicator=dataclasses.replace(gas.indicator, **new))
+
+
+def _above(value: float) -> float:
+    """The next number of one or two digits."""
+    step = 10.0 ** (math.floor(math.log10(value)) - 1)
+    return round(math.ceil(value / step - 1e-9) * step, 12)
+
+
+def _format(most: float) -> str:
+    return f"0.{'0' * max(1, 2 - math.floor(math.log10(most)))}"

@@ -1,0 +1,46 @@
+"""The server of the live page: this machine only, nothing from other hosts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import suppress
+
+from bokeh.document import Document
+from bokeh.server.server import Server
+
+from crankmbs.demo.live import Live
+from crankmbs.demo.outcome import prepared, run
+from crankmbs.errors import InputError
+from crankmbs.scene import Scene
+
+__all__ = ["serve"]
+
+
+def serve(scene: Scene, stem: str, port: int, ready: Callable[[str, Server], None]) -> None:
+    """Serve the page of a scene until interrupted.
+
+    Parameters
+    ----------
+    port : 0 takes a free one; ready : called with the address of the page, and the server
+
+    Raises
+    ------
+    InputError : the scene stops before its end, or the port is taken
+    """
+    start = prepared(scene)
+    outcome = run(start)
+
+    def fill(document: Document) -> None:
+        Live(start, outcome, stem).add_to(document)
+
+    try:
+        server = Server({"/": fill}, port=port, address="127.0.0.1")
+    except OSError as error:
+        raise InputError(
+            f"--port {port}: cannot be used ({error.strerror}); choose another, or 0 for a free one"
+        ) from None
+    server.start()
+    ready(f"http://localhost:{server.port}/", server)
+    with suppress(KeyboardInterrupt):  # the way to end it
+        server.io_loop.start()
+    server.stop()
