@@ -41,7 +41,7 @@ def state_of(outcome: Outcome, force: float, tabs: Iterable[int] = ALL) -> Data:
         "frames": columns.frames(outcome, force),
         "shapes": columns.shapes(outcome),
         "chosen": {"cylinder": [outcome.cylinder], "serial": [next(_SERIAL)]},  # never unchanged
-        "dead": {"x": list(marks), "label": [text.replace("\n", " ") for text in marks.values()]},
+        "dead": {"x": list(marks), "label": [text.replace("\n", ": ") for text in marks.values()]},
         "numbers": {"text": [_numbers(outcome)]},
     }
     state |= {STORES[tab]: columns_of[STORES[tab]]() for tab in tabs}
