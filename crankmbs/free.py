@@ -142,7 +142,7 @@ def run(
     stages = min(3 + round(-math.log10(rtol) / 3.0), 7)
     grid = grid_of(scene, pressure, gauss(stages))
     best: Assembled | None = None
-    local, least = rtol, math.inf
+    local, least, reached = rtol, math.inf, rtol
     finest = _FINEST if by_angle else 100.0 * _FINEST_STEP
     for left in reversed(range(_PASSES)):
         answer = _travel(grid, local, by_angle=by_angle)
@@ -155,18 +155,18 @@ def run(
         assembled = assemble(scene, pressure, solution)
         estimate = assembled.relative_error
         if estimate <= least:
-            best, least = assembled, estimate
+            best, least, reached = assembled, estimate, local
         if estimate <= rtol or local <= finest or answer.ending in ("costly", "failed"):
             break
         local = max(local * max(1e-3, 0.1 * rtol / estimate), finest)
     assert best is not None
-    if least > rtol:
-        # refining helps no more: what is left is rounding, in both passes alike, and not a bound
+    if least > rtol or reached <= 10.0 * finest:
+        # what is left is rounding, in both passes alike, and their difference not a bound
         best = best._replace(errors={name: 2.0 * error for name, error in best.errors.items()})
-        if best.solution.status >= 0:
-            text = f"asked for {rtol:.0e}, reached {best.relative_error:.0e}"
-            solution = replace(best.solution, message=f"{best.solution.message}; {text}")
-            best = best._replace(solution=solution)
+    if best.relative_error > rtol and best.solution.status >= 0:
+        text = f"asked for {rtol:.0e}, reached {best.relative_error:.0e}"
+        solution = replace(best.solution, message=f"{best.solution.message}; {text}")
+        best = best._replace(solution=solution)
     return best
 
 
