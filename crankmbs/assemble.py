@@ -49,10 +49,11 @@ def assemble(scene: Scene, pressure: PeriodicPressure | None, solution: Solution
     if solution.errors:
         return Assembled(solution, variables, dict(solution.errors))
     better = solution.better or solution.samples
+    rounding = better.theta * _ANGLE_ROUNDING
     rounded = Samples(
         better.time,
-        better.theta * (1.0 + _ANGLE_ROUNDING),
-        better.omega,
+        better.theta + rounding,
+        better.omega + _speed_change(better, rounding),
         better.alpha,
         better.energy_residual,
     )
@@ -74,6 +75,14 @@ def assemble(scene: Scene, pressure: PeriodicPressure | None, solution: Solution
         np.max(np.abs(solution.samples.energy_residual - better.energy_residual))
     )
     return Assembled(solution, variables, errors)
+
+
+def _speed_change(samples: Samples, ahead: Array) -> Array:
+    """What the speed changes by while the crank turns ahead by an angle; near rest 0."""
+    speed = np.abs(samples.omega)
+    steep = np.zeros_like(speed)
+    np.divide(samples.alpha, samples.omega, out=steep, where=speed > 0.01 * np.max(speed))
+    return np.asarray(steep * ahead)
 
 
 def _relative_error(variables: Mapping[str, Array], errors: Mapping[str, float]) -> float:
