@@ -14,6 +14,7 @@ __all__ = ["best_answer", "relative_error"]
 
 _SAFETY = 1.5
 _ROUNDING = 5e-13  # of a variable's peak: what Newton's method and the interpolation leave
+_INTERPOLATED = 1e-7  # of a variable's peak: what interpolation between steps errs, at most
 _NOTHING = 1e-10  # of the largest value of its unit
 
 
@@ -25,10 +26,11 @@ def best_answer(runs: Sequence[Mapping[str, Array]]) -> tuple[dict[str, Array], 
     the run, the answer is f + D2/3, and its error is about the change that the last halving made
     to such an answer, |D1 - 4 D2|/3. Elsewhere (a kink in the pressure at every step) the answer
     is the finest run, with an error of about |D2|, or |D1|/4 where D2 is smaller by chance. Where a
-    halving gained 32-fold to 512-fold (an exact motion, of which only the interpolation between
-    steps errs) the next would gain as much, and 4 |D2|^2/|D1| is stated. All are stated half as
-    large again: rounding, and what is left of the start of a stretch, shrink otherwise than the
-    step would have it. A variable that is but rounding beside the others of its unit is zero.
+    halving gained more than 32-fold and next to nothing is left (an exact motion, of which only the
+    interpolation between steps errs) the next would gain as much, and 4 |D2|^2/|D1| is stated. All
+    are stated half as large again: rounding, and what is left of the start of a stretch, shrink
+    otherwise than the step would have it. A variable that is but rounding beside the others of its
+    unit is zero.
 
     runs : the last three at most, coarsest first, at the same samples; of one alone the error is
         unknown, infinite. "ahead", the crank angle at the same times, gives the crank angle's
@@ -44,7 +46,7 @@ def best_answer(runs: Sequence[Mapping[str, Array]]) -> tuple[dict[str, Array], 
             disagreement = _peak(before - 4.0 * change)
             if disagreement <= error:
                 answer[name], error = value + change / 3.0, disagreement / 3.0
-            elif 32.0 * error < _peak(before) < 512.0 * error:
+            elif 32.0 * error < _peak(before) and error < _INTERPOLATED * _peak(value):
                 error *= 4.0 * error / _peak(before)
             else:
                 error = max(error, 0.25 * _peak(before))
