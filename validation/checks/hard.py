@@ -153,7 +153,8 @@ def _compared(case: Case, result: Result, scene: Scene) -> tuple[float, str]:
 def _outcome(case: Case, answers: dict[str, _Answer]) -> Outcome:
     worst = max(answers, key=lambda name: answers[name].error)
     served = any(not answer.text.startswith("refused") for answer in answers.values())
-    cells = [answers[name].text if name in answers else "" for name in _FORMULATIONS]
+    texts = [answers[name].text if name in answers else "" for name in _FORMULATIONS]
+    cells = [text.replace("|", r"\|") for text in texts]
     row = f"| {case.claim} |" + "".join(f" {cell} |" for cell in cells)
     error = answers[worst].error
     if not served and case.check == "hard.every_formulation":
