@@ -1,50 +1,19 @@
 """The command line: what it prints, what it writes, and its exit status."""
 
 import dataclasses
-import json
 import re
 import subprocess
 import sys
-from importlib import metadata
 from pathlib import Path
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
+from command_line import SCENE, crankmbs_, names, refused
 
 import crankmbs.cli.run
 from crankmbs import Result, simulate
-from crankmbs.cli import app
 from crankmbs.scene_io import models_folder
 
-PRESSURE = models_folder() / "pressure" / "made_up_diesel.csv"
-SCENE = f"""
-title = "driven [red] engine"
-
-[crank]
-radius = "46 mm"
-inertia = "0.02 kg m^2"
-
-[rod]
-length = "153 mm"
-mass = "1.4 kg"
-center_of_mass = "43 mm"
-inertia = "two-mass"
-
-[piston]
-mass = "1.1 kg"
-bore = "85 mm"
-
-[gas]
-pressure = {json.dumps(str(PRESSURE))}
-absolute = false
-
-[motion]
-speed = "3000 rpm"
-
-[run]
-until = "2 cycles"
-"""
 COMES_TO_REST = SCENE.replace('"3000 rpm"', '{ from = "900 rpm", to = "0 rpm", over = "0.1 s" }')
 DRAWN = ["speed", "piston_motion", "gas_and_side_force", "main_bearing", "crank_pin", "piston_pin"]
 FIGURES = {f"{name}.png" for name in [*DRAWN, "torque"]}
@@ -56,24 +25,6 @@ def folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     Path("engine.toml").write_text(SCENE)
     return tmp_path
-
-
-def crankmbs_(*words):
-    return CliRunner().invoke(app, list(words))
-
-
-def refused(*words):
-    """The one message of a command that must be refused."""
-    result = crankmbs_(*words)
-    assert result.exit_code == 2, result.output
-    assert result.stdout == ""
-    (message,) = result.stderr.strip().splitlines()
-    assert message.startswith("error: ")
-    return message.removeprefix("error: ")
-
-
-def names(path):
-    return {file.name for file in Path(path).iterdir()}
 
 
 def test_run_writes_into_results_by_name_and_reports():
@@ -256,32 +207,6 @@ def test_confirm_says_when_the_stated_errors_do_not_cover_the_difference(monkeyp
     assert names("results/engine") == {"result.nc", "motion.csv"}
 
 
-def test_check_explains_and_runs_nothing(monkeypatch):
-    monkeypatch.setattr(crankmbs.cli.run, "simulate", lambda *_, **__: pytest.fail("it ran"))
-    result = crankmbs_("check", "engine.toml")
-    assert result.exit_code == 0
-    assert "kinetostatic" in result.stdout
-    assert "stroke 92 mm" in result.stdout
-    assert "until 2 cycles, every 1 deg" in result.stdout
-    assert names(".") == {"engine.toml"}
-
-
-def test_scenes_lists_what_ships_and_every_one_can_be_checked():
-    lines = crankmbs_("scenes").stdout.splitlines()
-    shipped = sorted(path.stem for path in models_folder().glob("*.toml"))
-    assert [line.split()[0] for line in lines] == shipped
-    assert all(len(line.split()) > 1 for line in lines)
-    for name in shipped:
-        assert crankmbs_("check", name).exit_code == 0
-
-
-def test_new_writes_a_scene_that_checks_and_overwrites_nothing():
-    assert crankmbs_("new", "my.engine").exit_code == 0
-    assert crankmbs_("check", "my.engine.toml").exit_code == 0
-    assert "exists already" in refused("new", "my.engine.toml")
-    assert "needs a name" in refused("new", "")
-
-
 def test_a_small_run_loads_neither_matplotlib_nor_exudyn():
     code = (
         "import sys; from crankmbs.cli import app;"
@@ -294,25 +219,12 @@ def test_a_small_run_loads_neither_matplotlib_nor_exudyn():
     assert done.stdout.splitlines()[-1] == "[]"
 
 
-def test_check_says_where_throws_stand_and_when_cylinders_fire():
-    stdout = crankmbs_("check", "v_twin").stdout
-    assert "phase 300 deg, bank 30 deg, throw at 330 deg, fires at 60 deg" in stdout
-
-
 def test_the_report_names_the_last_sample_and_a_crank_that_turns_backwards():
     text = (models_folder() / "coasting.toml").read_text()
     Path("back.toml").write_text(re.sub(r'(?m)^speed = ".*"', 'speed = "-100 rad/s"', text))
     stdout = crankmbs_("run", "back.toml", "--until", "1 rev", "--no-figures").stdout
     assert "-1 rev, backwards" in stdout
     assert re.search(r"^last sample +-?[\d.]+ deg, -[\d.]+ rpm$", stdout, re.MULTILINE)
-
-
-def test_a_scene_named_without_its_suffix_is_pointed_to():
-    assert refused("run", "engine") == 'engine: no such scene file; did you mean "engine.toml"?'
-
-
-def test_version_is_that_of_the_package():
-    assert crankmbs_("--version").output.strip() == metadata.version("crankmbs")
 
 
 def test_a_cost_cap_that_cannot_be_is_refused():

@@ -92,10 +92,14 @@ def many_turns(machine: Machine, theta0: Number, omega0: Number, angles: Array) 
 
     The loads are constant and quadratic, and the crank never comes near rest. Exact but for
     rounding (64 bits; the quadrature's weights have 53).
+
+    Raises
+    ------
+    ValueError : another load, or a crank that does not turn forwards
     """
     loads = machine.loads
     if loads.viscous or loads.time_tables or loads.speed_tables or not omega0 > 0:
-        raise NotImplementedError("only constant and quadratic loads on a crank that turns on")
+        raise ValueError("the loads must be constant or quadratic, and the speed above 0")
     turning = _Turning(machine)
     start, wanted = LONG.number(theta0), LONG.array(angles)
     pressure = machine.pressure
