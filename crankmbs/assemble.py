@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -12,6 +11,7 @@ from crankmbs.inertia import reduce
 from crankmbs.pressure import PeriodicPressure
 from crankmbs.reactions import reactions
 from crankmbs.result import VARIABLES
+from crankmbs.sampling import one_period
 from crankmbs.scene import Scene
 
 if TYPE_CHECKING:
@@ -25,17 +25,37 @@ _ANGLE_ROUNDING = 2 * float(np.finfo(float).eps)  # of the crank angle
 
 
 class Assembled(NamedTuple):
-    """A solution, every variable of the result at its samples, and a bound for its error."""
+    """A solution, every variable of the result at its samples, its largest absolute value there,
+    and a bound for its error."""
 
     solution: Solution
     variables: dict[str, Array]
+    peaks: dict[str, float]
     errors: dict[str, float]
 
     @property
     def relative_error(self) -> float:
         """The worst relative error: of the crank angle per radian turned, of each other variable
-        relative to its peak."""
-        return _relative_error(self.variables, self.errors)
+        relative to its peak.
+
+        The energy residual is a check and does not count; nor does a variable that is zero but for
+        rounding, against the others of its unit.
+        """
+        angle = self.variables["crank_angle"]
+        turned = _peak(angle - angle[0])
+        if turned == 0.0:  # nothing moved, nothing was integrated
+            return 0.0
+        peaks = self.peaks | {"crank_angle": turned}
+        largest: dict[str, float] = {}
+        for name, peak in peaks.items():
+            unit = VARIABLES[name].units
+            largest[unit] = max(largest.get(unit, 0.0), peak)
+        ratios = [
+            self.errors[name] / peak
+            for name, peak in peaks.items()
+            if name != "energy_residual" and peak > _NOTHING * largest[VARIABLES[name].units]
+        ]
+        return max(ratios, default=0.0)
 
 
 def assemble(scene: Scene, pressure: PeriodicPressure | None, solution: Solution) -> Assembled:
@@ -46,10 +66,11 @@ def assemble(scene: Scene, pressure: PeriodicPressure | None, solution: Solution
     formulation states its own errors they are taken.
     """
     variables = _variables(scene, pressure, solution.samples)
+    peaks = {name: _peak(values) for name, values in variables.items()}
     if solution.errors:
-        return Assembled(solution, variables, dict(solution.errors))
+        return Assembled(solution, variables, peaks, dict(solution.errors))
     better = solution.better or solution.samples
-    rounding = better.theta * _ANGLE_ROUNDING
+    rounding = _ANGLE_ROUNDING * _peak(better.theta)
     rounded = Samples(
         better.time,
         better.theta + rounding,
@@ -61,23 +82,22 @@ def assemble(scene: Scene, pressure: PeriodicPressure | None, solution: Solution
     needed = check["external_torque"]
     check |= better.own
     errors = {
-        name: float(np.max(np.abs(values - check[name]))) + _ROUNDING * _peak(values)
+        name: _peak(values - check[name]) + _ROUNDING * peaks[name]
         for name, values in variables.items()
     }
     # a free crank's acceleration at the rounded angle: where the torque needed is the one there
-    missed = np.max(np.abs(check["external_torque"] - needed))
-    errors["crank_acceleration"] += float(missed / np.min(reduce(scene, None, better.theta)[0]))
+    missed = _peak(check["external_torque"] - needed)
+    least = np.min(reduce(scene, None, one_period(better.theta, scene.period)[0])[0])
+    errors["crank_acceleration"] += missed / float(least)
     late = better.time - solution.samples.time
     ahead = better.theta - solution.samples.theta - solution.samples.omega * late
-    turned = float(np.max(np.abs(variables["crank_angle"]), initial=0.0))
-    errors["crank_angle"] = float(np.max(np.abs(ahead))) + _ROUNDING * turned
-    errors["energy_residual"] = _ROUNDING * _peak(variables["kinetic_energy"]) + float(
-        np.max(np.abs(solution.samples.energy_residual - better.energy_residual))
-    )
-    return Assembled(solution, variables, errors)
+    errors["crank_angle"] = _peak(ahead) + _ROUNDING * peaks["crank_angle"]
+    residual = solution.samples.energy_residual - better.energy_residual
+    errors["energy_residual"] = _peak(residual) + _ROUNDING * peaks["kinetic_energy"]
+    return Assembled(solution, variables, peaks, errors)
 
 
-def _speed_change(samples: Samples, ahead: Array) -> Array:
+def _speed_change(samples: Samples, ahead: float) -> Array:
     """What the speed changes by while the crank turns ahead by an angle; near rest 0."""
     speed = np.abs(samples.omega)
     steep = np.zeros_like(speed)
@@ -85,35 +105,11 @@ def _speed_change(samples: Samples, ahead: Array) -> Array:
     return np.asarray(steep * ahead)
 
 
-def _relative_error(variables: Mapping[str, Array], errors: Mapping[str, float]) -> float:
-    """The worst relative error: of the crank angle per radian turned, of each other variable
-    relative to its peak.
-
-    The energy residual is a check and does not count; nor does a variable that is zero but for
-    rounding, against the others of its unit.
-    """
-    angle = variables["crank_angle"]
-    if np.ptp(angle) == 0.0:  # nothing moved, nothing was integrated
-        return 0.0
-    peaks = {name: _peak(values) for name, values in variables.items()}
-    peaks["crank_angle"] = float(np.max(np.abs(angle - angle[0])))
-    largest: dict[str, float] = {}
-    for name, peak in peaks.items():
-        unit = VARIABLES[name].units
-        largest[unit] = max(largest.get(unit, 0.0), peak)
-    ratios = [
-        errors[name] / peak
-        for name, peak in peaks.items()
-        if name != "energy_residual" and peak > _NOTHING * largest[VARIABLES[name].units]
-    ]
-    return max(ratios, default=0.0)
-
-
 def dataset(assembled: Assembled) -> xr.Dataset:
     """Label the variables with dimensions, units, long names and error estimates."""
     import xarray as xr
 
-    _, variables, errors = assembled
+    variables, errors = assembled.variables, assembled.errors
 
     def labelled(name: str) -> xr.Variable:
         about = VARIABLES[name]
@@ -149,4 +145,4 @@ def _variables(
 
 
 def _peak(values: Array) -> float:
-    return float(np.max(np.abs(values), initial=0.0))
+    return max(float(values.max(initial=0.0)), -float(values.min(initial=0.0)))

@@ -61,10 +61,11 @@ class Grid:
     @cached_property
     def scale(self) -> Array:
         """Largest torque of gas and gravity in and around each cell, shape (n,) [N m]."""
-        most = np.max(np.abs(self.tables[1]), axis=1)
+        most = np.append(np.max(np.abs(self.tables[1]), axis=1), 0.0)
         middle = 0.5 * (self.edges[1:] + self.edges[:-1])
-        near = np.searchsorted(middle, middle - _WIDEST), np.searchsorted(middle, middle + _WIDEST)
-        return np.array([most[a:b].max() for a, b in zip(*near, strict=True)])
+        around = np.add.outer(middle, [-_WIDEST, _WIDEST])
+        from_to = np.searchsorted(middle, around.ravel())
+        return np.asarray(np.maximum.reduceat(most, from_to)[::2])
 
     @cached_property
     def finer(self) -> Grid:
@@ -73,12 +74,10 @@ class Grid:
 
     def split(self, parts: NDArray[np.intp]) -> Grid:
         """Every cell cut into equal parts, as many as ``parts``, shape (n,), says."""
-        pieces = [
-            np.linspace(a, b, count + 1)[:-1]
-            for a, b, count in zip(self.edges[:-1], self.edges[1:], parts, strict=True)
-        ]
-        edges = np.append(np.concatenate(pieces), self.edges[-1])
-        return Grid(self.scene, self.pressure, edges, self.rule)
+        cell = np.repeat(np.arange(len(parts)), parts)
+        part = np.arange(len(cell)) - (np.cumsum(parts) - parts)[cell]
+        edges = self.edges[cell] + part * (np.diff(self.edges) / parts)[cell]
+        return Grid(self.scene, self.pressure, np.append(edges, self.edges[-1]), self.rule)
 
     def cell_at(self, theta: float, sense: float) -> int:
         """Number of the cell that the motion is about to pass at a crank angle [rad]."""

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from crankmbs.geometry import close_loop, top_position
 from crankmbs.inertia import gravity_vector, rod_centre
 from crankmbs.pressure import PeriodicPressure
+from crankmbs.sampling import one_period
 from crankmbs.scene import Scene
 
 __all__ = ["reactions"]
@@ -52,7 +53,8 @@ def reactions(
     square = omega**2
 
     first_moment = crank.mass * crank.center_of_mass
-    sin_theta, cos_theta = np.sin(theta), np.cos(theta)
+    once, which = one_period(theta, scene.period)
+    sin_theta, cos_theta = np.sin(once)[which], np.cos(once)[which]
     gx, gy = gravity_vector(scene)
     bearing_x = first_moment * (-cos_theta * square - sin_theta * alpha) - crank.mass * gx
     bearing_y = first_moment * (-sin_theta * square + cos_theta * alpha) - crank.mass * gy
@@ -62,15 +64,15 @@ def reactions(
 
     for cylinder in scene.cylinders:
         gx, gy = gravity_vector(scene, cylinder.bank)
-        phi = theta + cylinder.phase
-        loop = close_loop(phi, r, l, piston.offset)
-        g = rod_centre(loop, r, a)
+        phi = once + cylinder.phase
+        closed = close_loop(phi, r, l, piston.offset)
+        loop, g = closed.at(which), rod_centre(closed, r, a).at(which)
         sin_b, cos_b = loop.sin_beta, loop.cos_beta
         x_tt = loop.x_2 * square + loop.x_1 * alpha
         g_xtt = g.x_2 * square + g.x_1 * alpha
         g_ytt = g.y_2 * square + g.y_1 * alpha
         beta_tt = loop.beta_2 * square + loop.beta_1 * alpha
-        gas = pressure(phi) if pressure is not None else np.zeros_like(phi)
+        gas = (pressure(phi) if pressure is not None else np.zeros_like(phi))[which]
 
         pin_x = piston.mass * (x_tt - gx) + gas * area
         weight = rod.mass * (cos_b * (g_ytt - gy) + sin_b * (g_xtt - gx))
@@ -111,5 +113,5 @@ def reactions(
         "main_bearing_force_y": bearing_y,
         "kinetic_energy": kinetic,
     }
-    parts = {name: np.stack([c[name] for c in columns], axis=-1) for name in columns[0]}
+    parts = {name: np.array([c[name] for c in columns]).T for name in columns[0]}
     return whole | parts

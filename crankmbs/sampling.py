@@ -12,7 +12,7 @@ from crankmbs.errors import InputError
 from crankmbs.scene import Scene
 from crankmbs.schema import DEGREE
 
-__all__ = ["FOLDED", "Plan", "plan_of"]
+__all__ = ["FOLDED", "Plan", "one_period", "plan_of"]
 
 Array = NDArray[np.float64]
 
@@ -91,6 +91,29 @@ def plan_of(scene: Scene) -> Plan:
         return Plan(start, DEGREE, False, until, until_time, scene.period, folds)
     every, in_time = scene.run.every.resolve(scene.period)
     return Plan(start, every, in_time, until, until_time, folds=folds)
+
+
+def one_period(theta: Array, period: float) -> tuple[Array, slice | NDArray[np.intp]]:
+    """The angles of one period, and for every angle which of them it is, whole periods apart.
+
+    What depends on the angle alone is so computed once, and not in every cycle. Evenly spaced
+    angles repeat when a whole number of them makes a period; others are all returned.
+
+    theta : shape (n,) [rad], equal to the rounding of the largest after a period
+
+    >>> one_period(np.array([0.0, 1.0, 2.0, 2.5]), 2.0)
+    (array([0. , 1. , 2.5]), array([0, 1, 0, 2]))
+    """
+    n = len(theta)
+    step = abs(float(theta[1] - theta[0])) if n > 1 else 0.0
+    count = round(min(period / step, n)) if step > 0.0 else n
+    close = 4 * np.finfo(float).eps * float(np.max(np.abs(theta), initial=0.0))
+    apart = np.abs(np.abs(theta[count:] - theta[: n - count]) - period) > close
+    repeating = count + int(np.argmax(apart)) if apart.any() else n
+    if repeating == count:
+        return theta, slice(None)
+    which = np.append(np.arange(repeating) % count, np.arange(count, count + n - repeating))
+    return np.append(theta[:count], theta[repeating:]), which
 
 
 def _check_size(scene: Scene) -> None:

@@ -65,3 +65,17 @@ def test_a_state_of_any_length():
     found = reactions(scene, pressure_of(scene), [0.1], [1.0], [0.0])
     assert found["main_bearing_force_x"].shape == (1,)
     assert found["side_force"].shape == (1, 2)
+
+
+def test_cycles_after_one_another_are_as_each_alone():
+    """Where the angles repeat they are looked at once: the same, to their last digit."""
+    scene = load_scene("v_twin")
+    theta = np.radians(np.arange(0.25, 2000.0, 1.0))
+    omega, alpha = 300.0 + 10.0 * np.sin(theta / 3), 500.0 * np.cos(theta / 5)
+    together = reactions(scene, pressure_of(scene), theta, omega, alpha)
+    for samples in (slice(0, 700), slice(700, 1400), slice(1400, None)):
+        state = theta[samples], omega[samples], alpha[samples]
+        alone = reactions(scene, pressure_of(scene), *state)
+        for name, values in alone.items():
+            scale = np.abs(together[name]).max()
+            np.testing.assert_allclose(together[name][samples], values, rtol=0, atol=1e-12 * scale)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from crankmbs import Motion, Ramp, Run, Start, load_scene, simulate
-from crankmbs.sampling import plan_of
+from crankmbs.sampling import one_period, plan_of
 from crankmbs.schema import DEGREE
 
 FREE = replace(load_scene("propeller"), start=Start(angle=0.1, speed=300.0))
@@ -138,3 +138,39 @@ def test_folds(offset, folds):
     piston = replace(FREE.piston, offset=offset)
     scene = replace(FREE, crank=crank, rod=rod, piston=piston)
     assert plan_of(scene).folds == pytest.approx(folds, abs=2e-6)
+
+
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_angles_that_repeat_are_found_once(sense):
+    """Three cycles at 1 degree from anywhere, and an end off the grid."""
+    theta = sense * np.append(0.3 + DEGREE * np.arange(3 * 720 + 1), 0.3 + 12.1 * pi)
+    once, which = one_period(theta, 4 * pi)
+    assert len(once) == 721
+    whole = (once[which] - theta) / (4 * pi)
+    np.testing.assert_allclose(whole, np.round(whole), atol=1e-14)
+    assert once[which[-1]] == theta[-1]
+
+
+@pytest.mark.parametrize(
+    "theta",
+    [
+        np.empty(0),
+        np.array([0.2]),
+        np.array([0.2, 0.2]),
+        DEGREE * np.arange(100),  # not a whole period
+        0.7 * np.arange(100),  # no whole number of them makes one
+        np.append(DEGREE * np.arange(700), DEGREE * np.arange(698, 0, -1)),  # turns back
+        pi * np.linspace(0.0, 9.0, 4000) ** 1.1,  # even in time only
+    ],
+)
+def test_angles_that_do_not_repeat_stay(theta):
+    once, which = one_period(theta, 4 * pi)
+    np.testing.assert_array_equal(once[which], theta)
+    assert len(once) == len(theta)
+
+
+def test_a_swing_of_more_than_a_period_is_not_mistaken():
+    theta = DEGREE * np.concatenate([np.arange(800), np.arange(798, 0, -1)])
+    once, which = one_period(theta, 4 * pi)
+    whole = (once[which] - theta) / (4 * pi)
+    np.testing.assert_allclose(whole, np.round(whole), atol=1e-14)

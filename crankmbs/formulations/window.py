@@ -14,7 +14,7 @@ from crankmbs.cells import Grid, Strip
 from crankmbs.formulations.base import NOWHERE, Array, Samples, State
 from crankmbs.inertia import reduce
 from crankmbs.roots import invert_monotone
-from crankmbs.sampling import Plan
+from crankmbs.sampling import Plan, one_period
 from crankmbs.torque import Branch
 
 __all__ = ["Window"]
@@ -54,7 +54,6 @@ class Window:
             return self._samples(k, self._theta(k, x), t, self._energy(k, x))
         theta = plan.between(self.begin.theta, self.end.theta)
         u = self.sense * (theta - self.begin.theta)
-        repeats = _repeats(plan.every, float(self.grid.edges[-1]))
         if kernels.are_compiled:
             k, (t, energy) = np.empty(len(u), np.intp), np.empty((2, len(u)))
             at_edges, at_nodes = (self.energy, self.time), (self.torque, self.slowness)
@@ -63,9 +62,8 @@ class Window:
         else:
             k = np.clip(np.searchsorted(self.edges, u, side="left") - 1, 0, len(self.torque) - 1)
             x = (u - self.edges[k]) / self.strip.width[k]
-            rows = self.grid.rule.integrals(x)
-            t, energy = self._time(k, x, rows), self._energy(k, x, rows)
-        return self._samples(k, theta, t, energy, repeats)
+            t, energy = self._time(k, x), self._energy(k, x)
+        return self._samples(k, theta, t, energy)
 
     def last(self) -> Samples:
         """The one sample at the end."""
@@ -183,16 +181,13 @@ class Window:
         )
         return k, float(x[0])
 
-    def _energy(self, k: Index, x: Array, rows: Array | None = None) -> Array:
-        """Kinetic energy [J]; rows : the rule's integrals up to x, if they are known."""
-        rows = self.grid.rule.integrals(x) if rows is None else rows
-        gained = self.strip.width[k] * np.einsum("ns,ns->n", rows, self.torque[k])
-        return np.asarray(self.energy[k] + self.sense * gained)
+    def _energy(self, k: Index, x: Array) -> Array:
+        gained, _ = self.grid.rule.between(self.torque[k], x)
+        return np.asarray(self.energy[k] + self.sense * self.strip.width[k] * gained)
 
-    def _time(self, k: Index, x: Array, rows: Array | None = None) -> Array:
-        rows = self.grid.rule.integrals(x) if rows is None else rows
-        spent = self.strip.width[k] * np.einsum("ns,ns->n", rows, self.slowness[k])
-        return np.asarray(self.time[k] + spent)
+    def _time(self, k: Index, x: Array) -> Array:
+        spent, _ = self.grid.rule.between(self.slowness[k], x)
+        return np.asarray(self.time[k] + self.strip.width[k] * spent)
 
     def _theta(self, k: Index, x: Array) -> Array:
         turned = self.edges[k] + x * self.strip.width[k]
@@ -200,32 +195,25 @@ class Window:
 
     def _locate_time(self, t: Array) -> tuple[Index, Array]:
         k = np.clip(np.searchsorted(self.time, t, side="left") - 1, 0, len(self.torque) - 1)
+        slowness, width = self.slowness[k], self.strip.width[k]
 
         def elapsed(x: Array) -> tuple[Array, Array]:
-            slope = np.einsum("ns,ns->n", self.grid.rule.values(x), self.slowness[k])
-            return self._time(k, x), self.strip.width[k] * slope
+            spent, slope = self.grid.rule.between(slowness, x)
+            return self.time[k] + width * spent, width * slope
 
         return k, invert_monotone(elapsed, t, np.zeros_like(t), np.ones_like(t))
 
-    def _samples(
-        self, k: Index, theta: Array, t: Array, energy: Array, repeats: int = 0
-    ) -> Samples:
-        """Samples in the cells k; repeats : as many in a period, 0 when they do not repeat."""
-        once = theta[:repeats] if 0 < repeats < len(theta) else theta
+    def _samples(self, k: Index, theta: Array, t: Array, energy: Array) -> Samples:
+        """Samples in the cells k."""
+        once, which = one_period(theta, float(self.grid.edges[-1]))
         of_angle = reduce(self.grid.scene, self.grid.pressure, once)
-        inertia, slope, torque = (np.resize(part, theta.shape) for part in of_angle)
+        inertia, slope, torque = (part[which] for part in of_angle)
         omega = self.sense * np.sqrt(2.0 * np.maximum(energy, 0.0) / inertia)
         outside = self.branch(t, omega)
         alpha = (torque + outside - 0.5 * slope * omega**2) / inertia
         gone = np.concatenate([[0.0], np.cumsum(self.errors[0][:, -1])])
         residual = self.begin.residual - gone[k]
         return Samples(t, theta, omega, alpha, residual, {"external_torque": outside})
-
-
-def _repeats(every: float, period: float) -> int:
-    """Samples in one period when it is a whole number, else 0."""
-    count = round(period / every)
-    return count if abs(count * every - period) < 1e-15 * period else 0
 
 
 def _exact(landed: float, computed: Array) -> Array:
