@@ -15,7 +15,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["affine", "at_angles", "errors", "kernel", "newton", "pay"]
+__all__ = ["affine", "at_angles", "kernel", "newton", "pay"]
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -212,48 +212,6 @@ def _eliminate(system: Array, right: Array) -> None:
         for k in range(j + 1, n):
             right[j] -= system[j, k] * right[k]
         right[j] /= system[j, j]
-
-
-@kernel
-def errors(
-    branch: Branch,
-    sense: float,
-    rules: tuple[Array, Array, Array],
-    finer: tuple[Array, Array],
-    solved: tuple[Array, Array, Array, Array, Array],
-    gained: Array,
-    late: Array,
-) -> None:
-    """What a finer rule gives along the solution, as `crankmbs.formulations.window` says.
-
-    rules : integrals of the rule to the finer nodes, shape (s, f); of the finer rule, (f, f + 1),
-    and of the rule, (s, f + 1), to the finer nodes and the end; finer : inertia and torque at the
-    finer nodes; solved : width, energy and time at the edges, torque and slowness at the nodes
-    """
-    (c0, ct, c1, c2), (inside, to_nodes, own) = branch, rules
-    width, energy, time, torque, slowness = solved
-    f = len(to_nodes)
-    e, t = np.empty(f), np.empty(f)
-    for k in range(len(width)):
-        gained[k], late[k], e[:], t[:] = 0.0, 0.0, 0.0, 0.0
-        for j in range(len(own)):
-            for i in range(f + 1):
-                gained[k, i] -= torque[k, j] * own[j, i]
-                late[k, i] -= slowness[k, j] * own[j, i]
-            for i in range(f):
-                e[i] += torque[k, j] * inside[j, i]
-                t[i] += slowness[k, j] * inside[j, i]
-        for j in range(f):
-            at = time[k] + width[k] * t[j]
-            slow = math.sqrt(0.5 * finer[0][k, j] / max(energy[k] + sense * width[k] * e[j], 0.0))
-            omega = sense / slow
-            load = finer[1][k, j] + c0 + ct * at + (c1 + c2 * omega) * omega
-            for i in range(f + 1):
-                gained[k, i] += load * to_nodes[j, i]
-                late[k, i] += slow * to_nodes[j, i]
-        for i in range(f + 1):
-            gained[k, i] *= sense * width[k]
-            late[k, i] *= width[k]
 
 
 @kernel

@@ -14,9 +14,10 @@ from numpy.typing import NDArray
 
 from crankmbs import stepper
 from crankmbs.drives import Constant, SpeedTable, TimeTable
+from crankmbs.inertia import reduce
 from crankmbs.pressure import PeriodicPressure, crank_angle_knots
 from crankmbs.scene import Scene
-from crankmbs.system import Machine
+from crankmbs.system import Machine, bare
 
 __all__ = ["Between", "Reduced"]
 
@@ -58,7 +59,7 @@ class Reduced:
             for c in scene.cylinders
         ]
         first = float(pressure.knots[0]) if pressure else 0.0
-        self.machine = Machine(
+        machine = Machine(
             radius=crank.radius,
             rod_length=rod.length,
             center_of_mass=rod.center_of_mass,
@@ -78,10 +79,11 @@ class Reduced:
             starts=pressure.knots - first if pressure else np.empty(0),
             coefficients=pressure.coefficients.copy() if pressure else np.empty((4, 0)),
         )
+        self.machine = bare(machine)
 
     def around(self, theta: float, sense: float) -> Between:
         """The knots next to theta in the sense of rotation, and the polynomials between them."""
-        pieces = np.zeros((len(self.machine.cylinders), 5))
+        pieces = np.zeros((len(self.scene.cylinders), 5))
         low, high = stepper.enter(theta, sense, self.machine, pieces)
         return Between(low, high, pieces)
 
@@ -95,8 +97,8 @@ class Reduced:
             if isinstance(t, Constant | TimeTable | SpeedTable)
         )
         angles = 0.1 + np.linspace(0.0, self.scene.period, 721)  # no fold lies there
-        torques = [abs(self(a, self.around(a, 1.0).pieces)[2]) for a in angles.tolist()]
-        return load + max(torques)
+        torque = reduce(self.scene, self.pressure, angles)[2]
+        return load + float(np.max(np.abs(torque)))
 
     def __call__(self, theta: float, pieces: Array) -> tuple[float, float, float]:
         """J [kg m2], dJ/dtheta [kg m2/rad], torque of gas and gravity [N m]."""

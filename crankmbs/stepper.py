@@ -13,8 +13,9 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from crankmbs.dop853 import E3, E5, A, C, D
 from crankmbs.kernels import kernel
-from crankmbs.system import Machine, Method, System
+from crankmbs.system import Machine, System
 
 __all__ = ["enter", "first_exit", "land", "reduced", "slopes", "travel"]
 
@@ -33,21 +34,21 @@ def enter(theta: float, sense: float, machine: Machine, pieces: Array) -> tuple[
     pieces : shape (cylinders, 5), of every cylinder's pressure between the two: the crank angle
         [rad] where its cubic begins, and the coefficients [Pa], highest power first
     """
-    knots = machine.knots
+    cylinders, knots, period, first, starts, coefficients = machine[12:]
     if len(knots) == 0:
         return -math.inf, math.inf
     ahead = theta + sense * _PASSED
-    base = math.floor(ahead / machine.period) * machine.period
+    base = math.floor(ahead / period) * period
     k = _passed(knots, ahead - base)
-    low = knots[k - 1] if k > 0 else knots[-1] - machine.period
-    high = knots[k] if k < len(knots) else knots[0] + machine.period
-    middle, starts = 0.5 * (low + high), machine.starts
+    low = knots[k - 1] if k > 0 else knots[-1] - period
+    high = knots[k] if k < len(knots) else knots[0] + period
+    middle = 0.5 * (low + high)
     for j in range(len(pieces) if len(starts) > 0 else 0):
-        within = (middle + machine.cylinders[j, 0] - machine.first) % starts[-1]
+        within = (middle + cylinders[j, 0] - first) % starts[-1]
         i = min(_passed(starts, within), len(starts) - 1) - 1
         pieces[j, 0] = base + middle - (within - starts[i])
         for power in range(4):
-            pieces[j, 1 + power] = machine.coefficients[power, i]
+            pieces[j, 1 + power] = coefficients[power, i]
     return float(base + low), float(base + high)
 
 
@@ -64,15 +65,13 @@ def _passed(knots: Array, value: float) -> int:
 @kernel
 def reduced(theta: float, machine: Machine, pieces: Array) -> tuple[float, float, float]:
     """J [kg m2], dJ/dtheta [kg m2/rad], torque of gas and gravity [N m]."""
-    r, l, a, e = machine.radius, machine.rod_length, machine.center_of_mass, machine.offset
-    m_piston, m_rod, i_rod = machine.piston_mass, machine.rod_mass, machine.rod_inertia
+    r, l, a, e, i_crank, i_rod, m_rod, m_piston, area, unbalance, gx, gy, cylinders = machine[:13]
     spare, far = max(l - r - abs(e), 0.0), abs(e)
-    inertia, slope = machine.crank_inertia, 0.0
-    gx, gy = machine.gravity_x, machine.gravity_y
-    torque = machine.first_moment * (gy * math.cos(theta) - gx * math.sin(theta))
+    inertia, slope = i_crank, 0.0
+    torque = unbalance * (gy * math.cos(theta) - gx * math.sin(theta))
     for j in range(len(pieces)):
-        phi = theta + float(machine.cylinders[j, 0])
-        gx, gy = float(machine.cylinders[j, 1]), float(machine.cylinders[j, 2])
+        phi = theta + float(cylinders[j, 0])
+        gx, gy = float(cylinders[j, 1]), float(cylinders[j, 2])
         sin_p, cos_p = math.sin(phi), math.cos(phi)
         sin_b = (r * sin_p - e) / l
         wide = 1.0 + abs(sin_p)
@@ -92,7 +91,7 @@ def reduced(theta: float, machine: Machine, pieces: Array) -> tuple[float, float
         slope += 2.0 * (m_piston * x1 * x2 + m_rod * (gx1 * gx2 + gy1 * gy2) + i_rod * b1 * b2)
         d = theta - float(pieces[j, 0])
         cubic = (float(pieces[j, 1]) * d + float(pieces[j, 2])) * d + float(pieces[j, 3])
-        gas = machine.area * (cubic * d + float(pieces[j, 4]))
+        gas = area * (cubic * d + float(pieces[j, 4]))
         torque += (m_piston * gx - gas) * x1 + m_rod * (gx * gx1 + gy * gy1)
     return inertia, slope, torque
 
@@ -100,10 +99,10 @@ def reduced(theta: float, machine: Machine, pieces: Array) -> tuple[float, float
 @kernel
 def slopes(t: float, y: Array, system: System, out: Array) -> None:
     """Slopes of (theta, omega, work) in time; no numbers where a trial step went far too far."""
-    theta, omega, load = float(y[0]), float(y[1]), system.load
+    theta, omega, (machine, pieces, load) = float(y[0]), float(y[1]), system
     out[0] = out[1] = out[2] = math.nan
     if math.isfinite(theta * omega):
-        inertia, slope, torque = reduced(theta, system.machine, system.pieces)
+        inertia, slope, torque = reduced(theta, machine, pieces)
         torque += load[0] + load[1] * t + (load[2] + load[3] * omega) * omega
         alpha, power = (torque - 0.5 * slope * omega * omega) / inertia, torque * omega
         if math.isfinite(alpha * power):
@@ -115,18 +114,17 @@ def _stages(
     which: range, t: float, h: float, y: Array, system: System, k: Array, at: Array
 ) -> None:
     """The slopes k of some stages of a step from y; leaves the state of the last one in ``at``."""
-    a, c = system.method.a, system.method.c
     for s in which:
         for q in range(3):
             rise = 0.0
             for i in range(s):
-                rise += float(a[s, i]) * float(k[i, q])
+                rise += float(A[s, i]) * float(k[i, q])
             at[q] = float(y[q]) + h * rise
-        slopes(t + h * float(c[s]), at, system, k[s])
+        slopes(t + h * float(C[s]), at, system, k[s])
 
 
 @kernel
-def _error(h: float, method: Method, k: Array, allowed: tuple[float, float]) -> float:
+def _error(h: float, k: Array, allowed: tuple[float, float]) -> float:
     """A step's error over what is allowed of angle and speed, from estimates of order 5 and 3.
 
     The work takes no part: the order 3 estimate is summed over all components, and the one of the
@@ -136,8 +134,8 @@ def _error(h: float, method: Method, k: Array, allowed: tuple[float, float]) -> 
     for q in range(2):
         by_five = by_three = 0.0
         for i in range(13):
-            by_five += float(method.e5[i]) * float(k[i, q])
-            by_three += float(method.e3[i]) * float(k[i, q])
+            by_five += float(E5[i]) * float(k[i, q])
+            by_three += float(E3[i]) * float(k[i, q])
         by_five, by_three = by_five / allowed[q], by_three / allowed[q]
         five, three = five + by_five * by_five, three + by_three * by_three
     return h * five / math.sqrt(2.0 * (five + 0.01 * three)) if five != 0.0 else 0.0
@@ -156,7 +154,7 @@ def _interpolate(
         for p in range(4):
             total = 0.0
             for i in range(16):
-                total += float(system.method.d[p, i]) * float(k[i, q])
+                total += float(D[p, i]) * float(k[i, q])
             row[4 + p, q] = h * total
 
 
@@ -245,7 +243,7 @@ def travel(
     number of steps; time, next step, largest kinetic energy; evaluations
     """
     (tolerance, speed, t_bound, parts), (t, h, most), (begins, widths, rows) = control, start, steps
-    k, new, load = np.empty((16, 3)), np.empty(3), system.load
+    k, new, (machine, pieces, load) = np.empty((16, 3)), np.empty(3), system
     n, evaluations, longest, entered = 0, 0, t_bound, True
     while n + parts <= len(widths):
         if entered:
@@ -257,7 +255,7 @@ def travel(
             width = min(h, t_bound - t)
             _stages(range(1, 13), t, width, y, system, k, new)
             fastest = speed + max(abs(float(y[1])), abs(float(new[1])))
-            error = _error(width, system.method, k, (tolerance, tolerance * fastest))
+            error = _error(width, k, (tolerance, tolerance * fastest))
             evaluations += 12
             if error < 1.0:
                 break
@@ -290,8 +288,8 @@ def travel(
             if ends or y[1] == 0.0 or not limits[5] < y[1] < limits[6]:
                 break
             sense, entered = math.copysign(1.0, y[1]), True
-            limits[0], limits[1] = enter(float(y[0]), sense, system.machine, system.pieces)
-        inertia, omega = reduced(float(y[0]), system.machine, system.pieces)[0], float(y[1])
+            limits[0], limits[1] = enter(float(y[0]), sense, machine, pieces)
+        inertia, omega = reduced(float(y[0]), machine, pieces)[0], float(y[1])
         kinetic, damping = 0.5 * inertia * omega * omega, load[2] + 2.0 * load[3] * omega
         most, hard = max(most, kinetic), abs(damping) > _HARD * inertia * abs(omega)
         if hard or kinetic <= tolerance * tolerance * most or t >= t_bound:

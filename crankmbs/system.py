@@ -1,15 +1,13 @@
-"""What `crankmbs.stepper` solves, and by what method, in plain numbers and arrays."""
+"""What `crankmbs.stepper` solves, in plain numbers and arrays."""
 
 from __future__ import annotations
 
-from functools import cache
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.integrate import DOP853
 
-__all__ = ["Machine", "Method", "System", "dop853"]
+__all__ = ["Machine", "System", "bare"]
 
 Array = NDArray[np.float64]
 
@@ -45,30 +43,12 @@ class Machine(NamedTuple):
     coefficients: Array
 
 
-class Method(NamedTuple):
-    """Coefficients of the pair: 12 stages, the slope at the end, 3 more for the interpolant."""
-
-    a: Array
-    c: Array
-    e3: Array
-    e5: Array
-    d: Array
+System = tuple[Machine, Array, tuple[float, float, float, float]]
+"""The equation of motion between two knots: machine, pressure as `crankmbs.stepper.enter` fills it,
+and the load's c0, ct, c1, c2 of `crankmbs.torque`."""
 
 
-class System(NamedTuple):
-    """The equation of motion between two knots: ``pieces`` as `enter` fills them, and the load's
-    c0, ct, c1, c2 of `crankmbs.torque`; and the method that solves it."""
-
-    machine: Machine
-    pieces: Array
-    load: tuple[float, float, float, float]
-    method: Method
-
-
-@cache
-def dop853() -> Method:
-    """The method of order 8 of Dormand and Prince, with SciPy's coefficients."""
-    a, c = np.zeros((16, 16)), np.ones(16)
-    a[:12, :12], a[12, :12], a[13:] = DOP853.A, DOP853.B, DOP853.A_EXTRA
-    c[:12], c[13:] = DOP853.C, DOP853.C_EXTRA
-    return Method(a, c, DOP853.E3.copy(), DOP853.E5.copy(), DOP853.D.copy())
+def bare(machine: Machine) -> Machine:
+    """The same as a tuple without a name: numba's cache on disk is lost, with an error, when a
+    class that it names changes its place."""
+    return cast(Machine, tuple(machine))

@@ -1,6 +1,7 @@
 """The compiled loops against what they replace, to rounding; and when they are loaded."""
 
 import dataclasses
+import re
 import subprocess
 import sys
 
@@ -90,6 +91,21 @@ def test_steps_over_time_are_the_same_compiled_and_plain(
         a, b = np.asarray(plain.data[name]), np.asarray(compiled.data[name])
         assert a.shape == b.shape
         assert np.max(np.abs(a - b)) < 1e-10 * np.max(np.abs(a)), name
+
+
+def test_what_is_compiled_names_no_class_of_ours() -> None:
+    """numba's cache on disk cannot be read, and every run fails, once such a class has gone."""
+    import numba  # noqa: F401
+
+    assert kernels.pay(0.0)
+    scene = scene_with(LOADS["quadratic"], 300.0, "10 deg")
+    for formulation in ("crank_angle", "minimal"):
+        assert simulate(scene, formulation=formulation).status == 0
+    names = [(sys.modules[f.__module__], f.__name__) for f in kernels._functions]
+    signatures = {name: getattr(module, name).signatures for module, name in names}
+    assert signatures["travel"]
+    assert signatures["affine"]
+    assert set(re.findall(r"\b(\w+)\(", str(signatures))) <= {"Array", "Tuple", "UniTuple", "array"}
 
 
 SHORT = """

@@ -67,7 +67,9 @@ def solve_affine(
     if compiled:
         cells, weights = Cells.empty(strip), grid.rule.weights
         loads, ends = (push, rate, inertia), begin[1:]
-        return cells.first(kernels.affine(again, maps, loads, ends, strip.width, weights, *cells))
+        return cells.first(
+            kernels.affine(again, maps[:], loads, ends, strip.width, weights, *cells)
+        )
     edges, energy = _chain(Maps(*(part[again] for part in maps)), begin.energy)
     slowness = np.sqrt(0.5 * strip.inertia / energy)
     time = _clock(begin.time, strip.width * (slowness @ grid.rule.weights))

@@ -16,7 +16,7 @@ from crankmbs.reduced import Between, Reduced
 from crankmbs.roots import invert_monotone
 from crankmbs.sampling import Plan
 from crankmbs.schema import DEGREE
-from crankmbs.system import System, dop853
+from crankmbs.system import System
 from crankmbs.torque import Branch
 
 __all__ = ["BALANCED", "Equation", "Stretch", "Track"]
@@ -44,7 +44,7 @@ class Equation:
         """The same for `crankmbs.stepper`."""
         b = self.branch
         loads = (b.c0, b.ct, b.c1, b.c2)
-        return System(self.reduced.machine, self.between.pieces, loads, dop853())
+        return self.reduced.machine, self.between.pieces, loads
 
     def outside(self, t: float, omega: float) -> float:
         """Torque from outside [N m]."""

@@ -104,14 +104,6 @@ class Window:
         inside = rule.integrals(finer.nodes).T
         to_nodes = np.vstack([finer.matrix, finer.weights]).T
         own = np.column_stack([inside, rule.weights])
-        if kernels.are_compiled:
-            branch, tables = self.branch, (strip.inertia, strip.torque)
-            loads = branch.c0, branch.ct, branch.c1, branch.c2
-            solved = self.strip.width, self.energy, self.time, self.torque, self.slowness
-            gained, late = np.empty((2, len(self.torque), len(finer.nodes) + 1))
-            rules = inside, to_nodes, own
-            kernels.errors(loads, self.sense, rules, tables, solved, gained, late)
-            return gained, late
         width = self.strip.width[:, None]
         energy = self.energy[:-1, None] + self.sense * width * (self.torque @ inside)
         t = self.time[:-1, None] + width * (self.slowness @ inside)
