@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 Steps = tuple[Array, Array, Array]  # beginnings and lengths [s], and rows as in `first_exit`
 
 _PASSED = 1e-9  # rad: a knot this close ahead has been passed
-_BISECTIONS, _SCAN = 60, 33
+_BISECTIONS, _SCAN = 60, 16
 _HARD = 1e3 / math.radians(5.0)  # 1/rad: damped a thousand times while the crank turns 5 degrees
 
 
@@ -182,27 +182,28 @@ def first_exit(row: Array, new: Array, limits: Array) -> tuple[float, int]:
     """
     first, which = 1.0, -1
     push = float(row[1, 1] + row[2, 1])  # the acceleration gives the sense of a start at rest
-    for i in range(7):
+    for i in (4, 5, 6, 0, 1, 2, 3):  # the angle is monotone up to the reversal
         limit, q = float(limits[i]), 0 if i < 4 else 1
-        begin, end = float(row[0, q]) - limit, float(new[q]) - limit
-        rests = i >= 4 and begin == 0.0 and limit == 0.0
-        begin = push if rests else begin
-        if not (begin * end < 0.0 or (i < 4 and end == 0.0 and begin != 0.0)):
+        rests = i >= 4 and limit == 0.0 and row[0, q] == 0.0
+        begin = push if rests else float(row[0, q]) - limit
+        if begin == 0.0 or math.isinf(limit):
             continue
-        low, high, side = 0.0, 1.0, math.copysign(1.0, end)
-        if end != 0.0 and (float(row[0, q]) - limit) * side >= 0.0:
-            least = 0.0  # it starts on the limit and returns to it
-            for j in range(1, _SCAN):
-                inside = (_value(row, q, j / _SCAN) - limit) * side
-                if inside < least:
-                    low, least = j / _SCAN, inside
-            if least == 0.0 and rests:  # it leaves to this side, but for rounding
-                continue
-            high = 0.0 if least == 0.0 else 1.0  # or at once
+        low, high, left = 0.0, -1.0, not rests
+        scan = 1 if i < 4 else _SCAN  # a speed may come back within the step
+        for j in range(1, scan + 1):
+            x = first * j / scan
+            beyond = (float(new[q]) if x == 1.0 else _value(row, q, x)) - limit
+            if (begin * beyond < 0.0 and left) or (i < 4 and beyond == 0.0):
+                high = x
+                break
+            if begin * beyond > 0.0:  # from rest: not before it has left to the side it is pushed
+                low, left = x, True
+        if high < 0.0:
+            continue
         for _ in range(_BISECTIONS):
             middle = 0.5 * (low + high)
-            beyond = end != 0.0 and (_value(row, q, middle) - limit) * side > 0.0
-            low, high = (low, middle) if beyond else (middle, high)
+            outside = begin * (_value(row, q, middle) - limit) < 0.0
+            low, high = (low, middle) if outside else (middle, high)
         if high < first or which < 0:
             first, which = high, i
     return first, which

@@ -23,6 +23,7 @@ from crankmbs.pressure import pressure_of
 from crankmbs.reactions import reactions
 from crankmbs.reduced import Reduced
 from crankmbs.torque import branch_of
+from validation.random_scenes import random_scene
 
 COASTING, PROPELLER = load_scene("coasting"), load_scene("propeller")
 HEAVY = replace(COASTING.crank, inertia=3e3)
@@ -139,3 +140,11 @@ def test_physical_ends(changes, begins):
     assert result.status == 1
     assert result.message.startswith(begins)
     assert np.isfinite(result.data["main_bearing_force_x"]).all()
+
+
+@pytest.mark.parametrize("formulation", ["crank_angle", "minimal"])
+def test_a_pressure_step_just_before_a_reversal_counts(formulation):
+    """Two thousandths of a radian behind it the crank turns back, within the same long step."""
+    result = simulate(random_scene(848), formulation=formulation)
+    errors = true_errors(result, reference_of(result))
+    assert max(error.ratio for error in errors.values()) <= 2.0

@@ -120,6 +120,10 @@ ANYWHERE = np.array([-9.0, 9.0, -9.0, 9.0, 0.0, -99.0, 99.0])
         ((0.0, 1.0), (0.0, 1.0, -2.0), {}, (0.5, 4)),  # from rest backwards, and back
         ((0.0, 1.0), (0.0, 1.0), {}, (1.0, -1)),  # from rest, and on
         ((0.0, 1.0), (4.0, 1.0), {6: 4.0}, (1.0, -1)),  # it rises from its bound
+        ((1.0, 0.0, 4.0), (4.0, -8.0), {1: 1.75}, (0.25, 1)),  # passed just before a reversal
+        ((1.0, 0.0, 4.0), (4.0, -8.0), {1: 2.1}, (0.5, 4)),  # not reached before it
+        ((0.0, 1.0), (3.0, 0.0, 4.0), {6: 3.75}, (0.25, 6)),  # the speed comes back
+        ((0.0, 1.0), (0.0, -1.0, 4.0), {}, (0.75, 4)),  # from rest, and back
     ],
 )
 def test_the_first_exit(theta, omega, limits, exit_at):
