@@ -7,7 +7,6 @@ rest and reversal. This is where the one hands over to the other.
 from __future__ import annotations
 
 import math
-from collections import deque
 from collections.abc import Generator
 from dataclasses import replace
 from typing import NamedTuple
@@ -22,17 +21,18 @@ from crankmbs.drives import TimeTable
 from crankmbs.formulations import crank_angle, minimal
 from crankmbs.formulations.base import Array, Piece, Samples, Solution, State
 from crankmbs.inertia import reduce
+from crankmbs.path import Path
 from crankmbs.pressure import PeriodicPressure
 from crankmbs.reduced import Reduced
 from crankmbs.result import VARIABLES
-from crankmbs.sampling import FOLDED, Plan, plan_of
+from crankmbs.sampling import FOLDED, plan_of
 from crankmbs.scene import Scene
 from crankmbs.torque import Branch, branch_at, branch_of
 
 __all__ = ["run"]
 
 _PASSES = 12
-_VAIN_REVERSALS = 20  # as many that reach no farther, and the end is not coming
+_VAIN = 8  # after as many vain hand-overs the crank must turn through a period before the next
 _MOST_CELLS = 20_000
 _FINEST = 3e-14  # what rounding leaves of a cell
 _FINEST_STEP, _FINEST_CHECK = 3e-15, 3e-16  # over time, of either pass: equal ones would err alike
@@ -59,74 +59,12 @@ _ENDS = {
 }
 
 
-class _Path:
-    """The pieces of one pass, sampled as they come; with a finite plan.last only the last stay."""
-
-    def __init__(self, plan: Plan, first: Samples, *, can_swing: bool) -> None:
-        self._plan, self._can_swing = plan, can_swing
-        self._farthest, self._since = 0.0, 0  # reach [rad], and reversals that reached no farther
-        self._blocks = [first]
-        self._tail: deque[Piece] = deque()
-        self.reversals = self.steps = self.evaluations = 0
-
-    def follow(self, pieces: Generator[Piece, None, str]) -> str:
-        """Add every piece; return why they ended."""
-        while True:
-            try:
-                self._add(next(pieces))
-            except StopIteration as stop:
-                return str(stop.value)
-            if self._swings():
-                return "swing"
-
-    def _add(self, piece: Piece) -> None:
-        self.steps += piece.steps
-        self.evaluations += piece.evaluations
-        if piece.end.omega == 0.0:
-            self.reversals += 1
-            reach = abs(piece.end.theta - self._plan.start)
-            if reach > self._farthest * (1.0 + 1e-4):
-                self._farthest, self._since = reach, 0
-            self._since += 1
-        if math.isinf(self._plan.last):
-            self._blocks.append(piece.sample(self._plan))
-            self._tail.clear()
-        self._tail.append(piece)
-        while abs(piece.end.theta - self._tail[0].end.theta) > self._plan.last:
-            self._tail.popleft()
-
-    def _swings(self) -> bool:
-        """Whether an end in angle is not coming nearer, reversal by reversal."""
-        vain = self._since > _VAIN_REVERSALS
-        return vain and self._can_swing and not self._plan.until_time
-
-    def samples(self) -> Samples:
-        """All samples, the last one exactly at the end."""
-        if not self._tail:
-            return self._blocks[0]
-        if math.isfinite(self._plan.last):
-            self._blocks = [piece.sample(self._plan) for piece in self._tail]
-        joined, last = Samples.joined(self._blocks), self._tail[-1].last()
-        values = joined.time if self._plan.in_time else joined.theta
-        end = float((last.time if self._plan.in_time else last.theta)[0])
-        if len(values) and self._plan.is_end(float(values[-1]), end):
-            joined = joined.select(slice(None, -1))
-        joined = Samples.joined([joined, last])
-        near = np.abs(joined.theta - joined.theta[-1]) <= self._plan.last * (1.0 + 1e-12)
-        return joined.select(near)
-
-    @property
-    def state(self) -> State | None:
-        """The state reached, None before the first piece."""
-        return self._tail[-1].end if self._tail else None
-
-
 class _Pass(NamedTuple):
     """One pass over the whole motion; ``local``, shape (2, cells): errors at ends and inside."""
 
     samples: Samples
     ending: str
-    path: _Path
+    path: Path
     local: Array
     carried: tuple[float, ...]
 
@@ -177,13 +115,17 @@ def _travel(grid: Grid, local: float, *, by_angle: bool, better: bool = False) -
     plan = plan_of(scene)
     state = State(0.0, scene.start.angle, scene.start.speed, 0.0)
     steady = not any(isinstance(load, TimeTable) for load in scene.torque)
-    path = _Path(plan, _first(grid, state), can_swing=steady)
+    path = Path(plan, _first(grid, state), can_swing=steady)
     reduced = Reduced(scene, grid.pressure, halved=better)
     worst = np.zeros((2, len(grid.edges) - 1))
     carried: list[float] = []
 
+    vain = 0  # hand-overs to the crank angle that did not carry the motion through a period
+
     def is_fast(at: State, branch: Branch) -> bool:
-        return by_angle and at.omega != 0.0 and crank_angle.is_fast(grid, at, branch)
+        swings = abs(at.theta - path.turned_back) < min(vain / _VAIN, 1.0) * scene.period
+        fast = by_angle and at.omega != 0.0 and not swings
+        return fast and crank_angle.is_fast(grid, at, branch)
 
     def windows(at: State) -> Generator[Piece, None, str]:
         pieces = crank_angle.advance(grid, at, plan)
@@ -207,7 +149,9 @@ def _travel(grid: Grid, local: float, *, by_angle: bool, better: bool = False) -
             carried.append((path.state or state).time)
             ending = path.follow(steps)
         else:
+            begin = (path.state or state).theta
             ending = path.follow(windows(path.state or state))
+            vain += abs((path.state or state).theta - begin) < scene.period
     if ending == "end" and plan.folds_at((path.state or state).theta):
         ending = "fold"
     return _Pass(path.samples(), ending, path, worst, tuple(carried) if by_angle else ())

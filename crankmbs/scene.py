@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Annotated, Literal
 
 from annotated_types import Ge, Le
@@ -101,7 +102,7 @@ class Scene:
         """The engine's period [rad]; without gas 4 pi."""
         return 4.0 * math.pi if self.gas is None else self.gas.period
 
-    @property
+    @cached_property
     def cylinders(self) -> tuple[Cylinder, ...]:
         """The cylinders in the order of their numbers, firing order resolved."""
         return self.layout.resolve(self.period)

@@ -135,3 +135,16 @@ def test_tighter_costs_more(load):
     loaded = scene(PROPELLER, torque=(load,))
     costs = [simulate(loaded, rtol=rtol).cost.evaluations for rtol in (1e-4, 1e-8, 1e-12)]
     assert costs == sorted(costs)
+
+
+def test_a_swing_is_left_to_time(monkeypatch):
+    """Eight hand-overs that did not last a period are enough: from then on it must turn one."""
+    pieces, advance = [], free.crank_angle.advance
+    monkeypatch.setattr(
+        free.crank_angle, "advance", lambda *args: pieces.append(args) or advance(*args)
+    )
+    swing = replace(COASTING, start=at_rest(1.0), run=Run(until="20 s", every="0.1 s", rtol=1e-7))
+    result = simulate(swing, formulation="crank_angle")
+    assert result.status == 0
+    assert np.count_nonzero(np.diff(np.sign(result.data["crank_speed"].values))) > 20
+    assert 8 <= len(pieces) <= 40, "both passes together"

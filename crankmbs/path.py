@@ -1,0 +1,80 @@
+"""The way of a free motion, piece by piece."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from collections.abc import Generator
+
+import numpy as np
+
+from crankmbs.formulations.base import Piece, Samples, State
+from crankmbs.sampling import Plan
+
+__all__ = ["Path"]
+
+_VAIN = 20  # as many reversals that reach no farther, and the end is not coming
+
+
+class Path:
+    """The pieces of one pass, sampled as they come; with a finite plan.last only the last stay."""
+
+    def __init__(self, plan: Plan, first: Samples, *, can_swing: bool) -> None:
+        self._plan, self._can_swing = plan, can_swing
+        self._farthest, self._since = 0.0, 0  # reach [rad], and reversals that reached no farther
+        self.turned_back = plan.start  # crank angle of the last reversal [rad]
+        self._blocks = [first]
+        self._tail: deque[Piece] = deque()
+        self.reversals = self.steps = self.evaluations = 0
+
+    def follow(self, pieces: Generator[Piece, None, str]) -> str:
+        """Add every piece; return why they ended."""
+        while True:
+            try:
+                self._add(next(pieces))
+            except StopIteration as stop:
+                return str(stop.value)
+            if self._swings():
+                return "swing"
+
+    def _add(self, piece: Piece) -> None:
+        self.steps += piece.steps
+        self.evaluations += piece.evaluations
+        if piece.end.omega == 0.0:
+            self.turned_back = piece.end.theta
+            self.reversals += 1
+            reach = abs(piece.end.theta - self._plan.start)
+            if reach > self._farthest * (1.0 + 1e-4):
+                self._farthest, self._since = reach, 0
+            self._since += 1
+        if math.isinf(self._plan.last):
+            self._blocks.append(piece.sample(self._plan))
+            self._tail.clear()
+        self._tail.append(piece)
+        while abs(piece.end.theta - self._tail[0].end.theta) > self._plan.last:
+            self._tail.popleft()
+
+    def _swings(self) -> bool:
+        """Whether an end in angle is not coming nearer, reversal by reversal."""
+        vain = self._since > _VAIN
+        return vain and self._can_swing and not self._plan.until_time
+
+    def samples(self) -> Samples:
+        """All samples, the last one exactly at the end."""
+        if not self._tail:
+            return self._blocks[0]
+        if math.isfinite(self._plan.last):
+            self._blocks = [piece.sample(self._plan) for piece in self._tail]
+        joined, last = Samples.joined(self._blocks), self._tail[-1].last()
+        values = joined.time if self._plan.in_time else joined.theta
+        end = float((last.time if self._plan.in_time else last.theta)[0])
+        if len(values) and self._plan.is_end(float(values[-1]), end):
+            joined = joined.select(slice(None, -1))
+        joined = Samples.joined([joined, last])
+        near = np.abs(joined.theta - joined.theta[-1]) <= self._plan.last * (1.0 + 1e-12)
+        return joined.select(near)
+
+    @property
+    def state(self) -> State | None:
+        """The state reached, None before the first piece."""
+        return self._tail[-1].end if self._tail else None
