@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -21,6 +23,7 @@ __all__ = ["Assembled", "assemble", "dataset"]
 
 _ROUNDING = 64 * float(np.finfo(float).eps)  # of a variable's peak: what the formulas round
 _NOTHING = 1e-9  # of the largest variable of the same unit: zero but for rounding
+_FEW = 32  # samples: among more there is one where nothing cancels
 _ANGLE_ROUNDING = 2 * float(np.finfo(float).eps)  # of the crank angle
 
 
@@ -63,7 +66,8 @@ def assemble(scene: Scene, pressure: PeriodicPressure | None, solution: Solution
 
     The error is the difference between the answer and the better one of the solution, to which
     the rounding of the crank angle is added, propagated through the same formulas; where the
-    formulation states its own errors they are taken.
+    formulation states its own errors they are taken. At a few samples the differences of angle,
+    speed and acceleration may cancel in a variable by chance: there what each makes is added up.
     """
     variables = _variables(scene, pressure, solution.samples)
     peaks = {name: _peak(values) for name, values in variables.items()}
@@ -81,9 +85,14 @@ def assemble(scene: Scene, pressure: PeriodicPressure | None, solution: Solution
     check = _variables(scene, pressure, rounded)
     needed = check["external_torque"]
     check |= better.own
+    chain = [variables, check]
+    if len(better.time) <= _FEW:
+        turned = replace(solution.samples, theta=rounded.theta)
+        faster = replace(turned, omega=rounded.omega)
+        chain[1:1] = [_variables(scene, pressure, samples) for samples in (turned, faster)]
     errors = {
-        name: _peak(values - check[name]) + _ROUNDING * peaks[name]
-        for name, values in variables.items()
+        name: sum(_peak(a[name] - b[name]) for a, b in pairwise(chain)) + _ROUNDING * peak
+        for name, peak in peaks.items()
     }
     # a free crank's acceleration at the rounded angle: where the torque needed is the one there
     missed = _peak(check["external_torque"] - needed)

@@ -98,7 +98,7 @@ def run(
             break
         local = max(local * max(1e-3, 0.1 * rtol / estimate), finest)
     assert best is not None
-    if least > rtol or reached <= 10.0 * finest:
+    if least > rtol or reached <= 30.0 * finest:
         # what is left is rounding, in both passes alike, and their difference not a bound
         best = best._replace(errors={name: 2.0 * error for name, error in best.errors.items()})
     if best.relative_error > rtol and best.solution.status >= 0:

@@ -8,6 +8,7 @@ import pytest
 from crankmbs import load_scene
 from crankmbs.assemble import assemble, dataset
 from crankmbs.formulations.base import Samples, Solution
+from crankmbs.inertia import reduce
 from crankmbs.result import VARIABLES
 
 SCENE = load_scene("v_twin")
@@ -47,6 +48,20 @@ def test_the_difference_to_the_better_answer_is_the_error():
     assert assembled.errors["piston_position"] == pytest.approx(moved, rel=1e-2)
     assert assembled.errors["time"] < 1e-14
     assert assembled.relative_error > 1e-7
+
+
+def test_errors_that_cancel_at_one_sample_are_stated():
+    """Ahead, and slower by as much as keeps the kinetic energy: that is chance."""
+    last = samples().select(slice(10, 11))
+    inertia, slope, _ = reduce(SCENE, None, last.theta)
+    ahead = 1e-6
+    slower = -0.5 * slope * last.omega * ahead / inertia
+    better = replace(last, theta=last.theta + ahead, omega=last.omega + slower)
+    assembled = assemble(SCENE, None, Solution(last, 0, "done", 1, 1, better))
+    each = abs(float(0.5 * slope[0] * last.omega[0] ** 2 * ahead))
+    check = assemble(SCENE, None, Solution(better, 0, "done", 1, 1)).variables["kinetic_energy"]
+    assert abs(float(check[0] - assembled.variables["kinetic_energy"][0])) < 1e-3 * each
+    assert assembled.errors["kinetic_energy"] == pytest.approx(2.0 * each, rel=1e-2)
 
 
 def test_the_crank_angle_errs_at_equal_time():
