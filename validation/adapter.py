@@ -25,6 +25,7 @@ from crankmbs.drives import Motion as Prescribed
 from crankmbs.machine import Gas
 from crankmbs.pressure import pressure_of
 from crankmbs.result import Result
+from crankmbs.sampling import plan_of
 from crankmbs.scene import Scene
 from crankmbs.tables import Table
 from validation.oracles.arithmetic import LONG, Arithmetic, Array
@@ -91,8 +92,8 @@ def reference_motion(
     if times[-1] == 0:
         return _first(path.at_times(arithmetic.array([0, 2.0**-60])))
     motion = path.at_times(times)
-    if scene.run.every is not None and scene.run.every.unit != "s":
-        moving = slice(int(times[0] == 0), None if scene.run.until.unit != "s" else -1)
+    moving = _on_angles(result, scene)
+    if moving.any():
         missing = arithmetic.array(result.data["crank_angle"].values) - motion.theta
         omega, alpha = motion.omega[moving], motion.alpha[moving]
         late = missing[moving] / omega
@@ -100,6 +101,19 @@ def reference_motion(
         times[moving] = times[moving] + late
         motion = path.at_times(times)
     return motion
+
+
+def _on_angles(result: Result, scene: Scene) -> NDArray[np.bool_]:
+    """Which samples lie on crank angles: those of a grid of angles, and an end in angle."""
+    time, theta = (result.data[name].values for name in ("time", "crank_angle"))
+    if scene.run.every is None:
+        return np.zeros(len(time), dtype=bool)
+    plan = plan_of(scene)
+    on = (time > 0.0) & (not plan.in_time)
+    last = time[-1] if plan.in_time else theta[-1] - plan.start
+    if not plan.is_end(round(last / plan.every) * plan.every, last):  # the end, off the grid
+        on[-1] = not plan.until_time and result.status == 0
+    return on
 
 
 def reference_variables(
