@@ -49,7 +49,7 @@ def heyoka_path(machine: Machine, theta0: Number, omega0: Number) -> Path:
 
 @cache
 def _integrator(cylinders: int) -> Any:
-    """The compiled equations; their parameters in the order of `_Stepper._parameters`."""
+    """The compiled equations; parameters in the order of `_Stepper`: machine, then place."""
     theta, omega = hy.make_vars("theta", "omega")
     parameters = (hy.par[k] for k in count())
 
@@ -60,6 +60,7 @@ def _integrator(cylinders: int) -> Any:
         return hy.diff(value, theta)
 
     machine, crank = take(*_MACHINE), take("gx", "gy")
+    throws = [take("half", "gx", "gy") for _ in range(cylinders)]
     radius, length = machine.crank_radius, machine.rod_length
     reach = machine.crank_mass * machine.crank_center_of_mass
     load = take(*_LOAD)
@@ -67,8 +68,7 @@ def _integrator(cylinders: int) -> Any:
     torque += omega * (load.per_speed + load.per_speed2 * omega)
     torque += reach * (crank.gy * hy.cos(theta) - crank.gx * hy.sin(theta))
     inertia = machine.crank_inertia
-    for _ in range(cylinders):
-        own = take("half", "gx", "gy", "origin", "p0", "p1", "p2", "p3")
+    for own in throws:
         sine, cosine = hy.sin(theta / 2 + own.half), hy.cos(theta / 2 + own.half)
         # Of the throw and of the rod; by half angles the rod's cosine is exact up to a fold.
         throw_x, throw_y = 2 * radius * sine * cosine, radius * (sine * sine - cosine * cosine)
@@ -81,10 +81,11 @@ def _integrator(cylinders: int) -> Any:
         stroke = by_angle(throw_x + length * rod_x)
         inertia += machine.rod_mass * (to_x * to_x + to_y * to_y)
         inertia += machine.rod_inertia * spin * spin + machine.piston_mass * stroke * stroke
-        since = theta - own.origin
-        pressure = own.p0 + since * (own.p1 + since * (own.p2 + since * own.p3))
+        gas = take("origin", "p0", "p1", "p2", "p3")
+        since = theta - gas.origin
+        force = gas.p0 + since * (gas.p1 + since * (gas.p2 + since * gas.p3))
         torque += machine.rod_mass * (own.gx * to_x + own.gy * to_y)
-        torque += stroke * (machine.piston_mass * own.gx - pressure)
+        torque += stroke * (machine.piston_mass * own.gx - force)
     alpha = (torque - by_angle(inertia) * omega * omega / 2) / inertia
     directions = (hy.event_direction.negative, hy.event_direction.positive)
     events = []
@@ -109,8 +110,13 @@ class _Stepper:
     def __init__(self, machine: Machine) -> None:
         self.formulas = Formulas(machine, LONG)
         self._integrator = _integrator(len(machine.cylinders))
-        self._orders = np.arange(self._integrator.order + 1)
         self._known: dict[Place, Array] = {}
+        gx, gy = LONG.array(machine.gravity)
+        own = [*(getattr(machine, name) for name in _MACHINE), gx, gy]
+        for phase, bank in (LONG.array(cylinder) for cylinder in machine.cylinders):
+            cosine, sine = LONG.cos(bank), LONG.sin(bank)
+            own += [phase / 2 + LONG.pi / 4, cosine * gx + sine * gy, cosine * gy - sine * gx]
+        self._own = LONG.array(own)
 
     def alpha(self, state: State, place: Place) -> Number:
         self._step(state, place, LONG.number(0))
@@ -118,8 +124,7 @@ class _Stepper:
 
     def advance(self, state: State, place: Place, most: Number) -> Advance:
         outcome, length = self._step(state, place, min(most, _LONGEST))
-        terms = np.abs(self._integrator.tc).max(axis=0) * length**self._orders
-        if terms[-_TAIL:].max() > _TINY * terms.max():  # zeros among the last misled heyoka
+        if self._is_too_long(length):
             longest = step_size(self._integrator.tc[1], LONG)
             outcome, length = self._step(state, place, min(most, longest))
         theta, omega = self._integrator.state
@@ -132,6 +137,12 @@ class _Stepper:
                 upper_speed = _beyond(omega, self.formulas.speeds.bounds(place.speed))
         series = self._integrator.tc[0].copy()
         return Advance(series, length, theta, omega, upper_angle, upper_speed)
+
+    def _is_too_long(self, length: Number) -> bool:
+        """Whether zeros among the last terms of the series, as in a symmetry, misled heyoka."""
+        terms = np.abs(self._integrator.tc).max(axis=0)
+        last = terms[-_TAIL:] * length ** np.arange(len(terms) - _TAIL, len(terms))
+        return bool(last.max() > _TINY * max(terms[0], terms[1] * length))
 
     def _step(self, state: State, place: Place, most: Number) -> tuple[Any, Number]:
         integrator = self._integrator
@@ -153,19 +164,15 @@ class _Stepper:
                 at[k] += (-1, 1)[k % 2] * 4 * LONG.epsilon * (1 + abs(value))
 
     def _parameters(self, place: Place) -> Array:
-        machine, formulas = self.formulas.machine, self.formulas
-        gx, gy = LONG.array(machine.gravity)
+        formulas, cylinders = self.formulas, len(self.formulas.machine.cylinders)
         load, gas = formulas.load(place, LONG.number(0)), formulas.gas(place)
-        values = [getattr(machine, name) for name in _MACHINE]
-        values += [gx, gy, *(getattr(load, name) for name in _LOAD)]
-        for k, (phase, bank) in enumerate(LONG.array(pair) for pair in machine.cylinders):
-            cosine, sine = LONG.cos(bank), LONG.sin(bank)
-            values += [phase / 2 + LONG.pi / 4, cosine * gx + sine * gy, cosine * gy - sine * gx]
+        values = [getattr(load, name) for name in _LOAD]
+        for k in range(cylinders):
             values += [gas.origin[k], *gas.coefficients[k]] if gas else [0] * 5
         for low, high in (formulas.angles.bounds(place.angle), formulas.speeds.bounds(place.speed)):
             values += [1, low] if np.isfinite(low) else [0, -1]
             values += [1, high] if np.isfinite(high) else [0, 1]
-        return LONG.array(values)
+        return np.concatenate([self._own, np.array(values, dtype=LONG.dtype)])
 
 
 def _beyond(value: Number, bounds: tuple[Number, Number]) -> bool | None:
