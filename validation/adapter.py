@@ -104,7 +104,8 @@ def reference_motion(
 
 
 def _on_angles(result: Result, scene: Scene) -> NDArray[np.bool_]:
-    """Which samples lie on crank angles: those of a grid of angles, and an end in angle."""
+    """Which samples lie on crank angles: those of a grid of angles, and an end in angle or at a
+    fold."""
     time, theta = (result.data[name].values for name in ("time", "crank_angle"))
     if scene.run.every is None:
         return np.zeros(len(time), dtype=bool)
@@ -112,7 +113,8 @@ def _on_angles(result: Result, scene: Scene) -> NDArray[np.bool_]:
     on = (time > 0.0) & (not plan.in_time)
     last = time[-1] if plan.in_time else theta[-1] - plan.start
     if not plan.is_end(round(last / plan.every) * plan.every, last):  # the end, off the grid
-        on[-1] = not plan.until_time and result.status == 0
+        reached = result.status == 0 and not plan.until_time
+        on[-1] = reached or plan.folds_at(theta[-1])
     return on
 
 
