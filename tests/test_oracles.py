@@ -28,6 +28,10 @@ def end(machine: Machine, theta0: Number, omega0: Number, time: Number, **how: i
     return free_motion(machine, theta0, omega0, times=[time], **how)
 
 
+def test_pi_has_all_its_digits() -> None:
+    assert distance(LONG.pi, "3.14159265358979323846") < 2e-19
+
+
 @pytest.mark.parametrize(
     ("name", "tolerance"),
     [

@@ -1,12 +1,14 @@
 """Random scenes: every run ends as it should, and no true error exceeds twice the stated one."""
 
+from math import inf
+
 import numpy as np
 import pytest
 from make_random_references import SCENES, stored
 from references import true_errors
 
 from crankmbs import SpeedTable, simulate
-from validation import many
+from validation import judge_scene, many
 from validation.__main__ import main
 from validation.random_scenes import random_scene
 
@@ -43,13 +45,33 @@ def test_errors_are_honest(seed, formulation):
 
 def test_the_long_run_counts_what_is_red(monkeypatch, capsys):
     monkeypatch.setattr(many, "_FORMULATIONS", ("crank_angle",))
-    assert main(["--long", "1"]) == 0
-    assert "1 random scenes, 1 formulations: 0 red" in capsys.readouterr().out
-    monkeypatch.setattr(many, "_ALLOWED", 0.0)
+    assert main(["--long", "2", "--first", "5", "--processes", "1"]) == 0
+    out = capsys.readouterr().out
+    assert "crank_angle: 2 judged, 0 skipped" in out
+    assert "2 random scenes, 1 formulations: 0 red" in out
+    monkeypatch.setattr(many, "_USUAL", 0.0)
     assert main(["--long", "1"]) == 1
     out = capsys.readouterr().out
     assert "seed 0, crank_angle: " in out
     assert "1 red" in out
+
+
+def test_the_long_run_says_what_it_skips(monkeypatch, capsys):
+    monkeypatch.setattr(many, "_FORMULATIONS", ("crank_angle",))
+    monkeypatch.setattr(many, "_PATIENCE", 1e-6)
+    assert main(["--long", "1"]) == 1
+    out = capsys.readouterr().out
+    assert "seed 0, crank_angle: skipped, takes longer than 1e-06 s" in out
+    assert "0 judged, 1 skipped" in out
+
+
+def test_a_scene_that_raises_is_red(monkeypatch):
+    def fail(*_, **__):
+        raise ZeroDivisionError("no")
+
+    monkeypatch.setattr(judge_scene, "simulate", fail)
+    (judgement,) = judge_scene.judge_seed(0, ["minimal"], 60.0)
+    assert (judgement.ratio, judgement.said) == (inf, "raises ZeroDivisionError: no")
 
 
 def test_errors_of_multibody_are_honest_too_where_nothing_jumps():

@@ -24,11 +24,18 @@ def main(arguments: list[str] | None = None) -> int:
         type=int,
         const=10_000,
         metavar="N",
-        help="judge N random scenes instead, 10,000 without a number (hours), and write nothing",
+        help="judge N random scenes instead, 10,000 without a number, and write nothing "
+        "(with heyoka, of the extra bench, an hour; without, a day)",
+    )
+    parser.add_argument(
+        "--first", type=int, default=0, metavar="SEED", help="of --long: the seed to begin with"
+    )
+    parser.add_argument(
+        "--processes", type=int, metavar="P", help="of --long: how many scenes at a time"
     )
     asked = parser.parse_args(arguments)
     if asked.long is not None:
-        return 0 if run_many(asked.long) else 1
+        return 0 if run_many(asked.long, asked.first, asked.processes) else 1
     quick = asked.quick
     verdicts: list[Verdict] = []
     begin = time.perf_counter()

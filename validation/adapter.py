@@ -25,14 +25,16 @@ from crankmbs.drives import Motion as Prescribed
 from crankmbs.machine import Gas
 from crankmbs.pressure import pressure_of
 from crankmbs.result import Result
+from crankmbs.sampling import plan_of
 from crankmbs.scene import Scene
 from crankmbs.tables import Table
-from validation.oracles.arithmetic import LONG, Arithmetic, Array, Number
+from validation.oracles.arithmetic import LONG, Arithmetic, Array
 from validation.oracles.energy import kinetic_energy
-from validation.oracles.free_motion import Motion, free_motion
+from validation.oracles.free_motion import Motion, series_path
 from validation.oracles.loads import torque_at
 from validation.oracles.machine import Loads, LoadTable, Machine, PressurePieces, PressureTable
 from validation.oracles.newton_euler import newton_euler
+from validation.oracles.path import Path
 from validation.oracles.prescribed import oscillating_motion, pchip, polynomial_motion
 
 __all__ = ["at_jumps", "load_torque", "machine_of", "reference_motion", "reference_variables"]
@@ -69,40 +71,51 @@ def machine_of(scene: Scene) -> Machine:
 
 
 def reference_motion(
-    result: Result, scene: Scene | None = None, arithmetic: Arithmetic = LONG
+    result: Result,
+    scene: Scene | None = None,
+    arithmetic: Arithmetic = LONG,
+    path: Path | None = None,
 ) -> Motion:
     """The oracle's motion at the samples of a result, of its own scene or of a given one.
 
-    Samples that lie on crank angles are compared at equal angles: of a free motion the oracle is
-    run to the result's times and once more to those moved by the angle that is still missing.
+    Samples that lie on crank angles are compared at equal angles: a free motion is looked up at
+    the result's times and once more at those moved by the angle that is still missing.
+
+    path : of the free crank, where it is known already
     """
     scene = scene or result.scene
     if scene.motion is not None:
         return _prescribed(result, scene.motion)
     assert scene.start is not None
-    machine, start = machine_of(scene), scene.start
-    times = arithmetic.array(result.data["time"].values)
-    after = times[0] == 0
+    start, times = scene.start, arithmetic.array(result.data["time"].values)
+    path = path or series_path(machine_of(scene), start.angle, start.speed, arithmetic=arithmetic)
     if times[-1] == 0:
-        return _start(machine, scene, arithmetic, arithmetic.number(2.0**-60))
-    wanted = times[1:] if after else times
-
-    def run() -> Motion:
-        return free_motion(
-            machine, start.angle, start.speed, times=wanted.tolist(), arithmetic=arithmetic
-        )
-
-    motion = run()
-    if scene.run.every is not None and scene.run.every.unit != "s":
-        moving = slice(None) if scene.run.until.unit != "s" else slice(-1)
-        missing = arithmetic.array(result.data["crank_angle"].values)[1 if after else 0 :]
+        return _first(path.at_times(arithmetic.array([0, 2.0**-60])))
+    motion = path.at_times(times)
+    moving = _on_angles(result, scene)
+    if moving.any():
+        missing = arithmetic.array(result.data["crank_angle"].values) - motion.theta
         omega, alpha = motion.omega[moving], motion.alpha[moving]
-        late = (missing - motion.theta)[moving] / omega
+        late = missing[moving] / omega
         late = late - alpha * late * late / (2 * omega)  # to second order: once is enough
-        wanted = wanted.copy()
-        wanted[moving] = wanted[moving] + late
-        motion = run()
-    return _with_start(motion, machine, scene, arithmetic) if after else motion
+        times[moving] = times[moving] + late
+        motion = path.at_times(times)
+    return motion
+
+
+def _on_angles(result: Result, scene: Scene) -> NDArray[np.bool_]:
+    """Which samples lie on crank angles: those of a grid of angles, and an end in angle or at a
+    fold."""
+    time, theta = (result.data[name].values for name in ("time", "crank_angle"))
+    if scene.run.every is None:
+        return np.zeros(len(time), dtype=bool)
+    plan = plan_of(scene)
+    on = (time > 0.0) & (not plan.in_time)
+    last = time[-1] if plan.in_time else theta[-1] - plan.start
+    if not plan.is_end(round(last / plan.every) * plan.every, last):  # the end, off the grid
+        reached = result.status == 0 and not plan.until_time
+        on[-1] = reached or plan.folds_at(theta[-1])
+    return on
 
 
 def reference_variables(
@@ -162,25 +175,11 @@ def _prescribed(result: Result, motion: Prescribed) -> Motion:
     return polynomial_motion(result.data["time"].values, breaks, pieces, motion.angle)
 
 
-def _with_start(motion: Motion, machine: Machine, scene: Scene, arithmetic: Arithmetic) -> Motion:
-    """The motion with its initial state in front."""
-    start = _start(machine, scene, arithmetic, arithmetic.number(2.0**-60) * motion.time[0])
+def _first(motion: Motion) -> Motion:
+    """The first sample alone."""
     return Motion(
-        time=np.append(start.time, motion.time),
-        theta=np.append(start.theta, motion.theta),
-        omega=np.append(start.omega, motion.omega),
-        alpha=np.append(start.alpha, motion.alpha),
-        steps=motion.steps,
+        motion.time[:1], motion.theta[:1], motion.omega[:1], motion.alpha[:1], motion.steps
     )
-
-
-def _start(machine: Machine, scene: Scene, arithmetic: Arithmetic, soon: Number) -> Motion:
-    """The initial state alone, from a motion that ends soon after it."""
-    assert scene.start is not None
-    start = free_motion(
-        machine, scene.start.angle, scene.start.speed, times=[0, soon], arithmetic=arithmetic
-    )
-    return Motion(start.time[:1], start.theta[:1], start.omega[:1], start.alpha[:1], start.steps)
 
 
 def _pressure(scene: Scene) -> PressureTable | PressurePieces | None:

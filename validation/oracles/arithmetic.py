@@ -50,7 +50,7 @@ def _longdouble() -> Arithmetic:
     return Arithmetic(
         digits=19,
         epsilon=np.finfo(np.longdouble).eps,
-        pi=_to_longdouble(mpmath.MPContext().pi),
+        pi=4 * np.arctan(np.longdouble(1)),
         number=_to_longdouble,
         cos=np.cos,
         sin=np.sin,

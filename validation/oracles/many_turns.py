@@ -76,8 +76,8 @@ class _Turning:
 
     def edges(self, start: Number, offsets: Array, period: Number) -> Array:
         """Angles from `start` over one period: knots, wanted offsets, and no panel too wide."""
-        inner = [LONG.array(offsets), period * np.arange(1, 1 + int(np.ceil(period / WIDEST)))]
-        inner[1] = inner[1] / len(inner[1])
+        panels = int(np.ceil(period / WIDEST))
+        inner = [LONG.array(offsets), period * (np.arange(1, panels + 1) / panels)]
         if self.machine.pressure is not None:
             knots = pressure_pieces(self.machine.pressure).knots
             for phase, _ in self.machine.cylinders:

@@ -19,7 +19,7 @@ class GasPiece:
 
 
 def evaluate(series: Array, at: Number) -> Number:
-    """Horner's rule; `at` a number or an array."""
+    """Horner's rule along the first axis; `at` a number or an array."""
     total = series[-1] + at * 0
     for coefficient in series[-2::-1]:
         total = total * at + coefficient
@@ -27,8 +27,8 @@ def evaluate(series: Array, at: Number) -> Number:
 
 
 def derivative(series: Array) -> Array:
-    """The series of the derivative, one term shorter."""
-    result: Array = series[1:] * np.arange(1, len(series))
+    """The series of the derivative, one term shorter; series along the first axis."""
+    result: Array = (series[1:].T * np.arange(1, len(series))).T
     return result
 
 
