@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from bisect import bisect_right
+from bisect import bisect_left, bisect_right
 from collections.abc import Callable
 
 from crankmbs.drives import Constant, Quadratic, SpeedTable, TimeTable, Torque, Viscous
@@ -13,10 +13,11 @@ __all__ = ["Load", "torque_function"]
 Load = Callable[[float, float], float]
 
 
-def torque_function(torques: tuple[Torque, ...], begin: float) -> Load:
+def torque_function(torques: tuple[Torque, ...], begin: float, end: float) -> Load:
     """Torque [N m] over time [s] and crank speed [rad/s], all loads together.
 
-    Valid from ``begin`` to the next jump in time, and continued linearly before and beyond.
+    Valid from time ``begin`` to time ``end``, where no load jumps between, and continued linearly
+    before and beyond.
     """
     c0 = c1 = c2 = 0.0
     tables: list[Load] = []
@@ -29,7 +30,7 @@ def torque_function(torques: tuple[Torque, ...], begin: float) -> Load:
             case Quadratic():
                 c2 += load.coefficient
             case TimeTable():
-                tables.append(_over_time(load.file, begin))
+                tables.append(_over_time(load.file, begin, end))
             case SpeedTable():
                 tables.append(_over_speed(load.file))
 
@@ -42,15 +43,11 @@ def torque_function(torques: tuple[Torque, ...], begin: float) -> Load:
     return torque
 
 
-def _over_time(table: Table, begin: float) -> Load:
-    """Between the two jumps around ``begin``; the outer pieces are continued."""
+def _over_time(table: Table, begin: float, end: float) -> Load:
+    """The rows around ``begin`` and those up to ``end``; the outer pieces are continued."""
     x, y = table.x, table.y
-    after = bisect_right(x, begin)
-    low, high = max(after - 1, 0), min(after, len(x) - 1)
-    while low > 0 and x[low - 1] < x[low]:
-        low -= 1
-    while high < len(x) - 1 and x[high] < x[high + 1]:
-        high += 1
+    low = min(max(bisect_right(x, begin) - 1, 0), len(x) - 2)
+    high = max(bisect_left(x, end), low + 1)
     x, y = x[low : high + 1], y[low : high + 1]
     return lambda time, omega: _line(x, y, time)
 

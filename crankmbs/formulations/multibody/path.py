@@ -1,7 +1,7 @@
 """One run at one step size, from start to end.
 
-It is made of stretches, cut where something jumps: a load or the prescribed acceleration, at a
-time known beforehand; the gas force of a cylinder, at a crank angle.
+It is made of stretches, cut where something jumps or bends at a time known beforehand (a load,
+the prescribed acceleration) and where the gas force of a cylinder jumps, at a crank angle.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import numpy as np
 
 from crankmbs.drives import TimeTable
 from crankmbs.formulations.multibody.model import Model
-from crankmbs.formulations.multibody.problem import Problem, jump_times
+from crankmbs.formulations.multibody.problem import Problem, jump_times, kink_times
 from crankmbs.formulations.multibody.start import coordinates
 from crankmbs.formulations.multibody.stretch import LEAST_STEPS, Walk, initial_acceleration
 from crankmbs.formulations.multibody.table import Table
@@ -58,7 +58,8 @@ def solve(
     """
     walk = Walk(problem, model, go_on)
     jumps = jump_times(problem)
-    ends = [*(t for t in jumps if t < problem.end * (1.0 - _SAME)), problem.end]
+    cuts = sorted({*jumps, *kink_times(problem)})
+    ends = [*(t for t in cuts if t < problem.end * (1.0 - _SAME)), problem.end]
     bounds, bound = problem.plan.angle_bounds, None
     while True:
         h, count = _steps(ends[0] - walk.time, step, halvings)

@@ -15,7 +15,9 @@ from crankmbs.sampling import Plan, plan_of
 from crankmbs.scene import Scene
 from crankmbs.speed import SpeedLaw, speed_law
 
-__all__ = ["Problem", "jump_times", "problem_of"]
+__all__ = ["Problem", "jump_times", "kink_times", "problem_of"]
+
+_MOST_KINKS = 12  # in a run; each costs a run-up, and a table of more is run over as it is
 
 
 class Problem(NamedTuple):
@@ -70,6 +72,19 @@ def jump_times(problem: Problem) -> list[float]:
             if abs(after - before) > 1e-6 * max(abs(after), abs(before)):
                 times.add(corner)
     return sorted(t for t in times if t > 0.0)
+
+
+def kink_times(problem: Problem) -> list[float]:
+    """Times [s] within the run at which a load bends, if they are few.
+
+    A bend within a step, and one between the steps of an interpolation, would leave an error that
+    changes erratically with the step.
+    """
+    times: set[float] = set()
+    for load in problem.scene.torque:
+        if isinstance(load, TimeTable):
+            times |= {t for t in load.file.x if 0.0 < t < problem.end}
+    return sorted(times) if len(times) <= _MOST_KINKS else []
 
 
 def _end_of(law: SpeedLaw, plan: Plan) -> tuple[float, bool]:

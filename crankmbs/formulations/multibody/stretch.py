@@ -68,7 +68,7 @@ class Walk:
         the crank angle that ended it, if one did, and how it ended, as in `Path`
         """
         problem, model, time = self._problem, self._model, self.time
-        gas = _enter(problem, model, time, self._state)
+        gas = _enter(problem, model, (time, end), self._state)
         low, high = max(bounds[0], gas.low), min(bounds[1], gas.high)
         watch = _Watch(low, high, self._go_on)
         if problem.law is None:
@@ -125,23 +125,25 @@ class _Watch:
         return self._beyond <= ROWS // 2 or self._count <= LEAST_STEPS
 
 
-def _enter(problem: Problem, model: Model, time: float, state: tuple[float, float]) -> GasStretch:
-    """Give the model the loads of the stretch that begins at a time and state."""
+def _enter(
+    problem: Problem, model: Model, times: tuple[float, float], state: tuple[float, float]
+) -> GasStretch:
+    """Give the model the loads of the stretch that begins and ends at two times, from a state."""
     theta, omega = state
-    model.torque = torque_function(problem.scene.torque, time)
+    model.torque = torque_function(problem.scene.torque, *times)
     for sense in (omega,) if omega != 0.0 else (1.0, -1.0):
         gas = problem.gas.stretch(theta, sense)
         model.gas = gas.functions() if problem.scene.gas is not None else ()
         if omega != 0.0 or problem.law is not None:
             break
-        if sense * _acceleration(problem, model, time, state) >= 0.0:
+        if sense * _acceleration(problem, model, times[0], state) >= 0.0:
             break
     return gas
 
 
 def initial_acceleration(problem: Problem, model: Model) -> float:
     """Crank acceleration [rad/s2] of a free crank at its start."""
-    _enter(problem, model, 0.0, problem.start)
+    _enter(problem, model, (0.0, 0.0), problem.start)
     return _acceleration(problem, model, 0.0, problem.start)
 
 
