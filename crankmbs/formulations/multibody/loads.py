@@ -2,22 +2,27 @@
 
 from __future__ import annotations
 
+import math
 from bisect import bisect_left, bisect_right
 from collections.abc import Callable
 
 from crankmbs.drives import Constant, Quadratic, SpeedTable, TimeTable, Torque, Viscous
 from crankmbs.tables import Table
 
-__all__ = ["Load", "torque_function"]
+__all__ = ["EVERYWHERE", "Load", "speeds_around", "torque_function"]
 
 Load = Callable[[float, float], float]
+Range = tuple[float, float]
+
+EVERYWHERE: Range = (-math.inf, math.inf)
 
 
-def torque_function(torques: tuple[Torque, ...], begin: float, end: float) -> Load:
+def torque_function(torques: tuple[Torque, ...], times: Range, speeds: Range) -> Load:
     """Torque [N m] over time [s] and crank speed [rad/s], all loads together.
 
-    Valid from time ``begin`` to time ``end``, where no load jumps between, and continued linearly
-    before and beyond.
+    times [s] : no load over time jumps between; continued linearly before and beyond
+    speeds [rad/s] : no load over speed bends or jumps between, and the lines are continued; or
+        EVERYWHERE, for the tables as they are
     """
     c0 = c1 = c2 = 0.0
     tables: list[Load] = []
@@ -30,9 +35,13 @@ def torque_function(torques: tuple[Torque, ...], begin: float, end: float) -> Lo
             case Quadratic():
                 c2 += load.coefficient
             case TimeTable():
-                tables.append(_over_time(load.file, begin, end))
-            case SpeedTable():
+                tables.append(_over_time(load.file, *times))
+            case SpeedTable() if speeds == EVERYWHERE:
                 tables.append(_over_speed(load.file))
+            case SpeedTable():
+                constant, slope = _line_between(load.file, *speeds)
+                c0 += constant
+                c1 -= slope
 
     def torque(time: float, omega: float) -> float:
         value = c0 - (c1 + c2 * abs(omega)) * omega
@@ -41,6 +50,14 @@ def torque_function(torques: tuple[Torque, ...], begin: float, end: float) -> Lo
         return value
 
     return torque
+
+
+def speeds_around(torques: tuple[Torque, ...], omega: float, sense: float) -> Range:
+    """The rows of all speed tables next to a speed [rad/s]; beside a row, on the side of sense."""
+    rows = sorted({x for load in torques if isinstance(load, SpeedTable) for x in load.file.x})
+    k = bisect_right(rows, omega) if sense > 0.0 else bisect_left(rows, omega)
+    ends = [-math.inf, *rows, math.inf]
+    return ends[k], ends[k + 1]
 
 
 def _over_time(table: Table, begin: float, end: float) -> Load:
@@ -56,6 +73,16 @@ def _over_speed(table: Table) -> Load:
     """The ends are held."""
     x, y = table.x, table.y
     return lambda time, omega: _line(x, y, min(max(omega, x[0]), x[-1]))
+
+
+def _line_between(table: Table, low: float, high: float) -> tuple[float, float]:
+    """Torque at rest [N m] and slope [N m s] of the table's line from speed low to high."""
+    x, y = table.x, table.y
+    k = bisect_right(x, low)
+    if k == 0 or high > x[-1]:
+        return y[0 if k == 0 else -1], 0.0
+    slope = (y[k] - y[k - 1]) / (x[k] - x[k - 1])
+    return y[k] - slope * x[k], slope
 
 
 def _line(x: tuple[float, ...], y: tuple[float, ...], at: float) -> float:

@@ -91,18 +91,20 @@ class Model:
         begin: float,
         step: float,
         steps: int,
-        proceed: Callable[[float], bool] | None = None,
+        proceed: Callable[[float, float], bool] | None = None,
         lead: int = 0,
     ) -> Record:
         """Solve from ``start`` at time ``begin`` [s].
 
-        proceed(crank angle) : asked before every step but the first ``lead``; False ends the run
+        proceed(crank angle, speed) : asked before every step but the first ``lead``; False ends it
         """
         self._set(start, begin, step)
         asked = (lead - 0.5) * step
 
         def ask(_: object, time: float) -> bool:
-            return time < asked or proceed is None or proceed(self._zero + self._q.item(2))
+            if time < asked or proceed is None:
+                return True
+            return proceed(self._zero + self._q.item(2), self._v.item(2))
 
         self._system.SetPreStepUserFunction(ask)
         return self._solve(_settings(step, steps))

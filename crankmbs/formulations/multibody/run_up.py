@@ -19,7 +19,7 @@ _SHOTS = 15
 _CLOSE, _CLOSER = 1e-9, 1e-12  # miss of a shot: accepted at last, and at once
 _OPEN = 1e-6  # m or rad: how far a body may be off the closed loop
 
-Proceed = Callable[[float], bool]
+Proceed = Callable[[float, float], bool]
 
 
 def run_free(

@@ -63,10 +63,12 @@ def _ending_as(run: _Samples, finest: _Samples) -> _Samples:
     return _Samples(*joined)
 
 
-def reached(path: Path) -> tuple[float, float]:
-    """Time [s] and crank angle [rad] where a run ends."""
+def reached(path: Path) -> tuple[float, float, float]:
+    """Time [s], crank angle [rad] and speed [rad/s] where a run ends."""
     last = path.tables[-1]
-    return last.until, float(last.one_at("crank_angle", np.array([last.until]))[0])
+    at = np.array([last.until])
+    theta, omega = (float(last.one_at(name, at)[0]) for name in ("crank_angle", "crank_speed"))
+    return last.until, theta, omega
 
 
 def slowed(path: Path) -> float:
@@ -78,7 +80,7 @@ def slowed(path: Path) -> float:
 def _samples(problem: Problem, path: Path) -> _Samples:
     """Where the plan wants samples on this run, the start and the end included."""
     plan = problem.plan
-    end, theta_end = reached(path)
+    end, theta_end, _ = reached(path)
     for bound in plan.angle_bounds:
         theta_end = bound if abs(theta_end - bound) < _NEAR else theta_end
     times, angles, stretches = [np.zeros(1)], [np.array([problem.start[0]])], [np.zeros(1, int)]
