@@ -11,7 +11,11 @@ import pytest
 from crankmbs.drives import Constant, Quadratic, SpeedTable, TimeTable, Viscous
 from crankmbs.formulations.multibody.error import best_answer
 from crankmbs.formulations.multibody.gas import Gas
-from crankmbs.formulations.multibody.loads import torque_function
+from crankmbs.formulations.multibody.loads import (
+    EVERYWHERE,
+    speeds_around,
+    torque_function,
+)
 from crankmbs.formulations.multibody.model import Model, Record
 from crankmbs.formulations.multibody.run_up import RUN_UP, run_free
 from crankmbs.formulations.multibody.start import coordinates, quiet_start
@@ -38,13 +42,35 @@ def test_torque_is_the_sum_of_all_loads() -> None:
     )
     for time, omega in ((0.25, 12.0), (1.0, -4.0), (1.75, 44.0)):
         expected = float(branch_of(loads, time, omega, rising=True)(time, omega))
-        assert torque_function(loads, time)(time, omega) == pytest.approx(expected, rel=1e-14)
+        times = (0.0, 1.0) if time < 1.0 else (1.0, 2.0)
+        for speeds in (EVERYWHERE, speeds_around(loads, omega, 1.0)):
+            torque = torque_function(loads, times, speeds)
+            assert torque(time, omega) == pytest.approx(expected, rel=1e-14)
 
 
-def test_a_time_table_goes_on_straight_beyond_its_jump() -> None:
-    load = TimeTable(file=Table((0.0, 1.0, 1.0, 2.0), (5.0, 7.0, -4.0, 1.0)))
-    assert torque_function((load,), 0.0)(1.5, 0.0) == 8.0
-    assert torque_function((load,), 1.0)(0.5, 0.0) == -6.5
+def test_a_time_table_goes_on_straight_beyond_the_ends_of_a_stretch() -> None:
+    load = TimeTable(file=Table((0.0, 1.0, 1.0, 2.0, 3.0), (5.0, 7.0, -4.0, 1.0, 0.0)))
+    for times, time, torque in (
+        ((0.0, 1.0), 1.5, 8.0),
+        ((1.0, 2.0), 0.5, -6.5),
+        ((1.0, 2.0), 3.0, 6.0),
+        ((1.0, 3.0), 3.0, 0.0),
+    ):
+        assert torque_function((load,), times, EVERYWHERE)(time, 0.0) == torque
+
+
+def test_a_speed_table_goes_on_straight_beyond_the_rows_around_a_speed() -> None:
+    loads = (SpeedTable(file=Table((-10.0, 10.0, 10.0, 30.0), (2.0, 8.0, -6.0, -4.0))),)
+    for omega, sense, around, at_20 in (
+        (-99.0, 1.0, (-math.inf, -10.0), 2.0),
+        (-10.0, -1.0, (-math.inf, -10.0), 2.0),
+        (-10.0, 1.0, (-10.0, 10.0), 11.0),
+        (10.0, -1.0, (-10.0, 10.0), 11.0),
+        (10.0, 1.0, (10.0, 30.0), -5.0),
+        (30.0, 1.0, (30.0, math.inf), -4.0),
+    ):
+        assert speeds_around(loads, omega, sense) == around
+        assert torque_function(loads, (0.0, 0.0), around)(0.0, 20.0) == pytest.approx(at_20)
 
 
 def test_gas_has_no_jump_on_a_stretch_and_is_the_pressure_within() -> None:
@@ -121,7 +147,7 @@ def test_after_a_run_up_the_first_rows_are_as_good_as_the_later_ones() -> None:
     for step in (STEP, STEP / 2.0):
         model, _ = coasting_model()
         record, lead = run_free(
-            COASTING, model, 0.0, (0.3, 100.0), step, STEPS, lambda theta: True, True
+            COASTING, model, 0.0, (0.3, 100.0), step, STEPS, lambda *_: True, True
         )
         model.close()
         assert lead == RUN_UP
@@ -138,7 +164,7 @@ def test_order_two_is_clean_in_motion_and_forces() -> None:
         model, _ = coasting_model()
         steps = 500 * 2**halvings
         record, _ = run_free(
-            COASTING, model, 0.0, (0.3, 100.0), 0.1 / steps, steps, lambda theta: True, True
+            COASTING, model, 0.0, (0.3, 100.0), 0.1 / steps, steps, lambda *_: True, True
         )
         model.close()
         forces = (record.crank_pin, record.piston_pin, record.bearing, record.side)
