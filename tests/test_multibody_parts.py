@@ -1,4 +1,4 @@
-"""What the multibody model is made of: loads, gas between jumps, starts, extrapolation."""
+"""What the multibody model is made of: loads, gas between jumps, starts."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from crankmbs.drives import Constant, Quadratic, SpeedTable, TimeTable, Viscous
-from crankmbs.formulations.multibody.error import best_answer
 from crankmbs.formulations.multibody.gas import Gas
 from crankmbs.formulations.multibody.loads import (
     EVERYWHERE,
@@ -173,32 +172,3 @@ def test_order_two_is_clean_in_motion_and_forces() -> None:
     first, second, third = np.abs(np.diff(ends, axis=0))
     slopes = np.log2([first / second, second / third])
     assert np.all(np.abs(slopes - 2.0) < 0.1)
-
-
-def at(step: float, error: np.ndarray) -> dict[str, np.ndarray]:
-    exact = np.sin(np.linspace(0.0, 3.0, 50))
-    value = exact + error * step**2 + 0.1 * error * step**4
-    return {"crank_speed": value, "ahead": value, "crank_angle": exact}
-
-
-def test_a_clean_order_is_extrapolated() -> None:
-    bend = np.cos(np.linspace(0.0, 3.0, 50))
-    answer, errors = best_answer([at(h, bend) for h in (0.2, 0.1, 0.05)])
-    off = np.max(np.abs(answer["crank_speed"] - np.sin(np.linspace(0.0, 3.0, 50))))
-    assert off < 1e-5 < np.max(np.abs(at(0.05, bend)["crank_speed"] - answer["crank_speed"]))
-    assert off <= errors["crank_speed"] <= 30.0 * off
-
-
-def test_an_erratic_one_is_not() -> None:
-    generator = np.random.default_rng(5)
-    runs = [at(h, generator.uniform(-1.0, 1.0, 50)) for h in (0.2, 0.1, 0.05)]
-    answer, errors = best_answer(runs)
-    np.testing.assert_array_equal(answer["crank_speed"], runs[-1]["crank_speed"])
-    assert errors["crank_speed"] >= np.max(
-        np.abs(runs[-1]["crank_speed"] - runs[-2]["crank_speed"])
-    )
-
-
-def test_of_one_run_alone_the_error_is_unknown() -> None:
-    _, errors = best_answer([at(0.1, np.zeros(50))])
-    assert errors["crank_speed"] == math.inf

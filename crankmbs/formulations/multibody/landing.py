@@ -16,7 +16,15 @@ from crankmbs.formulations.multibody.model import Record
 from crankmbs.formulations.multibody.table import ROWS, Table
 from crankmbs.roots import invert_monotone
 
-__all__ = ["LEAST_STEPS", "PASSED", "Bounds", "Watch", "angle_passed", "cut_at_angle", "cut_at_speed"]
+__all__ = [
+    "LEAST_STEPS",
+    "PASSED",
+    "Bounds",
+    "Watch",
+    "angle_passed",
+    "cut_at_angle",
+    "cut_at_speed",
+]
 
 LEAST_STEPS = ROWS + 2
 PASSED = 1e-8  # rad
@@ -91,9 +99,7 @@ def cut_at_speed(table: Table, bounds: Bounds) -> tuple[Table, float] | None:
     return _cut(table, ("crank_speed", "crank_acceleration"), bound, between), bound
 
 
-def _cut(
-    table: Table, names: tuple[str, str], bound: float, between: tuple[float, float]
-) -> Table:
+def _cut(table: Table, names: tuple[str, str], bound: float, between: tuple[float, float]) -> Table:
     """End a table where a variable, given with its rate, comes to a bound between two times."""
 
     def value(time: Array) -> tuple[Array, Array]:

@@ -13,10 +13,10 @@ from typing import NamedTuple
 import numpy as np
 
 from crankmbs.drives import TimeTable
+from crankmbs.formulations.multibody.landing import LEAST_STEPS
 from crankmbs.formulations.multibody.model import Model
 from crankmbs.formulations.multibody.problem import Problem, jump_times, kink_times
 from crankmbs.formulations.multibody.start import coordinates
-from crankmbs.formulations.multibody.landing import LEAST_STEPS
 from crankmbs.formulations.multibody.stretch import Walk, initial_acceleration
 from crankmbs.formulations.multibody.table import Table
 

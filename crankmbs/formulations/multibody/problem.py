@@ -15,7 +15,7 @@ from crankmbs.sampling import Plan, plan_of
 from crankmbs.scene import Scene
 from crankmbs.speed import SpeedLaw, speed_law
 
-__all__ = ["Problem", "jump_times", "kink_times", "problem_of"]
+__all__ = ["Problem", "erratic_order", "jump_times", "kink_times", "problem_of"]
 
 _MOST_KINKS = 12  # in a run; each costs a run-up, and a table of more is run over as it is
 
@@ -80,11 +80,25 @@ def kink_times(problem: Problem) -> list[float]:
     A bend within a step, and one between the steps of an interpolation, would leave an error that
     changes erratically with the step.
     """
-    times: set[float] = set()
-    for load in problem.scene.torque:
-        if isinstance(load, TimeTable):
-            times |= {t for t in load.file.x if 0.0 < t < problem.end}
-    return sorted(times) if len(times) <= _MOST_KINKS else []
+    times = _row_times(problem)
+    return times if len(times) <= _MOST_KINKS else []
+
+
+def erratic_order(problem: Problem) -> int:
+    """Power of the step with which the erratic part of an error goes, at least; 3 at most.
+
+    It is 1 where a load jumps within a step, at a place in it that changes with the step, and 2
+    where it bends; loads over speed are not counted.
+    """
+    corners = problem.law.corners if problem.law is not None else ()
+    bends = len(_row_times(problem)) > _MOST_KINKS or set(corners) - set(jump_times(problem))
+    return min(problem.gas.order, 2 if bends else 3)
+
+
+def _row_times(problem: Problem) -> list[float]:
+    """Times [s] within the run of the rows of all loads over time."""
+    loads = (load for load in problem.scene.torque if isinstance(load, TimeTable))
+    return sorted({t for load in loads for t in load.file.x if 0.0 < t < problem.end})
 
 
 def _end_of(law: SpeedLaw, plan: Plan) -> tuple[float, bool]:

@@ -7,7 +7,7 @@ import time as clock
 
 from crankmbs.errors import FormulationError
 from crankmbs.formulations.multibody.path import Path, coarsest_step, model_of, solve
-from crankmbs.formulations.multibody.problem import problem_of
+from crankmbs.formulations.multibody.problem import erratic_order, problem_of
 from crankmbs.formulations.multibody.samples import reached, slowed
 from crankmbs.scene import Scene
 
@@ -78,6 +78,12 @@ class Runs:
             return False
         self.paths = [*self.paths, path][-3:]
         return True
+
+    @property
+    def erratic_order(self) -> int:
+        """That of the problem, and 1 where the runs went over bends or jumps of the loads."""
+        blind = any(path.blind for path in self.paths)
+        return 1 if blind else erratic_order(self.problem)
 
     def affords_another(self) -> bool:
         """Whether a run at half the last step fits under the cost cap."""

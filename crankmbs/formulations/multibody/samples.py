@@ -48,12 +48,16 @@ def aligned_variables(problem: Problem, paths: list[Path]) -> list[dict[str, Arr
             samples = [_ending_as(end, finest) for end in ends]
     runs = [_variables_at(problem, p, s, by_angle) for p, s in zip(paths, samples, strict=True)]
     speed = runs[-1]["crank_speed"]
-    for variables in runs:
+    for variables, path in zip(runs, paths, strict=True):
         variables["ahead"] = variables["crank_angle"] - speed * (variables["time"] - finest.time)
         if not by_angle and not problem.plan.in_time:  # the time at which it has the sample's angle
             off = variables["crank_angle"] - finest.theta
             early = np.divide(off, speed, out=np.zeros_like(off), where=speed != 0.0)
             variables["time"] = finest.time - early
+            # a torque over time errs by being asked for too early, and by nothing else
+            there = finest._replace(time=np.clip(variables["time"], 0.0, reached(path)[0]))
+            at_angle = _variables_at(problem, path, there, by_angle)
+            variables["external_torque"] = at_angle["external_torque"]
     return runs
 
 

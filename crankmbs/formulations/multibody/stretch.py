@@ -126,7 +126,7 @@ class Walk:
             beside = omega in speeds
             if problem.law is not None or not (omega == 0.0 or beside):
                 return gas, speeds
-            if sense * self.acceleration() >= 0.0 or self._sense and not self._jumps(omega):
+            if sense * self.acceleration() >= 0.0 or (self._sense and not self._jumps(omega)):
                 return gas, speeds
         return None if beside else (gas, speeds)
 
