@@ -172,3 +172,18 @@ def test_order_two_is_clean_in_motion_and_forces() -> None:
     first, second, third = np.abs(np.diff(ends, axis=0))
     slopes = np.log2([first / second, second / third])
     assert np.all(np.abs(slopes - 2.0) < 0.1)
+
+
+@pytest.mark.parametrize("theta", [0.7, 700.7])
+def test_accelerations_and_forces_of_a_start_are_exact_to_ten_digits(theta: float) -> None:
+    model = Model(COASTING, coordinates(COASTING, 0.3, 0.0), gas=False, free=True)
+    omega = np.array([100.0])
+    row = model.consistent(coordinates(COASTING, theta, 100.0), 0.0)
+    model.close()
+    inertia, slope, torque = reduce(COASTING, None, np.array([theta]))
+    alpha = (torque - 0.5 * slope * omega**2) / inertia
+    exact = reactions(COASTING, None, np.array([theta]), omega, alpha)
+    assert row.acceleration[0, 2] == pytest.approx(alpha[0], abs=1e-10 * 100.0**2)
+    for axis, name in enumerate(("crank_pin_force_x", "crank_pin_force_y")):
+        force = exact[name][0, 0]
+        assert row.crank_pin[0, 0, axis] == pytest.approx(force, rel=1e-9)

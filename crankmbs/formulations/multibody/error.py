@@ -14,7 +14,8 @@ __all__ = ["Convergence", "relative_error"]
 
 _SAFETY = 1.5
 _UNPROVEN = 5.0  # instead, where two runs say nothing about an order
-_SHARE = 0.125  # of what is usual beside it: a correction changes no less but by chance
+_SHARE = 1.0 / 8.0  # of what is usual beside it: what changes less does so by chance
+_BENT = 1.0 / 32.0  # of D, what bends within the steps leave in a first correction
 _ROUNDING = 5e-13  # of a variable's peak: what Newton's method and the interpolation leave
 _FAST = 32.0  # a halving that gains more: the motion is exact, only its interpolation errs
 _NOTHING = 1e-10  # of the largest value of its unit
@@ -54,10 +55,10 @@ class Convergence:
         errors = dict.fromkeys(answer, math.inf)
         if len(runs) > 1:
             self._compare(runs)
-            usual = self._usual()
+            usual = self._usual() if len(runs) > 2 else self._usual_change(runs[-1])
             for name, value in runs[-1].items():
-                peak = _peak(value)
-                error = _UNPROVEN * self._changes[name][-1]
+                peak, change = _peak(value), self._changes[name][-1]
+                error = _UNPROVEN * max(change, _SHARE * usual * peak) if change else 0.0
                 if len(runs) > 2:
                     error = _SAFETY * self._uncorrected(name)
                     if self._is_clean(name):
@@ -82,8 +83,14 @@ class Convergence:
     def _is_clean(self, name: str) -> bool:
         return self._shrinks > 2.0 and 3.0 * self._corrections[name][-1] <= self._changes[name][-1]
 
+    def _usual_change(self, run: Mapping[str, Array]) -> float:
+        """D over the peak of the variables, the median: they all come from one motion."""
+        sizes = {name: _peak(value) for name, value in run.items()}
+        shares = [self._changes[name][-1] / size for name, size in sizes.items() if size > 0.0]
+        return float(np.median(shares))
+
     def _usual(self) -> float:
-        """X over D of the variables, the median: they all come from one motion."""
+        """The same of X over D."""
         shares = [
             corrections[-1] / self._changes[name][-1]
             for name, corrections in self._corrections.items()
@@ -92,10 +99,11 @@ class Convergence:
         return float(np.median(shares)) if shares else 0.0
 
     def _corrected(self, name: str, usual: float) -> float:
-        """X, or what it must be but for chance: of the first that others have, or of the last."""
+        """X, or what it must be but for chance: by those of the others, or by the one before."""
         corrections = self._corrections[name]
         if len(corrections) == 1:
-            return max(corrections[-1], _SHARE * usual * self._changes[name][-1])
+            least = max(_SHARE * usual, _BENT if self._shrinks < 8.0 else 0.0)
+            return max(corrections[-1], least * self._changes[name][-1])
         return _largest(corrections, self._shrinks)
 
     def _uncorrected(self, name: str) -> float:
