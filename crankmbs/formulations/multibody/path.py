@@ -112,5 +112,5 @@ def _steps(duration: float, step: float, halvings: int) -> tuple[float, int]:
     """Step [s] and number of steps for a stretch."""
     if math.isinf(duration):
         return step / 2**halvings, _ENDLESS
-    count = max(math.ceil(duration / step - 1e-9) * 2**halvings, LEAST_STEPS)
+    count = max(math.ceil(duration / step - 1e-9), LEAST_STEPS) * 2**halvings
     return duration / count, count

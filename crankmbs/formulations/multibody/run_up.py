@@ -110,6 +110,8 @@ def _shoot(
             return None  # it came over a fold in another way
         miss = np.array([end, record.velocity[-1, 2]]) - state
         size = float(np.max(np.abs(miss) / scale))
+        if chosen is not None and size >= best:
+            break  # Newton's method leaves no less
         if size < best:
             best, chosen = size, (float(x[0]), float(x[1]))
         if size < _CLOSER or not size < 10.0:
