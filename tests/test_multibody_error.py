@@ -88,3 +88,17 @@ def test_rounding_that_grows_is_stated_twice() -> None:
     ]
     true, stated = after_each(runs, SMOOTH)[-1]
     assert true <= stated <= 10.0 * true
+
+
+def test_what_depends_on_the_angle_alone_errs_by_its_interpolation() -> None:
+    names = ("rod_angle", "crank_speed")
+    convergence = Convergence(SMOOTH)
+    runs = [
+        dict.fromkeys(names, EXACT + h**6 * np.cos(X)) | {"ahead": EXACT, "crank_angle": EXACT}
+        for h in (0.2, 0.1, 0.05)
+    ]
+    for k in range(1, 4):
+        _, errors = convergence.answer(runs[:k])
+    true = 0.05**6
+    assert true <= errors["rod_angle"] <= 10.0 * true
+    assert errors["crank_speed"] > 60.0 * true

@@ -17,7 +17,8 @@ _UNPROVEN = 5.0  # instead, where two runs say nothing about an order
 _SHARE = 1.0 / 8.0  # of what is usual beside it: what changes less does so by chance
 _BENT = 1.0 / 32.0  # of D, what bends within the steps leave in a first correction
 _ROUNDING = 5e-13  # of a variable's peak: what Newton's method and the interpolation leave
-_FAST = 32.0  # a halving that gains more: the motion is exact, only its interpolation errs
+_OF_ANGLE = ("rod_angle", "piston_position", "piston_displacement")
+_FAST = 32.0  # a halving that gains more: at a given angle these err by their interpolation alone
 _NOTHING = 1e-10  # of the largest value of its unit
 
 Runs = Sequence[Mapping[str, Array]]
@@ -44,8 +45,10 @@ class Convergence:
 
         The correction is taken where the slopes agree to it, 3 X <= D, and no jump lies within a
         step; the error is then about X. Elsewhere the answer is the finest run, with an error of
-        about D. All are stated half as large again. A variable that is but rounding beside the
-        others of its unit is zero.
+        about D. Of what depends on the angle alone only the interpolation between steps errs, at
+        samples in angle; where a halving gained more than 32-fold the next would gain as much, and
+        4 D_n^2 / D_(n-1) is stated, but no less than D_n/16. All are stated half as large again. A variable that is but
+        rounding beside the others of its unit is zero.
 
         runs : the last three at most, coarsest first, at the same samples; each call adds one. Of
             one alone the error is unknown, infinite. "ahead", the crank angle at the same times,
@@ -104,14 +107,15 @@ class Convergence:
         if len(corrections) == 1:
             least = max(_SHARE * usual, _BENT if self._shrinks < 8.0 else 0.0)
             return max(corrections[-1], least * self._changes[name][-1])
-        return _largest(corrections, self._shrinks)
+        return _largest(corrections, self._shrinks, 8.0)
 
     def _uncorrected(self, name: str) -> float:
         """D, or what it must be but for chance, at the order of the method or of a jump."""
         changes = self._changes[name]
-        if self._shrinks > 4.0 and _FAST * changes[-1] < changes[-2]:
-            return changes[-1]
-        return _largest(changes, min(self._shrinks, 4.0))
+        before, last = changes[-2:]
+        if name in _OF_ANGLE and _FAST * last < before:
+            return max(4.0 * last**2 / before, last / 16.0)
+        return _largest(changes, min(self._shrinks, 4.0), 4.0)
 
 
 def relative_error(variables: Mapping[str, Array], errors: Mapping[str, float]) -> float:
@@ -126,15 +130,18 @@ def relative_error(variables: Mapping[str, Array], errors: Mapping[str, float]) 
     return worst
 
 
-def _largest(sizes: Sequence[float], shrinks: float) -> float:
-    """The last size, or what the one before leaves of itself where each shrinks so much.
+def _largest(sizes: Sequence[float], shrinks: float, most: float) -> float:
+    """The last size, or what the one before leaves of itself, if that is more.
 
-    Where they hardly shrink it is rounding that is left, and twice the larger is taken.
+    Each shrinks by as much as the one before did, but at least by ``shrinks`` and at most by
+    ``most``. Where they hardly shrink it is rounding that is left, and twice the larger is taken.
     """
     last, before = sizes[-1], sizes[-2]
-    if last > 0.5 * before or (len(sizes) > 2 and before > 0.5 * sizes[-3]):
+    earlier = sizes[-3] if len(sizes) > 2 else math.inf
+    if last > 0.5 * before or before > 0.5 * earlier:
         return 2.0 * max(last, before)
-    return max(last, before / shrinks)
+    shrunk = earlier / before if before > 0.0 and math.isfinite(earlier) else 0.0
+    return max(last, before / min(max(shrinks, shrunk), most))
 
 
 def _silence(answer: dict[str, Array]) -> None:

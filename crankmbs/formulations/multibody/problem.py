@@ -88,11 +88,11 @@ def erratic_order(problem: Problem) -> int:
     """Power of the step with which the erratic part of an error goes, at least; 3 at most.
 
     It is 1 where a load jumps within a step, at a place in it that changes with the step, and 2
-    where it bends; loads over speed are not counted.
+    where it bends; loads over speed are not counted. No load bends a prescribed motion.
     """
-    corners = problem.law.corners if problem.law is not None else ()
-    bends = len(_row_times(problem)) > _MOST_KINKS or set(corners) - set(jump_times(problem))
-    return min(problem.gas.order, 2 if bends else 3)
+    if problem.law is not None:
+        return 2 if set(problem.law.corners) - set(jump_times(problem)) else 3
+    return min(problem.gas.order, 2 if len(_row_times(problem)) > _MOST_KINKS else 3)
 
 
 def _row_times(problem: Problem) -> list[float]:
