@@ -47,8 +47,8 @@ class Convergence:
         step; the error is then about X. Elsewhere the answer is the finest run, with an error of
         about D. Of what depends on the angle alone only the interpolation between steps errs, at
         samples in angle; where a halving gained more than 32-fold the next would gain as much, and
-        4 D_n^2 / D_(n-1) is stated, but no less than D_n/16. All are stated half as large again. A variable that is but
-        rounding beside the others of its unit is zero.
+        4 D_n^2 / D_(n-1) is stated, but no less than D_n/16. All are stated half as large again. A
+        variable that is but rounding beside the others of its unit is zero.
 
         runs : the last three at most, coarsest first, at the same samples; each call adds one. Of
             one alone the error is unknown, infinite. "ahead", the crank angle at the same times,
