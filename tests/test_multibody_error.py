@@ -3,28 +3,34 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from crankmbs.formulations.multibody.beside import errors_beside_jumps
 from crankmbs.formulations.multibody.error import Convergence
+from crankmbs.formulations.multibody.held import held_by
+from crankmbs.formulations.multibody.problem import problem_of
+from crankmbs.scene import Run
+from crankmbs.scene_io import load_scene
 
 X = np.linspace(0.0, 3.0, 50)
 EXACT = np.sin(X)
 SMOOTH = 3  # the least order of what is erratic; 2 with bends, 1 with jumps within the steps
-Run = dict[str, np.ndarray]
+Variables = dict[str, np.ndarray]
 
 
-def run(off: np.ndarray, beside: np.ndarray | None = None) -> Run:
+def run(off: np.ndarray, beside: np.ndarray | None = None) -> Variables:
     other = EXACT + (off if beside is None else beside)
     return {"crank_speed": EXACT + off, "ahead": other, "crank_angle": EXACT}
 
 
-def at(step: float, bend: np.ndarray) -> Run:
+def at(step: float, bend: np.ndarray) -> Variables:
     return run(bend * step**2 + 0.1 * bend * step**4)
 
 
-def after_each(runs: list[Run], order: int) -> list[tuple[float, float]]:
+def after_each(runs: list[Variables], order: int) -> list[tuple[float, float]]:
     """True and stated error of the crank speed after each run."""
     convergence, found = Convergence(order), []
     for k in range(len(runs)):
@@ -100,5 +106,19 @@ def test_what_depends_on_the_angle_alone_errs_by_its_interpolation() -> None:
     for k in range(1, 4):
         _, errors = convergence.answer(runs[:k])
     true = 0.05**6
-    assert true <= errors["rod_angle"] <= 10.0 * true
+    assert true <= errors["rod_angle"] <= 20.0 * true
     assert errors["crank_speed"] > 60.0 * true
+
+
+def test_a_jump_of_the_gas_within_reach_of_a_sample_is_an_error() -> None:
+    scene = replace(load_scene("v_twin"), run=Run(until="0.01 s", every="0.002 s"))
+    problem = problem_of(scene)
+    jump = problem.gas.stretch(0.1, 1.0).high
+    rise = float(np.max(np.abs(problem.gas.stretch(0.1, 1.0).rises[1])))
+    names = ("gas_force", "gas_pressure", *held_by(scene, np.zeros((1, 2)), np.zeros(1)))
+    for off, least in ((1e-6, 0.9 * rise), (1e-3, 0.0)):
+        answer = {"crank_angle": np.array([jump - off])}
+        errors = dict.fromkeys(names, 0.0) | {"crank_angle": 1e-6}
+        found = errors_beside_jumps(problem, answer, errors)
+        assert least <= found["gas_force"] <= 1.1 * least + 0.01 * rise
+        assert least <= found["piston_pin_force_x"]

@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 
 from crankmbs.formulations.base import Samples, Solution
+from crankmbs.formulations.multibody.beside import errors_beside_jumps
 from crankmbs.formulations.multibody.error import Convergence, relative_error
 from crankmbs.formulations.multibody.runs import Runs
 from crankmbs.formulations.multibody.samples import aligned_variables
@@ -46,6 +47,7 @@ def run(scene: Scene, rtol: float, cost_cap: float) -> Solution:
                 (answer, errors), worst = found, latest
             elif latest > _WORSE * worst:
                 break
+        errors = errors_beside_jumps(runs.problem, answer, errors)
         if not runs.moves:
             answer = {name: values[:1] for name, values in answer.items()}
         elif worst > rtol:

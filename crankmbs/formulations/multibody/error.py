@@ -16,6 +16,7 @@ _SAFETY = 1.5
 _UNPROVEN = 5.0  # instead, where two runs say nothing about an order
 _SHARE = 1.0 / 8.0  # of what is usual beside it: what changes less does so by chance
 _BENT = 1.0 / 32.0  # of D, what bends within the steps leave in a first correction
+_STALLED = 0.75  # of the factor by which a size must shrink
 _ROUNDING = 5e-13  # of a variable's peak: what Newton's method and the interpolation leave
 _OF_ANGLE = ("rod_angle", "piston_position", "piston_displacement")
 _FAST = 32.0  # a halving that gains more: at a given angle these err by their interpolation alone
@@ -47,8 +48,8 @@ class Convergence:
         step; the error is then about X. Elsewhere the answer is the finest run, with an error of
         about D. Of what depends on the angle alone only the interpolation between steps errs, at
         samples in angle; where a halving gained more than 32-fold the next would gain as much, and
-        4 D_n^2 / D_(n-1) is stated, but no less than D_n/16. All are stated half as large again. A
-        variable that is but rounding beside the others of its unit is zero.
+        D/8 is stated. All are stated half as large again. A variable that is but rounding beside
+        the others of its unit is zero.
 
         runs : the last three at most, coarsest first, at the same samples; each call adds one. Of
             one alone the error is unknown, infinite. "ahead", the crank angle at the same times,
@@ -114,7 +115,7 @@ class Convergence:
         changes = self._changes[name]
         before, last = changes[-2:]
         if name in _OF_ANGLE and _FAST * last < before:
-            return max(4.0 * last**2 / before, last / 16.0)
+            return last / 8.0
         return _largest(changes, min(self._shrinks, 4.0), 4.0)
 
 
@@ -134,11 +135,13 @@ def _largest(sizes: Sequence[float], shrinks: float, most: float) -> float:
     """The last size, or what the one before leaves of itself, if that is more.
 
     Each shrinks by as much as the one before did, but at least by ``shrinks`` and at most by
-    ``most``. Where they hardly shrink it is rounding that is left, and twice the larger is taken.
+    ``most``. Where they shrink by clearly less it is rounding that is left, and twice the larger is
+    taken.
     """
     last, before = sizes[-1], sizes[-2]
+    little = _STALLED * min(shrinks, 4.0)
     earlier = sizes[-3] if len(sizes) > 2 else math.inf
-    if last > 0.5 * before or before > 0.5 * earlier:
+    if little * last > before or little * before > earlier:
         return 2.0 * max(last, before)
     shrunk = earlier / before if before > 0.0 and math.isfinite(earlier) else 0.0
     return max(last, before / min(max(shrinks, shrunk), most))

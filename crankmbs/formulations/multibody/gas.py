@@ -37,6 +37,11 @@ class Gas:
         self._angles, self._rises = self._jumps()
 
     @property
+    def jumps(self) -> bool:
+        """Whether a force jumps anywhere."""
+        return self._pressure is not None and len(_knots(self._pressure)[0]) > 0
+
+    @property
     def order(self) -> int:
         """1 where forces jump within a stretch, 2 where they bend there, else 3."""
         if self._pressure is None:

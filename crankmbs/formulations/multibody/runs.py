@@ -152,7 +152,7 @@ class Runs:
             self.problem = self.problem._replace(end=_UNTOUCHED * time)
             self.paths = [self._run(math.inf)]
             return -1, f"stopped {where}: {_FAILED}"
-        share = max(time / self.problem.end, abs(theta - plan.start) / plan.until)
+        share = (time if plan.until_time else abs(theta - plan.start)) / plan.until
         self.problem = self.problem._replace(end=time)
         if slowed(path) < _AT_REST:
             return 1, f"came to rest {where}, before the end of the run"
