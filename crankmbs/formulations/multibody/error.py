@@ -16,7 +16,6 @@ _SAFETY = 1.5
 _UNPROVEN = 5.0  # instead, where two runs say nothing about an order
 _SHARE = 1.0 / 8.0  # of what is usual beside it: what changes less does so by chance
 _BENT = 1.0 / 32.0  # of D, what bends within the steps leave in a first correction
-_STALLED = 0.75  # of the factor by which a size must shrink
 _ROUNDING = 5e-13  # of a variable's peak: what Newton's method and the interpolation leave
 _OF_ANGLE = ("rod_angle", "piston_position", "piston_displacement")
 _FAST = 32.0  # a halving that gains more: at a given angle these err by their interpolation alone
@@ -108,7 +107,7 @@ class Convergence:
         if len(corrections) == 1:
             least = max(_SHARE * usual, _BENT if self._shrinks < 8.0 else 0.0)
             return max(corrections[-1], least * self._changes[name][-1])
-        return _largest(corrections, self._shrinks, 8.0)
+        return _largest(corrections, self._shrinks, 8.0, 2.0)
 
     def _uncorrected(self, name: str) -> float:
         """D, or what it must be but for chance, at the order of the method or of a jump."""
@@ -116,7 +115,8 @@ class Convergence:
         before, last = changes[-2:]
         if name in _OF_ANGLE and _FAST * last < before:
             return last / 8.0
-        return _largest(changes, min(self._shrinks, 4.0), 4.0)
+        shrinks = min(self._shrinks, 4.0)
+        return _largest(changes, shrinks, 4.0, 0.55 * shrinks)
 
 
 def relative_error(variables: Mapping[str, Array], errors: Mapping[str, float]) -> float:
@@ -131,20 +131,19 @@ def relative_error(variables: Mapping[str, Array], errors: Mapping[str, float]) 
     return worst
 
 
-def _largest(sizes: Sequence[float], shrinks: float, most: float) -> float:
-    """The last size, or what the one before leaves of itself, if that is more.
+def _largest(sizes: Sequence[float], shrinks: float, most: float, stalled: float) -> float:
+    """The last size, or what the one before leaves of itself, if that is more with no margin.
 
     Each shrinks by as much as the one before did, but at least by ``shrinks`` and at most by
-    ``most``. Where they shrink by clearly less it is rounding that is left, and twice the larger is
-    taken.
+    ``most``. Where they shrink by less than ``stalled`` it is rounding that is left, and twice the
+    larger is taken.
     """
     last, before = sizes[-1], sizes[-2]
-    little = _STALLED * min(shrinks, 4.0)
     earlier = sizes[-3] if len(sizes) > 2 else math.inf
-    if little * last > before or little * before > earlier:
+    if stalled * last > before or stalled * before > earlier:
         return 2.0 * max(last, before)
     shrunk = earlier / before if before > 0.0 and math.isfinite(earlier) else 0.0
-    return max(last, before / min(max(shrinks, shrunk), most))
+    return max(last, before / min(max(shrinks, shrunk), most) / _SAFETY)
 
 
 def _silence(answer: dict[str, Array]) -> None:
