@@ -1,4 +1,4 @@
-"""What the multibody model is made of: loads, gas between jumps, starts, extrapolation."""
+"""What the multibody model is made of: loads, gas between jumps, starts."""
 
 from __future__ import annotations
 
@@ -9,9 +9,12 @@ import numpy as np
 import pytest
 
 from crankmbs.drives import Constant, Quadratic, SpeedTable, TimeTable, Viscous
-from crankmbs.formulations.multibody.error import best_answer
 from crankmbs.formulations.multibody.gas import Gas
-from crankmbs.formulations.multibody.loads import torque_function
+from crankmbs.formulations.multibody.loads import (
+    EVERYWHERE,
+    speeds_around,
+    torque_function,
+)
 from crankmbs.formulations.multibody.model import Model, Record
 from crankmbs.formulations.multibody.run_up import RUN_UP, run_free
 from crankmbs.formulations.multibody.start import coordinates, quiet_start
@@ -38,13 +41,35 @@ def test_torque_is_the_sum_of_all_loads() -> None:
     )
     for time, omega in ((0.25, 12.0), (1.0, -4.0), (1.75, 44.0)):
         expected = float(branch_of(loads, time, omega, rising=True)(time, omega))
-        assert torque_function(loads, time)(time, omega) == pytest.approx(expected, rel=1e-14)
+        times = (0.0, 1.0) if time < 1.0 else (1.0, 2.0)
+        for speeds in (EVERYWHERE, speeds_around(loads, omega, 1.0)):
+            torque = torque_function(loads, times, speeds)
+            assert torque(time, omega) == pytest.approx(expected, rel=1e-14)
 
 
-def test_a_time_table_goes_on_straight_beyond_its_jump() -> None:
-    load = TimeTable(file=Table((0.0, 1.0, 1.0, 2.0), (5.0, 7.0, -4.0, 1.0)))
-    assert torque_function((load,), 0.0)(1.5, 0.0) == 8.0
-    assert torque_function((load,), 1.0)(0.5, 0.0) == -6.5
+def test_a_time_table_goes_on_straight_beyond_the_ends_of_a_stretch() -> None:
+    load = TimeTable(file=Table((0.0, 1.0, 1.0, 2.0, 3.0), (5.0, 7.0, -4.0, 1.0, 0.0)))
+    for times, time, torque in (
+        ((0.0, 1.0), 1.5, 8.0),
+        ((1.0, 2.0), 0.5, -6.5),
+        ((1.0, 2.0), 3.0, 6.0),
+        ((1.0, 3.0), 3.0, 0.0),
+    ):
+        assert torque_function((load,), times, EVERYWHERE)(time, 0.0) == torque
+
+
+def test_a_speed_table_goes_on_straight_beyond_the_rows_around_a_speed() -> None:
+    loads = (SpeedTable(file=Table((-10.0, 10.0, 10.0, 30.0), (2.0, 8.0, -6.0, -4.0))),)
+    for omega, sense, around, at_20 in (
+        (-99.0, 1.0, (-math.inf, -10.0), 2.0),
+        (-10.0, -1.0, (-math.inf, -10.0), 2.0),
+        (-10.0, 1.0, (-10.0, 10.0), 11.0),
+        (10.0, -1.0, (-10.0, 10.0), 11.0),
+        (10.0, 1.0, (10.0, 30.0), -5.0),
+        (30.0, 1.0, (30.0, math.inf), -4.0),
+    ):
+        assert speeds_around(loads, omega, sense) == around
+        assert torque_function(loads, (0.0, 0.0), around)(0.0, 20.0) == pytest.approx(at_20)
 
 
 def test_gas_has_no_jump_on_a_stretch_and_is_the_pressure_within() -> None:
@@ -121,7 +146,7 @@ def test_after_a_run_up_the_first_rows_are_as_good_as_the_later_ones() -> None:
     for step in (STEP, STEP / 2.0):
         model, _ = coasting_model()
         record, lead = run_free(
-            COASTING, model, 0.0, (0.3, 100.0), step, STEPS, lambda theta: True, True
+            COASTING, model, 0.0, (0.3, 100.0), step, STEPS, lambda *_: True, True
         )
         model.close()
         assert lead == RUN_UP
@@ -138,7 +163,7 @@ def test_order_two_is_clean_in_motion_and_forces() -> None:
         model, _ = coasting_model()
         steps = 500 * 2**halvings
         record, _ = run_free(
-            COASTING, model, 0.0, (0.3, 100.0), 0.1 / steps, steps, lambda theta: True, True
+            COASTING, model, 0.0, (0.3, 100.0), 0.1 / steps, steps, lambda *_: True, True
         )
         model.close()
         forces = (record.crank_pin, record.piston_pin, record.bearing, record.side)
@@ -149,30 +174,16 @@ def test_order_two_is_clean_in_motion_and_forces() -> None:
     assert np.all(np.abs(slopes - 2.0) < 0.1)
 
 
-def at(step: float, error: np.ndarray) -> dict[str, np.ndarray]:
-    exact = np.sin(np.linspace(0.0, 3.0, 50))
-    value = exact + error * step**2 + 0.1 * error * step**4
-    return {"crank_speed": value, "ahead": value, "crank_angle": exact}
-
-
-def test_a_clean_order_is_extrapolated() -> None:
-    bend = np.cos(np.linspace(0.0, 3.0, 50))
-    answer, errors = best_answer([at(h, bend) for h in (0.2, 0.1, 0.05)])
-    off = np.max(np.abs(answer["crank_speed"] - np.sin(np.linspace(0.0, 3.0, 50))))
-    assert off < 1e-5 < np.max(np.abs(at(0.05, bend)["crank_speed"] - answer["crank_speed"]))
-    assert off <= errors["crank_speed"] <= 30.0 * off
-
-
-def test_an_erratic_one_is_not() -> None:
-    generator = np.random.default_rng(5)
-    runs = [at(h, generator.uniform(-1.0, 1.0, 50)) for h in (0.2, 0.1, 0.05)]
-    answer, errors = best_answer(runs)
-    np.testing.assert_array_equal(answer["crank_speed"], runs[-1]["crank_speed"])
-    assert errors["crank_speed"] >= np.max(
-        np.abs(runs[-1]["crank_speed"] - runs[-2]["crank_speed"])
-    )
-
-
-def test_of_one_run_alone_the_error_is_unknown() -> None:
-    _, errors = best_answer([at(0.1, np.zeros(50))])
-    assert errors["crank_speed"] == math.inf
+@pytest.mark.parametrize("theta", [0.7, 700.7])
+def test_accelerations_and_forces_of_a_start_are_exact_to_ten_digits(theta: float) -> None:
+    model = Model(COASTING, coordinates(COASTING, 0.3, 0.0), gas=False, free=True)
+    omega = np.array([100.0])
+    row = model.consistent(coordinates(COASTING, theta, 100.0), 0.0)
+    model.close()
+    inertia, slope, torque = reduce(COASTING, None, np.array([theta]))
+    alpha = (torque - 0.5 * slope * omega**2) / inertia
+    exact = reactions(COASTING, None, np.array([theta]), omega, alpha)
+    assert row.acceleration[0, 2] == pytest.approx(alpha[0], abs=1e-10 * 100.0**2)
+    for axis, name in enumerate(("crank_pin_force_x", "crank_pin_force_y")):
+        force = exact[name][0, 0]
+        assert row.crank_pin[0, 0, axis] == pytest.approx(force, rel=1e-9)

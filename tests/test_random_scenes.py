@@ -7,7 +7,7 @@ import pytest
 from make_random_references import SCENES, stored
 from references import true_errors
 
-from crankmbs import SpeedTable, simulate
+from crankmbs import simulate
 from validation import judge_scene, many
 from validation.__main__ import main
 from validation.random_scenes import random_scene
@@ -74,17 +74,11 @@ def test_a_scene_that_raises_is_red(monkeypatch):
     assert (judgement.ratio, judgement.said) == (inf, "raises ZeroDivisionError: no")
 
 
-def test_errors_of_multibody_are_honest_too_where_nothing_jumps():
-    """Jumps of the pressure or of a load over the speed lie between its steps."""
-    smooth = [seed for seed in EXACT if not _jumps(random_scene(seed))]
-    for seed in smooth[:15]:
-        status, exact = EXACT[seed]
-        result = simulate(random_scene(seed), formulation="multibody", rtol=1e-4, cost_cap=60.0)
-        assert result.status == status, (seed, result.message)
-        ratios = {name: error.ratio for name, error in true_errors(result, exact).items()}
-        assert max(ratios.values()) <= 2.0, (seed, max(ratios, key=ratios.get), ratios)
-
-
-def _jumps(scene):
-    by_speed = any(isinstance(load, SpeedTable) for load in scene.torque)
-    return by_speed or (scene.gas is not None and scene.gas.interpolation in ("step", "linear"))
+@pytest.mark.parametrize("seed", list(EXACT)[:15])
+def test_errors_of_multibody_are_honest_too(seed):
+    """Also of what it reaches within a few seconds, where loads jump and bend as elsewhere."""
+    status, exact = EXACT[seed]
+    result = simulate(random_scene(seed), formulation="multibody", rtol=1e-4, cost_cap=20.0)
+    assert result.status == status, result.message
+    ratios = {name: error.ratio for name, error in true_errors(result, exact).items()}
+    assert max(ratios.values()) <= 2.0, (max(ratios, key=ratios.get), ratios)

@@ -11,7 +11,8 @@ from __future__ import annotations
 import math
 
 from crankmbs.formulations.base import Samples, Solution
-from crankmbs.formulations.multibody.error import best_answer, relative_error
+from crankmbs.formulations.multibody.beside import errors_beside_jumps
+from crankmbs.formulations.multibody.error import Convergence, relative_error
 from crankmbs.formulations.multibody.runs import Runs
 from crankmbs.formulations.multibody.samples import aligned_variables
 from crankmbs.scene import Scene
@@ -33,18 +34,20 @@ def run(scene: Scene, rtol: float, cost_cap: float) -> Solution:
     runs = Runs(scene, cost_cap)
     try:
         status, message = runs.first()
-        answer, errors = best_answer(aligned_variables(runs.problem, runs.paths))
+        convergence = Convergence(runs.erratic_order)
+        answer, errors = convergence.answer(aligned_variables(runs.problem, runs.paths))
         worst = latest = before = math.inf
         while len(runs.paths) < 2 or (worst > rtol and runs.affords_another()):
             if not runs.halve():
                 message += "; at a finer step exudyn's Newton iteration does not converge"
                 break
-            found = best_answer(aligned_variables(runs.problem, runs.paths))
+            found = convergence.answer(aligned_variables(runs.problem, runs.paths))
             latest, before = relative_error(*found), latest
             if latest < worst:
                 (answer, errors), worst = found, latest
             elif latest > _WORSE * worst:
                 break
+        errors = errors_beside_jumps(runs.problem, answer, errors)
         if not runs.moves:
             answer = {name: values[:1] for name, values in answer.items()}
         elif worst > rtol:

@@ -1,4 +1,4 @@
-"""From runs at step sizes h, h/2, h/4 to one answer and its error."""
+"""From runs at step sizes h, h/2, h/4, ... to one answer and its error."""
 
 from __future__ import annotations
 
@@ -10,51 +10,113 @@ import numpy as np
 from crankmbs.formulations.base import Array
 from crankmbs.result import VARIABLES
 
-__all__ = ["best_answer", "relative_error"]
+__all__ = ["Convergence", "relative_error"]
 
 _SAFETY = 1.5
+_UNPROVEN = 5.0  # instead, where two runs say nothing about an order
+_SHARE = 1.0 / 8.0  # of what is usual beside it: what changes less does so by chance
+_BENT = 1.0 / 32.0  # of D, what bends within the steps leave in a first correction
 _ROUNDING = 5e-13  # of a variable's peak: what Newton's method and the interpolation leave
-_INTERPOLATED = 1e-7  # of a variable's peak: what interpolation between steps errs, at most
+_OF_ANGLE = ("rod_angle", "piston_position", "piston_displacement")
+_FAST = 32.0  # a halving that gains more: at a given angle these err by their interpolation alone
 _NOTHING = 1e-10  # of the largest value of its unit
 
+Runs = Sequence[Mapping[str, Array]]
 
-def best_answer(runs: Sequence[Mapping[str, Array]]) -> tuple[dict[str, Array], dict[str, float]]:
-    """The variables, extrapolated where that is sound, and an absolute error for each.
 
-    The method is of order 2: with the differences D1, D2 of runs at h, h/2, h/4 the finest errs by
-    D2/3 when D1 = 4 D2. Where the slopes agree to that, |D1 - 4 D2| <= |D2| in the largest over
-    the run, the answer is f + D2/3, and its error is about the change that the last halving made
-    to such an answer, |D1 - 4 D2|/3. Elsewhere (a kink in the pressure at every step) the answer
-    is the finest run, with an error of about |D2|, or |D1|/4 where D2 is smaller by chance. Where a
-    halving gained more than 32-fold and next to nothing is left (an exact motion, of which only the
-    interpolation between steps errs) the next would gain as much, and 4 |D2|^2/|D1| is stated. All
-    are stated half as large again: rounding, and what is left of the start of a stretch, shrink
-    otherwise than the step would have it. A variable that is but rounding beside the others of its
-    unit is zero.
+class Convergence:
+    """Answer and error of a sequence of runs, each at half the step of the one before.
 
-    runs : the last three at most, coarsest first, at the same samples; of one alone the error is
-        unknown, infinite. "ahead", the crank angle at the same times, gives the crank angle's
-        error and is left out
+    With f, f', f'' of the last runs, coarse to fine, a halving changes a variable by
+    D = max |f'' - f'| and its correction, the answer extrapolated at order 2, by
+    X = max |f'' + (f'' - f')/3 - f' - (f' - f)/3|. All D and X so far are kept.
+
+    order : power of the step with which the erratic part of an error goes at least: 1 where loads
+        jump within a step, 2 where they bend, else 3
     """
-    answer = dict(runs[-1])
-    errors = dict.fromkeys(answer, math.inf)
-    for name, value in runs[-1].items() if len(runs) > 1 else ():
-        change = value - runs[-2][name]
-        error = _peak(change)
-        if len(runs) > 2:
-            before = runs[-2][name] - runs[-3][name]
-            disagreement = _peak(before - 4.0 * change)
-            if disagreement <= error:
-                answer[name], error = value + change / 3.0, disagreement / 3.0
-            elif 32.0 * error < _peak(before) and error < _INTERPOLATED * _peak(value):
-                error *= 4.0 * error / _peak(before)
-            else:
-                error = max(error, 0.25 * _peak(before))
-        errors[name] = _SAFETY * error + _ROUNDING * _peak(value)
-    _silence(answer)
-    del answer["ahead"]
-    errors["crank_angle"] = errors.pop("ahead")
-    return answer, errors
+
+    def __init__(self, order: int) -> None:
+        self._shrinks = 2.0**order
+        self._changes: dict[str, list[float]] = {}
+        self._corrections: dict[str, list[float]] = {}
+
+    def answer(self, runs: Runs) -> tuple[dict[str, Array], dict[str, float]]:
+        """The variables, corrected where that is sound, and an absolute error for each.
+
+        The correction is taken where the slopes agree to it, 3 X <= D, and no jump lies within a
+        step; the error is then about X. Elsewhere the answer is the finest run, with an error of
+        about D. Of what depends on the angle alone only the interpolation between steps errs, at
+        samples in angle; where a halving gained more than 32-fold the next would gain as much, and
+        D/8 is stated. All are stated half as large again. A variable that is but rounding beside
+        the others of its unit is zero.
+
+        runs : the last three at most, coarsest first, at the same samples; each call adds one. Of
+            one alone the error is unknown, infinite. "ahead", the crank angle at the same times,
+            gives the crank angle's error and is left out
+        """
+        answer = dict(runs[-1])
+        errors = dict.fromkeys(answer, math.inf)
+        if len(runs) > 1:
+            self._compare(runs)
+            usual = self._usual() if len(runs) > 2 else self._usual_change(runs[-1])
+            for name, value in runs[-1].items():
+                peak, change = _peak(value), self._changes[name][-1]
+                error = _UNPROVEN * max(change, _SHARE * usual * peak) if change else 0.0
+                if len(runs) > 2:
+                    error = _SAFETY * self._uncorrected(name)
+                    if self._is_clean(name):
+                        answer[name] = value + (value - runs[-2][name]) / 3.0
+                        error = _SAFETY * self._corrected(name, usual)
+                errors[name] = error + _ROUNDING * peak
+        _silence(answer)
+        del answer["ahead"]
+        errors["crank_angle"] = errors.pop("ahead")
+        return answer, errors
+
+    def _compare(self, runs: Runs) -> None:
+        """Note what the last halving changed."""
+        for name, value in runs[-1].items():
+            change = value - runs[-2][name]
+            self._changes.setdefault(name, []).append(_peak(change))
+            if len(runs) > 2:
+                before = runs[-2][name] - runs[-3][name]
+                correction = _peak(before - 4.0 * change) / 3.0
+                self._corrections.setdefault(name, []).append(correction)
+
+    def _is_clean(self, name: str) -> bool:
+        return self._shrinks > 2.0 and 3.0 * self._corrections[name][-1] <= self._changes[name][-1]
+
+    def _usual_change(self, run: Mapping[str, Array]) -> float:
+        """D over the peak of the variables, the median: they all come from one motion."""
+        sizes = {name: _peak(value) for name, value in run.items()}
+        shares = [self._changes[name][-1] / size for name, size in sizes.items() if size > 0.0]
+        return float(np.median(shares))
+
+    def _usual(self) -> float:
+        """The same of X over D."""
+        shares = [
+            corrections[-1] / self._changes[name][-1]
+            for name, corrections in self._corrections.items()
+            if self._changes[name][-1] > 0.0
+        ]
+        return float(np.median(shares)) if shares else 0.0
+
+    def _corrected(self, name: str, usual: float) -> float:
+        """X, or what it must be but for chance: by those of the others, or by the one before."""
+        corrections = self._corrections[name]
+        if len(corrections) == 1:
+            least = max(_SHARE * usual, _BENT if self._shrinks < 8.0 else 0.0)
+            return max(corrections[-1], least * self._changes[name][-1])
+        return _largest(corrections, self._shrinks, 8.0, 2.0)
+
+    def _uncorrected(self, name: str) -> float:
+        """D, or what it must be but for chance, at the order of the method or of a jump."""
+        changes = self._changes[name]
+        before, last = changes[-2:]
+        if name in _OF_ANGLE and _FAST * last < before:
+            return last / 8.0
+        shrinks = min(self._shrinks, 4.0)
+        return _largest(changes, shrinks, 4.0, 0.55 * shrinks)
 
 
 def relative_error(variables: Mapping[str, Array], errors: Mapping[str, float]) -> float:
@@ -67,6 +129,21 @@ def relative_error(variables: Mapping[str, Array], errors: Mapping[str, float]) 
         if name != "energy_residual" and scale > 0.0:
             worst = max(worst, error / scale)
     return worst
+
+
+def _largest(sizes: Sequence[float], shrinks: float, most: float, stalled: float) -> float:
+    """The last size, or what the one before leaves of itself, if that is more with no margin.
+
+    Each shrinks by as much as the one before did, but at least by ``shrinks`` and at most by
+    ``most``. Where they shrink by less than ``stalled`` it is rounding that is left, and twice the
+    larger is taken.
+    """
+    last, before = sizes[-1], sizes[-2]
+    earlier = sizes[-3] if len(sizes) > 2 else math.inf
+    if stalled * last > before or stalled * before > earlier:
+        return 2.0 * max(last, before)
+    shrunk = earlier / before if before > 0.0 and math.isfinite(earlier) else 0.0
+    return max(last, before / min(max(shrinks, shrunk), most) / _SAFETY)
 
 
 def _silence(answer: dict[str, Array]) -> None:

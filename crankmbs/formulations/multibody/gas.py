@@ -12,6 +12,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from crankmbs.formulations.base import Array
 from crankmbs.pressure import PeriodicPressure
@@ -22,7 +23,7 @@ __all__ = ["Gas", "GasStretch"]
 Force = Callable[[float], float]
 
 _NEAR = 1e-9  # rad: a knot so close ahead is reached, as in PeriodicPressure
-_JUMP = 1e-9  # of the highest pressure: less is rounding
+_JUMP = 1e-9  # of the highest pressure or slope: less is rounding
 _MOST_JUMPS = 60  # in a period; a table of more steps is run over as it is
 
 
@@ -34,6 +35,21 @@ class Gas:
         self._pressure, self._period = pressure, scene.period
         self._area = scene.piston.gas_area or 0.0
         self._angles, self._rises = self._jumps()
+
+    @property
+    def jumps(self) -> bool:
+        """Whether a force jumps anywhere."""
+        return self._pressure is not None and len(_knots(self._pressure)[0]) > 0
+
+    @property
+    def order(self) -> int:
+        """1 where forces jump within a stretch, 2 where they bend there, else 3."""
+        if self._pressure is None:
+            return 3
+        jumps, bends = _knots(self._pressure)
+        if len(jumps) > 0 and len(self._angles) == 0:
+            return 1
+        return 2 if len(bends) > 0 else 3
 
     def force(self, theta: Array) -> Array:
         """Gas forces [N] towards the crank, shape (m, n), at crank angles of shape (m,)."""
@@ -79,17 +95,12 @@ class Gas:
         none = np.empty(0), np.empty((0, len(self.phases)))
         if self._pressure is None:
             return none
-        knots, pieces = self._pressure.knots, self._pressure.coefficients
-        width = np.diff(knots)
-        before = np.roll(
-            ((pieces[0] * width + pieces[1]) * width + pieces[2]) * width + pieces[3], 1
-        )
-        rise = pieces[3] - before
-        found = np.flatnonzero(np.abs(rise) > _JUMP * np.max(np.abs(pieces[3])))
+        found, _ = _knots(self._pressure)
         if not 0 < len(found) * len(self.phases) <= _MOST_JUMPS:
             return none
-        angles = np.mod(knots[found][:, None] - self.phases, self._period)
-        rises = self._area * rise[found][:, None, None] * np.eye(len(self.phases))
+        angles = np.mod(self._pressure.knots[found][:, None] - self.phases, self._period)
+        rise = _rises(self._pressure)[0][found]
+        rises = self._area * rise[:, None, None] * np.eye(len(self.phases))
         angles, rises = angles.ravel(), rises.reshape(-1, len(self.phases))
         order = np.argsort(angles)
         angles, rises = angles[order], rises[order]
@@ -131,3 +142,20 @@ class GasStretch:
             return force(theta + phase) + lifted
 
         return without_jumps
+
+
+def _knots(pressure: PeriodicPressure) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Numbers of the knots at which the pressure jumps, and of those at which it bends."""
+    _, _, slopes, values = pressure.coefficients
+    value, slope = _rises(pressure)
+    jumps = np.abs(value) > _JUMP * np.max(np.abs(values))
+    bends = np.abs(slope) > _JUMP * np.max(np.abs(slopes))
+    return np.flatnonzero(jumps), np.flatnonzero(bends)
+
+
+def _rises(pressure: PeriodicPressure) -> Array:
+    """What pressure [Pa] and slope [Pa/rad] rise by at each knot but the last, shape (2, n)."""
+    a, b, c, d = pressure.coefficients
+    x = np.diff(pressure.knots)
+    ends = np.array([((a * x + b) * x + c) * x + d, (3.0 * a * x + 2.0 * b) * x + c])
+    return np.asarray(np.array([d, c]) - np.roll(ends, 1, axis=1))

@@ -2,21 +2,27 @@
 
 from __future__ import annotations
 
-from bisect import bisect_right
+import math
+from bisect import bisect_left, bisect_right
 from collections.abc import Callable
 
 from crankmbs.drives import Constant, Quadratic, SpeedTable, TimeTable, Torque, Viscous
 from crankmbs.tables import Table
 
-__all__ = ["Load", "torque_function"]
+__all__ = ["EVERYWHERE", "Load", "speeds_around", "torque_function"]
 
 Load = Callable[[float, float], float]
+Range = tuple[float, float]
+
+EVERYWHERE: Range = (-math.inf, math.inf)
 
 
-def torque_function(torques: tuple[Torque, ...], begin: float) -> Load:
+def torque_function(torques: tuple[Torque, ...], times: Range, speeds: Range) -> Load:
     """Torque [N m] over time [s] and crank speed [rad/s], all loads together.
 
-    Valid from ``begin`` to the next jump in time, and continued linearly before and beyond.
+    times [s] : no load over time jumps between; continued linearly before and beyond
+    speeds [rad/s] : no load over speed bends or jumps between, and the lines are continued; or
+        EVERYWHERE, for the tables as they are
     """
     c0 = c1 = c2 = 0.0
     tables: list[Load] = []
@@ -29,9 +35,13 @@ def torque_function(torques: tuple[Torque, ...], begin: float) -> Load:
             case Quadratic():
                 c2 += load.coefficient
             case TimeTable():
-                tables.append(_over_time(load.file, begin))
-            case SpeedTable():
+                tables.append(_over_time(load.file, *times))
+            case SpeedTable() if speeds == EVERYWHERE:
                 tables.append(_over_speed(load.file))
+            case SpeedTable():
+                constant, slope = _line_between(load.file, *speeds)
+                c0 += constant
+                c1 -= slope
 
     def torque(time: float, omega: float) -> float:
         value = c0 - (c1 + c2 * abs(omega)) * omega
@@ -42,15 +52,19 @@ def torque_function(torques: tuple[Torque, ...], begin: float) -> Load:
     return torque
 
 
-def _over_time(table: Table, begin: float) -> Load:
-    """Between the two jumps around ``begin``; the outer pieces are continued."""
+def speeds_around(torques: tuple[Torque, ...], omega: float, sense: float) -> Range:
+    """The rows of all speed tables next to a speed [rad/s]; beside a row, on the side of sense."""
+    rows = sorted({x for load in torques if isinstance(load, SpeedTable) for x in load.file.x})
+    k = bisect_right(rows, omega) if sense > 0.0 else bisect_left(rows, omega)
+    ends = [-math.inf, *rows, math.inf]
+    return ends[k], ends[k + 1]
+
+
+def _over_time(table: Table, begin: float, end: float) -> Load:
+    """The rows around ``begin`` and those up to ``end``; the outer pieces are continued."""
     x, y = table.x, table.y
-    after = bisect_right(x, begin)
-    low, high = max(after - 1, 0), min(after, len(x) - 1)
-    while low > 0 and x[low - 1] < x[low]:
-        low -= 1
-    while high < len(x) - 1 and x[high] < x[high + 1]:
-        high += 1
+    low = min(max(bisect_right(x, begin) - 1, 0), len(x) - 2)
+    high = max(bisect_left(x, end), low + 1)
     x, y = x[low : high + 1], y[low : high + 1]
     return lambda time, omega: _line(x, y, time)
 
@@ -59,6 +73,16 @@ def _over_speed(table: Table) -> Load:
     """The ends are held."""
     x, y = table.x, table.y
     return lambda time, omega: _line(x, y, min(max(omega, x[0]), x[-1]))
+
+
+def _line_between(table: Table, low: float, high: float) -> tuple[float, float]:
+    """Torque at rest [N m] and slope [N m s] of the table's line from speed low to high."""
+    x, y = table.x, table.y
+    k = bisect_right(x, low)
+    if k == 0 or high > x[-1]:
+        return y[0 if k == 0 else -1], 0.0
+    slope = (y[k] - y[k - 1]) / (x[k] - x[k - 1])
+    return y[k] - slope * x[k], slope
 
 
 def _line(x: tuple[float, ...], y: tuple[float, ...], at: float) -> float:

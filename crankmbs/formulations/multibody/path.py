@@ -1,7 +1,7 @@
 """One run at one step size, from start to end.
 
-It is made of stretches, cut where something jumps: a load or the prescribed acceleration, at a
-time known beforehand; the gas force of a cylinder, at a crank angle.
+It is made of stretches, cut where something jumps or bends at a time known beforehand (a load,
+the prescribed acceleration) and where the gas force of a cylinder jumps, at a crank angle.
 """
 
 from __future__ import annotations
@@ -13,10 +13,11 @@ from typing import NamedTuple
 import numpy as np
 
 from crankmbs.drives import TimeTable
+from crankmbs.formulations.multibody.landing import LEAST_STEPS
 from crankmbs.formulations.multibody.model import Model
-from crankmbs.formulations.multibody.problem import Problem, jump_times
+from crankmbs.formulations.multibody.problem import Problem, jump_times, kink_times
 from crankmbs.formulations.multibody.start import coordinates
-from crankmbs.formulations.multibody.stretch import LEAST_STEPS, Walk, initial_acceleration
+from crankmbs.formulations.multibody.stretch import Walk, initial_acceleration
 from crankmbs.formulations.multibody.table import Table
 
 __all__ = ["Path", "coarsest_step", "model_of", "solve"]
@@ -32,12 +33,15 @@ class Path(NamedTuple):
     """A run at one step size.
 
     tables : the stretches, one after the other
-    ending : "complete", "called off", or "failed" where the solver gave up
+    ending : "complete", "called off", "held" where a jump of the loads drives the speed back from
+        both sides, or "failed" where the solver gave up
+    blind : whether it ran over bends or jumps of the loads over speed
     steps, iterations : what it cost
     """
 
     tables: tuple[Table, ...]
     ending: str
+    blind: bool
     steps: int
     iterations: int
 
@@ -58,23 +62,29 @@ def solve(
     """
     walk = Walk(problem, model, go_on)
     jumps = jump_times(problem)
-    ends = [*(t for t in jumps if t < problem.end * (1.0 - _SAME)), problem.end]
-    bounds, bound = problem.plan.angle_bounds, None
+    cuts = sorted({*jumps, *kink_times(problem)})
+    ends = [*(t for t in cuts if t < problem.end * (1.0 - _SAME)), problem.end]
+    bounds = problem.plan.angle_bounds
     while True:
         h, count = _steps(ends[0] - walk.time, step, halvings)
-        bound, ending = walk.stretch(ends[0], h, count, bounds, with_run_up=bound is None)
+        ending = walk.stretch(ends[0], h, count, bounds)
         if ending != "complete":
-            return Path(tuple(walk.tables), ending, walk.steps, walk.iterations)
+            return _path(walk, ending)
         while ends and walk.time >= ends[0] * (1.0 - _SAME):
             ends.pop(0)
-        if bound in bounds or not ends:
+        if walk.bound in bounds or not ends:
             break
     if walk.is_at_gas_jump() or any(math.isclose(walk.time, t, rel_tol=_SAME) for t in jumps):
         # what comes after the jump is asked for at the end, too
-        beyond = walk.time + LEAST_STEPS * h
-        walk.stretch(beyond, h, LEAST_STEPS, (-math.inf, math.inf), with_run_up=False)
-        walk.tables[-1] = walk.tables[-1]._replace(until=walk.tables[-1].after)
-    return Path(tuple(walk.tables), "complete", walk.steps, walk.iterations)
+        so_far, beyond = len(walk.tables), walk.time + LEAST_STEPS * h
+        walk.stretch(beyond, h, LEAST_STEPS, (-math.inf, math.inf))
+        if len(walk.tables) > so_far:
+            walk.tables[-1] = walk.tables[-1]._replace(until=walk.tables[-1].after)
+    return _path(walk, "complete")
+
+
+def _path(walk: Walk, ending: str) -> Path:
+    return Path(tuple(walk.tables), ending, walk.is_blind, walk.steps, walk.iterations)
 
 
 def coarsest_step(problem: Problem, model: Model) -> tuple[float, bool]:
@@ -102,5 +112,5 @@ def _steps(duration: float, step: float, halvings: int) -> tuple[float, int]:
     """Step [s] and number of steps for a stretch."""
     if math.isinf(duration):
         return step / 2**halvings, _ENDLESS
-    count = max(math.ceil(duration / step - 1e-9) * 2**halvings, LEAST_STEPS)
+    count = max(math.ceil(duration / step - 1e-9), LEAST_STEPS) * 2**halvings
     return duration / count, count

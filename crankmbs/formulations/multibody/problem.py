@@ -15,7 +15,9 @@ from crankmbs.sampling import Plan, plan_of
 from crankmbs.scene import Scene
 from crankmbs.speed import SpeedLaw, speed_law
 
-__all__ = ["Problem", "jump_times", "problem_of"]
+__all__ = ["Problem", "erratic_order", "jump_times", "kink_times", "problem_of"]
+
+_MOST_KINKS = 12  # in a run; each costs a run-up, and a table of more is run over as it is
 
 
 class Problem(NamedTuple):
@@ -70,6 +72,33 @@ def jump_times(problem: Problem) -> list[float]:
             if abs(after - before) > 1e-6 * max(abs(after), abs(before)):
                 times.add(corner)
     return sorted(t for t in times if t > 0.0)
+
+
+def kink_times(problem: Problem) -> list[float]:
+    """Times [s] within the run at which a load bends, if they are few.
+
+    A bend within a step, and one between the steps of an interpolation, would leave an error that
+    changes erratically with the step.
+    """
+    times = _row_times(problem)
+    return times if len(times) <= _MOST_KINKS else []
+
+
+def erratic_order(problem: Problem) -> int:
+    """Power of the step with which the erratic part of an error goes, at least; 3 at most.
+
+    It is 1 where a load jumps within a step, at a place in it that changes with the step, and 2
+    where it bends; loads over speed are not counted. No load bends a prescribed motion.
+    """
+    if problem.law is not None:
+        return 2 if set(problem.law.corners) - set(jump_times(problem)) else 3
+    return min(problem.gas.order, 2 if len(_row_times(problem)) > _MOST_KINKS else 3)
+
+
+def _row_times(problem: Problem) -> list[float]:
+    """Times [s] within the run of the rows of all loads over time."""
+    loads = (load for load in problem.scene.torque if isinstance(load, TimeTable))
+    return sorted({t for load in loads for t in load.file.x if 0.0 < t < problem.end})
 
 
 def _end_of(law: SpeedLaw, plan: Plan) -> tuple[float, bool]:

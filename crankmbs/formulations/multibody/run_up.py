@@ -19,7 +19,7 @@ _SHOTS = 15
 _CLOSE, _CLOSER = 1e-9, 1e-12  # miss of a shot: accepted at last, and at once
 _OPEN = 1e-6  # m or rad: how far a body may be off the closed loop
 
-Proceed = Callable[[float], bool]
+Proceed = Callable[[float, float], bool]
 
 
 def run_free(
@@ -110,6 +110,8 @@ def _shoot(
             return None  # it came over a fold in another way
         miss = np.array([end, record.velocity[-1, 2]]) - state
         size = float(np.max(np.abs(miss) / scale))
+        if chosen is not None and size >= best:
+            break  # Newton's method leaves no less
         if size < best:
             best, chosen = size, (float(x[0]), float(x[1]))
         if size < _CLOSER or not size < 10.0:

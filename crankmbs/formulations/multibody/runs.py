@@ -7,7 +7,7 @@ import time as clock
 
 from crankmbs.errors import FormulationError
 from crankmbs.formulations.multibody.path import Path, coarsest_step, model_of, solve
-from crankmbs.formulations.multibody.problem import problem_of
+from crankmbs.formulations.multibody.problem import erratic_order, problem_of
 from crankmbs.formulations.multibody.samples import reached, slowed
 from crankmbs.scene import Scene
 
@@ -17,6 +17,7 @@ _SHARE = 1.0 / 3.0  # of the cost cap, for the coarsest run: the next costs twic
 _RETRIES = 4
 _AT_REST = 1e-6  # of the fastest speed
 _FAILED = "exudyn's Newton iteration does not converge, or a rod turns over at a fold"
+_HELD = "a jump of the loads drives the speed back from both sides"
 _UNTOUCHED = 0.98  # of the time to where the solver fails: before it goes wrong
 
 
@@ -60,12 +61,12 @@ class Runs:
             self._model.stiff = True
             self._step *= 0.25
         if not path.tables:
+            why = _HELD if path.ending == "held" else "exudyn's Newton iteration does not converge"
             raise FormulationError(
-                "formulation 'multibody' cannot serve this scene: exudyn's Newton iteration does "
-                "not converge at its start; choose auto"
+                f"formulation 'multibody' cannot serve this scene: {why} at its start; choose auto"
             )
         self.paths = [path]
-        if path.ending == "complete":
+        if path.ending in ("complete", "held"):
             return self._end(path)
         return self._cut(path)
 
@@ -73,9 +74,16 @@ class Runs:
         """One more run, at half the step; False, and no run more, where it fails."""
         self._halvings += 1
         path = self._run(math.inf)
-        if path.ending == "complete":
-            self.paths = [*self.paths, path][-3:]
-        return path.ending == "complete"
+        if path.ending != ("held" if self.paths[-1].ending == "held" else "complete"):
+            return False
+        self.paths = [*self.paths, path][-3:]
+        return True
+
+    @property
+    def erratic_order(self) -> int:
+        """That of the problem, and 1 where the runs went over bends or jumps of the loads."""
+        blind = any(path.blind for path in self.paths)
+        return 1 if blind else erratic_order(self.problem)
 
     def affords_another(self) -> bool:
         """Whether a run at half the last step fits under the cost cap."""
@@ -123,8 +131,10 @@ class Runs:
         )
 
     def _end(self, path: Path) -> tuple[int, str]:
-        _, theta = reached(path)
+        _, theta, omega = reached(path)
         degrees, plan = math.degrees(theta), self.problem.plan
+        if path.ending == "held":
+            return 1, f"held at {omega * 30.0 / math.pi:.6g} rpm at {degrees:.6g} degrees: {_HELD}"
         if self.problem.rests:
             return 1, f"the prescribed speed comes to rest at {degrees:.6g} degrees, before the end"
         if min(abs(theta - fold) for fold in plan.folds) < 1e-9:
@@ -135,14 +145,14 @@ class Runs:
         return 0, "reached the end of the run"
 
     def _cut(self, path: Path) -> tuple[int, str]:
-        time, theta = reached(path)
+        time, theta, _ = reached(path)
         plan = self.problem.plan
         where = f"at {math.degrees(theta):.6g} degrees, {time:.6g} s"
         if path.ending == "failed":
             self.problem = self.problem._replace(end=_UNTOUCHED * time)
             self.paths = [self._run(math.inf)]
             return -1, f"stopped {where}: {_FAILED}"
-        share = max(time / self.problem.end, abs(theta - plan.start) / plan.until)
+        share = (time if plan.until_time else abs(theta - plan.start)) / plan.until
         self.problem = self.problem._replace(end=time)
         if slowed(path) < _AT_REST:
             return 1, f"came to rest {where}, before the end of the run"

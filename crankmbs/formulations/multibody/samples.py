@@ -48,12 +48,16 @@ def aligned_variables(problem: Problem, paths: list[Path]) -> list[dict[str, Arr
             samples = [_ending_as(end, finest) for end in ends]
     runs = [_variables_at(problem, p, s, by_angle) for p, s in zip(paths, samples, strict=True)]
     speed = runs[-1]["crank_speed"]
-    for variables in runs:
+    for variables, path in zip(runs, paths, strict=True):
         variables["ahead"] = variables["crank_angle"] - speed * (variables["time"] - finest.time)
         if not by_angle and not problem.plan.in_time:  # the time at which it has the sample's angle
             off = variables["crank_angle"] - finest.theta
             early = np.divide(off, speed, out=np.zeros_like(off), where=speed != 0.0)
             variables["time"] = finest.time - early
+            # a torque over time errs by being asked for too early, and by nothing else
+            there = finest._replace(time=np.clip(variables["time"], 0.0, reached(path)[0]))
+            at_angle = _variables_at(problem, path, there, by_angle)
+            variables["external_torque"] = at_angle["external_torque"]
     return runs
 
 
@@ -63,10 +67,12 @@ def _ending_as(run: _Samples, finest: _Samples) -> _Samples:
     return _Samples(*joined)
 
 
-def reached(path: Path) -> tuple[float, float]:
-    """Time [s] and crank angle [rad] where a run ends."""
+def reached(path: Path) -> tuple[float, float, float]:
+    """Time [s], crank angle [rad] and speed [rad/s] where a run ends."""
     last = path.tables[-1]
-    return last.until, float(last.one_at("crank_angle", np.array([last.until]))[0])
+    at = np.array([last.until])
+    theta, omega = (float(last.one_at(name, at)[0]) for name in ("crank_angle", "crank_speed"))
+    return last.until, theta, omega
 
 
 def slowed(path: Path) -> float:
@@ -78,7 +84,7 @@ def slowed(path: Path) -> float:
 def _samples(problem: Problem, path: Path) -> _Samples:
     """Where the plan wants samples on this run, the start and the end included."""
     plan = problem.plan
-    end, theta_end = reached(path)
+    end, theta_end, _ = reached(path)
     for bound in plan.angle_bounds:
         theta_end = bound if abs(theta_end - bound) < _NEAR else theta_end
     times, angles, stretches = [np.zeros(1)], [np.array([problem.start[0]])], [np.zeros(1, int)]

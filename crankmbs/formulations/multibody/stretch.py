@@ -1,7 +1,7 @@
 """One stretch of a run after the other, each beginning where the last one ended.
 
-A stretch ends at a time given for it, or at a crank angle where the gas force of a cylinder jumps
-or the run ends. Each begins on the closed loop.
+A stretch ends at a time given for it; at a crank angle where the gas force of a cylinder jumps or
+the run ends; or at a speed where a load bends or jumps. Each begins on the closed loop.
 """
 
 from __future__ import annotations
@@ -12,22 +12,28 @@ from typing import Any
 
 import numpy as np
 
-from crankmbs.formulations.base import Array
 from crankmbs.formulations.multibody.gas import GasStretch
-from crankmbs.formulations.multibody.loads import torque_function
+from crankmbs.formulations.multibody.landing import (
+    LEAST_STEPS,
+    PASSED,
+    Bounds,
+    Watch,
+    angle_passed,
+    cut_at_angle,
+    cut_at_speed,
+)
+from crankmbs.formulations.multibody.loads import EVERYWHERE, speeds_around, torque_function
 from crankmbs.formulations.multibody.model import Model, Record
 from crankmbs.formulations.multibody.problem import Problem
 from crankmbs.formulations.multibody.run_up import run_free, run_prescribed
 from crankmbs.formulations.multibody.start import coordinates
-from crankmbs.formulations.multibody.table import ROWS, Table, table_of
+from crankmbs.formulations.multibody.table import Table, table_of
 from crankmbs.geometry import close_loop
-from crankmbs.roots import invert_monotone
 
-__all__ = ["LEAST_STEPS", "Walk", "initial_acceleration"]
+__all__ = ["Walk", "initial_acceleration"]
 
-LEAST_STEPS = ROWS + 2
-_PASSED = 1e-8  # rad
 _OPEN = 1e-3  # of the rod's length: how far a piston may be off the closed loop
+_MOST_SPEEDS = 100  # landed on in a run; beyond, it runs over the bends of the loads as they are
 
 
 class Walk:
@@ -35,45 +41,51 @@ class Walk:
 
     tables : one per stretch
     time [s] : where the last one ended
+    bound [rad] : the crank angle that ended it, if one did
+    landed : whether an angle or a speed ended it
     steps, iterations : what they cost
     """
 
     def __init__(self, problem: Problem, model: Model, go_on: Callable[[], bool]) -> None:
         self.tables: list[Table] = []
         self.time, self._state = 0.0, problem.start
+        self.bound: float | None = None
+        self.landed = False
         self._problem, self._model, self._go_on = problem, model, go_on
         self._residual = 0.0
+        self._sense = 0.0  # in which the speed passed a bend of the loads
+        self._speeds_left = _MOST_SPEEDS
         self.steps = self.iterations = 0
+
+    @property
+    def is_blind(self) -> bool:
+        """Whether it runs over bends of the loads over speed as they are."""
+        return self._speeds_left == 0
 
     def is_at_gas_jump(self) -> bool:
         """Whether the gas force of a cylinder jumps where the last stretch ended."""
         theta, gas = self._state[0], self.tables[-1].gas
-        ends = [end for end in (gas.low, gas.high) if abs(end - theta) < _PASSED]
+        ends = [end for end in (gas.low, gas.high) if abs(end - theta) < PASSED]
         self._state = (ends[0] if ends else theta, self._state[1])
         return bool(ends) and self.time > self.tables[-1].after
 
-    def stretch(
-        self,
-        end: float,
-        step: float,
-        steps: int,
-        bounds: tuple[float, float],
-        *,
-        with_run_up: bool,
-    ) -> tuple[float | None, str]:
-        """Run one more, to time ``end`` [s] if no crank angle ends it before.
+    def stretch(self, end: float, step: float, steps: int, angles: tuple[float, float]) -> str:
+        """Run one more, to time ``end`` [s] if no crank angle or speed ends it before.
 
         Returns
         -------
-        the crank angle that ended it, if one did, and how it ended, as in `Path`
+        how it ended, as in `Path`
         """
         problem, model, time = self._problem, self._model, self.time
-        gas = _enter(problem, model, time, self._state)
-        low, high = max(bounds[0], gas.low), min(bounds[1], gas.high)
-        watch = _Watch(low, high, self._go_on)
+        entered = self.enter(end)
+        if entered is None:
+            return "held"
+        gas, speeds = entered
+        bounds = Bounds((max(angles[0], gas.low), min(angles[1], gas.high)), speeds)
+        watch = Watch(bounds, self._go_on)
         if problem.law is None:
             record, lead = run_free(
-                problem.scene, model, time, self._state, step, steps, watch, with_run_up
+                problem.scene, model, time, self._state, step, steps, watch, not self.landed
             )
         else:
             record, lead = run_prescribed(
@@ -82,72 +94,93 @@ class Walk:
         record = _on_one_loop(problem, record)
         self.steps += len(record.time) - 1
         self.iterations += record.iterations
+        self.bound, self.landed, self._sense = None, False, 0.0
         if len(record.time) < lead + LEAST_STEPS:
-            return None, "failed"
+            return "failed"
         torque = record.drive
         if problem.law is None:
-            speeds = record.velocity[:, 2].tolist()
-            torque = np.array(list(map(model.torque, record.time.tolist(), speeds)))
+            rates = record.velocity[:, 2].tolist()
+            torque = np.array(list(map(model.torque, record.time.tolist(), rates)))
         table = table_of(problem.scene, gas, torque, record, time, self._residual)
-        bound = _bound(record, low, high)
-        if bound is not None:
-            table = _cut(table, bound)
-        elif record.complete and not watch.called_off:
+        self._land(table, record, bounds, end if not watch.called_off else None)
+        if watch.called_off:
+            return "called off"
+        return "complete" if record.complete else "failed"
+
+    def enter(self, end: float) -> tuple[GasStretch, tuple[float, float]] | None:
+        """Give the model the loads of the stretch from here to time ``end`` [s].
+
+        Returns
+        -------
+        what the gas does, and the speeds between which the loads hold; None where a jump of the
+        loads drives the speed back from both sides
+        """
+        (theta, omega), model, problem = self._state, self._model, self._problem
+        torques = problem.scene.torque
+        senses = (self._sense,) if self._sense else (1.0, -1.0)
+        for sense in senses:
+            speeds = EVERYWHERE if self.is_blind else speeds_around(torques, omega, sense)
+            model.torque = torque_function(torques, (self.time, end), speeds)
+            gas = problem.gas.stretch(theta, omega or sense)
+            model.gas = gas.functions() if problem.scene.gas is not None else ()
+            beside = omega in speeds
+            if problem.law is not None or not (omega == 0.0 or beside):
+                return gas, speeds
+            if sense * self.acceleration() >= 0.0 or (self._sense and not self._jumps(omega)):
+                return gas, speeds
+        return None if beside else (gas, speeds)
+
+    def acceleration(self) -> float:
+        """Crank acceleration [rad/s2] of a free crank here, under the loads of the model."""
+        start = coordinates(self._problem.scene, *self._state)
+        row = self._model.consistent(start, self.time)
+        return float(row.acceleration[0, 2])
+
+    def _jumps(self, omega: float) -> bool:
+        """Whether a load jumps at a speed."""
+        sides = (
+            torque_function(
+                self._problem.scene.torque,
+                (self.time, self.time),
+                speeds_around(self._problem.scene.torque, omega, sense),
+            )
+            for sense in (-1.0, 1.0)
+        )
+        below, above = (torque(self.time, omega) for torque in sides)
+        return abs(above - below) > 1e-9 * max(abs(above), abs(below))
+
+    def _land(self, table: Table, record: Record, bounds: Bounds, end: float | None) -> None:
+        """Cut the table where it leaves its bounds, or at its end; take it, and go there."""
+        self.bound = angle_passed(record, bounds.angles)
+        if self.bound is not None:
+            table = cut_at_angle(table, self.bound)
+        elif record.complete and end is not None:
             table = table._replace(until=end)
+        met = cut_at_speed(table, bounds)
+        speed = None
+        if met is not None:
+            (table, speed), self.bound = met, None
+            self._sense = 1.0 if speed == bounds.speeds[1] else -1.0
+            self._speeds_left -= 1
+        self.landed = self.bound is not None or speed is not None
         self.tables.append(table)
         self.time = table.until
         last = {
             name: float(values.flat[0]) for name, values in table.at(np.array([self.time])).items()
         }
         self._residual = last["energy_residual"]
-        self._state = (last["crank_angle"] if bound is None else bound), last["crank_speed"]
-        if watch.called_off:
-            return bound, "called off"
-        return bound, "complete" if record.complete else "failed"
-
-
-class _Watch:
-    """Ends a stretch a little beyond the crank angles ``low`` or ``high``, or calls it off."""
-
-    def __init__(self, low: float, high: float, go_on: Callable[[], bool]) -> None:
-        self._low, self._high, self._go_on = low - _PASSED, high + _PASSED, go_on
-        self._count = self._beyond = 0
-        self.called_off = False
-
-    def __call__(self, theta: float) -> bool:
-        self._count += 1
-        if self._low < theta < self._high:
-            self._beyond = 0
-            if self._count % 64 == 0 and not self._go_on():
-                self.called_off = True
-            return not self.called_off
-        self._beyond += 1
-        return self._beyond <= ROWS // 2 or self._count <= LEAST_STEPS
-
-
-def _enter(problem: Problem, model: Model, time: float, state: tuple[float, float]) -> GasStretch:
-    """Give the model the loads of the stretch that begins at a time and state."""
-    theta, omega = state
-    model.torque = torque_function(problem.scene.torque, time)
-    for sense in (omega,) if omega != 0.0 else (1.0, -1.0):
-        gas = problem.gas.stretch(theta, sense)
-        model.gas = gas.functions() if problem.scene.gas is not None else ()
-        if omega != 0.0 or problem.law is not None:
-            break
-        if sense * _acceleration(problem, model, time, state) >= 0.0:
-            break
-    return gas
+        theta, omega = last["crank_angle"], last["crank_speed"]
+        self._state = (
+            theta if self.bound is None else self.bound,
+            omega if speed is None else speed,
+        )
 
 
 def initial_acceleration(problem: Problem, model: Model) -> float:
     """Crank acceleration [rad/s2] of a free crank at its start."""
-    _enter(problem, model, 0.0, problem.start)
-    return _acceleration(problem, model, 0.0, problem.start)
-
-
-def _acceleration(problem: Problem, model: Model, time: float, state: tuple[float, float]) -> float:
-    start = coordinates(problem.scene, *state)
-    return float(model.consistent(start, time).acceleration[0, 2])
+    walk = Walk(problem, model, lambda: True)
+    walk.enter(0.0)
+    return walk.acceleration()
 
 
 def _on_one_loop(problem: Problem, record: Record) -> Record:
@@ -163,23 +196,3 @@ def _on_one_loop(problem: Problem, record: Record) -> Record:
         return record
     kept: dict[str, Any] = {name: rows[: over[0]] for name, rows in record.rows().items()}
     return record._replace(**kept, complete=False)
-
-
-def _bound(record: Record, low: float, high: float) -> float | None:
-    """The crank angle at which a stretch ended, if it was one."""
-    theta = float(record.position[-1, 2])
-    return low if theta <= low else high if theta >= high else None
-
-
-def _cut(table: Table, bound: float) -> Table:
-    """End a table where its crank angle last comes to a bound."""
-    theta, times = table.column("crank_angle"), table.times
-    sense = math.copysign(1.0, theta[-1] - theta[-ROWS])
-    k = int(np.flatnonzero(sense * (theta - bound) < 0.0)[-1])
-    low, high = times[k : k + 1], times[k + 1 : k + 2]
-
-    def angle(time: Array) -> tuple[Array, Array]:
-        return table.one_at("crank_angle", time), table.one_at("crank_speed", time)
-
-    until = float(invert_monotone(angle, np.array([bound]), low, high)[0])
-    return table._replace(until=max(until, table.after))
