@@ -18,7 +18,7 @@ _FORMULATIONS = ("crank_angle", "minimal")
 _USUAL, _SHARE = 2.0, 0.99  # the true error over the stated one is so small for so many
 _ALLOWED = 10.0  # and so small for all
 _IDLE = 0.01  # the median is above it
-_PATIENCE = 60.0  # s for a scene: a few swing through hundreds of reversals
+_PATIENCE = 10.0  # s for a scene: a few swing or creep for very long
 
 
 def run_many(count: int, first: int = 0, processes: int | None = None) -> bool:
