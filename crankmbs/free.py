@@ -35,7 +35,8 @@ _PASSES = 12
 _VAIN = 8  # after as many vain hand-overs the crank must turn through a period before the next
 _MOST_CELLS = 20_000
 _FINEST = 3e-14  # what rounding leaves of a cell
-_FINEST_STEP, _FINEST_CHECK = 3e-15, 3e-16  # over time, of either pass: equal ones would err alike
+_FINEST_STEP = 1e-15  # the same over time
+_START_ROUNDING = 2 * float(np.finfo(float).eps)  # of the crank angle
 _ENDS = {
     "end": (0, "reached the end of the run"),
     "stuck": (1, "at rest at {angle:.6g} degrees: no torque moves the crank from here"),
@@ -80,7 +81,7 @@ def run(
     stages = min(3 + round(-math.log10(rtol) / 3.0), 7)
     grid = grid_of(scene, pressure, gauss(stages))
     best: Assembled | None = None
-    local, least, reached = rtol, math.inf, rtol
+    local, least, rounded = rtol, math.inf, False
     finest = _FINEST if by_angle else 100.0 * _FINEST_STEP
     for left in reversed(range(_PASSES)):
         answer = _travel(grid, local, by_angle=by_angle)
@@ -88,17 +89,18 @@ def run(
         if left and parts.max() > 1 and len(grid.edges) < _MOST_CELLS:
             grid = grid.split(parts)
             continue
-        better = _travel(grid.finer, 1e-3 * local, by_angle=by_angle, better=True)
+        better = _travel(grid.finer, 1e-2 * local, by_angle=by_angle, better=True)
         solution = _solution(answer, better, in_time=plan_of(scene).in_time)
         assembled = assemble(scene, pressure, solution)
-        estimate = assembled.relative_error
+        near = local <= 10.0 * finest
+        estimate = assembled.relative_error * (2.0 if near else 1.0)
         if estimate <= least:
-            best, least, reached = assembled, estimate, local
+            best, least, rounded = assembled, estimate, near
         if estimate <= rtol or local <= finest or answer.ending in ("costly", "failed"):
             break
         local = max(local * max(1e-3, 0.1 * rtol / estimate), finest)
     assert best is not None
-    if least > rtol or reached <= 30.0 * finest:
+    if rounded or least > rtol:
         # what is left is rounding, in both passes alike, and their difference not a bound
         best = best._replace(errors={name: 2.0 * error for name, error in best.errors.items()})
     if best.relative_error > rtol and best.solution.status >= 0:
@@ -115,8 +117,12 @@ def _travel(grid: Grid, local: float, *, by_angle: bool, better: bool = False) -
     plan = plan_of(scene)
     state = State(0.0, scene.start.angle, scene.start.speed, 0.0)
     steady = not any(isinstance(load, TimeTable) for load in scene.torque)
-    path = Path(plan, _first(grid, state), can_swing=steady)
-    reduced = Reduced(scene, grid.pressure, halved=better)
+    first = _first(grid, state)
+    path = Path(plan, first, can_swing=steady)
+    if better:  # it begins a rounding ahead: so the difference knows what the motion makes of one
+        ahead = math.copysign(_START_ROUNDING * state.theta, state.omega or float(first.alpha[0]))
+        state = state._replace(theta=state.theta + ahead)
+    reduced = Reduced(scene, grid.pressure)
     worst = np.zeros((2, len(grid.edges) - 1))
     carried: list[float] = []
 
@@ -144,8 +150,9 @@ def _travel(grid: Grid, local: float, *, by_angle: bool, better: bool = False) -
         ending = path.follow(windows(state))
     while ending in ("slow", "fast"):
         if ending == "slow":
-            tolerance = max(0.01 * local, _FINEST_CHECK if better else _FINEST_STEP)
-            steps = minimal.advance(reduced, path.state or state, plan, tolerance, is_fast)
+            tolerance = max(0.01 * local, _FINEST_STEP)
+            parts = 2 if better else 1
+            steps = minimal.advance(reduced, path.state or state, plan, tolerance, parts, is_fast)
             carried.append((path.state or state).time)
             ending = path.follow(steps)
         else:

@@ -34,24 +34,12 @@ class Between(NamedTuple):
 
 
 class Reduced:
-    """J, J_1 and the torque of gas and gravity at one crank angle, in plain floats.
+    """J, J_1 and the torque of gas and gravity at one crank angle, in plain floats."""
 
-    halved : cut every stretch between two knots in half, for a second answer with other steps;
-        without gas there is a cut at every half radian then
-    """
-
-    def __init__(
-        self, scene: Scene, pressure: PeriodicPressure | None, *, halved: bool = False
-    ) -> None:
+    def __init__(self, scene: Scene, pressure: PeriodicPressure | None) -> None:
         crank, rod, piston = scene.crank, scene.rod, scene.piston
-        self.scene, self.pressure, self.halved = scene, pressure, halved
+        self.scene, self.pressure = scene, pressure
         knots = crank_angle_knots(scene, pressure)
-        if halved and len(knots):
-            ends = np.append(knots, knots[0] + scene.period)
-            middles = 0.5 * (ends[1:] + ends[:-1])
-            knots = np.unique(np.concatenate([knots, middles % scene.period]))
-        elif halved:
-            knots = np.arange(0.0, scene.period, 0.5)
         g = scene.gravity.acceleration if scene.gravity else 0.0
         pull = scene.gravity.angle if scene.gravity else 0.0
         axes = [

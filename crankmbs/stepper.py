@@ -234,8 +234,8 @@ def travel(
     is used, at any other limit, at the end in time, where no step is short enough, and where the
     motion dies away or is damped hard.
 
-    control : tolerance of a step, speed [rad/s] to which it is relative, end in time [s], and in
-        how many steps at least a stretch between two knots is passed
+    control : tolerance of a step, speed [rad/s] to which it is relative, end in time [s], and into
+        how many every step is divided: of a second answer none is as long as of the first
     start : time [s], next step [s], largest kinetic energy so far [J]
     y : shape (3,), theta, omega, work; limits : as in `first_exit`; carried on, as the pieces are
 
@@ -245,13 +245,13 @@ def travel(
     """
     (tolerance, speed, t_bound, parts), (t, h, most), (begins, widths, rows) = control, start, steps
     k, new, (machine, pieces, load) = np.empty((16, 3)), np.empty(3), system
-    n, evaluations, longest, entered = 0, 0, t_bound, True
+    n, evaluations, entered = 0, 0, True
     while n + parts <= len(widths):
         if entered:
             slopes(t, y, system, k[0])
-            longest, evaluations, entered = (t_bound - t) / parts, evaluations + 1, False
+            evaluations, entered = evaluations + 1, False
         least, refused = 2e-15 * t, False
-        h = max(min(h, longest), least)
+        h = max(h, least)
         while True:
             width = min(h, t_bound - t)
             _stages(range(1, 13), t, width, y, system, k, new)
@@ -269,20 +269,22 @@ def travel(
         _interpolate(t, width, y, new, system, k, rows[n])
         evaluations += 3
         x, i = first_exit(rows[n], new, limits)
-        end = t_bound if width == t_bound - t else t + width
-        cut = i >= 0 and x > 0.0
-        width = x * width / parts if cut else width
-        for _ in range(parts if cut else 1):
-            if cut:
+        end, cut = t_bound if width == t_bound - t else t + width, i >= 0 and x > 0.0
+        again = cut or (i < 0 and parts > 1)
+        width = (x if cut else 1.0) * width / (parts if again else 1)
+        for j in range(parts if again else 1):
+            if again:
                 _stages(range(1, 13), t, width, y, system, k, new)
                 _interpolate(t, width, y, new, system, k, rows[n])
-                end, evaluations = t + width, evaluations + 15
+                evaluations += 15
             begins[n], widths[n] = t, width
             n += 1
-            if cut or i < 0:  # and not where the motion leaves at once
-                t = end
+            if again or i < 0:  # and not where the motion leaves at once
+                t = t + width if cut or j + 1 < parts else end
                 for q in range(3):
                     y[q], k[0, q] = new[q], k[12, q]
+        if again and not cut:  # the better end may be beyond a limit that the first was before
+            i = first_exit(rows[n - 1], new, limits)[1]
         if i >= 0:
             t = land(t, y, k[0], 0 if i < 4 else 1, float(limits[i]))
             ends = i > 1 or y[0] == limits[2] or y[0] == limits[3]

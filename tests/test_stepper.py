@@ -28,10 +28,9 @@ def test_the_reduced_equation_is_the_one_of_the_arrays(name, sense):
         assert np.abs(values - exact).max() <= 1e-12 * np.abs(exact).max()
 
 
-@pytest.mark.parametrize("halved", [False, True])
-def test_knots_lie_around_the_angle_on_either_side(halved):
+def test_knots_lie_around_the_angle_on_either_side():
     scene = load_scene("propeller")
-    reduced = Reduced(scene, pressure_of(scene), halved=halved)
+    reduced = Reduced(scene, pressure_of(scene))
     knot = reduced.around(-4.0, 1.0).high
     before, after = reduced.around(knot, -1.0), reduced.around(knot, 1.0)
     assert before.high == after.low == knot

@@ -34,6 +34,7 @@ _BLOCK = 4096  # cells of one window
 _SPEED_BLOCK = 512  # where the loads' branch may end at a speed, and the rest is for nothing
 _REACH = 1.0  # rad: what arrays can hold of it in one Newton step after the other
 _AFFINE_TIME, _NEWTON_TIME = 4e-6, 1e-4  # s a cell with arrays
+_HAIR = 1e-6  # of a cell: as near its edge it is as exact as there
 _KEPT = 2  # whole periods at the end that are solved cell by cell when only the last is kept
 
 
@@ -64,7 +65,9 @@ def advance(grid: Grid, state: State, plan: Plan) -> Generator[Window, None, str
         window = _solve(grid, branch, state, sense, bound, t_end)
         if window is None:
             return "slow"
-        window = replace(window, skipped=skipped).cut(t_end, bound)
+        whole, window = _landed(replace(window, skipped=skipped).cut(t_end, bound), t_end)
+        if whole is not None:
+            yield whole
         yield window
         if window.end.time >= plan.time_bound or window.end.theta == bound:
             return "end"
@@ -73,6 +76,24 @@ def advance(grid: Grid, state: State, plan: Plan) -> Generator[Window, None, str
         state, skipped = window.end, 0
         if math.isfinite(plan.last) and state.time < t_end and branch.is_affine_in_energy:
             state, skipped = _skip(grid, branch, state, sense, bound, t_end)
+
+
+def _landed(window: Window, t_end: float) -> tuple[Window | None, Window]:
+    """A window that ends inside a cell in two: the whole cells, and that one solved again up to the
+    end. Inside a cell the answer is of lower order than at its edge."""
+    k, x = window.stop
+    width = float(window.strip.width[k])
+    if not _HAIR < x < 1.0 - _HAIR:
+        return None, window
+    whole = window.first(k) if k > 0 else None
+    begin = whole.end if whole else window.begin
+    bound = window.end.theta + window.sense * _HAIR * width
+    last = _solve(window.grid, window.branch, begin, window.sense, bound, math.inf)
+    if last is not None:
+        last = last.cut(t_end, math.inf)
+        if np.array_equal(last.landed, window.landed, equal_nan=True):
+            return whole, replace(last, skipped=0 if whole else window.skipped)
+    return None, window
 
 
 def _skip(

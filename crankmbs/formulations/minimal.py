@@ -37,11 +37,13 @@ def advance(
     state: State,
     plan: Plan,
     tolerance: float,
+    parts: int,
     is_fast: Callable[[State, Branch], bool],
 ) -> Generator[Stretch, None, str]:
     """Carry the motion on, in stretches of ever more steps: a short crossing is soon over.
 
-    tolerance : relative, of each step; is_fast : whether the crank angle can take over again
+    tolerance : relative, of each step; parts : into how many each is divided then; is_fast :
+    whether the crank angle can take over again
 
     Returns
     -------
@@ -60,7 +62,7 @@ def advance(
         h = tolerance**0.125 / speed if math.isinf(h) else h
         bound = min(plan.time_bound, equation.branch.t_end)
         room = min(room, (_MOST_EVALUATIONS - evaluations) // 12 + 1)
-        control = _Control(tolerance, speed, bound, h, most, room)
+        control = _Control(tolerance, speed, bound, h, most, room, parts)
         speeds = (0.0, equation.branch.omega_low, equation.branch.omega_high)
         limits = np.array([*equation.between[:2], *plan.angle_bounds, *speeds])
         kernels.pay(room * _PLAIN_TIME)
@@ -106,7 +108,7 @@ def _enter(reduced: Reduced, state: State, scale: float) -> Equation | str:
 
 class _Control(NamedTuple):
     """Tolerance of a step, speed [rad/s] to which it is relative, end in time [s], next step [s],
-    largest kinetic energy so far [J], most steps."""
+    largest kinetic energy so far [J], most steps, and into how many each is divided."""
 
     tolerance: float
     speed: float
@@ -114,13 +116,14 @@ class _Control(NamedTuple):
     h: float
     most: float
     room: int
+    parts: int
 
 
 def _dop853(equation: Equation, begin: State, control: _Control, limits: Array) -> Track:
     """Steps of order 8."""
     begins, widths = np.empty((2, control.room + 1))
     rows, y = np.empty((control.room + 1, 8, 3)), np.array([begin.theta, begin.omega, 0.0])
-    asked = (*control[:3], 2 if equation.reduced.halved else 1)
+    asked = (*control[:3], control.parts)
     start = (begin.time, control.h, control.most)
     with np.errstate(all="ignore"):
         n, t, h, most, evaluations = stepper.travel(
@@ -131,7 +134,7 @@ def _dop853(equation: Equation, begin: State, control: _Control, limits: Array) 
 
 def _radau(equation: Equation, begin: State, control: _Control, limits: Array) -> Track:
     """Steps of SciPy's Radau, up to the end of the piece."""
-    parts = 2 if equation.reduced.halved else 1
+    parts = control.parts
     tolerance = max(control.tolerance, _RADAU / parts)
     atol = np.array([tolerance, tolerance * control.speed, math.inf])
     options: dict[str, Any] = {"rtol": tolerance, "atol": atol}

@@ -135,8 +135,11 @@ class Window:
                 stop = self._crossing(limit, above=above)
                 if stop is not None:
                     stops.append((stop, nowhere._replace(omega=limit)))
-        (k_stop, x_stop), landed = min(stops, key=lambda item: item[0])
-        m = k_stop + 1
+        stop, landed = min(stops, key=lambda item: item[0])
+        return replace(self.first(stop[0] + 1), stop=stop, landed=landed)
+
+    def first(self, m: int) -> Window:
+        """The first m cells."""
         return replace(
             self,
             strip=self.strip.first(m),
@@ -145,8 +148,8 @@ class Window:
             time=self.time[: m + 1],
             torque=self.torque[:m],
             slowness=self.slowness[:m],
-            stop=(k_stop, x_stop),
-            landed=landed,
+            stop=(m - 1, 1.0),
+            landed=NOWHERE,
         )
 
     def _crossing(self, limit: float, *, above: bool) -> tuple[int, float] | None:
