@@ -33,6 +33,7 @@ __all__ = ["run"]
 
 _PASSES = 12
 _VAIN = 8  # after as many vain hand-overs the crank must turn through a period before the next
+_FAST = (2.0, 8.0)  # as many times as fast as need be either pass takes over: the better one later
 _MOST_CELLS = 20_000
 _FINEST = 3e-14  # what rounding leaves of a cell
 _FINEST_STEP = 1e-15  # the same over time
@@ -131,7 +132,7 @@ def _travel(grid: Grid, local: float, *, by_angle: bool, better: bool = False) -
     def is_fast(at: State, branch: Branch) -> bool:
         swings = abs(at.theta - path.turned_back) < min(vain / _VAIN, 1.0) * scene.period
         fast = by_angle and at.omega != 0.0 and not swings
-        return fast and crank_angle.is_fast(grid, at, branch)
+        return fast and crank_angle.is_fast(grid, at, branch, _FAST[better])
 
     def windows(at: State) -> Generator[Piece, None, str]:
         pieces = crank_angle.advance(grid, at, plan)

@@ -40,6 +40,8 @@ class Reduced:
         crank, rod, piston = scene.crank, scene.rod, scene.piston
         self.scene, self.pressure = scene, pressure
         knots = crank_angle_knots(scene, pressure)
+        if len(knots) == 0:  # no step of many turns: it would overlook a light rod near a fold
+            knots = np.arange(0.0, scene.period, 0.5)
         g = scene.gravity.acceleration if scene.gravity else 0.0
         pull = scene.gravity.angle if scene.gravity else 0.0
         axes = [

@@ -35,8 +35,6 @@ def enter(theta: float, sense: float, machine: Machine, pieces: Array) -> tuple[
         [rad] where its cubic begins, and the coefficients [Pa], highest power first
     """
     cylinders, knots, period, first, starts, coefficients = machine[12:]
-    if len(knots) == 0:
-        return -math.inf, math.inf
     ahead = theta + sense * _PASSED
     base = math.floor(ahead / period) * period
     k = _passed(knots, ahead - base)

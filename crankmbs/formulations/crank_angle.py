@@ -38,12 +38,12 @@ _HAIR = 1e-6  # of a cell: as near its edge it is as exact as there
 _KEPT = 2  # whole periods at the end that are solved cell by cell when only the last is kept
 
 
-def is_fast(grid: Grid, state: State, branch: Branch) -> bool:
-    """Whether the energy lasts for twice the angle at which this formulation gives up."""
+def is_fast(grid: Grid, state: State, branch: Branch, times: float) -> bool:
+    """Whether the energy lasts for so many times the angle at which this formulation gives up."""
     scale = grid.scale[grid.cell_at(state.theta, math.copysign(1.0, state.omega))]
     scale += abs(float(branch(state.time, state.omega)))
     inertia = float(reduce(grid.scene, None, state.theta)[0])
-    return bool(0.5 * inertia * state.omega**2 > 2.0 * _SLOW * scale)
+    return bool(0.5 * inertia * state.omega**2 > times * _SLOW * scale)
 
 
 def advance(grid: Grid, state: State, plan: Plan) -> Generator[Window, None, str]:
