@@ -19,12 +19,12 @@ from crankmbs.scene import Scene
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["Assembled", "assemble", "dataset"]
+__all__ = ["ANGLE_ROUNDING", "Assembled", "assemble", "dataset"]
 
 _ROUNDING = 64 * float(np.finfo(float).eps)  # of a variable's peak: what the formulas round
 _NOTHING = 1e-9  # of the largest variable of the same unit: zero but for rounding
 _FEW = 32  # samples: among more there is one where nothing cancels
-_ANGLE_ROUNDING = 2 * float(np.finfo(float).eps)  # of the crank angle
+ANGLE_ROUNDING = 2 * float(np.finfo(float).eps)  # of the crank angle
 
 
 class Assembled(NamedTuple):
@@ -74,7 +74,7 @@ def assemble(scene: Scene, pressure: PeriodicPressure | None, solution: Solution
     if solution.errors:
         return Assembled(solution, variables, peaks, dict(solution.errors))
     better = solution.better or solution.samples
-    rounding = _ANGLE_ROUNDING * _peak(better.theta)
+    rounding = ANGLE_ROUNDING * _peak(better.theta)
     rounded = Samples(
         better.time,
         better.theta + rounding,

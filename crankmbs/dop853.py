@@ -2,7 +2,7 @@
 
 12 stages, the slope at the end, 3 more stages for the interpolant of order 7.
 A : shape (16, 16); C : shape (16,); E3, E5 : shape (13,), errors of order 3 and 5; D : shape
-(4, 16), the interpolant. Constants, as `crankmbs.stepper` is then compiled in half the time.
+(4, 16), the interpolant. Constants of what `crankmbs.stepper` compiles, not arguments.
 """
 
 import numpy as np

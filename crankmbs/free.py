@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crankmbs.assemble import Assembled, assemble
+from crankmbs.assemble import ANGLE_ROUNDING, Assembled, assemble
 from crankmbs.cells import Grid, grid_of
 from crankmbs.collocation import gauss
 from crankmbs.drives import TimeTable
@@ -37,7 +37,6 @@ _FAST = (2.0, 8.0)  # as many times as fast as need be either pass takes over: t
 _MOST_CELLS = 20_000
 _FINEST = 3e-14  # what rounding leaves of a cell
 _FINEST_STEP = 1e-15  # the same over time
-_START_ROUNDING = 2 * float(np.finfo(float).eps)  # of the crank angle
 _ENDS = {
     "end": (0, "reached the end of the run"),
     "stuck": (1, "at rest at {angle:.6g} degrees: no torque moves the crank from here"),
@@ -121,7 +120,7 @@ def _travel(grid: Grid, local: float, *, by_angle: bool, better: bool = False) -
     first = _first(grid, state)
     path = Path(plan, first, can_swing=steady)
     if better:  # it begins a rounding ahead: so the difference knows what the motion makes of one
-        ahead = math.copysign(_START_ROUNDING * state.theta, state.omega or float(first.alpha[0]))
+        ahead = math.copysign(ANGLE_ROUNDING * state.theta, state.omega or float(first.alpha[0]))
         state = state._replace(theta=state.theta + ahead)
     reduced = Reduced(scene, grid.pressure)
     worst = np.zeros((2, len(grid.edges) - 1))

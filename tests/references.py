@@ -13,6 +13,7 @@ __all__ = [
     "FLOOR",
     "Errors",
     "Reference",
+    "assert_within_stated",
     "reference_at_angles",
     "reference_of",
     "true_errors",
@@ -88,3 +89,12 @@ def true_errors(result: Result, reference: Reference) -> dict[str, Errors]:
         name: Errors(float(error.max()), float(data[name].attrs["error_estimate"]), peaks[name])
         for name, error in errors.items()
     }
+
+
+def assert_within_stated(result: Result, exact: Result) -> None:
+    """No variable differs from that of a far more exact run by over twice its stated error."""
+    for name, variable in result.data.variables.items():
+        if name not in ("cylinder", "energy_residual"):
+            off = np.max(np.abs(variable.values - exact.data[name].values))
+            peak = np.max(np.abs(variable.values))
+            assert off <= 2.0 * variable.attrs["error_estimate"] + 1e-11 * peak, name
