@@ -65,14 +65,15 @@ class Path:
             return self._blocks[0]
         if math.isfinite(self._plan.last):
             self._blocks = [piece.sample(self._plan) for piece in self._tail]
-        joined, last = Samples.joined(self._blocks), self._tail[-1].last()
+        joined = Samples.joined([*self._blocks, self._tail[-1].last()])
+        kept = np.ones(len(joined.time), dtype=np.bool_)
         values = joined.time if self._plan.in_time else joined.theta
-        end = float((last.time if self._plan.in_time else last.theta)[0])
-        if len(values) and self._plan.is_end(float(values[-1]), end):
-            joined = joined.select(slice(None, -1))
-        joined = Samples.joined([joined, last])
-        near = np.abs(joined.theta - joined.theta[-1]) <= self._plan.last * (1.0 + 1e-12)
-        return joined.select(near)
+        if len(values) > 1:
+            kept[-2] = not self._plan.is_end(float(values[-2]), float(values[-1]))
+        if math.isfinite(self._plan.last):
+            near = np.abs(joined.theta - joined.theta[-1]) <= self._plan.last * (1.0 + 1e-12)
+            kept &= near
+        return joined if kept.all() else joined.select(kept)
 
     @property
     def state(self) -> State | None:

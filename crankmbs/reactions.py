@@ -113,5 +113,10 @@ def reactions(
         "main_bearing_force_y": bearing_y,
         "kinetic_energy": kinetic,
     }
-    parts = {name: np.array([c[name] for c in columns]).T for name in columns[0]}
+    parts = {name: _side_by_side([c[name] for c in columns]) for name in columns[0]}
     return whole | parts
+
+
+def _side_by_side(columns: list[Array]) -> Array:
+    """Shape (n, cylinders); of one cylinder nothing is copied."""
+    return columns[0][:, np.newaxis] if len(columns) == 1 else np.array(columns).T

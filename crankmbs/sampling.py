@@ -107,6 +107,8 @@ def one_period(theta: Array, period: float) -> tuple[Array, slice | NDArray[np.i
     n = len(theta)
     step = abs(float(theta[1] - theta[0])) if n > 1 else 0.0
     count = round(min(period / step, n)) if step > 0.0 else n
+    if count == n:
+        return theta, slice(None)
     close = 4 * np.finfo(float).eps * float(np.max(np.abs(theta), initial=0.0))
     apart = np.abs(np.abs(theta[count:] - theta[: n - count]) - period) > close
     repeating = count + int(np.argmax(apart)) if apart.any() else n

@@ -17,7 +17,7 @@ from dataclasses import replace
 import numpy as np
 
 from crankmbs import kernels
-from crankmbs.cells import Grid
+from crankmbs.cells import Grid, largest_of_row
 from crankmbs.formulations.base import State
 from crankmbs.formulations.periods import period_of
 from crankmbs.formulations.solvers import Begin, solve_affine, solve_newton
@@ -58,11 +58,11 @@ def advance(grid: Grid, state: State, plan: Plan) -> Generator[Window, None, str
     bound = plan.angle_bounds[1 if sense > 0.0 else 0]
     skipped = 0
     while True:
-        branch = _branch(grid, state)
+        branch, energy = _enter(grid, state)
         if branch is None:
             return "held"
         t_end = min(branch.t_end, plan.time_bound)
-        window = _solve(grid, branch, state, sense, bound, t_end)
+        window = _solve(grid, branch, state, energy, sense, bound, t_end)
         if window is None:
             return "slow"
         whole, window = _landed(replace(window, skipped=skipped).cut(t_end, bound), t_end)
@@ -87,8 +87,10 @@ def _landed(window: Window, t_end: float) -> tuple[Window | None, Window]:
         return None, window
     whole = window.first(k) if k > 0 else None
     begin = whole.end if whole else window.begin
-    bound = window.end.theta + window.sense * _HAIR * width
-    last = _solve(window.grid, window.branch, begin, window.sense, bound, math.inf)
+    turned = float(window.edges[k]) + (x + _HAIR) * width
+    bound = window.begin.theta + window.sense * turned
+    energy = float(window.energy[k])
+    last = _solve(window.grid, window.branch, begin, energy, window.sense, bound, math.inf)
     if last is not None:
         last = last.cut(t_end, math.inf)
         if np.array_equal(last.landed, window.landed, equal_nan=True):
@@ -108,13 +110,12 @@ def _skip(
         theta = state.theta + sense * turned
         omega = sense * math.sqrt(2.0 * energy / float(reduce(grid.scene, None, theta)[0]))
         begin = State(time, theta, omega, state.residual)
-        window = _solve(grid, branch, begin, sense, theta + sense * period, math.inf)
+        window = _solve(grid, branch, begin, energy, sense, theta + sense * period, math.inf)
         if window is None or window.edges[-1] < (1.0 - 1e-9) * period:
             return None
         return window if window.cut(math.inf, math.inf).stop == window.stop else None
 
-    inertia = float(reduce(grid.scene, None, state.theta)[0])
-    start = 0.5 * inertia * state.omega**2
+    start = _enter(grid, state)[1]
     first = at(state.time, 0.0, start)
     most = min(abs(bound - state.theta) / period, 1e15) // 1.0 - _KEPT
     if first is None:
@@ -127,23 +128,32 @@ def _skip(
         far = at(run.time, run.periods * period, run.energy)
         middle = at(state.time, 0.0, run.mean)
         if far is not None and middle is not None:
-            gone = run.periods * float(np.sum(middle.errors[0][:, -1]))  # linear in the energy
+            missed = run.periods * float(middle.missed[-1])  # linear in the energy
             passed = run.periods * len(first.torque)
-            return far.begin._replace(residual=state.residual - gone), passed
+            return far.begin._replace(residual=state.residual - missed), passed
         most = run.periods // 2
     return state, 0
 
 
-def _branch(grid: Grid, state: State) -> Branch | None:
-    _, slope, torque = reduce(grid.scene, grid.pressure, state.theta)
+def _enter(grid: Grid, state: State) -> tuple[Branch | None, float]:
+    """The branch of the loads that the motion enters, and its kinetic energy [J]."""
+    inertia, slope, torque = reduce(grid.scene, grid.pressure, state.theta)
     rest = float(torque - 0.5 * slope * state.omega**2)
-    return branch_at(grid.scene.torque, state.time, state.omega, rest)
+    branch = branch_at(grid.scene.torque, state.time, state.omega, rest)
+    return branch, 0.5 * float(inertia) * state.omega**2
 
 
 def _solve(
-    grid: Grid, branch: Branch, state: State, sense: float, bound: float, t_end: float
+    grid: Grid,
+    branch: Branch,
+    state: State,
+    energy: float,
+    sense: float,
+    bound: float,
+    t_end: float,
 ) -> Window | None:
-    """Solve as many cells as one window holds; None when the first is too slow already."""
+    """Solve as many cells as one window holds, from a state and its kinetic energy [J] on; None
+    when the first is too slow already."""
     affine = branch.is_affine_in_energy
     n, period = len(grid.edges) - 1, float(grid.edges[-1])
     ahead = 1.2 * (t_end - state.time) * abs(state.omega)
@@ -156,19 +166,15 @@ def _solve(
         few = _SPEED_BLOCK if any(0.0 < end < math.inf for end in ends) else _BLOCK
     count = int(min(cells, few))
     strip = grid.strip(state.theta, sense, count, bound)
-    inertia = float(reduce(grid.scene, None, state.theta)[0])
-    start = 0.5 * inertia * state.omega**2
     solve = solve_affine if affine else solve_newton
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-        begin = Begin(sense, start, state.time, t_end)
+        begin = Begin(sense, energy, state.time, t_end)
         edges, time, torque, slowness = solve(grid, strip, branch, begin, compiled=compiled)
         strip = strip.first(len(torque))
-        scale = (
-            np.max(np.abs(torque), axis=1) + grid.scale[strip.cell] - np.abs(strip.torque).max(1)
-        )
-        least = np.min(0.5 * strip.inertia / slowness**2, axis=1)
-        least = np.minimum(least, np.minimum(edges[1:], edges[:-1]))
-        good = (least > _SLOW * scale) & np.isfinite(slowness).all(axis=1)
+        outside = branch(time[1:], sense / slowness[:, -1])
+        scale = grid.scale[strip.cell] + np.abs(outside)
+        least = 0.5 * grid.least[strip.cell] / largest_of_row(slowness) ** 2
+        good = np.minimum(least, np.minimum(edges[1:], edges[:-1])) > _SLOW * scale  # not of a NaN
     m = len(good) if good.all() else int(np.argmin(good))
     if m == 0:
         return None

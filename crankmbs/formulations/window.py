@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crankmbs import kernels
-from crankmbs.cells import Grid, Strip
+from crankmbs.cells import Grid, Strip, largest_of_row
 from crankmbs.formulations.base import NOWHERE, Array, Samples, State
 from crankmbs.inertia import reduce
 from crankmbs.roots import invert_monotone
@@ -113,13 +113,21 @@ class Window:
         gained = self.sense * width * (torque @ to_nodes - self.torque @ own)
         return gained, width * (slowness @ to_nodes - self.slowness @ own)
 
+    @cached_property
+    def missed(self) -> Array:
+        """Error of the energy [J] that the cells have made up to each edge, shape (m + 1,); not
+        known, and 0, on a grid that itself checks another."""
+        if self.grid.checks:
+            return np.zeros_like(self.edges)
+        return np.concatenate([[0.0], np.cumsum(self.errors[0][:, -1])])
+
     @property
     def relative_errors(self) -> tuple[Array, Array]:
         """Worst of energy and time in each cell, relative, at its end and inside, shape (m,)."""
         energy, late = (np.abs(error) for error in self.errors)
-        per_time = np.maximum(1.0 / self.slowness.max(axis=1), 1.0 / self.time[1:])
+        per_time = np.maximum(1.0 / largest_of_row(self.slowness), 1.0 / self.time[1:])
         both = energy / self.energy[1:, None] + late * per_time[:, None]
-        return both[:, -1], both.max(axis=1)
+        return both[:, -1], largest_of_row(both)
 
     def cut(self, t_end: float, bound: float) -> Window:
         """End where time, speed or angle leaves its bounds, whichever comes first."""
@@ -206,8 +214,7 @@ class Window:
         omega = self.sense * np.sqrt(2.0 * np.maximum(energy, 0.0) / inertia)
         outside = self.branch(t, omega)
         alpha = (torque + outside - 0.5 * slope * omega**2) / inertia
-        gone = np.concatenate([[0.0], np.cumsum(self.errors[0][:, -1])])
-        residual = self.begin.residual - gone[k]
+        residual = self.begin.residual - self.missed[k]
         return Samples(t, theta, omega, alpha, residual, {"external_torque": outside})
 
 
