@@ -123,6 +123,8 @@ ANYWHERE = np.array([-9.0, 9.0, -9.0, 9.0, 0.0, -99.0, 99.0])
         ((1.0, 0.0, 4.0), (4.0, -8.0), {1: 2.1}, (0.5, 4)),  # not reached before it
         ((0.0, 1.0), (3.0, 0.0, 4.0), {6: 3.75}, (0.25, 6)),  # the speed comes back
         ((0.0, 1.0), (0.0, -1.0, 4.0), {}, (0.75, 4)),  # from rest, and back
+        ((0.0, 1.0), (3.0, 0.25, 4.0), {6: 4.12875}, (0.525, 6)),  # for a moment only
+        ((0.0, 1.0), (3.0, -3.9, 4.0), {5: 3.0}, (0.025, 5)),  # it rises from its bound, and back
     ],
 )
 def test_the_first_exit(theta, omega, limits, exit_at):
