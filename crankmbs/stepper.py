@@ -1,8 +1,7 @@
 """Steps over time of one free rotation, compiled by numba where that pays (`crankmbs.kernels`).
 
 All that is evaluated step by step: the crank train reduced to one rotation, and the method of
-Dormand and Prince of order 8 with its interpolant. In scalars, apart from the arrays of
-`crankmbs.inertia`: neither shares code with the other, so they check each other.
+Dormand and Prince of order 8; in scalars, so that they and `crankmbs.inertia` check each other.
 """
 
 from __future__ import annotations
@@ -23,7 +22,7 @@ Asked = tuple[float, float, float, int]  # as in `travel`
 Steps = tuple[Array, Array, Array]  # beginnings and lengths [s], and rows as in `first_exit`
 
 _PASSED = 1e-9  # rad: a knot this close ahead has been passed
-_BISECTIONS, _SCAN = 60, 16
+_BISECTIONS, _SCAN, _NEAR = 60, 16, 0.01
 _HARD = 1e3 / math.radians(5.0)  # 1/rad: damped a thousand times while the crank turns 5 degrees
 
 
@@ -217,10 +216,11 @@ def _lowest(row: Array, q: int, sign: float, low: float, high: float) -> float:
 
 
 @kernel
-def land(t: float, y: Array, slope: Array, q: int, limit: float) -> float:
-    """Put component q of a state exactly on a limit that it is close to; the time of that."""
-    late = (limit - float(y[q])) / float(slope[q]) if slope[q] != 0.0 else 0.0
-    y[0], y[1] = y[0] + slope[0] * late, y[1] + slope[1] * late
+def land(t: float, y: Array, slope: Array, q: int, limit: float, within: float) -> float:
+    """Put component q of a state on a limit close to it; the time of that, if it is ``within``."""
+    late = (limit - y[q]) / slope[q] if abs(limit - y[q]) < within * abs(slope[q]) else 0.0
+    speed = y[1] + slope[1] * late
+    y[0], y[1] = y[0] + slope[0] * late, speed if speed * y[1] > 0.0 else 0.0  # it turns there
     y[q] = limit
     return t + late
 
@@ -285,7 +285,7 @@ def travel(
         if again and not cut:  # the better end may be beyond a limit that the first was before
             i = first_exit(rows[n - 1], new, limits)[1]
         if i >= 0:
-            t = land(t, y, k[0], 0 if i < 4 else 1, float(limits[i]))
+            t = land(t, y, k[0], 0 if i < 4 else 1, float(limits[i]), _NEAR * width)
             ends = i > 1 or y[0] == limits[2] or y[0] == limits[3]
             if ends or y[1] == 0.0 or not limits[5] < y[1] < limits[6]:
                 break
