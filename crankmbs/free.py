@@ -21,11 +21,12 @@ from crankmbs.drives import TimeTable
 from crankmbs.formulations import crank_angle, minimal
 from crankmbs.formulations.base import Array, Piece, Samples, Solution, State
 from crankmbs.inertia import reduce
+from crankmbs.matching import match, stays
 from crankmbs.path import Path
 from crankmbs.pressure import PeriodicPressure
 from crankmbs.reduced import Reduced
 from crankmbs.result import VARIABLES
-from crankmbs.sampling import FOLDED, plan_of
+from crankmbs.sampling import FOLDED, Plan, plan_of
 from crankmbs.scene import Scene
 from crankmbs.torque import Branch, branch_at, branch_of
 
@@ -58,16 +59,23 @@ _ENDS = {
     ),
     "failed": (-1, "stopped at {angle:.6g} degrees: no step over time is short enough there"),
 }
+# what a pass may say that has not seen yet, or by its errors never, that the crank is at rest
+_RESTING = {"rest", "swing", "end"}
 
 
 class _Pass(NamedTuple):
-    """One pass over the whole motion; ``local``, shape (2, cells): errors at ends and inside."""
+    """One pass over the whole motion.
+
+    local : shape (2, cells), errors at ends and inside
+    fast, slow : spans of time [s] that the crank angle carried, and where time took over
+    """
 
     samples: Samples
     ending: str
     path: Path
     local: Array
-    carried: tuple[float, ...]
+    fast: list[tuple[float, float]]
+    slow: list[float]
 
 
 def run(
@@ -89,8 +97,8 @@ def run(
         if left and parts.max() > 1 and len(grid.edges) < _MOST_CELLS:
             grid = grid.split(parts)
             continue
-        better = _travel(grid.finer, 1e-2 * local, by_angle=by_angle, better=True)
-        solution = _solution(answer, better, in_time=plan_of(scene).in_time)
+        better = _travel(grid.finer, 1e-2 * local, by_angle=by_angle, first=answer)
+        solution = _solution(answer, better, plan_of(scene))
         assembled = assemble(scene, pressure, solution)
         near = local <= 10.0 * finest
         estimate = assembled.relative_error * (2.0 if near else 1.0)
@@ -110,28 +118,32 @@ def run(
     return best
 
 
-def _travel(grid: Grid, local: float, *, by_angle: bool, better: bool = False) -> _Pass:
-    """One pass from start to end, handing over between the formulations near rest."""
+def _travel(grid: Grid, local: float, *, by_angle: bool, first: _Pass | None = None) -> _Pass:
+    """One pass from start to end, handing over between the formulations near rest; a second one
+    betters the ``first``."""
     scene = grid.scene
     assert scene.start is not None
     plan = plan_of(scene)
     state = State(0.0, scene.start.angle, scene.start.speed, 0.0)
     steady = not any(isinstance(load, TimeTable) for load in scene.torque)
-    first = _first(grid, state)
-    path = Path(plan, first, can_swing=steady)
-    if better:  # it begins a rounding ahead: so the difference knows what the motion makes of one
-        ahead = math.copysign(ANGLE_ROUNDING * state.theta, state.omega or float(first.alpha[0]))
+    begin = _first(grid, state)
+    path = Path(plan, begin, can_swing=steady)
+    if first:  # it begins a rounding ahead: so the difference knows what the motion makes of one
+        ahead = math.copysign(ANGLE_ROUNDING * state.theta, state.omega or float(begin.alpha[0]))
         state = state._replace(theta=state.theta + ahead)
     reduced = Reduced(scene, grid.pressure)
     worst = np.zeros((2, len(grid.edges) - 1))
-    carried: list[float] = []
+    fast: list[tuple[float, float]] = []
+    slow: list[float] = []
 
     vain = 0  # hand-overs to the crank angle that did not carry the motion through a period
 
     def is_fast(at: State, branch: Branch) -> bool:
         swings = abs(at.theta - path.turned_back) < min(vain / _VAIN, 1.0) * scene.period
-        fast = by_angle and at.omega != 0.0 and not swings
-        return fast and crank_angle.is_fast(grid, at, branch, _FAST[better])
+        # the grid is as fine as it must be where the first pass used it, and only there
+        usable = first is None or any(since <= at.time < end for since, end in first.fast)
+        may = by_angle and at.omega != 0.0 and not swings and usable
+        return may and crank_angle.is_fast(grid, at, branch, _FAST[first is not None])
 
     def windows(at: State) -> Generator[Piece, None, str]:
         pieces = crank_angle.advance(grid, at, plan)
@@ -140,28 +152,27 @@ def _travel(grid: Grid, local: float, *, by_angle: bool, better: bool = False) -
                 window = next(pieces)
             except StopIteration as stop:
                 return str(stop.value)
-            if not better:
+            if first is None:
                 for row, error in zip(worst, window.relative_errors, strict=True):
                     np.maximum.at(row, window.strip.cell, error)
             yield window
 
-    ending = "slow"
-    if by_angle and state.omega != 0.0:
-        ending = path.follow(windows(state))
+    ending = "fast" if by_angle and state.omega != 0.0 else "slow"
     while ending in ("slow", "fast"):
+        at = path.state or state
         if ending == "slow":
             tolerance = max(0.01 * local, _FINEST_STEP)
-            parts = 2 if better else 1
-            steps = minimal.advance(reduced, path.state or state, plan, tolerance, parts, is_fast)
-            carried.append((path.state or state).time)
-            ending = path.follow(steps)
+            parts = 2 if first else 1
+            slow.append(at.time)
+            ending = path.follow(minimal.advance(reduced, at, plan, tolerance, parts, is_fast))
         else:
-            begin = (path.state or state).theta
-            ending = path.follow(windows(path.state or state))
-            vain += abs((path.state or state).theta - begin) < scene.period
+            ending = path.follow(windows(at))
+            now = path.state or state
+            fast.append((at.time, now.time))
+            vain += bool(slow) and abs(now.theta - at.theta) < scene.period
     if ending == "end" and plan.folds_at((path.state or state).theta):
         ending = "fold"
-    return _Pass(path.samples(), ending, path, worst, tuple(carried) if by_angle else ())
+    return _Pass(path.samples(), ending, path, worst, fast, slow if by_angle else [])
 
 
 def _first(grid: Grid, state: State) -> Samples:
@@ -192,11 +203,20 @@ def _parts(grid: Grid, worst: Array, local: float) -> NDArray[np.intp]:
     return np.asarray(np.clip(np.nan_to_num(parts, nan=2.0), 1, 4), dtype=np.intp)
 
 
-def _solution(answer: _Pass, better: _Pass, *, in_time: bool) -> Solution:
-    path = answer.path
-    status, message = _ENDS[answer.ending]
-    samples, check, parted = _matched(answer, better, in_time=in_time)
-    if answer.ending != better.ending or (parted and status >= 0):
+def _solution(answer: _Pass, better: _Pass, plan: Plan) -> Solution:
+    path, endings = answer.path, {answer.ending, better.ending}
+    ends = _RESTING if plan.until_time else _RESTING - {"end"}
+    both, in_time, reversals = (answer.samples, better.samples), plan.in_time, path.reversals
+    still = endings <= ends and stays(*both)
+    at_rest = still and "rest" in endings
+    matched = match(*both, in_time=in_time, reversals=reversals, at_rest=at_rest)
+    if matched.parted and still and not at_rest:  # both swing on by their errors alone
+        matched = match(*both, in_time=in_time, reversals=reversals, at_rest=True)
+        at_rest = not matched.parted
+    samples, check, parted = matched
+    ending = "rest" if at_rest and answer.ending != "end" else answer.ending
+    status, message = _ENDS[ending]
+    if (len(endings) > 1 and not at_rest) or (parted and status >= 0):
         status = -1
         message = "two passes of different order end differently, at {angle:.6g} degrees and later"
     text = message.format(
@@ -206,43 +226,11 @@ def _solution(answer: _Pass, better: _Pass, *, in_time: bool) -> Solution:
         evaluations=path.evaluations,
     )
     reasons: tuple[str, ...] = ()
-    if answer.carried:
-        times = ", ".join(f"{t:.4g}" for t in answer.carried[:5])
-        more = " and later" if len(answer.carried) > 5 else ""
+    if answer.slow:
+        times = ", ".join(f"{t:.4g}" for t in answer.slow[:5])
+        more = " and later" if len(answer.slow) > 5 else ""
         reasons = (f"minimal carried it across slow stretches that begin at {times} s{more}",)
     evaluations = path.evaluations + better.path.evaluations
     steps = path.steps + better.path.steps
     unknown = {} if check else dict.fromkeys(VARIABLES, math.inf)
     return Solution(samples, status, text, evaluations, steps, check, unknown, reasons)
-
-
-def _matched(
-    answer: _Pass, better: _Pass, *, in_time: bool
-) -> tuple[Samples, Samples | None, bool]:
-    """The samples that both passes have, and their ends; and whether the passes part.
-
-    A grid angle within the error of a reversal, or of the end, may be missing in one of them.
-    Where they part their ends are left out; without a common sample there is no second answer.
-    """
-    a, b = answer.samples, better.samples
-    grid_a, grid_b = (s.time[:-1] if in_time else s.theta[:-1] for s in (a, b))
-    if np.array_equal(grid_a, grid_b):
-        return a, b, False
-    kept: list[tuple[int, int]] = []
-    i = j = 0
-    while i < len(grid_a) and j < len(grid_b):
-        if grid_a[i] == grid_b[j]:
-            kept.append((i, j))
-            i, j = i + 1, j + 1
-        elif a.time[i] < b.time[j]:
-            i += 1
-        else:
-            j += 1
-    missing = len(grid_a) + len(grid_b) - 2 * len(kept)
-    parted = missing > 2 * (answer.path.reversals + 1)
-    if parted and not kept:
-        return a, None, True
-    if not parted:
-        kept.append((len(grid_a), len(grid_b)))
-    rows_a, rows_b = np.array(kept).T
-    return a.select(rows_a), b.select(rows_b), parted

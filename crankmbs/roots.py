@@ -1,4 +1,4 @@
-"""One root finder for all inversions: a monotone function, solved at many targets at once."""
+"""Roots: of a monotone function at many targets at once, and of one that may turn back."""
 
 from __future__ import annotations
 
@@ -7,9 +7,11 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["invert_monotone"]
+__all__ = ["first_above", "invert_monotone"]
 
 Array = NDArray[np.float64]
+
+_HALVES = 50
 
 
 def invert_monotone(
@@ -49,3 +51,50 @@ def invert_monotone(
             if settled.all():
                 break
     return x
+
+
+def first_above(
+    function: Callable[[Array], tuple[Array, Array]], low: float, high: float
+) -> float | None:
+    """Where a function first rises above zero, also if it comes back before ``high``.
+
+    Parameters
+    ----------
+    function : returns value and slope at x, shape (1,) each; without a turn, or with one, in the
+        bracket; where it begins at zero it may go below first
+
+    Returns
+    -------
+    x, or None where the function stays below
+
+    >>> first_above(lambda x: (0.25 - (x - 1.0) ** 2, 2.0 - 2.0 * x), 0.0, 1.75)
+    0.5
+    """
+
+    def at(x: float) -> tuple[float, float]:
+        value, slope = function(np.array([x]))
+        return float(value[0]), float(slope[0])
+
+    top = high
+    if at(high)[0] <= 0.0:
+        left, right = low, high
+        for _ in range(_HALVES):
+            top = 0.5 * (left + right)
+            value, slope = at(top)
+            if value > 0.0:
+                break
+            if value + abs(slope) * (right - left) <= 0.0:
+                return None
+            left, right = (top, right) if slope > 0.0 else (left, top)
+        else:
+            return None
+    if at(low)[0] >= 0.0:
+        below = top
+        for _ in range(_HALVES):
+            below = 0.5 * (low + below)
+            if at(below)[0] < 0.0:
+                low = below
+                break
+        else:
+            return low
+    return float(invert_monotone(function, *map(np.atleast_1d, (0.0, low, top)))[0])

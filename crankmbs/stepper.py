@@ -1,9 +1,7 @@
 """Steps over time of one free rotation, compiled by numba where that pays (`crankmbs.kernels`).
 
-Here is everything that is evaluated step by step: the crank train reduced to one rotation, in
-plain floats at one crank angle, and the method of Dormand and Prince of order 8 with its
-interpolant. Written out in scalars apart from the arrays of `crankmbs.inertia`: neither shares code
-with the other, so they check each other.
+All that is evaluated step by step: the crank train reduced to one rotation, and the method of
+Dormand and Prince of order 8; in scalars, so that they and `crankmbs.inertia` check each other.
 """
 
 from __future__ import annotations
@@ -20,10 +18,11 @@ from crankmbs.system import Machine, System
 __all__ = ["enter", "first_exit", "land", "reduced", "slopes", "travel"]
 
 Array = NDArray[np.float64]
+Asked = tuple[float, float, float, int]  # as in `travel`
 Steps = tuple[Array, Array, Array]  # beginnings and lengths [s], and rows as in `first_exit`
 
 _PASSED = 1e-9  # rad: a knot this close ahead has been passed
-_BISECTIONS, _SCAN = 60, 16
+_BISECTIONS, _SCAN, _NEAR = 60, 16, 0.01
 _HARD = 1e3 / math.radians(5.0)  # 1/rad: damped a thousand times while the crank turns 5 degrees
 
 
@@ -125,8 +124,7 @@ def _stages(
 def _error(h: float, k: Array, allowed: tuple[float, float]) -> float:
     """A step's error over what is allowed of angle and speed, from estimates of order 5 and 3.
 
-    The work takes no part: the order 3 estimate is summed over all components, and the one of the
-    work would hide the error of the speed.
+    The work takes no part: its order 3 estimate, in the same sum, would hide that of the speed.
     """
     five = three = 0.0
     for q in range(2):
@@ -134,8 +132,7 @@ def _error(h: float, k: Array, allowed: tuple[float, float]) -> float:
         for i in range(13):
             by_five += float(E5[i]) * float(k[i, q])
             by_three += float(E3[i]) * float(k[i, q])
-        by_five, by_three = by_five / allowed[q], by_three / allowed[q]
-        five, three = five + by_five * by_five, three + by_three * by_three
+        five, three = five + (by_five / allowed[q]) ** 2, three + (by_three / allowed[q]) ** 2
     return h * five / math.sqrt(2.0 * (five + 0.01 * three)) if five != 0.0 else 0.0
 
 
@@ -167,79 +164,83 @@ def _value(row: Array, q: int, x: float) -> float:
 
 @kernel
 def first_exit(row: Array, new: Array, limits: Array) -> tuple[float, int]:
-    """Where in a step the motion first leaves what the limits bound.
+    """Fraction of a step where the motion first leaves a limit, and its number; or (1, -1).
 
     row : shape (8, 3), of (theta, omega, work): the value y at the beginning, then f with
         y + x (f1 + (1 - x) (f2 + x (f3 + (1 - x) (...)))) at the fraction x of the step
     new : shape (3,), the values at the end
     limits : shape (7,), four crank angles [rad], then three speeds [rad/s], of which one is 0
-
-    Returns
-    -------
-    fraction of the step, number of the limit; or (1, -1)
     """
     first, which = 1.0, -1
-    push = float(row[1, 1] + row[2, 1])  # the acceleration gives the sense of a start at rest
+    push = float(row[1, 1] + row[2, 1])  # the acceleration gives the sense of a start on a speed
     for i in (4, 5, 6, 0, 1, 2, 3):  # the angle is monotone up to the reversal
         limit, q = float(limits[i]), 0 if i < 4 else 1
-        rests = i >= 4 and limit == 0.0 and row[0, q] == 0.0
-        begin = push if rests else float(row[0, q]) - limit
-        if begin == 0.0 or math.isinf(limit):
+        begin = float(row[0, q]) - limit
+        sense = push if i >= 4 and begin == 0.0 else begin
+        if sense == 0.0 or math.isinf(limit):
             continue
-        low, high, left = 0.0, -1.0, not rests
-        scan = 1 if i < 4 else _SCAN  # a speed may come back within the step
+        low, high, near, least, most = 0.0, -1.0, 0.0, math.inf, 0.0
+        scan, left = 1 if i < 4 else _SCAN, begin != 0.0  # a speed may come back within the step
         for j in range(1, scan + 1):
             x = first * j / scan
-            beyond = (float(new[q]) if x == 1.0 else _value(row, q, x)) - limit
-            if (begin * beyond < 0.0 and left) or (i < 4 and beyond == 0.0):
+            inside = sense * ((float(new[q]) if x == 1.0 else _value(row, q, x)) - limit)
+            if inside < 0.0 and not left:  # before, it must have left to the side it is pushed
+                low = _lowest(row, q, -sense, low, x)
+                left = sense * (_value(row, q, low) - limit) > 0.0
+            if (inside < 0.0 and left) or (i < 4 and inside == 0.0):
                 high = x
                 break
-            if begin * beyond > 0.0:  # from rest: not before it has left to the side it is pushed
-                low, left = x, True
-        if high < 0.0:
-            continue
-        for _ in range(_BISECTIONS):
+            low, left = (x, True) if inside > 0.0 else (low, left)
+            near, least, most = x if inside < least else near, min(inside, least), max(inside, most)
+        if high < 0.0 and left and scan * least < most:  # it may have left between two of them
+            low = max(near - first / scan, 0.0)
+            x = _lowest(row, q, sense, low, min(near + first / scan, first))
+            high = x if sense * (_value(row, q, x) - limit) < 0.0 else high
+        for _ in range(_BISECTIONS if high >= 0.0 else 0):
             middle = 0.5 * (low + high)
-            outside = begin * (_value(row, q, middle) - limit) < 0.0
+            outside = sense * (_value(row, q, middle) - limit) < 0.0
             low, high = (low, middle) if outside else (middle, high)
-        if high < first or which < 0:
+        if high >= 0.0 and (high < first or which < 0):
             first, which = high, i
     return first, which
 
 
 @kernel
-def land(t: float, y: Array, slope: Array, q: int, limit: float) -> float:
-    """Put component q of a state exactly on a limit that it is close to; the time of that."""
-    late = (limit - float(y[q])) / float(slope[q]) if slope[q] != 0.0 else 0.0
-    y[0], y[1] = y[0] + slope[0] * late, y[1] + slope[1] * late
+def _lowest(row: Array, q: int, sign: float, low: float, high: float) -> float:
+    """Where component q of an interpolant, times a sign, is lowest between two fractions."""
+    for _ in range(_BISECTIONS):
+        third = (high - low) / 3.0
+        falls = sign * _value(row, q, low + third) > sign * _value(row, q, high - third)
+        low, high = (low + third, high) if falls else (low, high - third)
+    return low
+
+
+@kernel
+def land(t: float, y: Array, slope: Array, q: int, limit: float, within: float) -> float:
+    """Put component q of a state on a limit close to it; the time of that, if it is ``within``."""
+    late = (limit - y[q]) / slope[q] if abs(limit - y[q]) < within * abs(slope[q]) else 0.0
+    speed = y[1] + slope[1] * late
+    y[0], y[1] = y[0] + slope[0] * late, speed if speed * y[1] > 0.0 else 0.0  # it turns there
     y[q] = limit
     return t + late
 
 
 @kernel
 def travel(
-    system: System,
-    control: tuple[float, float, float, int],
-    start: tuple[float, float, float],
-    y: Array,
-    limits: Array,
-    steps: Steps,
+    system: System, control: Asked, start: tuple[float, ...], y: Array, limits: Array, steps: Steps
 ) -> tuple[int, float, float, float, int]:
-    """Step from knot to knot while the loads keep their branch; fill ``steps``.
+    """Step from knot to knot while the loads keep their branch; fill ``steps``, and return their
+    number, time, next step, largest kinetic energy, and evaluations.
 
-    Every piece is integrated with its own cubics, continued beyond the knot, and cut at the knot:
-    there the step is taken again, as its end is more exact than its inside. It ends where all room
-    is used, at any other limit, at the end in time, where no step is short enough, and where the
-    motion dies away or is damped hard.
+    Every piece keeps its own cubics beyond the knot, and is cut at the knot: there the step is
+    taken again, as its end is more exact than its inside. It ends where all room is used, at any
+    other limit, at the end in time, where no step is short enough, and where the motion dies away
+    or is damped hard.
 
     control : tolerance of a step, speed [rad/s] to which it is relative, end in time [s], and into
         how many every step is divided: of a second answer none is as long as of the first
     start : time [s], next step [s], largest kinetic energy so far [J]
     y : shape (3,), theta, omega, work; limits : as in `first_exit`; carried on, as the pieces are
-
-    Returns
-    -------
-    number of steps; time, next step, largest kinetic energy; evaluations
     """
     (tolerance, speed, t_bound, parts), (t, h, most), (begins, widths, rows) = control, start, steps
     k, new, (machine, pieces, load) = np.empty((16, 3)), np.empty(3), system
@@ -284,7 +285,7 @@ def travel(
         if again and not cut:  # the better end may be beyond a limit that the first was before
             i = first_exit(rows[n - 1], new, limits)[1]
         if i >= 0:
-            t = land(t, y, k[0], 0 if i < 4 else 1, float(limits[i]))
+            t = land(t, y, k[0], 0 if i < 4 else 1, float(limits[i]), _NEAR * width)
             ends = i > 1 or y[0] == limits[2] or y[0] == limits[3]
             if ends or y[1] == 0.0 or not limits[5] < y[1] < limits[6]:
                 break

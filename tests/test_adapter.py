@@ -36,6 +36,7 @@ from validation.oracles.free_motion import free_motion
 from validation.oracles.known_machines import V_TWIN
 from validation.oracles.machine import Loads, LoadTable
 from validation.oracles.pressure import evaluate_pressure
+from validation.random_scenes import random_scene
 
 TORQUES = (
     Constant(torque=3.0),
@@ -110,6 +111,13 @@ def test_only_an_end_at_an_angle_is_compared_at_an_equal_angle() -> None:
     assert np.all(late[:-1] == 0.0)
     assert late[-1] != 0.0
     assert np.abs(ahead[1:-1]).min() > 1e3 * abs(ahead[-1])
+
+
+def test_samples_where_it_turns_are_compared_at_equal_times() -> None:
+    """It swings, and where it turns back is the only angle that is sampled."""
+    result = simulate(random_scene(4960), formulation="minimal")
+    motion = reference_motion(result)
+    assert np.abs(motion.omega[:-1] - result.data["crank_speed"].values[:-1]).max() < 1e-5
 
 
 def test_names_and_signs() -> None:

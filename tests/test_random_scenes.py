@@ -7,7 +7,7 @@ import pytest
 from make_random_references import SCENES, stored
 from references import true_errors
 
-from crankmbs import simulate
+from crankmbs import kernels, simulate, stepper
 from validation import judge_scene, many
 from validation.__main__ import main
 from validation.random_scenes import random_scene
@@ -63,6 +63,13 @@ def test_the_long_run_says_what_it_skips(monkeypatch, capsys):
     out = capsys.readouterr().out
     assert "seed 0, crank_angle: skipped, takes longer than 1e-06 s" in out
     assert "0 judged, 1 skipped" in out
+
+
+def test_nothing_is_left_to_compile_while_patience_runs():
+    judge_scene.judge_seed(0, [], 60.0)
+    assert kernels.are_compiled
+    for loop in (kernels.affine, kernels.newton, kernels.at_angles, stepper.travel):
+        assert loop.signatures
 
 
 def test_a_scene_that_raises_is_red(monkeypatch):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from crankmbs.roots import invert_monotone
+from crankmbs.roots import first_above, invert_monotone
 
 
 def cube(x):
@@ -37,3 +37,19 @@ def test_targets_at_the_ends_and_beyond_stay_in_the_bracket():
 
 def test_nothing_to_find():
     assert len(invert_monotone(cube, np.empty(0), np.empty(0), np.empty(0))) == 0
+
+
+def turning(top, height, times=1.0):
+    return lambda x: (times * (height - (x - top) ** 2), -2.0 * times * (x - top))
+
+
+@pytest.mark.parametrize("times", [1e-9, 1.0, 1e9])
+@pytest.mark.parametrize("top", [0.05, 0.3, 0.7, 0.99])
+def test_a_function_that_is_above_zero_for_a_moment(top, times):
+    assert first_above(turning(top, 1e-6, times), 0.0, 1.0) == pytest.approx(top - 1e-3, abs=1e-9)
+    assert first_above(turning(top, -1e-6, times), 0.0, 1.0) is None
+
+
+def test_a_function_that_begins_at_zero():
+    assert first_above(lambda x: (x * (x - 1e-3), 2.0 * x - 1e-3), 0.0, 1.0) == pytest.approx(1e-3)
+    assert first_above(lambda x: (x, np.ones(1)), 0.0, 1.0) == 0.0

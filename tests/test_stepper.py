@@ -123,6 +123,8 @@ ANYWHERE = np.array([-9.0, 9.0, -9.0, 9.0, 0.0, -99.0, 99.0])
         ((1.0, 0.0, 4.0), (4.0, -8.0), {1: 2.1}, (0.5, 4)),  # not reached before it
         ((0.0, 1.0), (3.0, 0.0, 4.0), {6: 3.75}, (0.25, 6)),  # the speed comes back
         ((0.0, 1.0), (0.0, -1.0, 4.0), {}, (0.75, 4)),  # from rest, and back
+        ((0.0, 1.0), (3.0, 0.25, 4.0), {6: 4.12875}, (0.525, 6)),  # for a moment only
+        ((0.0, 1.0), (3.0, -3.9, 4.0), {5: 3.0}, (0.025, 5)),  # it rises from its bound, and back
     ],
 )
 def test_the_first_exit(theta, omega, limits, exit_at):
@@ -131,3 +133,15 @@ def test_the_first_exit(theta, omega, limits, exit_at):
     x, which = stepper.first_exit(*motion(theta, omega), bounds)
     assert which == exit_at[1]
     assert x == pytest.approx(exit_at[0], abs=1e-12)
+
+
+def test_it_lands_where_it_is_and_not_where_mere_errors_point():
+    creeping, slope = np.array([0.3, -1e-9, 0.0]), np.array([-1e-9, 1e-12, 0.0])
+    assert stepper.land(2.0, creeping, slope, 1, 0.0, 1e-3) == 2.0
+    assert creeping.tolist() == [0.3, 0.0, 0.0]
+    passing, slope = np.array([0.3, -4.0, 0.0]), np.array([-4.0, 5.0, 0.0])
+    assert stepper.land(2.0, passing, slope, 0, 0.3 - 4e-6, 1e-3) == 2.0 + 1e-6
+    assert passing == pytest.approx([0.3 - 4e-6, -4.0 + 5e-6, 0.0], abs=1e-15)
+    turning, slope = np.array([0.3, -1e-7, 0.0]), np.array([-1e-7, 40.0, 0.0])
+    stepper.land(2.0, turning, slope, 0, 0.3 - 1e-15, 1e-3)
+    assert turning.tolist() == [0.3 - 1e-15, 0.0, 0.0]

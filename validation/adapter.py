@@ -41,6 +41,7 @@ __all__ = ["at_jumps", "load_torque", "machine_of", "reference_motion", "referen
 
 _TOWARDS_CRANK = ("piston_velocity", "piston_acceleration")  # the oracle's point away from it
 _SAME_ANGLE = 1e-9
+_SLIGHT = 0.1  # so much of the speed at most may change on the way to a sample's angle
 _SAME_PRESSURE = 1e-9
 
 
@@ -79,7 +80,8 @@ def reference_motion(
     """The oracle's motion at the samples of a result, of its own scene or of a given one.
 
     Samples that lie on crank angles are compared at equal angles: a free motion is looked up at
-    the result's times and once more at those moved by the angle that is still missing.
+    the result's times and once more at those moved by the angle that is still missing; where it
+    turns beside the angle, at equal times.
 
     path : of the free crank, where it is known already
     """
@@ -92,9 +94,10 @@ def reference_motion(
     if times[-1] == 0:
         return _first(path.at_times(arithmetic.array([0, 2.0**-60])))
     motion = path.at_times(times)
-    moving = _on_angles(result, scene)
+    missing = arithmetic.array(result.data["crank_angle"].values) - motion.theta
+    turning = abs(motion.alpha * missing) >= _SLIGHT * motion.omega**2  # it may not reach the angle
+    moving = _on_angles(result, scene) & ~turning.astype(bool)
     if moving.any():
-        missing = arithmetic.array(result.data["crank_angle"].values) - motion.theta
         omega, alpha = motion.omega[moving], motion.alpha[moving]
         late = missing[moving] / omega
         late = late - alpha * late * late / (2 * omega)  # to second order: once is enough

@@ -7,10 +7,12 @@ import signal
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from functools import cache
 from types import FrameType
 
+from crankmbs import Run, Viscous, kernels, load_scene
 from crankmbs.result import Result
-from crankmbs.scene import Scene
+from crankmbs.scene import Extent, Scene
 from crankmbs.simulate import simulate
 from validation.adapter import machine_of, reference_motion
 from validation.checks.honest import scales, true_errors
@@ -39,6 +41,7 @@ class _TooLongError(Exception):
 
 def judge_seed(seed: int, formulations: Sequence[str], patience: float) -> list[Judgement]:
     """Judge the scene of a seed; with more than ``patience`` [s] of wall time it is given up."""
+    _compile()
     found: list[Judgement] = []
     scene = random_scene(seed)
     paths = _paths(scene)
@@ -51,6 +54,17 @@ def judge_seed(seed: int, formulations: Sequence[str], patience: float) -> list[
         said = f"skipped, takes longer than {patience:g} s"
         found += [Judgement(seed, left, None, said) for left in formulations[len(found) :]]
     return found
+
+
+@cache
+def _compile() -> None:
+    """Compile what runs call: numba must not be interrupted, and a scene not wait for it."""
+    kernels.pay(math.inf)
+    run = Run(until=Extent(value=0.5, unit="rad"), every=Extent(value=0.1, unit="rad"))
+    short = replace(load_scene("coasting"), run=run)
+    for torque in ((), (Viscous(coefficient=1e-3),)):
+        for formulation in ("crank_angle", "minimal"):
+            simulate(replace(short, torque=torque), formulation=formulation)
 
 
 def _judge(scene: Scene, formulation: str, paths: list[Path]) -> tuple[float | None, str]:

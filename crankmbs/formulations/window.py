@@ -13,7 +13,7 @@ from crankmbs import kernels
 from crankmbs.cells import Grid, Strip, largest_of_row
 from crankmbs.formulations.base import NOWHERE, Array, Samples, State
 from crankmbs.inertia import reduce
-from crankmbs.roots import invert_monotone
+from crankmbs.roots import first_above, invert_monotone
 from crankmbs.sampling import Plan, one_period
 from crankmbs.torque import Branch
 
@@ -166,23 +166,26 @@ class Window:
         inertia = reduce(self.grid.scene, None, theta)[0]
         at_edges = self.sense * np.sqrt(2.0 * self.energy[1:] / inertia)
         omega = np.column_stack([self.sense / self.slowness, at_edges])
-        outside = omega > limit if above else omega < limit
-        if not outside.any():
-            return None
-        first = int(np.argmax(outside.ravel()))
-        k, j = divmod(first, omega.shape[1])
         positions = np.concatenate([[0.0], self.grid.rule.nodes, [1.0]])
-        at = np.array([k])
+        side = 1.0 if above else -1.0
+        beyond = side * (np.append(self.begin.omega, omega) - limit)
+        inside = int(np.argmax(np.append(beyond[1:] > 0.0, True)))  # stretches before it is seen
+        stretches = np.append(np.flatnonzero(_may_leave(beyond)[:inside]), inside)
+        for k, j in zip(*divmod(stretches, omega.shape[1]), strict=True):
+            if k == len(omega):
+                break
 
-        def speed(x: Array) -> tuple[Array, Array]:
-            state = self._theta(at, x), self._time(at, x), self._energy(at, x)
-            there = self._samples(at, *state)
-            return there.omega, self.strip.width[k] * there.alpha / np.abs(there.omega)
+            def speed(x: Array, k: int = k) -> tuple[Array, Array]:
+                at = np.array([k])
+                state = self._theta(at, x), self._time(at, x), self._energy(at, x)
+                there = self._samples(at, *state)
+                slope = self.strip.width[k] * there.alpha / np.abs(there.omega)
+                return side * (there.omega - limit), side * slope
 
-        x = invert_monotone(
-            speed, np.array([limit]), positions[j : j + 1], positions[j + 1 : j + 2]
-        )
-        return k, float(x[0])
+            x = first_above(speed, positions[j], positions[j + 1])
+            if x is not None:
+                return int(k), x
+        return None
 
     def _energy(self, k: Index, x: Array) -> Array:
         gained, _ = self.grid.rule.between(self.torque[k], x)
@@ -220,3 +223,13 @@ class Window:
 
 def _exact(landed: float, computed: Array) -> Array:
     return computed if math.isnan(landed) else np.array([landed])
+
+
+def _may_leave(beyond: Array) -> NDArray[np.bool_]:
+    """Between which of neighbouring points a value, below zero at both, may be above: where it
+    turns, and falls off to the neighbours by more than is missing."""
+    rise = np.diff(beyond, prepend=beyond[0], append=beyond[-1])
+    before, after = rise[:-1], -rise[1:]
+    near = (beyond < 0.0) & (beyond + before + after > 0.0)
+    top = near & (before >= 0.0) & (after >= 0.0)
+    return np.asarray(top[:-1] | top[1:])
