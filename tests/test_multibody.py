@@ -42,7 +42,7 @@ SCENES = {
     "backwards, sampled in time": replace(
         ASKEW, start=Start(angle=0.3, speed=-90.0), run=brief(0.06, "s", 1e-3, "s")
     ),
-    "fired, with pressure jumps": replace(load_scene("v_twin"), run=brief(1.25, "cycle")),
+    "fired, with pressure jumps": replace(load_scene("v_twin"), run=brief(1.5, "cycle")),
     "swings back": replace(COASTING, start=Start(angle=0.3, speed=3.0), run=brief(0.9)),
     "driven": replace(ASKEW, start=None, motion=SWUNG),
     "driven and fired": replace(load_scene("grega_lecture"), run=brief(0.6, "cycle")),

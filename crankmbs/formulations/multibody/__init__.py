@@ -14,7 +14,7 @@ from crankmbs.formulations.base import Samples, Solution
 from crankmbs.formulations.multibody.beside import errors_beside_jumps
 from crankmbs.formulations.multibody.error import Convergence, relative_error
 from crankmbs.formulations.multibody.runs import Runs
-from crankmbs.formulations.multibody.samples import aligned_variables
+from crankmbs.formulations.multibody.samples import Sampled, aligned_variables
 from crankmbs.scene import Scene
 
 __all__ = ["run"]
@@ -35,13 +35,15 @@ def run(scene: Scene, rtol: float, cost_cap: float) -> Solution:
     try:
         status, message = runs.first()
         convergence = Convergence(runs.erratic_order)
-        answer, errors = convergence.answer(aligned_variables(runs.problem, runs.paths))
+        sampled = [Sampled(runs.problem, runs.paths[-1])]
+        answer, errors = convergence.answer(aligned_variables(runs.problem, sampled))
         worst = latest = before = math.inf
         while len(runs.paths) < 2 or (worst > rtol and runs.affords_another()):
             if not runs.halve():
                 message += "; at a finer step exudyn's Newton iteration does not converge"
                 break
-            found = convergence.answer(aligned_variables(runs.problem, runs.paths))
+            sampled = [*sampled, Sampled(runs.problem, runs.paths[-1])][-3:]
+            found = convergence.answer(aligned_variables(runs.problem, sampled))
             latest, before = relative_error(*found), latest
             if latest < worst:
                 (answer, errors), worst = found, latest

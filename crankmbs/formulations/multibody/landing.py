@@ -103,7 +103,7 @@ def _cut(table: Table, names: tuple[str, str], bound: float, between: tuple[floa
     """End a table where a variable, given with its rate, comes to a bound between two times."""
 
     def value(time: Array) -> tuple[Array, Array]:
-        return table.one_at(names[0], time), table.one_at(names[1], time)
+        return table.with_rate(*names, time)
 
     low, high = (np.array([time]) for time in between)
     until = float(invert_monotone(value, np.array([bound]), low, high)[0])

@@ -111,6 +111,22 @@ class Model:
         self._system.SetPreStepUserFunction(ask)
         return self._solve(_settings(step, steps))
 
+    def crank(self, start: Start, begin: float, step: float, steps: int) -> tuple[Array, Array]:
+        """The crank alone, from ``start`` at time ``begin`` [s].
+
+        Returns
+        -------
+        its angle [rad], speed [rad/s] and acceleration [rad/s2], shape (m, 3), m = steps + 1 unless
+        the solver fails; the last position of all bodies, as in `Start`
+        """
+        self._set(start, begin, step)
+        self._system.SetPreStepUserFunction(0)
+        self._integrate(_settings(step, steps))
+        rows = [self._stored(name, 1)[0] for name in ("position", "velocity", "acceleration")]
+        seen = np.stack([values[:, 2] for values in rows], axis=1)
+        seen[:, 0] += self._zero
+        return seen, self._q + self._reference
+
     def consistent(self, start: Start, time: float) -> Record:
         """One row: accelerations and forces of a free start, without a step; to ten digits.
 
@@ -136,13 +152,17 @@ class Model:
         data.SetODE2Coordinates_t(start.velocity, initial)
         data.SetODE2Coordinates_tt(start.acceleration, initial)
 
-    def _solve(self, settings: Any) -> Record:
+    def _integrate(self, settings: Any) -> bool:
+        """Whether the solver goes through."""
         settings.timeIntegration.computeLoadsJacobian = 2 if self.stiff else 0
         with _quiet():
             try:
-                complete = bool(self._system.SolveDynamic(settings))
+                return bool(self._system.SolveDynamic(settings))
             except (RuntimeError, ValueError):  # Newton's method fails, or a matrix is singular
-                complete = False
+                return False
+
+    def _solve(self, settings: Any) -> Record:
+        complete = self._integrate(settings)
         bodies = {name: self._stored(name) for name in ("position", "velocity", "acceleration")}
         joints = {name: self._stored(name) for name in ("bearing", "crank_pin", "piston_pin")}
         m = len(bodies["position"][0])
@@ -162,9 +182,9 @@ class Model:
             iterations=int(self._system.sys["dynamicSolver"].it.newtonStepsCount),
         )
 
-    def _stored(self, name: str) -> list[Array]:
-        """Per sensor the recorded values, shape (m, its components)."""
-        return [self._system.GetSensorStoredData(s)[:, 1:] for s in self._sensors[name]]
+    def _stored(self, name: str, most: int | None = None) -> list[Array]:
+        """Per sensor (of the first ones) the recorded values, shape (m, its components)."""
+        return [self._system.GetSensorStoredData(s)[:, 1:] for s in self._sensors[name][:most]]
 
 
 def _initial(shift: float) -> Any:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -14,10 +15,11 @@ from crankmbs.formulations.multibody.problem import Problem
 from crankmbs.formulations.multibody.table import Table
 from crankmbs.roots import invert_monotone
 
-__all__ = ["aligned_variables", "reached", "slowed"]
+__all__ = ["Sampled", "aligned_variables", "reached", "slowed"]
 
 _NEWTON = 5  # steps from the straight line between two rows
 _LEFT = 1e-13  # of what Newton may leave
+_BEYOND = 2.0  # steps that the variables are continued past the end of a run
 _NEAR = 1e-9  # of the sample spacing, and rad: what is nearer is one
 
 
@@ -29,7 +31,32 @@ class _Samples(NamedTuple):
     stretch: Array
 
 
-def aligned_variables(problem: Problem, paths: list[Path]) -> list[dict[str, Array]]:
+class Sampled:
+    """A run with its samples, and the variables there once they are asked for."""
+
+    def __init__(self, problem: Problem, path: Path) -> None:
+        self.path, self.samples = path, _samples(problem, path)
+        self._problem = problem
+
+    @cached_property
+    def at_own(self) -> dict[str, Array]:
+        """The variables at the run's own samples, whose crank angles are those of every run."""
+        return _variables_at(self._problem, self.path, self.samples, by_angle=True)
+
+    def at_angles(self, finest: _Samples) -> dict[str, Array] | None:
+        """The variables at the crank angles of another run; None where one of them reverses.
+
+        A run that ends at a time may pass one angle of the grid more or fewer than the other.
+        """
+        if len(self.samples.time) == len(finest.time):
+            return self.at_own
+        samples = _same_angles(self.path, self.samples, finest)
+        if samples is None:
+            return None
+        return _variables_at(self._problem, self.path, samples, by_angle=True)
+
+
+def aligned_variables(problem: Problem, runs: list[Sampled]) -> list[dict[str, Array]]:
     """The variables of each run at the same samples, at the same crank angles or times.
 
     At the same angles each run has times of its own. Runs that pass the grid of angles differently
@@ -37,28 +64,37 @@ def aligned_variables(problem: Problem, paths: list[Path]) -> list[dict[str, Arr
     so that nothing is extrapolated. An end at a crank angle each run reaches at a time of its own.
     "ahead" is the crank angle at the finest run's times.
     """
-    samples = [_samples(problem, path) for path in paths]
-    finest = samples[-1]
-    by_angle = not problem.plan.in_time and len({len(s.time) for s in samples}) == 1
-    if not by_angle:
-        paths = paths if problem.plan.in_time else paths[-2:]
-        ends = samples[-len(paths) :]
-        samples = [finest] * len(paths)
-        if problem.plan.in_time and not problem.plan.until_time:
-            samples = [_ending_as(end, finest) for end in ends]
-    runs = [_variables_at(problem, p, s, by_angle) for p, s in zip(paths, samples, strict=True)]
-    speed = runs[-1]["crank_speed"]
-    for variables, path in zip(runs, paths, strict=True):
-        variables["ahead"] = variables["crank_angle"] - speed * (variables["time"] - finest.time)
-        if not by_angle and not problem.plan.in_time:  # the time at which it has the sample's angle
+    finest, plan = runs[-1].samples, problem.plan
+    if not plan.in_time:
+        found = [run.at_angles(finest) for run in runs]
+        alike = [dict(variables) for variables in found if variables is not None]
+        if len(alike) == len(runs):
+            for variables in alike:
+                _look_ahead(variables, alike[-1], finest)
+            return alike
+    runs = runs if plan.in_time else runs[-2:]
+    samples = [finest] * len(runs)
+    if plan.in_time and not plan.until_time:
+        samples = [_ending_as(run.samples, finest) for run in runs]
+    paths = [run.path for run in runs]
+    aligned = [_variables_at(problem, p, s) for p, s in zip(paths, samples, strict=True)]
+    speed = aligned[-1]["crank_speed"]
+    for variables, path in zip(aligned, paths, strict=True):
+        _look_ahead(variables, aligned[-1], finest)
+        if not plan.in_time:  # the time at which it has the sample's angle
             off = variables["crank_angle"] - finest.theta
             early = np.divide(off, speed, out=np.zeros_like(off), where=speed != 0.0)
             variables["time"] = finest.time - early
             # a torque over time errs by being asked for too early, and by nothing else
             there = finest._replace(time=np.clip(variables["time"], 0.0, reached(path)[0]))
-            at_angle = _variables_at(problem, path, there, by_angle)
+            at_angle = _variables_at(problem, path, there)
             variables["external_torque"] = at_angle["external_torque"]
-    return runs
+    return aligned
+
+
+def _look_ahead(variables: dict[str, Array], last: dict[str, Array], finest: _Samples) -> None:
+    late = variables["time"] - finest.time
+    variables["ahead"] = variables["crank_angle"] - last["crank_speed"] * late
 
 
 def _ending_as(run: _Samples, finest: _Samples) -> _Samples:
@@ -109,6 +145,30 @@ def _samples(problem: Problem, path: Path) -> _Samples:
     return _Samples(time[first:], theta[first:], stretch[first:])
 
 
+def _same_angles(path: Path, own: _Samples, finest: _Samples) -> _Samples | None:
+    """The crank angles of a finer run, but for its end, on a run without a reversal."""
+    sense = 1.0 if own.theta[-1] >= own.theta[0] else -1.0
+    theta = finest.theta[:-1]
+    if np.any(sense * np.diff(theta) <= 0.0) or np.any(sense * np.diff(own.theta) <= 0.0):
+        return None
+    last = path.tables[-1]
+    beyond = last._replace(until=last.until + _BEYOND * last.step)
+    times, stretches = [], []
+    for k, table in enumerate([*path.tables[:-1], beyond]):
+        low, high = sense * table.one_at("crank_angle", np.array([table.after, table.until]))
+        here = (sense * theta >= low - _NEAR) & (sense * theta < high - _NEAR)
+        times.append(_times_of(table, theta[here], table.after, table.until))
+        stretches.append(np.full(np.count_nonzero(here), k))
+    time = np.concatenate(times)
+    if len(time) != len(theta):
+        return None
+    return _Samples(
+        np.append(time, own.time[-1]),
+        np.append(theta, own.theta[-1]),
+        np.append(np.concatenate(stretches), own.stretch[-1]),
+    )
+
+
 def _grid(origin: float, every: float, begin: float, end: float) -> Array:
     """Grid values from ``begin`` on and before ``end``, in the order in which they are passed."""
     sign = 1.0 if end >= begin else -1.0
@@ -125,22 +185,27 @@ def _monotone(table: Table) -> list[tuple[float, float]]:
     k = np.flatnonzero(speed[:-1] * speed[1:] < 0.0)
 
     def value(time: Array) -> tuple[Array, Array]:
-        return table.one_at("crank_speed", time), table.one_at("crank_acceleration", time)
+        return table.with_rate("crank_speed", "crank_acceleration", time)
 
-    turns = invert_monotone(value, np.zeros(len(k)), times[k], times[k + 1]).tolist()
+    turns: list[float] = []
+    if len(k) > 0:
+        turns = invert_monotone(value, np.zeros(len(k)), times[k], times[k + 1]).tolist()
     return list(itertools.pairwise([table.after, *turns, table.until]))
 
 
 def _times_of(table: Table, theta: Array, begin: float, end: float) -> Array:
     """Times at which the crank comes to the angles, where it does not reverse."""
     times = table.times
-    edges = np.concatenate([[begin], times[(times > begin) & (times < end)], [end]])
-    reached = table.one_at("crank_angle", edges)
+    between, ends = (times > begin) & (times < end), np.array([begin, end])
+    edges = np.concatenate([ends[:1], times[between], ends[1:]])
+    at_ends = table.one_at("crank_angle", ends)
+    at_rows = table.column("crank_angle")[between]
+    reached = np.concatenate([at_ends[:1], at_rows, at_ends[1:]])
     sign = 1.0 if reached[-1] >= reached[0] else -1.0
     k = np.clip(np.searchsorted(sign * reached, sign * theta) - 1, 0, len(edges) - 2)
 
     def value(time: Array) -> tuple[Array, Array]:
-        return table.one_at("crank_angle", time), table.one_at("crank_speed", time)
+        return table.with_rate("crank_angle", "crank_speed", time)
 
     low, high, (at_low, at_high) = edges[k], edges[k + 1], (reached[k], reached[k + 1])
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -150,14 +215,16 @@ def _times_of(table: Table, theta: Array, begin: float, end: float) -> Array:
             angle, speed = value(time)
             off = theta - angle
             time = np.clip(time + np.nan_to_num(off / speed), low, high)
-    slow = np.abs(off) > _LEFT * (1.0 + np.abs(theta))  # next to a reversal
-    if slow.any():
+            slow = np.abs(off) > _LEFT * (1.0 + np.abs(theta))
+            if not slow.any():
+                break
+    if slow.any():  # next to a reversal
         time[slow] = invert_monotone(value, theta[slow], low[slow], high[slow])
     return np.asarray(time)
 
 
 def _variables_at(
-    problem: Problem, path: Path, samples: _Samples, by_angle: bool
+    problem: Problem, path: Path, samples: _Samples, *, by_angle: bool = False
 ) -> dict[str, Array]:
     parts = []
     stretch = np.minimum(samples.stretch, len(path.tables) - 1)  # a coarser run may have fewer

@@ -42,7 +42,6 @@ class Walk:
     tables : one per stretch
     time [s] : where the last one ended
     bound [rad] : the crank angle that ended it, if one did
-    landed : whether an angle or a speed ended it
     steps, iterations : what they cost
     """
 
@@ -50,7 +49,6 @@ class Walk:
         self.tables: list[Table] = []
         self.time, self._state = 0.0, problem.start
         self.bound: float | None = None
-        self.landed = False
         self._problem, self._model, self._go_on = problem, model, go_on
         self._residual = 0.0
         self._sense = 0.0  # in which the speed passed a bend of the loads
@@ -84,9 +82,7 @@ class Walk:
         bounds = Bounds((max(angles[0], gas.low), min(angles[1], gas.high)), speeds)
         watch = Watch(bounds, self._go_on)
         if problem.law is None:
-            record, lead = run_free(
-                problem.scene, model, time, self._state, step, steps, watch, not self.landed
-            )
+            record, lead = run_free(problem.scene, model, time, self._state, step, steps, watch)
         else:
             record, lead = run_prescribed(
                 problem.scene, model, problem.law, time, step, steps, watch
@@ -94,7 +90,7 @@ class Walk:
         record = _on_one_loop(problem, record)
         self.steps += len(record.time) - 1
         self.iterations += record.iterations
-        self.bound, self.landed, self._sense = None, False, 0.0
+        self.bound, self._sense = None, 0.0
         if len(record.time) < lead + LEAST_STEPS:
             return "failed"
         torque = record.drive
@@ -162,7 +158,6 @@ class Walk:
             (table, speed), self.bound = met, None
             self._sense = 1.0 if speed == bounds.speeds[1] else -1.0
             self._speeds_left -= 1
-        self.landed = self.bound is not None or speed is not None
         self.tables.append(table)
         self.time = table.until
         last = {

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
+from scipy.sparse import csr_array
 
 from crankmbs.formulations.base import Array
 from crankmbs.formulations.multibody.gas import GasStretch
@@ -16,6 +18,12 @@ from crankmbs.scene import Scene
 __all__ = ["ROWS", "Table", "table_of"]
 
 ROWS = 6  # that an interpolated value takes
+_SCALES = np.array(
+    [
+        (-1.0) ** (ROWS - 1 - k) / (math.factorial(k) * math.factorial(ROWS - 1 - k))
+        for k in range(ROWS)
+    ]
+)
 
 
 class Table(NamedTuple):
@@ -53,6 +61,12 @@ class Table(NamedTuple):
         """One variable of the crank at times between."""
         return self._interpolated(self.column(name)[:, None], time)[:, 0]
 
+    def with_rate(self, name: str, rate: str, time: Array) -> tuple[Array, Array]:
+        """Two variables of the crank at times between."""
+        columns = np.stack([self.column(name), self.column(rate)], axis=1)
+        value, slope = self._interpolated(columns, time).T
+        return value, slope
+
     def column(self, name: str) -> Array:
         """One variable of the crank at the rows."""
         return self.columns[:, self.names.index(name)]
@@ -61,13 +75,11 @@ class Table(NamedTuple):
         """By the polynomial of degree 5 through the six nearest rows."""
         s = (time - self.begin) / self.step
         first = np.clip(np.floor(s).astype(np.intp) - ROWS // 2 + 1, 0, len(columns) - ROWS)
-        u = s - first
-        value = np.zeros((len(time), columns.shape[1]))
-        for j in range(ROWS):
-            others = [i for i in range(ROWS) if i != j]
-            weight = np.prod([(u - i) / (j - i) for i in others], axis=0)
-            value += weight[:, None] * columns[first + j]
-        return value
+        rows = first[:, None] + np.arange(ROWS)
+        ends = ROWS * np.arange(len(time) + 1)
+        shape = len(time), len(columns)
+        weights = csr_array((_weights(s - first).ravel(), rows.ravel(), ends), shape=shape)
+        return np.asarray(weights @ columns)
 
     def _named(self, values: Array) -> dict[str, Array]:
         of_crank = self.names.index("rod_angle")
@@ -134,6 +146,15 @@ def table_of(
     step = float(record.time[1] - record.time[0])
     begin, end = float(record.time[0]), float(record.time[-1])
     return Table(begin, step, after, end, scene, gas, tuple(variables), columns)
+
+
+def _weights(u: Array) -> Array:
+    """Lagrange's polynomials of the places 0, 1, ... ROWS - 1 at ``u``, shape (len(u), ROWS)."""
+    away = u - np.arange(ROWS)[:, None]
+    below, above = np.ones_like(away), np.ones_like(away)
+    np.cumprod(away[:-1], axis=0, out=below[1:])
+    np.cumprod(away[:0:-1], axis=0, out=above[-2::-1])
+    return np.asarray((below * above).T * _SCALES)
 
 
 def _bodies(columns: Array, n: int) -> tuple[Array, Array, Array]:
