@@ -20,10 +20,10 @@ UNLOADED = replace(
 )
 
 
-def passing(turned, table):
+def passing(turned, table, scene=UNLOADED):
     """The scene whose speed is in the last row of the table while it turns twice an angle [deg]."""
     run = Run(until="80 deg", every="0.02 deg", rtol=1e-12)
-    speed = simulate(replace(UNLOADED, run=run)).data["crank_speed"].values
+    speed = simulate(replace(scene, run=run)).data["crank_speed"].values
     limit = float(speed[int(np.argmax(speed)) - round(turned / 0.02)])
     load = SpeedTable(
         file=Table(
@@ -31,7 +31,11 @@ def passing(turned, table):
             tuple(torque for _, torque in ((0.0, 0.0), *table, table[-1])),
         )
     )
-    return replace(UNLOADED, torque=(load,))
+    return replace(scene, torque=(load,))
+
+
+def worst(result):
+    return max(error.ratio for error in true_errors(result, reference_of(result)).values())
 
 
 @BOTH
@@ -40,8 +44,18 @@ def passing(turned, table):
 def test_it_is_seen(table, turned, formulation):
     result = simulate(passing(turned, table), formulation=formulation)
     assert result.status == 0
-    ratios = {n: error.ratio for n, error in true_errors(result, reference_of(result)).items()}
-    assert max(ratios.values()) <= 2.0, ratios
+    assert worst(result) <= 2.0
+
+
+@pytest.mark.parametrize("turned", [0.02, 0.1, 0.4])
+def test_where_it_is_passed_slowly_the_place_is_found_again(turned):
+    """A first solution of a cell misplaces the passage by far more than it errs in the speed."""
+    run = Run(until="80 deg", every="7 deg", rtol=1e-6)
+    scene = replace(UNLOADED, piston=COASTING.piston, run=run)  # highest where a cell ends
+    table = ((0.0, 0.0), (1.0, -2000.0))
+    result = simulate(passing(turned, table, scene), formulation="crank_angle")
+    assert result.status == 0
+    assert worst(result) <= 2.0
 
 
 @BOTH

@@ -35,6 +35,7 @@ _SPEED_BLOCK = 512  # where the loads' branch may end at a speed, and the rest i
 _REACH = 1.0  # rad: what arrays can hold of it in one Newton step after the other
 _AFFINE_TIME, _NEWTON_TIME = 4e-6, 1e-4  # s a cell with arrays
 _HAIR = 1e-6  # of a cell: as near its edge it is as exact as there
+_BEYOND = (_HAIR, 1e-4, 1e-2)  # of a cell: how far ahead a landing near a turn may really be
 _KEPT = 2  # whole periods at the end that are solved cell by cell when only the last is kept
 
 
@@ -87,11 +88,13 @@ def _landed(window: Window, t_end: float) -> tuple[Window | None, Window]:
         return None, window
     whole = window.first(k) if k > 0 else None
     begin = whole.end if whole else window.begin
-    turned = float(window.edges[k]) + (x + _HAIR) * width
-    bound = window.begin.theta + window.sense * turned
     energy = float(window.energy[k])
-    last = _solve(window.grid, window.branch, begin, energy, window.sense, bound, math.inf)
-    if last is not None:
+    for beyond in _BEYOND:
+        turned = float(window.edges[k]) + (x + beyond) * width
+        bound = window.begin.theta + window.sense * turned
+        last = _solve(window.grid, window.branch, begin, energy, window.sense, bound, math.inf)
+        if last is None:
+            break
         last = last.cut(t_end, math.inf)
         if np.array_equal(last.landed, window.landed, equal_nan=True):
             return whole, replace(last, skipped=0 if whole else window.skipped)
