@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
@@ -68,16 +69,23 @@ def assemble(scene: Scene, pressure: PeriodicPressure | None, solution: Solution
     the rounding of the crank angle is added, propagated through the same formulas; where the
     formulation states its own errors they are taken. At a few samples the differences of angle,
     speed and acceleration may cancel in a variable by chance: there what each makes is added up.
+    So may two passes agree by chance at an end in time, the only sample of a run whose angle errs:
+    it is taken to err as much as any moment of the run.
     """
     variables = _variables(scene, pressure, solution.samples)
     peaks = {name: _peak(values) for name, values in variables.items()}
     if solution.errors:
         return Assembled(solution, variables, peaks, dict(solution.errors))
     better = solution.better or solution.samples
+    late = better.time - solution.samples.time
+    ahead = better.theta - solution.samples.theta - solution.samples.omega * late
     rounding = ANGLE_ROUNDING * _peak(better.theta)
+    theta = better.theta + rounding
+    if late.any() and late[-1] == 0.0:  # of samples at angles the end at a time errs in the angle
+        theta[-1] += math.copysign(_peak(ahead) - abs(ahead[-1]), ahead[-1])  # by chance too little
     rounded = Samples(
         better.time,
-        better.theta + rounding,
+        theta,
         better.omega + _speed_change(better, rounding),
         better.alpha,
         better.energy_residual,
@@ -98,8 +106,6 @@ def assemble(scene: Scene, pressure: PeriodicPressure | None, solution: Solution
     missed = _peak(check["external_torque"] - needed)
     least = np.min(reduce(scene, None, one_period(better.theta, scene.period)[0])[0])
     errors["crank_acceleration"] += missed / float(least)
-    late = better.time - solution.samples.time
-    ahead = better.theta - solution.samples.theta - solution.samples.omega * late
     errors["crank_angle"] = _peak(ahead) + _ROUNDING * peaks["crank_angle"]
     # in the true motion the energy gained is the work done
     errors["energy_residual"] = peaks["energy_residual"] + _ROUNDING * peaks["kinetic_energy"]
