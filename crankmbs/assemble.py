@@ -69,8 +69,8 @@ def assemble(scene: Scene, pressure: PeriodicPressure | None, solution: Solution
     the rounding of the crank angle is added, propagated through the same formulas; where the
     formulation states its own errors they are taken. At a few samples the differences of angle,
     speed and acceleration may cancel in a variable by chance: there what each makes is added up.
-    So may two passes agree by chance at an end in time, the only sample of a run whose angle errs:
-    it is taken to err as much as any moment of the run.
+    So may two passes agree in the angle by chance at an end in time, the only sample whose angle
+    errs where the others are at angles: it is taken to err as much as in the last revolution.
     """
     variables = _variables(scene, pressure, solution.samples)
     peaks = {name: _peak(values) for name, values in variables.items()}
@@ -81,8 +81,9 @@ def assemble(scene: Scene, pressure: PeriodicPressure | None, solution: Solution
     ahead = better.theta - solution.samples.theta - solution.samples.omega * late
     rounding = ANGLE_ROUNDING * _peak(better.theta)
     theta = better.theta + rounding
-    if late.any() and late[-1] == 0.0:  # of samples at angles the end at a time errs in the angle
-        theta[-1] += math.copysign(_peak(ahead) - abs(ahead[-1]), ahead[-1])  # by chance too little
+    if late.any() and late[-1] == 0.0:
+        recent = ahead[np.abs(better.theta - better.theta[-1]) <= 2.0 * math.pi]
+        theta[-1] += math.copysign(_peak(recent) - abs(ahead[-1]), ahead[-1])
     rounded = Samples(
         better.time,
         theta,
