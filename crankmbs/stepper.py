@@ -15,14 +15,15 @@ from crankmbs.dop853 import E3, E5, A, C, D
 from crankmbs.kernels import kernel
 from crankmbs.system import Machine, System
 
-__all__ = ["enter", "first_exit", "land", "reduced", "slopes", "travel"]
+__all__ = ["NEAR", "enter", "first_exit", "land", "reduced", "slopes", "travel"]
 
 Array = NDArray[np.float64]
 Asked = tuple[float, float, float, int]  # as in `travel`
 Steps = tuple[Array, Array, Array]  # beginnings and lengths [s], and rows as in `first_exit`
 
 _PASSED = 1e-9  # rad: a knot this close ahead has been passed
-_BISECTIONS, _SCAN, _NEAR = 60, 16, 0.01
+NEAR = 0.01  # of a step: a landing is as close to its limit
+_BISECTIONS, _SCAN = 60, 16
 _HARD = 1e3 / math.radians(5.0)  # 1/rad: damped a thousand times while the crank turns 5 degrees
 
 
@@ -285,7 +286,7 @@ def travel(
         if again and not cut:  # the better end may be beyond a limit that the first was before
             i = first_exit(rows[n - 1], new, limits)[1]
         if i >= 0:
-            t = land(t, y, k[0], 0 if i < 4 else 1, float(limits[i]), _NEAR * width)
+            t = land(t, y, k[0], 0 if i < 4 else 1, float(limits[i]), NEAR * width)
             ends = i > 1 or y[0] == limits[2] or y[0] == limits[3]
             if ends or y[1] == 0.0 or not limits[5] < y[1] < limits[6]:
                 break

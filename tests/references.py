@@ -17,6 +17,7 @@ __all__ = [
     "reference_at_angles",
     "reference_of",
     "true_errors",
+    "worst_ratio",
 ]
 
 Array = NDArray[np.float64]
@@ -89,6 +90,11 @@ def true_errors(result: Result, reference: Reference) -> dict[str, Errors]:
         name: Errors(float(error.max()), float(data[name].attrs["error_estimate"]), peaks[name])
         for name, error in errors.items()
     }
+
+
+def worst_ratio(result: Result) -> float:
+    """The worst true over stated error of a free motion, against the oracle at its times."""
+    return max(errors.ratio for errors in true_errors(result, reference_of(result)).values())
 
 
 def assert_within_stated(result: Result, exact: Result) -> None:

@@ -170,7 +170,7 @@ def _radau(equation: Equation, begin: State, control: _Control, limits: Array) -
             break
     y = np.array(y)
     if i >= 0:
-        near = 0.01 * track[-1][1]
+        near = stepper.NEAR * track[-1][1]
         t = stepper.land(t, y, equation(t, y), 0 if i < 4 else 1, limits[i], near)
     begins, widths, rows = ([step[part] for step in track] for part in range(3))
     arrays = np.array(begins), np.array(widths), np.array(rows)
