@@ -40,10 +40,6 @@ class Loop:
     x_1: Array
     x_2: Array
 
-    def at(self, which: slice | NDArray[np.intp]) -> Loop:
-        """The loop at some of its angles, in any order and as often as wanted."""
-        return Loop(**{name: values[which] for name, values in vars(self).items()})
-
 
 def close_loop(cycle_angle: ArrayLike, radius: float, rod_length: float, offset: float) -> Loop:
     """Close the loop exactly.

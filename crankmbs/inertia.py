@@ -33,10 +33,6 @@ class RodCentre:
     x_2: Array
     y_2: Array
 
-    def at(self, which: slice | NDArray[np.intp]) -> RodCentre:
-        """The same at some of its angles, in any order and as often as wanted."""
-        return RodCentre(**{name: values[which] for name, values in vars(self).items()})
-
 
 def rod_centre(loop: Loop, radius: float, center_of_mass: float) -> RodCentre:
     """First and second derivatives in phi of the rod's centre of mass, exact."""

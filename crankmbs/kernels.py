@@ -2,7 +2,7 @@
 
 Loading numba takes longer than most single runs, so the arrays of the formulations come first and
 these loops second: `pay` decides. Both give the same to rounding. Kernels of one file call none of
-another (`crankmbs.stepper`), because numba's cache does not see a change there.
+another (`crankmbs.readout`, `crankmbs.stepper`): numba's cache does not see a change there.
 """
 
 from __future__ import annotations
@@ -15,12 +15,11 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["affine", "at_angles", "kernel", "newton", "pay"]
+__all__ = ["affine", "kernel", "newton", "pay"]
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 Branch = tuple[float, float, float, float]  # c0, ct, c1, c2 of `crankmbs.torque`
-Solved = tuple[Array, Array, Array, Array, Array, Array]  # as `at_angles` unpacks them
 F = TypeVar("F", bound=Callable[..., object])
 
 _LOADING = 0.5  # s, for numba and the kernels from its cache
@@ -68,24 +67,38 @@ def kernel(function: F) -> F:
 @kernel
 def affine(
     which: Index,
-    maps: tuple[Array, Array, Array, Array],
-    loads: tuple[Array, Array, Array],
+    loads: tuple[Array, Array, Array, Array],
+    rule: tuple[Array, Array],
     ends: tuple[float, float, float],
     width: Array,
-    weights: Array,
     edges: Array,
     time: Array,
     torque: Array,
     slowness: Array,
 ) -> int:
-    """Solve cells by affine maps, up to the end in time; fill what follows ``weights``, count them.
+    """Solve cells by affine maps, up to the end in time; fill what follows ``width``, count them.
 
-    which : row of the maps and loads for every cell; maps : as `crankmbs.collocation.Maps`; loads :
-    push, rate and inertia at the nodes; ends : energy and time at the start, time at the end
+    which : row of the loads for every cell; loads : signed width, and push, rate and inertia at the
+    nodes, as in `crankmbs.collocation.Rule.maps`; rule : matrix and weights; ends : energy and time
+    at the start, time at the end
     """
-    gain, shift, growth, rise = maps
-    push, rate, inertia = loads
-    energy, t, t_end = ends
+    signed, push, rate, inertia = loads
+    (matrix, weights), (energy, t, t_end) = rule, ends
+    gain, shift = np.ones(push.shape), np.zeros(push.shape)
+    growth, rise = np.zeros((2, len(signed)))
+    system, both = np.empty(matrix.shape), np.empty((len(weights), 2))
+    for c in range(len(signed)):
+        h = signed[c]
+        for j in range(len(weights)):
+            both[j, 0], both[j, 1] = 1.0, 0.0
+            for i in range(len(weights)):
+                both[j, 1] += h * matrix[j, i] * push[c, i]
+                system[j, i] = (1.0 if i == j else 0.0) - h * matrix[j, i] * rate[c, i]
+        _eliminate(system, both)
+        for j in range(len(weights)):
+            gain[c, j], shift[c, j] = both[j]
+            growth[c] += h * weights[j] * rate[c, j] * gain[c, j]
+            rise[c] += h * weights[j] * (push[c, j] + rate[c, j] * shift[c, j])
     edges[0], time[0] = energy, t
     for k in range(len(which)):
         c = which[k]
@@ -165,7 +178,7 @@ def _solve(
     c0, ct, c1, c2 = branch
     begin, t, sense = start
     stages = len(energy)
-    new, system = room[0], room[1:]
+    new, system = room[0].reshape(stages, 1), room[1:]
     change = math.inf
     for _ in range(_MOST_NEWTON):
         for j in range(stages):
@@ -184,74 +197,35 @@ def _solve(
             rate = sense * (c1 + 2.0 * c2 * omega) / (inertia[j] * omega)
             push = sense * torque[j] - rate * energy[j]
             for i in range(stages):
-                new[i] += steps[i, j] * push
+                new[i, 0] += steps[i, j] * push
                 system[i, j] = (1.0 if i == j else 0.0) - steps[i, j] * rate
         _eliminate(system, new)
         change = 0.0
         for j in range(stages):
-            change += abs(new[j] / energy[j] - 1.0)
-            energy[j] = new[j]
+            change += abs(new[j, 0] / energy[j] - 1.0)
+            energy[j] = new[j, 0]
     return change <= _GOOD
 
 
 @kernel
 def _eliminate(system: Array, right: Array) -> None:
-    """Solve a small linear system in place, with pivoting; the answer is in ``right``."""
+    """Solve a small linear system in place, with pivoting; the answers are the columns of
+    ``right``."""
     n = len(right)
     for j in range(n):
         p = j + np.argmax(np.abs(system[j:, j]))
-        right[j], right[p] = right[p], right[j]
+        for k in range(right.shape[1]):
+            right[j, k], right[p, k] = right[p, k], right[j, k]
         for i in range(j, n):
             system[j, i], system[p, i] = system[p, i], system[j, i]
         for i in range(j + 1, n):
             factor = system[i, j] / system[j, j]
             for k in range(j + 1, n):
                 system[i, k] -= factor * system[j, k]
-            right[i] -= factor * right[j]
+            for k in range(right.shape[1]):
+                right[i, k] -= factor * right[j, k]
     for j in range(n - 1, -1, -1):
-        for k in range(j + 1, n):
-            right[j] -= system[j, k] * right[k]
-        right[j] /= system[j, j]
-
-
-@kernel
-def at_angles(
-    u: Array,
-    sense: float,
-    to_legendre: Array,
-    solved: Solved,
-    cell: Index,
-    at: Array,
-    kinetic: Array,
-) -> None:
-    """Cell, time and energy at increasing angles u since the beginning; fills what follows
-    ``solved``."""
-    edges, width, energy, time, torque, slowness = solved
-    s = len(to_legendre)
-    by_torque, by_slowness, up, down = np.empty((4, s))  # and P_(j+1) = up z P_j - down P_(j-1)
-    for j in range(s):
-        up[j], down[j] = (2.0 * j + 1.0) / (j + 1.0), j / (j + 1.0)
-    k = -1
-    for i in range(len(u)):
-        if k < 0 or (u[i] > edges[k + 1] and k + 1 < len(width)):
-            while k < 0 or (u[i] > edges[k + 1] and k + 1 < len(width)):
-                k += 1
-            for j in range(s):
-                by_torque[j] = by_slowness[j] = 0.0
-                for m in range(s):
-                    by_torque[j] += to_legendre[j, m] * torque[k, m]
-                    by_slowness[j] += to_legendre[j, m] * slowness[k, m]
-                if j > 0:  # the integral of P_j is (P_(j+1) - P_(j-1)) / (4 j + 2) from 0 on
-                    by_torque[j] /= 4.0 * j + 2.0
-                    by_slowness[j] /= 4.0 * j + 2.0
-        x = (u[i] - edges[k]) / width[k]
-        z = 2.0 * x - 1.0
-        gained, spent, before, p = x * by_torque[0], x * by_slowness[0], 1.0, z
-        for j in range(1, s):
-            after = up[j] * z * p - down[j] * before
-            gained += (after - before) * by_torque[j]
-            spent += (after - before) * by_slowness[j]
-            before, p = p, after
-        cell[i] = k
-        at[i] = time[k] + width[k] * spent
-        kinetic[i] = energy[k] + sense * width[k] * gained
+        for m in range(right.shape[1]):
+            for k in range(j + 1, n):
+                right[j, m] -= system[j, k] * right[k, m]
+            right[j, m] /= system[j, j]

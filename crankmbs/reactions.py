@@ -4,15 +4,22 @@ Body by body from the piston down, in each cylinder's frame: the piston's X bala
 on piston along the axis, the rod's moment about the crank pin gives it across, the piston's Y
 balance the wall, the rod's balance the crank pin, and the crank's balance the main bearing and
 the torque from outside. Gas pushes the piston towards the crank, -X.
+
+Every balance is linear in omega^2, alpha and 1. So where the angles of the samples repeat it is
+made for these three alone, once for every angle of a period, and put together for each sample.
 """
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from crankmbs import kernels, readout
 from crankmbs.geometry import close_loop, top_position
 from crankmbs.inertia import gravity_vector, rod_centre
+from crankmbs.machine import Cylinder
 from crankmbs.pressure import PeriodicPressure
 from crankmbs.sampling import one_period
 from crankmbs.scene import Scene
@@ -20,6 +27,18 @@ from crankmbs.scene import Scene
 __all__ = ["reactions"]
 
 Array = NDArray[np.float64]
+
+
+class _Motion(NamedTuple):
+    """omega^2, alpha and 1 at the samples, shape (n,); or three units of them, shape (3, 1)."""
+
+    square: Array
+    alpha: Array
+    one: Array
+
+
+_OFTEN = 3  # so often an angle must come back for its parts to pay
+_UNITS = _Motion(*np.eye(3)[:, :, np.newaxis])
 
 
 def reactions(
@@ -46,77 +65,120 @@ def reactions(
     0.0
     """
     theta, omega, alpha = (np.asarray(q, dtype=np.float64) for q in (theta, omega, alpha))
+    samples = _Motion(omega**2, alpha, np.ones(1))
+    once, which = one_period(theta, scene.period)
+    by_parts = len(theta) > _OFTEN * len(once)
+    once, motion = (once, _UNITS) if by_parts else (theta, samples)
+    cylinders = [_cylinder(scene, pressure, once, motion, c) for c in scene.cylinders]
+    crank = _crank(scene, once, motion, cylinders)
+    variables = {name: np.empty((1, len(theta))) for name in crank}
+    variables |= {name: np.empty((len(cylinders), len(theta))) for name in cylinders[0].variables}
+    for name, rows in variables.items():
+        columns = [crank[name]] if name in crank else [c.variables[name] for c in cylinders]
+        for row, values in zip(rows, columns, strict=True):
+            if by_parts and values.ndim > 1:
+                _put_together(values, which, samples, row)
+            else:
+                row[:] = values[which] if by_parts else values
+    variables["piston_velocity"] *= omega
+    return {name: rows[0] if name in crank else rows.T for name, rows in variables.items()}
+
+
+def _put_together(parts: Array, which: NDArray[np.intp], at: _Motion, variable: Array) -> None:
+    """A variable at the samples from its parts of omega^2, alpha and 1 at every angle."""
+    if kernels.are_compiled:
+        readout.together(parts, which, at.square, at.alpha, variable)
+    else:
+        np.multiply(parts[0].take(which), at.square, out=variable)
+        variable += parts[1].take(which) * at.alpha
+        variable += parts[2].take(which)
+
+
+class _Cylinder(NamedTuple):
+    """The variables of one cylinder by name, for its piston's velocity that per speed; what it
+    adds to the balance of the crank, in the engine's frame."""
+
+    variables: dict[str, Array]
+    pull_x: Array
+    pull_y: Array
+    kinetic_energy: Array
+
+
+def _cylinder(
+    scene: Scene,
+    pressure: PeriodicPressure | None,
+    theta: Array,
+    motion: _Motion,
+    cylinder: Cylinder,
+) -> _Cylinder:
     crank, rod, piston = scene.crank, scene.rod, scene.piston
     area = piston.gas_area or 0.0
     r, l, a = crank.radius, rod.length, rod.center_of_mass
-    top = top_position(r, l, piston.offset)
-    square = omega**2
+    square, alpha, one = motion
+    gx, gy = gravity_vector(scene, cylinder.bank)
+    phi = theta + cylinder.phase
+    loop = close_loop(phi, r, l, piston.offset)
+    g = rod_centre(loop, r, a)
+    sin_b, cos_b = loop.sin_beta, loop.cos_beta
+    gas = pressure(phi) if pressure is not None else np.zeros_like(phi)
 
-    first_moment = crank.mass * crank.center_of_mass
-    once, which = one_period(theta, scene.period)
-    sin_theta, cos_theta = np.sin(once)[which], np.cos(once)[which]
-    gx, gy = gravity_vector(scene)
-    bearing_x = first_moment * (-cos_theta * square - sin_theta * alpha) - crank.mass * gx
-    bearing_y = first_moment * (-sin_theta * square + cos_theta * alpha) - crank.mass * gy
-    torque = crank.inertia * alpha - first_moment * (cos_theta * gy - sin_theta * gx)
-    kinetic = 0.5 * crank.inertia * square
-    columns: list[dict[str, Array]] = []
-
-    for cylinder in scene.cylinders:
-        gx, gy = gravity_vector(scene, cylinder.bank)
-        phi = once + cylinder.phase
-        closed = close_loop(phi, r, l, piston.offset)
-        loop, g = closed.at(which), rod_centre(closed, r, a).at(which)
-        sin_b, cos_b = loop.sin_beta, loop.cos_beta
-        x_tt = loop.x_2 * square + loop.x_1 * alpha
-        g_xtt = g.x_2 * square + g.x_1 * alpha
-        g_ytt = g.y_2 * square + g.y_1 * alpha
-        beta_tt = loop.beta_2 * square + loop.beta_1 * alpha
-        gas = (pressure(phi) if pressure is not None else np.zeros_like(phi))[which]
-
-        pin_x = piston.mass * (x_tt - gx) + gas * area
-        weight = rod.mass * (cos_b * (g_ytt - gy) + sin_b * (g_xtt - gx))
-        pin_y = ((rod.moment_of_inertia * beta_tt - a * weight) / l - pin_x * sin_b) / cos_b
-        throw_x = rod.mass * (g_xtt - gx) + pin_x
-        throw_y = rod.mass * (g_ytt - gy) + pin_y
-        crank_torque = r * (loop.sin_phi * throw_x - loop.cos_phi * throw_y)
-
-        torque = torque - crank_torque
-        cos_bank, sin_bank = np.cos(cylinder.bank), np.sin(cylinder.bank)
-        bearing_x = bearing_x + cos_bank * throw_x - sin_bank * throw_y
-        bearing_y = bearing_y + sin_bank * throw_x + cos_bank * throw_y
-        kinetic = kinetic + 0.5 * square * (
-            piston.mass * loop.x_1**2
-            + rod.mass * (g.x_1**2 + g.y_1**2)
-            + rod.moment_of_inertia * loop.beta_1**2
-        )
-        columns.append(
-            {
-                "rod_angle": loop.beta,
-                "piston_position": loop.x,
-                "piston_displacement": top - loop.x,
-                "piston_velocity": -loop.x_1 * omega,
-                "piston_acceleration": -x_tt,
-                "gas_pressure": gas,
-                "gas_force": gas * area,
-                "side_force": -pin_y - piston.mass * gy,
-                "piston_pin_force_x": pin_x,
-                "piston_pin_force_y": pin_y,
-                "crank_pin_force_x": throw_x,
-                "crank_pin_force_y": throw_y,
-                "crank_torque": crank_torque,
-            }
-        )
-    whole = {
-        "external_torque": torque,
-        "main_bearing_force_x": bearing_x,
-        "main_bearing_force_y": bearing_y,
-        "kinetic_energy": kinetic,
+    x_tt = loop.x_2 * square + loop.x_1 * alpha
+    beta_tt = loop.beta_2 * square + loop.beta_1 * alpha
+    felt_x = g.x_2 * square + g.x_1 * alpha - gx * one  # the rod's acceleration minus gravity
+    felt_y = g.y_2 * square + g.y_1 * alpha - gy * one
+    pin_x = piston.mass * (x_tt - gx * one) + gas * area * one
+    weight = rod.mass * (cos_b * felt_y + sin_b * felt_x)
+    pin_y = ((rod.moment_of_inertia * beta_tt - a * weight) / l - pin_x * sin_b) / cos_b
+    throw_x = rod.mass * felt_x + pin_x
+    throw_y = rod.mass * felt_y + pin_y
+    cos_bank, sin_bank = np.cos(cylinder.bank), np.sin(cylinder.bank)
+    inertia = (
+        piston.mass * loop.x_1**2
+        + rod.mass * (g.x_1**2 + g.y_1**2)
+        + rod.moment_of_inertia * loop.beta_1**2
+    )
+    variables = {
+        "rod_angle": loop.beta,
+        "piston_position": loop.x,
+        "piston_displacement": top_position(r, l, piston.offset) - loop.x,
+        "piston_velocity": -loop.x_1,
+        "piston_acceleration": -x_tt,
+        "gas_pressure": gas,
+        "gas_force": gas * area,
+        "side_force": -pin_y - piston.mass * gy * one,
+        "piston_pin_force_x": pin_x,
+        "piston_pin_force_y": pin_y,
+        "crank_pin_force_x": throw_x,
+        "crank_pin_force_y": throw_y,
+        "crank_torque": r * (loop.sin_phi * throw_x - loop.cos_phi * throw_y),
     }
-    parts = {name: _side_by_side([c[name] for c in columns]) for name in columns[0]}
-    return whole | parts
+    return _Cylinder(
+        variables,
+        cos_bank * throw_x - sin_bank * throw_y,
+        sin_bank * throw_x + cos_bank * throw_y,
+        0.5 * inertia * square,
+    )
 
 
-def _side_by_side(columns: list[Array]) -> Array:
-    """Shape (n, cylinders); of one cylinder nothing is copied."""
-    return columns[0][:, np.newaxis] if len(columns) == 1 else np.array(columns).T
+def _crank(
+    scene: Scene, theta: Array, motion: _Motion, cylinders: list[_Cylinder]
+) -> dict[str, Array]:
+    crank, (square, alpha, one) = scene.crank, motion
+    first_moment = crank.mass * crank.center_of_mass
+    sin_theta, cos_theta = np.sin(theta), np.cos(theta)
+    gx, gy = gravity_vector(scene)
+    x_tt = -cos_theta * square - sin_theta * alpha
+    y_tt = -sin_theta * square + cos_theta * alpha
+    weight = first_moment * (cos_theta * gy - sin_theta * gx)
+    return {
+        "external_torque": crank.inertia * alpha
+        - weight * one
+        - sum(c.variables["crank_torque"] for c in cylinders),
+        "main_bearing_force_x": first_moment * x_tt
+        - crank.mass * gx * one
+        + sum(c.pull_x for c in cylinders),
+        "main_bearing_force_y": first_moment * y_tt
+        - crank.mass * gy * one
+        + sum(c.pull_y for c in cylinders),
+        "kinetic_energy": 0.5 * crank.inertia * square + sum(c.kinetic_energy for c in cylinders),
+    }

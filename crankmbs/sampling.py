@@ -93,7 +93,7 @@ def plan_of(scene: Scene) -> Plan:
     return Plan(start, every, in_time, until, until_time, folds=folds)
 
 
-def one_period(theta: Array, period: float) -> tuple[Array, slice | NDArray[np.intp]]:
+def one_period(theta: Array, period: float) -> tuple[Array, NDArray[np.intp]]:
     """The angles of one period, and for every angle which of them it is, whole periods apart.
 
     What depends on the angle alone is so computed once, and not in every cycle. Evenly spaced
@@ -108,12 +108,12 @@ def one_period(theta: Array, period: float) -> tuple[Array, slice | NDArray[np.i
     step = abs(float(theta[1] - theta[0])) if n > 1 else 0.0
     count = round(min(period / step, n)) if step > 0.0 else n
     if count == n:
-        return theta, slice(None)
+        return theta, np.arange(n)
     close = 4 * np.finfo(float).eps * float(np.max(np.abs(theta), initial=0.0))
     apart = np.abs(np.abs(theta[count:] - theta[: n - count]) - period) > close
     repeating = count + int(np.argmax(apart)) if apart.any() else n
     if repeating == count:
-        return theta, slice(None)
+        return theta, np.arange(n)
     which = np.append(np.arange(repeating) % count, np.arange(count, count + n - repeating))
     return np.append(theta[:count], theta[repeating:]), which
 

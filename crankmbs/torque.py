@@ -45,6 +45,11 @@ class Branch:
         return np.asarray(self.c0 + self.ct * np.asarray(t) + (self.c1 + self.c2 * omega) * omega)
 
     @property
+    def coefficients(self) -> tuple[float, float, float, float]:
+        """c0, ct, c1 and c2."""
+        return self.c0, self.ct, self.c1, self.c2
+
+    @property
     def is_affine_in_energy(self) -> bool:
         """Whether the torque is c0 + c2 omega^2: then dE/dtheta is linear in E."""
         return self.ct == 0.0 and self.c1 == 0.0

@@ -7,7 +7,7 @@ import pytest
 from make_random_references import SCENES, stored
 from references import true_errors
 
-from crankmbs import kernels, simulate, stepper
+from crankmbs import kernels, readout, simulate, stepper
 from validation import judge_scene, many
 from validation.__main__ import main
 from validation.random_scenes import random_scene
@@ -68,7 +68,8 @@ def test_the_long_run_says_what_it_skips(monkeypatch, capsys):
 def test_nothing_is_left_to_compile_while_patience_runs():
     judge_scene.judge_seed(0, [], 60.0)
     assert kernels.are_compiled
-    for loop in (kernels.affine, kernels.newton, kernels.at_angles, stepper.travel):
+    loops = kernels.affine, kernels.newton, readout.read, readout.motion, readout.together
+    for loop in (*loops, stepper.travel):
         assert loop.signatures
 
 

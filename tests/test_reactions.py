@@ -1,11 +1,12 @@
 """Newton-Euler body by body against all bodies' equations at once, at 40 digits."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from crankmbs import load_scene
+from crankmbs import kernels, load_scene
 from crankmbs.pressure import pressure_of
 from crankmbs.reactions import reactions
 from validation.adapter import reference_variables
@@ -45,6 +46,19 @@ def test_every_variable_of_random_machines(seed):
 @pytest.mark.parametrize("name", ["yi_diesel", "compressor", "v_twin", "coasting", "torque_driven"])
 def test_every_variable_of_shipped_machines(name):
     scene, state = load_scene(name), motion(1)
+    worst = misfit(scene, state, reference_variables(scene, *state, DIGITS))
+    assert max(worst.values()) < 1e-12, worst
+
+
+@pytest.mark.parametrize("compiled", [False, True])
+def test_angles_that_come_back(compiled, monkeypatch):
+    """Every force from its parts of omega^2, alpha and 1 at one angle of the period."""
+    scene = load_scene("v_twin")
+    assert kernels.pay(math.inf)
+    monkeypatch.setattr(kernels, "are_compiled", compiled)
+    _, omega, alpha = motion(3, 24)
+    theta = 0.3 + scene.period / 6 * np.arange(24)
+    state = theta, omega, alpha
     worst = misfit(scene, state, reference_variables(scene, *state, DIGITS))
     assert max(worst.values()) < 1e-12, worst
 

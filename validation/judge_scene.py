@@ -60,7 +60,7 @@ def judge_seed(seed: int, formulations: Sequence[str], patience: float) -> list[
 def _compile() -> None:
     """Compile what runs call: numba must not be interrupted, and a scene not wait for it."""
     kernels.pay(math.inf)
-    run = Run(until=Extent(value=0.5, unit="rad"), every=Extent(value=0.1, unit="rad"))
+    run = Run(until=Extent(value=5.0, unit="cycle"), every=Extent(value=math.pi / 6, unit="rad"))
     short = replace(load_scene("coasting"), run=run)
     for torque in ((), (Viscous(coefficient=1e-3),)):
         for formulation in ("crank_angle", "minimal"):

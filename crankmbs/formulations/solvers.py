@@ -62,14 +62,12 @@ def solve_affine(
     again = np.append(np.arange(m - 1), once)
     again[once:-1] = 1 + (again[once:-1] - 1) % n
     inertia, push = strip.inertia[which], strip.torque[which] + branch.c0
-    rate = 2.0 * branch.c2 / inertia
-    maps = grid.rule.maps(begin.sense * strip.width[which], push, rate)
+    rate, signed = 2.0 * branch.c2 / inertia, begin.sense * strip.width[which]
     if compiled:
-        cells, weights = Cells.empty(strip), grid.rule.weights
-        loads, ends = (push, rate, inertia), begin[1:]
-        return cells.first(
-            kernels.affine(again, maps[:], loads, ends, strip.width, weights, *cells)
-        )
+        cells, rule = Cells.empty(strip), (grid.rule.matrix, grid.rule.weights)
+        loads, ends = (signed, push, rate, inertia), begin[1:]
+        return cells.first(kernels.affine(again, loads, rule, ends, strip.width, *cells))
+    maps = grid.rule.maps(signed, push, rate)
     edges, energy = _chain(Maps(*(part[again] for part in maps)), begin.energy)
     slowness = np.sqrt(0.5 * strip.inertia / energy)
     time = _clock(begin.time, strip.width * (slowness @ grid.rule.weights))
@@ -88,11 +86,7 @@ def solve_newton(
         bounds = (t_end, branch.omega_low, branch.omega_high)
         tables = (strip.width, strip.inertia, strip.torque)
         at, gauss = (start, t0, sense), (rule.matrix, rule.weights)
-        return cells.first(
-            kernels.newton(
-                (branch.c0, branch.ct, branch.c1, branch.c2), bounds, at, gauss, tables, *cells
-            )
-        )
+        return cells.first(kernels.newton(branch.coefficients, bounds, at, gauss, tables, *cells))
     energy = np.full(strip.inertia.shape, start)
     t = np.full(strip.inertia.shape, t0)
     slowness = np.sqrt(0.5 * strip.inertia / energy)

@@ -42,9 +42,7 @@ class Equation:
     @property
     def system(self) -> System:
         """The same for `crankmbs.stepper`."""
-        b = self.branch
-        loads = (b.c0, b.ct, b.c1, b.c2)
-        return self.reduced.machine, self.between.pieces, loads
+        return self.reduced.machine, self.between.pieces, self.branch.coefficients
 
     def outside(self, t: float, omega: float) -> float:
         """Torque from outside [N m]."""

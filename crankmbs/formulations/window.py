@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from crankmbs import kernels
+from crankmbs import kernels, readout
 from crankmbs.cells import Grid, Strip, largest_of_row
 from crankmbs.formulations.base import NOWHERE, Array, Samples, State
 from crankmbs.inertia import reduce
@@ -49,20 +49,11 @@ class Window:
     def sample(self, plan: Plan) -> Samples:
         """The samples of the plan after the beginning, up to the end and with it."""
         if plan.in_time:
-            t = plan.between(self.begin.time, self.end.time)
-            k, x = self._locate_time(t)
-            return self._samples(k, self._theta(k, x), t, self._energy(k, x))
+            k, x, t, energy = self._read(plan.between(self.begin.time, self.end.time), in_time=True)
+            return self._samples(k, self._theta(k, x), t, energy)
         theta = plan.between(self.begin.theta, self.end.theta)
         u = self.sense * (theta - self.begin.theta)
-        if kernels.are_compiled:
-            k, (t, energy) = np.empty(len(u), np.intp), np.empty((2, len(u)))
-            at_edges, at_nodes = (self.energy, self.time), (self.torque, self.slowness)
-            solved = self.edges, self.strip.width, *at_edges, *at_nodes
-            kernels.at_angles(u, self.sense, self.grid.rule.to_legendre, solved, k, t, energy)
-        else:
-            k = np.clip(np.searchsorted(self.edges, u, side="left") - 1, 0, len(self.torque) - 1)
-            x = (u - self.edges[k]) / self.strip.width[k]
-            t, energy = self._time(k, x), self._energy(k, x)
+        k, _, t, energy = self._read(u, in_time=False)
         return self._samples(k, theta, t, energy)
 
     def last(self) -> Samples:
@@ -136,7 +127,7 @@ class Window:
         at_bound = math.isfinite(bound) and abs(whole - bound) <= 1e-12 * max(1.0, abs(bound))
         stops = [(self.stop, nowhere._replace(theta=bound) if at_bound else nowhere)]
         if self.time[-1] >= t_end:
-            k, x = self._locate_time(np.array([t_end]))
+            k, x, *_ = self._read(np.array([t_end]), in_time=True)
             stops.append(((int(k[0]), float(x[0])), nowhere._replace(time=t_end)))
         for limit, above in ((self.branch.omega_low, False), (self.branch.omega_high, True)):
             if math.isfinite(limit) and limit * self.sense > 0.0:
@@ -199,24 +190,42 @@ class Window:
         turned = self.edges[k] + x * self.strip.width[k]
         return np.asarray(self.begin.theta + self.sense * turned)
 
-    def _locate_time(self, t: Array) -> tuple[Index, Array]:
-        k = np.clip(np.searchsorted(self.time, t, side="left") - 1, 0, len(self.torque) - 1)
+    def _read(self, given: Array, *, in_time: bool) -> tuple[Index, Array, Array, Array]:
+        """Cell, position in it, time and energy at increasing times, or angles turned."""
+        if kernels.are_compiled:
+            k, (x, t, energy) = np.empty(len(given), np.intp), np.empty((3, len(given)))
+            at_edges, at_nodes = (self.energy, self.time), (self.torque, self.slowness)
+            solved = self.edges, self.strip.width, *at_edges, *at_nodes
+            to_legendre = self.grid.rule.to_legendre
+            readout.read(given, in_time, self.sense, to_legendre, solved, k, x, t, energy)
+            return k, x, t, energy
+        passed = self.time if in_time else self.edges
+        k = np.clip(np.searchsorted(passed, given, side="left") - 1, 0, len(self.torque) - 1)
+        if not in_time:
+            x = (given - self.edges[k]) / self.strip.width[k]
+            return k, x, self._time(k, x), self._energy(k, x)
         slowness, width = self.slowness[k], self.strip.width[k]
 
         def elapsed(x: Array) -> tuple[Array, Array]:
             spent, slope = self.grid.rule.between(slowness, x)
             return self.time[k] + width * spent, width * slope
 
-        return k, invert_monotone(elapsed, t, np.zeros_like(t), np.ones_like(t))
+        x = invert_monotone(elapsed, given, np.zeros_like(given), np.ones_like(given))
+        return k, x, given, self._energy(k, x)
 
     def _samples(self, k: Index, theta: Array, t: Array, energy: Array) -> Samples:
         """Samples in the cells k."""
         once, which = one_period(theta, float(self.grid.edges[-1]))
         of_angle = reduce(self.grid.scene, self.grid.pressure, once)
-        inertia, slope, torque = (part[which] for part in of_angle)
-        omega = self.sense * np.sqrt(2.0 * np.maximum(energy, 0.0) / inertia)
-        outside = self.branch(t, omega)
-        alpha = (torque + outside - 0.5 * slope * omega**2) / inertia
+        if kernels.are_compiled:
+            omega, outside, alpha = np.empty((3, len(theta)))
+            loads = self.branch.coefficients
+            readout.motion(which, of_angle, self.sense, loads, t, energy, omega, outside, alpha)
+        else:
+            inertia, slope, torque = (part[which] for part in of_angle)
+            omega = self.sense * np.sqrt(2.0 * np.maximum(energy, 0.0) / inertia)
+            outside = self.branch(t, omega)
+            alpha = (torque + outside - 0.5 * slope * omega**2) / inertia
         residual = self.begin.residual - self.missed[k]
         return Samples(t, theta, omega, alpha, residual, {"external_torque": outside})
 
