@@ -126,14 +126,17 @@ class Grid:
         return inertia, torque
 
 
-def grid_of(scene: Scene, pressure: PeriodicPressure | None, rule: Rule) -> Grid:
-    """The coarsest grid of a scene: edges at the pressure's knots, no cell wider than 6 degrees."""
+def grid_of(
+    scene: Scene, pressure: PeriodicPressure | None, rule: Rule, widest: float = _WIDEST
+) -> Grid:
+    """The coarsest grid of a scene: edges at the pressure's knots, no cell wider than ``widest``
+    [rad]."""
     knots = crank_angle_knots(scene, pressure)
     marks = np.unique(np.concatenate([[0.0], knots, [scene.period]]))
     marks = marks[np.append(True, np.diff(marks) > _SLIVER)]
     marks[-1] = scene.period
     grid = Grid(scene, pressure, marks, rule)
-    return grid.split(np.ceil(np.diff(marks) / _WIDEST - 1e-9).astype(np.intp))
+    return grid.split(np.ceil(np.diff(marks) / widest - 1e-9).astype(np.intp))
 
 
 def largest_of_row(table: Array) -> Array:

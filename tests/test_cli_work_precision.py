@@ -46,7 +46,13 @@ def test_the_command_prints_tables_and_writes_a_file_and_a_figure(tmp_path):
     outcome = measured(scene, "--out", tmp_path / "out")
     assert outcome.exit_code == 0, outcome.output
     text = outcome.stdout.splitlines()
-    for name in ("crank_angle", "crank_angle, end only", "minimal", "multibody"):
+    for name in (
+        "crank_angle",
+        "crank_angle, end only",
+        "crank_angle, kernel",
+        "minimal",
+        "multibody",
+    ):
         assert len([line for line in text if line.startswith(f"{name} ")]) >= 2
     (heading,) = (line for line in text if line.startswith("relative error "))
     for name in ("stated", END, MOTION, *REACTIONS, "time [ms]", "runs", "evaluations"):

@@ -80,7 +80,8 @@ def _draw(ax: Axes, outcome: WorkPrecision, name: str, styles: dict[str, dict[st
 
 
 def _styles(outcome: WorkPrecision) -> dict[str, dict[str, Any]]:
-    """Formulations in strong lines, dashed for the end only; peers thin, each with its mark."""
+    """Formulations in strong lines, dashed for the end only, dotted for a kernel
+    alone; peers thin, each with its mark."""
     styles: dict[str, dict[str, Any]] = {}
     peers = 0
     for contender, rows in outcome.contenders.items():
@@ -94,7 +95,7 @@ def _styles(outcome: WorkPrecision) -> dict[str, dict[str, Any]]:
                 "color": _OWN.get(name, _OWN["crank_angle"]),
                 "marker": "o",
                 "linewidth": 2.5,
-                "linestyle": "--" if part else "-",
+                "linestyle": {"": "-", " end only": "--"}.get(part, ":"),
                 "markerfacecolor": "white" if part else None,
             }
     return styles

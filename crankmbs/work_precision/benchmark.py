@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from crankmbs.scene import Scene
 from crankmbs.work_precision.formulations import formulations_of
+from crankmbs.work_precision.kernel import kernels_of
 from crankmbs.work_precision.machine import about_machine
 from crankmbs.work_precision.peers import peers_of
 from crankmbs.work_precision.reference import Reference, reference_of
@@ -64,5 +65,6 @@ def work_precision(scene: Scene, *, peers: bool = False) -> WorkPrecision:
     """
     reference = reference_of(scene)
     contenders, absent = peers_of(scene, reference) if peers else ([], [])
-    rows, failed = play((*formulations_of(scene, reference), *contenders), reference.start)
+    own = *formulations_of(scene, reference), *kernels_of(scene, reference)
+    rows, failed = play((*own, *contenders), reference.start)
     return WorkPrecision(reference, rows, (*absent, *failed), about_machine())

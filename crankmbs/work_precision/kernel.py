@@ -1,0 +1,92 @@
+"""The loop over the cells of the crank angle alone: without samples, forces, check and error."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from functools import cache
+
+import numpy as np
+
+from crankmbs import kernels, readout
+from crankmbs.cells import Grid, grid_of
+from crankmbs.collocation import gauss
+from crankmbs.formulations.solvers import Begin, solve_affine
+from crankmbs.inertia import reduce
+from crankmbs.pressure import pressure_of
+from crankmbs.reduced import Reduced
+from crankmbs.scene import Scene
+from crankmbs.schema import DEGREE
+from crankmbs.torque import branch_of
+from crankmbs.work_precision.contender import Answer, Contender
+from crankmbs.work_precision.reference import Reference
+from crankmbs.work_precision.track import Track
+
+__all__ = ["kernels_of"]
+
+_STAGES = 5
+_WIDEST = (90.0, 45.0, 22.5, 12.0, 6.0, 3.0)  # deg
+_MOST_CELLS = 1e5  # what memory holds
+
+
+def kernels_of(scene: Scene, reference: Reference) -> tuple[Contender, ...]:
+    """The affine maps of one period and the loop over all cells, with the tables at hand.
+
+    None where one such loop does not solve the scene: it starts from rest or turns back, its loads
+    depend on time or on the speed otherwise than by its square, it ends early or is very long.
+    """
+    start, end = scene.start, reference.track.end()
+    if start is None or start.speed == 0.0 or reference.result.status != 0:
+        return ()
+    branch = branch_of(scene.torque, 0.0, start.speed, rising=True)
+    one = branch.is_affine_in_energy and math.isinf(branch.t_end)
+    omega = reference.track.omega
+    one = one and bool(np.all(omega * math.copysign(1.0, start.speed) > 0.0))
+    one = one and branch.omega_low <= omega.min() and omega.max() <= branch.omega_high
+    turned = abs(float(end.theta[0]) - start.angle)
+    finest = len(_grid(scene, _WIDEST[-1]).edges)
+    if not (one and turned / scene.period * finest < _MOST_CELLS):
+        return ()
+    loop = cache(lambda widest: _loop(scene, _grid(scene, widest), reference))
+    return (
+        Contender(
+            name="crank_angle, kernel",
+            knob="deg",
+            settings=_WIDEST,
+            run=lambda widest: loop(widest)(),
+            reference=reference.track.end(),
+        ),
+    )
+
+
+def _grid(scene: Scene, widest: float) -> Grid:
+    return grid_of(scene, pressure_of(scene), gauss(_STAGES), widest * DEGREE)
+
+
+def _loop(scene: Scene, grid: Grid, reference: Reference) -> Callable[[], Answer]:
+    """The loop over cells, and the state at the end read from the last one."""
+    assert scene.start is not None
+    kernels.pay(math.inf)
+    theta, omega = scene.start.angle, scene.start.speed
+    sense = math.copysign(1.0, omega)
+    branch = branch_of(scene.torque, 0.0, omega, rising=True)
+    until, until_time = scene.run.until.resolve(scene.period)
+    far = float(reference.track.end().theta[0]) + sense * float(np.max(np.diff(grid.edges)))
+    count = int(abs(far - theta) / float(grid.edges[-1]) * len(grid.edges)) + 2
+    strip = grid.strip(theta, sense, count, far)
+    turned = np.append(0.0, np.cumsum(strip.width))
+    energy = 0.5 * float(reduce(scene, None, theta)[0]) * omega**2
+    begin = Begin(sense, energy, 0.0, until if until_time else math.inf)
+    reduced, given = Reduced(scene, None), np.array([until])
+    no_gas = np.zeros((len(scene.cylinders), 5))
+
+    def run() -> Answer:
+        cells = solve_affine(grid, strip, branch, begin, compiled=True)
+        solved = turned, strip.width, cells.edges, cells.time, cells.torque, cells.slowness
+        k, (x, t, kinetic) = np.empty(1, np.intp), np.empty((3, 1))
+        readout.read(given, until_time, sense, grid.rule.to_legendre, solved, k, x, t, kinetic)
+        at = theta + sense * (turned[k] + x * strip.width[k])
+        speed = sense * math.sqrt(2.0 * float(kinetic[0]) / reduced(float(at[0]), no_gas)[0])
+        return Answer(Track(t, at, np.array([speed])), cells.torque.size)
+
+    return run
