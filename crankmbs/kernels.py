@@ -68,6 +68,8 @@ def kernel(function: F) -> F:
 def affine(
     which: Index,
     loads: tuple[Array, Array, Array, Array],
+    maps: tuple[Array, Array, Array, Array],
+    room: Array,
     rule: tuple[Array, Array],
     ends: tuple[float, float, float],
     width: Array,
@@ -79,16 +81,16 @@ def affine(
     """Solve cells by affine maps, up to the end in time; fill what follows ``width``, count them.
 
     which : row of the loads for every cell; loads : signed width, and push, rate and inertia at the
-    nodes, as in `crankmbs.collocation.Rule.maps`; rule : matrix and weights; ends : energy and time
-    at the start, time at the end
+    nodes, as `crankmbs.collocation.Rule.maps` takes them; maps : filled with what it gives; room :
+    shape (s, s + 2); rule : matrix and weights; ends : energy and time at the start, last time
     """
     signed, push, rate, inertia = loads
     (matrix, weights), (energy, t, t_end) = rule, ends
-    gain, shift = np.ones(push.shape), np.zeros(push.shape)
-    growth, rise = np.zeros((2, len(signed)))
-    system, both = np.empty(matrix.shape), np.empty((len(weights), 2))
+    gain, shift, growth, rise = maps
+    s = len(weights)
+    system, both = room[:, :s], room[:, s:]
     for c in range(len(signed)):
-        h = signed[c]
+        h, growth[c], rise[c] = signed[c], 0.0, 0.0
         for j in range(len(weights)):
             both[j, 0], both[j, 1] = 1.0, 0.0
             for i in range(len(weights)):
@@ -96,7 +98,7 @@ def affine(
                 system[j, i] = (1.0 if i == j else 0.0) - h * matrix[j, i] * rate[c, i]
         _eliminate(system, both)
         for j in range(len(weights)):
-            gain[c, j], shift[c, j] = both[j]
+            gain[c, j], shift[c, j] = both[j, 0], both[j, 1]
             growth[c] += h * weights[j] * rate[c, j] * gain[c, j]
             rise[c] += h * weights[j] * (push[c, j] + rate[c, j] * shift[c, j])
     edges[0], time[0] = energy, t
@@ -213,7 +215,9 @@ def _eliminate(system: Array, right: Array) -> None:
     ``right``."""
     n = len(right)
     for j in range(n):
-        p = j + np.argmax(np.abs(system[j:, j]))
+        p = j
+        for i in range(j + 1, n):
+            p = i if abs(system[i, j]) > abs(system[p, j]) else p
         for k in range(right.shape[1]):
             right[j, k], right[p, k] = right[p, k], right[j, k]
         for i in range(j, n):

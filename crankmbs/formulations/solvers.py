@@ -66,7 +66,11 @@ def solve_affine(
     if compiled:
         cells, rule = Cells.empty(strip), (grid.rule.matrix, grid.rule.weights)
         loads, ends = (signed, push, rate, inertia), begin[1:]
-        return cells.first(kernels.affine(again, loads, rule, ends, strip.width, *cells))
+        maps = (*np.empty((2, *push.shape)), *np.empty((2, len(push))))
+        room = np.empty((push.shape[1], push.shape[1] + 2))
+        return cells.first(
+            kernels.affine(again, loads, maps, room, rule, ends, strip.width, *cells)
+        )
     maps = grid.rule.maps(signed, push, rate)
     edges, energy = _chain(Maps(*(part[again] for part in maps)), begin.energy)
     slowness = np.sqrt(0.5 * strip.inertia / energy)
