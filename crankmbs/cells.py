@@ -31,17 +31,20 @@ class Strip:
     """Consecutive cells in the sense of rotation.
 
     cell : shape (m,), their numbers in the grid; width : shape (m,) [rad]
+    turned : shape (m + 1,) [rad], angle from the beginning to every edge
     inertia, torque : shape (m, s), J [kg m2] and the torque of gas and gravity [N m] at the nodes
     """
 
     cell: NDArray[np.intp]
     width: Array
+    turned: Array
     inertia: Array
     torque: Array
 
     def first(self, m: int) -> Strip:
         """The first m cells."""
-        return Strip(self.cell[:m], self.width[:m], self.inertia[:m], self.torque[:m])
+        of_cells = (self.inertia[:m], self.torque[:m])
+        return Strip(self.cell[:m], self.width[:m], self.turned[: m + 1], *of_cells)
 
 
 @dataclass(frozen=True)
@@ -102,23 +105,27 @@ class Grid:
         first = self.cell_at(theta, sense)
         base = math.floor((theta + sense * _SLIVER) / period) * period
         local = theta - base
-        cell = (first + int(sense) * np.arange(count)) % n
+        # not the sum of so many widths, which every pass over the same cells would round alike
+        turns, cell = np.divmod(first + int(sense) * np.arange(count + 1), n)
+        turned = sense * (turns * period + self.edges[cell + (sense < 0.0)] - local)
+        turned[0] = 0.0
+        cell, reach = cell[:count], abs(bound - theta)
         whole = np.diff(self.edges)
         width = whole[cell]
-        width[0] = self.edges[first + 1] - local if sense > 0.0 else local - self.edges[first]
-        turned = np.cumsum(width)
-        last = int(np.searchsorted(turned, abs(bound - theta) - _SLIVER)) + 1
-        cell, width = cell[:last], width[:last].copy()
-        if turned[len(cell) - 1] > abs(bound - theta):
-            width[-1] -= turned[len(cell) - 1] - abs(bound - theta)
+        width[0] = turned[1]
+        last = int(np.searchsorted(turned[1:], reach - _SLIVER)) + 1
+        cell, width, turned = cell[:last], width[:last].copy(), turned[: last + 1]
+        if turned[-1] > reach:
+            turned[-1] = reach
+            width[-1] = reach - turned[-2]
         inertia, torque = (table.take(cell, axis=0) for table in self.tables)
         if sense < 0.0:
             inertia, torque = inertia[:, ::-1].copy(), torque[:, ::-1].copy()
         parts = [k for k in {0, len(cell) - 1} if width[k] != whole[cell[k]]]
         if parts:
-            start = local + sense * np.append(0.0, turned)[parts]
+            start = local + sense * turned[parts]
             inertia[parts], torque[parts] = self._tabulate(start, sense * width[parts])
-        return Strip(cell, width, inertia, torque)
+        return Strip(cell, width, turned, inertia, torque)
 
     def _tabulate(self, start: Array, width: Array) -> tuple[Array, Array]:
         theta = start[:, None] + width[:, None] * self.rule.nodes

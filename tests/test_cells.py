@@ -1,5 +1,8 @@
 """Cells of the crank angle: no knot inside, tables true, the cell ahead in both directions."""
 
+from fractions import Fraction
+from itertools import accumulate
+
 import numpy as np
 import pytest
 
@@ -52,3 +55,21 @@ def test_without_gas():
     coasting = load_scene("coasting")
     grid = grid_of(coasting, None, gauss(3))
     np.testing.assert_allclose(np.diff(grid.edges), 6.0 * DEGREE, rtol=1e-9)
+
+
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_the_angle_turned_is_that_of_the_cells_however_many(sense):
+    """A sum of their widths would be off by a hundred roundings, the same in every pass."""
+    strip = GRID.strip(0.37, sense, 4000, sense * 1e9)
+    edges = [Fraction(float(edge)) for edge in GRID.edges]
+    widths = [edges[k + 1] - edges[k] for k in strip.cell[1:].tolist()]
+    exact = list(accumulate(widths, initial=Fraction(float(strip.width[0]))))
+    off = [abs(float(Fraction(float(u)) - e)) for u, e in zip(strip.turned[1:], exact, strict=True)]
+    assert max(off) <= 2.0 * np.spacing(strip.turned[-1])
+
+
+def test_a_strip_ends_at_its_bound():
+    strip = GRID.strip(0.37, 1.0, 4000, 40.0)
+    assert strip.turned[-1] == 40.0 - 0.37
+    assert strip.width[-1] == strip.turned[-1] - strip.turned[-2]
+    assert len(strip.width) == len(strip.turned) - 1

@@ -187,7 +187,7 @@ def _solve(
         branch,
         sense,
         state,
-        np.concatenate([[0.0], np.cumsum(strip.width[:m])]),
+        strip.turned[: m + 1],
         edges[: m + 1],
         time[: m + 1],
         torque[:m],
