@@ -112,8 +112,9 @@ def solve_newton(
 
 
 def _clock(t0: float, spent: Array) -> Array:
-    """Time at the edges from the times spent in the cells."""
-    return t0 + np.concatenate([[0.0], np.cumsum(spent)])
+    """Time at the edges from the times spent in the cells; summed in more bits where there are:
+    passes over the same cells would round alike, and not see it in their difference."""
+    return np.asarray(t0 + np.append(0.0, np.cumsum(spent, dtype=np.longdouble)), dtype=np.float64)
 
 
 def _chain(maps: Maps, start: float) -> tuple[Array, Array]:
