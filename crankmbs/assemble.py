@@ -70,7 +70,8 @@ def assemble(scene: Scene, pressure: PeriodicPressure | None, solution: Solution
     formulation states its own errors they are taken. At a few samples the differences of angle,
     speed and acceleration may cancel in a variable by chance: there what each makes is added up.
     So may two passes agree in the angle by chance at an end in time, the only sample whose angle
-    errs where the others are at angles: it is taken to err as much as in the last revolution.
+    errs where the others are at angles: it is taken to err as it does, or as much as in the last
+    revolution, whichever makes more.
     """
     variables = _variables(scene, pressure, solution.samples)
     peaks = {name: _peak(values) for name, values in variables.items()}
@@ -80,13 +81,9 @@ def assemble(scene: Scene, pressure: PeriodicPressure | None, solution: Solution
     late = better.time - solution.samples.time
     ahead = better.theta - solution.samples.theta - solution.samples.omega * late
     rounding = ANGLE_ROUNDING * _peak(better.theta)
-    theta = better.theta + rounding
-    if late.any() and late[-1] == 0.0:
-        recent = ahead[np.abs(better.theta - better.theta[-1]) <= 2.0 * math.pi]
-        theta[-1] += math.copysign(_peak(recent) - abs(ahead[-1]), ahead[-1])
     rounded = Samples(
         better.time,
-        theta,
+        better.theta + rounding,
         better.omega + _speed_change(better, rounding),
         better.alpha,
         better.energy_residual,
@@ -105,6 +102,15 @@ def assemble(scene: Scene, pressure: PeriodicPressure | None, solution: Solution
     }
     # a free crank's acceleration at the rounded angle: where the torque needed is the one there
     missed = _peak(check["external_torque"] - needed)
+    if late.any() and late[-1] == 0.0:
+        recent = ahead[np.abs(better.theta - better.theta[-1]) <= 2.0 * math.pi]
+        more = math.copysign(_peak(recent) - abs(ahead[-1]), ahead[-1])
+        last = rounded.select(np.array([-1]))
+        end = _variables(scene, pressure, replace(last, theta=last.theta + more))
+        missed = max(missed, _peak(check["external_torque"][-1:] - end["external_torque"]))
+        for name in errors.keys() - better.own.keys():
+            most = _peak(variables[name][-1:] - end[name]) + _ROUNDING * peaks[name]
+            errors[name] = max(errors[name], most)
     least = np.min(reduce(scene, None, one_period(better.theta, scene.period)[0])[0])
     errors["crank_acceleration"] += missed / float(least)
     errors["crank_angle"] = _peak(ahead) + _ROUNDING * peaks["crank_angle"]

@@ -64,6 +64,20 @@ def test_errors_that_cancel_at_one_sample_are_stated():
     assert assembled.errors["kinetic_energy"] == pytest.approx(2.0 * each, rel=1e-2)
 
 
+def test_what_differs_at_an_end_in_time_is_stated():
+    """Also where an angle that errs as much as before would cancel what the speed there makes."""
+    ahead = 1e-6
+    late = np.append(np.full(10, -ahead / 100.0), 0.0)
+    inertia, slope, _ = reduce(SCENE, None, samples().theta[-1])
+    slower = -0.5 * slope * OMEGA[-1] * ahead / inertia
+    better = samples(time_off=late)
+    better.theta[-1] += 1e-9 * ahead
+    better = replace(better, omega=np.append(OMEGA[:-1], OMEGA[-1] + slower))
+    assembled = assemble(SCENE, None, solution(better))
+    made = float(inertia * OMEGA[-1] * abs(slower))
+    assert assembled.errors["kinetic_energy"] == pytest.approx(made, rel=1e-2)
+
+
 def test_the_crank_angle_errs_at_equal_time():
     """A sample on a crank angle that is passed too late is an error of time and of angle."""
     assembled = assemble(SCENE, None, solution(samples(time_off=1e-6)))
