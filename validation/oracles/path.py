@@ -77,6 +77,7 @@ class _Step(NamedTuple):
     length: Number
     reached: Number
     series: Array
+    place: Place
 
 
 class Path:
@@ -131,17 +132,20 @@ class Path:
         raise AssertionError("the steps have no end")
 
     def _samples(self, rows: list[int], since: Array) -> Motion:
-        """The motion in the steps `rows`, so long [s] after their starts."""
-        start = np.array([self._kept[row].start for row in rows])
+        """The motion in the steps `rows`, so long [s] after their starts.
+
+        alpha is that of the equations there: a series derived twice errs by far more at its end.
+        """
+        time = np.array([self._kept[row].start for row in rows]) + since
         theta = np.stack([self._kept[row].series for row in rows], axis=1)
-        omega = derivative(theta)
-        return Motion(
-            start + since,
-            evaluate(theta, since),
-            evaluate(omega, since),
-            evaluate(derivative(omega), since),
-            rows[-1] + 1,
-        )
+        omega = evaluate(derivative(theta), since)
+        theta = evaluate(theta, since)
+        places = [self._kept[row].place for row in rows]
+        alpha = [
+            self._stepper.alpha(State(t, angle, speed, [place.angle], [place.speed]), place)
+            for t, angle, speed, place in zip(time, theta, omega, places, strict=True)
+        ]
+        return Motion(time, theta, omega, np.array(alpha, dtype=omega.dtype), rows[-1] + 1)
 
     def _steps(self) -> Iterator[_Step]:
         """All steps from the first on, without end."""
@@ -177,7 +181,7 @@ class Path:
             idle = idle + 1 if after.time == state.time else 0
             if idle > STUCK:
                 raise ArithmeticError(f"no progress at t = {float(state.time)} s")
-            yield _Step(state.time, ahead.length, after.theta, ahead.series)
+            yield _Step(state.time, ahead.length, after.theta, ahead.series, place)
             state = after
 
     def _enter(self, state: State) -> Place:
