@@ -136,14 +136,32 @@ class Grid:
 def grid_of(
     scene: Scene, pressure: PeriodicPressure | None, rule: Rule, widest: float = _WIDEST
 ) -> Grid:
-    """The coarsest grid of a scene: edges at the pressure's knots, no cell wider than ``widest``
-    [rad]."""
+    """The coarsest grid of a scene: edges at the pressure's knots and around folds that a rod just
+    escapes, no cell wider than ``widest`` [rad]."""
     knots = crank_angle_knots(scene, pressure)
-    marks = np.unique(np.concatenate([[0.0], knots, [scene.period]]))
+    marks = np.unique(np.concatenate([[0.0], knots, _near_folds(scene), [scene.period]]))
     marks = marks[np.append(True, np.diff(marks) > _SLIVER)]
     marks[-1] = scene.period
     grid = Grid(scene, pressure, marks, rule)
     return grid.split(np.ceil(np.diff(marks) / widest - 1e-9).astype(np.intp))
+
+
+def _near_folds(scene: Scene) -> Array:
+    """Crank angles [rad] around those where a rod is hardly longer than it must be, ever farther.
+
+    The rod swings over within ``width`` of there, where its formulas have their singularity beside
+    the real angles: in wider cells two rules err alike, if they see it at all.
+    """
+    radius, spare = scene.crank.radius, scene.rod.length - scene.crank.radius
+    marks = [np.empty(0)]
+    for fold, gap in ((0.5, spare + scene.piston.offset), (-0.5, spare - scene.piston.offset)):
+        width = math.sqrt(2.0 * max(gap, 0.0) / radius)
+        if 0.0 < width < _WIDEST:
+            beside = width * 2.0 ** np.arange(math.ceil(math.log2(_WIDEST / width)))
+            around = fold * math.pi + np.concatenate([-beside, [0.0], beside])
+            turns = 2.0 * math.pi * np.arange(round(scene.period / (2.0 * math.pi)))
+            marks += [np.add.outer(turns - c.phase, around).ravel() for c in scene.cylinders]
+    return np.asarray(np.mod(np.concatenate(marks), scene.period))
 
 
 def largest_of_row(table: Array) -> Array:
