@@ -102,7 +102,7 @@ def assemble(scene: Scene, pressure: PeriodicPressure | None, solution: Solution
     }
     # a free crank's acceleration at the rounded angle: where the torque needed is the one there
     missed = _peak(check["external_torque"] - needed)
-    if late.any() and late[-1] == 0.0:
+    if late.any() and late[-1] == 0.0 != ahead[-1]:  # else it ends at an angle, at the same time
         recent = ahead[np.abs(better.theta - better.theta[-1]) <= 2.0 * math.pi]
         more = math.copysign(_peak(recent) - abs(ahead[-1]), ahead[-1])
         last = rounded.select(np.array([-1]))

@@ -78,6 +78,13 @@ def test_what_differs_at_an_end_in_time_is_stated():
     assert assembled.errors["kinetic_energy"] == pytest.approx(made, rel=1e-2)
 
 
+def test_an_end_at_an_angle_that_both_pass_at_one_time_is_exact():
+    late = np.append(np.full(10, 1e-8), 0.0)
+    assembled = assemble(SCENE, None, solution(samples(time_off=late)))
+    assert assembled.errors["crank_angle"] > 1e-7
+    assert assembled.errors["piston_position"] < 1e-13
+
+
 def test_the_crank_angle_errs_at_equal_time():
     """A sample on a crank angle that is passed too late is an error of time and of angle."""
     assembled = assemble(SCENE, None, solution(samples(time_off=1e-6)))
