@@ -74,7 +74,6 @@ def _loop(scene: Scene, grid: Grid, reference: Reference) -> Callable[[], Answer
     far = float(reference.track.end().theta[0]) + sense * float(np.max(np.diff(grid.edges)))
     count = int(abs(far - theta) / float(grid.edges[-1]) * len(grid.edges)) + 2
     strip = grid.strip(theta, sense, count, far)
-    turned = np.append(0.0, np.cumsum(strip.width))
     energy = 0.5 * float(reduce(scene, None, theta)[0]) * omega**2
     begin = Begin(sense, energy, 0.0, until if until_time else math.inf)
     reduced, given = Reduced(scene, None), np.array([until])
@@ -82,10 +81,10 @@ def _loop(scene: Scene, grid: Grid, reference: Reference) -> Callable[[], Answer
 
     def run() -> Answer:
         cells = solve_affine(grid, strip, branch, begin, compiled=True)
-        solved = turned, strip.width, cells.edges, cells.time, cells.torque, cells.slowness
+        solved = strip.turned, strip.width, cells.edges, cells.time, cells.torque, cells.slowness
         k, (x, t, kinetic) = np.empty(1, np.intp), np.empty((3, 1))
         readout.read(given, until_time, sense, grid.rule.to_legendre, solved, k, x, t, kinetic)
-        at = theta + sense * (turned[k] + x * strip.width[k])
+        at = theta + sense * (strip.turned[k] + x * strip.width[k])
         speed = sense * math.sqrt(2.0 * float(kinetic[0]) / reduced(float(at[0]), no_gas)[0])
         return Answer(Track(t, at, np.array([speed])), cells.torque.size)
 
