@@ -118,9 +118,10 @@ def test_every_error_is_honest_and_no_idle_caution(name: str, results: dict[str,
     errors = true_errors(results[name], SCENES[name])
     assert len(errors) >= 20
     for variable, (true, stated, peak) in errors.items():
-        assert true <= 2.0 * stated + 1e-13, variable  # the oracle rounds, too
+        rounded = 1e-13  # the oracle rounds, too
+        assert true <= 2.0 * stated + rounded, variable
         if name != "swings back":  # where the next term of the error happens to be small, too
-            assert stated <= 100.0 * true or true <= 1e-12 * peak, variable
+            assert stated <= 100.0 * true or true <= 1e-12 * peak + rounded, variable
 
 
 @pytest.mark.parametrize("name", SCENES)
