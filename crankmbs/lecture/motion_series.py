@@ -12,8 +12,8 @@ def piston_displacement_series(
 ) -> Real:
     """Piston displacement: s = r [1 - cos phi + (lambda/4)(1 - cos 2 phi) - k lambda sin phi].
 
-    Approximate, order 3 in lambda: short of the exact by lambda k^2/2 (the datum: at phi = 0
-        this is 0) and by lambda^3 (sin phi - k)^4 / 8.
+    Approximate, order 3 in lambda: with k = e/r short of the exact by r lambda k^2/2 (the datum:
+        at phi = 0 this is 0) and by r lambda^3 (sin phi - k)^4 / 8.
     Error of s/r at lambda 0.20, 0.25, 0.30, 0.33: 1.02e-3, 2.02e-3, 3.54e-3, 4.75e-3;
         with k 0.0282: 1.22e-3, 2.36e-3, 4.08e-3, 5.46e-3 (order 1).
     Source: S0-F8, S1 Eq. 3, S2-F11.
@@ -74,7 +74,7 @@ def piston_velocity_series(
 ) -> Real:
     """Piston velocity: v = r omega [sin phi + (lambda/2) sin 2 phi - k lambda cos phi].
 
-    Approximate, order 3 in lambda: off by -lambda^3 (sin phi - k)^3 cos phi / 2.
+    Approximate, order 3 in lambda: off by -r omega lambda^3 (sin phi - k)^3 cos phi / 2.
     Error of v/(r omega) at lambda 0.20, 0.25, 0.30, 0.33: 1.33e-3, 2.63e-3, 4.62e-3, 6.22e-3;
         with k 0.0282: 1.47e-3, 2.90e-3, 5.10e-3, 6.88e-3.
     Source: S0-F11, S0-F12, S1 Eq. 4, S2-F13a.

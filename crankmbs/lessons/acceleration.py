@@ -37,8 +37,9 @@ def lesson() -> Lesson:
             Step(
                 title="The valley of the acceleration becomes two",
                 figures=tuple(map(_motion, runs)),
-                caption="Velocity and acceleration at constant speed, in parts of $r\\omega$ and "
-                "$r\\omega^2$; right: the valley enlarged, with its lowest points. Move the slider "
+                caption="Velocity and acceleration at constant speed ($\\alpha = 0$), in parts of "
+                "$r\\omega$ and $r\\omega^2$; right: the valley enlarged, with its lowest points. "
+                "Move the slider "
                 f"across {_LIMIT_SERIES:g} and {_LIMIT:.4f}.",
                 slider=Slider(
                     r"rod ratio $\lambda = r/l$", tuple(f"{x:.4g}" for x in _RATIOS), _SCENE
@@ -50,7 +51,8 @@ def lesson() -> Lesson:
                     ),
                     Formula(
                         r"a = r\omega^2\,(\cos\varphi-\sin\varphi\,\tan\beta)"
-                        r"+r\omega^2\,\frac{\lambda\,\cos^2\varphi}{\cos^3\beta}",
+                        r"+r\omega^2\,\frac{\lambda\,\cos^2\varphi}{\cos^3\beta}"
+                        r"+\frac{v}{\omega}\,\alpha",
                         lecture.piston_acceleration,
                     ),
                 ),
