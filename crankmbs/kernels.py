@@ -102,7 +102,7 @@ def affine(
             growth[c] += h * weights[j] * rate[c, j] * gain[c, j]
             rise[c] += h * weights[j] * (push[c, j] + rate[c, j] * shift[c, j])
     edges[0], time[0] = energy, t
-    lost = 0.0  # of t by rounding: all passes over the same cells would lose it alike, unseen
+    lost, late = 0.0, 0.0  # of E and t by rounding: all passes over the cells lose it alike, unseen
     for k in range(len(which)):
         c = which[k]
         spent = 0.0
@@ -111,10 +111,12 @@ def affine(
             torque[k, j] = push[c, j] + rate[c, j] * e
             slowness[k, j] = math.sqrt(0.5 * inertia[c, j] / e) if e > 0.0 else math.nan
             spent += weights[j] * slowness[k, j]
-        energy += growth[c] * energy + rise[c]
-        before, step = t, width[k] * spent - lost
+        before, step = energy, growth[c] * energy + rise[c] - lost
+        energy = before + step
+        lost = (energy - before) - step
+        before, step = t, width[k] * spent - late
         t = before + step
-        lost = (t - before) - step
+        late = (t - before) - step
         edges[k + 1], time[k + 1] = energy, t
         if not t < t_end:
             return k + 1
@@ -148,7 +150,7 @@ def newton(
     width, inertia, rest = cells
     energy, room = np.empty(len(weights)), np.empty((len(weights) + 1, len(weights)))
     edges[0], time[0] = begin, t
-    lost = 0.0  # as in `affine`
+    lost, late = 0.0, 0.0  # as in `affine`
     for k in range(len(width)):
         steps = width[k] * matrix
         last = torque[k - 1, -1] if k > 0 else 0.0
@@ -157,14 +159,17 @@ def newton(
         at = (begin, t, sense)
         if not _solve(energy, room, at, branch, steps, inertia[k], rest[k], torque[k], slowness[k]):
             return k
-        inside, spent = True, 0.0
+        inside, work, spent = True, 0.0, 0.0
         for j in range(len(weights)):
-            begin += sense * width[k] * weights[j] * torque[k, j]
+            work += weights[j] * torque[k, j]
             spent += weights[j] * slowness[k, j]
             inside = inside and low <= sense / slowness[k, j] <= high
-        before, step = t, width[k] * spent - lost
+        before, step = begin, sense * width[k] * work - lost
+        begin = before + step
+        lost = (begin - before) - step
+        before, step = t, width[k] * spent - late
         t = before + step
-        lost = (t - before) - step
+        late = (t - before) - step
         edges[k + 1], time[k + 1] = begin, t
         if not (inside and t < t_end):
             return k + 1

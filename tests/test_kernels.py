@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from crankmbs import (
+    Constant,
     Quadratic,
     Result,
     Run,
@@ -85,16 +86,18 @@ def test_arrays_and_compiled_loops_agree(
 
 @pytest.mark.parametrize("compiled", [False, True])
 @pytest.mark.parametrize("solve", [solve_affine, solve_newton])
-def test_the_clock_loses_nothing_over_many_cells(
+def test_clock_and_energy_lose_nothing_over_many_cells(
     solve: Callable[..., Cells], compiled: bool
 ) -> None:
     """What rounding takes is the same in every pass, and their difference would not show it."""
     grid = grid_of(load_scene("coasting"), None, gauss(3))
     strip = grid.strip(0.0, 1.0, 4000, math.inf)
-    branch = branch_of((), 0.0, 1.0, rising=True)
+    branch = branch_of((Constant(torque=0.1),), 0.0, 1.0, rising=True)
     cells = solve(grid, strip, branch, Begin(1.0, 50.0, 0.1, math.inf), compiled=compiled)
     spent = strip.width * (cells.slowness @ grid.rule.weights)
     assert abs(cells.time[-1] - math.fsum([0.1, *spent])) <= 2.0 * math.ulp(cells.time[-1])
+    gained = strip.width * (cells.torque @ grid.rule.weights)
+    assert abs(cells.edges[-1] - math.fsum([50.0, *gained])) <= 2.0 * math.ulp(cells.edges[-1])
 
 
 @pytest.mark.parametrize("loads", LOADS)

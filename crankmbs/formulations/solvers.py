@@ -118,8 +118,14 @@ def _clock(t0: float, spent: Array) -> Array:
 
 
 def _chain(maps: Maps, start: float) -> tuple[Array, Array]:
-    """Energy at edges and nodes, cell after cell."""
+    """Energy at edges and nodes, cell after cell; what a sum loses by rounding goes to the next."""
+
+    def step(before: tuple[float, float], maps: tuple[float, float]) -> tuple[float, float]:
+        (energy, lost), (growth, rise) = before, maps
+        gained = growth * energy + rise - lost
+        after = energy + gained
+        return after, (after - energy) - gained
+
     steps = zip(maps.growth.tolist(), maps.rise.tolist(), strict=True)
-    chain = accumulate(steps, lambda e, step: e + (step[0] * e + step[1]), initial=start)
-    edges = np.array(list(chain))
+    edges = np.array([energy for energy, _ in accumulate(steps, step, initial=(start, 0.0))])
     return edges, maps.gain * edges[:-1, None] + maps.shift
