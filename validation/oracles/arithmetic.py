@@ -34,6 +34,11 @@ class Arithmetic:
     def zeros(self, *shape: int) -> Array:
         return np.full(shape, self.number(0), dtype=self.dtype)
 
+    def whole_turns(self, angle: Number) -> Number:
+        """The whole turns [rad] nearest to an angle: a period is not the float that stands for it,
+        which after a thousand turns is seen."""
+        return 2 * self.pi * round(float(angle / (2 * self.pi)))
+
 
 def _to_longdouble(value: Number) -> Number:
     if isinstance(value, str | np.longdouble):

@@ -103,7 +103,7 @@ def many_turns(machine: Machine, theta0: Number, omega0: Number, angles: Array) 
     turning = _Turning(machine)
     start, wanted = LONG.number(theta0), LONG.array(angles)
     pressure = machine.pressure
-    period = 2 * LONG.pi if pressure is None else LONG.number(pressure.period)
+    period = 2 * LONG.pi if pressure is None else LONG.whole_turns(pressure.period)
     first = LONG.array([theta0])
     energy = (turning.inertia(first) * LONG.number(omega0) ** 2 / 2)[0]
     whole = turning.stretch(turning.edges(start, wanted[:0], period))

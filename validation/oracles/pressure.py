@@ -33,10 +33,10 @@ def pressure_pieces(table: PressureTable | PressurePieces, arithmetic: Arithmeti
     """
     if isinstance(table, PressurePieces):
         given = np.stack([arithmetic.array(row) for row in table.coefficients])
-        return Pieces(arithmetic.array(table.knots), given, arithmetic.number(table.period))
+        return Pieces(arithmetic.array(table.knots), given, arithmetic.whole_turns(table.period))
     knots = arithmetic.array(table.angles)
     values = arithmetic.array(table.pressures)
-    period = arithmetic.number(table.period)
+    period = arithmetic.whole_turns(table.period)
     width = np.append(knots[1:], knots[0] + period) - knots
     rise = np.roll(values, -1) - values
     zero = arithmetic.zeros(len(knots))
