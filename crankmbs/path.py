@@ -9,7 +9,7 @@ from collections.abc import Generator
 import numpy as np
 
 from crankmbs.formulations.base import Piece, Samples, State
-from crankmbs.sampling import Plan
+from crankmbs.sampling import Plan, check_count
 
 __all__ = ["Path"]
 
@@ -23,7 +23,7 @@ class Path:
         self._plan, self._can_swing = plan, can_swing
         self._farthest, self._since = 0.0, 0  # reach [rad], and reversals that reached no farther
         self.turned_back = plan.start  # crank angle of the last reversal [rad]
-        self._blocks = [first]
+        self._blocks, self._count = [first], 1
         self._tail: deque[Piece] = deque()
         self.reversals = self.steps = self.evaluations = 0
 
@@ -49,6 +49,8 @@ class Path:
             self._since += 1
         if math.isinf(self._plan.last):
             self._blocks.append(piece.sample(self._plan))
+            self._count += len(self._blocks[-1].time)
+            check_count(self._count)
             self._tail.clear()
         self._tail.append(piece)
         while abs(piece.end.theta - self._tail[0].end.theta) > self._plan.last:

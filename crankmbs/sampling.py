@@ -12,7 +12,7 @@ from crankmbs.errors import InputError
 from crankmbs.scene import Scene
 from crankmbs.schema import DEGREE
 
-__all__ = ["FOLDED", "Plan", "one_period", "plan_of"]
+__all__ = ["FOLDED", "Plan", "check_count", "one_period", "plan_of"]
 
 Array = NDArray[np.float64]
 
@@ -59,10 +59,16 @@ class Plan:
         return self.until if self.until_time else math.inf
 
     def between(self, begin: float, end: float) -> Array:
-        """Grid values in (begin, end], in the order in which they are passed; angles or times."""
+        """Grid values in (begin, end], in the order in which they are passed; angles or times.
+
+        Raises
+        ------
+        InputError : more than memory holds
+        """
         origin = 0.0 if self.in_time else self.start
         sign = 1.0 if end >= begin else -1.0
         a, b = sorted(((begin - origin) / self.every, (end - origin) / self.every))
+        check_count(b - a)
         grid = origin + self.every * np.arange(math.floor(a) - 1, math.ceil(b) + 2)
         inside = grid[(sign * grid > sign * begin) & (sign * grid <= sign * end)]
         return np.asarray(inside if sign > 0 else inside[::-1])
@@ -118,6 +124,20 @@ def one_period(theta: Array, period: float) -> tuple[Array, NDArray[np.intp]]:
     return np.append(theta[:count], theta[repeating:]), which
 
 
+def check_count(samples: float) -> None:
+    """Refuse more samples than memory holds.
+
+    Raises
+    ------
+    InputError : how many, and the way out
+    """
+    if samples > _MOST_SAMPLES:
+        raise InputError(
+            f"run.every: {samples:.3g} samples came, more than {_MOST_SAMPLES:.0e}; give a wider "
+            'spacing, or every = "none" to keep the last cycle alone'
+        )
+
+
 def _check_size(scene: Scene) -> None:
     """Refuse what no memory holds and what double precision cannot tell apart."""
     until, until_time = scene.run.until.resolve(scene.period)
@@ -129,11 +149,8 @@ def _check_size(scene: Scene) -> None:
     if scene.run.every is None:
         return
     every, in_time = scene.run.every.resolve(scene.period)
-    if in_time == until_time and until / every > _MOST_SAMPLES:
-        raise InputError(
-            f"run.every: {until / every:.3g} samples came, more than {_MOST_SAMPLES:.0e}; give a "
-            'wider spacing, or every = "none" to keep the last cycle alone'
-        )
+    if in_time == until_time:
+        check_count(until / every)
 
 
 def _folds(scene: Scene, start: float) -> tuple[float, float]:

@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from crankmbs import Run, Start, load_scene, simulate
+from crankmbs import InputError, Run, Start, load_scene, sampling, simulate
 from crankmbs.formulations import minimal
 from crankmbs.result import VARIABLES
 
@@ -29,6 +29,18 @@ def test_too_many_evaluations_stop_the_run_with_the_samples_of_both_passes(monke
     assert difference.max() <= stated(result, "time") + stated(whole, "time")
     last = math.degrees(float(result.data["crank_angle"][-1]))
     assert f"stopped at {last:.6g} degrees" in result.message
+
+
+@pytest.mark.parametrize("formulation", ["crank_angle", "minimal"])
+@pytest.mark.parametrize("every", ["1 us", "0.1 ms"], ids=["within one piece", "over many"])
+def test_more_samples_than_memory_holds_are_refused_where_they_come(
+    formulation, every, monkeypatch
+):
+    """An end at an angle does not say how many samples in time there will be."""
+    monkeypatch.setattr(sampling, "_MOST_SAMPLES", 2000.0)
+    scene = dataclasses.replace(COASTING, run=Run(until="30 rev", every=every))
+    with pytest.raises(InputError, match=r"run\.every: .* samples came, more than 2e\+03; give a"):
+        simulate(scene, formulation=formulation)
 
 
 def test_an_error_that_cannot_be_known_is_infinite(monkeypatch):

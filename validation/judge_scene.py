@@ -13,6 +13,7 @@ from types import FrameType
 import numpy as np
 
 from crankmbs import Run, Viscous, kernels, load_scene
+from crankmbs.errors import InputError
 from crankmbs.result import Result
 from crankmbs.scene import Extent, Scene
 from crankmbs.simulate import simulate
@@ -79,6 +80,8 @@ def _judge(scene: Scene, formulation: str, paths: list[Path]) -> tuple[float | N
         result = simulate(scene, formulation=formulation)
     except _TooLongError:
         raise
+    except InputError as refused:  # what only the motion shows: too many samples, a short table
+        return None, f"skipped, refused: {refused}"
     except Exception as raised:  # whatever it is: a valid scene must run
         return math.inf, f"raises {type(raised).__name__}: {raised}"
     kept = result.data.sizes["time"] - (result.status != 0)  # the oracles do not see why it ends
