@@ -18,11 +18,11 @@ from crankmbs.formulations.base import Array
 from crankmbs.pressure import PeriodicPressure
 from crankmbs.scene import Scene
 
-__all__ = ["Gas", "GasStretch"]
+__all__ = ["NEAR", "Gas", "GasStretch"]
 
 Force = Callable[[float], float]
 
-_NEAR = 1e-9  # rad: a knot so close ahead is reached, as in PeriodicPressure
+NEAR = 1e-9  # rad: a knot so close ahead is reached, as in PeriodicPressure
 _JUMP = 1e-9  # of the highest pressure or slope: less is rounding
 _MOST_JUMPS = 60  # in a period; a table of more steps is run over as it is
 
@@ -65,7 +65,7 @@ class Gas:
         exudyn's generic object, the only other way, costs 9 us a step.
         """
         assert self._pressure is not None
-        first, period = float(self._pressure.knots[0]) - _NEAR, self._pressure.period
+        first, period = float(self._pressure.knots[0]) - NEAR, self._pressure.period
         knots = (self._pressure.knots[:-1] - self._pressure.knots[0]).tolist()
         pieces = (self._area * self._pressure.coefficients.T).tolist()
 
@@ -73,7 +73,7 @@ class Gas:
             x = (angle - first) % period
             k = bisect_right(knots, x) - 1
             a, b, c, d = pieces[k]
-            x -= knots[k] + _NEAR
+            x -= knots[k] + NEAR
             return float(((a * x + b) * x + c) * x + d)
 
         return force
@@ -82,7 +82,7 @@ class Gas:
         """The stretch that a motion of this sense (its sign) enters at a crank angle [rad]."""
         if len(self._angles) == 0:
             return GasStretch(self, -math.inf, math.inf, np.zeros((2, len(self.phases))))
-        at = theta + math.copysign(_NEAR, sense)
+        at = theta + math.copysign(NEAR, sense)
         turns = np.floor(at / self._period) + np.array([-1.0, 0.0, 1.0])
         angles = (self._angles + self._period * turns[:, None]).ravel()
         k = int(np.searchsorted(angles, at, side="right"))
@@ -104,7 +104,7 @@ class Gas:
         angles, rises = angles.ravel(), rises.reshape(-1, len(self.phases))
         order = np.argsort(angles)
         angles, rises = angles[order], rises[order]
-        apart = np.flatnonzero(np.diff(angles, prepend=-1.0) > _NEAR)
+        apart = np.flatnonzero(np.diff(angles, prepend=-1.0) > NEAR)
         return angles[apart], np.add.reduceat(rises, apart, axis=0)
 
 
@@ -122,7 +122,7 @@ class GasStretch:
 
     def force(self, theta: Array) -> Array:
         """Gas forces [N] towards the crank, shape (m, n), at crank angles of shape (m,)."""
-        below, above = theta < self.low - _NEAR, theta >= self.high - _NEAR
+        below, above = theta < self.low - NEAR, theta >= self.high - NEAR
         lifted = below[:, None] * self.rises[0] - above[:, None] * self.rises[1]
         return np.asarray(self.gas.force(theta) + lifted)
 
@@ -132,7 +132,7 @@ class GasStretch:
 
     def _function(self, k: int, force: Force) -> Force:
         phase = float(self.gas.phases[k])
-        low, high = self.low - _NEAR, self.high - _NEAR
+        low, high = self.low - NEAR, self.high - NEAR
         at_low, at_high = (float(rise) for rise in self.rises[:, k])
         if at_low == 0.0 and at_high == 0.0:
             return lambda theta: force(theta + phase)

@@ -5,14 +5,12 @@ The solver runs a few steps beyond, with loads that go on as they were; the tabl
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
 from crankmbs.formulations.base import Array
-from crankmbs.formulations.multibody.model import Record
 from crankmbs.formulations.multibody.table import ROWS, Table
 from crankmbs.roots import invert_monotone
 
@@ -28,7 +26,10 @@ __all__ = [
 
 LEAST_STEPS = ROWS + 2
 PASSED = 1e-8  # rad
-_BESIDE = 1e-10  # of a speed: so near it is on it
+_BESIDE = 1e-10  # of a speed, and of a step in time: so near it is on it
+_ON = 1e-12  # rad: so near a bound it is on it
+_ANGLE = ("crank_angle", "crank_speed")
+_SPEED = ("crank_speed", "crank_acceleration")
 
 
 class Bounds(NamedTuple):
@@ -67,18 +68,43 @@ class Watch:
         return max(self._beyond, self._past_speed) <= ROWS // 2 or self._count <= LEAST_STEPS
 
 
-def angle_passed(record: Record, angles: tuple[float, float]) -> float | None:
-    """The bound that the last crank angle of a run lies at or beyond, if it does."""
-    theta = float(record.position[-1, 2])
-    return angles[0] if theta <= angles[0] else angles[1] if theta >= angles[1] else None
+def angle_passed(table: Table, angles: tuple[float, float]) -> tuple[float, float] | None:
+    """The bound that a table ends at or beyond, if it does, and the sense (a sign) to pass it.
+
+    A crank that rests on a bound does not pass it.
+    """
+    theta = table.column("crank_angle")
+    theta = theta[table.times > table.after - _BESIDE * table.step]
+    for bound, sense in zip(angles, (-1.0, 1.0), strict=True):
+        if sense * (theta[-1] - bound) >= 0.0:
+            return None if np.max(np.abs(theta - bound)) <= _ON else (bound, sense)
+    return None
 
 
-def cut_at_angle(table: Table, bound: float) -> Table:
-    """End a table where its crank angle last comes to a bound."""
-    theta, times = table.column("crank_angle"), table.times
-    sense = math.copysign(1.0, theta[-1] - theta[-ROWS])
-    k = int(np.flatnonzero(sense * (theta - bound) < 0.0)[-1])
-    return _cut(table, ("crank_angle", "crank_speed"), bound, (times[k], times[k + 1]))
+def cut_at_angle(table: Table, bound: float, sense: float) -> Table:
+    """End a table where its crank angle last comes to a bound, in this sense (a sign).
+
+    It ends where it begins if it lies beyond the bound from there on. An excursion to this side may
+    be shorter than a step: then it turns back between the beginning and the next row.
+    """
+    times, theta = table.times, table.column("crank_angle")
+    later = times > table.after + _BESIDE * table.step
+    times, short = times[later], sense * (bound - theta[later])
+    inside = np.flatnonzero(short > 0.0)
+    if len(inside) > 0:
+        k = int(inside[-1])
+        return _cut(table, _ANGLE, bound, (times[k], times[k + 1]))
+    resting = int(np.argmax(short < -_ON))  # rows on the bound before it leaves
+    if resting > 0:
+        return table._replace(until=float(times[resting - 1]))
+    begin = table.after
+    angle, speed = (float(x[0]) for x in table.with_rate(*_ANGLE, np.array([begin])))
+    if sense * speed < 0.0:
+        turned = _cut(table, _SPEED, 0.0, (begin, times[0]))
+        return _cut(table, _ANGLE, bound, (turned.until, times[0]))
+    if sense * (bound - angle) > _ON:
+        return _cut(table, _ANGLE, bound, (begin, times[0]))
+    return table._replace(until=begin)
 
 
 def cut_at_speed(table: Table, bounds: Bounds) -> tuple[Table, float] | None:
@@ -96,7 +122,7 @@ def cut_at_speed(table: Table, bounds: Bounds) -> tuple[Table, float] | None:
     k = int(left[0])
     bound = bounds.speeds[0] if omega[k] < slow else bounds.speeds[1]
     between = max(times[k - 1], table.after), times[k]
-    return _cut(table, ("crank_speed", "crank_acceleration"), bound, between), bound
+    return _cut(table, _SPEED, bound, between), bound
 
 
 def _cut(table: Table, names: tuple[str, str], bound: float, between: tuple[float, float]) -> Table:

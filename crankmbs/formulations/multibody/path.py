@@ -13,7 +13,8 @@ from typing import NamedTuple
 import numpy as np
 
 from crankmbs.drives import TimeTable
-from crankmbs.formulations.multibody.landing import LEAST_STEPS
+from crankmbs.formulations.multibody.gas import NEAR
+from crankmbs.formulations.multibody.landing import LEAST_STEPS, PASSED
 from crankmbs.formulations.multibody.model import Model
 from crankmbs.formulations.multibody.problem import Problem, jump_times, kink_times
 from crankmbs.formulations.multibody.start import coordinates
@@ -64,23 +65,26 @@ def solve(
     jumps = jump_times(problem)
     cuts = sorted({*jumps, *kink_times(problem)})
     ends = [*(t for t in cuts if t < problem.end * (1.0 - _SAME)), problem.end]
-    bounds = problem.plan.angle_bounds
-    while True:
+    bounds, ending = problem.plan.angle_bounds, "complete"
+
+    def at_jump_in_time() -> bool:
+        return any(math.isclose(walk.time, t, rel_tol=_SAME) for t in jumps)
+
+    while ending == "complete" and ends and walk.bound not in bounds:
         h, count = _steps(ends[0] - walk.time, step, halvings)
+        anew = not walk.tables or at_jump_in_time()
+        if anew and not walk.goes_up and walk.is_at_gas_jump(NEAR):
+            walk.above(h)
         ending = walk.stretch(ends[0], h, count, bounds)
-        if ending != "complete":
-            return _path(walk, ending)
         while ends and walk.time >= ends[0] * (1.0 - _SAME):
             ends.pop(0)
-        if walk.bound in bounds or not ends:
-            break
-    if walk.is_at_gas_jump() or any(math.isclose(walk.time, t, rel_tol=_SAME) for t in jumps):
-        # what comes after the jump is asked for at the end, too
-        so_far, beyond = len(walk.tables), walk.time + LEAST_STEPS * h
-        walk.stretch(beyond, h, LEAST_STEPS, (-math.inf, math.inf))
-        if len(walk.tables) > so_far:
-            walk.tables[-1] = walk.tables[-1]._replace(until=walk.tables[-1].after)
-    return _path(walk, "complete")
+        if ending == "complete" and ends and not go_on():
+            last = walk.tables[-1]  # half of it: an end at a jump has no certain side
+            walk.tables[-1] = last._replace(until=0.5 * (last.after + last.until))
+            return _path(walk, "called off")
+    if walk.time > 0.0 and (walk.is_at_gas_jump(PASSED) or at_jump_in_time()):
+        walk.above(h)  # what comes after the jump is asked for at the end, too
+    return _path(walk, ending)
 
 
 def _path(walk: Walk, ending: str) -> Path:

@@ -67,6 +67,7 @@ class Runs:
             )
         self.paths = [path]
         if path.ending in ("complete", "held"):
+            self.moves = reached(path)[0] > 0.0
             return self._end(path)
         return self._cut(path)
 
@@ -132,6 +133,7 @@ class Runs:
 
     def _end(self, path: Path) -> tuple[int, str]:
         _, theta, omega = reached(path)
+        omega = omega if self.moves else 0.0
         degrees, plan = math.degrees(theta), self.problem.plan
         if path.ending == "held":
             return 1, f"held at {omega * 30.0 / math.pi:.6g} rpm at {degrees:.6g} degrees: {_HELD}"

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from crankmbs.formulations.base import Array
+from crankmbs.formulations.multibody.gas import NEAR
 from crankmbs.formulations.multibody.path import Path
 from crankmbs.formulations.multibody.problem import Problem
 from crankmbs.formulations.multibody.table import Table
@@ -124,6 +125,7 @@ def _samples(problem: Problem, path: Path) -> _Samples:
     for bound in plan.angle_bounds:
         theta_end = bound if abs(theta_end - bound) < _NEAR else theta_end
     times, angles, stretches = [np.zeros(1)], [np.array([problem.start[0]])], [np.zeros(1, int)]
+    moved = False  # what comes first then is the start, which is there
     for k, table in enumerate(path.tables):
         for begin, until in _monotone(table):
             theta_begin, theta_until = table.one_at("crank_angle", np.array([begin, until]))
@@ -133,7 +135,10 @@ def _samples(problem: Problem, path: Path) -> _Samples:
             else:
                 theta = _grid(plan.start, plan.every, theta_begin, theta_until)
                 t = _times_of(table, theta, begin, until)
-            new = slice(1 if begin == 0.0 else 0, None)  # the first is the start, which is there
+            new = slice(0 if moved else 1, None)
+            moved |= until > 0.0 and (
+                plan.in_time or abs(theta_until - plan.start) > _NEAR * plan.every
+            )
             times.append(t[new])
             angles.append(theta[new])
             stretches.append(np.full(len(t[new]), k))
@@ -142,7 +147,21 @@ def _samples(problem: Problem, path: Path) -> _Samples:
     stretch = np.append(np.concatenate(stretches), len(path.tables) - 1)
     far = np.flatnonzero(np.abs(theta - theta_end) > plan.last * (1.0 + 1e-12))
     first = int(far[-1]) + 1 if len(far) else 0
+    stretch = _above_jumps(path, time, theta, stretch)
     return _Samples(time[first:], theta[first:], stretch[first:])
+
+
+def _above_jumps(path: Path, time: Array, theta: Array, stretch: Array) -> Array:
+    """The stretches of samples in time and angle, those that one begins with backwards from a jump
+    of the gas force in the stretch before: at the jump the value above it counts."""
+    tables = path.tables
+    for k in range(1, len(tables)):
+        table, jump = tables[k], tables[k].gas.high
+        if abs(tables[k - 1].gas.low - jump) <= NEAR:
+            at_once = np.abs(time - table.after) < table.step
+            on = at_once & (stretch == k) & (np.abs(theta - jump) <= NEAR)
+            stretch = stretch - on
+    return stretch
 
 
 def _same_angles(path: Path, own: _Samples, finest: _Samples) -> _Samples | None:
@@ -162,10 +181,11 @@ def _same_angles(path: Path, own: _Samples, finest: _Samples) -> _Samples | None
     time = np.concatenate(times)
     if len(time) != len(theta):
         return None
+    stretch = _above_jumps(path, time, theta, np.concatenate(stretches))
     return _Samples(
         np.append(time, own.time[-1]),
         np.append(theta, own.theta[-1]),
-        np.append(np.concatenate(stretches), own.stretch[-1]),
+        np.append(stretch, own.stretch[-1]),
     )
 
 

@@ -15,7 +15,6 @@ import numpy as np
 from crankmbs.formulations.multibody.gas import GasStretch
 from crankmbs.formulations.multibody.landing import (
     LEAST_STEPS,
-    PASSED,
     Bounds,
     Watch,
     angle_passed,
@@ -33,6 +32,7 @@ from crankmbs.geometry import close_loop
 __all__ = ["Walk", "initial_acceleration"]
 
 _OPEN = 1e-3  # of the rod's length: how far a piston may be off the closed loop
+_NOTHING = 1e-9  # of a step: a stretch so short has not begun
 _MOST_SPEEDS = 100  # landed on in a run; beyond, it runs over the bends of the loads as they are
 
 
@@ -60,12 +60,18 @@ class Walk:
         """Whether it runs over bends of the loads over speed as they are."""
         return self._speeds_left == 0
 
-    def is_at_gas_jump(self) -> bool:
-        """Whether the gas force of a cylinder jumps where the last stretch ended."""
-        theta, gas = self._state[0], self.tables[-1].gas
-        ends = [end for end in (gas.low, gas.high) if abs(end - theta) < PASSED]
-        self._state = (ends[0] if ends else theta, self._state[1])
-        return bool(ends) and self.time > self.tables[-1].after
+    def is_at_gas_jump(self, near: float) -> bool:
+        """Whether the gas force of a cylinder jumps here, or so near [rad]; if so, go there."""
+        theta, omega = self._state
+        gas = self._problem.gas.stretch(theta, 1.0)
+        ends = [end for end in (gas.low, gas.high) if abs(end - theta) < near]
+        self._state = (ends[0] if ends else theta, omega)
+        return bool(ends)
+
+    @property
+    def goes_up(self) -> bool:
+        """Whether the crank angle rises."""
+        return self._state[1] > 0.0
 
     def stretch(self, end: float, step: float, steps: int, angles: tuple[float, float]) -> str:
         """Run one more, to time ``end`` [s] if no crank angle or speed ends it before.
@@ -74,12 +80,46 @@ class Walk:
         -------
         how it ended, as in `Path`
         """
-        problem, model, time = self._problem, self._model, self.time
         entered = self.enter(end)
         if entered is None:
             return "held"
         gas, speeds = entered
-        bounds = Bounds((max(angles[0], gas.low), min(angles[1], gas.high)), speeds)
+        for _ in range(2):
+            bounds = Bounds((max(angles[0], gas.low), min(angles[1], gas.high)), speeds)
+            table, ending = self._run(gas, bounds, end, step, steps)
+            if table is None:
+                return ending
+            passed = angle_passed(table, bounds.angles)
+            if passed is not None:
+                table = cut_at_angle(table, *passed)
+                begun = table.until - table.after > _NOTHING * step
+                if not begun and passed[0] not in angles:  # it is the gas beyond that it meets
+                    gas = self._gas_beside(passed[1])
+                    continue
+            elif ending == "complete":
+                table = table._replace(until=end)
+            self._land(table, bounds, None if passed is None else passed[0])
+            return ending
+        return "held"
+
+    def above(self, step: float) -> None:
+        """Take a stretch of no length, with what is above a jump of the gas force here.
+
+        None where a jump of the loads over speed stands against it, or where the solver fails.
+        """
+        end = self.time + LEAST_STEPS * step
+        if self.enter(end) is None:
+            return
+        gas = self._gas_beside(1.0)
+        table, _ = self._run(gas, Bounds(EVERYWHERE, EVERYWHERE), end, step, LEAST_STEPS)
+        if table is not None:
+            self.tables.append(table._replace(until=table.after))
+
+    def _run(
+        self, gas: GasStretch, bounds: Bounds, end: float, step: float, steps: int
+    ) -> tuple[Table | None, str]:
+        """Run with the loads of the model; the table, if it has its rows, and how it ended."""
+        problem, model, time = self._problem, self._model, self.time
         watch = Watch(bounds, self._go_on)
         if problem.law is None:
             record, lead = run_free(problem.scene, model, time, self._state, step, steps, watch)
@@ -90,18 +130,16 @@ class Walk:
         record = _on_one_loop(problem, record)
         self.steps += len(record.time) - 1
         self.iterations += record.iterations
-        self.bound, self._sense = None, 0.0
         if len(record.time) < lead + LEAST_STEPS:
-            return "failed"
+            return None, "failed"
         torque = record.drive
         if problem.law is None:
             rates = record.velocity[:, 2].tolist()
             torque = np.array(list(map(model.torque, record.time.tolist(), rates)))
         table = table_of(problem.scene, gas, torque, record, time, self._residual)
-        self._land(table, record, bounds, end if not watch.called_off else None)
         if watch.called_off:
-            return "called off"
-        return "complete" if record.complete else "failed"
+            return table, "called off"
+        return table, "complete" if record.complete else "failed"
 
     def enter(self, end: float) -> tuple[GasStretch, tuple[float, float]] | None:
         """Give the model the loads of the stretch from here to time ``end`` [s].
@@ -111,20 +149,26 @@ class Walk:
         what the gas does, and the speeds between which the loads hold; None where a jump of the
         loads drives the speed back from both sides
         """
-        (theta, omega), model, problem = self._state, self._model, self._problem
+        omega, model, problem = self._state[1], self._model, self._problem
         torques = problem.scene.torque
         senses = (self._sense,) if self._sense else (1.0, -1.0)
         for sense in senses:
             speeds = EVERYWHERE if self.is_blind else speeds_around(torques, omega, sense)
             model.torque = torque_function(torques, (self.time, end), speeds)
-            gas = problem.gas.stretch(theta, omega or sense)
-            model.gas = gas.functions() if problem.scene.gas is not None else ()
+            gas = self._gas_beside(omega or sense)
             beside = omega in speeds
             if problem.law is not None or not (omega == 0.0 or beside):
                 return gas, speeds
             if sense * self.acceleration() >= 0.0 or (self._sense and not self._jumps(omega)):
                 return gas, speeds
         return None if beside else (gas, speeds)
+
+    def _gas_beside(self, sense: float) -> GasStretch:
+        """Give the model the gas that a motion of this sense enters here."""
+        gas = self._problem.gas.stretch(self._state[0], sense)
+        has_gas = self._problem.scene.gas is not None
+        self._model.gas = gas.functions() if has_gas else ()
+        return gas
 
     def acceleration(self) -> float:
         """Crank acceleration [rad/s2] of a free crank here, under the loads of the model."""
@@ -145,13 +189,12 @@ class Walk:
         below, above = (torque(self.time, omega) for torque in sides)
         return abs(above - below) > 1e-9 * max(abs(above), abs(below))
 
-    def _land(self, table: Table, record: Record, bounds: Bounds, end: float | None) -> None:
-        """Cut the table where it leaves its bounds, or at its end; take it, and go there."""
-        self.bound = angle_passed(record, bounds.angles)
-        if self.bound is not None:
-            table = cut_at_angle(table, self.bound)
-        elif record.complete and end is not None:
-            table = table._replace(until=end)
+    def _land(self, table: Table, bounds: Bounds, bound: float | None) -> None:
+        """Cut the table where it leaves its range of speeds; take it, and go to its end.
+
+        bound [rad] : the crank angle that it ends at, if one ends it
+        """
+        self.bound, self._sense = bound, 0.0
         met = cut_at_speed(table, bounds)
         speed = None
         if met is not None:
