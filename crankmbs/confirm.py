@@ -10,12 +10,13 @@ from numpy.typing import NDArray
 
 from crankmbs.errors import InputError
 from crankmbs.result import Result
-from crankmbs.sampling import plan_of
+from crankmbs.sampling import Plan, plan_of
 
 __all__ = ["Difference", "differences"]
 
 Array = NDArray[np.float64]
 
+_SAME = 1e-6  # of the sample spacing: so near each other two samples are one
 _MOTION = {
     "crank speed": ("crank_speed",),
     "crank acceleration": ("crank_acceleration",),
@@ -68,8 +69,10 @@ class Difference:
 def differences(result: Result, check: Result) -> tuple[Difference, ...]:
     """Compare two runs of one scene at equal samples, over the stretch that both cover.
 
-    Forces are compared as vectors. With samples on crank angles the motion differs in the time at
-    which they are passed, with samples in time in the crank angle.
+    A run that ends before the other has a sample at its end that the other has not, and where only
+    one of them comes to another angle before it reverses their samples part: they are compared up
+    to there. Forces are compared as vectors. With samples on crank angles the motion differs in the
+    time at which they are passed, with samples in time in the crank angle.
 
     Raises
     ------
@@ -84,13 +87,28 @@ def differences(result: Result, check: Result) -> tuple[Difference, ...]:
         raise InputError("only runs of one scene, sampled alike, can be compared")
     base = {"crank angle": ("crank_angle",)} if plan.in_time else {"time": ("time",)}
     rows = {**base, **_MOTION, **_FORCES}
-    return tuple(_difference(result, check, title, names) for title, names in rows.items())
-
-
-def _difference(result: Result, check: Result, title: str, names: tuple[str, ...]) -> Difference:
     n = min(result.data.sizes["time"], check.data.sizes["time"])
     # where only the end is kept the samples agree from the end, else from the start
-    kept = slice(-n, None) if result.scene.run.every is None else slice(n)
+    kept = slice(-n, None)
+    if result.scene.run.every is not None:
+        kept = slice(_shared(result, check, plan))
+    return tuple(_difference(result, check, kept, *row) for row in rows.items())
+
+
+def _shared(result: Result, check: Result, plan: Plan) -> int:
+    """How many samples both runs have, counted from the start."""
+    runs = (result, check)
+    a, b = (run.data["time" if plan.in_time else "crank_angle"].values for run in runs)
+    n = min(len(a), len(b))
+    apart = np.abs(a[:n] - b[:n]) > _SAME * plan.every
+    if len(a) == len(b) and result.status == check.status:
+        apart[-1] = False  # the end, which each may reach elsewhere
+    return max(int(np.argmax(apart)) if apart.any() else n, 1)
+
+
+def _difference(
+    result: Result, check: Result, kept: slice, title: str, names: tuple[str, ...]
+) -> Difference:
     ours = [result.data[name].values for name in names]
     theirs = [check.data[name].values for name in names]
     size = np.sqrt(sum((a[kept] - b[kept]) ** 2 for a, b in zip(ours, theirs, strict=True)))
@@ -99,7 +117,7 @@ def _difference(result: Result, check: Result, title: str, names: tuple[str, ...
         quantity=title,
         units=str(result.data[names[0]].attrs["units"]),
         crank_angle=result.data["crank_angle"].values[kept],
-        size=size.reshape(n, -1),
+        size=size.reshape(len(size), -1),
         peak=float(np.max(length)),
         errors=(_stated(result, names), _stated(check, names)),
         formulations=(result.formulation, check.formulation),
