@@ -230,3 +230,9 @@ def test_the_report_names_the_last_sample_and_a_crank_that_turns_backwards():
 def test_a_cost_cap_that_cannot_be_is_refused():
     message = refused("run", "coasting", "--cost-cap", "0")
     assert message == "cost_cap must be a time above 0 s; 0.0 came"
+
+
+@pytest.mark.parametrize("port", ["-5", "65536"])
+def test_a_port_that_cannot_be_is_refused(port):
+    message = refused("demo", "coasting", "--no-browser", "--port", port)
+    assert message == f"--port must be from 0, a free one, to 65535; {port} came"

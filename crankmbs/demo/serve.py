@@ -15,6 +15,8 @@ from crankmbs.scene import Scene
 
 __all__ = ["serve"]
 
+_LAST_PORT = 65535
+
 
 def serve(scene: Scene, stem: str, port: int, ready: Callable[[str, Server], None]) -> None:
     """Serve the page of a scene until interrupted.
@@ -25,8 +27,10 @@ def serve(scene: Scene, stem: str, port: int, ready: Callable[[str, Server], Non
 
     Raises
     ------
-    InputError : the scene stops before its end, or the port is taken
+    InputError : the scene stops before its end, or the port is none or taken
     """
+    if not 0 <= port <= _LAST_PORT:
+        raise InputError(f"--port must be from 0, a free one, to {_LAST_PORT}; {port} came")
     start = prepared(scene)
     outcome = run(start)
 
