@@ -146,6 +146,17 @@ def test_a_folder_that_cannot_be_written_is_refused_before_the_run(monkeypatch):
     Path("taken").write_text("")
     assert "cannot be written" in refused("run", "engine.toml", "--out", "taken/here")
     assert "cannot be written" in refused("run", "engine.toml", "--out", "taken")
+    assert "cannot be written" in refused("run", "engine.toml", "--out", f"made/{'x' * 300}")
+    assert names(".") == {"engine.toml", "taken"}
+
+
+def test_a_run_that_is_refused_leaves_no_folder_but_those_that_were_there():
+    Path("speed.csv").write_text("time_s,speed_rpm\n0,800\n0.01,3000\n")
+    Path("table.toml").write_text(SCENE.replace('"3000 rpm"', '{ file = "speed.csv" }'))
+    Path("there").mkdir()
+    assert "the speed table ends at 0.01 s" in refused("run", "table.toml", "--out", "there/a/b")
+    assert names(".") == {"engine.toml", "speed.csv", "table.toml", "there"}
+    assert names("there") == set()
 
 
 @pytest.mark.parametrize("where", ["simulate", "_write_netcdf", "_write_csv"])
@@ -158,7 +169,8 @@ def test_an_interrupt_exits_with_130_and_leaves_nothing_half_written(where, monk
     result = crankmbs_("run", "engine.toml", "--no-figures")
     assert result.exit_code == 130
     assert result.stderr.strip() == "interrupted"
-    assert names("results/engine") <= {"result.nc"}
+    assert [file for file in Path("results").rglob("*.*") if file.name != "result.nc"] == []
+    assert Path("results").exists() == (where != "simulate")
 
 
 @pytest.fixture

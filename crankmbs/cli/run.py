@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import dataclasses
+import os
 import tempfile
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -92,7 +94,8 @@ def override(scene: Scene, options: Mapping[str, Any]) -> Scene:
 
 
 def writable(folder: Path) -> Path:
-    """Make the folder and try it, so that a run is not lost at its end."""
+    """Try the folder, so that a run is not lost at its end, and leave nothing of the trial."""
+    missing = [each for each in (folder, *folder.parents) if not os.path.lexists(each)]
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):
@@ -101,6 +104,10 @@ def writable(folder: Path) -> Path:
         raise OutputError(
             f"{folder}: cannot be written ({error.strerror}); choose another folder with --out"
         ) from None
+    finally:
+        for each in missing:
+            with suppress(OSError):  # not made, or another run writes there by now
+                each.rmdir()
 
 
 def _simulate(
