@@ -83,13 +83,6 @@ class Rod:
     center_of_mass: Distance = 0.0
     inertia: RodInertia = 0.0
 
-    def __post_init__(self) -> None:
-        if self.moment_of_inertia < 0.0:
-            raise InputError(
-                'the inertia "two-mass" needs a center_of_mass between the pins, 0 to '
-                f"{self.length:.6g} m; {self.center_of_mass:.6g} m came"
-            )
-
     @property
     def moment_of_inertia(self) -> float:
         """Inertia about the centre of mass [kg m2], the word "two-mass" resolved."""

@@ -114,6 +114,11 @@ class Scene:
                 f"rod.length must be at least crank.radius + |piston.offset| = {least:.12g} m, or "
                 f"the crank cannot turn; {self.rod.length:.12g} m came"
             )
+        if self.rod.moment_of_inertia < 0.0:  # after its length, which may be what is wrong
+            raise InputError(
+                'rod: the inertia "two-mass" needs a center_of_mass between the pins, 0 to '
+                f"{self.rod.length:.6g} m; {self.rod.center_of_mass:.6g} m came"
+            )
         if self.gas is not None and self.piston.gas_area is None:
             raise InputError(
                 "piston.bore: with [gas] the piston needs its bore, or its area; neither came"
