@@ -9,7 +9,8 @@ from collections.abc import Generator
 import numpy as np
 
 from crankmbs.formulations.base import Piece, Samples, State
-from crankmbs.sampling import Plan, check_count
+from crankmbs.sampling import Plan
+from crankmbs.scene import check_count
 
 __all__ = ["Path"]
 

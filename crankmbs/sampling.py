@@ -8,16 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from crankmbs.errors import InputError
-from crankmbs.scene import Scene
+from crankmbs.scene import Scene, check_count
 from crankmbs.schema import DEGREE
 
-__all__ = ["FOLDED", "Plan", "check_count", "one_period", "plan_of"]
+__all__ = ["FOLDED", "Plan", "one_period", "plan_of"]
 
 Array = NDArray[np.float64]
 
-_FARTHEST = 1e9  # rad: its last digit is 1e-7
-_MOST_SAMPLES = 2e7  # each takes a third of a kilobyte with one cylinder
 FOLDED = "the rod folds onto the crank at {angle:.6g} degrees, where the motion is not determined"
 
 _HAIR = 1e-6  # rad: so near a fold the forces still have all their digits but the last few
@@ -81,14 +78,9 @@ class Plan:
 def plan_of(scene: Scene) -> Plan:
     """The plan of a scene; with every = "none" the last period at 1 degree is kept.
 
-    Raises
-    ------
-    InputError : more samples than memory holds, or an end too far to be resolved
-
     >>> plan_of(load_scene("coasting")).until
     0.5
     """
-    _check_size(scene)
     start = scene.motion.angle if scene.motion is not None else 0.0
     start = scene.start.angle if scene.start is not None else start
     until, until_time = scene.run.until.resolve(scene.period)
@@ -122,35 +114,6 @@ def one_period(theta: Array, period: float) -> tuple[Array, NDArray[np.intp]]:
         return theta, np.arange(n)
     which = np.append(np.arange(repeating) % count, np.arange(count, count + n - repeating))
     return np.append(theta[:count], theta[repeating:]), which
-
-
-def check_count(samples: float) -> None:
-    """Refuse more samples than memory holds.
-
-    Raises
-    ------
-    InputError : how many, and the way out
-    """
-    if samples > _MOST_SAMPLES:
-        raise InputError(
-            f"run.every: {samples:.3g} samples came, more than {_MOST_SAMPLES:.0e}; give a wider "
-            'spacing, or every = "none" to keep the last cycle alone'
-        )
-
-
-def _check_size(scene: Scene) -> None:
-    """Refuse what no memory holds and what double precision cannot tell apart."""
-    until, until_time = scene.run.until.resolve(scene.period)
-    if not until_time and until > _FARTHEST:
-        raise InputError(
-            f"run.until: beyond {_FARTHEST / (2 * math.pi):.2g} rev an angle has too few digits "
-            f"left; {until / (2 * math.pi):.3g} rev came"
-        )
-    if scene.run.every is None:
-        return
-    every, in_time = scene.run.every.resolve(scene.period)
-    if in_time == until_time:
-        check_count(until / every)
 
 
 def _folds(scene: Scene, start: float) -> tuple[float, float]:

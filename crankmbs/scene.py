@@ -20,7 +20,10 @@ from crankmbs.machine import Crank, Cylinder, Gas, Gravity, Layout, Piston, Rod
 from crankmbs.schema import DEGREE, Float, dumped, part
 from crankmbs.units import EXAMPLES, extent
 
-__all__ = ["Extent", "Run", "Scene"]
+__all__ = ["Extent", "Run", "Scene", "check_count"]
+
+_FARTHEST = 1e9  # rad: its last digit is 1e-7
+_MOST_SAMPLES = 2e7  # each takes a third of a kilobyte with one cylinder
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -96,6 +99,7 @@ class Scene:
         self._check_loop()
         self._check_motion()
         self._check_tables()
+        self._check_size()
 
     @property
     def period(self) -> float:
@@ -160,3 +164,31 @@ class Scene:
                     f"{table.source}: the table must cover the run, 0 to {end:g} s; it goes from "
                     f"{table.x[0]:g} to {table.x[-1]:g} s"
                 )
+
+    def _check_size(self) -> None:
+        """Refuse what no memory holds and what double precision cannot tell apart."""
+        until, until_time = self.run.until.resolve(self.period)
+        if not until_time and until > _FARTHEST:
+            raise InputError(
+                f"run.until: beyond {_FARTHEST / (2 * math.pi):.2g} rev an angle has too few "
+                f"digits left; {until / (2 * math.pi):.3g} rev came"
+            )
+        if self.run.every is None:
+            return
+        every, in_time = self.run.every.resolve(self.period)
+        if in_time == until_time:
+            check_count(until / every)
+
+
+def check_count(samples: float) -> None:
+    """Refuse more samples than memory holds.
+
+    Raises
+    ------
+    InputError : how many, and the way out
+    """
+    if samples > _MOST_SAMPLES:
+        raise InputError(
+            f"run.every: {samples:.3g} samples came, more than {_MOST_SAMPLES:.0e}; give a wider "
+            'spacing, or every = "none" to keep the last cycle alone'
+        )

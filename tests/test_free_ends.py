@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from crankmbs import InputError, Run, Start, load_scene, sampling, simulate
+from crankmbs import InputError, Run, Start, load_scene, simulate
 from crankmbs.formulations import minimal
 from crankmbs.result import VARIABLES
 
@@ -37,8 +37,8 @@ def test_more_samples_than_memory_holds_are_refused_where_they_come(
     formulation, every, monkeypatch
 ):
     """An end at an angle does not say how many samples in time there will be."""
-    monkeypatch.setattr(sampling, "_MOST_SAMPLES", 2000.0)
     scene = dataclasses.replace(COASTING, run=Run(until="30 rev", every=every))
+    monkeypatch.setattr("crankmbs.scene._MOST_SAMPLES", 2000.0)
     with pytest.raises(InputError, match=r"run\.every: .* samples came, more than 2e\+03; give a"):
         simulate(scene, formulation=formulation)
 

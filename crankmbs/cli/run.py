@@ -25,6 +25,8 @@ from crankmbs.simulate import simulate
 
 __all__ = ["override", "run_scene", "writable"]
 
+_LENGTH = ("until", "every")  # the options that a scene may refuse though [run] takes them
+
 
 def run_scene(
     name: str,
@@ -90,7 +92,8 @@ def override(scene: Scene, options: Mapping[str, Any]) -> Scene:
     try:
         return dataclasses.replace(scene, run=run)
     except InputError as error:
-        raise InputError(f"--until {options.get('until')}: {error}") from None
+        given = " ".join(f"--{name} {options[name]}" for name in _LENGTH if name in options)
+        raise InputError(f"{given}: {error}") from None
 
 
 def writable(folder: Path) -> Path:
