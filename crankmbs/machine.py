@@ -241,7 +241,7 @@ class Gas:
         for k, gap in enumerate(gaps):
             if gap <= _SAME_ANGLE:
                 raise InputError(
-                    f"{where}: crank angles must strictly increase; "
+                    f"{where}: crank angles must strictly increase; in row {k + 2} "
                     f"{angle[k + 1] / DEGREE:g} follows {angle[k] / DEGREE:g} degrees"
                 )
         span = angle[-1] - angle[0]

@@ -60,8 +60,14 @@ def test_a_bad_gas_gets_one_sentence(read, old, new, message):
     ("rows", "message"),
     [
         ("0,1\n", "a pressure table needs at least two rows"),
-        ("0,1\n90,1\n90,2\n400,1\n", "crank angles must strictly increase; 90 follows 90 degrees"),
-        ("0,1\n90,1\n45,2\n400,1\n", "crank angles must strictly increase; 45 follows 90 degrees"),
+        (
+            "0,1\n90,1\n90,2\n400,1\n",
+            "crank angles must strictly increase; in row 3 90 follows 90 degrees",
+        ),
+        (
+            "0,1\n90,1\n45,2\n400,1\n",
+            "crank angles must strictly increase; in row 3 45 follows 90 degrees",
+        ),
         (
             "0,1\n300,1\n721,1\n",
             "the rows span 721 degrees, more than the period of 720; check stroke, 4 came",
