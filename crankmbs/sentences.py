@@ -18,6 +18,7 @@ from crankmbs.errors import shown
 
 __all__ = ["did_you_mean", "sentence"]
 
+_CLOSE = 0.7  # where the choices are listed anyway: "spline" is no misspelling of "linear", 0.67
 _BARE_KEY = re.compile(r"[\w-]{1,60}")
 _UNKNOWN = {"unexpected_keyword_argument", "extra_forbidden"}
 _MISSING = {"missing", "missing_keyword_only_argument", "missing_argument"}
@@ -52,9 +53,9 @@ def sentence(error: ValidationError, root: type[Any], came: Mapping[str, Any]) -
     return f"{where}: {_rule(problem, root, loc)}; {shown(value)} came{near}"
 
 
-def did_you_mean(word: str, known: Sequence[str]) -> str:
-    """The way out of a misspelling, or nothing when no known word is near."""
-    close = difflib.get_close_matches(word, known, n=1)
+def did_you_mean(word: str, known: Sequence[str], least: float = 0.6) -> str:
+    """The way out of a misspelling, or nothing when no known word is near: difflib's ratio."""
+    close = difflib.get_close_matches(word, known, n=1, cutoff=least)
     return f'; did you mean "{close[0]}"?' if close else ""
 
 
@@ -98,7 +99,7 @@ def _value_at(came: Any, loc: Sequence[int | str]) -> Any:
 def _near_word(value: Any, problem: Any) -> str:
     if problem["type"] != "literal_error" or not isinstance(value, str):
         return ""
-    return did_you_mean(value, problem["ctx"]["expected"].split("'")[1::2])
+    return did_you_mean(value, problem["ctx"]["expected"].split("'")[1::2], _CLOSE)
 
 
 def _rule(problem: Any, root: type[Any], loc: Sequence[int | str]) -> str:

@@ -36,6 +36,11 @@ from scene_texts import FREE, GAS, INDICATED, edited, refusal
         ),
         (
             "absolute = false",
+            'absolute = false\ninterpolation = "spline"',
+            'gas.interpolation: must be "pchip", "linear", "cubic" or "step"; "spline" came',
+        ),
+        (
+            "absolute = false",
             'absolute = false\nzero = "tdc"',
             'gas.zero: must be "gas_exchange_tdc" or "firing_tdc"; "tdc" came',
         ),
