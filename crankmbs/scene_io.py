@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from pathlib import Path
 from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
 
-from crankmbs.errors import InputError, SceneError
+from crankmbs.errors import InputError, SceneError, shown
 from crankmbs.scene import Scene
 from crankmbs.sentences import did_you_mean, sentence
 
@@ -75,9 +76,8 @@ def parse_scene(text: str, path: Path) -> Scene:
     try:
         raw: dict[str, Any] = tomllib.loads(text)
     except (ValueError, RecursionError) as error:  # a number of 5000 digits is a ValueError
-        raise SceneError(
-            f"{path}: not valid TOML: {error}; crankmbs new NAME writes a scene to compare with"
-        ) from None
+        way_out = _in_quotes(text, error) or "crankmbs new NAME writes a scene to compare with"
+        raise SceneError(f"{path}: not valid TOML: {error}; {way_out}") from None
     try:
         scene: Scene = _SCENE.validate_python(raw, context={"folder": path.parent}, by_name=False)
     except ValidationError as error:
@@ -87,4 +87,14 @@ def parse_scene(text: str, path: Path) -> Scene:
     return scene
 
 
+def _in_quotes(text: str, error: Exception) -> str:
+    """The way out where a quantity with its unit stands bare in the line that is no TOML."""
+    line = re.search(r"\(at line (\d+),", str(error))
+    bare = line and _BARE_QUANTITY.search(text.split("\n")[int(line[1]) - 1])
+    if not bare:
+        return ""
+    return f"a quantity with a unit is written in quotes, here {shown(bare[1].strip())}"
+
+
+_BARE_QUANTITY = re.compile(r"=\s*([+-]?[0-9][0-9.eE+-]*\s*[^\W\d_][^#,}\"']*)")
 _SCENE = TypeAdapter(Scene)

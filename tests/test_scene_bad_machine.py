@@ -214,3 +214,22 @@ def test_a_bad_value_gets_one_sentence(read, old, new, message):
 @pytest.mark.parametrize("value", ["46 mm", "1" * 5000, "[" * 100_000, "'46 mm", "1__0"])
 def test_what_toml_cannot_hold(read, value):
     assert refusal(read, edited(FREE, '"46 mm"', value)).startswith("not valid TOML: ")
+
+
+@pytest.mark.parametrize("bare", ["46 mm", "46mm", "-4.6e-2 m"])
+@pytest.mark.parametrize("end", ["", "  # of the throw"])
+def test_a_quantity_without_its_quotes(read, bare, end):
+    message = refusal(read, edited(FREE, '"46 mm"', bare + end))
+    assert message.startswith("not valid TOML: ")
+    assert message.endswith(f'; a quantity with a unit is written in quotes, here "{bare}"')
+
+
+def test_a_quantity_without_its_quotes_in_braces(read):
+    message = refusal(read, edited(FREE, '"46 mm"', '{ value = 46 mm, of = "it" }'))
+    assert message.endswith('is written in quotes, here "46 mm"')
+
+
+def test_a_rod_shorter_than_the_crank_is_said_before_its_centre_of_mass(read):
+    rod = '"45 mm"\nmass = 1\ncenter_of_mass = "46 mm"\ninertia = "two-mass"'
+    message = refusal(read, edited(FREE, '"150 mm"', rod))
+    assert message.startswith("rod.length must be at least crank.radius + |piston.offset| = 0.046")
