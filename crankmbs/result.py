@@ -131,12 +131,16 @@ class Result:
 
         file = Path(path)
         file = file / "result.nc" if file.is_dir() else file
+        if not file.is_file():
+            raise OutputError(f"{file}: no such result; save writes one, and so does crankmbs run")
         try:
             with xr.open_dataset(file, engine="h5netcdf") as opened:
                 data = opened.load()
             about = json.loads(data.attrs.pop("crankmbs"))
-        except (OSError, KeyError, ValueError) as error:
-            raise OutputError(f"{file}: no readable result of crankmbs: {error}") from None
+        except (OSError, KeyError, ValueError):  # HDF5's own words name its inner calls
+            raise OutputError(
+                f"{file}: no readable result of crankmbs; give the result.nc that save wrote"
+            ) from None
         return cls(
             scene=_SCENE.validate_python(about["scene"]),
             data=data,

@@ -32,8 +32,12 @@ def scene_path(name: str | Path) -> Path:
 
     Raises
     ------
-    SceneError : neither a file nor a shipped name
+    SceneError : no name, or that of neither a file nor a shipped scene
     """
+    if not isinstance(name, str | Path):
+        raise SceneError(
+            f'a scene is named by its file or as shipped, such as "propeller"; {shown(name)} came'
+        )
     path = Path(name)
     shipped = shipped_scenes()
     if path.is_file():

@@ -7,7 +7,7 @@ import time as clock
 from crankmbs import free
 from crankmbs.assemble import Assembled, assemble, dataset
 from crankmbs.choose import choose
-from crankmbs.errors import InputError
+from crankmbs.errors import InputError, shown
 from crankmbs.formulations import kinetostatic
 from crankmbs.pressure import PeriodicPressure, pressure_of
 from crankmbs.result import Cost, Error, Result
@@ -41,11 +41,13 @@ def simulate(
     Raises
     ------
     FormulationError : the formulation cannot serve the scene
-    InputError : rtol or cost_cap out of range, a table that ends before the run
+    InputError : no scene, rtol or cost_cap out of range, a table that ends before the run
 
     >>> print(simulate(load_scene("torque_driven")).status)
     0
     """
+    if not isinstance(scene, Scene):
+        raise InputError(f"scene must be a Scene, such as load_scene reads; {shown(scene)} came")
     if rtol is not None and not 1e-13 <= rtol <= 1e-2:
         raise InputError(f"rtol must be from 1e-13 to 1e-2; {rtol!r} came")
     if not cost_cap > 0.0:

@@ -93,6 +93,12 @@ def test_a_name_that_nobody_knows():
     )
 
 
+@pytest.mark.parametrize("name", [3, None])
+def test_what_is_no_name(name):
+    with pytest.raises(SceneError, match=r"a scene is named by its file or as shipped, .* came$"):
+        load_scene(name)
+
+
 @pytest.mark.parametrize("name", ["propellor", "models/propellor.toml"])
 def test_a_misspelt_name(name):
     with pytest.raises(SceneError, match=r'no shipped scene; did you mean "propeller"\?$'):
