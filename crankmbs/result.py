@@ -97,11 +97,17 @@ class Result:
         time, angle = self.data["time"].values, self.data["crank_angle"].values
         turned = abs(angle[-1] - angle[0]) / (2.0 * np.pi)
         speed = self.data["crank_speed"].values * 30.0 / np.pi
+        whole = self.scene.run.every is not None  # else only the last cycle is kept
+        length = (
+            f"{time[-1]:.6g} s, {turned:.6g} rev"
+            if whole
+            else f"last {turned:.6g} rev of {time[-1]:.6g} s"
+        )
         return "\n".join(
             [
                 f"{self.scene.title or 'scene'}: {self.formulation}, status {self.status}",
                 f"  {self.message}",
-                f"  {time[-1]:.6g} s, {turned:.6g} rev, {speed.min():.6g} to {speed.max():.6g} rpm",
+                f"  {length}, {speed.min():.6g} to {speed.max():.6g} rpm",
                 f"  relative error {self.error.estimated:.1e} (asked {self.error.asked:.0e}), "
                 f"{self.cost.wall_time:.3g} s, {self.cost.evaluations} evaluations",
             ]

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from crankmbs import InputError, Run, load_scene, simulate
+from crankmbs import InputError, OutputError, Result, Run, load_scene, simulate
 
 SHORT = replace(load_scene("coasting"), run=Run(until="0.5 rev", every="30 deg", rtol=1e-5))
 
@@ -41,3 +41,34 @@ def test_what_comes_back():
 
 def test_equal_runs_are_equal():
     assert simulate(SHORT).data.identical(simulate(SHORT).data)
+
+
+@pytest.mark.parametrize(("scene", "came"), [("yi_diesel", '"yi_diesel"'), (None, "null")])
+def test_what_is_no_scene(scene, came):
+    with pytest.raises(InputError) as caught:
+        simulate(scene)
+    said = f"scene must be a Scene, such as load_scene reads; {came} came"
+    assert str(caught.value) == said
+
+
+def test_what_cannot_be_loaded(tmp_path):
+    with pytest.raises(OutputError) as caught:
+        Result.load(tmp_path)
+    assert str(caught.value) == (
+        f"{tmp_path}/result.nc: no such result; save writes one, and so does crankmbs run"
+    )
+    file = tmp_path / "text.nc"
+    file.write_text("text")
+    with pytest.raises(OutputError) as caught:
+        Result.load(file)
+    assert str(caught.value) == (
+        f"{file}: no readable result of crankmbs; give the result.nc that save wrote"
+    )
+
+
+def test_a_result_says_whether_it_is_of_the_whole_run():
+    run = Run(until="3 cycles", rtol=1e-5)
+    whole, last = (simulate(replace(SHORT, run=replace(run, every=e))) for e in ("1 deg", "none"))
+    end = f"{whole.data['time'].values[-1]:.6g} s"
+    assert f"\n  {end}, 6 rev, " in str(whole)
+    assert f"\n  last 2 rev of {end}, " in str(last)
