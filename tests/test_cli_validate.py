@@ -191,6 +191,15 @@ def test_the_curves_of_a_budget_figure_add_up_to_the_thick_one(four):
     assert (degrees[0], degrees[-1]) == pytest.approx((0.0, 720.0))
 
 
+def test_a_force_of_all_cylinders_is_not_said_to_be_of_one(four):
+    names = ("main bearing force x", "main bearing force y")
+    for figure in (
+        comparison_figure(compare(four, 2), names),
+        budget_figure(budget(four, 2), names),
+    ):
+        assert "cylinder" not in figure.get_supxlabel().removeprefix(four.scene.title)
+
+
 def test_nothing_to_draw_is_no_figure():
     scene = dataclasses.replace(load_scene("coasting"), run=Run(until="1 rev"))
     result = simulate(scene)

@@ -113,6 +113,7 @@ def _figure(
     view = last_view(stretch.result)
     degrees = view.degrees[stretch.samples - stretch.window.first]
     several = len(stretch.result.scene.cylinders) > 1
+    of_one = several and any(QUANTITIES[name].per_cylinder for name, _, _ in columns)
     above_marks = 40.0 if several else 24.0  # points; marks of several cylinders have two lines
     for k, (name, curves, errors) in enumerate(columns):
         top, bottom = axes[k], axes[n + k]
@@ -133,7 +134,7 @@ def _figure(
         loc="outside upper center",
         ncols=min(len(handles), int(figure.get_figwidth() / 3.0)),
     )
-    footer(figure, stretch.result, f"{about}, cylinder {stretch.cylinder}" if several else about)
+    footer(figure, stretch.result, f"{about}, cylinder {stretch.cylinder}" if of_one else about)
     return figure
 
 
