@@ -16,7 +16,16 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from crankmbs.figures.style import STYLE, footer, force_scale, legend, line_of, name_of, panels
+from crankmbs.figures.style import (
+    STYLE,
+    footer,
+    force_scale,
+    legend,
+    line_of,
+    mark_points,
+    name_of,
+    panels,
+)
 from crankmbs.figures.view import View
 
 __all__ = ["crank_pin_figure", "main_bearing_figure", "piston_pin_figure"]
@@ -27,6 +36,7 @@ _CYLINDER = ("X, from crank to head", "Y, 90 deg ahead of X")
 _ENGINE = ("engine's X", "engine's Y, 90 deg ahead of X")
 _THROW = ("radial, outwards along the throw", "tangential, in the sense of +theta")
 _CLOSE = 0.02  # of the curve's size: marks nearer than this share one label
+_LAYOUTS = 3  # until nothing moves any more
 _GAP, _LINE, _LETTER = 0.04, 0.045, 0.017  # of the axes: to the labels; their height and width
 
 
@@ -48,7 +58,7 @@ def main_bearing_figure(view: View) -> Figure:
     x, y = view.values("main_bearing_force_x"), view.values("main_bearing_force_y")
     _draw(ax, [x], [y], [view.degrees], _ENGINE)
     ax.set_title("main bearing: bearing on crank, engine's frame")
-    footer(figure, view.result, f"marks: crank angle [deg], {view.window.kind}")
+    _caption(figure, view, "crank angle")
     return figure
 
 
@@ -89,8 +99,19 @@ def _finish(figure: Figure, ax: Axes, view: View) -> None:
     several = len(view.scene.cylinders) > 1
     if several:
         legend(figure, ax)
-    whose = "cycle angle of cylinder 1" if several else "cycle angle"
-    footer(figure, view.result, f"marks: {whose} [deg], {view.window.kind}")
+    _caption(figure, view, "cycle angle of cylinder 1" if several else "cycle angle")
+
+
+def _caption(figure: Figure, view: View, angle: str) -> None:
+    """Write the caption and give it its room.
+
+    Axes of equal scales shrink within their place, which the layout sees only the next time.
+    """
+    footer(figure, view.result, f"marks: {angle} [deg], {view.window.kind}")
+    layout = figure.get_layout_engine()
+    assert layout is not None
+    for _ in range(_LAYOUTS):
+        layout.execute(figure)
 
 
 def _draw(
@@ -100,6 +121,7 @@ def _draw(
     scale, unit = force_scale(*up, *left)
     for k, (x, y) in enumerate(zip(up, left, strict=True)):
         ax.plot(y / scale, x / scale, **line_of(k), linewidth=1.8, label=name_of(k))
+    mark_points(ax)
     ax.axhline(0.0, color="0.55", linewidth=1.0, zorder=1)
     ax.axvline(0.0, color="0.55", linewidth=1.0, zorder=1)
     ax.set_ylabel(f"{sense[0]} [{unit}]")

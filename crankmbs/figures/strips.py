@@ -17,6 +17,7 @@ from crankmbs.figures.style import (
     force_scale,
     legend,
     line_of,
+    mark_points,
     name_of,
     panels,
 )
@@ -32,13 +33,20 @@ _FLAT = 1e-6  # of the mean: a speed that varies less is drawn as constant
 
 @rc_context(STYLE)
 def speed_figure(view: View) -> Figure:
-    """Crank speed over the crank angle: the last cycle, and above it the whole run if longer."""
-    longer = view.window.first > 0
-    figure, axes = panels(1 + longer, 1, 10.0, 7.0 if longer else 5.0)
-    if longer:
+    """Crank speed over the crank angle in the last cycle; above it the whole run.
+
+    The whole run is shown if it is longer, and over time if that is how it was sampled.
+    """
+    every = view.scene.run.every
+    in_time = every is not None and every.unit == "s"
+    whole = in_time or view.window.first > 0
+    figure, axes = panels(1 + whole, 1, 10.0, 7.0 if whole else 5.0)
+    if whole:
         data = view.result.data
-        _speed(axes[0], np.degrees(data["crank_angle"].values) / 360.0, data["crank_speed"].values)
-        axes[0].set_xlabel("crank angle [rev], whole run")
+        turned = np.degrees(data["crank_angle"].values) / 360.0
+        _speed(axes[0], data["time"].values if in_time else turned, data["crank_speed"].values)
+        axes[0].set_xlabel(f"{'time [s]' if in_time else 'crank angle [rev]'}, whole run")
+        mark_points(axes[0])
     _speed(axes[-1], view.degrees, view.values("crank_speed"))
     crank_axis(axes[-1:], view)
     footer(figure, view.result, "crank speed")

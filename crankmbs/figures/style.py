@@ -23,6 +23,7 @@ __all__ = [
     "force_scale",
     "legend",
     "line_of",
+    "mark_points",
     "name_of",
     "panels",
 ]
@@ -86,11 +87,12 @@ def force_scale(*forces: NDArray[np.float64]) -> tuple[float, str]:
 def crank_axis(axes: list[Axes], view: View) -> None:
     """Give stacked panels one crank-angle axis, with the dead centres marked."""
     span = view.high - view.low
-    step = next((s for s in (15, 30, 90, 180) if span <= 8.5 * s), 360)
+    step = next((s for s in (1, 5, 15, 30, 90, 180) if span <= 8.5 * s), 360)
     ticks = np.arange(math.ceil(view.low / step) * step, view.high + 1e-6, step)
     period = round(math.degrees(view.scene.period))
     labels = view.dead_centre_labels()
     for ax in axes:
+        mark_points(ax)
         ax.set_xlim(view.low, view.high)
         ax.set_xticks(ticks, [f"{tick if tick <= period else tick - period:g}" for tick in ticks])
         ax.tick_params(labelbottom=ax is axes[-1])
@@ -109,6 +111,13 @@ def crank_axis(axes: list[Axes], view: View) -> None:
             color="0.35",
         )
     axes[-1].set_xlabel(f"crank angle [deg], {view.window.kind}")
+
+
+def mark_points(ax: Axes) -> None:
+    """Mark the curves that are one point, of a crank at rest: as lines they cannot be seen."""
+    for line in ax.lines:
+        if not np.any(np.ptp(line.get_xydata(), axis=0)):
+            line.set_marker("o")
 
 
 def legend(figure: Figure, ax: Axes) -> None:

@@ -111,10 +111,10 @@ def last_view(result: Result) -> View:
     low, high = sorted((end - window.angle, end))
     if window.kind == "whole run":
         low, high = float(angle.min()), float(angle.max())
-        if low == high:  # the crank stands still
-            low, high = low - DEGREE, high + DEGREE
     period = result.scene.period
     shift = math.floor(low / period + 1e-9) * period
+    if low == high:  # the crank stands still
+        low, high = low - DEGREE, high + DEGREE
     return View(
         result=result,
         window=window,

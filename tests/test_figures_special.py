@@ -1,0 +1,80 @@
+"""Figures of runs at rest, of runs sampled in time, and of runs with a long title."""
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+from crankmbs import Motion, Ramp, Run, Start, load_scene, simulate
+from crankmbs.figures import (
+    crank_pin_figure,
+    forces_figure,
+    last_view,
+    main_bearing_figure,
+    piston_motion_figure,
+    piston_pin_figure,
+    speed_figure,
+    torque_figure,
+)
+
+BARE = dataclasses.replace(load_scene("coasting"), gravity=None, torque=())
+STRIPS = [speed_figure, piston_motion_figure, forces_figure, torque_figure]
+POLAR = [main_bearing_figure, crank_pin_figure, piston_pin_figure]
+
+
+@pytest.mark.parametrize("degrees", [0.0, 367.5, -100.0])
+@pytest.mark.parametrize("draw", [*STRIPS, *POLAR])
+def test_a_crank_at_rest_is_a_visible_point(draw, degrees):
+    scene = dataclasses.replace(BARE, start=Start(angle=math.radians(degrees), speed=0.0))
+    result = simulate(scene)
+    assert result.data.sizes["time"] == 1
+    figure = draw(last_view(result))
+    assert all(any(line.get_marker() == "o" for line in ax.lines) for ax in figure.axes)
+    if draw in STRIPS:
+        at = degrees % 720.0
+        assert figure.axes[-1].get_xlim() == pytest.approx((at - 1.0, at + 1.0))
+        near = [float(text.get_text()) for text in figure.axes[-1].get_xticklabels()]
+        assert near == [math.ceil(at - 1.0) + k for k in range(len(near))]
+        assert len(near) > 1
+
+
+def run_up(until, every):
+    speed = Ramp(start=100.0, to=300.0, over=0.2)
+    run = Run(until=until, every=every)
+    return last_view(
+        simulate(dataclasses.replace(BARE, start=None, motion=Motion(speed=speed), run=run))
+    )
+
+
+@pytest.mark.parametrize("until", ["0.3 s", "0.05 s"])  # some cycles, and less than one turn
+def test_a_run_sampled_in_time_shows_its_speed_over_time(until):
+    view = run_up(until, "1 ms")
+    whole, last = speed_figure(view).axes
+    time = view.result.data["time"].values
+    assert whole.get_xlabel() == "time [s], whole run"
+    assert whole.lines[0].get_xdata() == pytest.approx(time)
+    assert whole.lines[0].get_ydata() == pytest.approx(
+        np.minimum(100.0 + 1000.0 * time, 300.0) * 30.0 / math.pi
+    )
+    assert last.get_xlabel().startswith("crank angle [deg], ")
+
+
+def test_a_run_sampled_in_angle_shows_its_speed_over_the_angle():
+    whole, _ = speed_figure(run_up("0.3 s", "1 deg")).axes
+    assert whole.get_xlabel() == "crank angle [rev], whole run"
+
+
+@pytest.mark.parametrize("draw", POLAR)
+def test_a_caption_of_three_lines_keeps_clear_of_the_axes(draw):
+    view = last_view(simulate(load_scene("v_twin")))
+    figure = draw(view)
+    assert figure.get_supxlabel().count("\n") == 2
+    figure.draw_without_rendering()
+    point = figure.dpi / 72.0
+    caption = figure.texts[-1].get_window_extent()
+    lowest = min(ax.get_tightbbox().y0 for ax in figure.axes)
+    assert lowest - caption.y1 > 5.0 * point
+    for legend in figure.legends:
+        highest = max(ax.get_tightbbox().y1 for ax in figure.axes)
+        assert legend.get_window_extent().y0 - highest > 2.0 * point
