@@ -61,6 +61,7 @@ _ENDS = {
 }
 # what a pass may say that has not seen yet, or by its errors never, that the crank is at rest
 _RESTING = {"rest", "swing", "end"}
+_BROKEN = {"costly", "failed"}
 
 
 class _Pass(NamedTuple):
@@ -104,7 +105,7 @@ def run(
         estimate = assembled.relative_error * (2.0 if near else 1.0)
         if estimate <= least:
             best, least, rounded = assembled, estimate, near
-        if estimate <= rtol or local <= finest or answer.ending in ("costly", "failed"):
+        if estimate <= rtol or local <= finest or answer.ending in _BROKEN:
             break
         local = max(local * max(1e-3, 0.1 * rtol / estimate), finest)
     assert best is not None
@@ -215,15 +216,16 @@ def _solution(answer: _Pass, better: _Pass, plan: Plan) -> Solution:
         at_rest = not matched.parted
     samples, check, parted = matched
     ending = "rest" if at_rest and answer.ending != "end" else answer.ending
-    status, message = _ENDS[ending]
-    if (len(endings) > 1 and not at_rest) or (parted and status >= 0):
+    broken = sorted(endings & _BROKEN)
+    status, message = _ENDS[broken[0] if broken else ending]
+    if status >= 0 and ((len(endings) > 1 and not at_rest) or parted):
         status = -1
         message = "two passes of different order end differently, at {angle:.6g} degrees and later"
     text = message.format(
         angle=math.degrees(float(samples.theta[-1])),
         speed=float(samples.omega[-1]) * 30.0 / math.pi,
         reversals=path.reversals,
-        evaluations=path.evaluations,
+        evaluations=max(path.evaluations, better.path.evaluations),
     )
     reasons: tuple[str, ...] = ()
     if answer.slow:

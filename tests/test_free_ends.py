@@ -31,6 +31,17 @@ def test_too_many_evaluations_stop_the_run_with_the_samples_of_both_passes(monke
     assert f"stopped at {last:.6g} degrees" in result.message
 
 
+def test_a_second_pass_that_takes_too_much_says_so(monkeypatch):
+    whole = simulate(COASTING, formulation="minimal")
+    monkeypatch.setattr(minimal, "_MOST_EVALUATIONS", whole.cost.evaluations // 2)
+    result = simulate(COASTING, formulation="minimal")
+    assert result.status == -1
+    assert "takes more than" in result.message
+    n = result.data.sizes["time"]
+    difference = np.abs(result.data["time"].values - whole.data["time"].values[:n])
+    assert difference.max() <= stated(result, "time") + stated(whole, "time")
+
+
 @pytest.mark.parametrize("formulation", ["crank_angle", "minimal"])
 @pytest.mark.parametrize("every", ["1 us", "0.1 ms"], ids=["within one piece", "over many"])
 def test_more_samples_than_memory_holds_are_refused_where_they_come(

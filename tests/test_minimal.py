@@ -9,6 +9,7 @@ from references import reference_of, true_errors, worst_ratio
 
 from crankmbs import (
     Constant,
+    Gas,
     Quadratic,
     Run,
     SpeedTable,
@@ -61,6 +62,19 @@ HARD = {
         torque=(),
         run=Run(until="0.2 s", every="30 deg"),
     ),
+    "a load sets in backwards, at rest in dead centre on a step of the pressure": scene(
+        gravity=None,
+        gas=Gas(
+            pressure=Table((0.0, 1.0, 4.0), (2e5, -1e5, 3e5)),
+            absolute=False,
+            stroke=2,
+            interpolation="step",
+        ),
+        piston=replace(COASTING.piston, area=1e-3),
+        start=Start(angle=0.0, speed=0.0),
+        torque=(TimeTable(file=Table((0.0, 0.02, 0.2, 1.0), (0.0, 0.0, -0.05, -0.05))),),
+        run=Run(until="0.3 s", every="30 deg"),
+    ),
     "stall and swing back": scene(
         PROPELLER, start=Start(angle=0.0, speed="60 rpm"), run=Run(until="2 s", every="30 deg")
     ),
@@ -71,6 +85,7 @@ HARD = {
 def test_the_error_is_honest(name):
     result = simulate(HARD[name], formulation="minimal")
     assert result.status == 0
+    assert result.error.estimated <= 1e-4
     errors = true_errors(result, reference_of(result))
     ratios = {variable: error.ratio for variable, error in errors.items()}
     assert max(ratios.values()) <= 2.0, ratios

@@ -93,6 +93,7 @@ def _enter(reduced: Reduced, state: State, scale: float) -> Equation | str:
         rest = torque - 0.5 * slope * state.omega**2
         branch = branch_at(torques, state.time, state.omega, rest)
         return "held" if branch is None else Equation(reduced, between, branch)
+    sides: list[Equation] = []
     resisted = False
     for sense in (1.0, -1.0):
         branch = branch_of(torques, state.time, 0.0, rising=sense > 0.0)
@@ -101,9 +102,11 @@ def _enter(reduced: Reduced, state: State, scale: float) -> Equation | str:
         if pull * sense > BALANCED * scale:
             return equation
         resisted = resisted or pull * sense < -BALANCED * scale
-        if not resisted and not equation.is_balanced(state, scale):  # a load that begins later
-            return equation
-    return "held" if resisted else "stuck"
+        sides.append(equation)
+    if resisted:
+        return "held"
+    later = sides[1] if sides[0].branch.ct < 0.0 else sides[0]  # where a load that sets in drives
+    return "stuck" if later.is_balanced(state, scale) else later
 
 
 class _Control(NamedTuple):
