@@ -35,9 +35,10 @@ class Arithmetic:
         return np.full(shape, self.number(0), dtype=self.dtype)
 
     def whole_turns(self, angle: Number) -> Number:
-        """The whole turns [rad] nearest to an angle: a period is not the float that stands for it,
-        which after a thousand turns is seen."""
-        return 2 * self.pi * round(float(angle / (2 * self.pi)))
+        """The whole turns [rad] that a float stands for, else the angle itself: the float is not a
+        period, which after a thousand turns is seen."""
+        turns = 2 * self.pi * round(float(angle / (2 * self.pi)))
+        return turns if float(turns) == float(angle) else self.number(angle)
 
 
 def _to_longdouble(value: Number) -> Number:
