@@ -80,3 +80,24 @@ def test_at_rest_for_a_time(every):
     assert result.status == 0
     assert result.data["time"].values[-1] == 0.01
     assert np.all(result.data["crank_angle"] == 0.0)
+
+
+@pytest.mark.parametrize("until", ["7.3 rev", "0.31 s"])
+def test_the_last_cycle_alone_is_that_of_the_whole_run(until):
+    scene = load_scene("compressor")
+    last, whole = (
+        simulate(replace(scene, run=Run(until=until, every=every))).data
+        for every in ("none", "1 deg")
+    )
+    kept = whole.isel(time=slice(-last.sizes["time"], None))
+    assert last.sizes["time"] == 361
+    for name in ("time", "crank_angle", "crank_speed", "side_force"):
+        np.testing.assert_allclose(last[name], kept[name], rtol=1e-12, atol=1e-9)
+
+
+def test_a_hundred_thousand_cycles_take_no_more_memory_than_one():
+    run = Run(until="100000 cycles", every="none")
+    scene = replace(
+        load_scene("propeller"), start=None, motion=Motion(speed=1000.0), torque=(), run=run
+    )
+    assert simulate(scene).data.sizes["time"] == 721

@@ -32,6 +32,7 @@ def run(scene: Scene, pressure: PeriodicPressure | None) -> Solution:
     plan = plan_of(scene)
     law = speed_law(scene.motion)
     stretches, reached = _stretches(plan, law)
+    stretches = _kept(plan, law, stretches)
     time, theta = _sample(plan, law, stretches, reached)
     _, omega, alpha = law.at_time(time)
     edges = _panel_edges(scene, pressure, law, stretches, time)
@@ -71,6 +72,18 @@ def _stretches(plan: Plan, law: SpeedLaw) -> tuple[list[tuple[float, float]], bo
         f"motion.speed: the speed table ends at {begin:g} s, before the run does; "
         "lengthen the table or shorten the run"
     )
+
+
+def _kept(
+    plan: Plan, law: SpeedLaw, stretches: list[tuple[float, float]]
+) -> list[tuple[float, float]]:
+    """The stretches that hold all samples to be kept, and one before them."""
+    begin, end = stretches[-1]
+    first, last = (float(q) for q in law.at_time([begin, end])[0])
+    if not abs(last - first) > plan.last + 2.0 * plan.every:
+        return stretches
+    since = last - math.copysign(plan.last + 2.0 * plan.every, last - first)
+    return [(float(law.time_at(since, begin, end)[0]), end)]
 
 
 def _sample(
