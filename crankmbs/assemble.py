@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -12,7 +11,7 @@ import numpy as np
 from crankmbs.formulations.base import Array, Samples, Solution
 from crankmbs.inertia import reduce
 from crankmbs.pressure import PeriodicPressure
-from crankmbs.reactions import reactions
+from crankmbs.reactions import deviations, reactions
 from crankmbs.result import VARIABLES
 from crankmbs.sampling import one_period
 from crankmbs.scene import Scene
@@ -77,37 +76,38 @@ def assemble(scene: Scene, pressure: PeriodicPressure | None, solution: Solution
     peaks = {name: _peak(values) for name, values in variables.items()}
     if solution.errors:
         return Assembled(solution, variables, peaks, dict(solution.errors))
-    better = solution.better or solution.samples
-    late = better.time - solution.samples.time
-    ahead = better.theta - solution.samples.theta - solution.samples.omega * late
+    answer, better = solution.samples, solution.better or solution.samples
+    late = better.time - answer.time
+    ahead = better.theta - answer.theta - answer.omega * late
     rounding = ANGLE_ROUNDING * _peak(better.theta)
-    rounded = Samples(
-        better.time,
-        better.theta + rounding,
-        better.omega + _speed_change(better, rounding),
-        better.alpha,
-        better.energy_residual,
+    rounded = replace(
+        better,
+        theta=better.theta + rounding,
+        omega=better.omega + _speed_change(better, rounding),
     )
-    check = _variables(scene, pressure, rounded)
-    needed = check["external_torque"]
-    check |= better.own
-    chain = [variables, check]
+    chain = [rounded]
     if len(better.time) <= _FEW:
-        turned = replace(solution.samples, theta=rounded.theta)
-        faster = replace(turned, omega=rounded.omega)
-        chain[1:1] = [_variables(scene, pressure, samples) for samples in (turned, faster)]
-    errors = {
-        name: sum(_peak(a[name] - b[name]) for a, b in pairwise(chain)) + _ROUNDING * peak
-        for name, peak in peaks.items()
-    }
-    # a free crank's acceleration at the rounded angle: where the torque needed is the one there
-    missed = _peak(check["external_torque"] - needed)
+        turned = replace(answer, theta=rounded.theta)
+        chain[:0] = [turned, replace(turned, omega=rounded.omega)]
+    errors = {name: _ROUNDING * peak for name, peak in peaks.items()}
+    before, missed = variables, 0.0
+    for samples in chain:
+        motion = (samples.theta, samples.omega, samples.alpha)
+        apart = deviations(scene, pressure, *motion, {**before, **samples.own})
+        # a free crank's acceleration at the rounded angle: where the torque needed is the one there
+        missed = apart["external_torque"] if samples.own else 0.0
+        given = {**_motion(samples), **samples.own}
+        apart |= {name: _peak(before[name] - values) for name, values in given.items()}
+        errors = {name: error + apart[name] for name, error in errors.items()}
+        if samples is not rounded:
+            before = _variables(scene, pressure, samples)
     if late.any() and late[-1] == 0.0 != ahead[-1]:  # else it ends at an angle, at the same time
         recent = ahead[np.abs(better.theta - better.theta[-1]) <= 2.0 * math.pi]
         more = math.copysign(_peak(recent) - abs(ahead[-1]), ahead[-1])
-        last = rounded.select(np.array([-1]))
+        last = replace(rounded, own={}).select(np.array([-1]))
         end = _variables(scene, pressure, replace(last, theta=last.theta + more))
-        missed = max(missed, _peak(check["external_torque"][-1:] - end["external_torque"]))
+        there = better.own["external_torque"][-1:]
+        missed = max(missed, _peak(there - end["external_torque"]))
         for name in errors.keys() - better.own.keys():
             most = _peak(variables[name][-1:] - end[name]) + _ROUNDING * peaks[name]
             errors[name] = max(errors[name], most)
@@ -155,14 +155,17 @@ def dataset(assembled: Assembled) -> xr.Dataset:
 def _variables(
     scene: Scene, pressure: PeriodicPressure | None, samples: Samples
 ) -> dict[str, Array]:
+    found = reactions(scene, pressure, samples.theta, samples.omega, samples.alpha)
+    return {**_motion(samples), **found, **samples.own}
+
+
+def _motion(samples: Samples) -> dict[str, Array]:
     return {
         "time": samples.time,
         "crank_angle": samples.theta,
         "crank_speed": samples.omega,
         "crank_acceleration": samples.alpha,
         "energy_residual": samples.energy_residual,
-        **reactions(scene, pressure, samples.theta, samples.omega, samples.alpha),
-        **samples.own,
     }
 
 

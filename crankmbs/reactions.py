@@ -11,6 +11,7 @@ made for these three alone, once for every angle of a period, and put together f
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -21,10 +22,11 @@ from crankmbs.geometry import close_loop, top_position
 from crankmbs.inertia import gravity_vector, rod_centre
 from crankmbs.machine import Cylinder
 from crankmbs.pressure import PeriodicPressure
+from crankmbs.result import VARIABLES
 from crankmbs.sampling import one_period
 from crankmbs.scene import Scene
 
-__all__ = ["reactions"]
+__all__ = ["deviations", "reactions"]
 
 Array = NDArray[np.float64]
 
@@ -64,34 +66,95 @@ def reactions(
     >>> float(reactions(scene, None, [0.0], [10.0], [0.0])["side_force"][0, 0])
     0.0
     """
+    found = _found(scene, pressure, theta, omega, alpha)
+    rows = {name: len(columns) for name, columns in found.columns.items()}
+    # one piece of memory, so large that the system is not asked for every run's anew
+    room = np.split(np.empty((sum(rows.values()), len(found.omega))), np.cumsum([*rows.values()]))
+    variables = dict(zip(rows, room, strict=False))
+    for name, variable in variables.items():
+        for row, values in zip(variable, found.columns[name], strict=True):
+            found.put(name, values, row)
+    return {n: v.T if VARIABLES[n].per_cylinder else v[0] for n, v in variables.items()}
+
+
+def deviations(
+    scene: Scene,
+    pressure: PeriodicPressure | None,
+    theta: Array,
+    omega: Array,
+    alpha: Array,
+    variables: Mapping[str, Array],
+) -> dict[str, float]:
+    """Largest absolute difference of each variable, as `reactions` gives them for another motion,
+    from those of this motion, which are not kept.
+
+    Parameters are those of `reactions`; variables : by name, with the samples of this motion
+
+    >>> scene = load_scene("torque_driven")
+    >>> motion = np.zeros((3, 2))
+    >>> max(deviations(scene, None, *motion, reactions(scene, None, *motion)).values())
+    0.0
+    """
+    found = _found(scene, pressure, theta, omega, alpha)
+    largest = {}
+    for name, columns in found.columns.items():
+        rows = np.atleast_2d(variables[name].T)
+        apart = [found.apart(name, *pair) for pair in zip(columns, rows, strict=True)]
+        largest[name] = float(np.max(apart))
+    return largest
+
+
+class _Found(NamedTuple):
+    """Every variable at the samples, not yet put together.
+
+    columns : for the crank or for each cylinder, shape (n,) what depends on the angle alone, for
+        the piston's velocity per speed; shape (3, n) what belongs to omega^2, alpha and 1
+    which : shape (samples,), which of the n angles a sample is at; None where n are the samples
+    """
+
+    columns: dict[str, list[Array]]
+    which: NDArray[np.intp] | None
+    at: _Motion
+    omega: Array
+
+    def put(self, name: str, values: Array, variable: Array) -> None:
+        """A variable at the samples into its place."""
+        if kernels.are_compiled and self.which is not None and values.ndim > 1:
+            readout.together(values, self.which, self.at.square, self.at.alpha, variable)
+        else:
+            variable[:] = self._all(name, values)
+
+    def apart(self, name: str, values: Array, variable: Array) -> float:
+        """Largest difference of a variable from this one at the samples."""
+        if kernels.are_compiled and self.which is not None and values.ndim > 1:
+            return readout.apart(values, self.which, self.at.square, self.at.alpha, variable)
+        return float(np.max(np.abs(self._all(name, values) - variable), initial=0.0))
+
+    def _all(self, name: str, values: Array) -> Array:
+        if self.which is not None:
+            values = values.take(self.which, axis=-1)
+        if values.ndim > 1:
+            return np.asarray(values[0] * self.at.square + values[1] * self.at.alpha + values[2])
+        return values * self.omega if name == "piston_velocity" else values
+
+
+def _found(
+    scene: Scene,
+    pressure: PeriodicPressure | None,
+    theta: ArrayLike,
+    omega: ArrayLike,
+    alpha: ArrayLike,
+) -> _Found:
     theta, omega, alpha = (np.asarray(q, dtype=np.float64) for q in (theta, omega, alpha))
     samples = _Motion(omega**2, alpha, np.ones(1))
     once, which = one_period(theta, scene.period)
     by_parts = len(theta) > _OFTEN * len(once)
     once, motion = (once, _UNITS) if by_parts else (theta, samples)
     cylinders = [_cylinder(scene, pressure, once, motion, c) for c in scene.cylinders]
-    crank = _crank(scene, once, motion, cylinders)
-    variables = {name: np.empty((1, len(theta))) for name in crank}
-    variables |= {name: np.empty((len(cylinders), len(theta))) for name in cylinders[0].variables}
-    for name, rows in variables.items():
-        columns = [crank[name]] if name in crank else [c.variables[name] for c in cylinders]
-        for row, values in zip(rows, columns, strict=True):
-            if by_parts and values.ndim > 1:
-                _put_together(values, which, samples, row)
-            else:
-                row[:] = values[which] if by_parts else values
-    variables["piston_velocity"] *= omega
-    return {name: rows[0] if name in crank else rows.T for name, rows in variables.items()}
-
-
-def _put_together(parts: Array, which: NDArray[np.intp], at: _Motion, variable: Array) -> None:
-    """A variable at the samples from its parts of omega^2, alpha and 1 at every angle."""
-    if kernels.are_compiled:
-        readout.together(parts, which, at.square, at.alpha, variable)
-    else:
-        np.multiply(parts[0].take(which), at.square, out=variable)
-        variable += parts[1].take(which) * at.alpha
-        variable += parts[2].take(which)
+    columns = {name: [part] for name, part in _crank(scene, once, motion, cylinders).items()}
+    for name in cylinders[0].variables:
+        columns[name] = [c.variables[name] for c in cylinders]
+    return _Found(columns, which if by_parts else None, samples, omega)
 
 
 class _Cylinder(NamedTuple):

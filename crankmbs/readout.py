@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from crankmbs.kernels import kernel
 
-__all__ = ["motion", "read", "together"]
+__all__ = ["apart", "motion", "read", "together"]
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -129,3 +129,15 @@ def together(parts: Array, which: Index, square: Array, alpha: Array, variable: 
     for i in range(len(which)):
         k = which[i]
         variable[i] = parts[0, k] * square[i] + parts[1, k] * alpha[i] + parts[2, k]
+
+
+@kernel
+def apart(parts: Array, which: Index, square: Array, alpha: Array, variable: Array) -> float:
+    """Largest absolute difference of a variable from what `together` makes of parts; NaN where
+    one is."""
+    most = total = 0.0
+    for i in range(len(which)):
+        k = which[i]
+        here = parts[0, k] * square[i] + parts[1, k] * alpha[i] + parts[2, k] - variable[i]
+        most, total = max(most, abs(here)), total + here
+    return most if total == total else math.nan

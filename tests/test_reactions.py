@@ -8,7 +8,7 @@ import pytest
 
 from crankmbs import kernels, load_scene
 from crankmbs.pressure import pressure_of
-from crankmbs.reactions import reactions
+from crankmbs.reactions import deviations, reactions
 from validation.adapter import reference_variables
 from validation.oracles.arithmetic import multiprecision
 from validation.random_scenes import random_scene
@@ -93,3 +93,22 @@ def test_cycles_after_one_another_are_as_each_alone():
         for name, values in alone.items():
             scale = np.abs(together[name]).max()
             np.testing.assert_allclose(together[name][samples], values, rtol=0, atol=1e-12 * scale)
+
+
+@pytest.mark.parametrize("compiled", [False, True])
+@pytest.mark.parametrize("samples", [5, 24])
+def test_deviations_are_those_between_two_motions(compiled, samples, monkeypatch):
+    """Of angles that come back as of others, and without the variables of the second motion."""
+    scene = load_scene("v_twin")
+    assert kernels.pay(math.inf)
+    monkeypatch.setattr(kernels, "are_compiled", compiled)
+    pressure, theta = pressure_of(scene), 0.3 + scene.period / 6 * np.arange(samples)
+    one, other = ((theta + 1e-3 * k, *motion(k, samples)[1:]) for k in (1, 2))
+    first, second = (reactions(scene, pressure, *state) for state in (one, other))
+    found = deviations(scene, pressure, *other, first)
+    assert found.keys() == first.keys()
+    for name, most in found.items():
+        assert most == pytest.approx(np.abs(first[name] - second[name]).max(), rel=1e-12), name
+    first["side_force"][samples // 2, 1] = np.nan
+    found = deviations(scene, pressure, *other, first)
+    assert [name for name, most in found.items() if math.isnan(most)] == ["side_force"]
