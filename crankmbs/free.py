@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Generator
 from dataclasses import replace
+from functools import cache, partial
 from typing import NamedTuple
 
 import numpy as np
@@ -67,10 +68,12 @@ _BROKEN = {"costly", "failed"}
 class _Pass(NamedTuple):
     """One pass over the whole motion.
 
+    begin : the one sample at the start
     local : shape (2, cells), errors at ends and inside
     fast, slow : spans of time [s] that the crank angle carried, and where time took over
     """
 
+    begin: Samples
     samples: Samples
     ending: str
     path: Path
@@ -127,12 +130,12 @@ def _travel(grid: Grid, local: float, *, by_angle: bool, first: _Pass | None = N
     plan = plan_of(scene)
     state = State(0.0, scene.start.angle, scene.start.speed, 0.0)
     steady = not any(isinstance(load, TimeTable) for load in scene.torque)
-    begin = _first(grid, state)
+    begin = first.begin if first else _first(grid, state)
     path = Path(plan, begin, can_swing=steady)
     if first:  # it begins a rounding ahead: so the difference knows what the motion makes of one
         ahead = math.copysign(ANGLE_ROUNDING * state.theta, state.omega or float(begin.alpha[0]))
         state = state._replace(theta=state.theta + ahead)
-    reduced = Reduced(scene, grid.pressure)
+    reduced = cache(partial(Reduced, scene, grid.pressure))  # only near rest is it needed
     worst = np.zeros((2, len(grid.edges) - 1))
     fast: list[tuple[float, float]] = []
     slow: list[float] = []
@@ -165,7 +168,7 @@ def _travel(grid: Grid, local: float, *, by_angle: bool, first: _Pass | None = N
             tolerance = max(0.01 * local, _FINEST_STEP)
             parts = 2 if first else 1
             slow.append(at.time)
-            ending = path.follow(minimal.advance(reduced, at, plan, tolerance, parts, is_fast))
+            ending = path.follow(minimal.advance(reduced(), at, plan, tolerance, parts, is_fast))
         else:
             ending = path.follow(windows(at))
             now = path.state or state
@@ -173,7 +176,7 @@ def _travel(grid: Grid, local: float, *, by_angle: bool, first: _Pass | None = N
             vain += bool(slow) and abs(now.theta - at.theta) < scene.period
     if ending == "end" and plan.folds_at((path.state or state).theta):
         ending = "fold"
-    return _Pass(path.samples(), ending, path, worst, fast, slow if by_angle else [])
+    return _Pass(begin, path.samples(), ending, path, worst, fast, slow if by_angle else [])
 
 
 def _first(grid: Grid, state: State) -> Samples:

@@ -25,20 +25,23 @@ Array = NDArray[np.float64]
 class Loop:
     """The closed loop at given cycle angles; every field has the shape of the angles.
 
-    beta [rad] rod angle, x [m] piston pin from the crank axis, and their derivatives in phi;
-    sin_phi, cos_phi, sin_beta, cos_beta as by-products.
+    x [m] piston pin from the crank axis, and the derivatives of it and of the rod angle in phi.
     """
 
     sin_phi: Array
     cos_phi: Array
     sin_beta: Array
     cos_beta: Array
-    beta: Array
     beta_1: Array
     beta_2: Array
     x: Array
     x_1: Array
     x_2: Array
+
+    @property
+    def beta(self) -> Array:
+        """Rod angle [rad]."""
+        return np.asarray(np.arctan2(self.sin_beta, self.cos_beta))
 
 
 def close_loop(cycle_angle: ArrayLike, radius: float, rod_length: float, offset: float) -> Loop:
@@ -84,7 +87,6 @@ def close_loop(cycle_angle: ArrayLike, radius: float, rod_length: float, offset:
         cos_phi=cos_phi,
         sin_beta=sin_beta,
         cos_beta=cos_beta,
-        beta=np.arctan2(sin_beta, cos_beta),
         beta_1=beta_1,
         beta_2=beta_2,
         x=r * cos_phi + l * cos_beta,

@@ -107,12 +107,13 @@ def one_period(theta: Array, period: float) -> tuple[Array, NDArray[np.intp]]:
     count = round(min(period / step, n)) if step > 0.0 else n
     if count == n:
         return theta, np.arange(n)
-    close = 4 * np.finfo(float).eps * float(np.max(np.abs(theta), initial=0.0))
-    apart = np.abs(np.abs(theta[count:] - theta[: n - count]) - period) > close
-    repeating = count + int(np.argmax(apart)) if apart.any() else n
+    close = 4 * np.finfo(float).eps * max(float(theta.max()), -float(theta.min()))
+    missed = np.abs(np.abs(theta[count:] - theta[: n - count]) - period)
+    repeating = n if missed.max() <= close else count + int(np.argmax(missed > close))
     if repeating == count:
         return theta, np.arange(n)
-    which = np.append(np.arange(repeating) % count, np.arange(count, count + n - repeating))
+    others = np.arange(count, count + n - repeating)
+    which = np.append(np.resize(np.arange(count), repeating), others)
     return np.append(theta[:count], theta[repeating:]), which
 
 
