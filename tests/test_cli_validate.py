@@ -177,6 +177,22 @@ def test_a_comparison_figure_has_curves_above_and_errors_below(four):
     assert len(figure.legends[0].get_texts()) == 2 + len(LECTURES)
 
 
+def test_marks_close_to_one_another_are_all_legible():
+    """Three narrow panels of a V engine: dead centres 60 degrees apart, some of two lines."""
+    scene = load_scene("v_twin")
+    result = simulate(dataclasses.replace(scene, run=Run(until="3 cycle", every="5 deg")))
+    names = ("piston displacement", "piston velocity", "piston acceleration")
+    figure = comparison_figure(compare(result), names)
+    figure.draw_without_rendering()
+    for ax in figure.axes[:3]:
+        boxes = [text.get_window_extent() for text in ax.texts] + [
+            ax._left_title.get_window_extent()
+        ]
+        assert len(boxes) > 4
+        for number, one in enumerate(boxes):
+            assert not any(one.overlaps(other) for other in boxes[:number])
+
+
 def test_the_curves_of_a_budget_figure_add_up_to_the_thick_one(four):
     split = budget(four)
     figure = budget_figure(split, ("torque",))

@@ -114,14 +114,13 @@ def _figure(
     degrees = view.degrees[stretch.samples - stretch.window.first]
     several = len(stretch.result.scene.cylinders) > 1
     of_one = several and any(QUANTITIES[name].per_cylinder for name, _, _ in columns)
-    above_marks = 40.0 if several else 24.0  # points; marks of several cylinders have two lines
     for k, (name, curves, errors) in enumerate(columns):
         top, bottom = axes[k], axes[n + k]
         _panel(top, name, degrees, curves, "")
         _panel(bottom, name, degrees, errors, f"{below} ")
-        crank_axis([top, bottom], view)
+        lines = crank_axis([top, bottom], view)
         symbol = QUANTITIES[name].symbol
-        top.set_title(f"{name} ${symbol}$" if symbol else name, loc="left", pad=above_marks)
+        top.set_title(f"{name} ${symbol}$" if symbol else name, loc="left", pad=8.0 + 16.0 * lines)
     handles = {
         str(line.get_label()): line
         for ax in (axes[0], axes[n])

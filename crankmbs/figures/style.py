@@ -32,6 +32,7 @@ __all__ = [
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00")
 _DASHES = ("-", (0, (6, 2)), (0, (6, 2, 1.5, 2)), (0, (2.5, 1.5)))
 _GREY = "0.55"
+_SMALL, _LINE = 11, 14  # points: size of the text at the dead centres, and of a line of it
 
 STYLE: Any = {
     "figure.dpi": 150,
@@ -84,13 +85,19 @@ def force_scale(*forces: NDArray[np.float64]) -> tuple[float, str]:
     return (1e3, "kN") if peak >= 1e3 else (1.0, "N")
 
 
-def crank_axis(axes: list[Axes], view: View) -> None:
-    """Give stacked panels one crank-angle axis, with the dead centres marked."""
+def crank_axis(axes: list[Axes], view: View) -> int:
+    """Give stacked panels one crank-angle axis, with the dead centres marked.
+
+    Returns
+    -------
+    how many lines of text stand above the panels
+    """
     span = view.high - view.low
     step = next((s for s in (1, 5, 15, 30, 90, 180) if span <= 8.5 * s), 360)
     ticks = np.arange(math.ceil(view.low / step) * step, view.high + 1e-6, step)
     period = round(math.degrees(view.scene.period))
     labels = view.dead_centre_labels()
+    below = _lines_below(labels, span / axes[0].get_window_extent().width)
     for ax in axes:
         mark_points(ax)
         ax.set_xlim(view.low, view.high)
@@ -103,14 +110,32 @@ def crank_axis(axes: list[Axes], view: View) -> None:
             text,
             (at, 1.0),
             xycoords=("data", "axes fraction"),
-            xytext=(0, 3),
+            xytext=(0, 3 + below[at] * _LINE),
             textcoords="offset points",
             ha="center",
             va="bottom",
-            fontsize=11,
+            fontsize=_SMALL,
             color="0.35",
         )
     axes[-1].set_xlabel(f"crank angle [deg], {view.window.kind}")
+    return max((below[at] + text.count("\n") + 1 for at, text in labels.items()), default=0)
+
+
+def _lines_below(labels: dict[float, str], per_pixel: float) -> dict[float, int]:
+    """On how many lines a label has to stand, by its angle [deg]: on those of the one before, where
+    it would run into it.
+
+    per_pixel : [deg]
+    """
+    letter = 0.65 * _SMALL / 72.0 * STYLE["figure.dpi"] * per_pixel
+    below: dict[float, int] = {}
+    end, lines = -math.inf, 0  # of the last label that stands on the panel
+    for at, text in sorted(labels.items()):
+        half = 0.5 * letter * max(map(len, text.split("\n")))
+        below[at] = lines if at - half < end else 0
+        if below[at] == 0:
+            end, lines = at + half, text.count("\n") + 1
+    return below
 
 
 def mark_points(ax: Axes) -> None:
