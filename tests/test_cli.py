@@ -38,6 +38,7 @@ def test_run_writes_into_results_by_name_and_reports():
         "over the last cycle",
         "mean speed [rpm]",
         "coefficient of fluctuation",
+        "speed at its end less that at its beginning [rpm]",
         "indicated power [kW]",
         "mean torque from outside [N m]",
         "peak kinetic energy",

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicHermiteSpline, CubicSpline
 
-from crankmbs import Motion, Oscillation, Run, load_scene, simulate
+from crankmbs import Motion, Oscillation, Ramp, Run, load_scene, simulate
 from crankmbs.errors import InputError
 from crankmbs.measures import last_window, measure, orders
 from crankmbs.measures.peak import rise
@@ -49,6 +49,21 @@ def test_oscillating_speed_has_its_prescribed_fluctuation_and_time_mean():
     mean = math.sqrt(300.0**2 - 30.0**2)
     assert found.mean_speed.value == pytest.approx(mean, rel=1e-12)
     assert abs(found.fluctuation.value - 60.0 / mean) <= found.fluctuation.error
+
+
+@pytest.mark.parametrize("every", ["1 deg", "7 deg", "1e-4 s", "1500 deg"])
+def test_a_motion_that_speeds_up_gains_as_the_law_says(every):
+    """At constant acceleration omega^2 grows by 2 alpha theta; the cycle begins between samples."""
+    found = measure(simulate(scene(Ramp(start=100.0, to=600.0, over=10.0), every=every)))
+    end = math.sqrt(100.0**2 + 2.0 * 50.0 * 8.0 * math.pi)
+    gained = end - math.sqrt(100.0**2 + 2.0 * 50.0 * 4.0 * math.pi)
+    assert abs(found.speed_gain.value - gained) <= found.speed_gain.error
+    assert found.speed_gain.error < (2e-3 if every != "1500 deg" else 1.0) * gained
+
+
+def test_a_periodic_motion_gains_no_speed(constant):
+    found = measure(constant)
+    assert abs(found.speed_gain.value) <= found.speed_gain.error < 1e-10
 
 
 @pytest.mark.parametrize(

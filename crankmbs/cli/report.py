@@ -123,6 +123,7 @@ def _values(measures: Measures) -> list[list[str]]:
     rows = [
         _value("mean speed [rpm]", measures.mean_speed, _RPM),
         _value("coefficient of fluctuation, (max - min)/mean [1]", measures.fluctuation),
+        _value("speed at its end less that at its beginning [rpm]", measures.speed_gain, _RPM),
         _value("mean torque of the rods on the crank [N m]", measures.crank_torque),
         _value("mean torque from outside [N m]", measures.external_torque),
     ]

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.interpolate import CubicHermiteSpline
 
 from crankmbs.geometry import close_loop, dead_centres
 from crankmbs.measures.peak import rise
@@ -50,6 +51,7 @@ class Measures:
     """What a run amounts to over its window. Means of forces are over time.
 
     mean_speed [rad/s]; fluctuation : (max - min) / |mean speed|
+    speed_gain [rad/s] : speed at the end less that at the beginning; 0 once a motion is periodic
     crank_torque [N m] : moment of all rods on the crank, external_torque [N m] : from outside;
         both means are work per angle turned, so that torque times mean speed is power
     indicated_power [W] : work of the gas on all pistons per time; None without gas
@@ -61,6 +63,7 @@ class Measures:
     window: Window
     mean_speed: Estimate
     fluctuation: Estimate
+    speed_gain: Estimate
     joints: tuple[JointForce, ...]
     crank_torque: Estimate
     external_torque: Estimate
@@ -88,6 +91,7 @@ def measure(result: Result) -> Measures:
         window=window,
         mean_speed=mean_speed(result, window),
         fluctuation=fluctuation(result, window),
+        speed_gain=_speed_gain(result, window),
         joints=tuple(_joints(result, window)),
         crank_torque=_mean_torque(result, window, rods.values.sum(axis=1), rods_error),
         external_torque=_mean_torque(result, window, outside, _stated(result, "external_torque")),
@@ -117,6 +121,27 @@ def fluctuation(result: Result, window: Window) -> Estimate:
     low = window.inside + int(np.argmin(speed[window.inside :]))
     error = 2.0 * _stated(result, "crank_speed") + rise(speed, high) + rise(-speed, low)
     return Estimate(float(speed[high] - speed[low]) / mean, error / mean)
+
+
+def _speed_gain(result: Result, window: Window) -> Estimate:
+    """The speed where the window begins between two samples from the cubic through the speeds and
+    accelerations there; it errs by less than it differs from the cubic through the next ones, or,
+    of a run of two samples, from the line."""
+    names = ("time", "crank_speed", "crank_acceleration")
+    time, speed, rate = (result.data[name].values for name in names)
+    pair, last = [window.first, window.inside], len(time) - 1
+    near = float(speed[window.first])
+    error = 2.0 * _stated(result, "crank_speed")
+    if window.first < window.inside:
+        wide = [max(window.first - 1, 0), min(window.inside + 1, last)]
+        near, far = (
+            float(CubicHermiteSpline(time[ends], speed[ends], rate[ends])(window.begin))
+            for ends in (pair, wide)
+        )
+        if wide == pair:
+            far = float(np.interp(window.begin, time, speed))
+        error += abs(near - far)
+    return Estimate(float(speed[-1]) - near, error)
 
 
 def _joints(result: Result, window: Window) -> list[JointForce]:
