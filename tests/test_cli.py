@@ -70,6 +70,15 @@ def test_no_figures_draws_none_and_out_says_where():
     assert not Path("results").exists()
 
 
+def test_figures_of_another_run_are_not_taken_for_those_of_this():
+    crankmbs_("run", "engine.toml", "--out", "both")
+    Path("both/notes.txt").write_text("mine")
+    out = crankmbs_("run", "engine.toml", "--rtol", "1e-6", "--no-figures", "--out", "both").stdout
+    listed = ", ".join(sorted(FIGURES))
+    assert out.endswith(f"\nalso there, but not of this command: {listed}\n")
+    assert "also there" not in crankmbs_("run", "engine.toml", "--out", "both").stdout
+
+
 def test_options_override_the_scene():
     words = ["--until", "0.02 s", "--every", "1 ms", "--rtol", "1e-6", "--formulation", "auto"]
     assert crankmbs_("run", "engine.toml", "--no-figures", *words).exit_code == 0

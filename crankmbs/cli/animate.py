@@ -6,8 +6,8 @@ from pathlib import Path
 
 import typer
 
+from crankmbs.cli.folder import writable
 from crankmbs.cli.progress import progress
-from crankmbs.cli.run import writable
 from crankmbs.scene_io import load_scene, scene_path
 from crankmbs.simulate import simulate
 

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import typer
 
+from crankmbs.cli.folder import writable
 from crankmbs.cli.progress import progress
-from crankmbs.cli.run import writable
 from crankmbs.lessons import LESSONS, check_lesson, write_lesson
 
 __all__ = ["list_lessons", "make_lesson"]

@@ -3,27 +3,25 @@
 from __future__ import annotations
 
 import dataclasses
-import os
-import tempfile
 from collections.abc import Mapping
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 import typer
 
 from crankmbs.choose import choose
+from crankmbs.cli.folder import writable, wrote
 from crankmbs.cli.progress import progress
 from crankmbs.cli.report import comparison, report
 from crankmbs.confirm import differences
-from crankmbs.errors import InputError, OutputError
+from crankmbs.errors import InputError
 from crankmbs.measures import measure
 from crankmbs.result import Result
 from crankmbs.scene import Scene
 from crankmbs.scene_io import load_scene, scene_path
 from crankmbs.simulate import simulate
 
-__all__ = ["override", "run_scene", "writable"]
+__all__ = ["override", "run_scene"]
 
 _LENGTH = ("until", "every")  # the options that a scene may refuse though [run] takes them
 
@@ -79,7 +77,7 @@ def run_scene(
             from crankmbs.figures import save_differences
 
             written.append(save_differences(result, rows, folder).name)
-    typer.echo(f"\nwrote {folder}: {', '.join(written)}")
+    typer.echo(f"\n{wrote(folder, written)}")
     return complete
 
 
@@ -94,23 +92,6 @@ def override(scene: Scene, options: Mapping[str, Any]) -> Scene:
     except InputError as error:
         given = " ".join(f"--{name} {options[name]}" for name in _LENGTH if name in options)
         raise InputError(f"{given}: {error}") from None
-
-
-def writable(folder: Path) -> Path:
-    """Try the folder, so that a run is not lost at its end, and leave nothing of the trial."""
-    missing = [each for each in (folder, *folder.parents) if not os.path.lexists(each)]
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder):
-            return folder
-    except OSError as error:
-        raise OutputError(
-            f"{folder}: cannot be written ({error.strerror}); choose another folder with --out"
-        ) from None
-    finally:
-        for each in missing:
-            with suppress(OSError):  # not made, or another run writes there by now
-                each.rmdir()
 
 
 def _simulate(

@@ -9,8 +9,9 @@ from typing import Any
 
 import typer
 
+from crankmbs.cli.folder import writable, wrote
 from crankmbs.cli.progress import progress
-from crankmbs.cli.run import override, writable
+from crankmbs.cli.run import override
 from crankmbs.cli.text import table
 from crankmbs.compare import (
     CAUSES,
@@ -76,7 +77,7 @@ def validate_scene(
 
         with progress("figures"):
             written += save_validation(comparison, split, folder)
-    typer.echo(f"\nwrote {folder}: {', '.join(file.name for file in written)}")
+    typer.echo(f"\n{wrote(folder, [file.name for file in written])}")
     return result.status == 0
 
 

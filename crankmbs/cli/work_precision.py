@@ -7,8 +7,8 @@ from pathlib import Path
 
 import typer
 
+from crankmbs.cli.folder import writable, wrote
 from crankmbs.cli.progress import progress
-from crankmbs.cli.run import writable
 from crankmbs.cli.text import table
 from crankmbs.digits import error_digits
 from crankmbs.scene_io import load_scene, scene_path
@@ -49,7 +49,7 @@ def measure_scene(name: str, *, peers: bool, out: Path | None) -> bool:
         from crankmbs.figures.work_precision import save_figure  # matplotlib only when it is used
 
         written = [save_work_precision(outcome, folder), save_figure(outcome, folder)]
-    typer.echo(f"\nwrote {folder}: {', '.join(file.name for file in written)}")
+    typer.echo(f"\n{wrote(folder, [file.name for file in written])}")
     return outcome.reference.result.status == 0
 
 
