@@ -88,7 +88,7 @@ def _inverted(target: float, whole: float, of: Array) -> float:
             break
         low, high = (low, x) if excess > 0.0 else (x, high)
         new = x - excess / slope
-        if not low <= new <= high:
+        if not low < new < high:  # nor back to an end: rounding would send it to and fro
             new = 0.5 * (low + high)
         settled, x = abs(new - x) <= 4e-16 * high, new
         if settled:

@@ -44,7 +44,8 @@ def invert_monotone(
             above = (excess > 0) != falling
             high, low = np.where(above, x, high), np.where(above, low, x)
             new = x - excess / slope
-            new = np.where((new >= low) & (new <= high), new, 0.5 * (low + high))
+            # nor back to an end: where rounding decides it would go to and fro for ever
+            new = np.where((new > low) & (new < high), new, 0.5 * (low + high))
             new = np.where(excess == 0.0, x, new)
             settled = np.abs(new - x) <= 4e-16 * np.maximum(np.abs(low), np.abs(high))
             x = new

@@ -35,6 +35,26 @@ def test_targets_at_the_ends_and_beyond_stay_in_the_bracket():
     np.testing.assert_allclose(found, [0.0, 1.0, 1.0], atol=1e-12)
 
 
+@pytest.mark.parametrize("steep", [1e-9, 1e-3, 1.0, 1e3])
+def test_rounding_does_not_send_it_to_and_fro(steep):
+    """The value knows its place to 1e-16 / steep only; Newton's method is there in a few steps."""
+    targets, asked = 1.0 + steep * np.linspace(0.0, 1.0, 201), []
+
+    def function(x):
+        asked.append(x)
+        return 1.0 + steep * np.sin(x), steep * np.cos(x)
+
+    found = invert_monotone(function, targets[:100], np.zeros(100), np.full(100, 1.5))
+    assert len(asked) < 40
+    np.testing.assert_allclose(function(found)[0], targets[:100], rtol=1e-15)
+
+
+def test_a_step_to_an_end_is_not_taken_for_the_answer():
+    """From the middle Newton's method goes to the end exactly, and the root is not there."""
+    found = invert_monotone(cube, np.array([0.5]), np.zeros(1), np.ones(1))
+    assert found[0] == pytest.approx(0.5 ** (1 / 3), rel=1e-15)
+
+
 def test_nothing_to_find():
     assert len(invert_monotone(cube, np.empty(0), np.empty(0), np.empty(0))) == 0
 
