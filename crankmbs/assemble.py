@@ -106,8 +106,9 @@ def assemble(scene: Scene, pressure: PeriodicPressure | None, solution: Solution
         more = math.copysign(_peak(recent) - abs(ahead[-1]), ahead[-1])
         last = replace(rounded, own={}).select(np.array([-1]))
         end = _variables(scene, pressure, replace(last, theta=last.theta + more))
-        there = better.own["external_torque"][-1:]
-        missed = max(missed, _peak(there - end["external_torque"]))
+        if better.own:
+            there = better.own["external_torque"][-1:]
+            missed = max(missed, _peak(there - end["external_torque"]))
         for name in errors.keys() - better.own.keys():
             most = _peak(variables[name][-1:] - end[name]) + _ROUNDING * peaks[name]
             errors[name] = max(errors[name], most)
