@@ -12,6 +12,7 @@ made for these three alone, once for every angle of a period, and put together f
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import accumulate
 from typing import NamedTuple
 
 import numpy as np
@@ -69,8 +70,9 @@ def reactions(
     found = _found(scene, pressure, theta, omega, alpha)
     rows = {name: len(columns) for name, columns in found.columns.items()}
     # one piece of memory, so large that the system is not asked for every run's anew
-    room = np.split(np.empty((sum(rows.values()), len(found.omega))), np.cumsum([*rows.values()]))
-    variables = dict(zip(rows, room, strict=False))
+    room = np.empty((sum(rows.values()), len(found.omega)))
+    ends = zip(rows.items(), accumulate(rows.values()), strict=True)
+    variables = {name: room[end - count : end] for (name, count), end in ends}
     for name, variable in variables.items():
         for row, values in zip(variable, found.columns[name], strict=True):
             found.put(name, values, row)
