@@ -21,7 +21,7 @@ def digits(value: float, error: float = 0.0, most: int = 6) -> str:
         return "0"
     size = int(f"{value:.{most - 1}e}".split("e")[1])  # the exponent after rounding
     last = size - most + 1
-    if error > 0.0:
+    if 0.0 < error < math.inf:
         last = max(last, math.floor(math.log10(error)) - 1)
     rounded = round(value, -last)
     if rounded == 0.0:

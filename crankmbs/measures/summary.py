@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import NamedTuple
+from dataclasses import dataclass, fields, replace
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline
 
 from crankmbs.geometry import close_loop, dead_centres
+from crankmbs.measures.between import refined
 from crankmbs.measures.peak import rise
-from crankmbs.measures.window import Window, integral, last_window
+from crankmbs.measures.window import Window, integral, last_window, same_window
 from crankmbs.result import Result
 
 __all__ = ["Estimate", "JointForce", "Measures", "fluctuation", "mean_speed", "measure"]
@@ -34,7 +35,7 @@ class JointForce:
     joint : "main bearing", "crank pin", "piston pin" or "side force"
     cylinder : its number; None for the main bearing, which carries all of them
     peak [N] : largest sample; crank_angle [rad], unwrapped, and cycle_angle [rad] of its cylinder
-        say where
+        say where that sample is
     mean [N] : over time
     """
 
@@ -75,14 +76,42 @@ class Measures:
 def measure(result: Result) -> Measures:
     """Sum up a run over its last whole cycle (or revolution, or the run).
 
-    The error of a value is the stated error of the variables in it, plus that of the quadrature
-    (the spline through all samples against that through every second one), plus, for a peak, how
-    far it may rise above the largest sample (`crankmbs.measures.peak.rise`).
+    A value is that of the samples. Its error is what it differs by from the same measure of the
+    motion between them (`crankmbs.measures.between.refined`), plus that measure's own error: the
+    stated errors of the variables in it, the quadrature's (the spline through all points against
+    that through every second one) and how far a peak may rise between two points
+    (`crankmbs.measures.peak.rise`). It is infinite where a free crank turns or swings so far
+    between two samples that they do not tell how.
 
     >>> measure(simulate(load_scene("propeller"))).window.kind
     'last cycle'
     """
     window = last_window(result)
+    finer = refined(result, window.first)
+    closure = _energy_closure(result)
+    here = _measures(result, window, closure)
+    there = finer and _measures(finer, same_window(window, finer), closure)
+    found: Measures = _beside(here, there)
+    return found
+
+
+def _beside(found: Any, finer: Any) -> Any:
+    """Measures with the errors that finer ones show, without them with infinite errors."""
+    if isinstance(found, Estimate):
+        if finer is None:
+            return Estimate(found.value, math.inf)
+        return Estimate(found.value, abs(found.value - finer.value) + finer.error)
+    if isinstance(found, tuple):
+        others = [None] * len(found) if finer is None else finer
+        return tuple(_beside(*pair) for pair in zip(found, others, strict=True))
+    if isinstance(found, Measures | JointForce):
+        names = [field.name for field in fields(found)]
+        parts = {name: _beside(getattr(found, name), getattr(finer, name, None)) for name in names}
+        return replace(found, **parts)
+    return found
+
+
+def _measures(result: Result, window: Window, energy_closure: float) -> Measures:
     power, imep = _indicated(result, window)
     rods = result.data["crank_torque"]
     rods_error = _stated(result, "crank_torque") * rods.sizes["cylinder"]
@@ -97,12 +126,13 @@ def measure(result: Result) -> Measures:
         external_torque=_mean_torque(result, window, outside, _stated(result, "external_torque")),
         indicated_power=power,
         imep=imep,
-        energy_closure=_energy_closure(result),
+        energy_closure=energy_closure,
     )
 
 
 def mean_speed(result: Result, window: Window) -> Estimate:
-    """Mean speed over a window [rad/s]: the angle turned over the time it took, no quadrature."""
+    """Mean speed over a window [rad/s]: the angle turned over the time it took, no quadrature. The
+    error is that of the samples; `measure` adds that of a beginning between two of them."""
     if window.duration == 0.0:
         speed = float(result.data["crank_speed"].values[-1])
         return Estimate(speed, _stated(result, "crank_speed"))
@@ -112,7 +142,8 @@ def mean_speed(result: Result, window: Window) -> Estimate:
 
 
 def fluctuation(result: Result, window: Window) -> Estimate:
-    """Coefficient of fluctuation over a window [1]: (max - min) / |mean speed|; NaN at rest."""
+    """Coefficient of fluctuation over a window [1]: (max - min) / |mean speed|; NaN at rest. The
+    error guesses from the samples how far the speed goes between them; `measure` looks there."""
     speed = result.data["crank_speed"].values
     mean = abs(mean_speed(result, window).value)
     if mean == 0.0:

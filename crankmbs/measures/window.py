@@ -11,7 +11,7 @@ from scipy.interpolate import CubicHermiteSpline, CubicSpline
 
 from crankmbs.result import Result
 
-__all__ = ["Window", "integral", "last_window"]
+__all__ = ["Window", "integral", "last_window", "same_window"]
 
 Array = NDArray[np.float64]
 
@@ -50,21 +50,42 @@ def last_window(result: Result) -> Window:
     >>> last_window(simulate(load_scene("propeller"))).kind
     'last cycle'
     """
+    lengths = (("last cycle", result.scene.period), ("last revolution", 2.0 * math.pi))
+    for kind, wanted in lengths:
+        window = _ending(result, kind, wanted)
+        if window is not None:
+            return window
+    return _whole_run(result)
+
+
+def same_window(window: Window, result: Result) -> Window:
+    """The window of the same kind and length in the same run, sampled otherwise."""
+    found = None
+    if window.kind != "whole run":
+        found = _ending(result, window.kind, abs(window.angle))
+    return found or _whole_run(result)
+
+
+def _ending(result: Result, kind: str, wanted: float) -> Window | None:
+    """The stretch up to the end in which the crank turns through an angle [rad], if any."""
     time, angle = result.data["time"].values, result.data["crank_angle"].values
     turned = np.abs(angle[-1] - angle)
-    for kind, wanted in (("last cycle", result.scene.period), ("last revolution", 2.0 * math.pi)):
-        before = np.flatnonzero(turned >= wanted - _SAME_ANGLE)
-        if len(before) == 0:
-            continue
-        k = int(before[-1])
-        sense = math.copysign(1.0, angle[-1] - angle[k])
-        if turned[k] <= wanted + _SAME_ANGLE:
-            return Window(kind, float(time[k]), float(time[-1]), sense * wanted, k, k)
-        pair = slice(k, k + 2)
-        speed = result.data["crank_speed"].values
-        path = CubicHermiteSpline(time[pair], angle[pair], speed[pair])
-        begin = float(path.solve(angle[-1] - sense * wanted, extrapolate=False)[-1])
-        return Window(kind, begin, float(time[-1]), sense * wanted, k, k + 1)
+    before = np.flatnonzero(turned >= wanted - _SAME_ANGLE)
+    if len(before) == 0:
+        return None
+    k = int(before[-1])
+    sense = math.copysign(1.0, angle[-1] - angle[k])
+    if turned[k] <= wanted + _SAME_ANGLE:
+        return Window(kind, float(time[k]), float(time[-1]), sense * wanted, k, k)
+    pair = slice(k, k + 2)
+    speed = result.data["crank_speed"].values
+    path = CubicHermiteSpline(time[pair], angle[pair], speed[pair])
+    begin = float(path.solve(angle[-1] - sense * wanted, extrapolate=False)[-1])
+    return Window(kind, begin, float(time[-1]), sense * wanted, k, k + 1)
+
+
+def _whole_run(result: Result) -> Window:
+    time, angle = result.data["time"].values, result.data["crank_angle"].values
     whole = float(angle[-1] - angle[0])
     return Window("whole run", float(time[0]), float(time[-1]), whole, 0, 0)
 
