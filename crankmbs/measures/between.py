@@ -26,7 +26,7 @@ __all__ = ["refined"]
 Array = NDArray[np.float64]
 
 _SPACING = 0.1 * DEGREE  # where samples are no farther apart their sums hardly change
-_FEWEST, _MOST = 4, 512  # parts of one interval
+_FEWEST, _MOST = 2, 512  # parts of one interval
 _PASSES = 6  # the speed hardly changes what drives it: each leaves a small part of the error
 _SETTLED = 0.1  # of the speed: where the last pass changes it more they lead nowhere
 
