@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 
-from crankmbs.formulations.base import Samples, Solution
+from crankmbs.formulations.base import Array, Samples, Solution
 from crankmbs.formulations.multibody.beside import errors_beside_jumps
 from crankmbs.formulations.multibody.error import Convergence, relative_error
 from crankmbs.formulations.multibody.runs import Runs
@@ -36,16 +36,18 @@ def run(scene: Scene, rtol: float, cost_cap: float) -> Solution:
         status, message = runs.first()
         convergence = Convergence(runs.erratic_order)
         sampled = [Sampled(runs.problem, runs.paths[-1])]
-        answer, errors = convergence.answer(aligned_variables(runs.problem, sampled))
+        answer: dict[str, Array] = {}
         worst = latest = before = math.inf
-        while len(runs.paths) < 2 or (worst > rtol and runs.affords_another()):
+        while not answer or (worst > rtol and runs.affords_another()):
             if not runs.halve():
                 message += "; at a finer step exudyn's Newton iteration does not converge"
+                if not answer:
+                    answer, errors = convergence.answer(aligned_variables(runs.problem, sampled))
                 break
             sampled = [*sampled, Sampled(runs.problem, runs.paths[-1])][-3:]
             found = convergence.answer(aligned_variables(runs.problem, sampled))
             latest, before = relative_error(*found), latest
-            if latest < worst:
+            if latest < worst or not answer:
                 (answer, errors), worst = found, latest
             elif latest > _WORSE * worst:
                 break

@@ -19,8 +19,11 @@ __all__ = ["held_by"]
 def held_by(scene: Scene, gas: Array, theta: Array) -> dict[str, Array]:
     """Joint forces [N] and torques [N m] of gas forces, shape (m, n), at crank angles (m,).
 
-    The rod pushes along itself: (P, -P tan(beta)) on the piston and on the crank pin.
+    The rod pushes along itself: (P, -P tan(beta)) on the piston and on the crank pin. Empty
+    without gas.
     """
+    if scene.gas is None:
+        return {}
     phi = theta[:, None] + np.array([c.phase for c in scene.cylinders])
     bank = np.array([c.bank for c in scene.cylinders])
     loop = close_loop(phi, scene.crank.radius, scene.rod.length, scene.piston.offset)

@@ -18,8 +18,6 @@ from crankmbs.roots import invert_monotone
 
 __all__ = ["Sampled", "aligned_variables", "reached", "slowed"]
 
-_NEWTON = 5  # steps from the straight line between two rows
-_LEFT = 1e-13  # of what Newton may leave
 _BEYOND = 2.0  # steps that the variables are continued past the end of a run
 _NEAR = 1e-9  # of the sample spacing, and rad: what is nearer is one
 
@@ -38,6 +36,7 @@ class Sampled:
     def __init__(self, problem: Problem, path: Path) -> None:
         self.path, self.samples = path, _samples(problem, path)
         self._problem = problem
+        self._at_angles: dict[int, dict[str, Array] | None] = {}  # by the number of samples
 
     @cached_property
     def at_own(self) -> dict[str, Array]:
@@ -49,12 +48,17 @@ class Sampled:
 
         A run that ends at a time may pass one angle of the grid more or fewer than the other.
         """
-        if len(self.samples.time) == len(finest.time):
+        count = len(finest.time)
+        if len(self.samples.time) == count:
             return self.at_own
-        samples = _same_angles(self.path, self.samples, finest)
-        if samples is None:
-            return None
-        return _variables_at(self._problem, self.path, samples, by_angle=True)
+        if count not in self._at_angles:
+            samples = _same_angles(self.path, self.samples, finest)
+            self._at_angles[count] = (
+                None
+                if samples is None
+                else _variables_at(self._problem, self.path, samples, by_angle=True)
+            )
+        return self._at_angles[count]
 
 
 def aligned_variables(problem: Problem, runs: list[Sampled]) -> list[dict[str, Array]]:
@@ -230,14 +234,8 @@ def _times_of(table: Table, theta: Array, begin: float, end: float) -> Array:
     low, high, (at_low, at_high) = edges[k], edges[k + 1], (reached[k], reached[k + 1])
     with np.errstate(divide="ignore", invalid="ignore"):
         share = np.nan_to_num((theta - at_low) / (at_high - at_low))
-        time = low + (high - low) * np.clip(share, 0.0, 1.0)
-        for _ in range(_NEWTON):
-            angle, speed = value(time)
-            off = theta - angle
-            time = np.clip(time + np.nan_to_num(off / speed), low, high)
-            slow = np.abs(off) > _LEFT * (1.0 + np.abs(theta))
-            if not slow.any():
-                break
+    line = low + (high - low) * np.clip(share, 0.0, 1.0)
+    time, slow = table.crossing(theta, low, high, line)
     if slow.any():  # next to a reversal
         time[slow] = invert_monotone(value, theta[slow], low[slow], high[slow])
     return np.asarray(time)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from crankmbs.formulations.base import Array
@@ -18,12 +18,9 @@ from crankmbs.scene import Scene
 __all__ = ["ROWS", "Table", "table_of"]
 
 ROWS = 6  # that an interpolated value takes
-_SCALES = np.array(
-    [
-        (-1.0) ** (ROWS - 1 - k) / (math.factorial(k) * math.factorial(ROWS - 1 - k))
-        for k in range(ROWS)
-    ]
-)
+_MIDDLE = 0.5 * (ROWS - 1)
+_NEWTON = 6  # steps from the straight line between two rows
+_LEFT = 1e-13  # of what Newton may leave
 
 
 class Table(NamedTuple):
@@ -67,6 +64,35 @@ class Table(NamedTuple):
         value, slope = self._interpolated(columns, time).T
         return value, slope
 
+    def crossing(
+        self, theta: Array, low: Array, high: Array, guess: Array
+    ) -> tuple[Array, NDArray[np.bool_]]:
+        """Times at which the crank comes to angles, each between two times with no row between.
+
+        Newton's method on the polynomials of `at`, from a guess.
+
+        Returns
+        -------
+        the times, and where Newton's method has not come there
+        """
+        first = self._first((0.5 * (low + high) - self.begin) / self.step)
+        middle = self.begin + self.step * (first + _MIDDLE)
+        rows = self.column("crank_angle")[first + np.arange(ROWS)[:, None]]
+        series = _LAGRANGE @ rows
+        series[0] -= theta
+        low, high, at = ((t - middle) / self.step for t in (low, high, guess))
+        for _ in range(_NEWTON):
+            off, slope = series[-1], np.zeros_like(at)
+            for coefficient in series[-2::-1]:
+                slope = slope * at + off
+                off = off * at + coefficient
+            slow = np.abs(off) > _LEFT * (1.0 + np.abs(theta))
+            if not slow.any():
+                break
+            with np.errstate(divide="ignore", invalid="ignore"):
+                at = np.clip(at - np.nan_to_num(off / slope), low, high)
+        return middle + self.step * at, slow
+
     def column(self, name: str) -> Array:
         """One variable of the crank at the rows."""
         return self.columns[:, self.names.index(name)]
@@ -74,12 +100,17 @@ class Table(NamedTuple):
     def _interpolated(self, columns: Array, time: Array) -> Array:
         """By the polynomial of degree 5 through the six nearest rows."""
         s = (time - self.begin) / self.step
-        first = np.clip(np.floor(s).astype(np.intp) - ROWS // 2 + 1, 0, len(columns) - ROWS)
+        first = self._first(s)
         rows = first[:, None] + np.arange(ROWS)
         ends = ROWS * np.arange(len(time) + 1)
         shape = len(time), len(columns)
         weights = csr_array((_weights(s - first).ravel(), rows.ravel(), ends), shape=shape)
         return np.asarray(weights @ columns)
+
+    def _first(self, s: Array) -> NDArray[np.intp]:
+        """The first of the six rows around places between rows, counted from the first row."""
+        nearest = np.floor(s).astype(np.intp) - ROWS // 2 + 1
+        return np.clip(nearest, 0, len(self.columns) - ROWS)
 
     def _named(self, values: Array) -> dict[str, Array]:
         of_crank = self.names.index("rod_angle")
@@ -150,11 +181,25 @@ def table_of(
 
 def _weights(u: Array) -> Array:
     """Lagrange's polynomials of the places 0, 1, ... ROWS - 1 at ``u``, shape (len(u), ROWS)."""
-    away = u - np.arange(ROWS)[:, None]
-    below, above = np.ones_like(away), np.ones_like(away)
-    np.cumprod(away[:-1], axis=0, out=below[1:])
-    np.cumprod(away[:0:-1], axis=0, out=above[-2::-1])
-    return np.asarray((below * above).T * _SCALES)
+    away = u - _MIDDLE
+    powers = np.ones((ROWS, len(u)))
+    for k in range(1, ROWS):
+        powers[k] = powers[k - 1] * away
+    return np.asarray(powers.T @ _LAGRANGE)
+
+
+def _lagrange() -> Array:
+    """Coefficients of Lagrange's polynomials in the distance from the middle of the rows.
+
+    Shape (power, row); exact but for one rounding.
+    """
+    places = np.arange(ROWS) - _MIDDLE
+    others = [np.delete(places, k) for k in range(ROWS)]
+    columns = [np.poly(o)[::-1] / np.prod(x - o) for x, o in zip(places, others, strict=True)]
+    return np.stack(columns, axis=1)
+
+
+_LAGRANGE = _lagrange()
 
 
 def _bodies(columns: Array, n: int) -> tuple[Array, Array, Array]:
