@@ -5,6 +5,7 @@ The solver runs a few steps beyond, with loads that go on as they were; the tabl
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import NamedTuple
 
@@ -45,9 +46,13 @@ class Bounds(NamedTuple):
 
 
 class Watch:
-    """Ends a stretch a little beyond its bounds, or calls it off."""
+    """Ends a stretch a little beyond its bounds, or calls it off.
 
-    def __init__(self, bounds: Bounds, go_on: Callable[[], bool]) -> None:
+    idle : whether it has nothing to watch, so that it need not be asked
+    """
+
+    def __init__(self, bounds: Bounds, go_on: Callable[[], bool] | None) -> None:
+        self.idle = go_on is None and not any(math.isfinite(x) for pair in bounds for x in pair)
         self._low, self._high = bounds.angles[0] - PASSED, bounds.angles[1] + PASSED
         self._slow, self._fast = bounds.speeds_left()
         self._go_on = go_on
@@ -61,7 +66,7 @@ class Watch:
         left = self._count > 1 and not self._slow <= omega <= self._fast
         if left or self._past_speed:
             self._past_speed += 1  # what comes after is no answer, even if it comes back
-        if self._count % 64 == 0 and not self._go_on():
+        if self._count % 64 == 0 and self._go_on is not None and not self._go_on():
             self.called_off = inside
         if self.called_off:
             return False

@@ -63,6 +63,7 @@ class Model:
         self.torque: Load = lambda time, omega: 0.0
         self.angle: Callable[[int], float] = lambda step: 0.0
         self.stiff = False
+        self._settings = _settings()
         self._container = exu.SystemContainer()
         self._system = self._container.AddSystem()
         self._reference = reference.position
@@ -98,18 +99,19 @@ class Model:
     ) -> Record:
         """Solve from ``start`` at time ``begin`` [s].
 
-        proceed(crank angle, speed) : asked before every step but the first ``lead``; False ends it
+        proceed(crank angle, speed) : asked before every step but the first ``lead``; False ends it.
+            None leaves out two of some thirty microseconds a step
         """
         self._set(start, begin, step)
-        asked = (lead - 0.5) * step
+        self._system.SetPreStepUserFunction(0)
+        if proceed is not None:
+            asked = (lead - 0.5) * step
 
-        def ask(_: object, time: float) -> bool:
-            if time < asked or proceed is None:
-                return True
-            return proceed(self._zero + self._q.item(2), self._v.item(2))
+            def ask(_: object, time: float) -> bool:
+                return time < asked or proceed(self._zero + self._q.item(2), self._v.item(2))
 
-        self._system.SetPreStepUserFunction(ask)
-        return self._solve(_settings(step, steps))
+            self._system.SetPreStepUserFunction(ask)
+        return self._solve(self._over(step, steps))
 
     def crank(self, start: Start, begin: float, step: float, steps: int) -> tuple[Array, Array]:
         """The crank alone, from ``start`` at time ``begin`` [s].
@@ -121,7 +123,7 @@ class Model:
         """
         self._set(start, begin, step)
         self._system.SetPreStepUserFunction(0)
-        self._integrate(_settings(step, steps))
+        self._integrate(self._over(step, steps))
         rows = [self._stored(name, 1)[0] for name in ("position", "velocity", "acceleration")]
         seen = np.stack([values[:, 2] for values in rows], axis=1)
         seen[:, 0] += self._zero
@@ -151,6 +153,11 @@ class Model:
         data.SetODE2Coordinates(start.position - self._reference, initial)
         data.SetODE2Coordinates_t(start.velocity, initial)
         data.SetODE2Coordinates_tt(start.acceleration, initial)
+
+    def _over(self, step: float, steps: int) -> Any:
+        """Settings for so many steps."""
+        _span(self._settings, step, steps)
+        return self._settings
 
     def _integrate(self, settings: Any) -> bool:
         """Whether the solver goes through."""
@@ -189,7 +196,8 @@ class Model:
 
 def _initial(shift: float) -> Any:
     """Settings for the initial accelerations alone, with a shift [m] or [rad] to differentiate."""
-    settings = _settings(1e-9, 1)
+    settings = _settings()
+    _span(settings, 1e-9, 1)
     settings.timeIntegration.generalizedAlpha.computeInitialAccelerations = True
     difference = settings.timeIntegration.newton.numericalDifferentiation
     difference.relativeEpsilon = shift / _FAR  # of this or of the coordinate, if that is larger
@@ -197,11 +205,15 @@ def _initial(shift: float) -> Any:
     return settings
 
 
-def _settings(step: float, steps: int) -> Any:
+def _span(settings: Any, step: float, steps: int) -> None:
+    settings.timeIntegration.endTime = steps * step
+    settings.timeIntegration.numberOfSteps = steps
+    settings.solution.sensors.writePeriod = 0.5 * step  # every step, whatever the rounding
+
+
+def _settings() -> Any:
     settings = exu.SimulationSettings()
     integration = settings.timeIntegration
-    integration.endTime = steps * step
-    integration.numberOfSteps = steps
     integration.adaptiveStep = False  # it may succeed with nonsense near a singular position
     integration.verboseMode = 0
     integration.generalizedAlpha.spectralRadius = SPECTRAL_RADIUS
@@ -209,10 +221,9 @@ def _settings(step: float, steps: int) -> Any:
     integration.generalizedAlpha.resetAccelerations = False
     integration.newton.useModifiedNewton = True
     integration.newton.modifiedNewtonJacUpdatePerStep = True  # a third less time than full Newton
-    integration.newton.relativeTolerance = 1e-10
+    integration.newton.relativeTolerance = 1e-10  # 1e-8 leaves errors that no halving shows
     integration.newton.absoluteTolerance = 1e-12
     settings.solution.file.write = False
-    settings.solution.sensors.writePeriod = 0.5 * step  # every step, whatever the rounding
     settings.linearSolver.solverType = exu.LinearSolverType.EXUdense
     return settings
 

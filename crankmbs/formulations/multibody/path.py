@@ -55,11 +55,11 @@ def model_of(problem: Problem) -> Model:
 
 
 def solve(
-    problem: Problem, model: Model, step: float, halvings: int, go_on: Callable[[], bool]
+    problem: Problem, model: Model, step: float, halvings: int, go_on: Callable[[], bool] | None
 ) -> Path:
     """Run from time 0 to the end with ``step`` halved so often.
 
-    go_on : asked now and then; False calls the run off
+    go_on : asked now and then; False calls the run off. None: nothing does
     """
     walk = Walk(problem, model, go_on)
     jumps = jump_times(problem)
@@ -78,7 +78,7 @@ def solve(
         ending = walk.stretch(ends[0], h, count, bounds)
         while ends and walk.time >= ends[0] * (1.0 - _SAME):
             ends.pop(0)
-        if ending == "complete" and ends and not go_on():
+        if ending == "complete" and ends and go_on is not None and not go_on():
             last = walk.tables[-1]  # half of it: an end at a jump has no certain side
             walk.tables[-1] = last._replace(until=0.5 * (last.after + last.until))
             return _path(walk, "called off")

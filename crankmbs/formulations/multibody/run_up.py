@@ -42,7 +42,7 @@ def run_free(
     state: tuple[float, float],
     step: float,
     steps: int,
-    proceed: Proceed,
+    proceed: Proceed | None,
 ) -> tuple[Record, int]:
     """Run a free crank from its angle and speed at a time; return also the rows of run-up.
 
@@ -69,7 +69,7 @@ def run_prescribed(
     time: float,
     step: float,
     steps: int,
-    proceed: Proceed,
+    proceed: Proceed | None,
 ) -> tuple[Record, int]:
     """Run a prescribed crank from a time on; return also the rows of run-up.
 

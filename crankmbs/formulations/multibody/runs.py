@@ -108,7 +108,7 @@ class Runs:
             self._model,
             self._step,
             self._halvings,
-            lambda: clock.perf_counter() - begin < budget,
+            None if math.isinf(budget) else lambda: clock.perf_counter() - begin < budget,
         )
         self._cost = clock.perf_counter() - begin
         self.steps += path.steps

@@ -45,7 +45,7 @@ class Walk:
     steps, iterations : what they cost
     """
 
-    def __init__(self, problem: Problem, model: Model, go_on: Callable[[], bool]) -> None:
+    def __init__(self, problem: Problem, model: Model, go_on: Callable[[], bool] | None) -> None:
         self.tables: list[Table] = []
         self.time, self._state = 0.0, problem.start
         self.bound: float | None = None
@@ -121,11 +121,12 @@ class Walk:
         """Run with the loads of the model; the table, if it has its rows, and how it ended."""
         problem, model, time = self._problem, self._model, self.time
         watch = Watch(bounds, self._go_on)
+        proceed = None if watch.idle else watch
         if problem.law is None:
-            record, lead = run_free(problem.scene, model, time, self._state, step, steps, watch)
+            record, lead = run_free(problem.scene, model, time, self._state, step, steps, proceed)
         else:
             record, lead = run_prescribed(
-                problem.scene, model, problem.law, time, step, steps, watch
+                problem.scene, model, problem.law, time, step, steps, proceed
             )
         record = _on_one_loop(problem, record)
         self.steps += len(record.time) - 1
@@ -216,7 +217,7 @@ class Walk:
 
 def initial_acceleration(problem: Problem, model: Model) -> float:
     """Crank acceleration [rad/s2] of a free crank at its start."""
-    walk = Walk(problem, model, lambda: True)
+    walk = Walk(problem, model, None)
     walk.enter(0.0)
     return walk.acceleration()
 
