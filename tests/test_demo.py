@@ -211,3 +211,24 @@ def test_a_taken_port_is_refused():
         ended = subprocess.run(command, capture_output=True, text=True, check=False)
     assert ended.returncode == 2
     assert f"error: --port {port}: cannot be used" in ended.stderr
+
+
+def test_an_interrupt_ends_the_server_whatever_it_is_doing():
+    """Also where an exception would be lost: while an object that nobody holds is taken away."""
+    code = """
+import os, signal
+from crankmbs import load_scene
+from crankmbs.demo.serve import serve
+
+class Left:
+    def __del__(self):
+        os.kill(os.getpid(), signal.SIGINT)
+
+def ready(address, server):
+    server.io_loop.call_later(0.1, Left)
+
+serve(load_scene("propeller"), "propeller", 0, ready)
+print("ended")
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+    assert (done.stdout, done.stderr, done.returncode) == ("ended\n", "", 0)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import signal
 from collections.abc import Callable
-from contextlib import suppress
+from typing import Any
 
 from bokeh.document import Document
 from bokeh.server.server import Server
@@ -44,7 +45,15 @@ def serve(scene: Scene, stem: str, port: int, ready: Callable[[str, Server], Non
             f"--port {port}: cannot be used ({error.strerror}); choose another, or 0 for a free one"
         ) from None
     server.start()
-    ready(f"http://localhost:{server.port}/", server)
-    with suppress(KeyboardInterrupt):  # the way to end it
-        server.io_loop.start()
-    server.stop()
+    loop: Any = server.io_loop
+
+    def stop(*_: object) -> None:  # KeyboardInterrupt would be lost where Python tidies up
+        loop.asyncio_loop.call_soon_threadsafe(loop.stop)
+
+    before = signal.signal(signal.SIGINT, stop)
+    try:
+        ready(f"http://localhost:{server.port}/", server)
+        loop.start()
+    finally:
+        signal.signal(signal.SIGINT, before)
+        server.stop()
