@@ -21,7 +21,7 @@ from crankmbs.drives import Constant, Quadratic, SpeedTable, TimeTable, Torque, 
 from crankmbs.errors import InputError
 from crankmbs.tables import Table
 
-__all__ = ["Branch", "branch_at", "branch_of"]
+__all__ = ["Branch", "branch_at", "branch_of", "torque_at"]
 
 Array = NDArray[np.float64]
 
@@ -118,6 +118,30 @@ def branch_at(torques: tuple[Torque, ...], t: float, omega: float, rest: float) 
         return below
     jumps = pull - push > 1e-12 * max(abs(pull), abs(push))
     return None if jumps else above
+
+
+def torque_at(torques: tuple[Torque, ...], t: Array, omega: Array) -> Array:
+    """Torque of all loads [N m] at times [s] and speeds [rad/s] of one shape, on any stretches.
+
+    On a row where a table jumps it is one of the two values; a time table's ends are held.
+
+    >>> torque_at((Viscous(coefficient=2.0),), np.zeros(2), np.array([1.0, -3.0]))
+    array([-2.,  6.])
+    """
+    total = np.zeros_like(omega)
+    for load in torques:
+        match load:
+            case Constant():
+                total += load.torque
+            case Viscous():
+                total -= load.coefficient * omega
+            case Quadratic():
+                total -= load.coefficient * omega * np.abs(omega)
+            case TimeTable():
+                total += np.interp(t, load.file.x, load.file.y)
+            case SpeedTable():
+                total += np.interp(omega, load.file.x, load.file.y)
+    return total
 
 
 def _piece(table: Table, at: float, *, after: bool) -> tuple[float, float, float, float]:

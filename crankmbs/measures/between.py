@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from crankmbs.drives import Constant, Quadratic, SpeedTable, TimeTable, Torque, Viscous
 from crankmbs.inertia import reduce
 from crankmbs.pressure import pressure_of
 from crankmbs.reactions import reactions
@@ -17,6 +16,7 @@ from crankmbs.result import Result
 from crankmbs.scene import Scene
 from crankmbs.schema import DEGREE
 from crankmbs.speed import speed_law
+from crankmbs.torque import torque_at
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -68,7 +68,7 @@ def _free(scene: Scene, data: xr.Dataset, parts: int) -> tuple[Array, Array, Arr
     time, theta, omega, outside = (data[name].values for name in names)
     width, s = np.diff(time)[:, None], np.linspace(0.0, 1.0, parts + 1)
     t, linear = _cut(time, parts), _cut(outside, parts)
-    beside = _cut(outside - _loads(scene.torque, time, omega), parts)
+    beside = _cut(outside - torque_at(scene.torque, time, omega), parts)
     # where the speed follows its loads faster than samples follow one another passes would diverge
     rate = _steepness(scene, time, omega) / reduce(scene, None, theta)[0]
     stiff = np.maximum(rate[:-1], rate[1:])[:, None] * width > 1.0
@@ -83,7 +83,7 @@ def _free(scene: Scene, data: xr.Dataset, parts: int) -> tuple[Array, Array, Arr
     def driven(angle: Array, speed: Array) -> Array:
         """Acceleration there."""
         inertia, slope, given = reduce(scene, pressure, angle)
-        torque = np.where(stiff, linear, _loads(scene.torque, t, speed) + beside)
+        torque = np.where(stiff, linear, torque_at(scene.torque, t, speed) + beside)
         return np.asarray((given + torque - 0.5 * slope * speed**2) / inertia)
 
     angle, speed = bent(_cut(omega, parts))
@@ -99,26 +99,8 @@ def _free(scene: Scene, data: xr.Dataset, parts: int) -> tuple[Array, Array, Arr
 def _steepness(scene: Scene, t: Array, omega: Array) -> Array:
     """How fast the torque of all loads changes with the speed [N m s]."""
     nudge = 1e-6 * float(np.max(np.abs(omega))) + 1e-12
-    above, below = (_loads(scene.torque, t, omega + sign * nudge) for sign in (1.0, -1.0))
+    above, below = (torque_at(scene.torque, t, omega + sign * nudge) for sign in (1.0, -1.0))
     return np.asarray(np.abs(above - below) / (2.0 * nudge))
-
-
-def _loads(loads: tuple[Torque, ...], t: Array, omega: Array) -> Array:
-    """Torque of all loads [N m] at times and speeds."""
-    total = np.zeros_like(omega)
-    for load in loads:
-        match load:
-            case Constant():
-                total += load.torque
-            case Viscous():
-                total -= load.coefficient * omega
-            case Quadratic():
-                total -= load.coefficient * omega * np.abs(omega)
-            case TimeTable():
-                total += np.interp(t, load.file.x, load.file.y)
-            case SpeedTable():
-                total += np.interp(omega, load.file.x, load.file.y)
-    return total
 
 
 def _cut(values: Array, parts: int) -> Array:
