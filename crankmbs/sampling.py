@@ -17,6 +17,7 @@ Array = NDArray[np.float64]
 
 FOLDED = "the rod folds onto the crank at {angle:.6g} degrees, where the motion is not determined"
 
+_LESS = 1.0 - 1e-6  # of a spacing: the samples that are kept beyond the last period reach so far
 _HAIR = 1e-6  # rad: so near a fold the forces still have all their digits but the last few
 
 
@@ -76,7 +77,8 @@ class Plan:
 
 
 def plan_of(scene: Scene) -> Plan:
-    """The plan of a scene; with every = "none" the last period at 1 degree is kept.
+    """The plan of a scene; with every = "none" the last period at 1 degree is kept, with the sample
+    before it where it begins between two.
 
     >>> plan_of(load_scene("coasting")).until
     0.5
@@ -86,7 +88,8 @@ def plan_of(scene: Scene) -> Plan:
     until, until_time = scene.run.until.resolve(scene.period)
     folds = _folds(scene, start)
     if scene.run.every is None:
-        return Plan(start, DEGREE, False, until, until_time, scene.period, folds)
+        last = scene.period + _LESS * DEGREE
+        return Plan(start, DEGREE, False, until, until_time, last, folds)
     every, in_time = scene.run.every.resolve(scene.period)
     return Plan(start, every, in_time, until, until_time, folds=folds)
 

@@ -61,6 +61,15 @@ def test_a_motion_that_speeds_up_gains_as_the_law_says(every):
     assert found.speed_gain.error < (2e-3 if every != "1500 deg" else 1.0) * gained
 
 
+@pytest.mark.parametrize("until", ["3 cycles", "0.1 s"])
+def test_without_output_spacing_the_last_cycle_is_whole(until):
+    """Also where it begins between two samples."""
+    found, usual = (measure(simulate(scene(until=until, every=e))) for e in ("none", "1 deg"))
+    assert found.window.kind == usual.window.kind == "last cycle"
+    assert found.imep[0].value == pytest.approx(usual.imep[0].value, rel=1e-9)
+    assert found.window.begin == pytest.approx(usual.window.begin, rel=1e-12)
+
+
 def test_a_periodic_motion_gains_no_speed(constant):
     found = measure(constant)
     assert abs(found.speed_gain.value) <= found.speed_gain.error < 1e-10

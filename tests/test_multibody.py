@@ -174,7 +174,7 @@ def test_without_output_spacing_the_last_cycle_is_kept_degree_by_degree() -> Non
     run = Run(until=Extent(value=30.0, unit="rad"), every=None)
     angle = simulate(replace(COASTING, run=run), formulation="multibody").data["crank_angle"].values
     assert angle[-1] == 30.3
-    assert np.all(angle >= 30.3 - 4.0 * np.pi)
+    assert angle[0] <= 30.3 - 4.0 * np.pi < angle[1]
     np.testing.assert_allclose(np.diff(angle)[:-1], np.pi / 180.0)
 
 

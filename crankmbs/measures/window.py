@@ -46,8 +46,6 @@ def last_window(result: Result) -> Window:
 
     It ends with the run. Where it begins between two samples the time follows from the cubic
     through their angles and speeds; exact to fourth order in the spacing.
-    Of a run with every = "none" that does not end on a whole degree from its start the samples kept
-    span a little less than a cycle: then it is the last revolution.
 
     >>> last_window(simulate(load_scene("propeller"))).kind
     'last cycle'
