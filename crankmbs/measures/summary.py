@@ -155,24 +155,15 @@ def fluctuation(result: Result, window: Window) -> Estimate:
 
 
 def _speed_gain(result: Result, window: Window) -> Estimate:
-    """The speed where the window begins between two samples from the cubic through the speeds and
-    accelerations there; it errs by less than it differs from the cubic through the next ones, or,
-    of a run of two samples, from the line."""
+    """Where the window begins between two samples the speed there is that of the cubic through
+    their speeds and accelerations."""
     names = ("time", "crank_speed", "crank_acceleration")
     time, speed, rate = (result.data[name].values for name in names)
-    pair, last = [window.first, window.inside], len(time) - 1
-    near = float(speed[window.first])
-    error = 2.0 * _stated(result, "crank_speed")
+    begin = float(speed[window.first])
     if window.first < window.inside:
-        wide = [max(window.first - 1, 0), min(window.inside + 1, last)]
-        near, far = (
-            float(CubicHermiteSpline(time[ends], speed[ends], rate[ends])(window.begin))
-            for ends in (pair, wide)
-        )
-        if wide == pair:
-            far = float(np.interp(window.begin, time, speed))
-        error += abs(near - far)
-    return Estimate(float(speed[-1]) - near, error)
+        pair = [window.first, window.inside]
+        begin = float(CubicHermiteSpline(time[pair], speed[pair], rate[pair])(window.begin))
+    return Estimate(float(speed[-1]) - begin, 2.0 * _stated(result, "crank_speed"))
 
 
 def _joints(result: Result, window: Window) -> list[JointForce]:
