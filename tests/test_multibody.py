@@ -1,4 +1,4 @@
-"""The multibody model against known end states, printed figures and the independent oracle."""
+"""The multibody model against known end states, computed figures and the independent oracle."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ def test_meets_the_end_state_of_a_benchmark_within_its_stated_error(name: str, r
         assert abs(data.values[-1] - known) <= 2.0 * data.attrs["error_estimate"]
 
 
-def test_meets_the_printed_figures_of_the_torque_driven_slider_crank() -> None:
+def test_meets_the_computed_figures_of_the_torque_driven_slider_crank() -> None:
     scene = replace(load_scene("torque_driven"), run=brief(1.0, "s", 0.25, "s"))
     result = simulate(scene, formulation="multibody", rtol=1e-6, cost_cap=60.0)
     for name, figure in {

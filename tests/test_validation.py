@@ -91,7 +91,7 @@ def test_every_reference_names_its_source():
 
 def test_report(monkeypatch, tmp_path):
     green = Verdict(CASE, "holds", Outcome(1e-14, "fine", table=("| a |", "|---|", "| 1 |")))
-    red = Verdict(CASES["khurmi_speed"], "fails", Outcome(3.0, "too far"))
+    red = Verdict(CASES["khurmi_speed_printed"], "fails", Outcome(3.0, "too far"))
     text = write_report([green, red], tmp_path).read_text(encoding="utf-8")
     assert "1 of 2 claims hold." in text
     assert "| 1 |" in text

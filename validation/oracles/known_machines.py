@@ -1,4 +1,4 @@
-"""Machines with published or stored end states, in exact decimals, and one with every feature."""
+"""Machines of other programs and books, with stored end states, and one with every feature."""
 
 from dataclasses import replace
 
@@ -57,22 +57,48 @@ TORQUE_DRIVEN = Machine(
 )
 """exudyn's slider-crank: uniform bars, a constant torque, from rest at top dead centre."""
 
+_DENSITY = 7700  # kg/m3, the default of the library's bodies
+_CYLINDER = _DENSITY * _WIDE.pi / 40  # kg/m2: a length of 0.1 m of a cylinder, per diameter^2
+_WEB = _WIDE.number("0.77")  # kg: 0.1 m x 0.05 m x 0.02 m
+_JOURNAL, _PIN = (_CYLINDER * _WIDE.number(diameter) ** 2 for diameter in ("0.05", "0.03"))
+
 ENGINE_1A = Machine(
     crank_radius="0.1",
-    crank_inertia="1.0114306736",
-    crank_mass="1.314280927",
+    crank_inertia=1  # the engine's output
+    + _JOURNAL * _WIDE.number("0.05") ** 2 / 8
+    + 2 * _WEB * (_WIDE.number("0.0125") / 12 + _WIDE.number("0.05") ** 2)
+    + _PIN * (_WIDE.number("0.03") ** 2 / 8 + _WIDE.number("0.01")),
+    crank_mass=_WEB + _PIN,
     crank_center_of_mass="0.1",
     rod_length="0.2",
     rod_mass="1.848",
     rod_center_of_mass="0.1",
     rod_inertia="0.0067144",
-    piston_mass="6.047565858",
+    piston_mass=_CYLINDER * _WIDE.number("0.1") ** 2,
     gravity=("-9.80665", "0"),
 )
 """Modelica.Mechanics.MultiBody.Examples.Loops.Engine1a: no gas, gravity along the cylinder.
 
-Of the crank with its load only the first moment 0.1314280927 kg m counts.
+From the dimensions of the model's bodies. Of the crank's mass only the first moment counts: of two
+webs at half the radius and of the pin at the whole.
 """
+
+KHURMI_15_3 = Machine(crank_radius="0.3", crank_inertia="1", rod_length="1", piston_mass="1")
+"""Khurmi's Example 15.3; its masses do not matter."""
+
+KHURMI_15_7 = replace(KHURMI_15_3, rod_length="1.2", piston_mass="250")
+"""Khurmi's Example 15.7 without its pressure."""
+
+TEST_SET_CRANK = Machine(
+    crank_radius="0.15",
+    crank_inertia="0.0027",
+    rod_length="0.3",
+    rod_mass="0.151104",
+    rod_center_of_mass="0.15",
+    rod_inertia="0.00113328",
+    piston_mass="0.075552",
+)
+"""The slider-crank of the IVP test set with a rigid rod."""
 
 V_TWIN = Machine(
     crank_radius=0.05,
