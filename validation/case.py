@@ -42,6 +42,8 @@ class Case:
     scene : a file in validation/scenes or a shipped scene; change : paths in it and new values
     drive : "constant" prescribes the speed of a free scene, "free" frees a prescribed one
     until : shortens the run [cycles]
+    standing : where parameters were identified from a source, whether the claim predicts its cells
+        or is consistent with them
     """
 
     name: str
@@ -53,6 +55,7 @@ class Case:
     reason: str
     source: str
     mutant: Mutant
+    standing: str = ""
     quick: bool = True
     scene: str = ""
     drive: str = "as shipped"

@@ -15,28 +15,39 @@ from numpy.typing import NDArray
 
 from crankmbs.figures.style import STYLE
 
-__all__ = ["Array", "Panel", "overlay"]
+__all__ = ["Array", "Dots", "Panel", "overlay"]
 
 Array = NDArray[np.float64]
 
 _LECTURE: Any = {"color": "#0072B2", "linewidth": 4.0, "alpha": 0.45}
 _SIMULATED: Any = {"color": "#D55E00", "linewidth": 1.6}
-_PRINTED: Any = {"color": "black", "marker": "o", "markersize": 4.5, "linestyle": ""}
+_DOTS: Any = {"color": "black", "marker": "o", "markersize": 4.5, "linestyle": ""}
+_OPEN: Any = {"marker": "D", "markerfacecolor": "none", "markeredgewidth": 1.2}
+
+
+@dataclass(frozen=True)
+class Dots:
+    """Values at single abscissae: what they are, abscissae and values, shape (m,).
+
+    missed : shape (m,), value minus simulated, where the lecture gives points only
+    computed : drawn open, not printed by the source but computed from what it prints
+    """
+
+    name: str
+    abscissae: Array
+    values: Array
+    missed: Array | None = None
+    computed: bool = False
 
 
 @dataclass(frozen=True)
 class Panel:
-    """One quantity over the abscissa: label with unit; simulated and lecture shape (n,).
-
-    points : abscissae and values that a table prints
-    missed : shape of the points, printed minus simulated, where the lecture gives points only
-    """
+    """One quantity over the abscissa: label with unit; simulated and lecture shape (n,)."""
 
     label: str
     simulated: Array
     lecture: Array | None = None
-    points: tuple[Array, Array] | None = None
-    missed: Array | None = None
+    dots: tuple[Dots, ...] = ()
 
 
 def overlay(
@@ -71,10 +82,11 @@ def _draw(above: Axes, below: Axes, abscissa: Array, panel: Panel, names: tuple[
         above.plot(abscissa, panel.lecture, label=names[0], **_LECTURE)
         below.plot(abscissa, panel.lecture - panel.simulated, color="0.25", linewidth=1.5)
     above.plot(abscissa, panel.simulated, label=names[1], **_SIMULATED)
-    if panel.points is not None:
-        above.plot(*panel.points, label="printed table", **_PRINTED)
-        if panel.missed is not None:
-            below.plot(panel.points[0], panel.missed, **_PRINTED)
+    for dots in panel.dots:
+        style = {**_DOTS, **(_OPEN if dots.computed else {})}
+        above.plot(dots.abscissae, dots.values, label=dots.name, **style)
+        if dots.missed is not None:
+            below.plot(dots.abscissae, dots.missed, **style)
             below.axhline(0.0, color="0.6", linewidth=1.0)
     above.set_ylabel(panel.label)
     below.set_ylabel("difference", fontsize=11)

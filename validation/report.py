@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+from validation import s1
 from validation.judge import Verdict
 
 __all__ = ["REPORT", "write_report"]
@@ -25,6 +26,7 @@ def write_report(verdicts: Sequence[Verdict], folder: Path = REPORT.parent) -> P
     lines += ["| claim | scene | measured | tolerance | verdict |", "|---|---|---|---|---|"]
     lines += [_row(verdict) for verdict in verdicts]
     lines += _hard_cases(verdicts)
+    lines += s1.section([verdict.case for verdict in verdicts])
     for verdict in verdicts:
         lines += ["", *_section(verdict)]
     (folder / "figures").mkdir(exist_ok=True)
@@ -71,6 +73,7 @@ def _section(verdict: Verdict) -> list[str]:
         f"- measured {outcome.error:.3g}, tolerance {case.tolerance:.3g}: {case.reason}",
         f"- {outcome.detail}",
         f"- source: {case.source}",
+        *([f"- prediction or consistency: {case.standing}"] if case.standing else []),
         f"- turns red with: {case.mutant.parameter} times {case.mutant.factor:.10g}",
     ]
     if outcome.table and not _is_hard(verdict):

@@ -13,7 +13,7 @@ from validation import reference
 from validation.case import Case
 from validation.checks.s1_tables import printed_cells
 from validation.judge import Outcome
-from validation.plots import Array, Panel, overlay
+from validation.plots import Array, Dots, Panel, overlay
 from validation.runs import run
 
 __all__ = ["lecture_geometry", "maximum_speed", "truncation"]
@@ -88,8 +88,8 @@ def truncation(case: Case) -> Outcome:
         tabulated = abs(float(row[f"lam{case.word('rod_ratio')}_signed_err_at_max"]))
         worst = max(worst, abs(largest / tabulated - 1.0))
         details.append(f"{name.removeprefix('piston_')} {largest:.3e} (tabulated {tabulated:.3e})")
-        points = _printed(curve) if case.parameters.get("dots") else None
-        panels.append(Panel(curve.label, simulated, series, points))
+        dots = (_printed(curve),) if case.parameters.get("dots") else ()
+        panels.append(Panel(curve.label, simulated, series, dots))
     title = f"{case.word('title')}: rod ratio {case.word('rod_ratio')}"
     figure = overlay(np.degrees(angle), panels, title, ("truncated series", "simulated"))
     return Outcome(
@@ -119,9 +119,9 @@ def maximum_speed(case: Case) -> Outcome:
     )
 
 
-def _printed(curve: _Curve) -> tuple[Array, Array]:
+def _printed(curve: _Curve) -> Dots:
     """The cells of S1's Table 1, in SI units."""
     rows = {d: cells for d, cells in printed_cells().items() if curve.printed in cells}
     scale = 1e-3 if curve.printed == "travel" else 1.0
     values = [scale * float(cells[curve.printed]) for cells in rows.values()]
-    return np.array(list(rows), dtype=np.float64), np.array(values)
+    return Dots("Table 1 as printed", np.array(list(rows), dtype=np.float64), np.array(values))

@@ -4,7 +4,7 @@ A cell follows from cells printed before it: a -> F_i, p -> P_G, both -> F -> Q,
 F_t -> T. A residual beyond rounding is a misprint. Whether the printed value or the formula's was
 carried on is read from the cells computed from it: the reading that needs fewer misprints wins.
 A pressure has no formula: where the gas force disagrees with it and was carried on, the pressure
-is the wrong one.
+is the wrong one, and the gas force, from which it is corrected, has no formula there either.
 """
 
 from __future__ import annotations
@@ -104,8 +104,8 @@ class Engine:
 class Cell:
     """printed : as it is; ours : what it should be; misses : residual over what rounding allows.
 
-    verdict : "agrees" (to the printed digit), "rounding" or "misprint"; carried : a wrong value
-    from which the authors went on
+    verdict : "agrees" (to the printed digit), "rounding", "misprint" or "no formula"; carried : a
+    wrong value from which the authors went on
     """
 
     name: str
@@ -136,7 +136,7 @@ class _Row:
 
     def judge(self, name: str) -> None:
         if name == "pressure":  # no formula of its own; see PG
-            self._add(name, self.used[name], 0.0, "agrees")
+            self._add(name, self.used[name], 0.0, "no formula")
             return
         should, misses = self._compare(name, self.used)
         if misses <= _SOUND:
@@ -150,7 +150,7 @@ class _Row:
         if carried and _INPUTS[name] == ("pressure",):
             pressure = self.engine.pressure_for(self.used[name])
             self._add("pressure", pressure, misses, "misprint")
-            self._add(name, self.used[name], 0.0, "agrees")
+            self._add(name, self.used[name], 0.0, "no formula")
             return
         self._add(name, should, misses, "misprint", carried)
         if not carried:

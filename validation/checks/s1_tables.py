@@ -37,7 +37,8 @@ def table(case: Case) -> Outcome:
     """Cells of one table that the residuals judge otherwise than a reader did by hand.
 
     A cell counts as different where one calls it wrong and the other does not, or where what it
-    should be differs in the five decimals of the hand-made table.
+    should be differs in the five decimals of the hand-made table. A cell without a formula agrees
+    with nothing, and is counted apart.
     """
     number = int(case.parameters["table"])
     cells = _judged(engine_of(case))
@@ -88,29 +89,22 @@ def printed_cells() -> dict[int, dict[str, str]]:
 
 
 def _judged(engine: Engine) -> dict[tuple[str, int], Cell]:
-    """Every cell that has a formula: Table 2 ends at 360 degrees, and so do F and F_t of T."""
-    printed = printed_cells()
-    rows = {degrees: cells for degrees, cells in printed.items() if degrees <= 360}
-    judged = {
+    """The cells to 360 degrees, where Table 2 ends: beyond, T has nothing to be computed from."""
+    rows = {degrees: cells for degrees, cells in printed_cells().items() if degrees <= 360}
+    return {
         (name, degrees): cell
         for degrees, cells in rows.items()
         for name, cell in judge_angle(engine, degrees, cells).items()
     }
-    closing = {**printed[0], "T": printed[720]["T"]}  # the period closes at 720
-    judged["T", 720] = judge_angle(engine, 0, closing)["T"]
-    return judged
 
 
 def _same(row: dict[str, str], cell: Cell | None) -> bool:
-    if cell is None:
+    if row["class"] == "inconsistent with T2":
+        return cell is not None and cell.verdict == "no formula"
+    if cell is None or cell.verdict == "no formula":
         return row["class"].startswith("no formula")
     if (cell.verdict == "misprint") != (row["class"] in _WRONG):
         return False
-    if row["class"] == "inconsistent with T2" or (cell.name, cell.verdict) == (
-        "pressure",
-        "agrees",
-    ):
-        return True
     if abs(cell.ours - float(row["formula_from_printed_inputs"])) < _DIGITS:
         return True
     return cell.verdict == "misprint" and _rounded(cell) == _corrected_by_hand(cell)
@@ -137,12 +131,14 @@ def _lines(number: int, cells: dict[tuple[str, int], Cell]) -> tuple[str, ...]:
         row = [str(degrees)]
         for name in columns:
             cell = cells.get((name, degrees))
-            row += [printed[name], *(_shown(cell) if cell else ("-", "Table 2 ends at 360"))]
+            row += [printed[name], *(_shown(cell) if cell else ("-", "no formula"))]
         lines.append(f"| {' | '.join(row)} |")
     return tuple(lines)
 
 
 def _shown(cell: Cell) -> tuple[str, str]:
+    if cell.verdict == "no formula":
+        return "-", cell.verdict
     ours = f"{cell.ours:.4f}"
     if cell.verdict != "misprint":
         return ours, cell.verdict
