@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from validation import s1
+from validation import bibliography, s1
 from validation.judge import Verdict
 
 __all__ = ["REPORT", "write_report"]
@@ -29,6 +29,7 @@ def write_report(verdicts: Sequence[Verdict], folder: Path = REPORT.parent) -> P
     lines += s1.section([verdict.case for verdict in verdicts])
     for verdict in verdicts:
         lines += ["", *_section(verdict)]
+    lines += ["", *bibliography.links()]
     (folder / "figures").mkdir(exist_ok=True)
     for verdict in verdicts:
         for name, figure in verdict.outcome.figures.items():

@@ -24,11 +24,12 @@ _INTRODUCTION = """\
 ## What S1 does not print
 
 [S1] prints speed, compression ratio and polytropic exponents, but neither radius, rod ratio, bore
-nor reciprocating mass; the offset only as 0.015 of the bore, piston and rod only as ranges per area.
-What is below was identified from its own cells by least squares; "rest" is the root mean square of
-what the fit leaves. Masses of piston, rod and crank, the rod's inertia, the flywheel and the firing
-order are guessed. A claim about cells from which its parameters were identified shows consistency,
-not prediction.
+nor reciprocating mass; the offset only as 0.015 of the bore, piston and rod only as ranges per
+area. What is below was identified from its own cells by least squares; "rest" is the root mean
+square of what the fit leaves. Masses of piston, rod and crank, the rod's inertia, the flywheel and
+the firing order are guessed. A claim about cells from which its parameters were identified shows
+consistency, not prediction. The misprints found, with their corrections, and what the paper says
+against itself are in [ERRATA.md](ERRATA.md).
 
 | parameter | identified | used | from | rest |
 |---|---|---|---|---|"""
@@ -134,7 +135,7 @@ def _mass() -> Identified:
 
 def _least_squares(columns: Array, right: Array) -> tuple[Array, Array, float]:
     """The fit, its standard errors, and the root mean square that is left."""
-    fit: Array = np.linalg.lstsq(columns, right, rcond=None)[0]
+    fit = np.asarray(np.linalg.lstsq(columns, right, rcond=None)[0], dtype=np.float64)
     left = right - columns @ fit
     variance = left @ left / (len(right) - len(fit))
     spread: Array = np.sqrt(variance * np.diag(np.linalg.inv(columns.T @ columns)))

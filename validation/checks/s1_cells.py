@@ -116,6 +116,11 @@ class Cell:
     verdict: str
     carried: bool = False
 
+    @property
+    def corrected(self) -> str:
+        """What should have been printed, with the digits of the print."""
+        return f"{self.ours:.{_decimals(self.printed)}f}"
+
 
 def judge_angle(engine: Engine, degrees: int, printed: Mapping[str, str]) -> dict[str, Cell]:
     """The cells of one crank angle, in the order in which they follow from one another."""

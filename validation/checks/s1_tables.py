@@ -11,7 +11,7 @@ from validation.checks.s1_cells import KGF, KGF_PER_CM2, Cell, Engine, judge_ang
 from validation.judge import Outcome
 from validation.reference import MissingReference
 
-__all__ = ["engine_of", "printed_cells", "table"]
+__all__ = ["engine_of", "judged_cells", "printed_cells", "table", "table_of"]
 
 _TABLES = {
     1: {
@@ -41,7 +41,7 @@ def table(case: Case) -> Outcome:
     with nothing, and is counted apart.
     """
     number = int(case.parameters["table"])
-    cells = _judged(engine_of(case))
+    cells = judged_cells(engine_of(case))
     columns = _TABLES[number]
     counts = dict.fromkeys(("agrees", "rounding", "misprint", "no formula"), 0)
     different: list[str] = []
@@ -88,7 +88,7 @@ def printed_cells() -> dict[int, dict[str, str]]:
     return found
 
 
-def _judged(engine: Engine) -> dict[tuple[str, int], Cell]:
+def judged_cells(engine: Engine) -> dict[tuple[str, int], Cell]:
     """The cells to 360 degrees, where Table 2 ends: beyond, T has nothing to be computed from."""
     rows = {degrees: cells for degrees, cells in printed_cells().items() if degrees <= 360}
     return {
@@ -96,6 +96,11 @@ def _judged(engine: Engine) -> dict[tuple[str, int], Cell]:
         for degrees, cells in rows.items()
         for name, cell in judge_angle(engine, degrees, cells).items()
     }
+
+
+def table_of(name: str) -> int:
+    """The number of the table that has a quantity."""
+    return next(number for number, columns in _TABLES.items() if name in columns)
 
 
 def _same(row: dict[str, str], cell: Cell | None) -> bool:
@@ -107,16 +112,12 @@ def _same(row: dict[str, str], cell: Cell | None) -> bool:
         return False
     if abs(cell.ours - float(row["formula_from_printed_inputs"])) < _DIGITS:
         return True
-    return cell.verdict == "misprint" and _rounded(cell) == _corrected_by_hand(cell)
-
-
-def _rounded(cell: Cell) -> float:
-    """What should have been printed, with the digits of the print."""
-    return round(cell.ours, len(cell.printed.partition(".")[2]))
+    return cell.verdict == "misprint" and float(cell.corrected) == _corrected_by_hand(cell)
 
 
 def _corrected_by_hand(cell: Cell) -> float:
-    number, heading = next((n, c[cell.name]) for n, c in _TABLES.items() if cell.name in c)
+    number = table_of(cell.name)
+    heading = _TABLES[number][cell.name]
     row = reference.one_row(f"s1_table{number}_corrected", crank_angle_deg=str(cell.degrees))
     return float(row[heading])
 
@@ -143,4 +144,4 @@ def _shown(cell: Cell) -> tuple[str, str]:
     if cell.verdict != "misprint":
         return ours, cell.verdict
     word = "slip, carried on" if cell.carried else "misprint"
-    return ours, f"**{word}: corrected to {_rounded(cell)}**"
+    return ours, f"**{word}: corrected to {cell.corrected}**"

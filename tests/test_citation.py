@@ -1,0 +1,45 @@
+"""What is cited has an entry, and the program can be cited."""
+
+import re
+import tomllib
+from pathlib import Path
+
+import pytest
+import yaml
+
+from validation import bibliography, reference
+from validation.case import load_cases
+
+ROOT = Path(__file__).parent.parent
+CFF = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+
+
+def cited(text: str) -> set[str]:
+    return set(re.findall(r"\[([\w-]+)\]", text))
+
+
+@pytest.mark.parametrize("case", load_cases(), ids=lambda case: case.name)
+def test_a_claim_names_its_sources_by_keys_of_the_bibliography(case):
+    assert cited(case.source) <= set(bibliography.keys())
+
+
+def test_a_printed_number_names_its_source_by_a_key():
+    rows = reference.rows("printed")
+    assert {row["source"] for row in rows} <= set(bibliography.keys())
+    assert {row["lecture"] for row in reference.rows("errata")} == {"S0", "S1", "S2"}
+
+
+def test_no_key_stands_twice():
+    assert len(bibliography.keys()) == len(set(bibliography.keys()))
+
+
+def test_the_citation_is_of_this_version():
+    assert CFF["cff-version"] == "1.2.0"
+    assert CFF["title"] == PROJECT["name"]
+    assert CFF["version"] == PROJECT["version"]
+    assert CFF["license"] == PROJECT["license"]
+    assert CFF["authors"] == PROJECT["authors"]
+    assert CFF["type"] == "software"
+    assert CFF["message"]
+    assert CFF["abstract"]
