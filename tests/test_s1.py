@@ -67,5 +67,6 @@ def test_the_report_says_what_was_identified(tmp_path):
     found = [Verdict(case, "holds", s1_tables.table(case)) for case in [CASES["s1_table_5"]]]
     text = write_report(found, tmp_path).read_text(encoding="utf-8")
     assert "## What S1 does not print" in text
+    assert "[S1]: BIBLIOGRAPHY.md#s1" in text
     assert all(f"| {name} |" in text for name in PARAMETERS)
     assert f"- prediction or consistency: {CASES['s1_table_5'].standing}" in text

@@ -128,14 +128,17 @@ def _rows(case: Case) -> list[dict[str, str]]:
 
 
 def _against(case: Case, ours: dict[str, float]) -> Outcome:
-    """The worst difference in halves of the last printed digit."""
+    """The worst difference in halves of the last printed digit; beside it from the exact answer."""
     worst, parts = 0.0, []
     for name, value in ours.items():
         row = reference.one_row("printed", machine=case.word("machine"), quantity=name)
         off = abs(value - float(row["printed"])) / (0.5 * float(row["last_digit"]))
         worst = off if math.isnan(off) else max(worst, off)
-        parts.append(f"{name} {value:.12g} ({row['printed']} {row['unit']} printed)")
-    return Outcome(worst, ", ".join(parts))
+        parts.append(
+            f"{name} {value:.12g} {row['unit']} by the source's method (printed {row['printed']}; "
+            f"off the exact answer by {row['why']})"
+        )
+    return Outcome(worst, "; ".join(parts))
 
 
 def _geometry(scene: Scene) -> dict[str, float]:

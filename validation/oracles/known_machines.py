@@ -91,11 +91,11 @@ KHURMI_15_7 = replace(KHURMI_15_3, rod_length="1.2", piston_mass="250")
 
 TEST_SET_CRANK = Machine(
     crank_radius="0.15",
-    crank_inertia="0.0027",
+    crank_inertia="0.002727",
     rod_length="0.3",
     rod_mass="0.151104",
     rod_center_of_mass="0.15",
-    rod_inertia="0.00113328",
+    rod_inertia="0.0011340859",
     piston_mass="0.075552",
 )
 """The slider-crank of the IVP test set with a rigid rod."""
