@@ -69,4 +69,4 @@ def test_the_report_says_what_was_identified(tmp_path):
     assert "## What S1 does not print" in text
     assert "[S1]: BIBLIOGRAPHY.md#s1" in text
     assert all(f"| {name} |" in text for name in PARAMETERS)
-    assert f"- prediction or consistency: {CASES['s1_table_5'].standing}" in text
+    assert f"- shows {CASES['s1_table_5'].standing}" in text

@@ -74,7 +74,7 @@ def _section(verdict: Verdict) -> list[str]:
         f"- measured {outcome.error:.3g}, tolerance {case.tolerance:.3g}: {case.reason}",
         f"- {outcome.detail}",
         f"- source: {case.source}",
-        *([f"- prediction or consistency: {case.standing}"] if case.standing else []),
+        *([f"- shows {case.standing}"] if case.standing else []),
         f"- turns red with: {case.mutant.parameter} times {case.mutant.factor:.10g}",
     ]
     if outcome.table and not _is_hard(verdict):

@@ -70,7 +70,7 @@ def section(cases: Sequence[Case]) -> list[str]:
         f"| pressures of 390 to 690 degrees | {implied} values, reference/s1_table6_pressure.csv | "
         f"as identified | Table 6, torque, {implied} cells | 0: one value a cell |",
         "",
-        "| claim | prediction or consistency |",
+        "| claim | what it shows |",
         "|---|---|",
     ]
     return lines + [f"| [{case.claim}](#{case.name}) | {case.standing} |" for case in standing]
