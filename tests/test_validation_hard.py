@@ -34,6 +34,8 @@ def judged(run, stated, only_to=None):
         (0.05, None, "right, but only to 5 % of the peak (side_force): ", False),
         (0.05, 0.04, "right, but only to 5 % of the peak (side_force): ", False),
         (0.05, 0.06, "right, but only to 5 % of the peak (side_force): ", True),
+        (8.8, 0.06, "no answer, the stated error is 8.8 times the peak (side_force): ", False),
+        (8.8, inf, "no answer, the stated error is 8.8 times the peak (side_force): ", True),
         (inf, None, "error unknown (side_force): ", False),
         (inf, 0.06, "error unknown (side_force): ", False),
         (inf, inf, "error unknown (side_force): ", True),

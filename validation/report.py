@@ -21,7 +21,8 @@ oracles in `oracles/` share no code with crankmbs. References, each with its sou
 """
 _HARD = """\
 Right: the true error is at most twice the stated one, and that at most 1e-3 of a variable's peak.
-Right, but only to x %: more is stated. Error unknown: no number is. Or stopped, and why."""
+Right, but only to x %: more is stated. No answer: more than the peak is. Error unknown: no number
+is. Or stopped, and why."""
 
 
 def write_report(verdicts: Sequence[Verdict], folder: Path = REPORT.parent) -> Path:

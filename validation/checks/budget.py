@@ -66,5 +66,5 @@ def _row(split: Budget, quantity: str) -> str:
     """The peak of every cause in percent of the quantity's."""
     found = split.split(quantity)
     shares = {cause.name: found.share(cause) for cause in found.causes}
-    cells = [f"{shares[name]:.2g} %" if shares.get(name) else "-" for name in CAUSES]
+    cells = [f"{shares[name]:.3g} %" if shares.get(name) else "-" for name in CAUSES]
     return f"| {quantity} | {' | '.join(cells)} |"

@@ -181,8 +181,10 @@ def graded(coarse: float, name: str) -> str:
     """How good an answer is that states an error of this share of the peak of a variable."""
     if coarse <= _USUAL:
         return "right"
-    if math.isfinite(coarse):
+    if coarse < 1.0:
         return f"right, but only to {100.0 * coarse:.2g} % of the peak ({name})"
+    if math.isfinite(coarse):
+        return f"no answer, the stated error is {coarse:.2g} times the peak ({name})"
     return f"error unknown ({name})"
 
 
