@@ -114,7 +114,9 @@ def _first(comparison: Comparison, split: Budget) -> str:
         for row in comparison.rows
         if row.reference == CLOSED_FORM and row.peak > 0.0
     ]
-    if shares:
+    if comparison.stretch.result.formulation != "multibody":
+        lines.append("the run takes its forces from the closed form; multibody has its own")
+    elif shares:
         share, quantity = max(shares)
         lines.append(f"the run itself is within {_share(share)} % of the closed form ({quantity})")
     return "\n".join(lines)
