@@ -29,7 +29,7 @@ ANGLE_ROUNDING = 2 * float(np.finfo(float).eps)  # of the crank angle
 
 class Assembled(NamedTuple):
     """A solution, every variable of the result at its samples, its largest absolute value there,
-    and a bound for its error."""
+    and an estimate of its error."""
 
     solution: Solution
     variables: dict[str, Array]
@@ -62,7 +62,7 @@ class Assembled(NamedTuple):
 
 
 def assemble(scene: Scene, pressure: PeriodicPressure | None, solution: Solution) -> Assembled:
-    """Every variable of a result at the samples, and a bound for its largest error.
+    """Every variable of a result at the samples, and an estimate of its largest error.
 
     The error is the difference between the answer and the better one of the solution, to which
     the rounding of the crank angle is added, propagated through the same formulas; where the

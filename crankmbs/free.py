@@ -113,7 +113,7 @@ def run(
         local = max(local * max(1e-3, 0.1 * rtol / estimate), finest)
     assert best is not None
     if rounded or least > rtol:
-        # what is left is rounding, in both passes alike, and their difference not a bound
+        # what is left is rounding, in both passes alike, and their difference too small an estimate
         best = best._replace(errors={name: 2.0 * error for name, error in best.errors.items()})
     if best.relative_error > rtol and best.solution.status >= 0:
         text = f"asked for {rtol:.0e}, reached {best.relative_error:.0e}"

@@ -66,13 +66,16 @@ def reference_at_angles(scene: Scene, angles: Array) -> Reference:
     return Reference(motion.time, motion.theta, motion.omega, motion.alpha)
 
 
-def true_errors(result: Result, reference: Reference) -> dict[str, Errors]:
-    """Every variable of the result against the reference at the same samples.
+def true_errors(
+    result: Result, reference: Reference, samples: NDArray[np.intp] | None = None
+) -> dict[str, Errors]:
+    """Every variable of the result against the reference, at the samples of these numbers; without
+    them at the first ones.
 
     A sample on a crank angle errs in the time at which it is passed; the error of the crank angle
     itself is the one at equal time.
     """
-    data = result.data.isel(time=slice(len(reference.time)))
+    data = result.data.isel(time=slice(len(reference.time)) if samples is None else samples)
     exact = reference_variables(result.scene, reference.theta, reference.omega, reference.alpha)
     exact |= {
         "time": reference.time,

@@ -35,7 +35,7 @@ def scene(speed, until="40 ms", every="1 ms"):
 
 @pytest.mark.parametrize("name", SPEEDS)
 def test_every_variable_and_its_error(name):
-    """Against the oracle at the same motion; the stated error bounds what rounding leaves."""
+    """Against the oracle at the same motion; the stated error covers what rounding leaves."""
     result = simulate(scene(SPEEDS[name]))
     assert (result.status, result.formulation) == (0, "kinetostatic")
     motion = ("crank_angle", "crank_speed", "crank_acceleration")

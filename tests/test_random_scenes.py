@@ -1,10 +1,13 @@
-"""Random scenes: every run ends as it should, and no true error exceeds twice the stated one."""
+"""Random scenes: every run ends as it should, and no true error exceeds twice the stated one.
+
+Those of the seeds 0 to 348 but for three, which `make_random_references` names with the reason.
+"""
 
 from math import inf
 
 import numpy as np
 import pytest
-from make_random_references import SCENES, stored
+from make_random_references import LEFT_OUT, SEEDS, stored
 from references import true_errors
 
 from crankmbs import kernels, readout, simulate, stepper
@@ -16,7 +19,8 @@ EXACT = stored()
 
 
 def test_the_scenes_are_all_here_and_of_every_kind():
-    assert len(EXACT) == SCENES
+    assert EXACT.keys() | LEFT_OUT.keys() == set(SEEDS)
+    assert len(EXACT) == len(SEEDS) - len(LEFT_OUT) == 346
     scenes = [random_scene(seed) for seed in EXACT]
     loads = {load.kind for scene in scenes for load in scene.torque}
     assert loads == {"constant", "viscous", "quadratic", "time_table", "speed_table"}
@@ -24,22 +28,24 @@ def test_the_scenes_are_all_here_and_of_every_kind():
     assert tables == {"pchip", "linear", "cubic", "step"}
     assert {len(scene.cylinders) for scene in scenes} == {1, 2, 3, 4}
     assert any(scene.start.speed == 0.0 for scene in scenes)
-    assert any(np.ptp(np.sign(exact.omega)) == 2.0 for _, exact in EXACT.values())
+    assert any(np.ptp(np.sign(exact.omega)) == 2.0 for _, _, exact in EXACT.values())
 
 
 @pytest.mark.parametrize("formulation", ["crank_angle", "minimal"])
 @pytest.mark.parametrize("seed", EXACT)
 def test_errors_are_honest(seed, formulation):
-    status, exact = EXACT[seed]
+    status, samples, exact = EXACT[seed]
     scene = random_scene(seed)
     result = simulate(scene, formulation=formulation)
     assert result.status == status, result.message
     time = result.data["time"].values
-    assert len(time) == len(exact.time) + (status == 1)
+    left = len(time) - 1 - samples[-1]
+    assert (left > 0) == (status == 1 and len(time) > 1)
+    assert left >= 0
     assert np.all(np.diff(time) > 0.0)
     short = result.error.estimated > scene.run.rtol
     assert short == ("asked for" in result.message)
-    ratios = {name: error.ratio for name, error in true_errors(result, exact).items()}
+    ratios = {name: error.ratio for name, error in true_errors(result, exact, samples).items()}
     assert max(ratios.values()) <= 2.0, (max(ratios, key=ratios.get), ratios)
 
 
@@ -85,8 +91,8 @@ def test_a_scene_that_raises_is_red(monkeypatch):
 @pytest.mark.parametrize("seed", list(EXACT)[:15])
 def test_errors_of_multibody_are_honest_too(seed):
     """Also of what it reaches within a few seconds, where loads jump and bend as elsewhere."""
-    status, exact = EXACT[seed]
+    status, samples, exact = EXACT[seed]
     result = simulate(random_scene(seed), formulation="multibody", rtol=1e-4, cost_cap=20.0)
     assert result.status == status, result.message
-    ratios = {name: error.ratio for name, error in true_errors(result, exact).items()}
+    ratios = {name: error.ratio for name, error in true_errors(result, exact, samples).items()}
     assert max(ratios.values()) <= 2.0, (max(ratios, key=ratios.get), ratios)

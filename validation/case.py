@@ -93,6 +93,16 @@ class Case:
         shift = factor if self.mutant.parameter == f"parameters.{name}" else 1.0
         return float(self.parameters[name]) * shift
 
+    def mutated_value(self) -> float:
+        """The value that the mutant is applied to, in SI units."""
+        of_check, _, name = self.mutant.parameter.partition(".")
+        if of_check == "parameters":
+            return float(self.parameters[name])
+        part: Any = self.theirs()
+        for name in self.mutant.parameter.split("."):
+            part = part[int(name)] if isinstance(part, tuple) else getattr(part, name)
+        return float(part)
+
     def word(self, name: str) -> str:
         """A parameter that is a name."""
         return str(self.parameters[name])

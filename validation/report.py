@@ -1,9 +1,12 @@
 """REPORT.md: one row a claim, the hard cases in one table, then cell by cell and the figures."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from validation import bibliography, s1
+from validation.about import about
+from validation.case import Case
 from validation.judge import Verdict
 
 __all__ = ["REPORT", "write_report"]
@@ -17,12 +20,16 @@ how close, why so close, and a parameter whose shift must turn it red (the tests
 oracles in `oracles/` share no code with crankmbs. References, each with its source, are in
 `reference/`.
 """
+_HARD = """\
+Right: the true error is at most twice the stated one, and that at most 1e-3 of a variable's peak.
+Right, but only to x %: more is stated. No answer: more than the peak is. Error unknown: no number
+is. Or stopped, and why."""
 
 
 def write_report(verdicts: Sequence[Verdict], folder: Path = REPORT.parent) -> Path:
     """Write REPORT.md and figures/*.png into a folder; returns the report's path."""
     green = sum(verdict.green for verdict in verdicts)
-    lines = [_INTRODUCTION, f"{green} of {len(verdicts)} claims hold.", ""]
+    lines = [_INTRODUCTION, *about(), "", f"{green} of {len(verdicts)} claims hold.", ""]
     lines += ["| claim | scene | measured | tolerance | verdict |", "|---|---|---|---|---|"]
     lines += [_row(verdict) for verdict in verdicts]
     lines += _hard_cases(verdicts)
@@ -56,8 +63,15 @@ def _hard_cases(verdicts: Sequence[Verdict]) -> list[str]:
     tables = [v.outcome.table for v in verdicts if _is_hard(v) and v.outcome.table]
     if not tables:
         return []
-    lines = ["", "## Hard cases", "", "Right within twice the stated error, or stopped and why."]
-    return [*lines, "", *tables[0][:2], *(row for table in tables for row in table[2:])]
+    return [
+        "",
+        "## Hard cases",
+        "",
+        _HARD,
+        "",
+        *tables[0][:2],
+        *(row for table in tables for row in table[2:]),
+    ]
 
 
 def _is_hard(verdict: Verdict) -> bool:
@@ -75,10 +89,54 @@ def _section(verdict: Verdict) -> list[str]:
         f"- {outcome.detail}",
         f"- source: {case.source}",
         *([f"- shows {case.standing}"] if case.standing else []),
-        f"- turns red with: {case.mutant.parameter} times {case.mutant.factor:.10g}",
+        *_setup(case),
+        f"- turns red with: {_mutant(case)}",
     ]
     if outcome.table and not _is_hard(verdict):
         lines += ["", *outcome.table]
     for name in outcome.figures:
         lines += ["", f"![{case.claim}](figures/{name}.png)"]
     return lines
+
+
+def _setup(case: Case) -> list[str]:
+    """What is run: the scene, what is changed in it, and the parameters of the check."""
+    lines = []
+    if case.scene:
+        drive = "" if case.drive == "as shipped" else f", {case.drive} speed"
+        length = "" if case.until is None else f", {case.until:g} cycles"
+        change = f"; changed: {_listed(case.change)}" if case.change else ""
+        lines.append(f"- scene: `{case.scene}`{drive}{length}{change}")
+    if case.parameters:
+        lines.append(f"- parameters: {_listed(case.parameters)}")
+    return lines
+
+
+def _mutant(case: Case) -> str:
+    """The parameter, the factor in all its digits, and by how much it shifts the value."""
+    mutant, value = case.mutant, case.mutated_value()
+    part = mutant.factor - 1.0
+    slight = f" (1 + {part:.3g})" if 0.0 < part < 0.1 else ""
+    return (
+        f"`{mutant.parameter}` times {mutant.factor!r}{slight}, "
+        f"which shifts {value:.6g} by {value * part:+.3g}"
+    )
+
+
+def _listed(values: Mapping[str, Any]) -> str:
+    return ", ".join(f"`{name} = {_toml(value)}`" for name, value in values.items())
+
+
+def _toml(value: Any) -> str:
+    """A value as a case file has it."""
+    match value:
+        case bool():
+            return str(value).lower()
+        case str():
+            return f'"{value}"'
+        case list():
+            return f"[{', '.join(map(_toml, value))}]"
+        case dict():
+            pairs = (f"{name} = {_toml(part)}" for name, part in value.items())
+            return f"{{ {', '.join(pairs)} }}"
+    return repr(value)

@@ -15,6 +15,7 @@ from crankmbs.cli.run import override
 from crankmbs.cli.text import table
 from crankmbs.compare import (
     CAUSES,
+    CLOSED_FORM,
     QUANTITIES,
     Budget,
     Comparison,
@@ -25,6 +26,7 @@ from crankmbs.compare import (
     compare,
     percent,
     save_budget,
+    save_budget_peaks,
     save_comparison,
 )
 from crankmbs.digits import digits
@@ -32,6 +34,11 @@ from crankmbs.scene_io import load_scene, scene_path
 from crankmbs.simulate import simulate
 
 __all__ = ["validate_scene"]
+
+_ADDED = (
+    "The peaks of the causes lie at different angles and do not add; at each angle the causes do:\n"
+    "budget.csv has them all, budget_peaks.csv this table."
+)
 
 
 def validate_scene(
@@ -65,11 +72,12 @@ def validate_scene(
             scene, formulation=formulation, rtol=options.get("rtol"), cost_cap=cost_cap
         )
     comparison, split = compare(result, cylinder), budget(result, cylinder)
-    written = [save_comparison(comparison, folder), save_budget(split, folder)]
-    typer.echo(f"{result}\n\n{_about(comparison.stretch)}\n")
+    written = [save(split, folder) for save in (save_budget, save_budget_peaks)]
+    written.append(save_comparison(comparison, folder))
+    typer.echo(f"{_first(comparison, split)}\n\n{result}\n\n{_about(comparison.stretch)}\n")
+    typer.echo(f"{_causes(split)}\n\n{_ADDED}\n\n{_words(split)}\n")
     for reference in comparison.references:
         typer.echo(f"{_against(comparison, reference)}\n")
-    typer.echo(f"{_causes(split)}\n\n{_words(split)}")
     for line in _left_out((*comparison.left_out, *split.left_out)):
         typer.echo(line)
     if figures:
@@ -91,9 +99,27 @@ def _about(stretch: Stretch) -> str:
         f"{' but for where the rod folds onto the crank' if folded else ''}, "
         f"cylinder {stretch.cylinder} of {count}, mean speed {digits(rpm)} rpm\n"
         "angles: cycle angle of the cylinder, for the main bearing the crank angle\n"
-        "peak: the largest magnitude in the run; in the budget of any answer on the way to it\n"
+        "peak: the largest magnitude in the run\n"
         "lectures: S0 is Grega's, S1 that of Yi, Win and Htay; the budget splits the error of S1"
     )
+
+
+def _first(comparison: Comparison, split: Budget) -> str:
+    """What matters most: the lecture's largest error, and how far to believe the run."""
+    lines = []
+    if split.splits:
+        lines.append(f"the lecture is most wrong about the {split.ranked[0].sentence()}")
+    shares = [
+        (percent(row.size.largest, row.peak), row.quantity)
+        for row in comparison.rows
+        if row.reference == CLOSED_FORM and row.peak > 0.0
+    ]
+    if comparison.stretch.result.formulation != "multibody":
+        lines.append("the run takes its forces from the closed form; multibody has its own")
+    elif shares:
+        share, quantity = max(shares)
+        lines.append(f"the run itself is within {_share(share)} % of the closed form ({quantity})")
+    return "\n".join(lines)
 
 
 def _against(comparison: Comparison, reference: str) -> str:
@@ -115,7 +141,7 @@ def _against(comparison: Comparison, reference: str) -> str:
 
 
 def _causes(split: Budget) -> str:
-    """Every cause's peak in percent of the quantity's."""
+    """Every cause's peak in percent of the quantity's in the run."""
     named = [*CAUSES, "total"]
     headings = ["error budget, peaks in %", *named]
     rows = []
@@ -126,7 +152,7 @@ def _causes(split: Budget) -> str:
 
 
 def _words(split: Budget) -> str:
-    return "\n".join(line for row in split.splits for line in row.sentences())
+    return "\n".join(row.sentence() for row in split.ranked)
 
 
 def _left_out(entries: Sequence[LeftOut]) -> list[str]:

@@ -2,7 +2,7 @@
 
 from crankmbs.compare.against import CLOSED_FORM, Comparison, Deviation, compare
 from crankmbs.compare.causes import CAUSES, Budget, Cause, Split, budget
-from crankmbs.compare.files import save_budget, save_comparison
+from crankmbs.compare.files import save_budget, save_budget_peaks, save_comparison
 from crankmbs.compare.lectured import LECTURES
 from crankmbs.compare.quantities import QUANTITIES, Quantity
 from crankmbs.compare.size import Size, percent
@@ -27,5 +27,6 @@ __all__ = [
     "compare",
     "percent",
     "save_budget",
+    "save_budget_peaks",
     "save_comparison",
 ]

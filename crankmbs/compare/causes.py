@@ -14,6 +14,7 @@ from crankmbs import lecture
 from crankmbs.compare.lectured import S1, UNTRUNCATED
 from crankmbs.compare.size import Size, percent
 from crankmbs.compare.stretch import Answer, LeftOut, Stretch, stretch_of, vanishing
+from crankmbs.digits import digits
 from crankmbs.errors import InputError
 from crankmbs.result import Result
 
@@ -31,7 +32,8 @@ CAUSES = {
 }
 """The causes in their order, and how a sentence names them."""
 
-_NOTHING = 1e-10  # percent of the peak: rounding, and no cause
+_NOTHING = 1e-12  # of the larger of lecture and run: rounding, and no cause
+_ABSENT = 1e-9  # of the lecture: a run's peak so small has no percent
 
 
 @dataclass(frozen=True)
@@ -48,7 +50,7 @@ class Split:
     """The error of one quantity, cause by cause.
 
     lecture, simulated : shape (n,) [unit]; their difference is `total`, the sum of the causes
-    peak [unit] : largest magnitude that any of the answers between the two reaches
+    peak [unit] : largest magnitude in the run
     """
 
     quantity: str
@@ -73,27 +75,34 @@ class Split:
         )
 
     def share(self, cause: Cause) -> float:
-        """The peak of a cause in percent of the quantity's; 0 where it is but rounding."""
-        share = percent(cause.size.largest, self.peak)
-        return share if share > _NOTHING else 0.0
+        """The peak of a cause in percent of the run's; 0 where it is but rounding, not a number
+        where the run's is, beside the lecture's."""
+        answered = float(np.max(np.abs(self.lecture)))
+        if cause.size.largest <= _NOTHING * max(answered, self.peak):
+            return 0.0
+        return percent(cause.size.largest, self.peak if self.peak > _ABSENT * answered else 0.0)
 
-    def sentences(self) -> tuple[str, ...]:
-        """The peak of each cause in words; what is worth nothing comes last."""
-        lines = []
-        nothing = []
-        for cause in self.causes:
-            share = self.share(cause)
-            if share == 0.0:
-                nothing.append(CAUSES[cause.name])
-                continue
-            at = round(math.degrees(cause.size.angle), 1)
-            lines.append(
-                f"{self.quantity}: {CAUSES[cause.name]} is worth up to {_readable(share)} % "
-                f"of the peak, at {at:g} degrees"
+    def sentence(self) -> str:
+        """How far the lecture is off, and what its causes are worth, the largest first.
+
+        The peaks of causes lie at different angles: they do not add up to that of the error.
+        """
+        total = self.share(self.total)
+        if math.isnan(total):
+            return f"{self.quantity}: the run has none, the lecture has"
+        worth = [cause for cause in self.causes if self.share(cause) > 0.0]
+        worth.sort(key=self.share, reverse=True)
+        parts: list[str] = []
+        for cause in worth:
+            up_to = "" if parts else "is worth up to "
+            parts.append(
+                f"{CAUSES[cause.name]} {up_to}{_readable(self.share(cause))} %, {_where(cause)}"
             )
-        if nothing:
-            lines.append(f"{self.quantity}: nothing comes from {_listed(nothing)}")
-        return tuple(lines)
+        if len(worth) < len(self.causes):
+            nothing = [CAUSES[c.name] for c in self.causes if self.share(c) == 0.0]
+            parts.append(f"nothing comes from {_listed(nothing)}")
+        off = f"off by up to {_readable(total)} % of the peak, {_where(self.total)}"
+        return f"{self.quantity}: {off if total else 'right but for rounding'}: {'; '.join(parts)}"
 
 
 @dataclass(frozen=True)
@@ -103,6 +112,11 @@ class Budget:
     stretch: Stretch
     splits: tuple[Split, ...]
     left_out: tuple[LeftOut, ...]
+
+    @property
+    def ranked(self) -> tuple[Split, ...]:
+        """The splits, the largest error in percent of its quantity's peak first."""
+        return tuple(sorted(self.splits, key=lambda split: -(split.share(split.total) or 0.0)))
 
     def split(self, quantity: str) -> Split:
         """The split of one quantity.
@@ -140,14 +154,16 @@ def budget(result: Result, cylinder: int = 1) -> Budget:
 
     Returns
     -------
-    Budget : in SI units; with a rod ratio of 1 it starts from the closed form, without "series"
+    Budget : in SI units, shares in percent of the run's peak, as in `compare`; with a rod ratio of
+        1 it starts from the closed form, without "series"
 
     Raises
     ------
     InputError : no such cylinder
 
-    >>> print(budget(simulate(load_scene("yi_diesel"))).split("side thrust").sentences()[1])
-    side thrust: the two-mass rod is worth up to 16.7 % of the peak, at 270 degrees
+    >>> split = budget(simulate(load_scene("yi_diesel"))).split("side thrust")
+    >>> f"{split.share(split.cause('two-mass rod')):.1f} % of the peak"
+    '17.7 % of the peak'
     """
     stretch = stretch_of(result, cylinder)
     answers: dict[str, Answer] = {}
@@ -196,12 +212,16 @@ def _split(stretch: Stretch, quantity: str, before: Answer, simulated: Array) ->
             for name, curve in zip(before, curves, strict=True)
         ),
         total=Cause("total", chain[0] - simulated, stretch.size(quantity, chain[0] - simulated)),
-        peak=max(float(np.max(np.abs(answer))) for answer in chain),
+        peak=float(np.max(np.abs(simulated))),
     )
 
 
+def _where(cause: Cause) -> str:
+    return f"at {round(math.degrees(cause.size.angle), 1):g} degrees"
+
+
 def _readable(share: float) -> str:
-    return f"{share:.3g}" if share >= 1e-3 else f"{share:.0e}"
+    return digits(share, most=3) if share >= 1e-3 else f"{share:.0e}"
 
 
 def _listed(words: list[str]) -> str:

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import csv
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
+import numpy as np
+
 from crankmbs.compare.against import Comparison
-from crankmbs.compare.causes import Budget
+from crankmbs.compare.causes import Budget, Split
 from crankmbs.compare.quantities import QUANTITIES
-from crankmbs.compare.size import Size, percent
+from crankmbs.compare.size import Size, percent, within
 from crankmbs.compare.stretch import Stretch
 from crankmbs.result import write_in_one_move
 
-__all__ = ["save_budget", "save_comparison"]
+__all__ = ["save_budget", "save_budget_peaks", "save_comparison"]
 
 _SIZE = ["peak", "max", "rms", "max_percent", "rms_percent", "angle_deg"]
 
@@ -35,7 +37,25 @@ def save_comparison(comparison: Comparison, folder: Path) -> Path:
 
 
 def save_budget(budget: Budget, folder: Path) -> Path:
-    """Write budget.csv: a line for each quantity and cause, and for the total of the causes.
+    """Write budget.csv: every cause over the angle, so that they can be added up.
+
+    A line for each quantity and sample, in SI units and degrees; the causes of a line add up to
+    "total", which is "lecture" minus "run". crank_angle_deg is the run's own; angle_deg lies within
+    one cycle, of the cylinder, for the main bearing of the crank.
+
+    Raises
+    ------
+    OutputError : the folder cannot be made or written
+    """
+    causes = [cause.name for cause in budget.splits[0].causes] if budget.splits else []
+    heading = ["quantity", "unit", "cylinder", "crank_angle_deg", "angle_deg"]
+    lines = (line for split in budget.splits for line in _curves(budget.stretch, split))
+    heading += ["run", "lecture", "total", *causes]
+    return _write(folder / "budget.csv", heading, lines)
+
+
+def save_budget_peaks(budget: Budget, folder: Path) -> Path:
+    """Write budget_peaks.csv: a line for each quantity and cause, and for the total of the causes.
 
     Raises
     ------
@@ -46,7 +66,18 @@ def save_budget(budget: Budget, folder: Path) -> Path:
         for split in budget.splits
         for cause in (*split.causes, split.total)
     )
-    return _write(folder / "budget.csv", ["quantity", "unit", "cylinder", "cause", *_SIZE], lines)
+    heading = ["quantity", "unit", "cylinder", "cause", *_SIZE]
+    return _write(folder / "budget_peaks.csv", heading, lines)
+
+
+def _curves(stretch: Stretch, split: Split) -> Iterator[list[str]]:
+    """The lines of a quantity, sample by sample."""
+    about = _whose(stretch, split.quantity)
+    angle = within(stretch.angles(split.quantity), stretch.result.scene.period)
+    curves = [np.degrees(stretch.theta), np.degrees(angle), split.simulated, split.lecture]
+    curves += [cause.curve for cause in (split.total, *split.causes)]
+    for row in np.transpose(curves).tolist():
+        yield [*about, *(f"{value:.15g}" for value in row)]
 
 
 def _whose(stretch: Stretch, quantity: str) -> list[str]:

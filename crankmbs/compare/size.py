@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Size", "percent", "size_of"]
+__all__ = ["Size", "percent", "size_of", "within"]
 
 Array = NDArray[np.float64]
 
@@ -30,8 +30,7 @@ def size_of(curve: Array, angle: Array, period: float) -> Size:
     """Measure a curve over angles, both of shape (n,), [unit] and [rad]."""
     size = np.abs(curve)
     largest = float(np.max(size))
-    within = _within(angle, period)
-    at = float(np.min(within[size >= largest * (1.0 - _TIE)]))
+    at = float(np.min(within(angle, period)[size >= largest * (1.0 - _TIE)]))
     widths = np.abs(np.diff(angle))
     turned = float(np.sum(widths))
     scaled = (size / largest) ** 2 if largest > 0.0 else size  # no overflow, no underflow
@@ -47,7 +46,7 @@ def percent(part: float, peak: float) -> float:
     return 100.0 * part / peak if peak > 0.0 else math.nan
 
 
-def _within(angle: Array, period: float) -> Array:
+def within(angle: Array, period: float) -> Array:
     """Angles within one period, those a rounding below its end at 0."""
     folded = np.mod(angle, period)
     return np.where(period - folded < _TIE, 0.0, folded)

@@ -74,6 +74,5 @@ def _sentences(outcome: Outcome) -> dict[str, list[str]]:
         except InputError:
             words[name] = ["It is zero but for rounding."]
             continue
-        lines = [line.removeprefix(f"{name}: ") for line in split.sentences()]
-        words[name] = [html.escape("; ".join(lines)) + "."]
+        words[name] = [html.escape(split.sentence().removeprefix(f"{name}: ")) + "."]
     return words

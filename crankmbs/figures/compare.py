@@ -11,7 +11,16 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from crankmbs.compare import CAUSES, CLOSED_FORM, LECTURES, QUANTITIES, Budget, Comparison, Stretch
+from crankmbs.compare import (
+    CAUSES,
+    CLOSED_FORM,
+    LECTURES,
+    QUANTITIES,
+    Budget,
+    Comparison,
+    Split,
+    Stretch,
+)
 from crankmbs.figures.style import STYLE, crank_axis, footer, force_scale, line_of, panels
 from crankmbs.figures.view import last_view
 from crankmbs.result import write_in_one_move
@@ -32,6 +41,7 @@ FAMILIES = {
 """The quantities that are drawn side by side, by the name of their figure."""
 
 _SHOWN = {"m": (1e-3, "mm"), "m/s^2": (1.0, "m/s$^2$")}  # unit -> divisor and unit on an axis
+_UNSEEN = 1e-3  # of the largest of a panel's causes: no line can be told from zero
 _STYLES: dict[str, dict[str, Any]] = {
     "run": {"color": "black", "linewidth": 2.5},
     "lecture": {"color": "0.5", "linestyle": (0, (4, 2))},
@@ -84,21 +94,32 @@ def comparison_figure(comparison: Comparison, quantities: tuple[str, ...]) -> Fi
 def budget_figure(budget: Budget, quantities: tuple[str, ...]) -> Figure | None:
     """Truncated lecture and run above, below their difference and the causes it is made of.
 
+    A cause that could not be told from zero is not drawn; the footer names those that no panel has.
     None where none of the quantities could be split.
     """
+    splits = [split for split in budget.splits if split.quantity in quantities]
+    if not splits:
+        return None
     columns = [
         (
             split.quantity,
             {"run": split.simulated, "lecture": split.lecture},
-            {"sum of the causes": split.total.curve}
-            | {cause.name: cause.curve for cause in split.causes},
+            {"sum of the causes": split.total.curve, **_seen(split)},
         )
-        for split in budget.splits
-        if split.quantity in quantities
+        for split in splits
     ]
-    if not columns:
-        return None
-    return _figure(budget.stretch, columns, "lecture minus run", "error budget of the lecture")
+    drawn = {label for _, _, errors in columns for label in errors}
+    unseen = [cause.name for cause in splits[0].causes if cause.name not in drawn]
+    about = "error budget of the lecture"
+    if unseen:
+        about += f" (too small to be seen: {', '.join(unseen)})"
+    return _figure(budget.stretch, columns, "lecture minus run", about)
+
+
+def _seen(split: Split) -> dict[str, Array]:
+    """The curves of the causes that are worth something, by name."""
+    least = _UNSEEN * max(cause.size.largest for cause in split.causes)
+    return {c.name: c.curve for c in split.causes if split.share(c) and c.size.largest >= least}
 
 
 def _figure(
@@ -123,7 +144,7 @@ def _figure(
         top.set_title(f"{name} ${symbol}$" if symbol else name, loc="left", pad=8.0 + 16.0 * lines)
     handles = {
         str(line.get_label()): line
-        for ax in (axes[0], axes[n])
+        for ax in axes
         for line in ax.lines
         if str(line.get_label()) in _STYLES
     }
@@ -131,7 +152,7 @@ def _figure(
         list(handles.values()),
         list(handles),
         loc="outside upper center",
-        ncols=min(len(handles), int(figure.get_figwidth() / 3.0)),
+        ncols=-(-len(handles) // -(-len(handles) // int(figure.get_figwidth() / 3.0))),
     )
     footer(figure, stretch.result, f"{about}, cylinder {stretch.cylinder}" if of_one else about)
     return figure

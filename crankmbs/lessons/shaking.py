@@ -51,7 +51,7 @@ def shaking(scene: Scene) -> Result:
 
 
 def amplitude(result: Result, name: str, order: float) -> Estimate:
-    """Amplitude of one order of a variable; an error bound adds at most twice to it."""
+    """Amplitude of one order of a variable; the error of the variable adds at most twice to it."""
     split = orders(result, name)
     at = int(np.argmin(np.abs(split.order - order)))
     return Estimate(

@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 
 
 class Estimate(NamedTuple):
-    """A value and an absolute bound for its error, in one unit."""
+    """A value and an estimate of its absolute error, in one unit."""
 
     value: float
     error: float

@@ -45,7 +45,7 @@ def causes(case: Case) -> Outcome:
         ):
             errors[f"{quantity}, {what}"] = float(np.max(np.abs(ours - exact))) / found.peak
     worst = max(errors, key=lambda name: errors[name])
-    sentences = [s for q in _QUANTITIES for s in split.split(q).sentences()]
+    sentences = [split.split(quantity).sentence() for quantity in _QUANTITIES]
     figure = budget_figure(split, tuple(_QUANTITIES))
     assert figure is not None
     table = ("| quantity | " + " | ".join(CAUSES) + " |", "|---" * (len(CAUSES) + 1) + "|")
@@ -66,5 +66,5 @@ def _row(split: Budget, quantity: str) -> str:
     """The peak of every cause in percent of the quantity's."""
     found = split.split(quantity)
     shares = {cause.name: found.share(cause) for cause in found.causes}
-    cells = [f"{shares[name]:.2g} %" if shares.get(name) else "-" for name in CAUSES]
+    cells = [f"{shares[name]:.3g} %" if shares.get(name) else "-" for name in CAUSES]
     return f"| {quantity} | {' | '.join(cells)} |"

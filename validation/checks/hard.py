@@ -8,6 +8,8 @@ import warnings
 from dataclasses import replace
 from typing import NamedTuple
 
+import numpy as np
+
 from crankmbs.errors import FormulationError, InputError
 from crankmbs.result import VARIABLES, Result
 from crankmbs.scene import Extent, Scene
@@ -19,12 +21,14 @@ from validation.judge import Outcome
 from validation.oracles.arithmetic import LONG, multiprecision
 from validation.oracles.many_turns import many_turns
 
-__all__ = ["every_formulation", "flat_memory", "refused"]
+__all__ = ["coarsest", "every_formulation", "flat_memory", "graded", "refused"]
 
 _FORMULATIONS = ("kinetostatic", "crank_angle", "minimal", "multibody")
 _CAP = 3.0  # s, for multibody
 _STOPS_OF_MULTIBODY = ("above the cost cap", "Newton iteration does not converge")
 _TOO_SMALL = 2.0  # the true error may be this many times the stated one
+_USUAL = 1e-3  # of a variable's peak: a larger stated error is no answer unless the case names it
+_NOTHING = 1e-9  # of the peak of what has the same unit: a variable that is zero but for rounding
 _FLOOR = 1e-12  # of the peak of what has the same unit: rounding
 _HEAD = ("| case |" + "".join(f" {name} |" for name in _FORMULATIONS), "|---" * 5 + "|")
 
@@ -40,10 +44,12 @@ def every_formulation(case: Case) -> Outcome:
     """The worst true error over twice the stated one, over all formulations and variables.
 
     A run that stops is measured up to there; infinite for a stop that the case does not know, for
-    an error that is no refusal and for a warning. Parameters of the case: `stops`, what the
-    sentence of a stop has to contain; `constant_speed`, what kinetostatic is given in place of a
-    free crank; `many_turns`, the oracle for long runs; `digits` of the other; `held`, at a stop
-    whose last sample is left out, as the oracle cannot hold a speed; `cost_cap` [s] of multibody.
+    an error that is no refusal, for a warning, and for a stated error of over 1e-3 of a variable's
+    peak that the case does not name. Parameters of the case: `only_to`, by formulation that larger
+    share, `inf` where it is not known; `stops`, what the sentence of a stop has to contain;
+    `constant_speed`, what kinetostatic is given in place of a free crank; `many_turns`, the oracle
+    for long runs; `digits` of the other; `held`, at a stop whose last sample is left out, as the
+    oracle cannot hold a speed; `cost_cap` [s] of multibody.
     """
     answers: dict[str, _Answer] = {}
     for name in _FORMULATIONS:
@@ -108,8 +114,7 @@ def _answer(case: Case, formulation: str) -> _Answer:
 
 
 def _judged(case: Case, result: Result, scene: Scene, note: str) -> _Answer:
-    worst, numbers = _compared(case, result, scene)
-    right = f"right: {numbers}" if worst <= 1.0 else f"WRONG: {numbers}"
+    worst, right = _compared(case, result, scene)
     if result.status == 0:
         return _Answer(worst, note + right + _shortfall(result))
     known = [str(case.parameters["stops"])] if "stops" in case.parameters else []
@@ -127,7 +132,7 @@ def _shortfall(result: Result) -> str:
 
 
 def _compared(case: Case, result: Result, scene: Scene) -> tuple[float, str]:
-    """The worst true error over what it may be, and that variable's numbers."""
+    """The worst true error over what it may be, and in words how good the answer is."""
     digits = case.parameters.get("digits")
     arithmetic = multiprecision(digits) if digits else LONG
     motion = None
@@ -147,7 +152,40 @@ def _compared(case: Case, result: Result, scene: Scene) -> tuple[float, str]:
     worst = max(shares, key=lambda name: shares[name])
     stated = float(result.data[worst].attrs["error_estimate"])
     numbers = f"{worst} {true[worst]:.1e}, stated {stated:.1e} {VARIABLES[worst].units}"
-    return shares[worst], numbers
+    if shares[worst] > 1.0:
+        return shares[worst], f"WRONG: {numbers}"
+    coarse, name = coarsest(result, peaks)
+    known = coarse <= case.parameters.get("only_to", {}).get(result.formulation, _USUAL)
+    return shares[worst] if known else math.inf, f"{graded(coarse, name)}: {numbers}"
+
+
+def coarsest(result: Result, peaks: dict[str, float]) -> tuple[float, str]:
+    """The largest stated error over its variable's own peak, and that variable's name.
+
+    Of the crank angle it is taken per radian turned; what is zero but for rounding does not count,
+    and nothing does where nothing moved.
+    """
+    scale, turned = scales(peaks), float(np.ptp(result.data["crank_angle"].values))
+    if turned == 0.0:
+        return 0.0, "crank_angle"
+    shares = {
+        name: float(result.data[name].attrs["error_estimate"]) / peak
+        for name, peak in (peaks | {"crank_angle": turned}).items()
+        if peak > _NOTHING * scale[name]
+    }
+    name = max(shares, key=lambda name: shares[name])
+    return shares[name], name
+
+
+def graded(coarse: float, name: str) -> str:
+    """How good an answer is that states an error of this share of the peak of a variable."""
+    if coarse <= _USUAL:
+        return "right"
+    if coarse < 1.0:
+        return f"right, but only to {100.0 * coarse:.2g} % of the peak ({name})"
+    if math.isfinite(coarse):
+        return f"no answer, the stated error is {coarse:.2g} times the peak ({name})"
+    return f"error unknown ({name})"
 
 
 def _outcome(case: Case, answers: dict[str, _Answer]) -> Outcome:

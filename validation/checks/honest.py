@@ -1,4 +1,4 @@
-"""Whether the stated error of every variable bounds the true one, and not by far too much."""
+"""Whether the true error of every variable is at most twice the stated one, and not far smaller."""
 
 from __future__ import annotations
 

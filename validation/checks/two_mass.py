@@ -83,7 +83,7 @@ def torque_of_all_cylinders(case: Case) -> Outcome:
 
 
 def _torque(case: Case, title: str, pick: Callable[[Array], Array]) -> Outcome:
-    result, original = run(case.ours()), run(case.theirs())
+    result, original = run(case.ours(), "multibody"), run(case.theirs(), "kinetostatic")
     geometry, omega = lecture_geometry(original), float(original.data["crank_speed"].values[0])
     phases = np.array([cylinder.phase for cylinder in original.scene.cylinders])
     angle = original.data["crank_angle"].values
@@ -95,11 +95,11 @@ def _torque(case: Case, title: str, pick: Callable[[Array], Array]) -> Outcome:
     error = float(np.max(np.abs(exact - simulated))) / peak
     of_series = float(np.max(np.abs(series - simulated))) / peak
     panel = Panel("torque [N m]", simulated, series)
-    figure = overlay(np.degrees(angle), [panel], title, ("lecture, truncated", "simulated"))
+    figure = overlay(np.degrees(angle), [panel], title, ("lecture, truncated", "multibody run"))
     return Outcome(
         error,
-        f"with the exact acceleration; with S0's truncated one {100 * of_series:.2f} % of the peak "
-        f"of {peak:.1f} N m",
+        f"{error * peak:.1e} N m with the exact acceleration; with S0's truncated one "
+        f"{of_series * peak:.3g} N m, {100 * of_series:.2f} % of the peak of {peak:.2f} N m",
         figures={case.name: figure},
     )
 
