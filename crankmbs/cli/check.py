@@ -8,6 +8,7 @@ import numpy as np
 
 from crankmbs.choose import Choice
 from crankmbs.geometry import close_loop, dead_centres
+from crankmbs.pressure import remarks
 from crankmbs.scene import Extent, Scene
 
 __all__ = ["describe"]
@@ -23,6 +24,7 @@ def describe(path: str, scene: Scene, choice: Choice) -> str:
         ("dead centres", _dead_centres(scene)),
         ("cylinders", _cylinders(scene)),
         ("gas", _gas(scene)),
+        *(("", remark) for remark in remarks(scene)),
         ("motion", _motion(scene)),
         ("run", _run(scene)),
         ("formulation", choice.formulation),
