@@ -189,9 +189,17 @@ class Gas:
     [Pa]: a closing row so near the first is dropped, by default 1 % of the range.
     """
 
-    pressure: Annotated[Table, from_file({"crank_angle_deg": DEGREE}, _PRESSURE_COLUMNS)] | None = (
-        None
-    )
+    pressure: (
+        Annotated[
+            Table,
+            from_file(
+                {"crank_angle_deg": DEGREE},
+                _PRESSURE_COLUMNS,
+                "crank angles [rad], pressures [Pa]",
+            ),
+        ]
+        | None
+    ) = None
     indicator: Indicator | None = None
     absolute: Annotated[bool, Strict()] = True
     ambient: Pressure | None = None
