@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.interpolate import PPoly
 
 from crankmbs.indicator import indicator_pieces
 from crankmbs.machine import Gas
@@ -43,6 +44,19 @@ class PeriodicPressure:
     def period(self) -> float:
         """Period [rad]."""
         return float(self.knots[-1] - self.knots[0])
+
+    @property
+    def peak(self) -> tuple[float, float]:
+        """Cycle angle [rad] and value [Pa] of the highest pressure, the first of equal ones."""
+        pieces = PPoly(self.coefficients, self.knots)
+        turning = pieces.derivative().roots(discontinuity=False, extrapolate=False)
+        turning = turning[np.isfinite(turning)]
+        ends = self.piece(np.arange(len(self.knots) - 1), np.diff(self.knots))
+        angle = np.concatenate([self.knots[:-1], self.knots[1:], turning])
+        value = np.concatenate([self.coefficients[-1], ends, pieces(turning)])
+        highest = np.flatnonzero(value >= value.max() - 1e-9 * abs(value.max()))
+        first = highest[np.argmin(angle[highest])]
+        return float(np.mod(angle[first] + _KNOT, self.period) - _KNOT), float(value[first])
 
     def __call__(self, cycle_angle: ArrayLike) -> Array:
         """Pressure difference across the piston [Pa]; at a step the value after it.
