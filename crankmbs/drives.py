@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from itertools import pairwise
+from numbers import Real
 from typing import Annotated, Literal
 
 from annotated_types import Ge, Gt
-from pydantic import BeforeValidator, Discriminator, Field, Tag
+from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationInfo
 
 from crankmbs.errors import InputError, shown
 from crankmbs.schema import Float, from_file, part, si
@@ -67,7 +68,9 @@ class Ramp:
 class SpeedFile:
     """Speed over time: table of time [s] and speed [rad/s]; pchip between the rows."""
 
-    file: Annotated[Table, from_file({"time_s": 1.0}, {"speed_rpm": _RPM})]
+    file: Annotated[
+        Table, from_file({"time_s": 1.0}, {"speed_rpm": _RPM}, "times [s], speeds [rad/s]")
+    ]
 
     def __post_init__(self) -> None:
         _check_abscissae(self.file, "times", jumps=False)
@@ -87,7 +90,13 @@ def _speed_class(value: object) -> str:
     return name if name in _SPEED_KEYS else "Constant"
 
 
-def _check_speed(value: object) -> object:
+def _check_speed(value: object, info: ValidationInfo) -> object:
+    known = isinstance(value, str | Real | dict) or type(value).__name__ in _SPEED_KEYS
+    if info.context is None and not known:
+        raise InputError(
+            'must be a number in rad/s, text such as "3200 rpm", or one of '
+            f"{', '.join(_SPEED_KEYS)}; {shown(value)} came"
+        )
     if isinstance(value, dict) and not set().union(*_SPEED_KEYS.values()) & value.keys():
         raise InputError(
             'must be a speed such as "3200 rpm", or a table with mean, amplitude, order, or with '
@@ -151,7 +160,9 @@ class TimeTable:
     """Torque [N m] over time [s], linear; two rows at one time are a jump. Covers the run."""
 
     kind: Literal["time_table"] = "time_table"
-    file: Annotated[Table, from_file({"time_s": 1.0}, {"torque_Nm": 1.0})]
+    file: Annotated[
+        Table, from_file({"time_s": 1.0}, {"torque_Nm": 1.0}, "times [s], torques [N m]")
+    ]
 
     def __post_init__(self) -> None:
         _check_abscissae(self.file, "times", jumps=True)
@@ -162,7 +173,9 @@ class SpeedTable:
     """Torque [N m] over speed [rad/s], linear, ends held; two rows at one speed are a jump."""
 
     kind: Literal["speed_table"] = "speed_table"
-    file: Annotated[Table, from_file({"speed_rpm": _RPM}, {"torque_Nm": 1.0})]
+    file: Annotated[
+        Table, from_file({"speed_rpm": _RPM}, {"torque_Nm": 1.0}, "speeds [rad/s], torques [N m]")
+    ]
 
     def __post_init__(self) -> None:
         _check_abscissae(self.file, "speeds", jumps=True)
@@ -181,9 +194,11 @@ def _torque_class(value: object) -> str:
     return _TORQUE_KINDS[value["kind"]] if isinstance(value, dict) else type(value).__name__
 
 
-def _check_kind(value: object) -> object:
+def _check_kind(value: object, info: ValidationInfo) -> object:
     if type(value).__name__ in _TORQUE_KINDS.values():
         return value
+    if not isinstance(value, dict) and info.context is None:
+        raise InputError(f"must be one of {', '.join(_TORQUE_KINDS.values())}; {shown(value)} came")
     if not isinstance(value, dict):
         raise InputError(f"must be a table with its kind, [[torque]]; {shown(value)} came")
     kind = value.get("kind")

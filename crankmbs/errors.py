@@ -12,6 +12,7 @@ sentence.
 
 from __future__ import annotations
 
+import inspect
 import json
 import math
 
@@ -61,6 +62,8 @@ def shown(value: object) -> str:
 def _text(value: object) -> str:
     if isinstance(value, float) and not math.isfinite(value):
         return str(value)
+    if value is None:
+        return "None"
     if isinstance(value, dict):
         return f"a table with {', '.join(map(str, value))}" if value else "an empty table"
     if isinstance(value, int) and value.bit_length() > _LONGEST_INTEGER:
@@ -68,4 +71,13 @@ def _text(value: object) -> str:
     try:
         return json.dumps(value, ensure_ascii=False)
     except (TypeError, ValueError):
-        return str(value) if type(value).__module__ == "datetime" else repr(value)
+        return _object(value)
+
+
+def _object(value: object) -> str:
+    """What only Python has, or a date."""
+    if getattr(value, "shape", ()):
+        return f"an array of shape {value.shape}"  # type: ignore[attr-defined]
+    if inspect.isroutine(value):
+        return "a function"
+    return str(value) if type(value).__module__ == "datetime" else repr(value)

@@ -7,13 +7,13 @@ string with its unit (``"46 mm"``), which is converted on the way in.
 from __future__ import annotations
 
 import math
-from itertools import pairwise
 from typing import Annotated, Literal
 
 from annotated_types import Ge, Gt, Len
 from pydantic import Discriminator, Strict, Tag
 
 from crankmbs.errors import InputError, shown
+from crankmbs.pressure_rows import check_rows
 from crankmbs.schema import DEGREE, Float, from_file, part, si
 from crankmbs.tables import Table
 
@@ -34,7 +34,6 @@ _PRESSURE_COLUMNS = {
     "pressure_MPa": 1e6,
     "pressure_kgf_cm2": 98066.5,
 }
-_SAME_ANGLE = 1e-9  # rad: two angles of a table closer than this are one
 
 
 def _number_or_word(value: object) -> str:
@@ -186,18 +185,28 @@ class Gas:
 
     pressure: table of crank angle [rad] and pressure [Pa]; absolute: whether the pressure is;
     ambient [Pa]: crankcase side; stroke: 4 (period 720 degrees) or 2 (360); zero: the cycle angle
-    of the table's 0; interpolation between the rows.
+    of the table's 0; interpolation between the rows, two of which at one angle are a jump; closing
+    [Pa]: a closing row so near the first is dropped, by default 1 % of the range.
     """
 
-    pressure: Annotated[Table, from_file({"crank_angle_deg": DEGREE}, _PRESSURE_COLUMNS)] | None = (
-        None
-    )
+    pressure: (
+        Annotated[
+            Table,
+            from_file(
+                {"crank_angle_deg": DEGREE},
+                _PRESSURE_COLUMNS,
+                "crank angles [rad], pressures [Pa]",
+            ),
+        ]
+        | None
+    ) = None
     indicator: Indicator | None = None
     absolute: Annotated[bool, Strict()] = True
     ambient: Pressure | None = None
     stroke: Literal[2, 4] = 4
     zero: Literal["gas_exchange_tdc", "firing_tdc"] = "gas_exchange_tdc"
     interpolation: Literal["pchip", "linear", "cubic", "step"] = "pchip"
+    closing: Annotated[Float, Ge(0), si("pressure")] | None = None
 
     def __post_init__(self) -> None:
         if (self.pressure is None) == (self.indicator is None):
@@ -214,7 +223,7 @@ class Gas:
                 "absolute = true"
             )
         if self.pressure is not None:
-            self._check_rows(self.pressure)
+            check_rows(self.pressure, self.period, self.absolute, self.closing)
         if self.indicator is not None:
             self._check_indicator(self.indicator)
 
@@ -226,56 +235,13 @@ class Gas:
     def _check_indicator(self, indicator: Indicator) -> None:
         if not self.absolute:
             raise InputError("an indicator diagram is absolute; remove absolute = false")
-        if self.zero != "gas_exchange_tdc" or self.interpolation != "pchip":
+        if (self.zero, self.interpolation, self.closing) != ("gas_exchange_tdc", "pchip", None):
             raise InputError(
-                "zero and interpolation belong to a pressure file; remove them beside an indicator"
+                "zero, interpolation and closing belong to a pressure file; remove them beside an "
+                "indicator"
             )
         if self.stroke == 4 and indicator.exhaust_pressure is None:
             raise InputError("indicator: a four-stroke cycle needs its exhaust_pressure; none came")
-
-    def _check_rows(self, table: Table) -> None:
-        where, angle, period = table.source, table.x, self.period
-        if len(angle) < 2:
-            raise InputError(f"{where}: a pressure table needs at least two rows")
-        gaps = [b - a for a, b in pairwise(angle)]
-        for k, gap in enumerate(gaps):
-            if gap <= _SAME_ANGLE:
-                raise InputError(
-                    f"{where}: crank angles must strictly increase; in row {k + 2} "
-                    f"{angle[k + 1] / DEGREE:g} follows {angle[k] / DEGREE:g} degrees"
-                )
-        span = angle[-1] - angle[0]
-        if span > period + _SAME_ANGLE:
-            raise InputError(
-                f"{where}: the rows span {span / DEGREE:g} degrees, more than the period of "
-                f"{period / DEGREE:g}; check stroke, {self.stroke} came"
-            )
-        if span > period - _SAME_ANGLE and table.y[-1] != table.y[0]:
-            raise InputError(
-                f"{where}: the closing row must equal the first one, as the pressure is periodic; "
-                f"{table.y[0]:.8g} Pa opens the period and {table.y[-1]:.8g} Pa closes it"
-            )
-        if (
-            self.stroke == 4
-            and abs(span - 0.5 * period) < _SAME_ANGLE
-            and table.y[-1] == table.y[0]
-        ):
-            raise InputError(
-                f"{where}: the rows close after {span / DEGREE:g} degrees, as a two-stroke cycle "
-                "does; give stroke = 2, or the other half of the four-stroke cycle"
-            )
-        widest = max([*gaps, period - span])
-        if widest > period / 2.0 + _SAME_ANGLE:
-            raise InputError(
-                f"{where}: a gap of {widest / DEGREE:g} degrees without a row; the table must "
-                f"span the cycle of {period / DEGREE:g} degrees with no gap above its half"
-            )
-        lowest = min(table.y)
-        if self.absolute and lowest < 0.0:
-            raise InputError(
-                f"{where}: an absolute pressure cannot be negative; {lowest:.6g} Pa came; "
-                "give absolute = false when the file is gauge"
-            )
 
 
 @part

@@ -12,18 +12,21 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import CubicSpline, PchipInterpolator
+from scipy.interpolate import PPoly
 
 from crankmbs.indicator import indicator_pieces
 from crankmbs.machine import Gas
+from crankmbs.pressure_rows import close, closing_row, interpolate, overshoot
 from crankmbs.scene import Scene
+from crankmbs.tables import Table
 
-__all__ = ["PeriodicPressure", "crank_angle_knots", "pressure_of", "repeat"]
+__all__ = ["PeriodicPressure", "crank_angle_knots", "pressure_of", "remarks", "repeat"]
 
 Array = NDArray[np.float64]
 
 _KNOT = 1e-9  # rad: an angle this close below a knot counts as on it, so rounding does not
 # decide the side of a pressure step
+_OVERSHOOT = 0.05  # of the range: a sine in rows 45 degrees apart is overshot by 0.04
 
 
 @dataclass(frozen=True)
@@ -41,6 +44,19 @@ class PeriodicPressure:
     def period(self) -> float:
         """Period [rad]."""
         return float(self.knots[-1] - self.knots[0])
+
+    @property
+    def peak(self) -> tuple[float, float]:
+        """Cycle angle [rad] and value [Pa] of the highest pressure, the first of equal ones."""
+        pieces = PPoly(self.coefficients, self.knots)
+        turning = pieces.derivative().roots(discontinuity=False, extrapolate=False)
+        turning = turning[np.isfinite(turning)]
+        ends = self.piece(np.arange(len(self.knots) - 1), np.diff(self.knots))
+        angle = np.concatenate([self.knots[:-1], self.knots[1:], turning])
+        value = np.concatenate([self.coefficients[-1], ends, pieces(turning)])
+        highest = np.flatnonzero(value >= value.max() - 1e-9 * abs(value.max()))
+        first = highest[np.argmin(angle[highest])]
+        return float(np.mod(angle[first] + _KNOT, self.period) - _KNOT), float(value[first])
 
     def __call__(self, cycle_angle: ArrayLike) -> Array:
         """Pressure difference across the piston [Pa]; at a step the value after it.
@@ -62,8 +78,7 @@ class PeriodicPressure:
 def pressure_of(scene: Scene) -> PeriodicPressure | None:
     """The pressure difference across the piston of a scene; None without gas.
 
-    cubic is the periodic C2 spline; pchip keeps monotone stretches monotone (no overshoot), also
-    across the period's end; linear joins the rows; step holds a value until the next row.
+    A table's rows are joined as `crankmbs.pressure_rows.interpolate` says.
 
     >>> pressure = pressure_of(load_scene("propeller"))
     """
@@ -72,37 +87,50 @@ def pressure_of(scene: Scene) -> PeriodicPressure | None:
         return None
     if gas.indicator is not None:
         return PeriodicPressure(*indicator_pieces(scene))
-    angle, value = _closed_rows(gas)
-    return PeriodicPressure(angle, _coefficients(angle, value, gas.interpolation))
-
-
-def _closed_rows(gas: Gas) -> tuple[Array, Array]:
-    """Rows over exactly one period, gauge, in cycle angle, the first repeated at the end."""
     assert gas.pressure is not None
-    angle, value = np.array(gas.pressure.x), np.array(gas.pressure.y)
-    if angle[-1] - angle[0] > gas.period - 1e-9:
-        angle, value = angle[:-1], value[:-1]
-    if gas.zero == "firing_tdc" and gas.stroke == 4:
-        angle = angle + 2.0 * np.pi
-    value = value - (gas.ambient or 0.0)
-    return np.append(angle, angle[0] + gas.period), np.append(value, value[0])
+    return _joined(gas, gas.pressure)
 
 
-def _coefficients(angle: Array, value: Array, interpolation: str) -> Array:
-    width, rise = np.diff(angle), np.diff(value)
-    zero = np.zeros_like(width)
-    if interpolation == "step":
-        return np.array([zero, zero, zero, value[:-1]])
-    if interpolation == "linear":
-        return np.array([zero, zero, rise / width, value[:-1]])
-    if interpolation == "cubic":
-        return np.asarray(CubicSpline(angle, value, bc_type="periodic").c)
-    # three rows more on either side make the one-sided end slopes of pchip irrelevant
-    n, period = len(width), angle[-1] - angle[0]
-    k = np.arange(-3, n + 4)
-    wide_angle = angle[k % n] + (k // n) * period
-    wide = PchipInterpolator(wide_angle, value[k % n])
-    return np.asarray(wide.c[:, 3 : 3 + n])
+def remarks(scene: Scene) -> tuple[str, ...]:
+    """What a reader of the pressure table should know of what was made of it, in sentences.
+
+    >>> remarks(load_scene("propeller"))
+    ()
+    """
+    gas = scene.gas
+    if gas is None or gas.pressure is None:
+        return ()
+    table, said = gas.pressure, []
+    apart = closing_row(table, gas.period)
+    if apart:
+        said.append(
+            f"{table.source}: the closing row, {apart / 1e5:.3g} bar from the first one, is dropped"
+        )
+    joined = _joined(gas, table)
+    beyond, *between = overshoot(joined.knots, joined.coefficients)
+    share = beyond / ((max(table.y) - min(table.y)) or 1.0)
+    if gas.interpolation == "cubic" and share > _OVERSHOOT:
+        past = np.array(between) - _shift(gas) - table.x[0]
+        first, second = np.degrees(np.mod(past + _KNOT, gas.period) - _KNOT + table.x[0])
+        said.append(
+            f"warning: {table.source}: between the rows at {first:.8g} and {second:.8g} degrees "
+            f"the spline goes {100.0 * share:.3g} % of the table's range beyond both; the run is "
+            'that of the spline, not of the machine; use interpolation = "pchip", or give two rows '
+            "at one angle for a jump"
+        )
+    return tuple(said)
+
+
+def _joined(gas: Gas, table: Table) -> PeriodicPressure:
+    """The table gauge and in cycle angle, its rows joined."""
+    angle, value = np.add(table.x, _shift(gas)), np.subtract(table.y, gas.ambient or 0.0)
+    rows = close(Table(angle.tolist(), value.tolist()), gas.period)
+    return PeriodicPressure(*interpolate(rows, gas.interpolation))
+
+
+def _shift(gas: Gas) -> float:
+    """Cycle angle [rad] of the table's 0."""
+    return 2.0 * math.pi if gas.zero == "firing_tdc" and gas.stroke == 4 else 0.0
 
 
 def crank_angle_knots(scene: Scene, pressure: PeriodicPressure | None) -> Array:

@@ -23,7 +23,8 @@ _ANGULAR = {
 _WORDS = ("title", "source")
 _UNITS = {
     **dict.fromkeys(("radius", "length", "bore", "offset", "center_of_mass"), "m"),
-    **dict.fromkeys(("intake_pressure", "exhaust_pressure", "peak_pressure", "ambient"), "Pa"),
+    **dict.fromkeys(("intake_pressure", "exhaust_pressure", "peak_pressure"), "Pa"),
+    **dict.fromkeys(("ambient", "closing"), "Pa"),
     "mass": "kg",
     "inertia": "kg m^2",
     "area": "m^2",

@@ -27,6 +27,8 @@ _CONFIG = ConfigDict(
     allow_inf_nan=False, extra="forbid", validate_by_name=True, validate_by_alias=True
 )
 
+_WITH_UNIT = "one number and one unit,"
+
 DEGREE = math.pi / 180.0
 Float = Annotated[float, Strict()]  # lax mode would take true as 1.0 and "3" as 3.0
 
@@ -37,14 +39,23 @@ def part(cls: type[T]) -> type[T]:
     made: Any = pydantic.dataclasses.dataclass(frozen=True, kw_only=True, config=_CONFIG)(cls)
     validate = made.__init__
 
-    def __init__(self: Any, **values: Any) -> None:
+    def __init__(self: Any, *unnamed: Any, **values: Any) -> None:
+        if unnamed:
+            raise InputError(_by_name(made, len(unnamed)))
         try:
             validate(self, **values)
         except ValidationError as error:
-            raise InputError(sentence(error, made, values)) from None
+            raise InputError(sentence(error, made, values, in_python=True)) from None
 
     made.__init__ = __init__
     return made  # type: ignore[no-any-return]
+
+
+def _by_name(made: Any, count: int) -> str:
+    called = ", ".join(f"{name}=..." for name in list(made.__pydantic_fields__)[:count])
+    return (
+        f"{made.__name__} takes its values by name, {made.__name__}({called}); {count} came without"
+    )
 
 
 def si(dimension: str) -> BeforeValidator:
@@ -57,10 +68,8 @@ def si(dimension: str) -> BeforeValidator:
         if isinstance(value, str):
             return quantity(value, dimension)
         if isinstance(value, bool) or not isinstance(value, Real):
-            raise InputError(
-                f"must be one number and one unit, such as {EXAMPLES[dimension]}; "
-                f"{shown(value)} came"
-            )
+            rule = "a number in SI units, or text" if info.context is None else _WITH_UNIT
+            raise InputError(f"must be {rule} such as {EXAMPLES[dimension]}; {shown(value)} came")
         if info.context is not None and dimension in {"angle", "angular speed"}:
             raise InputError(f"needs a unit, such as {EXAMPLES[dimension]}; {shown(value)} came")
         try:
@@ -76,14 +85,20 @@ def dumped(value: object, info: ValidationInfo) -> bool:
     return isinstance(value, dict) and info.context is None
 
 
-def from_file(x_units: dict[str, float], y_units: dict[str, float]) -> BeforeValidator:
-    """Accept the path of a CSV file (relative to the scene file), or a `Table` in SI units."""
+def from_file(
+    x_units: dict[str, float], y_units: dict[str, float], columns: str
+) -> BeforeValidator:
+    """Accept the path of a CSV file (relative to the scene file), or a `Table` in SI units.
+
+    columns : what a caller from Python puts into such a table
+    """
 
     def convert(value: Any, info: ValidationInfo) -> Any:
         if isinstance(value, Table) or dumped(value, info):
             return value
         if not isinstance(value, str | Path):
-            raise InputError(f"must be the name of a CSV file; {shown(value)} came")
+            table = f" or a Table({columns})" if info.context is None else ""
+            raise InputError(f"must be the name of a CSV file{table}; {shown(value)} came")
         folder = info.context["folder"] if info.context else Path()
         return read_table(folder / value, x_units, y_units)
 

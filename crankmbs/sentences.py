@@ -34,23 +34,38 @@ _RULES = {
     "too_short": "must have at least {min_length} entry",
     "tuple_type": "must be a list",
 }
+_IN_PYTHON = {
+    "bool_type": "must be True or False",
+    "string_type": "must be a str",
+}
 
 
-def sentence(error: ValidationError, root: type[Any], came: Mapping[str, Any]) -> str:
-    """Say the most telling problem of ``error``, met when ``root`` was built from ``came``."""
+def sentence(
+    error: ValidationError, root: type[Any], came: Mapping[str, Any], *, in_python: bool = False
+) -> str:
+    """Say the most telling problem of ``error``, met when ``root`` was built from ``came``.
+
+    in_python : by a call; in the words of a call then, else in those of a file
+    """
     problem: Any = min(error.errors(), key=lambda each: _rank(each["type"]))
     kind, loc = problem["type"], _keys_and_tags(problem)
-    where = _dotted(loc)
+    if in_python:
+        loc = _by_name(root, loc)
+    where, word = _dotted(loc), "argument" if in_python else "key"
     if kind in _MISSING:
-        return f"{where}: this key is missing; {_how_to_add(root, loc)}"
+        how = _how_to_give(root, loc) if in_python else _how_to_add(root, loc)
+        return f"{where}: this {word} is missing; {how}"
     if kind in _UNKNOWN:
-        return f"{where}: unknown key{_known(loc[-1], root, loc[:-1])}"
+        names = _names_at(root, loc[:-1], in_python)
+        return f"{where}: unknown {word}{_known(loc[-1], names, word)}"
     if kind == "value_error":
         text = str(problem["ctx"]["error"])
+        text = _as_a_call(text) if in_python else text
         return f"{where}: {text}" if where else text
     value = _value_at(came, loc)
     near = _near_word(value, problem)
-    return f"{where}: {_rule(problem, root, loc)}; {shown(value)} came{near}"
+    rule = (_rule_in_python if in_python else _rule)(problem, root, loc)
+    return f"{where}: {rule}; {shown(value)} came{near}"
 
 
 def did_you_mean(word: str, known: Sequence[str], least: float = 0.6) -> str:
@@ -115,9 +130,30 @@ def _rule(problem: Any, root: type[Any], loc: Sequence[int | str]) -> str:
     return str(problem["msg"]).replace("Input should", "must")
 
 
-def _known(word: int | str, root: type[Any], loc: Sequence[int | str]) -> str:
-    names = _names_at(root, loc)
-    listed = f"; known keys are {', '.join(names)}" if names else ""
+def _rule_in_python(problem: Any, root: type[Any], loc: Sequence[int | str]) -> str:
+    kind = problem["type"]
+    if kind == "dataclass_type":
+        return f"must be given as {_call(root, loc)}"
+    if kind == "tuple_type":
+        *most, last = [each.__name__ for each in _parts_at(root, loc)] or [""]
+        parts = f" of {', '.join(most)} or {last}" if most else f" of {last}" if last else ""
+        return f"must be a tuple or list{parts}"
+    return _IN_PYTHON.get(kind) or _rule(problem, root, loc)
+
+
+def _as_a_call(text: str) -> str:
+    """The sentence of a check, which speaks of a file's sections and keys, for a caller.
+
+    >>> _as_a_call("give [motion], or absolute = false")
+    'give motion, or absolute=False'
+    """
+    text = re.sub(r"\[{1,2}(motion|start|gas|torque)\]{1,2}", r"\1", text)
+    text = re.sub(r"\b([a-z_]+) = (?=true|false|[\"0-9])", r"\1=", text)
+    return text.replace("=true", "=True").replace("=false", "=False")
+
+
+def _known(word: int | str, names: Sequence[str], what: str) -> str:
+    listed = f"; known {what}s are {', '.join(names)}" if names else ""
     return did_you_mean(str(word), names) or listed
 
 
@@ -126,8 +162,36 @@ def _how_to_add(root: type[Any], loc: Sequence[int | str]) -> str:
     return f"add [{_dotted(loc)}] with {', '.join(names)}" if names else "it has no default"
 
 
-def _names_at(root: type[Any], loc: Sequence[int | str]) -> list[str]:
+def _how_to_give(root: type[Any], loc: Sequence[int | str]) -> str:
+    call = _call(root, loc)
+    return f"give {loc[-1]}={call}" if call else "it has no default"
+
+
+def _call(root: type[Any], loc: Sequence[int | str]) -> str:
+    names = _names_at(root, loc, in_python=True)
+    return f"{_parts_at(root, loc)[0].__name__}({', '.join(names)})" if names else ""
+
+
+def _by_name(root: type[Any], loc: list[int | str]) -> list[int | str]:
+    """The location in the names of Python, where a file calls its last key otherwise."""
+    for part in _parts_at(root, loc[:-1]):
+        for name, field in part.__pydantic_fields__.items():
+            if loc and field.validation_alias == loc[-1]:
+                return [*loc[:-1], name]
+    return loc
+
+
+def _names_at(root: type[Any], loc: Sequence[int | str], in_python: bool = False) -> list[str]:
     """The keys of the part at ``loc`` below ``root``; none where no single part is meant."""
+    parts = _parts_at(root, loc)
+    if len(parts) != 1:
+        return []
+    fields = parts[0].__pydantic_fields__
+    return [(not in_python and field.validation_alias) or name for name, field in fields.items()]
+
+
+def _parts_at(root: type[Any], loc: Sequence[int | str]) -> list[type[Any]]:
+    """The parts that ``loc`` below ``root`` may be, or whose sequence it is."""
     parts = [root]
     for step in loc:
         if isinstance(step, int):
@@ -136,10 +200,7 @@ def _names_at(root: type[Any], loc: Sequence[int | str]) -> list[str]:
             parts = [each for each in parts if each.__name__ == step]
         else:
             parts = [found for each in parts for found in _parts_of_key(each, step)]
-    if len(parts) != 1:
-        return []
-    fields = parts[0].__pydantic_fields__
-    return [field.validation_alias or name for name, field in fields.items()]
+    return parts
 
 
 def _parts_of_key(owner: type[Any], key: str) -> list[type[Any]]:

@@ -9,7 +9,7 @@ from crankmbs.assemble import Assembled, assemble, dataset
 from crankmbs.choose import choose
 from crankmbs.errors import InputError, shown
 from crankmbs.formulations import kinetostatic
-from crankmbs.pressure import PeriodicPressure, pressure_of
+from crankmbs.pressure import PeriodicPressure, pressure_of, remarks
 from crankmbs.result import Cost, Error, Result
 from crankmbs.scene import Scene
 
@@ -64,7 +64,7 @@ def simulate(
         scene=scene,
         data=dataset(assembled),
         formulation=choice.formulation,
-        reasons=choice.reasons + solution.reasons,
+        reasons=choice.reasons + remarks(scene) + solution.reasons,
         status=solution.status,
         message=solution.message,
         cost=Cost(clock.perf_counter() - begin, solution.evaluations, solution.steps),

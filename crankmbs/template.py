@@ -37,7 +37,8 @@ bore = "80 mm"                  # or area = "50 cm^2"
 ambient = "1 bar"               # on the crankcase side
 #stroke = 2                     # default 4
 #pressure = "gas.csv"           # in place of [gas.indicator]: crank_angle_deg,pressure_bar
-#interpolation = "cubic"        # of the file: linear | pchip | cubic | step
+#interpolation = "cubic"        # linear | pchip | cubic | step; two rows at one angle are a jump
+#closing = "0.02 bar"           # so near the first a closing row is dropped; default 1 % of range
 
 [gas.indicator]                 # polytropes over the exact volume
 compression_ratio = 10

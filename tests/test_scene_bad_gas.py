@@ -66,12 +66,19 @@ def test_a_bad_gas_gets_one_sentence(read, old, new, message):
     [
         ("0,1\n", "a pressure table needs at least two rows"),
         (
-            "0,1\n90,1\n90,2\n400,1\n",
-            "crank angles must strictly increase; in row 3 90 follows 90 degrees",
+            "0,1\n90,1\n45,2\n400,1\n",
+            "crank angles must not decrease (two rows at one angle are a jump); in row 3 45 "
+            "follows 90 degrees",
         ),
         (
-            "0,1\n90,1\n45,2\n400,1\n",
-            "crank angles must strictly increase; in row 3 45 follows 90 degrees",
+            "0,1\n90,1\n90,2\n90,3\n400,1\n",
+            "rows 2 to 4 all stand at 90 degrees; give two, a jump from the first pressure to the "
+            "second",
+        ),
+        (
+            "0,1\n90,1\n90.00000003,2\n400,1\n",
+            "rows 2 and 3 lie 3e-08 degrees apart, too near to be told apart; give both the same "
+            "angle for a jump, or drop one",
         ),
         (
             "0,1\n300,1\n721,1\n",
@@ -79,8 +86,9 @@ def test_a_bad_gas_gets_one_sentence(read, old, new, message):
         ),
         (
             "0,1\n300,1\n720,2\n",
-            "the closing row must equal the first one, as the pressure is periodic; 100000 Pa "
-            "opens the period and 200000 Pa closes it",
+            "the closing row, at 720 degrees, must equal the first one, as the pressure is "
+            "periodic; it lies 1 bar from it, more than 0.01 bar (1 % of the range); drop the row, "
+            "raise closing, or give two rows at 720 degrees for a jump",
         ),
         (
             "0,1\n361,1\n600,2\n",
@@ -109,6 +117,8 @@ def test_a_bad_pressure_table(read, tmp_path, rows, message):
     [
         "0,1\n360,2\n",  # gaps of exactly half the period
         "0,1\n360,2\n720,1\n",  # a closing row
+        "0,1\n360,2\n720,1.01\n",  # one as near as a measured cycle comes
+        "0,1\n90,2\n90,3\n400,1\n",  # a jump
         "-180,1\n180,2\n",  # any start
         "500,1\n860,2\n1220,1\n",
     ],
@@ -174,7 +184,14 @@ def test_an_absolute_pressure_cannot_be_negative(read, tmp_path):
         (
             'ambient = "1 bar"',
             'ambient = "1 bar"\ninterpolation = "cubic"',
-            ": zero and interpolation belong to a pressure file; remove them beside an indicator",
+            ": zero, interpolation and closing belong to a pressure file; remove them beside an "
+            "indicator",
+        ),
+        (
+            'ambient = "1 bar"',
+            'ambient = "1 bar"\nclosing = "0.1 bar"',
+            ": zero, interpolation and closing belong to a pressure file; remove them beside an "
+            "indicator",
         ),
         (
             'ambient = "1 bar"',

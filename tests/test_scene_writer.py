@@ -87,6 +87,17 @@ def test_loads_layout_and_run_come_back(tmp_path):
     assert without_source(again(scene, tmp_path)) == without_source(scene)
 
 
+def test_a_jump_and_a_closing_row_come_back(tmp_path):
+    angle = (0.0, 1.0, 2.0, 2.0, 4.0, 7.0, 10.0, 4.0 * math.pi)
+    table = Table(angle, (1e5, 2e5, 3e5, 9e5, 5e5, 2e5, 1e5, 1.2e5))
+    gas = dataclasses.replace(FREE.gas, pressure=table, closing=0.3e5)
+    scene = dataclasses.replace(FREE, gas=gas)
+    back = again(scene, tmp_path)
+    assert back.gas.closing == 0.3e5
+    assert back.gas.pressure.x[2] == back.gas.pressure.x[3] == 2.0
+    assert back.gas.pressure.y == table.y
+
+
 def test_a_written_scene_reads_well():
     text = scene_files(load_scene("yi_diesel_free"), "mine")["mine.toml"]
     for line in (

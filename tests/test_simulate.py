@@ -43,7 +43,7 @@ def test_equal_runs_are_equal():
     assert simulate(SHORT).data.identical(simulate(SHORT).data)
 
 
-@pytest.mark.parametrize(("scene", "came"), [("yi_diesel", '"yi_diesel"'), (None, "null")])
+@pytest.mark.parametrize(("scene", "came"), [("yi_diesel", '"yi_diesel"'), (None, "None")])
 def test_what_is_no_scene(scene, came):
     with pytest.raises(InputError) as caught:
         simulate(scene)

@@ -76,4 +76,5 @@ def test_its_prescribed_speed_takes_the_place_of_the_start():
 def test_its_pressure_file_takes_the_place_of_the_indicator(tmp_path):
     (tmp_path / "gas.csv").write_text("crank_angle_deg,pressure_bar\n0,1\n240,2\n480,3\n")
     tabled = shown(hidden(SCENE, "\n[gas.indicator]", "\n#[gravity]"), "pressure", "interpolation")
-    assert parse_scene(tabled, tmp_path / "engine.toml").gas.interpolation == "cubic"
+    gas = parse_scene(shown(tabled, "closing"), tmp_path / "engine.toml").gas
+    assert (gas.interpolation, gas.closing) == ("cubic", 2e3)

@@ -199,8 +199,10 @@ def _pressure(scene: Scene) -> PressureTable | PressurePieces | None:
 
 def _table(gas: Gas, rows: Table) -> PressureTable:
     angles, values = rows.x, rows.y
-    if angles[-1] - angles[0] > gas.period - _SAME_ANGLE:
-        angles, values = angles[:-1], values[:-1]
+    closing = sum(angle - angles[0] > gas.period - _SAME_ANGLE for angle in angles)
+    before = [values[-2]] if closing == 2 and angles[1] > angles[0] else []
+    count = len(angles) - closing
+    angles, values = (*angles[: len(before)], *angles[:count]), (*before, *values[:count])
     if gas.zero == "firing_tdc" and gas.stroke == 4:
         angles = tuple(angle + 2.0 * math.pi for angle in angles)
     gauge = tuple(value - (gas.ambient or 0.0) for value in values)

@@ -7,35 +7,81 @@ import math
 import numpy as np
 
 from crankmbs.choose import Choice
+from crankmbs.drives import (
+    Constant,
+    Oscillation,
+    Quadratic,
+    Ramp,
+    SpeedFile,
+    SpeedTable,
+    TimeTable,
+    Torque,
+    Viscous,
+)
 from crankmbs.geometry import close_loop, dead_centres
+from crankmbs.plausible import warnings
+from crankmbs.pressure import PeriodicPressure, pressure_of, remarks
 from crankmbs.scene import Extent, Scene
+from crankmbs.torque import torque_at
 
 __all__ = ["describe"]
 
 
 def describe(path: str, scene: Scene, choice: Choice) -> str:
     """The scene in a few lines."""
+    pressure = pressure_of(scene)
     rows = [
         ("scene", path),
         ("title", scene.title),
         ("source", scene.source),
         ("crank", _crank(scene)),
+        ("rod", _rod(scene)),
+        ("piston", _piston(scene)),
         ("dead centres", _dead_centres(scene)),
         ("cylinders", _cylinders(scene)),
         ("gas", _gas(scene)),
+        *([("pressure", _pressure(scene, pressure))] if pressure is not None else []),
+        *(("", remark) for remark in remarks(scene)),
         ("motion", _motion(scene)),
+        *((f"torque[{k}]", _load(scene, load)) for k, load in enumerate(scene.torque, start=1)),
         ("run", _run(scene)),
         ("formulation", choice.formulation),
         *(("", reason) for reason in choice.reasons),
+        *(("warning", said) for said in warnings(scene)),
     ]
     return "\n".join(f"{name:<12} {text}" for name, text in rows if text)
 
 
 def _crank(scene: Scene) -> str:
-    r, l = scene.crank.radius, scene.rod.length
-    offset = scene.piston.offset
-    text = f"radius {r * 1e3:.6g} mm, rod {l * 1e3:.6g} mm, ratio {r / l:.6g}"
-    return f"{text}, offset {offset * 1e3:.6g} mm" if offset else text
+    crank = scene.crank
+    return f"radius {crank.radius * 1e3:.6g} mm, {_body(crank.mass, crank.center_of_mass)}" + (
+        f", inertia {crank.inertia:.6g} kg m^2 about its axis"
+    )
+
+
+def _rod(scene: Scene) -> str:
+    rod, ratio = scene.rod, scene.crank.radius / scene.rod.length
+    lumped = ", two masses" if rod.inertia == "two-mass" else ""
+    return (
+        f"length {rod.length * 1e3:.6g} mm, ratio {ratio:.6g}, "
+        f"{_body(rod.mass, rod.center_of_mass)}, inertia {rod.moment_of_inertia:.6g} kg m^2 about "
+        f"its centre of mass{lumped}"
+    )
+
+
+def _body(mass: float, center_of_mass: float) -> str:
+    place = f", centre of mass at {center_of_mass * 1e3:.6g} mm" if mass else ""
+    return f"mass {mass:.6g} kg{place}"
+
+
+def _piston(scene: Scene) -> str:
+    piston, area = scene.piston, scene.piston.gas_area
+    bore = ""
+    if area is not None:
+        across = math.sqrt(4.0 * area / math.pi)
+        bore = f", bore {across * 1e3:.6g} mm, area {area * 1e4:.6g} cm^2"
+    offset = f", offset {piston.offset * 1e3:.6g} mm" if piston.offset else ""
+    return f"mass {piston.mass:.6g} kg{bore}{offset}"
 
 
 def _dead_centres(scene: Scene) -> str:
@@ -74,12 +120,70 @@ def _gas(scene: Scene) -> str:
     return f"{gas.stroke}-stroke, {origin}"
 
 
+def _pressure(scene: Scene, pressure: PeriodicPressure) -> str:
+    assert scene.gas is not None
+    ambient = scene.gas.ambient
+    given = "gauge" if ambient is None else f"absolute, ambient {ambient / 1e5:.6g} bar subtracted"
+    angle, peak = pressure.peak
+    return (
+        f"{given}; at most {peak / 1e5:.6g} bar across the piston, at a cycle angle of "
+        f"{math.degrees(angle):.6g} deg"
+    )
+
+
 def _motion(scene: Scene) -> str:
-    if scene.start is None:
-        return "prescribed speed"
-    speed, angle = scene.start.speed * 30.0 / math.pi, math.degrees(scene.start.angle)
-    kinds = ", ".join(load.kind.replace("_", " ") for load in scene.torque) or "none"
-    return f"free, from {speed:.6g} rpm at {angle:.6g} deg; torques: {kinds}"
+    if scene.motion is not None:
+        speed, begin = _speed(scene.motion.speed), math.degrees(scene.motion.angle)
+        return f"prescribed, {speed}, from {begin:.6g} deg"
+    assert scene.start is not None
+    speed, begin = _rpm(scene.start.speed), math.degrees(scene.start.angle)
+    sense = _sense(scene.start.speed)
+    return f"free, from {speed} at {begin:.6g} deg{sense}{'' if scene.torque else ', no load'}"
+
+
+def _speed(speed: float | Oscillation | Ramp | SpeedFile) -> str:
+    match speed:
+        case Oscillation():
+            swing = f"{_rpm(speed.mean)} on average over the angle, +-{_rpm(speed.amplitude)}"
+            return f"{swing}, {speed.order:.6g} times a turn{_sense(speed.mean)}"
+        case Ramp():
+            return f"from {_rpm(speed.start)} to {_rpm(speed.to)} in {speed.over:.6g} s, then held"
+        case SpeedFile(file=table):
+            least, most = _rpm(min(table.y)), _rpm(max(table.y))
+            return f"{least} to {most} in {len(table.x)} rows of {table.source}"
+        case _:
+            return f"{_rpm(speed)}{_sense(speed)}"
+
+
+def _rpm(speed: float) -> str:
+    return f"{speed * 30.0 / math.pi:.6g} rpm"
+
+
+def _sense(speed: float) -> str:
+    if speed == 0.0:
+        return ""
+    return ", counter-clockwise (+theta)" if speed > 0.0 else ", clockwise (-theta)"
+
+
+def _load(scene: Scene, load: Torque) -> str:
+    assert scene.start is not None
+    match load:
+        case Constant():
+            text = f"constant, {load.torque:+.6g} N m"
+        case Viscous():
+            text = f"viscous, -c omega with c = {load.coefficient:.6g} N m s"
+        case Quadratic():
+            text = f"quadratic, -c omega |omega| with c = {load.coefficient:.6g} N m s^2"
+        case TimeTable(file=table) | SpeedTable(file=table):
+            text = (
+                f"{load.kind.replace('_', ' ')}, {min(table.y):+.6g} to {max(table.y):+.6g} N m "
+                f"in {len(table.x)} rows of {table.source}"
+            )
+    speed = scene.start.speed
+    torque = float(torque_at((load,), np.zeros(1), np.array([speed]))[0])
+    if torque * speed == 0.0:
+        return text
+    return f"{text}; {torque:+.6g} N m at the start, {'drives' if torque * speed > 0 else 'brakes'}"
 
 
 def _run(scene: Scene) -> str:

@@ -9,6 +9,7 @@ from crankmbs.cli.text import table
 from crankmbs.confirm import Difference
 from crankmbs.digits import digits, error_digits
 from crankmbs.measures import Estimate, JointForce, Measures
+from crankmbs.plausible import warnings
 from crankmbs.result import Result
 
 __all__ = ["comparison", "report"]
@@ -22,6 +23,7 @@ def report(name: str, result: Result, measures: Measures) -> str:
     parts = [
         f"{title}\n",
         _about(result, measures),
+        *(f"{'warning':<12} {said}" for said in warnings(result.scene)),
         "",
         table(
             [f"over the {measures.window.kind}", "value, to 6 digits", "error"], _values(measures)

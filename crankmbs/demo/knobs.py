@@ -178,7 +178,9 @@ def _scaled(table: Table, y: float, x: float = 1.0) -> Table:
 def _pressed(gas: Gas, factor: float) -> Gas:
     """The pressures of the table or of the diagram times the factor; ambient stays."""
     if gas.pressure is not None:
-        return dataclasses.replace(gas, pressure=_scaled(gas.pressure, factor))
+        closing = None if gas.closing is None else factor * gas.closing
+        pressed = _scaled(gas.pressure, factor)
+        return dataclasses.replace(gas, pressure=pressed, closing=closing)
     assert gas.indicator is not None
     names = ("intake_pressure", "exhaust_pressure", "peak_pressure")
     old = {name: getattr(gas.indicator, name) for name in names}

@@ -13,7 +13,8 @@ Interpolation = Literal["linear", "step", "pchip", "cubic"]
 class PressureTable:
     """Pressure difference across the piston over the cycle angle, periodic, no closing row.
 
-    angles strictly increase [rad] and span less than `period` [rad]; pressures in Pa.
+    angles increase [rad] and span less than `period` [rad]; a repeated angle is a jump from the
+    first of its pressures to the second. pressures in Pa.
     """
 
     angles: tuple[Number, ...]
@@ -27,8 +28,10 @@ class PressureTable:
         if len(self.angles) != len(self.pressures) or len(self.angles) < 3:
             raise ValueError("a pressure table needs three or more angles, one pressure each")
         floats = [float(angle) for angle in self.angles]
-        if any(b <= a for a, b in pairwise(floats)):
-            raise ValueError("angles must strictly increase")
+        if any(b < a for a, b in pairwise(floats)) or any(
+            floats.count(angle) > 2 for angle in floats
+        ):
+            raise ValueError("angles must increase, none given more than twice")
         if floats[-1] - floats[0] >= float(self.period):
             raise ValueError("angles must span less than one period (leave the closing row out)")
 
