@@ -2,7 +2,7 @@
 
 Rules are written once, as type annotations and ``__post_init__`` checks of the dataclasses in
 `crankmbs.scene`; they hold for a TOML file and for a call from Python alike. A validation context
-is given for a file only: its folder.
+is given for a TOML file, its folder, and for a scene that was saved with a result.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from crankmbs.sentences import sentence
 from crankmbs.tables import Table, read_table
 from crankmbs.units import EXAMPLES, quantity
 
-__all__ = ["DEGREE", "Float", "dumped", "from_file", "part", "si"]
+__all__ = ["DEGREE", "SAVED", "Float", "dumped", "from_file", "part", "si"]
 
 T = TypeVar("T")
 _CONFIG = ConfigDict(
@@ -28,6 +28,7 @@ _CONFIG = ConfigDict(
 )
 
 DEGREE = math.pi / 180.0
+SAVED = {"saved": True}  # validation context of a dumped scene: it has its tables in itself
 Float = Annotated[float, Strict()]  # lax mode would take true as 1.0 and "3" as 3.0
 
 
@@ -61,7 +62,7 @@ def si(dimension: str) -> BeforeValidator:
                 f"must be one number and one unit, such as {EXAMPLES[dimension]}; "
                 f"{shown(value)} came"
             )
-        if info.context is not None and dimension in {"angle", "angular speed"}:
+        if _of_file(info) and dimension in {"angle", "angular speed"}:
             raise InputError(f"needs a unit, such as {EXAMPLES[dimension]}; {shown(value)} came")
         try:
             return float(value)
@@ -73,7 +74,7 @@ def si(dimension: str) -> BeforeValidator:
 
 def dumped(value: object, info: ValidationInfo) -> bool:
     """Whether this is a dumped dataclass; a file writes it as a string."""
-    return isinstance(value, dict) and info.context is None
+    return isinstance(value, dict) and not _of_file(info)
 
 
 def from_file(x_units: dict[str, float], y_units: dict[str, float]) -> BeforeValidator:
@@ -82,9 +83,16 @@ def from_file(x_units: dict[str, float], y_units: dict[str, float]) -> BeforeVal
     def convert(value: Any, info: ValidationInfo) -> Any:
         if isinstance(value, Table) or dumped(value, info):
             return value
+        if info.context is SAVED:
+            raise InputError(f"must hold its rows in a saved scene; {shown(value)} came")
         if not isinstance(value, str | Path):
             raise InputError(f"must be the name of a CSV file; {shown(value)} came")
         folder = info.context["folder"] if info.context else Path()
         return read_table(folder / value, x_units, y_units)
 
     return BeforeValidator(convert)
+
+
+def _of_file(info: ValidationInfo) -> bool:
+    """Whether this is read from a TOML file."""
+    return info.context is not None and info.context is not SAVED

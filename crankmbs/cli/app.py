@@ -20,7 +20,7 @@ from crankmbs.cli.run import run_scene
 from crankmbs.cli.validate import validate_scene
 from crankmbs.cli.work_precision import measure_scene
 from crankmbs.errors import CrankmbsError, InputError, OutputError
-from crankmbs.result import write_in_one_move
+from crankmbs.files import write_in_one_move
 from crankmbs.scene_io import load_scene, scene_path, shipped_scenes
 
 __all__ = ["app", "main"]

@@ -12,7 +12,7 @@ from crankmbs.compare.causes import Budget
 from crankmbs.compare.quantities import QUANTITIES
 from crankmbs.compare.size import Size, percent
 from crankmbs.compare.stretch import Stretch
-from crankmbs.result import write_in_one_move
+from crankmbs.files import write_in_one_move
 
 __all__ = ["save_budget", "save_comparison"]
 
