@@ -18,7 +18,7 @@ from pydantic import BeforeValidator, ConfigDict, Strict, ValidationError, Valid
 from crankmbs.errors import InputError, shown
 from crankmbs.sentences import sentence
 from crankmbs.tables import Table, read_table
-from crankmbs.units import EXAMPLES, quantity
+from crankmbs.units import EXAMPLES, check_size, quantity
 
 __all__ = ["DEGREE", "SAVED", "Float", "dumped", "from_file", "part", "si"]
 
@@ -55,6 +55,11 @@ def si(dimension: str) -> BeforeValidator:
     """
 
     def convert(value: Any, info: ValidationInfo) -> float:
+        number = converted(value, info)
+        check_size(number, dimension, value)
+        return number
+
+    def converted(value: Any, info: ValidationInfo) -> float:
         if isinstance(value, str):
             return quantity(value, dimension)
         if isinstance(value, bool) or not isinstance(value, Real):

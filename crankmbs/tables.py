@@ -13,6 +13,7 @@ from crankmbs.errors import InputError, shown
 __all__ = ["Table", "read_table"]
 
 _MOST = 32_000_000  # bytes: a million rows
+_LARGEST = 1e15
 _ENDLESS = (stat.S_ISCHR, stat.S_ISBLK, stat.S_ISFIFO, stat.S_ISSOCK)
 
 
@@ -48,6 +49,12 @@ class Table:
             )
         if not all(map(math.isfinite, self.x + self.y)):
             raise InputError(f"{self.source}: every value must be finite; a NaN or infinity came")
+        largest = max(map(abs, self.x + self.y), default=0.0)
+        if largest > _LARGEST:
+            raise InputError(
+                f"{self.source}: every value must be at most {_LARGEST:g} in size, in SI units, or "
+                f"calculating with it overflows; {largest:g} came"
+            )
 
 
 def read_table(path: Path, x_units: dict[str, float], y_units: dict[str, float]) -> Table:

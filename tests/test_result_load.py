@@ -13,7 +13,7 @@ from crankmbs.scene_io import models_folder
 
 SCENE = load_scene("yi_diesel_free")  # with tables, loads and several cylinders
 RESULT = simulate(dataclasses.replace(SCENE, run=Run(until="30 deg")))
-TABLE = str(models_folder() / "pressure" / "diesel.csv")
+TABLE = str(models_folder() / "pressure" / "yi_diesel.csv")
 
 
 @pytest.fixture(scope="module")
