@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from bokeh.document import Document
 from bokeh.models import Div
+from bokeh.server.util import match_host
 
 from crankmbs import (
     InputError,
@@ -168,6 +169,12 @@ def test_the_live_page_answers_and_says_what_cannot_run():
     assert len(state["shapes"]["liner x"]) == 2
     assert "speed" not in state
     assert len(state["words"]["torque"]) == 1
+
+
+def test_the_server_takes_no_other_host_for_its_own():
+    """Of bokeh before 3.8.2 a longer name that begins like an allowed one was allowed."""
+    assert match_host("localhost:5006", "localhost:5006")
+    assert not match_host("localhost.evil.example:5006", "localhost:5006")
 
 
 def test_a_title_of_the_page_is_no_formula(diesel):
