@@ -141,8 +141,7 @@ def dataset(assembled: Assembled) -> xr.Dataset:
             "long_name": about.long_name,
             "error_estimate": errors[name],
         }
-        dims = ("time", "cylinder") if about.per_cylinder else ("time",)
-        return xr.Variable(dims, variables[name], attrs)
+        return xr.Variable(about.dims, variables[name], attrs)
 
     cylinders = np.arange(1, variables["side_force"].shape[1] + 1)
     coordinates = {name: labelled(name) for name in ("time", "crank_angle")}

@@ -7,7 +7,7 @@ from itertools import pairwise
 from numbers import Real
 from typing import Annotated, Literal
 
-from annotated_types import Ge, Gt
+from annotated_types import Ge, Gt, Le
 from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationInfo
 
 from crankmbs.errors import InputError, shown
@@ -41,7 +41,7 @@ class Oscillation:
 
     mean: AngularSpeed
     amplitude: Annotated[Float, Ge(0), si("angular speed")]
-    order: Annotated[Float, Gt(0)]
+    order: Annotated[Float, Gt(0), Le(1e6)]
     phase: Angle = 0.0
 
     def __post_init__(self) -> None:

@@ -10,7 +10,8 @@ from __future__ import annotations
 import math
 import sys
 from collections.abc import Callable
-from typing import TypeVar
+from contextlib import suppress
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,15 +48,20 @@ def pay(seconds: float) -> bool:
 def _compile() -> None:
     """Put the compiled kernels in the place of the plain ones, which call one another by name."""
     global are_compiled
+    for function in _functions:
+        setattr(sys.modules[function.__module__], function.__name__, _compiled(function))
+    are_compiled = True
+
+
+def _compiled(function: Callable[..., object]) -> Any:
     from numba import njit
 
-    for function in _functions:
-        try:
-            compiled = njit(cache=True, error_model="numpy")(function)
-        except RuntimeError:  # neither the package's folder nor the home folder can be written
-            compiled = njit(error_model="numpy")(function)
-        setattr(sys.modules[function.__module__], function.__name__, compiled)
-    are_compiled = True
+    from crankmbs.kernel_cache import healing_cache
+
+    compiled: Any = njit(error_model="numpy")(function)
+    with suppress(RuntimeError):  # nothing can be cached
+        compiled._cache = healing_cache(function)  # cache=True would put numba's own there
+    return compiled
 
 
 def kernel(function: F) -> F:

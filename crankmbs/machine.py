@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from typing import Annotated, Literal
 
-from annotated_types import Ge, Gt, Len
+from annotated_types import Ge, Gt, Le, Len
 from pydantic import Discriminator, Strict, Tag
 
 from crankmbs.errors import InputError, shown
@@ -157,9 +157,9 @@ class Indicator:
     and filled at the bottom dead centre.
     """
 
-    compression_ratio: Annotated[Float, Gt(1)]
-    n_compression: Annotated[Float, Gt(0)]
-    n_expansion: Annotated[Float, Gt(0)]
+    compression_ratio: Annotated[Float, Gt(1), Le(1e4)]
+    n_compression: Annotated[Float, Gt(0), Le(10)]
+    n_expansion: Annotated[Float, Gt(0), Le(10)]
     intake_pressure: Pressure
     exhaust_pressure: Pressure | None = None
     peak_pressure: Pressure

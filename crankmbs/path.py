@@ -10,7 +10,6 @@ import numpy as np
 
 from crankmbs.formulations.base import Piece, Samples, State
 from crankmbs.sampling import Plan
-from crankmbs.scene import check_count
 
 __all__ = ["Path"]
 
@@ -51,7 +50,7 @@ class Path:
         if math.isinf(self._plan.last):
             self._blocks.append(piece.sample(self._plan))
             self._count += len(self._blocks[-1].time)
-            check_count(self._count)
+            self._plan.room.check(self._count)
             self._tail.clear()
         self._tail.append(piece)
         while abs(piece.end.theta - self._tail[0].end.theta) > self._plan.last:

@@ -3,23 +3,23 @@
 from __future__ import annotations
 
 import json
-import os
-import tempfile
-from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 from pydantic import TypeAdapter
 
 from crankmbs.errors import OutputError
+from crankmbs.files import together
+from crankmbs.netcdf import read_netcdf, write_netcdf
 from crankmbs.scene import Scene
+from crankmbs.schema import SAVED
 
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["VARIABLES", "Cost", "Error", "Result", "Variable", "write_in_one_move"]
+__all__ = ["VARIABLES", "Cost", "Error", "Result", "Variable"]
 
 
 class Variable(NamedTuple):
@@ -28,6 +28,11 @@ class Variable(NamedTuple):
     units: str
     long_name: str
     per_cylinder: bool = False
+
+    @property
+    def dims(self) -> tuple[str, ...]:
+        """The dimensions of its array."""
+        return ("time", "cylinder") if self.per_cylinder else ("time",)
 
 
 VARIABLES = {
@@ -115,62 +120,44 @@ class Result:
         )
 
     def save(self, folder: str | Path) -> Path:
-        """Write result.nc (NetCDF) and motion.csv into ``folder``, each replaced in one move.
+        """Write result.nc (NetCDF) and motion.csv into ``folder``: both together or none.
 
         Raises
         ------
         OutputError : the folder cannot be made or written
         """
         target = Path(folder)
-        write_in_one_move(target / "result.nc", self._write_netcdf)
-        write_in_one_move(target / "motion.csv", self._write_csv)
+        with together(target) as part:
+            self._write_netcdf(part / "result.nc")
+            self._write_csv(part / "motion.csv")
         return target
 
     @classmethod
     def load(cls, path: str | Path) -> Result:
-        """Read a saved result: its folder, or its result.nc.
+        """Read a saved result: its folder, or its result.nc. No other file is opened.
 
         Raises
         ------
         OutputError : there is no such result, or the file is none
         """
-        import xarray as xr
-
         file = Path(path)
         file = file / "result.nc" if file.is_dir() else file
         if not file.is_file():
             raise OutputError(f"{file}: no such result; save writes one, and so does crankmbs run")
         try:
-            with xr.open_dataset(file, engine="h5netcdf") as opened:
-                data = opened.load()
-            about = json.loads(data.attrs.pop("crankmbs"))
-        except (OSError, KeyError, ValueError):  # HDF5's own words name its inner calls
+            data = read_netcdf(file, {name: about.dims for name, about in VARIABLES.items()})
+            about = _ABOUT.validate_python(json.loads(data.attrs.pop("crankmbs")), context=SAVED)
+            _check_labels(data, about.scene)
+        except _NO_RESULT:  # HDF5's own words name its inner calls
             raise OutputError(
                 f"{file}: no readable result of crankmbs; give the result.nc that save wrote"
             ) from None
-        return cls(
-            scene=_SCENE.validate_python(about["scene"]),
-            data=data,
-            formulation=about["formulation"],
-            reasons=tuple(about["reasons"]),
-            status=about["status"],
-            message=about["message"],
-            cost=Cost(**about["cost"]),
-            error=Error(**about["error"]),
-        )
+        return cls(data=data, **vars(about))
 
     def _write_netcdf(self, file: Path) -> None:
-        about = {
-            "scene": _SCENE.dump_python(self.scene, mode="json"),
-            "formulation": self.formulation,
-            "reasons": self.reasons,
-            "status": self.status,
-            "message": self.message,
-            "cost": asdict(self.cost),
-            "error": asdict(self.error),
-        }
-        data = self.data.assign_attrs(crankmbs=json.dumps(about))
-        data.to_netcdf(file, engine="h5netcdf")
+        about = {name: value for name, value in vars(self).items() if name != "data"}
+        text = json.dumps(_ABOUT.dump_python(_About(**about), mode="json"))
+        write_netcdf(self.data.assign_attrs(crankmbs=text), file)
 
     def _write_csv(self, file: Path) -> None:
         names, columns = ["time [s]", "crank_angle [rad]"], []
@@ -188,30 +175,31 @@ class Result:
         np.savetxt(file, table, fmt="%.12g", delimiter=",", header=",".join(names), comments="")
 
 
-def write_in_one_move(target: Path, write: Callable[[Path], None]) -> None:
-    """Let ``write`` fill a file beside ``target``, then put it in place in one move.
+@dataclass(frozen=True)
+class _About:
+    """What is saved of a result beside its data."""
 
-    Raises
-    ------
-    OutputError : the folder cannot be made or written; nothing half-written is left
-    """
-    try:
-        target.parent.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(dir=target.parent, prefix=".part-", suffix=target.suffix)
-    except OSError as error:
-        raise OutputError(
-            f"{target.parent}: cannot be written ({error.strerror}); choose another folder"
-        ) from None
-    os.close(handle)
-    part = Path(name)
-    try:
-        write(part)
-        part.chmod(0o644)
-        part.replace(target)
-    except OSError as error:
-        raise OutputError(f"{target}: cannot be written: {error}") from None
-    finally:
-        part.unlink(missing_ok=True)
+    scene: Scene
+    formulation: str
+    reasons: tuple[str, ...]
+    status: Literal[-1, 0, 1]
+    message: str
+    cost: Cost
+    error: Error
 
 
-_SCENE = TypeAdapter(Scene)
+def _check_labels(data: xr.Dataset, scene: Scene) -> None:
+    """Raise ValueError unless the data are of the scene's cylinders, each with unit and error."""
+    if data.sizes["cylinder"] != len(scene.cylinders) or data.sizes["time"] == 0:
+        raise ValueError("not the samples of this scene")
+    for name, about in VARIABLES.items():
+        attrs = data[name].attrs
+        if attrs["units"] != about.units or not isinstance(attrs["error_estimate"], float):
+            raise ValueError(f"{name}: no unit or no error")
+
+
+_ABOUT = TypeAdapter(_About)
+_NO_RESULT = (  # what readers raise on a foreign file; RecursionError is a RuntimeError
+    *(ArithmeticError, AttributeError, LookupError, OSError),
+    *(RuntimeError, TypeError, ValueError),
+)

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crankmbs.scene import Scene, check_count
+from crankmbs.memory import Room
+from crankmbs.result import VARIABLES
+from crankmbs.scene import Scene
 from crankmbs.schema import DEGREE
 
 __all__ = ["FOLDED", "Plan", "one_period", "plan_of"]
@@ -31,6 +33,7 @@ class Plan:
     last [rad] : only the last stretch of this angle is kept; infinite when everything is
     folds [rad] : crank angles, backwards and forwards, where a rod as long as crank radius and
         offset together folds onto the crank; nothing can be said beyond
+    room : the memory for the samples
     """
 
     start: float
@@ -40,6 +43,7 @@ class Plan:
     until_time: bool
     last: float = math.inf
     folds: tuple[float, float] = (-math.inf, math.inf)
+    room: Room = field(default_factory=lambda: Room(len(VARIABLES)), compare=False)
 
     @property
     def angle_bounds(self) -> tuple[float, float]:
@@ -66,7 +70,7 @@ class Plan:
         origin = 0.0 if self.in_time else self.start
         sign = 1.0 if end >= begin else -1.0
         a, b = sorted(((begin - origin) / self.every, (end - origin) / self.every))
-        check_count(b - a)
+        self.room.check(b - a)
         grid = origin + self.every * np.arange(math.floor(a) - 1, math.ceil(b) + 2)
         inside = grid[(sign * grid > sign * begin) & (sign * grid <= sign * end)]
         return np.asarray(inside if sign > 0 else inside[::-1])
@@ -80,6 +84,10 @@ def plan_of(scene: Scene) -> Plan:
     """The plan of a scene; with every = "none" the last period at 1 degree is kept, with the sample
     before it where it begins between two.
 
+    Raises
+    ------
+    InputError : more samples than memory holds
+
     >>> plan_of(load_scene("coasting")).until
     0.5
     """
@@ -91,7 +99,11 @@ def plan_of(scene: Scene) -> Plan:
         last = scene.period + _LESS * DEGREE
         return Plan(start, DEGREE, False, until, until_time, last, folds)
     every, in_time = scene.run.every.resolve(scene.period)
-    return Plan(start, every, in_time, until, until_time, folds=folds)
+    cylinders = len(scene.cylinders)
+    room = Room(sum(cylinders if one.per_cylinder else 1 for one in VARIABLES.values()))
+    if in_time == until_time:  # else their number shows on the way
+        room.check(until / every)
+    return Plan(start, every, in_time, until, until_time, folds=folds, room=room)
 
 
 def one_period(theta: Array, period: float) -> tuple[Array, NDArray[np.intp]]:

@@ -20,10 +20,10 @@ from crankmbs.machine import Crank, Cylinder, Gas, Gravity, Layout, Piston, Rod
 from crankmbs.schema import DEGREE, Float, dumped, part
 from crankmbs.units import EXAMPLES, extent
 
-__all__ = ["Extent", "Run", "Scene", "check_count"]
+__all__ = ["Extent", "Run", "Scene"]
 
 _FARTHEST = 1e9  # rad: its last digit is 1e-7
-_MOST_SAMPLES = 2e7  # each takes a third of a kilobyte with one cylinder
+_MOST_SAMPLES = 2e7  # the memory of a machine may hold less: `crankmbs.memory`
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -177,16 +177,10 @@ class Scene:
             return
         every, in_time = self.run.every.resolve(self.period)
         if in_time == until_time:
-            check_count(until / every)
+            _check_count(until / every)
 
 
-def check_count(samples: float) -> None:
-    """Refuse more samples than memory holds.
-
-    Raises
-    ------
-    InputError : how many, and the way out
-    """
+def _check_count(samples: float) -> None:
     if samples > _MOST_SAMPLES:
         raise InputError(
             f"run.every: {samples:.3g} samples came, more than {_MOST_SAMPLES:.0e}; give a wider "

@@ -2,7 +2,7 @@
 
 Rules are written once, as type annotations and ``__post_init__`` checks of the dataclasses in
 `crankmbs.scene`; they hold for a TOML file and for a call from Python alike. A validation context
-is given for a file only: its folder.
+is given for a TOML file, its folder, and for a scene that was saved with a result.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ from pydantic import BeforeValidator, ConfigDict, Strict, ValidationError, Valid
 from crankmbs.errors import InputError, shown
 from crankmbs.sentences import sentence
 from crankmbs.tables import Table, read_table
-from crankmbs.units import EXAMPLES, quantity
+from crankmbs.units import EXAMPLES, check_size, quantity
 
-__all__ = ["DEGREE", "Float", "dumped", "from_file", "part", "si"]
+__all__ = ["DEGREE", "SAVED", "Float", "dumped", "from_file", "part", "si"]
 
 T = TypeVar("T")
 _CONFIG = ConfigDict(
@@ -30,6 +30,7 @@ _CONFIG = ConfigDict(
 _WITH_UNIT = "one number and one unit,"
 
 DEGREE = math.pi / 180.0
+SAVED = {"saved": True}  # validation context of a dumped scene: it has its tables in itself
 Float = Annotated[float, Strict()]  # lax mode would take true as 1.0 and "3" as 3.0
 
 
@@ -65,12 +66,17 @@ def si(dimension: str) -> BeforeValidator:
     """
 
     def convert(value: Any, info: ValidationInfo) -> float:
+        number = converted(value, info)
+        check_size(number, dimension, value)
+        return number
+
+    def converted(value: Any, info: ValidationInfo) -> float:
         if isinstance(value, str):
             return quantity(value, dimension)
         if isinstance(value, bool) or not isinstance(value, Real):
-            rule = "a number in SI units, or text" if info.context is None else _WITH_UNIT
+            rule = _WITH_UNIT if _of_file(info) else "a number in SI units, or text"
             raise InputError(f"must be {rule} such as {EXAMPLES[dimension]}; {shown(value)} came")
-        if info.context is not None and dimension in {"angle", "angular speed"}:
+        if _of_file(info) and dimension in {"angle", "angular speed"}:
             raise InputError(f"needs a unit, such as {EXAMPLES[dimension]}; {shown(value)} came")
         try:
             return float(value)
@@ -82,7 +88,7 @@ def si(dimension: str) -> BeforeValidator:
 
 def dumped(value: object, info: ValidationInfo) -> bool:
     """Whether this is a dumped dataclass; a file writes it as a string."""
-    return isinstance(value, dict) and info.context is None
+    return isinstance(value, dict) and not _of_file(info)
 
 
 def from_file(
@@ -96,6 +102,8 @@ def from_file(
     def convert(value: Any, info: ValidationInfo) -> Any:
         if isinstance(value, Table) or dumped(value, info):
             return value
+        if info.context is SAVED:
+            raise InputError(f"must hold its rows in a saved scene; {shown(value)} came")
         if not isinstance(value, str | Path):
             table = f" or a Table({columns})" if info.context is None else ""
             raise InputError(f"must be the name of a CSV file{table}; {shown(value)} came")
@@ -103,3 +111,8 @@ def from_file(
         return read_table(folder / value, x_units, y_units)
 
     return BeforeValidator(convert)
+
+
+def _of_file(info: ValidationInfo) -> bool:
+    """Whether this is read from a TOML file."""
+    return info.context is not None and info.context is not SAVED

@@ -4,12 +4,17 @@ from __future__ import annotations
 
 import csv
 import math
+import stat
 from dataclasses import dataclass
 from pathlib import Path
 
 from crankmbs.errors import InputError, shown
 
 __all__ = ["Table", "read_table"]
+
+_MOST = 32_000_000  # bytes: a million rows
+_LARGEST = 1e15
+_ENDLESS = (stat.S_ISCHR, stat.S_ISBLK, stat.S_ISFIFO, stat.S_ISSOCK)
 
 
 @dataclass(frozen=True)
@@ -44,6 +49,12 @@ class Table:
             )
         if not all(map(math.isfinite, self.x + self.y)):
             raise InputError(f"{self.source}: every value must be finite; a NaN or infinity came")
+        largest = max(map(abs, self.x + self.y), default=0.0)
+        if largest > _LARGEST:
+            raise InputError(
+                f"{self.source}: every value must be at most {_LARGEST:g} in size, in SI units, or "
+                f"calculating with it overflows; {largest:g} came"
+            )
 
 
 def read_table(path: Path, x_units: dict[str, float], y_units: dict[str, float]) -> Table:
@@ -84,7 +95,9 @@ def read_table(path: Path, x_units: dict[str, float], y_units: dict[str, float])
 
 def _text(path: Path) -> str:
     try:
-        return path.read_text(encoding="utf-8-sig")
+        return _content(path).decode("utf-8-sig")
+    except InputError:
+        raise
     except FileNotFoundError:
         raise InputError(f"file {path} is missing; paths are relative to the scene file") from None
     except OSError as error:
@@ -93,6 +106,23 @@ def _text(path: Path) -> str:
         raise InputError(f"file {path} is no UTF-8 text; save the table as CSV") from None
     except ValueError:
         raise InputError(f"{shown(str(path))} is no file name") from None
+
+
+def _content(path: Path) -> bytes:
+    """The bytes of a file that has an end, and not too far away."""
+    if any(kind(path.stat().st_mode) for kind in _ENDLESS):  # to open a pipe waits for its writer
+        raise InputError(
+            f"file {path} is a device, a pipe or a socket, which may have no end; save the table "
+            "as a CSV file"
+        )
+    with path.open("rb") as stream:
+        content = stream.read(_MOST + 1)
+    if len(content) > _MOST:
+        raise InputError(
+            f"file {path} is larger than {_MOST / 1e6:g} MB, the most of a table; leave out the "
+            "columns and rows that are not needed"
+        )
+    return content
 
 
 def _cells(path: Path, line: int, text: str) -> list[str]:

@@ -13,7 +13,7 @@ from functools import cache
 
 from crankmbs.errors import InputError, shown
 
-__all__ = ["EXAMPLES", "extent", "quantity"]
+__all__ = ["EXAMPLES", "check_size", "extent", "quantity"]
 
 _NUMBER_AND_UNIT = re.compile(
     r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)(\s.*|[^\W\d_].*)"
@@ -36,6 +36,7 @@ _SI = {
 }
 _DEGREE = math.pi / 180.0
 _ANGLE = {"rad": 1.0, "deg": _DEGREE, "rev": 2.0 * math.pi}
+_SMALLEST, _LARGEST = 1e-50, 1e15  # in SI units: products of several neither vanish nor overflow
 _ANGULAR_SPEED = {"rpm": math.pi / 30.0, "rad/s": 1.0, "deg/s": _DEGREE}
 _CYCLE = {"cycle", "cycles"}
 
@@ -98,6 +99,23 @@ def extent(text: str) -> tuple[float, str]:
     if factor is None:
         raise InputError(f"{shown(text)} is no angle or time: use cycles, rev, deg, rad or s")
     return number * factor, "s"
+
+
+def check_size(value: float, dimension: str, came: object) -> None:
+    """Refuse a finite SI value whose products double precision does not hold.
+
+    Raises
+    ------
+    InputError : what came, in which range it must be
+
+    >>> check_size(0.046, "length", "46 mm")
+    """
+    if math.isfinite(value) and value != 0.0 and not _SMALLEST <= abs(value) <= _LARGEST:
+        unit = {"angle": "rad", "angular speed": "rad/s"}.get(dimension) or _SI[dimension]
+        raise InputError(
+            f"must be 0, or from {_SMALLEST:g} to {_LARGEST:g} {unit} in size, or calculating with "
+            f"it overflows; {shown(came)} came"
+        )
 
 
 def _split(text: str, dimension: str) -> tuple[float, str]:

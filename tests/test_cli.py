@@ -11,6 +11,7 @@ import pytest
 from command_line import SCENE, crankmbs_, names, refused
 
 import crankmbs.cli.run
+import crankmbs.figures
 from crankmbs import Result, simulate
 from crankmbs.scene_io import models_folder
 
@@ -169,17 +170,20 @@ def test_a_run_that_is_refused_leaves_no_folder_but_those_that_were_there():
     assert names("there") == set()
 
 
-@pytest.mark.parametrize("where", ["simulate", "_write_netcdf", "_write_csv"])
-def test_an_interrupt_exits_with_130_and_leaves_nothing_half_written(where, monkeypatch):
+@pytest.mark.parametrize("where", ["simulate", "_write_netcdf", "_write_csv", "torque_figure"])
+def test_an_interrupt_exits_with_130_and_leaves_no_file_of_the_run(where, monkeypatch):
     def interrupt(*_, **__):
         raise KeyboardInterrupt
 
     owner = crankmbs.cli.run if where == "simulate" else Result
-    monkeypatch.setattr(owner, where, interrupt)
-    result = crankmbs_("run", "engine.toml", "--no-figures")
+    if where == "torque_figure":
+        monkeypatch.setitem(crankmbs.figures._FIGURES, "torque", interrupt)
+    else:
+        monkeypatch.setattr(owner, where, interrupt)
+    result = crankmbs_("run", "engine.toml")
     assert result.exit_code == 130
     assert result.stderr.strip() == "interrupted"
-    assert [file for file in Path("results").rglob("*.*") if file.name != "result.nc"] == []
+    assert list(Path("results").rglob("*.*")) == []
     assert Path("results").exists() == (where != "simulate")
 
 

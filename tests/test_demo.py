@@ -11,6 +11,8 @@ import zipfile
 import numpy as np
 import pytest
 from bokeh.document import Document
+from bokeh.models import Div
+from bokeh.server.util import match_host
 
 from crankmbs import (
     InputError,
@@ -167,6 +169,27 @@ def test_the_live_page_answers_and_says_what_cannot_run():
     assert len(state["shapes"]["liner x"]) == 2
     assert "speed" not in state
     assert len(state["words"]["torque"]) == 1
+
+
+def test_the_server_takes_no_other_host_for_its_own():
+    """Of bokeh before 3.8.2 a longer name that begins like an allowed one was allowed."""
+    assert match_host("localhost:5006", "localhost:5006")
+    assert not match_host("localhost.evil.example:5006", "localhost:5006")
+
+
+def test_a_title_of_the_page_is_no_formula(diesel):
+    """bokeh would fetch what sets formulas, from elsewhere."""
+    outcome = dataclasses.replace(
+        diesel, result=dataclasses.replace(diesel.result, scene=titled(diesel.result.scene))
+    )
+    document = Document()
+    Live(outcome.result.scene, outcome, "mine").add_to(document)
+    (title,) = (div for div in document.select({"type": Div}) if div.text == "<b>$$</b>")
+    assert title.disable_math
+
+
+def titled(scene):
+    return dataclasses.replace(scene, title="$$")
 
 
 def test_two_visitors_have_a_page_each(diesel):

@@ -78,3 +78,12 @@ def test_a_caption_of_three_lines_keeps_clear_of_the_axes(draw):
     for legend in figure.legends:
         highest = max(ax.get_tightbbox().y1 for ax in figure.axes)
         assert legend.get_window_extent().y0 - highest > 2.0 * point
+
+
+@pytest.mark.parametrize("title", ["$$", "$x^{$", "5 $ and 6 $", r"\frac"])
+def test_a_title_is_written_as_it_is(title):
+    view = last_view(simulate(dataclasses.replace(BARE, title=title)))
+    figure = speed_figure(view)
+    figure.draw_without_rendering()
+    assert figure.get_supxlabel() == f"{title}\ncrank speed (crank_angle)"
+    assert not figure.texts[-1].get_parse_math()

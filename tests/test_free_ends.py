@@ -2,8 +2,10 @@
 
 import dataclasses
 import math
+from types import SimpleNamespace
 
 import numpy as np
+import psutil
 import pytest
 
 from crankmbs import InputError, Run, Start, load_scene, simulate
@@ -49,8 +51,9 @@ def test_more_samples_than_memory_holds_are_refused_where_they_come(
 ):
     """An end at an angle does not say how many samples in time there will be."""
     scene = dataclasses.replace(COASTING, run=Run(until="30 rev", every=every))
-    monkeypatch.setattr("crankmbs.scene._MOST_SAMPLES", 2000.0)
-    with pytest.raises(InputError, match=r"run\.every: .* samples came, more than 2e\+03; give a"):
+    free = SimpleNamespace(available=2000 * 10 * 8 * 22)  # bytes
+    monkeypatch.setattr(psutil, "virtual_memory", lambda: free)
+    with pytest.raises(InputError, match=r"run\.every: .* samples of 22 numbers each came"):
         simulate(scene, formulation=formulation)
 
 

@@ -1,11 +1,14 @@
 """The compiled loops against what they replace, to rounding; and when they are loaded."""
 
 import dataclasses
+import importlib
 import math
 import re
 import subprocess
 import sys
 from collections.abc import Callable
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -153,16 +156,55 @@ def test_numba_is_loaded_where_it_pays(code: str) -> None:
 def test_kernels_work_where_nothing_can_be_cached() -> None:
     """numba raises when neither the package's folder nor the home folder can be written."""
     code = (
-        "import numba\n"
-        "plain = numba.njit\n"
-        "def njit(*args, **options):\n"
-        "    if options.pop('cache', False):\n"
-        "        raise RuntimeError('cannot cache function: no locator available')\n"
-        "    return plain(*args, **options)\n"
-        "numba.njit = njit\n"
+        "from numba.core.caching import FunctionCache\n"
+        "def cannot(*args):\n"
+        "    raise RuntimeError('cannot cache function: no locator available')\n"
+        "FunctionCache.__init__ = cannot\n"
         "from crankmbs import kernels, load_scene, simulate\n"
         "assert kernels.pay(0.0)\n"
         "assert simulate(load_scene('coasting')).status == 0\n"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
+
+
+@pytest.fixture
+def doubled(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[], Any]:
+    """A function of a module of its own, as the kernels are compiled, by each call anew."""
+    (tmp_path / "one_kernel.py").write_text("def doubled(x):\n    return 2.0 * x\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.delitem(sys.modules, "one_kernel", raising=False)
+    function = importlib.import_module("one_kernel").doubled
+    return lambda: kernels._compiled(function)
+
+
+DAMAGES = {
+    "truncated": lambda content: content[: len(content) // 2],
+    "empty": lambda content: b"",
+    "garbage": lambda content: bytes(range(256)) * 8,
+}
+
+
+@pytest.mark.parametrize("damage", DAMAGES)
+@pytest.mark.parametrize("ending", ["nbi", "nbc"])
+def test_a_damaged_cache_is_compiled_anew(
+    doubled: Callable[[], Any], tmp_path: Path, ending: str, damage: str
+) -> None:
+    assert doubled()(1.5) == 3.0
+    (file,) = tmp_path.rglob(f"*.{ending}")
+    whole = file.read_bytes()
+    file.write_bytes(DAMAGES[damage](whole))
+    assert doubled()(1.5) == 3.0
+    again = doubled()
+    assert again(1.5) == 3.0
+    assert sum(again.stats.cache_hits.values()) == 1
+
+
+def test_a_cache_that_cannot_be_written_is_left(
+    doubled: Callable[[], Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("numba.core.caching.IndexDataCacheFile.save", full)
+    assert doubled()(1.5) == 3.0

@@ -1,6 +1,8 @@
 """Tables of two columns: reading CSV, and what is refused."""
 
 import math
+import os
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -112,6 +114,34 @@ def test_a_missing_file(tmp_path):
 def test_a_folder_is_no_table(tmp_path):
     with pytest.raises(InputError, match=r"cannot be read: Is a directory$"):
         read_table(tmp_path, X, Y)
+
+
+def refused(path):
+    with pytest.raises(InputError) as caught:
+        read_table(path, X, Y)
+    return str(caught.value)
+
+
+def test_a_device_is_no_table():
+    assert refused(Path("/dev/zero")) == (
+        "file /dev/zero is a device, a pipe or a socket, which may have no end; save the table as "
+        "a CSV file"
+    )
+
+
+def test_a_pipe_is_not_waited_for(tmp_path):
+    os.mkfifo(tmp_path / "pipe.csv")
+    assert "pipe.csv is a device, a pipe or a socket" in refused(tmp_path / "pipe.csv")
+
+
+def test_a_table_beyond_all_size_is_not_read(tmp_path):
+    path = tmp_path / "table.csv"
+    with path.open("wb") as stream:
+        stream.truncate(10**12)  # no block of it is on the disk
+    assert refused(path) == (
+        f"file {path} is larger than 32 MB, the most of a table; leave out the columns and rows "
+        "that are not needed"
+    )
 
 
 def test_binary_is_no_table(tmp_path):

@@ -252,3 +252,9 @@ def test_the_figure_has_a_panel_for_every_error_and_a_line_for_every_contender(o
         assert ax.get_ylim() == (1e-3, 1.0)
     assert {ax.get_xscale() for ax in figure.axes} == {"log"}
     assert figure.get_supxlabel().endswith("machine\nversions")
+
+
+def test_what_it_was_measured_on_is_no_formula(outcome):
+    figure = work_precision_figure(dataclasses.replace(outcome, machine=("$x^{$",)))
+    figure.draw_without_rendering()
+    assert figure.get_supxlabel().endswith("\n$x^{$")

@@ -15,29 +15,28 @@ from crankmbs.choose import choose
 from crankmbs.cli.animate import animate_scene
 from crankmbs.cli.check import describe
 from crankmbs.cli.demo import demonstrate, write_page
+from crankmbs.cli.ending import ending
 from crankmbs.cli.lesson import list_lessons, make_lesson
 from crankmbs.cli.run import run_scene
 from crankmbs.cli.validate import validate_scene
 from crankmbs.cli.work_precision import measure_scene
-from crankmbs.errors import CrankmbsError, InputError, OutputError
-from crankmbs.result import write_in_one_move
+from crankmbs.errors import InputError, OutputError
+from crankmbs.files import write_in_one_move
 from crankmbs.scene_io import load_scene, scene_path, shipped_scenes
 
 __all__ = ["app", "main"]
 
 
 class _Commands(TyperGroup):
-    """Turns the package's errors and an interrupt into a message and an exit status."""
+    """Turns what ends a command early into a message and an exit status."""
+
+    def make_context(self, *args: Any, **options: Any) -> Any:
+        with ending():  # --help and --version are printed here
+            return super().make_context(*args, **options)
 
     def invoke(self, ctx: Any) -> Any:
-        try:
+        with ending():
             return super().invoke(ctx)
-        except CrankmbsError as error:
-            typer.echo(f"error: {error}", err=True)
-            raise typer.Exit(2) from None
-        except KeyboardInterrupt:
-            typer.echo("interrupted", err=True)
-            raise typer.Exit(130) from None
 
 
 app = typer.Typer(

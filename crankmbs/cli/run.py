@@ -13,8 +13,9 @@ from crankmbs.choose import choose
 from crankmbs.cli.folder import writable, wrote
 from crankmbs.cli.progress import progress
 from crankmbs.cli.report import comparison, report
-from crankmbs.confirm import differences
+from crankmbs.confirm import Difference, differences
 from crankmbs.errors import InputError
+from crankmbs.files import together
 from crankmbs.measures import measure
 from crankmbs.result import Result
 from crankmbs.scene import Scene
@@ -59,26 +60,32 @@ def run_scene(
     folder = writable(Path("results", path.stem) if out is None else out)
 
     result = _simulate(scene, cost_cap, rtol=options.get("rtol"))
-    result.save(folder)
-    typer.echo(report(path.stem, result, measure(result)))
-    written = ["result.nc", "motion.csv"]
-    complete = result.status == 0
-    if figures:
-        from crankmbs.figures import save_figures  # matplotlib is imported only when it is used
-
-        with progress("figures"):
-            written += [file.name for file in save_figures(result, folder)]
+    said = [report(path.stem, result, measure(result))]
+    complete, rows = result.status == 0, None
     if confirm:
         check = _simulate(scene, cost_cap, formulation="multibody")
-        complete = complete and check.status == 0
-        rows = differences(result, check)
-        typer.echo(comparison(result, check, rows))
-        if figures:
-            from crankmbs.figures import save_differences
-
-            written.append(save_differences(result, rows, folder).name)
-    typer.echo(f"\n{wrote(folder, written)}")
+        complete, rows = complete and check.status == 0, differences(result, check)
+        said.append(comparison(result, check, rows))
+    written = _save(result, rows, folder, figures=figures)
+    typer.echo("\n".join([*said, "", wrote(folder, written)]))  # a screen may fail: files first
     return complete
+
+
+def _save(
+    result: Result, rows: tuple[Difference, ...] | None, folder: Path, *, figures: bool
+) -> list[str]:
+    """Write data and figures, which appear together; return their names."""
+    written = ["result.nc", "motion.csv"]
+    with together(folder) as part:
+        result.save(part)
+        if figures:
+            from crankmbs.figures import save_differences, save_figures  # matplotlib only here
+
+            with progress("figures"):
+                written += [file.name for file in save_figures(result, part)]
+                if rows is not None:
+                    written.append(save_differences(result, rows, part).name)
+    return written
 
 
 def override(scene: Scene, options: Mapping[str, Any]) -> Scene:

@@ -30,6 +30,7 @@ from crankmbs.compare import (
     save_comparison,
 )
 from crankmbs.digits import digits
+from crankmbs.files import together
 from crankmbs.scene_io import load_scene, scene_path
 from crankmbs.simulate import simulate
 
@@ -72,19 +73,20 @@ def validate_scene(
             scene, formulation=formulation, rtol=options.get("rtol"), cost_cap=cost_cap
         )
     comparison, split = compare(result, cylinder), budget(result, cylinder)
-    written = [save(split, folder) for save in (save_budget, save_budget_peaks)]
-    written.append(save_comparison(comparison, folder))
+    with together(folder) as part:  # before anything is printed: a screen may fail
+        written = [save(split, part) for save in (save_budget, save_budget_peaks)]
+        written.append(save_comparison(comparison, part))
+        if figures:
+            from crankmbs.figures import save_validation  # matplotlib only when it is used
+
+            with progress("figures"):
+                written += save_validation(comparison, split, part)
     typer.echo(f"{_first(comparison, split)}\n\n{result}\n\n{_about(comparison.stretch)}\n")
     typer.echo(f"{_causes(split)}\n\n{_ADDED}\n\n{_words(split)}\n")
     for reference in comparison.references:
         typer.echo(f"{_against(comparison, reference)}\n")
     for line in _left_out((*comparison.left_out, *split.left_out)):
         typer.echo(line)
-    if figures:
-        from crankmbs.figures import save_validation  # matplotlib only when it is used
-
-        with progress("figures"):
-            written += save_validation(comparison, split, folder)
     typer.echo(f"\n{wrote(folder, [file.name for file in written])}")
     return result.status == 0
 

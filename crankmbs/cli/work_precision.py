@@ -11,6 +11,7 @@ from crankmbs.cli.folder import writable, wrote
 from crankmbs.cli.progress import progress
 from crankmbs.cli.text import table
 from crankmbs.digits import error_digits
+from crankmbs.files import together
 from crankmbs.scene_io import load_scene, scene_path
 from crankmbs.work_precision import (
     TARGETS,
@@ -40,15 +41,15 @@ def measure_scene(name: str, *, peers: bool, out: Path | None) -> bool:
     folder = writable(Path("results", path.stem) if out is None else out)
     with progress("speed against error"):
         outcome = work_precision(scene, peers=peers)
+    with together(folder) as part, progress("figure"):  # before anything is printed
+        from crankmbs.figures.work_precision import save_figure  # matplotlib only when it is used
+
+        written = [save_work_precision(outcome, part), save_figure(outcome, part)]
     typer.echo(f"{path.stem}: {scene.title}\n\n{_errors(outcome)}\n")
     if scene.motion is None:  # a prescribed motion is exact in all of them
         typer.echo(f"{_times(outcome)}\n")
     for sentence in _sentences(outcome):
         typer.echo(textwrap.fill(sentence, 100, subsequent_indent="  "))
-    with progress("figure"):
-        from crankmbs.figures.work_precision import save_figure  # matplotlib only when it is used
-
-        written = [save_work_precision(outcome, folder), save_figure(outcome, folder)]
     typer.echo(f"\n{wrote(folder, [file.name for file in written])}")
     return outcome.reference.result.status == 0
 

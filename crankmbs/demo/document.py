@@ -97,6 +97,7 @@ def add_page(
     )
     title = Div(
         text=f"<b>{html.escape(scene.title or 'scene')}</b>",
+        disable_math=True,  # in a title a $ is no formula
         width=_LEFT + _RIGHT - 420,
         height=24,
         styles={"font-size": "18px", "overflow": "hidden", "white-space": "nowrap"},

@@ -24,7 +24,7 @@ from crankmbs.demo.outcome import Outcome, prepared, run
 from crankmbs.demo.state import Data, state_of
 from crankmbs.demo.views import STORES
 from crankmbs.errors import CrankmbsError, InputError, shown
-from crankmbs.result import write_in_one_move
+from crankmbs.files import write_in_one_move
 from crankmbs.scene import Scene
 
 __all__ = ["save_page"]

@@ -18,7 +18,8 @@ from crankmbs.figures.strips import (
     torque_figure,
 )
 from crankmbs.figures.view import View, last_view
-from crankmbs.result import Result, write_in_one_move
+from crankmbs.files import together, write_in_one_move
+from crankmbs.result import Result
 
 __all__ = [
     "budget_figure",
@@ -49,14 +50,17 @@ _FIGURES: dict[str, Callable[[View], Figure]] = {
 
 
 def save_figures(result: Result, folder: Path) -> list[Path]:
-    """Draw every figure of a result into PNG files, each replaced in one move.
+    """Draw every figure of a result into PNG files, which appear together.
 
     Raises
     ------
     OutputError : the folder cannot be made or written
     """
     view = last_view(result)
-    return [_save(draw(view), folder / f"{name}.png") for name, draw in _FIGURES.items()]
+    with together(folder) as part:
+        for name, draw in _FIGURES.items():
+            _save(draw(view), part / f"{name}.png")
+    return [folder / f"{name}.png" for name in _FIGURES]
 
 
 def save_differences(result: Result, differences: tuple[Difference, ...], folder: Path) -> Path:

@@ -22,8 +22,9 @@ from crankmbs.figures.frames import Frames, frames_of
 from crankmbs.figures.mechanism import Drawing, on_paper, slices
 from crankmbs.figures.style import STYLE, crank_axis, footer, line_of
 from crankmbs.figures.view import View, last_view
+from crankmbs.files import write_in_one_move
 from crankmbs.mechanism import mechanism
-from crankmbs.result import Result, write_in_one_move
+from crankmbs.result import Result
 
 __all__ = ["check_format", "save_animation"]
 

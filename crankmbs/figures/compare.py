@@ -23,7 +23,7 @@ from crankmbs.compare import (
 )
 from crankmbs.figures.style import STYLE, crank_axis, footer, force_scale, line_of, panels
 from crankmbs.figures.view import last_view
-from crankmbs.result import write_in_one_move
+from crankmbs.files import together
 
 __all__ = ["FAMILIES", "budget_figure", "comparison_figure", "save_validation"]
 
@@ -52,22 +52,23 @@ _STYLES: dict[str, dict[str, Any]] = {
 
 
 def save_validation(comparison: Comparison, budget: Budget, folder: Path) -> list[Path]:
-    """Draw comparison and budget of every family into PNG files, each replaced in one move.
+    """Draw comparison and budget of every family into PNG files, which appear together.
 
     Raises
     ------
     OutputError : the folder cannot be made or written
     """
     files = []
-    for family, quantities in FAMILIES.items():
-        drawn = {
-            f"comparison_{family}.png": comparison_figure(comparison, quantities),
-            f"budget_{family}.png": budget_figure(budget, quantities),
-        }
-        for name, figure in drawn.items():
-            if figure is not None:
-                _save(figure, folder / name)
-                files.append(folder / name)
+    with together(folder) as part:
+        for family, quantities in FAMILIES.items():
+            drawn = {
+                f"comparison_{family}.png": comparison_figure(comparison, quantities),
+                f"budget_{family}.png": budget_figure(budget, quantities),
+            }
+            for name, figure in drawn.items():
+                if figure is not None:
+                    figure.savefig(part / name, format="png")
+                    files.append(folder / name)
     return files
 
 
@@ -167,7 +168,3 @@ def _panel(ax: Axes, quantity: str, degrees: Array, curves: dict[str, Array], wh
     for label, curve in curves.items():
         ax.plot(degrees, curve / scale, **_STYLES[label], label=label)
     ax.set_ylabel(f"{what}[{unit}]")
-
-
-def _save(figure: Figure, file: Path) -> None:
-    write_in_one_move(file, lambda part: figure.savefig(part, format="png"))

@@ -18,6 +18,7 @@ from crankmbs.result import Result
 __all__ = [
     "COLOURS",
     "STYLE",
+    "caption",
     "crank_axis",
     "footer",
     "force_scale",
@@ -157,4 +158,9 @@ def footer(figure: Figure, result: Result, about: str) -> None:
     """Say under the figure which run it shows."""
     lines = textwrap.wrap(result.scene.title, 80, max_lines=2, placeholder=" ...")
     lines.append(f"{about} ({result.formulation})")
-    figure.supxlabel("\n".join(lines), fontsize=11, color="0.35")
+    caption(figure, lines)
+
+
+def caption(figure: Figure, lines: list[str]) -> None:
+    """Write lines under the figure as they are: in a title a $ is no formula."""
+    figure.supxlabel("\n".join(lines), fontsize=11, color="0.35", parse_math=False)

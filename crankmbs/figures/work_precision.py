@@ -10,8 +10,8 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from crankmbs.figures.style import STYLE, panels
-from crankmbs.result import write_in_one_move
+from crankmbs.figures.style import STYLE, caption, panels
+from crankmbs.files import write_in_one_move
 from crankmbs.work_precision import END, MOTION, WorkPrecision
 
 __all__ = ["save_figure", "work_precision_figure"]
@@ -61,11 +61,7 @@ def work_precision_figure(outcome: WorkPrecision) -> Figure:
             ax.set_ylabel("wall time [s]")
     handles, labels = axes[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside upper center", ncols=min(len(labels), 5))
-    figure.supxlabel(
-        "\n".join([outcome.reference.result.scene.title, *outcome.machine]),
-        fontsize=11,
-        color="0.35",
-    )
+    caption(figure, [outcome.reference.result.scene.title, *outcome.machine])
     return figure
 
 

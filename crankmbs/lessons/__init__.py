@@ -9,7 +9,7 @@ from importlib import import_module
 from pathlib import Path
 
 from crankmbs.errors import InputError
-from crankmbs.result import write_in_one_move
+from crankmbs.files import write_in_one_move
 from crankmbs.sentences import did_you_mean
 
 __all__ = ["LESSONS", "check_lesson", "write_lesson"]

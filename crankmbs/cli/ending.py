@@ -1,0 +1,54 @@
+"""How a command ends that does not reach its end: a message and an exit status, no traceback."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+
+import typer
+
+from crankmbs.errors import CrankmbsError
+
+__all__ = ["ending"]
+
+_MEMORY = (
+    "this machine has not enough memory for it; give a wider run.every, or "
+    'every = "none" to keep the last cycle alone'
+)
+
+
+@contextmanager
+def ending() -> Iterator[None]:
+    """Exit 2 for what cannot be, 130 for an interrupt, 141 where nobody reads the output on."""
+    try:
+        yield
+    except CrankmbsError as error:
+        raise _exit(2, f"error: {error}") from None
+    except MemoryError:
+        raise _exit(2, f"error: {_MEMORY}") from None
+    except KeyboardInterrupt:
+        raise _exit(130, "interrupted") from None
+    except BrokenPipeError:  # head, or a pager that was left
+        _close_output()
+        raise typer.Exit(141) from None
+    except OSError as error:
+        if error.filename is not None:  # no error of the output
+            raise
+        _close_output()
+        why = f"standard output cannot be written ({error.strerror})"
+        raise _exit(2, f"error: {why}; send it elsewhere") from None
+
+
+def _exit(status: int, message: str) -> typer.Exit:
+    with suppress(OSError):  # stderr may be as full
+        typer.echo(message, err=True)
+    return typer.Exit(status)
+
+
+def _close_output() -> None:
+    """Send what is still to be written nowhere, or Python would fail once more when it ends."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, sys.stdout.fileno())
+    os.close(nowhere)

@@ -1,0 +1,78 @@
+"""Datasets to netCDF and back; no file is handed to HDF5 to write, and none is believed."""
+
+from __future__ import annotations
+
+import io
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import h5py
+    import xarray as xr
+
+__all__ = ["read_netcdf", "write_netcdf"]
+
+
+def write_netcdf(data: xr.Dataset, file: Path) -> None:
+    """Write a dataset as netCDF-4.
+
+    It is built in memory: where a disk is full, HDF5 fails once more when the process ends, and
+    ends it with a segmentation fault.
+
+    Raises
+    ------
+    OSError : the file cannot be written
+    """
+    import h5netcdf
+    import xarray as xr
+
+    built = io.BytesIO()
+    with h5netcdf.File(built, "w") as opened:
+        data.dump_to_store(xr.backends.H5NetCDFStore(opened))
+    with file.open("wb") as stream:
+        stream.write(built.getbuffer())
+
+
+def read_netcdf(file: Path, dims: Mapping[str, tuple[str, ...]]) -> xr.Dataset:
+    """Read a dataset that `write_netcdf` wrote, all of it; nothing else is opened.
+
+    dims : variable -> dimensions, of those that must be there
+
+    Raises
+    ------
+    ValueError : it holds links, or less than it promises, or not these variables as floats
+    OSError, LookupError, RuntimeError, TypeError : HDF5 cannot make sense of it
+    """
+    import h5py
+    import xarray as xr
+
+    with h5py.File(file) as raw:
+        _check_plain(raw, file.stat().st_size)
+    with xr.open_dataset(
+        file, engine="h5netcdf", decode_times=False, phony_dims="access"
+    ) as opened:
+        data = opened.load()
+    for name, names in dims.items():
+        if data[name].dims != names or data[name].dtype.kind != "f":
+            raise ValueError(f"{name} is no variable over {names}")
+    return data
+
+
+def _check_plain(raw: h5py.File, size: int) -> None:
+    """Numbers alone, in this file and as many as it promises: a header of a few bytes can ask for
+    any memory."""
+    import h5py
+
+    promised = 0
+    for name in raw:
+        plain = isinstance(raw.get(name, getlink=True), h5py.HardLink)
+        found = raw[name] if plain else None
+        if not isinstance(found, h5py.Dataset) or found.external or found.is_virtual:
+            raise ValueError(f"{name} lies elsewhere")
+        if found.dtype.kind not in "fi":
+            raise ValueError(f"{name} has no numbers")
+        promised += math.prod(found.shape or ()) * found.dtype.itemsize
+    if promised > size:
+        raise ValueError(f"{promised} bytes promised, {size} there")
