@@ -36,6 +36,8 @@ __all__ = ["run"]
 _PASSES = 12
 _VAIN = 8  # after as many vain hand-overs the crank must turn through a period before the next
 _FAST = (2.0, 8.0)  # as many times as fast as need be either pass takes over: the better one later
+# what either pass may miss at kinks of the loads: of the local tolerance, and at most
+_KINKS, _MOST_MISSED = 0.1, (math.inf, 1e-11)
 _MOST_CELLS = 20_000
 _FINEST = 3e-14  # what rounding leaves of a cell
 _FINEST_STEP = 1e-15  # the same over time
@@ -140,6 +142,7 @@ def _travel(grid: Grid, local: float, *, by_angle: bool, first: _Pass | None = N
     fast: list[tuple[float, float]] = []
     slow: list[float] = []
 
+    kinks = max(min(_KINKS * local, _MOST_MISSED[first is not None]), _FINEST_STEP)
     vain = 0  # hand-overs to the crank angle that did not carry the motion through a period
 
     def is_fast(at: State, branch: Branch) -> bool:
@@ -150,7 +153,7 @@ def _travel(grid: Grid, local: float, *, by_angle: bool, first: _Pass | None = N
         return may and crank_angle.is_fast(grid, at, branch, _FAST[first is not None])
 
     def windows(at: State) -> Generator[Piece, None, str]:
-        pieces = crank_angle.advance(grid, at, plan)
+        pieces = crank_angle.advance(grid, at, plan, kinks)
         while True:
             try:
                 window = next(pieces)
