@@ -118,11 +118,35 @@ class Grid:
         if turned[-1] > reach:
             turned[-1] = reach
             width[-1] = reach - turned[-2]
+        return self._filled(theta, sense, cell, width, turned)
+
+    def same(self, strip: Strip, theta: float, sense: float) -> Strip:
+        """The cells of another grid's strip from a crank angle on, where edges are the same."""
+        return self._filled(theta, sense, strip.cell, strip.width, strip.turned)
+
+    def cut(self, strip: Strip, theta: float, sense: float, marks: Array) -> Strip:
+        """A strip from a crank angle on with edges more, at angles turned [rad]."""
+        marks = np.unique(marks)
+        marks = marks[np.append(True, np.diff(marks) > _SLIVER)]
+        k = np.searchsorted(strip.turned, marks) - 1
+        apart = np.minimum(marks - strip.turned[k], strip.turned[k + 1] - marks) > _SLIVER
+        marks, k = marks[apart], k[apart]
+        of = np.insert(np.arange(len(strip.cell)), k, k)
+        turned = np.insert(strip.turned, k + 1, marks)
+        width = np.where(np.isin(of, k), np.diff(turned), strip.width[of])
+        return self._filled(theta, sense, strip.cell[of], width, turned)
+
+    def _filled(
+        self, theta: float, sense: float, cell: NDArray[np.intp], width: Array, turned: Array
+    ) -> Strip:
+        """The strip of these cells; what is a part of a cell is tabulated anew."""
         inertia, torque = (table.take(cell, axis=0) for table in self.tables)
         if sense < 0.0:
             inertia, torque = inertia[:, ::-1].copy(), torque[:, ::-1].copy()
-        parts = [k for k in {0, len(cell) - 1} if width[k] != whole[cell[k]]]
-        if parts:
+        parts = np.flatnonzero(width != np.diff(self.edges)[cell])
+        if len(parts):
+            period = float(self.edges[-1])
+            local = theta - math.floor((theta + sense * _SLIVER) / period) * period
             start = local + sense * turned[parts]
             inertia[parts], torque[parts] = self._tabulate(start, sense * width[parts])
         return Strip(cell, width, turned, inertia, torque)

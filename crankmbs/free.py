@@ -36,6 +36,10 @@ __all__ = ["run"]
 _PASSES = 12
 _VAIN = 8  # after as many vain hand-overs the crank must turn through a period before the next
 _FAST = (2.0, 8.0)  # as many times as fast as need be either pass takes over: the better one later
+# what either pass may miss at kinks of the loads: of the local tolerance, and at most
+_KINKS, _MOST_MISSED = 0.1, (math.inf, 1e-11)
+_ROAMING = 3.0  # of a step's tolerance: what it may miss of the largest torque across knots
+_EVALUATIONS = 500_000  # over time, for which a second of the cost cap stands
 _MOST_CELLS = 20_000
 _FINEST = 3e-14  # what rounding leaves of a cell
 _FINEST_STEP = 1e-15  # the same over time
@@ -56,7 +60,7 @@ _ENDS = {
     "costly": (
         -1,
         "stopped at {angle:.6g} degrees: to follow the motion over time beyond it takes more than "
-        "{evaluations} evaluations",
+        "the {allowed} evaluations that the cost cap allows; raise it or ask for less",
     ),
     "failed": (-1, "stopped at {angle:.6g} degrees: no step over time is short enough there"),
 }
@@ -83,12 +87,18 @@ class _Pass(NamedTuple):
 
 
 def run(
-    scene: Scene, pressure: PeriodicPressure | None, formulation: str, rtol: float
+    scene: Scene,
+    pressure: PeriodicPressure | None,
+    formulation: str,
+    rtol: float,
+    cost_cap: float,
 ) -> Assembled:
     """Solve a free motion to a relative global error, twice: the second pass is of higher order.
 
     formulation : "crank_angle" (time carries it across rest) or "minimal" (time throughout)
+    cost_cap [s] : for which time is evaluated in either pass before it gives up, on a slow machine
     """
+    allowed = int(min(cost_cap * _EVALUATIONS, 1e18))
     by_angle = formulation == "crank_angle"
     stages = min(3 + round(-math.log10(rtol) / 3.0), 7)
     grid = grid_of(scene, pressure, gauss(stages))
@@ -96,13 +106,13 @@ def run(
     local, least, rounded = rtol, math.inf, False
     finest = _FINEST if by_angle else 100.0 * _FINEST_STEP
     for left in reversed(range(_PASSES)):
-        answer = _travel(grid, local, by_angle=by_angle)
+        answer = _travel(grid, local, allowed, by_angle=by_angle)
         parts = _parts(grid, answer.local, local)
         if left and parts.max() > 1 and len(grid.edges) < _MOST_CELLS:
             grid = grid.split(parts)
             continue
-        better = _travel(grid.finer, 1e-2 * local, by_angle=by_angle, first=answer)
-        solution = _solution(answer, better, plan_of(scene))
+        better = _travel(grid.finer, 1e-2 * local, allowed, by_angle=by_angle, first=answer)
+        solution = _solution(answer, better, plan_of(scene), allowed)
         assembled = assemble(scene, pressure, solution)
         near = local <= 10.0 * finest
         estimate = assembled.relative_error * (2.0 if near else 1.0)
@@ -122,24 +132,29 @@ def run(
     return best
 
 
-def _travel(grid: Grid, local: float, *, by_angle: bool, first: _Pass | None = None) -> _Pass:
+def _travel(
+    grid: Grid, local: float, allowed: int, *, by_angle: bool, first: _Pass | None = None
+) -> _Pass:
     """One pass from start to end, handing over between the formulations near rest; a second one
-    betters the ``first``."""
+    betters the ``first``. Over time it takes no more than the evaluations ``allowed``."""
     scene = grid.scene
     assert scene.start is not None
     plan = plan_of(scene)
     state = State(0.0, scene.start.angle, scene.start.speed, 0.0)
     steady = not any(isinstance(load, TimeTable) for load in scene.torque)
     begin = first.begin if first else _first(grid, state)
-    path = Path(plan, begin, can_swing=steady)
+    path = Path(plan, begin, can_swing=steady, allowed=allowed)
     if first:  # it begins a rounding ahead: so the difference knows what the motion makes of one
         ahead = math.copysign(ANGLE_ROUNDING * state.theta, state.omega or float(begin.alpha[0]))
         state = state._replace(theta=state.theta + ahead)
-    reduced = cache(partial(Reduced, scene, grid.pressure))  # only near rest is it needed
+    tolerance = max(0.01 * local, _FINEST_STEP)
+    roaming = partial(Reduced, scene, grid.pressure, _ROAMING * tolerance)
+    reduced = cache(roaming)  # where the crank angle serves only near rest is it needed
     worst = np.zeros((2, len(grid.edges) - 1))
     fast: list[tuple[float, float]] = []
     slow: list[float] = []
 
+    kinks = max(min(_KINKS * local, _MOST_MISSED[first is not None]), _FINEST_STEP)
     vain = 0  # hand-overs to the crank angle that did not carry the motion through a period
 
     def is_fast(at: State, branch: Branch) -> bool:
@@ -150,7 +165,7 @@ def _travel(grid: Grid, local: float, *, by_angle: bool, first: _Pass | None = N
         return may and crank_angle.is_fast(grid, at, branch, _FAST[first is not None])
 
     def windows(at: State) -> Generator[Piece, None, str]:
-        pieces = crank_angle.advance(grid, at, plan)
+        pieces = crank_angle.advance(grid, at, plan, kinks)
         while True:
             try:
                 window = next(pieces)
@@ -165,12 +180,12 @@ def _travel(grid: Grid, local: float, *, by_angle: bool, first: _Pass | None = N
     while ending in ("slow", "fast"):
         at = path.state or state
         if ending == "slow":
-            tolerance = max(0.01 * local, _FINEST_STEP)
             parts = 2 if first else 1
             slow.append(at.time)
-            ending = path.follow(minimal.advance(reduced(), at, plan, tolerance, parts, is_fast))
+            pieces = minimal.advance(reduced(), at, plan, tolerance, parts, path.left, is_fast)
+            ending = path.follow(pieces, over_time=True)
         else:
-            ending = path.follow(windows(at))
+            ending = path.follow(windows(at), over_time=False)
             now = path.state or state
             fast.append((at.time, now.time))
             vain += bool(slow) and abs(now.theta - at.theta) < scene.period
@@ -207,7 +222,7 @@ def _parts(grid: Grid, worst: Array, local: float) -> NDArray[np.intp]:
     return np.asarray(np.clip(np.nan_to_num(parts, nan=2.0), 1, 4), dtype=np.intp)
 
 
-def _solution(answer: _Pass, better: _Pass, plan: Plan) -> Solution:
+def _solution(answer: _Pass, better: _Pass, plan: Plan, allowed: int) -> Solution:
     path, endings = answer.path, {answer.ending, better.ending}
     ends = _RESTING if plan.until_time else _RESTING - {"end"}
     both, in_time, reversals = (answer.samples, better.samples), plan.in_time, path.reversals
@@ -228,7 +243,7 @@ def _solution(answer: _Pass, better: _Pass, plan: Plan) -> Solution:
         angle=math.degrees(float(samples.theta[-1])),
         speed=float(samples.omega[-1]) * 30.0 / math.pi,
         reversals=path.reversals,
-        evaluations=max(path.evaluations, better.path.evaluations),
+        allowed=allowed,
     )
     reasons: tuple[str, ...] = ()
     if answer.slow:

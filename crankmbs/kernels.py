@@ -20,7 +20,7 @@ __all__ = ["affine", "kernel", "newton", "pay"]
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
-Branch = tuple[float, float, float, float]  # c0, ct, c1, c2 of `crankmbs.torque`
+Loads = tuple[Array, Array, Array, Array]  # the tables of a course of `crankmbs.torque`
 F = TypeVar("F", bound=Callable[..., object])
 
 _LOADING = 0.5  # s, for numba and the kernels from its cache
@@ -131,7 +131,7 @@ def affine(
 
 @kernel
 def newton(
-    branch: Branch,
+    loads: Loads,
     bounds: tuple[float, float, float],
     start: tuple[float, float, float],
     rule: tuple[Array, Array],
@@ -141,10 +141,10 @@ def newton(
     torque: Array,
     slowness: Array,
 ) -> int:
-    """Solve cells by Newton's method, to the end of the branch; fill what follows ``cells``.
+    """Solve cells by Newton's method, to the end of the loads' course; fill what follows ``cells``.
 
-    branch : c0, ct, c1, c2; bounds : its end in time, its lowest and highest speed; start : energy,
-    time and sense; rule : matrix and weights; cells : width, and inertia and torque at the nodes
+    loads : their tables; bounds : their end in time, lowest and highest speed; start : energy, time
+    and sense; rule : matrix and weights; cells : width, and inertia and torque at the nodes
 
     Returns
     -------
@@ -155,15 +155,19 @@ def newton(
     matrix, weights = rule
     width, inertia, rest = cells
     energy, room = np.empty(len(weights)), np.empty((len(weights) + 1, len(weights)))
+    steps = np.empty(matrix.shape)
+    row = np.zeros(2, np.intp)
     edges[0], time[0] = begin, t
     lost, late = 0.0, 0.0  # as in `affine`
     for k in range(len(width)):
-        steps = width[k] * matrix
-        last = torque[k - 1, -1] if k > 0 else 0.0
+        load = torque[k - 1, -1] - rest[k - 1, -1] if k > 0 else 0.0
         for j in range(len(weights)):
-            energy[j] = begin + sense * last * np.sum(steps[j])
-        at = (begin, t, sense)
-        if not _solve(energy, room, at, branch, steps, inertia[k], rest[k], torque[k], slowness[k]):
+            energy[j] = begin
+            for i in range(len(weights)):
+                steps[j, i] = width[k] * matrix[j, i]
+                energy[j] += sense * steps[j, i] * (rest[k, i] + load)
+        at, of_angle, out = (begin, t, sense), (inertia[k], rest[k]), (torque[k], slowness[k])
+        if not _solve(energy, room, at, loads, row, steps, of_angle, out):
             return k
         inside, work, spent = True, 0.0, 0.0
         for j in range(len(weights)):
@@ -187,19 +191,22 @@ def _solve(
     energy: Array,
     room: Array,
     start: tuple[float, float, float],
-    branch: Branch,
+    loads: Loads,
+    row: Index,
     steps: Array,
-    inertia: Array,
-    rest: Array,
-    torque: Array,
-    slowness: Array,
+    of_angle: tuple[Array, Array],
+    out: tuple[Array, Array],
 ) -> bool:
-    """Newton's method in one cell, from the guess in ``energy``; whether it converges."""
-    c0, ct, c1, c2 = branch
+    """Newton's method in one cell, from the guess in ``energy``; whether it converges.
+
+    row : numbers of the last rows of the loads, kept from cell to cell; of_angle : inertia and
+    torque at the nodes; out : torque and slowness, filled
+    """
+    (times, in_time, speeds, in_speed), (inertia, rest), (torque, slowness) = loads, of_angle, out
     begin, t, sense = start
     stages = len(energy)
     new, system = room[0].reshape(stages, 1), room[1:]
-    change = math.inf
+    change, f, g = math.inf, row[0], row[1]
     for _ in range(_MOST_NEWTON):
         for j in range(stages):
             slowness[j] = math.sqrt(0.5 * inertia[j] / energy[j]) if energy[j] > 0.0 else math.nan
@@ -208,13 +215,17 @@ def _solve(
             at = t
             for i in range(stages):
                 at += steps[j, i] * slowness[i]
-            torque[j] = rest[j] + c0 + ct * at + (c1 + c2 * omega) * omega
+            f, g = _row(times, at, f), _row(speeds, omega, g)
+            torque[j] = rest[j] + in_time[f, 0] + in_time[f, 1] * at
+            torque[j] += in_speed[g, 0] + (in_speed[g, 1] + in_speed[g, 2] * omega) * omega
+        row[0], row[1] = f, g
         if not change >= _SETTLED:
             break
         new[:] = begin
         for j in range(stages):
             omega = sense / slowness[j]
-            rate = sense * (c1 + 2.0 * c2 * omega) / (inertia[j] * omega)
+            g = _row(speeds, omega, g)
+            rate = sense * (in_speed[g, 1] + 2.0 * in_speed[g, 2] * omega) / (inertia[j] * omega)
             push = sense * torque[j] - rate * energy[j]
             for i in range(stages):
                 new[i, 0] += steps[i, j] * push
@@ -225,6 +236,16 @@ def _solve(
             change += abs(new[j, 0] / energy[j] - 1.0)
             energy[j] = new[j, 0]
     return change <= _GOOD
+
+
+@kernel
+def _row(rows: Array, value: float, near: int) -> int:
+    """How many of the increasing rows are not above a value, counted from a number near it."""
+    while near < len(rows) and rows[near] <= value:
+        near += 1
+    while near > 0 and rows[near - 1] > value:
+        near -= 1
+    return near
 
 
 @kernel

@@ -14,28 +14,40 @@ from crankmbs.sampling import Plan
 __all__ = ["Path"]
 
 _VAIN = 20  # as many reversals that reach no farther, and the end is not coming
+_SAMPLE = 50  # evaluations as costly as a sample of a swing
 
 
 class Path:
-    """The pieces of one pass, sampled as they come; with a finite plan.last only the last stay."""
+    """The pieces of one pass, sampled as they come; with a finite plan.last only the last stay.
 
-    def __init__(self, plan: Plan, first: Samples, *, can_swing: bool) -> None:
-        self._plan, self._can_swing = plan, can_swing
+    can_swing : whether a swing that reaches no farther is known to go on so for ever
+    left : evaluations over time that are still allowed
+    """
+
+    def __init__(self, plan: Plan, first: Samples, *, can_swing: bool, allowed: int) -> None:
+        self._plan, self._can_swing, self.left = plan, can_swing, allowed
         self._farthest, self._since = 0.0, 0  # reach [rad], and reversals that reached no farther
         self.turned_back = plan.start  # crank angle of the last reversal [rad]
         self._blocks, self._count = [first], 1
         self._tail: deque[Piece] = deque()
         self.reversals = self.steps = self.evaluations = 0
 
-    def follow(self, pieces: Generator[Piece, None, str]) -> str:
+    def follow(self, pieces: Generator[Piece, None, str], *, over_time: bool) -> str:
         """Add every piece; return why they ended."""
         while True:
             try:
-                self._add(next(pieces))
+                piece = next(pieces)
             except StopIteration as stop:
                 return str(stop.value)
+            count = self._count
+            self._add(piece)
+            self.left -= piece.evaluations if over_time else 0
             if self._swings():
-                return "swing"
+                if self._can_swing:
+                    return "swing"
+                self.left -= _SAMPLE * (self._count - count)
+                if self.left <= 0:
+                    return "costly"
 
     def _add(self, piece: Piece) -> None:
         self.steps += piece.steps
@@ -58,8 +70,7 @@ class Path:
 
     def _swings(self) -> bool:
         """Whether an end in angle is not coming nearer, reversal by reversal."""
-        vain = self._since > _VAIN
-        return vain and self._can_swing and not self._plan.until_time
+        return self._since > _VAIN and not self._plan.until_time
 
     def samples(self) -> Samples:
         """All samples, the last one exactly at the end."""

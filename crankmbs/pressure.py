@@ -20,13 +20,22 @@ from crankmbs.pressure_rows import close, closing_row, interpolate, overshoot
 from crankmbs.scene import Scene
 from crankmbs.tables import Table
 
-__all__ = ["PeriodicPressure", "crank_angle_knots", "pressure_of", "remarks", "repeat"]
+__all__ = [
+    "PeriodicPressure",
+    "crank_angle_knots",
+    "merged_knots",
+    "pressure_of",
+    "remarks",
+    "repeat",
+]
 
 Array = NDArray[np.float64]
 
 _KNOT = 1e-9  # rad: an angle this close below a knot counts as on it, so rounding does not
 # decide the side of a pressure step
 _OVERSHOOT = 0.05  # of the range: a sine in rows 45 degrees apart is overshot by 0.04
+
+_WORTH = (0.5, 1 / 12, 0.0081, 1 / 720)  # max |B| / (m + 1)! of `PeriodicPressure.bends`
 
 
 @dataclass(frozen=True)
@@ -57,6 +66,28 @@ class PeriodicPressure:
         highest = np.flatnonzero(value >= value.max() - 1e-9 * abs(value.max()))
         first = highest[np.argmin(angle[highest])]
         return float(np.mod(angle[first] + _KNOT, self.period) - _KNOT), float(value[first])
+
+    def bends(self, least: float) -> Array:
+        """Knots [rad] of the first period where the pieces differ from one smooth curve by more
+        than ``least`` [Pa].
+
+        A jump of the derivative m at each of knots w apart is worth w^m max |B| / (m + 1)! of it,
+        with the Bernoulli polynomial B of degree m + 1.
+        """
+        width = np.diff(self.knots)
+        a, b, c, d = self.coefficients
+        before = np.array(
+            [
+                ((a * width + b) * width + c) * width + d,
+                (3.0 * a * width + 2.0 * b) * width + c,
+                6.0 * a * width + 2.0 * b,
+                6.0 * a,
+            ]
+        )
+        jumps = np.abs(np.roll(before, 1, axis=1) - np.array([d, c, 2.0 * b, 6.0 * a]))
+        wide = np.maximum(width, np.roll(width, 1)) ** np.arange(4.0)[:, None]
+        worth = np.array(_WORTH) @ (jumps * wide)
+        return np.asarray(self.knots[:-1][worth > least])
 
     def __call__(self, cycle_angle: ArrayLike) -> Array:
         """Pressure difference across the piston [Pa]; at a step the value after it.
@@ -140,9 +171,14 @@ def crank_angle_knots(scene: Scene, pressure: PeriodicPressure | None) -> Array:
     -------
     shape (n,) [rad], increasing, cylinders merged; empty without gas
     """
-    if pressure is None:
-        return np.empty(0)
-    angles = [np.mod(pressure.knots[:-1] - c.phase, scene.period) for c in scene.cylinders]
+    return np.empty(0) if pressure is None else merged_knots(scene, pressure.knots[:-1])
+
+
+def merged_knots(scene: Scene, knots: Array) -> Array:
+    """Crank angles in [0, period) at which any cylinder passes one of these cycle angles [rad]."""
+    if len(knots) == 0:
+        return knots
+    angles = [np.mod(knots - c.phase, scene.period) for c in scene.cylinders]
     merged = np.unique(np.concatenate(angles))
     merged = merged[np.append(True, np.diff(merged) > _KNOT)]
     if scene.period - merged[-1] + merged[0] <= _KNOT:

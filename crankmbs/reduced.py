@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from crankmbs import stepper
 from crankmbs.drives import Constant, SpeedTable, TimeTable
 from crankmbs.inertia import reduce
-from crankmbs.pressure import PeriodicPressure, crank_angle_knots
+from crankmbs.pressure import PeriodicPressure, crank_angle_knots, merged_knots
 from crankmbs.scene import Scene
 from crankmbs.system import Machine, bare
 
@@ -34,9 +34,14 @@ class Between(NamedTuple):
 
 
 class Reduced:
-    """J, J_1 and the torque of gas and gravity at one crank angle, in plain floats."""
+    """J, J_1 and the torque of gas and gravity at one crank angle, in plain floats.
 
-    def __init__(self, scene: Scene, pressure: PeriodicPressure | None) -> None:
+    missed : of the largest torque, what a step across knots may miss of the gas
+    """
+
+    def __init__(
+        self, scene: Scene, pressure: PeriodicPressure | None, missed: float = 0.0
+    ) -> None:
         crank, rod, piston = scene.crank, scene.rod, scene.piston
         self.scene, self.pressure = scene, pressure
         knots = crank_angle_knots(scene, pressure)
@@ -48,6 +53,10 @@ class Reduced:
             (c.phase, g * math.cos(pull - c.bank), g * math.sin(pull - c.bank))
             for c in scene.cylinders
         ]
+        bends = knots
+        if pressure and missed > 0.0:
+            lever = (piston.gas_area or 0.0) * crank.radius
+            bends = merged_knots(scene, pressure.bends(missed * self.torque_scale / lever))
         first = float(pressure.knots[0]) if pressure else 0.0
         machine = Machine(
             radius=crank.radius,
@@ -68,12 +77,13 @@ class Reduced:
             first=first,
             starts=pressure.knots - first if pressure else np.empty(0),
             coefficients=pressure.coefficients.copy() if pressure else np.empty((4, 0)),
+            bends=bends,
         )
         self.machine = bare(machine)
 
     def around(self, theta: float, sense: float) -> Between:
         """The knots next to theta in the sense of rotation, and the polynomials between them."""
-        pieces = np.zeros((len(self.scene.cylinders), 5))
+        pieces = np.zeros((len(self.scene.cylinders), 6))
         low, high = stepper.enter(theta, sense, self.machine, pieces)
         return Between(low, high, pieces)
 

@@ -32,7 +32,8 @@ def simulate(
     formulation : None takes the scene's; "auto" the smallest exact one
     rtol : relative global error asked for, 1e-13 to 1e-2; None takes the scene's, for
         "multibody" at least 1e-5
-    cost_cap : wall time [s] at which "multibody" stops refining
+    cost_cap : wall time [s] at which "multibody" stops refining; a motion followed over time is
+        given up after 500,000 evaluations for each of these seconds
 
     Returns
     -------
@@ -78,7 +79,7 @@ def _solve(
     if formulation == "kinetostatic":
         return assemble(scene, pressure, kinetostatic.run(scene, pressure))
     if formulation != "multibody":
-        return free.run(scene, pressure, formulation, asked)
+        return free.run(scene, pressure, formulation, asked, cost_cap)
     from crankmbs.formulations import multibody  # exudyn is imported only when it is used
 
     return assemble(scene, pressure, multibody.run(scene, asked, cost_cap))

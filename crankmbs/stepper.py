@@ -22,6 +22,7 @@ Asked = tuple[float, float, float, int]  # as in `travel`
 Steps = tuple[Array, Array, Array]  # beginnings and lengths [s], and rows as in `first_exit`
 
 _PASSED = 1e-9  # rad: a knot this close ahead has been passed
+_MANY, _FAR = 4.0, 0.5  # knots apart; rad: longer steps roam across knots, none so long
 NEAR = 0.01  # of a step: a landing is as close to its limit
 _BISECTIONS, _SCAN = 60, 16
 _HARD = 1e3 / math.radians(5.0)  # 1/rad: damped a thousand times while the crank turns 5 degrees
@@ -31,23 +32,56 @@ _HARD = 1e3 / math.radians(5.0)  # 1/rad: damped a thousand times while the cran
 def enter(theta: float, sense: float, machine: Machine, pieces: Array) -> tuple[float, float]:
     """The knots next to theta in the sense of rotation; fills ``pieces``.
 
-    pieces : shape (cylinders, 5), of every cylinder's pressure between the two: the crank angle
-        [rad] where its cubic begins, and the coefficients [Pa], highest power first
+    pieces : shape (cylinders, 6), of every cylinder's pressure between the two: the crank angle
+        [rad] where its cubic begins, its coefficients [Pa], highest power first, and the width
+        after which `reduced` takes the next one; 0, where it is continued
     """
-    cylinders, knots, period, first, starts, coefficients = machine[12:]
-    ahead = theta + sense * _PASSED
-    base = math.floor(ahead / period) * period
-    k = _passed(knots, ahead - base)
+    base, low, high = _beside(machine[13], theta + sense * _PASSED, machine[14])
+    for j in range(len(pieces) if len(machine[16]) > 0 else 0):
+        _fill(j, base, 0.5 * (low + high), machine, pieces)
+        pieces[j, 5] = 0.0
+    return base + low, base + high
+
+
+@kernel
+def _beside(knots: Array, theta: float, period: float) -> tuple[float, float, float]:
+    """Where the period at an angle begins, and from there the knots beside; infinite without
+    any."""
+    base = math.floor(theta / period) * period
+    if len(knots) == 0:
+        return base, -math.inf, math.inf
+    k = _passed(knots, theta - base)
     low = knots[k - 1] if k > 0 else knots[-1] - period
     high = knots[k] if k < len(knots) else knots[0] + period
-    middle = 0.5 * (low + high)
-    for j in range(len(pieces) if len(starts) > 0 else 0):
-        within = (middle + cylinders[j, 0] - first) % starts[-1]
-        i = min(_passed(starts, within), len(starts) - 1) - 1
-        pieces[j, 0] = base + middle - (within - starts[i])
-        for power in range(4):
-            pieces[j, 1 + power] = coefficients[power, i]
-    return float(base + low), float(base + high)
+    return base, float(low), float(high)
+
+
+@kernel
+def _fill(j: int, base: float, local: float, machine: Machine, pieces: Array) -> None:
+    """Put the cubic of cylinder j at the crank angle base + local into ``pieces``, to its end."""
+    cylinders, _, _, first, starts, coefficients = machine[12:18]
+    within = (local + cylinders[j, 0] - first) % starts[-1]
+    i = min(_passed(starts, within), len(starts) - 1) - 1
+    pieces[j, 0] = base + local - (within - starts[i])
+    for power in range(4):
+        pieces[j, 1 + power] = coefficients[power, i]
+    pieces[j, 5] = starts[i + 1] - starts[i]
+
+
+@kernel
+def _roam(y: Array, h: float, machine: Machine, pieces: Array, limits: Array, roams: bool) -> bool:
+    """Whether a step is so long that it roams across knots; ``limits`` are then only those where a
+    pressure bends, and ``pieces`` end with their knots."""
+    theta, sense = float(y[0]), math.copysign(1.0, y[1])
+    if roams:
+        limits[0], limits[1] = enter(theta, sense, machine, pieces)
+    if abs(y[1]) * h <= _MANY * (limits[1] - limits[0]):
+        return False
+    for j in range(len(pieces)):
+        _fill(j, 0.0, theta, machine, pieces)
+    base, low, high = _beside(machine[18], theta + sense * _PASSED, machine[14])
+    limits[0], limits[1] = base + low, base + high
+    return True
 
 
 @kernel
@@ -87,6 +121,8 @@ def reduced(theta: float, machine: Machine, pieces: Array) -> tuple[float, float
         gy2 = -r * sin_p - a * (cos_b * b2 - sin_b * b1 * b1)
         inertia += m_piston * x1 * x1 + m_rod * (gx1 * gx1 + gy1 * gy1) + i_rod * b1 * b1
         slope += 2.0 * (m_piston * x1 * x2 + m_rod * (gx1 * gx2 + gy1 * gy2) + i_rod * b1 * b2)
+        if pieces[j, 5] > 0.0 and not 0.0 <= theta - pieces[j, 0] <= pieces[j, 5]:
+            _fill(j, 0.0, theta, machine, pieces)
         d = theta - float(pieces[j, 0])
         cubic = (float(pieces[j, 1]) * d + float(pieces[j, 2])) * d + float(pieces[j, 3])
         gas = area * (cubic * d + float(pieces[j, 4]))
@@ -234,7 +270,8 @@ def travel(
     number, time, next step, largest kinetic energy, and evaluations.
 
     Every piece keeps its own cubics beyond the knot, and is cut at the knot: there the step is
-    taken again, as its end is more exact than its inside. It ends where all room is used, at any
+    taken again, as its end is more exact than its inside. A step much longer than knots are apart
+    roams across those where no pressure bends. It ends where all room is used, at any
     other limit, at the end in time, where no step is short enough, and where the motion dies away
     or is damped hard.
 
@@ -245,13 +282,16 @@ def travel(
     """
     (tolerance, speed, t_bound, parts), (t, h, most), (begins, widths, rows) = control, start, steps
     k, new, (machine, pieces, load) = np.empty((16, 3)), np.empty(3), system
-    n, evaluations, entered = 0, 0, True
+    n, evaluations, entered, roams = 0, 0, True, False
     while n + parts <= len(widths):
         if entered:
             slopes(t, y, system, k[0])
             evaluations, entered = evaluations + 1, False
         least, refused = 2e-15 * t, False
         h = max(h, least)
+        if len(machine[18]) < len(machine[13]):
+            roams = _roam(y, h, machine, pieces, limits, roams)
+            h = min(h, _FAR / abs(y[1])) if roams else h
         while True:
             width = min(h, t_bound - t)
             _stages(range(1, 13), t, width, y, system, k, new)
@@ -292,6 +332,7 @@ def travel(
                 break
             sense, entered = math.copysign(1.0, y[1]), True
             limits[0], limits[1] = enter(float(y[0]), sense, machine, pieces)
+            roams = False
         inertia, omega = reduced(float(y[0]), machine, pieces)[0], float(y[1])
         kinetic, damping = 0.5 * inertia * omega * omega, load[2] + 2.0 * load[3] * omega
         most, hard = max(most, kinetic), abs(damping) > _HARD * inertia * abs(omega)

@@ -41,6 +41,7 @@ class Machine(NamedTuple):
     first: float
     starts: Array
     coefficients: Array
+    bends: Array
 
 
 System = tuple[Machine, Array, tuple[float, float, float, float]]

@@ -6,13 +6,15 @@ table. So on a stretch without a kink their sum is
     T(t, omega) = c0 + ct t + c1 omega + c2 omega^2
 
 and a `Branch` is these four numbers with the bounds of the stretch. The solvers continue a branch
-smoothly beyond its bounds, land on the bound, and take the next branch.
+smoothly beyond its bounds, land on the bound, and take the next branch. A `Course` is all branches
+from one jump to the next, for a solver that crosses the rows between them at once.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -21,9 +23,10 @@ from crankmbs.drives import Constant, Quadratic, SpeedTable, TimeTable, Torque, 
 from crankmbs.errors import InputError
 from crankmbs.tables import Table
 
-__all__ = ["Branch", "branch_at", "branch_of", "torque_at"]
+__all__ = ["Branch", "Course", "Tables", "branch_at", "branch_of", "course_of", "torque_at"]
 
 Array = NDArray[np.float64]
+Tables = tuple[Array, Array, Array, Array]  # times, in_time, speeds and in_speed of `Course`
 
 
 @dataclass(frozen=True)
@@ -50,9 +53,58 @@ class Branch:
         return self.c0, self.ct, self.c1, self.c2
 
     @property
+    def tables(self) -> Tables:
+        """The same as a course without a row."""
+        in_time, in_speed = np.array([[self.c0, self.ct]]), np.array([[0.0, self.c1, self.c2]])
+        return np.empty(0), in_time, np.empty(0), in_speed
+
+    def slope(self, omega: Array) -> Array:
+        """dT/domega [N m s/rad] at speeds [rad/s]."""
+        return self.c1 + 2.0 * self.c2 * omega
+
+    @property
     def is_affine_in_energy(self) -> bool:
         """Whether the torque is c0 + c2 omega^2: then dE/dtheta is linear in E."""
         return self.ct == 0.0 and self.c1 == 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Course:
+    """T = f(t) + g(omega) [N m], continuous up to ``t_end`` [s], from ``omega_low`` to
+    ``omega_high`` [rad/s], with kinks at rows of tables.
+
+    times : shape (k,) [s], increasing; in_time : shape (k + 1, 2), of f before, between and after
+        them the coefficients by ascending power
+    speeds : shape (n,) [rad/s]; in_speed : shape (n + 1, 3), the same of g
+    """
+
+    times: Array
+    in_time: Array
+    speeds: Array
+    in_speed: Array
+    t_end: float
+    omega_low: float
+    omega_high: float
+
+    is_affine_in_energy = False
+
+    @property
+    def tables(self) -> Tables:
+        """times, in_time, speeds and in_speed."""
+        return self.times, self.in_time, self.speeds, self.in_speed
+
+    def __call__(self, t: ArrayLike, omega: ArrayLike) -> Array:
+        """Torque [N m] at times [s] and speeds [rad/s]."""
+        t, omega = np.asarray(t, dtype=np.float64), np.asarray(omega, dtype=np.float64)
+        f = self.in_time[np.searchsorted(self.times, t, side="right")]
+        g = self.in_speed[np.searchsorted(self.speeds, omega, side="right")]
+        of_speed = g[..., 0] + (g[..., 1] + g[..., 2] * omega) * omega
+        return np.asarray(f[..., 0] + f[..., 1] * t + of_speed)
+
+    def slope(self, omega: Array) -> Array:
+        """dT/domega [N m s/rad] at speeds [rad/s], above a row where one is."""
+        g = self.in_speed[np.searchsorted(self.speeds, omega, side="right")]
+        return np.asarray(g[..., 1] + 2.0 * g[..., 2] * omega)
 
 
 def branch_of(torques: tuple[Torque, ...], t: float, omega: float, *, rising: bool) -> Branch:
@@ -118,6 +170,53 @@ def branch_at(torques: tuple[Torque, ...], t: float, omega: float, rest: float) 
         return below
     jumps = pull - push > 1e-12 * max(abs(pull), abs(push))
     return None if jumps else above
+
+
+def course_of(torques: tuple[Torque, ...], branch: Branch, t: float) -> Branch | Course:
+    """What continues a branch of these loads from a time [s] on, without a jump and in its sense of
+    rotation; a branch where that has no kink."""
+    by_time = [load.file for load in torques if isinstance(load, TimeTable)]
+    by_speed = [load.file for load in torques if isinstance(load, SpeedTable)]
+    if not by_time and not by_speed:
+        return branch
+    last = min((table.x[-1] for table in by_time), default=math.inf)
+    times, in_time, _, t_end = _continued(by_time, [t, last], t, branch.t_end)
+    low, high = branch.omega_low, branch.omega_high
+    speeds, in_speed, low, high = _continued(by_speed, [0.0], low, high)
+    if len(times) == len(speeds) == 0:
+        return replace(branch, t_end=t_end, omega_low=low, omega_high=high)
+    steady = tuple(load for load in torques if not isinstance(load, TimeTable | SpeedTable))
+    rest = branch_of(steady, 0.0, 0.0, rising=low >= 0.0)
+    in_time[:, 0] += rest.c0
+    in_speed = np.column_stack([in_speed, np.full(len(in_speed), branch.c2)])
+    in_speed[:, 1] += rest.c1
+    return Course(times, in_time, speeds, in_speed, t_end, low, high)
+
+
+def _continued(
+    tables: Sequence[Table], ends: list[float], low: float, high: float
+) -> tuple[Array, Array, float, float]:
+    """Kinks of a sum of tables around a piece, intercept and slope between them, and the bounds
+    that jumps and ``ends`` set."""
+    columns = [(np.array(table.x), np.array(table.y)) for table in tables]
+    jumps = np.concatenate([ends, *(x[1:][np.diff(x) == 0.0] for x, _ in columns)])
+    low = float(np.max(jumps[jumps <= low], initial=-math.inf))
+    high = float(np.min(jumps[jumps >= high], initial=math.inf))
+    rows = np.unique(np.concatenate([np.empty(0), *(x for x, _ in columns)]))
+    rows = rows[(rows > low) & (rows < high)]
+    known = rows if len(rows) else [bound for bound in (low, high) if math.isfinite(bound)] or [0.0]
+    edges = np.concatenate([[max(low, known[0] - 1.0)], rows, [min(high, known[-1] + 1.0)]])
+    pieces = np.zeros((len(rows) + 1, 2))
+    for x, y in columns:
+        k = np.searchsorted(x, 0.5 * (edges[1:] + edges[:-1]))
+        after = np.clip(k, 1, len(x) - 1)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            slope = (y[after] - y[after - 1]) / (x[after] - x[after - 1])
+        slope = np.where((k > 0) & (k < len(x)), slope, 0.0)
+        near = np.minimum(k, len(x) - 1)
+        pieces += np.column_stack([y[near] - slope * x[near], slope])
+    bent = np.diff(pieces[:, 1]) != 0.0
+    return rows[bent], pieces[np.append(True, bent)], low, high
 
 
 def torque_at(torques: tuple[Torque, ...], t: Array, omega: Array) -> Array:

@@ -8,21 +8,20 @@ import numpy as np
 import psutil
 import pytest
 
-from crankmbs import InputError, Run, Start, load_scene, simulate
-from crankmbs.formulations import minimal
+from crankmbs import InputError, Run, Start, Table, TimeTable, load_scene, simulate
 from crankmbs.result import VARIABLES
 
 COASTING = load_scene("coasting")
+PER_SECOND = 500_000  # evaluations over time that a second of the cost cap allows
 
 
 def stated(result, name):
     return float(result.data[name].attrs["error_estimate"])
 
 
-def test_too_many_evaluations_stop_the_run_with_the_samples_of_both_passes(monkeypatch):
+def test_too_many_evaluations_stop_the_run_with_the_samples_of_both_passes():
     whole = simulate(COASTING, formulation="minimal")
-    monkeypatch.setattr(minimal, "_MOST_EVALUATIONS", 2000)
-    result = simulate(COASTING, formulation="minimal")
+    result = simulate(COASTING, formulation="minimal", cost_cap=2000 / PER_SECOND)
     assert result.status == -1
     assert "takes more than" in result.message
     n = result.data.sizes["time"]
@@ -33,10 +32,10 @@ def test_too_many_evaluations_stop_the_run_with_the_samples_of_both_passes(monke
     assert f"stopped at {last:.6g} degrees" in result.message
 
 
-def test_a_second_pass_that_takes_too_much_says_so(monkeypatch):
+def test_a_second_pass_that_takes_too_much_says_so():
     whole = simulate(COASTING, formulation="minimal")
-    monkeypatch.setattr(minimal, "_MOST_EVALUATIONS", whole.cost.evaluations // 2)
-    result = simulate(COASTING, formulation="minimal")
+    cap = whole.cost.evaluations // 2 / PER_SECOND
+    result = simulate(COASTING, formulation="minimal", cost_cap=cap)
     assert result.status == -1
     assert "takes more than" in result.message
     n = result.data.sizes["time"]
@@ -57,12 +56,22 @@ def test_more_samples_than_memory_holds_are_refused_where_they_come(
         simulate(scene, formulation=formulation)
 
 
-def test_an_error_that_cannot_be_known_is_infinite(monkeypatch):
-    monkeypatch.setattr(minimal, "_MOST_EVALUATIONS", 2000)
+def test_an_error_that_cannot_be_known_is_infinite():
     scene = dataclasses.replace(COASTING, run=Run(until="1000 rev", every="none"))
-    result = simulate(scene, formulation="minimal")
+    result = simulate(scene, formulation="minimal", cost_cap=2000 / PER_SECOND)
     assert result.status == -1
     assert all(stated(result, name) == math.inf for name in VARIABLES)
+
+
+def test_a_swing_under_a_load_over_time_goes_on_as_long_as_the_cost_cap_allows():
+    """What the table holds for later may still drive it to its end."""
+    load = TimeTable(file=Table((0.0, 60.0), (0.0, 0.0)))
+    start, run = Start(angle=1.0, speed=0.0), Run(until="3 rev", every="1 deg")
+    scene = dataclasses.replace(COASTING, start=start, torque=(load,), run=run)
+    result = simulate(scene, cost_cap=100_000 / PER_SECOND)
+    assert result.status == -1
+    assert "takes more than the 100000 evaluations that the cost cap allows" in result.message
+    assert 2000 < result.data.sizes["time"] < 9000
 
 
 def test_a_stop_says_what_was_reached():

@@ -51,7 +51,9 @@ _Scene = Annotated[
     str, typer.Argument(metavar="SCENE", help="A scene file, or the name of a shipped scene.")
 ]
 
-_CostCap = Annotated[float, typer.Option(help="Seconds at which multibody stops refining.")]
+_CostCap = Annotated[
+    float, typer.Option(help="Seconds at which multibody stops refining, minimal gives up.")
+]
 
 
 def _version(wanted: bool) -> None:

@@ -43,7 +43,7 @@ def run_scene(
     options : those of [run] that the command line overrides
     out : folder of the results; None: results/NAME
     confirm : run the multibody model too, print and draw the difference
-    cost_cap : wall time [s] at which multibody stops refining
+    cost_cap : as `simulate` takes it [s]
 
     Raises
     ------

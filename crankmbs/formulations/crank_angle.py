@@ -5,7 +5,8 @@ from dt/dtheta = 1 / omega. J and the torque of gas and gravity depend on theta 
 tabulated once, at the nodes of a Gauss collocation whose cells no knot of the pressure lies
 inside. On every branch of the loads Q is quadratic in omega and linear in t; without linear terms
 it is linear in E, each cell is an affine map, and whole blocks of periods are solved at once.
-Otherwise Newton's method solves a window of cells at once.
+Otherwise Newton's method solves a window of cells at once, across kinks of the loads, which become
+edges of cells where they matter; at a jump a window ends.
 """
 
 from __future__ import annotations
@@ -13,19 +14,21 @@ from __future__ import annotations
 import math
 from collections.abc import Generator
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
 from crankmbs import kernels
-from crankmbs.cells import Grid, largest_of_row
+from crankmbs.cells import Grid, Strip, largest_of_row
 from crankmbs.formulations.base import State
+from crankmbs.formulations.kinks import edges_missing
 from crankmbs.formulations.periods import period_of
 from crankmbs.formulations.solvers import Begin, solve_affine, solve_newton
 from crankmbs.formulations.window import Window
 from crankmbs.inertia import reduce
 from crankmbs.sampling import Plan
 from crankmbs.schema import DEGREE
-from crankmbs.torque import Branch, branch_at
+from crankmbs.torque import Branch, Course, branch_at, course_of
 
 __all__ = ["advance", "is_fast"]
 
@@ -36,6 +39,7 @@ _REACH = 1.0  # rad: what arrays can hold of it in one Newton step after the oth
 _AFFINE_TIME, _NEWTON_TIME = 4e-6, 1e-4  # s a cell with arrays
 _HAIR = 1e-6  # of a cell: as near its edge it is as exact as there
 _BEYOND = (_HAIR, 1e-4, 1e-2)  # of a cell: how far ahead a landing near a turn may really be
+_ROUNDS = 6  # of cutting cells at kinks
 _KEPT = 2  # whole periods at the end that are solved cell by cell when only the last is kept
 
 
@@ -47,8 +51,10 @@ def is_fast(grid: Grid, state: State, branch: Branch, times: float) -> bool:
     return bool(0.5 * inertia * state.omega**2 > times * _SLOW * scale)
 
 
-def advance(grid: Grid, state: State, plan: Plan) -> Generator[Window, None, str]:
+def advance(grid: Grid, state: State, plan: Plan, allowed: float) -> Generator[Window, None, str]:
     """Carry the motion on, window by window.
+
+    allowed [1/rad] : of the energy that a cell may miss at kinks of the loads, per radian
 
     Returns
     -------
@@ -62,11 +68,13 @@ def advance(grid: Grid, state: State, plan: Plan) -> Generator[Window, None, str
         branch, energy = _enter(grid, state)
         if branch is None:
             return "held"
-        t_end = min(branch.t_end, plan.time_bound)
-        window = _solve(grid, branch, state, energy, sense, bound, t_end)
+        way = _Way(grid, state, energy, sense, bound, plan.time_bound, allowed)
+        window = _stretch(way, branch)
         if window is None:
             return "slow"
-        whole, window = _landed(replace(window, skipped=skipped).cut(t_end, bound), t_end)
+        t_end = min(window.branch.t_end, plan.time_bound)
+        window = replace(window, skipped=skipped).cut(t_end, bound)
+        whole, window = _landed(way, window, t_end)
         if whole is not None:
             yield whole
         yield window
@@ -75,11 +83,48 @@ def advance(grid: Grid, state: State, plan: Plan) -> Generator[Window, None, str
         if window.end.theta == state.theta:
             return "held"
         state, skipped = window.end, 0
+        t_end = min(branch.t_end, plan.time_bound)
         if math.isfinite(plan.last) and state.time < t_end and branch.is_affine_in_energy:
-            state, skipped = _skip(grid, branch, state, sense, bound, t_end)
+            state, skipped = _skip(way._replace(state=state, t_end=t_end), branch)
 
 
-def _landed(window: Window, t_end: float) -> tuple[Window | None, Window]:
+class _Way(NamedTuple):
+    """From a state and its kinetic energy [J] on: sense of rotation, bounds in angle [rad] and time
+    [s], and what a cell may miss at kinks, as `advance` takes it."""
+
+    grid: Grid
+    state: State
+    energy: float
+    sense: float
+    bound: float
+    t_end: float
+    allowed: float
+
+
+def _stretch(way: _Way, branch: Branch) -> Window | None:
+    """The next cells on the course that continues a branch; on the branch alone where its cells are
+    affine, or where kinks are too strong to be found by solving again."""
+    course = course_of(way.grid.scene.torque, branch, way.state.time)
+    if isinstance(course, Branch):
+        return _solve(way, course)
+    window = _before_kink(way, branch, course) if branch.is_affine_in_energy else None
+    return window or _solve(way, course) or _solve(way, branch)
+
+
+def _before_kink(way: _Way, branch: Branch, course: Course) -> Window | None:
+    """The whole cells on an affine branch, as far as none of its kinks lies in them."""
+    window = _solve(way, branch)
+    if window is None:
+        return None
+    cut = window.cut(min(branch.t_end, way.t_end), way.bound)
+    bent = cut.landed.time < min(course.t_end, way.t_end)
+    bent |= course.omega_low < cut.landed.omega < course.omega_high
+    if not bent:
+        return window
+    return window.first(cut.stop[0]) if cut.stop[0] > 0 else None
+
+
+def _landed(way: _Way, window: Window, t_end: float) -> tuple[Window | None, Window]:
     """A window that ends inside a cell in two: the whole cells, and that one solved again up to the
     end. Inside a cell the answer is of lower order than at its edge."""
     k, x = window.stop
@@ -92,7 +137,8 @@ def _landed(window: Window, t_end: float) -> tuple[Window | None, Window]:
     for beyond in _BEYOND:
         turned = float(window.edges[k]) + (x + beyond) * width
         bound = window.begin.theta + window.sense * turned
-        last = _solve(window.grid, window.branch, begin, energy, window.sense, bound, math.inf)
+        again = way._replace(state=begin, energy=energy, bound=bound, t_end=math.inf)
+        last = _solve(again, window.branch)
         if last is None:
             break
         last = last.cut(t_end, math.inf)
@@ -101,19 +147,19 @@ def _landed(window: Window, t_end: float) -> tuple[Window | None, Window]:
     return None, window
 
 
-def _skip(
-    grid: Grid, branch: Branch, state: State, sense: float, bound: float, t_end: float
-) -> tuple[State, int]:
+def _skip(way: _Way, branch: Branch) -> tuple[State, int]:
     """Pass whole periods at once, all but the last ones; return the state after them and the
     number of cells passed."""
+    grid, state, _, sense, bound, t_end, _ = way
     period = float(grid.edges[-1])
 
     def at(time: float, turned: float, energy: float) -> Window | None:
         """The period that begins with this energy, if the motion passes it whole."""
         theta = state.theta + sense * turned
         omega = sense * math.sqrt(2.0 * energy / float(reduce(grid.scene, None, theta)[0]))
-        begin = State(time, theta, omega, state.residual)
-        window = _solve(grid, branch, begin, energy, sense, theta + sense * period, math.inf)
+        begin, end = State(time, theta, omega, state.residual), theta + sense * period
+        from_there = way._replace(state=begin, energy=energy, bound=end, t_end=math.inf)
+        window = _solve(from_there, branch)
         if window is None or window.edges[-1] < (1.0 - 1e-9) * period:
             return None
         return window if window.cut(math.inf, math.inf).stop == window.stop else None
@@ -146,18 +192,12 @@ def _enter(grid: Grid, state: State) -> tuple[Branch | None, float]:
     return branch, 0.5 * float(inertia) * state.omega**2
 
 
-def _solve(
-    grid: Grid,
-    branch: Branch,
-    state: State,
-    energy: float,
-    sense: float,
-    bound: float,
-    t_end: float,
-) -> Window | None:
-    """Solve as many cells as one window holds, from a state and its kinetic energy [J] on; None
-    when the first is too slow already."""
-    affine = branch.is_affine_in_energy
+def _solve(way: _Way, loads: Branch | Course) -> Window | None:
+    """Solve as many cells as one window holds; None when the first is too slow already, or misses
+    too much at kinks."""
+    grid, state, _, sense, bound, t_end, allowed = way
+    t_end = min(t_end, loads.t_end)
+    affine = isinstance(loads, Branch) and loads.is_affine_in_energy
     n, period = len(grid.edges) - 1, float(grid.edges[-1])
     ahead = 1.2 * (t_end - state.time) * abs(state.omega)
     cells = min(ahead, abs(bound - state.theta)) / period * n + 2.0
@@ -165,16 +205,35 @@ def _solve(
     arrays = min(cells, _BLOCK) * _AFFINE_TIME if affine else min(cells, few) * _NEWTON_TIME
     compiled = kernels.pay(arrays)
     if affine or compiled:
-        ends = (branch.omega_low * sense, branch.omega_high * sense)
+        ends = (loads.omega_low * sense, loads.omega_high * sense)
         few = _SPEED_BLOCK if any(0.0 < end < math.inf for end in ends) else _BLOCK
-    count = int(min(cells, few))
-    strip = grid.strip(state.theta, sense, count, bound)
-    solve = solve_affine if affine else solve_newton
+    strip = grid.strip(state.theta, sense, int(min(cells, few)), bound)
+    window = _solved(way, loads, strip, t_end, compiled=compiled)
+    for _ in range(_ROUNDS):
+        if window is None:
+            return None
+        marks, missing = edges_missing(window, allowed)
+        if len(missing) == 0:
+            return window
+        strip = grid.cut(strip, state.theta, sense, marks)
+        window = _solved(way, loads, strip, t_end, compiled=compiled)
+    return None
+
+
+def _solved(
+    way: _Way, loads: Branch | Course, strip: Strip, t_end: float, *, compiled: bool
+) -> Window | None:
+    """The cells of a strip, up to where they are too slow."""
+    grid, state, energy, sense, *_ = way
+    begin = Begin(sense, energy, state.time, t_end)
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-        begin = Begin(sense, energy, state.time, t_end)
-        edges, time, torque, slowness = solve(grid, strip, branch, begin, compiled=compiled)
+        if isinstance(loads, Branch) and loads.is_affine_in_energy:
+            cells = solve_affine(grid, strip, loads, begin, compiled=compiled)
+        else:
+            cells = solve_newton(grid, strip, loads, begin, compiled=compiled)
+        edges, time, torque, slowness = cells
         strip = strip.first(len(torque))
-        outside = branch(time[1:], sense / slowness[:, -1])
+        outside = loads(time[1:], sense / slowness[:, -1])
         scale = grid.scale[strip.cell] + np.abs(outside)
         least = 0.5 * grid.least[strip.cell] / largest_of_row(slowness) ** 2
         good = np.minimum(least, np.minimum(edges[1:], edges[:-1])) > _SLOW * scale  # not of a NaN
@@ -184,7 +243,7 @@ def _solve(
     return Window(
         grid,
         strip.first(m),
-        branch,
+        loads,
         sense,
         state,
         strip.turned[: m + 1],

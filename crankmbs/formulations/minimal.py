@@ -26,7 +26,6 @@ from crankmbs.torque import Branch, branch_at, branch_of
 
 __all__ = ["advance"]
 
-_MOST_EVALUATIONS = 5_000_000
 _MOST_STEPS = 512  # of one stretch
 _RADAU = 1e-13  # finest tolerance of a step, half of it where steps are halved; SciPy's is 2.3e-14
 _PLAIN_TIME = 5e-4  # s a step that is not compiled
@@ -38,22 +37,23 @@ def advance(
     plan: Plan,
     tolerance: float,
     parts: int,
+    allowed: int,
     is_fast: Callable[[State, Branch], bool],
 ) -> Generator[Stretch, None, str]:
     """Carry the motion on, in stretches of ever more steps: a short crossing is soon over.
 
-    tolerance : relative, of each step; parts : into how many each is divided then; is_fast :
-    whether the crank angle can take over again
+    tolerance : relative, of each step; parts : into how many each is divided then; allowed :
+    evaluations; is_fast : whether the crank angle can take over again
 
     Returns
     -------
     "end" of the plan; "fast"; "stuck" at rest in an equilibrium; "held" by a jump of a speed
-    table; "rest" when the motion has died away; "costly" when it takes too many evaluations,
+    table; "rest" when the motion has died away; "costly" when it takes more evaluations,
     "failed" when no step is short enough
     """
     scale = reduced.torque_scale
     evaluations, most, h, room = 0, 0.0, math.inf, 1
-    while evaluations < _MOST_EVALUATIONS:
+    while evaluations < allowed:
         equation = _enter(reduced, state, scale)
         if isinstance(equation, str):
             return equation
@@ -61,7 +61,7 @@ def advance(
         speed = max(abs(state.omega), math.sqrt(2.0 * scale / inertia), 1e-150)
         h = tolerance**0.125 / speed if math.isinf(h) else h
         bound = min(plan.time_bound, equation.branch.t_end)
-        room = min(room, (_MOST_EVALUATIONS - evaluations) // 12 + 1)
+        room = min(room, (allowed - evaluations) // 12 + 1)
         control = _Control(tolerance, speed, bound, h, most, room, parts)
         speeds = (0.0, equation.branch.omega_low, equation.branch.omega_high)
         limits = np.array([*equation.between[:2], *plan.angle_bounds, *speeds])

@@ -15,7 +15,7 @@ from crankmbs import kernels
 from crankmbs.cells import Grid, Strip
 from crankmbs.collocation import Maps
 from crankmbs.formulations.base import Array
-from crankmbs.torque import Branch
+from crankmbs.torque import Branch, Course
 
 __all__ = ["Begin", "Cells", "solve_affine", "solve_newton"]
 
@@ -79,7 +79,7 @@ def solve_affine(
 
 
 def solve_newton(
-    grid: Grid, strip: Strip, branch: Branch, begin: Begin, *, compiled: bool
+    grid: Grid, strip: Strip, loads: Branch | Course, begin: Begin, *, compiled: bool
 ) -> Cells:
     """Newton's method: compiled, cell after cell; with arrays, on all cells at once, where time,
     by quadrature, follows behind."""
@@ -87,17 +87,17 @@ def solve_newton(
     rule = grid.rule
     if compiled:
         cells = Cells.empty(strip)
-        bounds = (t_end, branch.omega_low, branch.omega_high)
+        bounds = (t_end, loads.omega_low, loads.omega_high)
         tables = (strip.width, strip.inertia, strip.torque)
         at, gauss = (start, t0, sense), (rule.matrix, rule.weights)
-        return cells.first(kernels.newton(branch.coefficients, bounds, at, gauss, tables, *cells))
+        return cells.first(kernels.newton(loads.tables, bounds, at, gauss, tables, *cells))
     energy = np.full(strip.inertia.shape, start)
     t = np.full(strip.inertia.shape, t0)
     slowness = np.sqrt(0.5 * strip.inertia / energy)
     for _ in range(_NEWTON):
         omega = sense / slowness
-        torque = strip.torque + branch(t, omega)
-        rate = (branch.c1 + 2.0 * branch.c2 * omega) / (strip.inertia * omega)
+        torque = strip.torque + loads(t, omega)
+        rate = loads.slope(omega) / (strip.inertia * omega)
         maps = rule.maps(sense * strip.width, torque - rate * energy, rate)
         edges, new = _chain(maps, start)
         change = np.abs(new / energy - 1.0).max(axis=1)
@@ -108,7 +108,7 @@ def solve_newton(
         if (change < 1e-14).all():
             break
     slowness[~np.logical_and.accumulate(change < 1e-11)] = np.nan
-    return Cells(edges, time, strip.torque + branch(t, sense / slowness), slowness)
+    return Cells(edges, time, strip.torque + loads(t, sense / slowness), slowness)
 
 
 def _clock(t0: float, spent: Array) -> Array:

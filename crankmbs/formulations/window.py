@@ -15,7 +15,7 @@ from crankmbs.formulations.base import NOWHERE, Array, Samples, State
 from crankmbs.inertia import reduce
 from crankmbs.roots import first_above, invert_monotone
 from crankmbs.sampling import Plan, one_period
-from crankmbs.torque import Branch
+from crankmbs.torque import Branch, Course
 
 __all__ = ["Window"]
 
@@ -24,7 +24,7 @@ Index = NDArray[np.intp]
 
 @dataclass(frozen=True)
 class Window:
-    """Consecutive solved cells on one branch of the loads.
+    """Consecutive solved cells on one branch or course of the loads.
 
     edges : shape (m + 1,) [rad], angle turned since the beginning, u >= 0; energy and time at
     them; torque : shape (m, s), Q at the nodes [N m]; slowness : shape (m, s), dt/du [s/rad];
@@ -34,7 +34,7 @@ class Window:
 
     grid: Grid
     strip: Strip
-    branch: Branch
+    branch: Branch | Course
     sense: float
     begin: State
     edges: Array
@@ -90,8 +90,7 @@ class Window:
         """Errors of the energy [J] and the time [s] gained in each cell, shape (m, s + 3) each:
         what a finer Gauss rule along the solution gives, at its nodes and at the cell's end."""
         rule, finer = self.grid.rule, self.grid.finer.rule
-        bound = self.begin.theta + self.sense * float(self.edges[-1])
-        strip = self.grid.finer.strip(self.begin.theta, self.sense, len(self.torque), bound)
+        strip = self.grid.finer.same(self.strip, self.begin.theta, self.sense)
         inside = rule.integrals(finer.nodes).T
         to_nodes = np.vstack([finer.matrix, finer.weights]).T
         own = np.column_stack([inside, rule.weights])
@@ -151,12 +150,17 @@ class Window:
             landed=NOWHERE,
         )
 
-    def _crossing(self, limit: float, *, above: bool) -> tuple[int, float] | None:
-        """Cell and position where the speed first leaves its branch through ``limit``."""
+    @cached_property
+    def speeds(self) -> Array:
+        """Speed [rad/s] at the nodes and the end of every cell, shape (m, s + 1)."""
         theta = self.begin.theta + self.sense * self.edges[1:]
         inertia = reduce(self.grid.scene, None, theta)[0]
         at_edges = self.sense * np.sqrt(2.0 * self.energy[1:] / inertia)
-        omega = np.column_stack([self.sense / self.slowness, at_edges])
+        return np.column_stack([self.sense / self.slowness, at_edges])
+
+    def _crossing(self, limit: float, *, above: bool) -> tuple[int, float] | None:
+        """Cell and position where the speed first leaves its branch through ``limit``."""
+        omega = self.speeds
         positions = np.concatenate([[0.0], self.grid.rule.nodes, [1.0]])
         side = 1.0 if above else -1.0
         beyond = side * (np.append(self.begin.omega, omega) - limit)
@@ -217,7 +221,7 @@ class Window:
         """Samples in the cells k."""
         once, which = one_period(theta, float(self.grid.edges[-1]))
         of_angle = reduce(self.grid.scene, self.grid.pressure, once)
-        if kernels.are_compiled:
+        if kernels.are_compiled and isinstance(self.branch, Branch):
             omega, outside, alpha = np.empty((3, len(theta)))
             loads = self.branch.coefficients
             readout.motion(which, of_angle, self.sense, loads, t, energy, omega, outside, alpha)

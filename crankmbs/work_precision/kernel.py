@@ -77,7 +77,7 @@ def _loop(scene: Scene, grid: Grid, reference: Reference) -> Callable[[], Answer
     energy = 0.5 * float(reduce(scene, None, theta)[0]) * omega**2
     begin = Begin(sense, energy, 0.0, until if until_time else math.inf)
     reduced, given = Reduced(scene, None), np.array([until])
-    no_gas = np.zeros((len(scene.cylinders), 5))
+    no_gas = np.zeros((len(scene.cylinders), 6))
 
     def run() -> Answer:
         cells = solve_affine(grid, strip, branch, begin, compiled=True)

@@ -1,0 +1,171 @@
+"""Where cells of the crank angle are cut because their loads bend inside them.
+
+A Gauss rule of s nodes misses of a kink at the position c of a cell, where the torque's slope
+changes by b per cell, at most b min(c^2 / 2, (1 - c)^2 / 2, 0.31 / s^2) of the mean torque. The
+cells are solved with the loads as they are; where the kinks in one of them are worth more than may
+be missed they become edges, and all is solved again. Rows of a fine table are so stepped over, and
+their number costs nothing.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crankmbs.formulations.base import Array
+from crankmbs.formulations.window import Index, Window
+from crankmbs.torque import Course
+
+__all__ = ["edges_missing"]
+
+_WORST = 0.31  # over s^2: what s nodes miss of a kink of slope 1; (pi / 2)^2 / 8, for many nodes
+_HALVES = 40
+_NEWTON = 5
+_LITTLE = 1e-3  # of what a cell may miss: a kink worth less stays in it beside others
+
+
+class _Passed(NamedTuple):
+    """Rows that a variable of the loads passes, shape (n,) each.
+
+    cell, row : their numbers; low, high : positions in the cell, 0 to 1, of points around it;
+    position : between them, where a straight line passes it; rises : sign of the slope; missed [J]
+    """
+
+    cell: Index
+    row: Index
+    low: Array
+    high: Array
+    position: Array
+    rises: Array
+    missed: Array
+
+    def select(self, which: NDArray[np.bool_]) -> _Passed:
+        """Some of them."""
+        cell, row, *others = self
+        low, high, position, rises, missed = (part[which] for part in others)
+        return _Passed(cell[which], row[which], low, high, position, rises, missed)
+
+
+class _Points(NamedTuple):
+    """A variable at begin, nodes and end of every cell: positions 0 to 1, shape (s + 2,), values
+    and bends of the torque's slope at its rows; widths of the cells, and what each may miss [J]."""
+
+    x: Array
+    values: Array
+    rows: Array
+    bends: Array
+    width: Array
+    least: Array
+
+    def polynomials(self, k: Index) -> Array:
+        """Coefficients by descending power, shape (s + 2, n), of the variable in the cells k."""
+        return np.asarray(np.linalg.solve(np.vander(self.x), self.values[k].T))
+
+
+def edges_missing(window: Window, allowed: float) -> tuple[Array, Index]:
+    """Angles turned [rad] at which cells are to be cut, and the cells that miss too much.
+
+    allowed [1/rad] : of the energy that a cell may miss at kinks, per radian
+    """
+    course, width = window.branch, window.strip.width
+    k, x = np.empty(0, dtype=np.intp), np.empty(0)
+    if not isinstance(course, Course):
+        return x, k
+    at = np.concatenate([[0.0], window.grid.rule.nodes, [1.0]])
+    least = allowed * width * window.energy[1:]
+    found: list[tuple[_Points, _Passed]] = []
+    if len(course.times):
+        spent = width[:, None] * (window.slowness @ window.grid.rule.matrix.T)
+        time = np.column_stack([window.time[:-1], window.time[:-1, None] + spent, window.time[1:]])
+        points = _Points(at, time, course.times, np.diff(course.in_time[:, 1]), width, least)
+        found.append((points, _passed(points)))
+    if _near(course.speeds, window.sense / window.slowness):
+        before = np.append(window.begin.omega, window.speeds[:-1, -1])
+        omega = np.column_stack([before, window.speeds])
+        points = _Points(at, omega, course.speeds, np.diff(course.in_speed[:, 1]), width, least)
+        found.append((points, _passed(points)))
+        k, x = _turns(points)
+    missed = np.zeros_like(least)
+    for _, rows in found:
+        missed += np.bincount(rows.cell, rows.missed, len(least))
+    bad = missed > least
+    for points, rows in found:
+        worth = bad[rows.cell] & (rows.missed > _LITTLE * least[rows.cell])
+        k = np.append(k, rows.cell[worth])
+        x = np.append(x, _located(points, rows.select(worth)))
+    return window.edges[k] + x * width[k], np.unique(k)
+
+
+def _near(rows: Array, values: Array) -> bool:
+    """Whether a row lies among the values, or no farther from them than they from one another."""
+    low, high = float(np.min(values)), float(np.max(values))
+    return bool(np.any((rows >= 2.0 * low - high) & (rows <= 2.0 * high - low)))
+
+
+def _passed(points: _Points) -> _Passed:
+    """The rows between each two neighbouring points."""
+    x, values, rows, bends = points[:4]
+    below = np.searchsorted(rows, values)
+    k, j = np.nonzero(np.diff(below, axis=1))
+    times = np.abs(below[k, j + 1] - below[k, j])
+    row = np.minimum(below[k, j], below[k, j + 1]).repeat(times)
+    row += np.arange(len(row)) - (np.cumsum(times) - times).repeat(times)
+    k, j = k.repeat(times), j.repeat(times)
+    rise, low, high = values[k, j + 1] - values[k, j], x[j], x[j + 1]
+    position = np.clip(low + (rows[row] - values[k, j]) / rise * (high - low), low, high)
+    at_edge = 0.5 * np.minimum(position, 1.0 - position) ** 2
+    share = np.minimum(at_edge, _WORST / (len(x) - 2) ** 2)
+    missed = points.width[k] * np.abs(bends[row] * rise / (high - low)) * share
+    return _Passed(k, row, low, high, position, np.sign(rise), missed)
+
+
+def _located(points: _Points, passed: _Passed) -> Array:
+    """Positions in the cells where the variable passes its rows."""
+    of, target = points.polynomials(passed.cell), points.rows[passed.row]
+    low, high, x = passed[2:5]
+    for _ in range(_NEWTON):
+        value, slope = _value(of, x)
+        above = (value - target) * passed.rises > 0.0
+        low, high = np.where(above, low, x), np.where(above, x, high)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            new = x - (value - target) / slope
+        x = np.where((new > low) & (new < high), new, 0.5 * (low + high))
+    return x
+
+
+def _turns(points: _Points) -> tuple[Index, Array]:
+    """Cells and positions where the variable turns beyond a row that no point beside it passed."""
+    x, values, rows, bends = points[:4]
+    rise = np.diff(values, axis=1)
+    line = np.append(values[:, :-1], values[-1, -1])
+    before, after = np.append(0.0, rise), np.append(rise, 0.0)
+    reach, side = np.abs(before) + np.abs(after), np.sign(before - after)
+    worth = np.append(np.repeat(points.width, rise.shape[1]), points.width[-1])
+    worth *= np.max(np.abs(bends)) / np.append(points.least.repeat(rise.shape[1]), points.least[-1])
+    i = np.flatnonzero((before * after <= 0.0) & (worth * reach > 1.0))
+    below = np.searchsorted(rows, line[i])
+    may = np.searchsorted(rows, line[i] + side[i] * reach[i]) != below
+    i, below = i[may], below[may]
+    beside = np.concatenate([i - 1, i])  # the turn lies between the point and one of its two
+    inside = (beside >= 0) & (beside < rise.size)
+    (k, j), i = np.divmod(beside[inside], rise.shape[1]), np.tile(i, 2)[inside]
+    of, low, high = points.polynomials(k), x[j], x[j + 1]
+    for _ in range(_HALVES):
+        middle = 0.5 * (low + high)
+        later = _value(of, middle)[1] * side[i] > 0.0
+        low, high = np.where(later, middle, low), np.where(later, high, middle)
+    top = _value(of, low)[0]
+    passes = np.searchsorted(rows, top) != np.tile(below, 2)[inside]
+    passes &= worth[i] * np.abs(top - line[i]) > 1.0
+    return k[passes], low[passes]
+
+
+def _value(of: Array, x: Array) -> tuple[Array, Array]:
+    """Values and slopes of polynomials, coefficients by descending power in the rows of ``of``."""
+    value, slope = np.zeros_like(x), np.zeros_like(x)
+    for coefficient in of:
+        slope = slope * x + value
+        value = value * x + coefficient
+    return value, slope

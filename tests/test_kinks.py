@@ -1,0 +1,114 @@
+"""Loads that bend at rows of tables: crossed without a stop, and still exact."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from crankmbs import (
+    Constant,
+    Quadratic,
+    Run,
+    SpeedTable,
+    Table,
+    TimeTable,
+    Viscous,
+    load_scene,
+    simulate,
+)
+from crankmbs.cells import grid_of
+from crankmbs.collocation import gauss
+from crankmbs.confirm import differences
+from crankmbs.formulations import crank_angle
+from crankmbs.pressure import pressure_of
+from crankmbs.torque import branch_of, course_of, torque_at
+
+SPEED = Table((-9.0, 2.0, 5.0, 5.0, 7.0, 9.0), (3.0, 1.0, 4.0, 2.0, 2.5, -1.0))
+TIME = Table((0.0, 1.0, 1.0, 2.0, 3.0), (0.0, 4.0, 1.0, 2.0, 9.0))
+LOADS = (SpeedTable(file=SPEED), TimeTable(file=TIME))
+DIESEL = replace(load_scene("yi_diesel_free"), run=Run(until="0.1 s"))
+
+
+def with_speed_table(rows, noise=0.0):
+    """The load of the diesel engine as a dynamometer might have measured it, up to 4000 rpm."""
+    speed = np.linspace(0.0, 418.9, rows)
+    torque = -7.775e-4 * speed**2 + noise * np.random.default_rng(1).standard_normal(rows)
+    return replace(DIESEL, torque=(SpeedTable(file=Table(speed.tolist(), torque.tolist())),))
+
+
+def with_time_table(rows):
+    time = np.linspace(0.0, 0.11, rows)
+    sway = TimeTable(file=Table(time.tolist(), (20.0 * np.sin(90.0 * time)).tolist()))
+    return replace(DIESEL, torque=(*DIESEL.torque, sway))
+
+
+def solves(scene, monkeypatch):
+    """How often a window of cells is solved, and what the run costs."""
+    count, solve = [0], crank_angle.solve_newton
+
+    def counted(*args, **kwargs):
+        count[0] += 1
+        return solve(*args, **kwargs)
+
+    monkeypatch.setattr(crank_angle, "solve_newton", counted)
+    import numba  # noqa: F401
+
+    result = simulate(scene)
+    assert result.status == 0
+    return count[0], result.cost.evaluations
+
+
+@pytest.mark.parametrize("table", [with_speed_table, with_time_table])
+@pytest.mark.parametrize("rows", [25, 1000, 5000])
+def test_rows_are_crossed_without_a_stop(rows, table, monkeypatch):
+    count, evaluations = solves(table(rows), monkeypatch)
+    assert count <= 10  # two passes of few windows, cut at their kinks once or twice
+    assert evaluations <= 3 * simulate(DIESEL).cost.evaluations
+
+
+@pytest.mark.parametrize("rtol", [1e-5, 1e-8, 1e-11])
+@pytest.mark.parametrize(("rows", "noise"), [(60, 0.0), (200, 5.0)])
+def test_minimal_that_stops_at_every_row_confirms_it(rows, noise, rtol):
+    scene = replace(with_speed_table(rows, noise), run=Run(until="0.03 s", rtol=rtol))
+    check = simulate(scene, formulation="minimal", rtol=1e-11)
+    for_each = differences(simulate(scene), check)
+    assert max(each.share for each in for_each) <= 2.0
+
+
+@pytest.mark.parametrize("t", [0.0, 0.3, 1.0, 1.5, 2.0, 2.9])
+@pytest.mark.parametrize("omega", [-20.0, -3.0, -1.0, 3.0, 6.0, 8.0, 20.0])
+def test_a_course_continues_a_branch(omega, t):
+    loads = (*LOADS, Constant(torque=3.0), Viscous(coefficient=0.5), Quadratic(coefficient=0.25))
+    branch = branch_of(loads, t, omega, rising=True)
+    course = course_of(loads, branch, t)
+    assert course.t_end >= branch.t_end
+    assert course.omega_low <= branch.omega_low < branch.omega_high <= course.omega_high
+    times = np.linspace(t, min(course.t_end, 3.0), 29)[1:-1]
+    speeds = np.linspace(max(course.omega_low, -30.0), min(course.omega_high, 30.0), 29)[1:-1]
+    exact = torque_at(loads, times, speeds)
+    np.testing.assert_allclose(course(times, speeds), exact, rtol=1e-13, atol=1e-13)
+
+
+def test_a_course_is_the_sum_of_the_loads_between_jumps():
+    course = course_of(LOADS, branch_of(LOADS, 1.2, 6.0, rising=True), 1.2)
+    assert (course.t_end, course.omega_low, course.omega_high) == (3.0, 5.0, np.inf)
+    assert (course.times.tolist(), course.speeds.tolist()) == ([2.0], [7.0, 9.0])
+    t, omega = np.array([1.3, 1.9, 2.5, 2.9]), np.array([5.5, 6.5, 8.0, 20.0])
+    exact = np.interp(t, TIME.x[2:], TIME.y[2:]) + np.interp(omega, SPEED.x[3:], SPEED.y[3:])
+    np.testing.assert_allclose(course(t, omega), exact, rtol=1e-14)
+    np.testing.assert_allclose(course.slope(omega), [0.25, 0.25, -1.75, 0.0], rtol=1e-14)
+
+
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_cells_cut_are_parts_of_cells(sense):
+    scene = load_scene("propeller")
+    grid = grid_of(scene, pressure_of(scene), gauss(5))
+    strip = grid.strip(3.0, sense, 40, np.inf)
+    marks = strip.turned[[7, 7, 20]] + np.array([0.25, 0.5, 0.5]) * strip.width[[7, 7, 20]]
+    cut = grid.cut(strip, 3.0, sense, np.append(marks, strip.turned[11]))
+    assert len(cut.width) == 43
+    assert cut.cell.tolist() == np.insert(strip.cell, [7, 7, 20], strip.cell[[7, 7, 20]]).tolist()
+    np.testing.assert_array_equal(np.setdiff1d(cut.turned, strip.turned), np.sort(marks))
+    assert np.array_equal(cut.inertia[24:], strip.inertia[21:])
+    work = [np.sum(s.width * (s.torque @ grid.rule.weights)) for s in (strip, cut)]
+    assert work[0] == pytest.approx(work[1], rel=1e-9)
