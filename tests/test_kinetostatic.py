@@ -62,6 +62,24 @@ def test_a_reversing_crank_is_sampled_in_angle_on_both_ways():
     np.testing.assert_allclose(angle[:turn], angle[-1 : turn + 1 : -1][:turn], atol=1e-9)
 
 
+@pytest.mark.parametrize(
+    ("mean", "phase"), [(553.0, 30.0), (553.0, 88.0), (553.0, 142.0), (-553.0, 77.0)]
+)
+def test_the_sample_at_the_start_comes_once(mean, phase):
+    """The law's own angle at time 0 rounds to a hair before it."""
+    law = Oscillation(mean=f"{mean} rpm", amplitude="24 rpm", order=4.0, phase=f"{phase} deg")
+    data = simulate(scene(law, until="0.5 rev", every="1 deg")).data
+    assert data.sizes["time"] == 181
+    assert np.all(np.diff(data["time"]) > 0.0)
+
+
+@pytest.mark.parametrize(("speed", "degrees"), [(100.0, 218.0), (250.0, 250.0), (300.0, 274.0)])
+def test_a_sample_on_which_the_crank_turns_back_comes_once(speed, degrees):
+    law = Ramp(start=speed, to=-speed, over=4.0 * np.radians(degrees) / speed)
+    data = simulate(scene(law, until=f"{law.over} s", every="1 deg")).data
+    assert np.diff(data["time"]).min() > np.radians(0.9) / speed
+
+
 def test_a_speed_that_comes_to_rest_ends_the_run():
     result = simulate(scene(Ramp(start=300.0, to=0.0, over=0.02), until="3 rev", every="10 deg"))
     assert result.status == 1
