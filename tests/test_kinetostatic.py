@@ -6,10 +6,13 @@ import numpy as np
 import pytest
 
 from crankmbs import (
+    Crank,
     InputError,
     Motion,
     Oscillation,
+    Piston,
     Ramp,
+    Rod,
     Run,
     SpeedFile,
     Table,
@@ -85,6 +88,22 @@ def test_a_speed_that_comes_to_rest_ends_the_run():
     assert result.status == 1
     assert "the prescribed speed comes to rest at 171.887 degrees" in result.message
     assert result.data["crank_angle"].values[-1] == pytest.approx(3.0, rel=1e-14)
+
+
+MASSLESS = [Crank(radius=0.05, inertia=0.0), Crank(radius=0.05)]
+
+
+@pytest.mark.parametrize("crank", MASSLESS, ids=["0", "left out"])
+@pytest.mark.parametrize(("formulation", "close"), [("kinetostatic", 1e-13), ("multibody", 1e-6)])
+def test_a_driven_piston_alone_needs_no_inertia(crank, formulation, close):
+    """The textbook's machine: F = m r omega^2 (1 + lambda) at the top dead centre."""
+    bare = replace(BASE, crank=crank, rod=Rod(length=0.2), piston=Piston(mass=1.0), gas=None)
+    run = Run(until="1 rev", rtol=1e-5)
+    result = simulate(replace(bare, motion=Motion(speed=300.0), run=run), formulation=formulation)
+    assert result.status == 0
+    force, torque = result.data["main_bearing_force_x"], result.data["external_torque"]
+    assert force.values[0] == pytest.approx(-0.05 * 300.0**2 * 1.25, rel=close)
+    assert 0.0 < torque.attrs["error_estimate"] < 1e-6 * np.abs(torque.values).max()
 
 
 def test_a_table_that_ends_before_the_run():

@@ -95,10 +95,10 @@ def _sample(
             t = plan.between(begin, end)
             theta = law.at_time(t)[0]
         else:
-            first, last = (float(q) for q in law.at_time([begin, end])[0])
-            theta = plan.between(first, last)
+            turned, bound = (float(q) for q in law.at_time([begin, end])[0])
+            theta = plan.between(turned, bound)
             # where a stretch begins on a sample, but for rounding, the one before it ends there
-            theta = theta[np.abs(theta - first) > plan.hair]
+            theta = theta[np.abs(theta - turned) > plan.hair]
             t = law.time_at(theta, begin, end)
         times.append(t)
         angles.append(theta)
