@@ -112,8 +112,9 @@ def assemble(scene: Scene, pressure: PeriodicPressure | None, solution: Solution
         for name in errors.keys() - better.own.keys():
             most = _peak(variables[name][-1:] - end[name]) + _ROUNDING * peaks[name]
             errors[name] = max(errors[name], most)
-    least = np.min(reduce(scene, None, one_period(better.theta, scene.period)[0])[0])
-    errors["crank_acceleration"] += missed / float(least)
+    if missed:  # of a free crank, which has inertia at every angle; a driven one may have none
+        least = np.min(reduce(scene, None, one_period(better.theta, scene.period)[0])[0])
+        errors["crank_acceleration"] += missed / float(least)
     errors["crank_angle"] = _peak(ahead) + _ROUNDING * peaks["crank_angle"]
     # in the true motion the energy gained is the work done
     errors["energy_residual"] = peaks["energy_residual"] + _ROUNDING * peaks["kinetic_energy"]

@@ -76,7 +76,7 @@ def reduce(
     """
     theta = np.asarray(theta, dtype=np.float64)
     crank, rod, piston = scene.crank, scene.rod, scene.piston
-    inertia = np.full(theta.shape, crank.inertia)
+    inertia = np.full(theta.shape, crank.moment_of_inertia)
     slope = np.zeros(theta.shape)
     gx, gy = gravity_vector(scene)
     torque = (crank.mass * crank.center_of_mass) * (gy * np.cos(theta) - gx * np.sin(theta))

@@ -50,22 +50,27 @@ RodInertia = Annotated[
 class Crank:
     """Everything that turns with the crank, flywheel included.
 
-    radius [m]; inertia about the crank axis [kg m2]; mass [kg]; center_of_mass [m] from the axis
-    along the reference line, negative for a counterweight.
+    radius [m]; inertia about the crank axis [kg m2], which a prescribed speed does without; mass
+    [kg]; center_of_mass [m] from the axis along the reference line, negative for a counterweight.
     """
 
     radius: Length
-    inertia: Inertia
+    inertia: Inertia | None = None
     mass: Mass = 0.0
     center_of_mass: Distance = 0.0
 
     def __post_init__(self) -> None:
         least = self.mass * self.center_of_mass**2
-        if self.inertia < least * (1.0 - 1e-12):
+        if self.moment_of_inertia < least * (1.0 - 1e-12):
             raise InputError(
                 f"inertia about the crank axis must be at least mass * center_of_mass^2 = "
                 f"{least:.6g} kg m^2; {self.inertia:.6g} came"
             )
+
+    @property
+    def moment_of_inertia(self) -> float:
+        """Inertia about the crank axis [kg m2]; left out, that of a mass at its center_of_mass."""
+        return self.mass * self.center_of_mass**2 if self.inertia is None else self.inertia
 
 
 @part

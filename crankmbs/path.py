@@ -67,6 +67,7 @@ class Path:
         self._tail.append(piece)
         while abs(piece.end.theta - self._tail[0].end.theta) > self._plan.last:
             self._tail.popleft()
+            self._blocks = []  # the sample at the start lies before what is kept
 
     def _swings(self) -> bool:
         """Whether an end in angle is not coming nearer, reversal by reversal."""
@@ -76,9 +77,10 @@ class Path:
         """All samples, the last one exactly at the end."""
         if not self._tail:
             return self._blocks[0]
+        blocks = self._blocks
         if math.isfinite(self._plan.last):
-            self._blocks = [piece.sample(self._plan) for piece in self._tail]
-        joined = Samples.joined([*self._blocks, self._tail[-1].last()])
+            blocks = blocks + [piece.sample(self._plan) for piece in self._tail]
+        joined = Samples.joined([*blocks, self._tail[-1].last()])
         kept = np.ones(len(joined.time), dtype=np.bool_)
         values = joined.time if self._plan.in_time else joined.theta
         if len(values) > 1:

@@ -236,7 +236,7 @@ def _crank(
     y_tt = -sin_theta * square + cos_theta * alpha
     weight = first_moment * (cos_theta * gy - sin_theta * gx)
     return {
-        "external_torque": crank.inertia * alpha
+        "external_torque": crank.moment_of_inertia * alpha
         - weight * one
         - sum(c.variables["crank_torque"] for c in cylinders),
         "main_bearing_force_x": first_moment * x_tt
@@ -245,5 +245,6 @@ def _crank(
         "main_bearing_force_y": first_moment * y_tt
         - crank.mass * gy * one
         + sum(c.pull_y for c in cylinders),
-        "kinetic_energy": 0.5 * crank.inertia * square + sum(c.kinetic_energy for c in cylinders),
+        "kinetic_energy": 0.5 * crank.moment_of_inertia * square
+        + sum(c.kinetic_energy for c in cylinders),
     }

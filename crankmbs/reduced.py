@@ -63,7 +63,7 @@ class Reduced:
             rod_length=rod.length,
             center_of_mass=rod.center_of_mass,
             offset=piston.offset,
-            crank_inertia=crank.inertia,
+            crank_inertia=crank.moment_of_inertia,
             rod_inertia=rod.moment_of_inertia,
             rod_mass=rod.mass,
             piston_mass=piston.mass,

@@ -77,7 +77,12 @@ class Plan:
 
     def is_end(self, value: float, end: float) -> bool:
         """Whether a grid value and the end of the run are one sample."""
-        return abs(value - end) <= 1e-9 * self.every
+        return abs(value - end) <= self.hair
+
+    @property
+    def hair(self) -> float:
+        """Samples nearer than this [rad or s] are one but for rounding."""
+        return 1e-9 * self.every
 
 
 def plan_of(scene: Scene) -> Plan:

@@ -147,6 +147,11 @@ class Scene:
         rod_turns = self.rod.moment_of_inertia > 0.0 or (
             self.rod.mass > 0.0 and self.rod.center_of_mass != self.rod.length
         )
+        if self.start is not None and self.crank.inertia is None:
+            raise InputError(
+                "crank.inertia: this key is missing; a free crank needs it, only a prescribed "
+                "speed, [motion], does without"
+            )
         if self.start is not None and self.crank.inertia == 0.0 and not rod_turns:
             raise InputError(
                 "crank.inertia: a free crank needs an inertia above 0, or nothing resists it at "

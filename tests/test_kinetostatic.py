@@ -6,10 +6,13 @@ import numpy as np
 import pytest
 
 from crankmbs import (
+    Crank,
     InputError,
     Motion,
     Oscillation,
+    Piston,
     Ramp,
+    Rod,
     Run,
     SpeedFile,
     Table,
@@ -62,11 +65,45 @@ def test_a_reversing_crank_is_sampled_in_angle_on_both_ways():
     np.testing.assert_allclose(angle[:turn], angle[-1 : turn + 1 : -1][:turn], atol=1e-9)
 
 
+@pytest.mark.parametrize(
+    ("mean", "phase"), [(553.0, 30.0), (553.0, 88.0), (553.0, 142.0), (-553.0, 77.0)]
+)
+def test_the_sample_at_the_start_comes_once(mean, phase):
+    """The law's own angle at time 0 rounds to a hair before it."""
+    law = Oscillation(mean=f"{mean} rpm", amplitude="24 rpm", order=4.0, phase=f"{phase} deg")
+    data = simulate(scene(law, until="0.5 rev", every="1 deg")).data
+    assert data.sizes["time"] == 181
+    assert np.all(np.diff(data["time"]) > 0.0)
+
+
+@pytest.mark.parametrize(("speed", "degrees"), [(100.0, 218.0), (250.0, 250.0), (300.0, 274.0)])
+def test_a_sample_on_which_the_crank_turns_back_comes_once(speed, degrees):
+    law = Ramp(start=speed, to=-speed, over=4.0 * np.radians(degrees) / speed)
+    data = simulate(scene(law, until=f"{law.over} s", every="1 deg")).data
+    assert np.diff(data["time"]).min() > np.radians(0.9) / speed
+
+
 def test_a_speed_that_comes_to_rest_ends_the_run():
     result = simulate(scene(Ramp(start=300.0, to=0.0, over=0.02), until="3 rev", every="10 deg"))
     assert result.status == 1
     assert "the prescribed speed comes to rest at 171.887 degrees" in result.message
     assert result.data["crank_angle"].values[-1] == pytest.approx(3.0, rel=1e-14)
+
+
+MASSLESS = [Crank(radius=0.05, inertia=0.0), Crank(radius=0.05)]
+
+
+@pytest.mark.parametrize("crank", MASSLESS, ids=["0", "left out"])
+@pytest.mark.parametrize(("formulation", "close"), [("kinetostatic", 1e-13), ("multibody", 1e-6)])
+def test_a_driven_piston_alone_needs_no_inertia(crank, formulation, close):
+    """The textbook's machine: F = m r omega^2 (1 + lambda) at the top dead centre."""
+    bare = replace(BASE, crank=crank, rod=Rod(length=0.2), piston=Piston(mass=1.0), gas=None)
+    run = Run(until="1 rev", rtol=1e-5)
+    result = simulate(replace(bare, motion=Motion(speed=300.0), run=run), formulation=formulation)
+    assert result.status == 0
+    force, torque = result.data["main_bearing_force_x"], result.data["external_torque"]
+    assert force.values[0] == pytest.approx(-0.05 * 300.0**2 * 1.25, rel=close)
+    assert 0.0 < torque.attrs["error_estimate"] < 1e-6 * np.abs(torque.values).max()
 
 
 def test_a_table_that_ends_before_the_run():

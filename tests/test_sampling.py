@@ -97,6 +97,17 @@ def test_none_keeps_the_last_period(way, until):
 
 
 @EVERY_WAY
+@pytest.mark.parametrize("until", ["100 deg", "1 rev", "1 cycle", "30 ms"])
+def test_none_keeps_a_run_of_a_period_or_less_whole(way, until):
+    """With the sample at its start."""
+    time, angle = run(way, until, "none")
+    whole_time, whole_angle = run(way, until, "1 deg")
+    assert time[0] == 0.0
+    np.testing.assert_array_equal(time, whole_time)
+    np.testing.assert_array_equal(angle, whole_angle)
+
+
+@EVERY_WAY
 @pytest.mark.parametrize(("until", "every"), [("1 deg", "30 deg"), ("10 us", "1 ms")])
 def test_a_run_shorter_than_its_spacing(way, until, every):
     time, angle = run(way, until, every)

@@ -110,7 +110,12 @@ def test_every_part_survives_a_dump():
             lambda: Crank(radius=True, inertia=0.1),
             'radius: must be a number in SI units, or text such as "46 mm"; true came',
         ),
-        (lambda: Crank(radius=1), "inertia: this argument is missing; it has no default"),
+        (lambda: Crank(inertia=1), "radius: this argument is missing; it has no default"),
+        (
+            lambda: scene(crank=Crank(radius=0.046)),
+            "crank.inertia: this key is missing; a free crank needs it, only a prescribed speed, "
+            "[motion], does without",
+        ),
         (lambda: Crank(radius=1, inertia=1, mas=1), 'mas: unknown argument; did you mean "mass"?'),
         (
             lambda: Crank(radius=1, inertia=1, mass=2, center_of_mass=1),
@@ -315,6 +320,12 @@ def test_a_free_crank_without_inertia_needs_a_rod_that_resists(rod, accepted):
         return
     with pytest.raises(InputError, match=r"crank\.inertia: a free crank needs an inertia above 0"):
         scene(**massless)
+
+
+def test_an_inertia_left_out_is_that_of_a_mass_at_its_centre():
+    assert Crank(radius=0.046).moment_of_inertia == 0.0
+    assert Crank(radius=0.046, mass=2.0, center_of_mass=-0.1).moment_of_inertia == 2.0 * 0.1**2
+    assert Crank(radius=0.046, inertia=0.03, mass=2.0, center_of_mass=0.1).moment_of_inertia == 0.03
 
 
 def test_an_indicator_needs_its_exhaust_pressure_with_four_strokes_only():

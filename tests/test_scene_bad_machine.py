@@ -27,6 +27,12 @@ KEYS = "crank, rod, piston, run, layout, gas, gravity, motion, start, torque, ti
         ("[run]", "[run]\nRtol = 1e-8", 'run.Rtol: unknown key; did you mean "rtol"?'),
         ('radius = "46 mm"', "", "crank.radius: this key is missing; it has no default"),
         (
+            'inertia = "0.02 kg m^2"',
+            "",
+            "crank.inertia: this key is missing; a free crank needs it, only a prescribed speed, "
+            "[motion], does without",
+        ),
+        (
             'coefficient = "9.5e-5 N m s^2"',
             "",
             "torque[1].coefficient: this key is missing; it has no default",

@@ -54,7 +54,7 @@ def machine_of(scene: Scene) -> Machine:
         gy = scene.gravity.acceleration * math.sin(scene.gravity.angle)
     return Machine(
         crank_radius=crank.radius,
-        crank_inertia=crank.inertia,
+        crank_inertia=crank.moment_of_inertia,
         crank_mass=crank.mass,
         crank_center_of_mass=crank.center_of_mass,
         rod_length=rod.length,

@@ -50,7 +50,7 @@ class _Draw:
         layout = self._layout()
         speed = self._log(3.0, 600.0)
         swung = rod.mass * crank.radius**2 + piston.mass * crank.radius**2
-        inertia = crank.inertia + swung * len(layout.resolve(4 * math.pi))
+        inertia = crank.moment_of_inertia + swung * len(layout.resolve(4 * math.pi))
         energy = 0.5 * inertia * speed**2
         assert piston.area is not None
         gas = self._gas(energy / (piston.area * crank.radius)) if self._chance(0.75) else None

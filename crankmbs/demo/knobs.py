@@ -56,12 +56,14 @@ def knobs_of(scene: Scene) -> tuple[Knob, ...]:
         Knob("rod_mass", "rod mass [kg]", 0.0, heaviest, heaviest / 150.0, rod.mass, "0.00"),
     ]
     if scene.start is not None:
-        inertia = scene.crank.inertia or 1e-3
+        inertia = scene.crank.moment_of_inertia or 1e-3
         most = _above(4.0 * inertia)
         title = "flywheel [kg m²]"
         least = most / 100.0
         knobs.append(
-            Knob("flywheel", title, least, most, least, scene.crank.inertia, _format(most))
+            Knob(
+                "flywheel", title, least, most, least, scene.crank.moment_of_inertia, _format(most)
+            )
         )
     speed = _speed(scene)
     if speed:

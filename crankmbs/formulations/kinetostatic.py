@@ -95,7 +95,10 @@ def _sample(
             t = plan.between(begin, end)
             theta = law.at_time(t)[0]
         else:
-            theta = plan.between(*(float(q) for q in law.at_time([begin, end])[0]))
+            turned, bound = (float(q) for q in law.at_time([begin, end])[0])
+            theta = plan.between(turned, bound)
+            # where a stretch begins on a sample, but for rounding, the one before it ends there
+            theta = theta[np.abs(theta - turned) > plan.hair]
             t = law.time_at(theta, begin, end)
         times.append(t)
         angles.append(theta)
@@ -107,7 +110,7 @@ def _sample(
         theta_end = high if theta_end > plan.start else low
     is_end = (time >= end) if plan.in_time else (time >= end * (1.0 - 1e-12))
     near = abs(time[-1] - end) if plan.in_time else abs(theta[-1] - theta_end)
-    keep = ~is_end & ~((np.arange(len(time)) == len(time) - 1) & (near <= 1e-9 * plan.every))
+    keep = ~is_end & ~((np.arange(len(time)) == len(time) - 1) & (near <= plan.hair))
     time, theta = np.append(time[keep], end), np.append(theta[keep], theta_end)
     first = np.flatnonzero(np.abs(theta - theta_end) > plan.last * (1.0 + 1e-12))
     begin_at = first[-1] + 1 if len(first) else 0

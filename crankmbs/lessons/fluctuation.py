@@ -168,8 +168,8 @@ def _inertia_axis(ax: Axes) -> None:
 def _own(result: Result) -> Question:
     measures = measure(result)
     return Question(
-        f"This engine has {result.scene.crank.inertia:g} kg m². What is its coefficient of "
-        "fluctuation?",
+        f"This engine has {result.scene.crank.moment_of_inertia:g} kg m². What is its coefficient "
+        "of fluctuation?",
         f"{simulated('fluctuation', measures.fluctuation, '%', 100.0)} at a mean of "
         f"{simulated('mean_speed', measures.mean_speed, 'rpm', _RPM, 6)}; "
         f"$W/(J\\omega_m^2)$ gives {exact('formula', estimate(result), '%', 100.0)}.",

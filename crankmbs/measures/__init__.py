@@ -1,14 +1,8 @@
 """What a run amounts to: means, peaks, power and orders, from the samples of a result."""
 
+from crankmbs.measures.joints import Estimate, JointForce
 from crankmbs.measures.orders import Orders, orders
-from crankmbs.measures.summary import (
-    Estimate,
-    JointForce,
-    Measures,
-    fluctuation,
-    mean_speed,
-    measure,
-)
+from crankmbs.measures.summary import Measures, fluctuation, mean_speed, measure
 from crankmbs.measures.window import Window, last_window
 
 __all__ = [

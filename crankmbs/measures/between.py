@@ -1,13 +1,15 @@
-"""The motion between the samples of a result: the same run, many times more finely sampled."""
+"""The motion between the samples of a result: at any time, and many times more finely sampled."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.interpolate import CubicHermiteSpline
 
 from crankmbs.inertia import reduce
 from crankmbs.pressure import pressure_of
@@ -21,79 +23,145 @@ from crankmbs.torque import torque_at
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["refined"]
+__all__ = ["Between", "refined"]
 
 Array = NDArray[np.float64]
+State = tuple[Array, Array, Array]
 
-_SPACING = 0.1 * DEGREE  # where samples are no farther apart their sums hardly change
-_FEWEST, _MOST = 2, 512  # parts of one interval
+_MOTION = ("crank_angle", "crank_speed", "crank_acceleration")
+_SPACING = 0.2 * DEGREE  # of the coarser motion: where samples are no farther apart sums and
+# peaks hardly change
+_FEWEST, _MOST = 2, 512  # parts of one interval in the coarser motion
 _PASSES = 6  # the speed hardly changes what drives it: each leaves a small part of the error
+_ENOUGH = 1e-14  # of the speed: a change so small is rounding
 _SETTLED = 0.1  # of the speed: where the last pass changes it more they lead nowhere
 
 
-def refined(result: Result, first: int) -> Result | None:
-    """The result from sample ``first`` on, with every interval cut into equal parts of time.
+@dataclass(frozen=True)
+class Between:
+    """The motion of a result between its samples.
+
+    result : finely sampled
+    state : crank angle, speed and acceleration, each of shape (n,), at times of shape (n,) [s]
+    """
+
+    result: Result
+    state: Callable[[Array], State]
+
+    def variables(self, time: Array) -> dict[str, Array]:
+        """Every variable but the energy residual at times of shape (n,) [s]."""
+        scene = self.result.scene
+        theta, omega, alpha = self.state(time)
+        found = reactions(scene, pressure_of(scene), theta, omega, alpha)
+        return found | {"crank_angle": theta, "crank_speed": omega, "crank_acceleration": alpha}
+
+
+def refined(result: Result, first: int) -> tuple[Between, ...]:
+    """The motion from sample ``first`` on, with every interval cut into equal parts of time.
 
     A prescribed motion is taken from its law. That of a free crank is the equation of motion
     integrated across each interval and bent to meet the samples at both ends, so that it feels gas
-    and loads between them. Where loads settle the speed faster than the samples follow their torque
-    is linear between them. Joint forces are those of `crankmbs.reactions.reactions`.
+    and loads between them; twice, in so many and in twice as many parts and passes, to tell its
+    error. Where loads settle the speed faster than the samples follow their torque is linear
+    between them. Joint forces are those of `crankmbs.reactions.reactions`.
 
     Returns
     -------
-    Result, or None where a free crank turns or swings so far from one sample to the next that they
-    do not tell how
+    the law's motion alone; that of a free crank, coarser and finer; nothing where a free crank
+    turns or swings so far from one sample to the next that they do not tell how
 
-    >>> print(refined(simulate(load_scene("propeller")), 0).data.sizes["time"] > 50_000)
+    >>> finest = refined(simulate(load_scene("propeller")), 0)[-1]
+    >>> print(finest.result.data.sizes["time"] > 50_000)
     True
     """
     data = result.data.isel(time=slice(first, None))
     if data.sizes["time"] < 2:
-        return replace(result, data=data)
+        return (Between(replace(result, data=data), _alone(data)),)
     spacing = float(np.mean(np.abs(np.diff(data["crank_angle"].values))))
     parts = min(max(math.ceil(spacing / _SPACING), _FEWEST), _MOST)
-    motion: tuple[Array, Array, Array, Array] | None
-    if result.scene.motion is None:
-        motion = _free(result.scene, data, parts)
-    else:
-        time = _joined(_cut(data["time"].values, parts))
-        motion = (time, *speed_law(result.scene.motion).at_time(time))
-    return None if motion is None else replace(result, data=_labelled(result, *motion))
+    if result.scene.motion is not None:
+        law = speed_law(result.scene.motion)
+        time = _joined(_cut(data["time"].values, 2 * parts))
+        return (Between(_sampled(result, data, time, *law.at_time(time)), law.at_time),)
+    free = _Free(result.scene, data)
+    coarse, fine = (free.motion(parts * k, _PASSES * k) for k in (1, 2))
+    if coarse is None or fine is None:
+        return ()
+    return tuple(
+        Between(_sampled(result, data, *motion), free.between(*motion)) for motion in (coarse, fine)
+    )
 
 
-def _free(scene: Scene, data: xr.Dataset, parts: int) -> tuple[Array, Array, Array, Array] | None:
-    """Time, angle, speed and acceleration of a free crank, if they can be told."""
-    pressure = pressure_of(scene)
-    names = ("time", "crank_angle", "crank_speed", "external_torque")
-    time, theta, omega, outside = (data[name].values for name in names)
-    width, s = np.diff(time)[:, None], np.linspace(0.0, 1.0, parts + 1)
-    t, linear = _cut(time, parts), _cut(outside, parts)
-    beside = _cut(outside - torque_at(scene.torque, time, omega), parts)
-    # where the speed follows its loads faster than samples follow one another passes would diverge
-    rate = _steepness(scene, time, omega) / reduce(scene, None, theta)[0]
-    stiff = np.maximum(rate[:-1], rate[1:])[:, None] * width > 1.0
+def _alone(data: xr.Dataset) -> Callable[[Array], State]:
+    """The state of the one sample there is, at any time."""
+    theta, omega, alpha = (float(data[name].values[0]) for name in _MOTION)
+    return lambda t: (np.full_like(t, theta), np.full_like(t, omega), np.full_like(t, alpha))
 
-    def bent(speed: Array) -> tuple[Array, Array]:
-        """Angle and speed that meet the angles of the samples, the speeds at both ends kept."""
-        angle = theta[:-1, None] + _running(speed, width)
-        missing = (theta[1:] - angle[:, -1])[:, None]
-        angle = angle + missing * s**2 * (3.0 - 2.0 * s)
-        return angle, speed + missing * 6.0 * s * (1.0 - s) / width
 
-    def driven(angle: Array, speed: Array) -> Array:
-        """Acceleration there."""
-        inertia, slope, given = reduce(scene, pressure, angle)
-        torque = np.where(stiff, linear, torque_at(scene.torque, t, speed) + beside)
+class _Free:
+    """The equation of motion of a free crank between its samples."""
+
+    def __init__(self, scene: Scene, data: xr.Dataset) -> None:
+        self._time, self._outside = (data[name].values for name in ("time", "external_torque"))
+        self._theta, self._omega = (data[name].values for name in _MOTION[:2])
+        late, ahead = (float(data[n].attrs["error_estimate"]) for n in ("time", "crank_angle"))
+        self._unsure = 2.0 * (ahead + late * float(np.max(np.abs(self._omega))))  # angle [rad]
+        self._scene, self._pressure = scene, pressure_of(scene)
+        self._beside = self._outside - torque_at(scene.torque, self._time, self._omega)
+        # where the speed follows its loads faster than samples follow one another passes diverge
+        rate = _steepness(scene, self._time, self._omega) / reduce(scene, None, self._theta)[0]
+        self._stiff = np.maximum(rate[:-1], rate[1:]) * np.diff(self._time) > 1.0
+
+    def motion(self, parts: int, passes: int) -> tuple[Array, Array, Array, Array] | None:
+        """Time, angle, speed and acceleration in so many parts of each interval, if they can be
+        told in so many passes."""
+        theta, omega = self._theta, self._omega
+        width, s = np.diff(self._time)[:, None], np.linspace(0.0, 1.0, parts + 1)
+        t = _cut(self._time, parts)
+
+        def bent(speed: Array) -> tuple[Array, Array]:
+            """Angle and speed that meet the angles of the samples, the speeds at both ends kept.
+            What the samples' own errors explain of an angle that is missing is no speed."""
+            angle = theta[:-1, None] + _running(speed, width)
+            missing = (theta[1:] - angle[:, -1])[:, None]
+            angle = angle + missing * s**2 * (3.0 - 2.0 * s)
+            faster = np.sign(missing) * np.maximum(np.abs(missing) - self._unsure, 0.0)
+            return angle, speed + faster * 6.0 * s * (1.0 - s) / width
+
+        angle, speed = bent(_cut(omega, parts))
+        for _ in range(passes):
+            gained = omega[:-1, None] + _running(self._acceleration(t, angle, speed), width)
+            before, (angle, speed) = speed, bent(gained + s * (omega[1:] - gained[:, -1])[:, None])
+            change, size = (np.max(np.abs(q), axis=1) for q in (speed - before, speed))
+            if np.all(change <= _ENOUGH * size):
+                break
+        if not np.all(change <= _SETTLED * size):
+            return None
+        alpha = self._acceleration(t, angle, speed)
+        return _joined(t), _joined(angle), _joined(speed), _joined(alpha)
+
+    def between(
+        self, time: Array, theta: Array, omega: Array, alpha: Array
+    ) -> Callable[[Array], State]:
+        """The state at any time, by cubics between those of a motion."""
+        angle, speed = (
+            CubicHermiteSpline(time, theta, omega),
+            CubicHermiteSpline(time, omega, alpha),
+        )
+
+        def state(t: Array) -> State:
+            there = angle(t), speed(t)
+            return *there, self._acceleration(t, *there)
+
+        return state
+
+    def _acceleration(self, t: Array, angle: Array, speed: Array) -> Array:
+        inertia, slope, given = reduce(self._scene, self._pressure, angle)
+        outside, beside = (np.interp(t, self._time, q) for q in (self._outside, self._beside))
+        interval = np.searchsorted(self._time[1:-1], t, side="right")
+        torque = torque_at(self._scene.torque, t, speed) + beside
+        torque = np.where(self._stiff[interval], outside, torque)
         return np.asarray((given + torque - 0.5 * slope * speed**2) / inertia)
-
-    angle, speed = bent(_cut(omega, parts))
-    for _ in range(_PASSES):
-        gained = omega[:-1, None] + _running(driven(angle, speed), width)
-        before, (angle, speed) = speed, bent(gained + s * (omega[1:] - gained[:, -1])[:, None])
-    change, size = (np.max(np.abs(q), axis=1) for q in (speed - before, speed))
-    if not np.all(change <= _SETTLED * size):
-        return None
-    return _joined(t), _joined(angle), _joined(speed), _joined(driven(angle, speed))
 
 
 def _steepness(scene: Scene, t: Array, omega: Array) -> Array:
@@ -123,12 +191,23 @@ def _running(values: Array, width: Array) -> Array:
     return np.concatenate([np.zeros((len(values), 1)), gained], axis=1)
 
 
-def _labelled(result: Result, time: Array, theta: Array, omega: Array, alpha: Array) -> xr.Dataset:
-    """Every variable but the energy residual, with the errors that the result states."""
+def _sampled(
+    result: Result, data: xr.Dataset, time: Array, theta: Array, omega: Array, alpha: Array
+) -> Result:
+    """The result at these samples: every variable but the energy residual. Where one is larger than
+    at the samples of ``data`` its error grows by as much, relatively, as the result states."""
     import xarray as xr
 
     found = reactions(result.scene, pressure_of(result.scene), theta, omega, alpha)
     found |= {"time": time, "crank_angle": theta, "crank_speed": omega, "crank_acceleration": alpha}
-    rows = {name: (result.data[name].dims, v, result.data[name].attrs) for name, v in found.items()}
+
+    def stated(name: str) -> dict[str, object]:
+        attrs = dict(data[name].attrs)
+        higher = float(np.max(np.abs(found[name])) - np.max(np.abs(data[name].values)))
+        if higher > 0.0:
+            attrs["error_estimate"] += result.error.estimated * higher
+        return attrs
+
+    rows = {name: (data[name].dims, v, stated(name)) for name, v in found.items()}
     coordinates = {name: rows.pop(name) for name in ("time", "crank_angle")}
-    return xr.Dataset(rows, {**coordinates, "cylinder": result.data["cylinder"]})
+    return replace(result, data=xr.Dataset(rows, {**coordinates, "cylinder": data["cylinder"]}))

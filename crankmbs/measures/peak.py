@@ -1,17 +1,73 @@
-"""The largest sample of a quantity, and how far the quantity may rise above it between samples."""
+"""The largest value of a quantity: where it can be evaluated anywhere, and from samples alone."""
 
 from __future__ import annotations
+
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["rise"]
+__all__ = ["highest", "rise"]
 
 Array = NDArray[np.float64]
+Indices = NDArray[np.intp]
+
+_MOST = 12  # candidates for one quantity's maximum
+_ROUNDS = 12  # each looks sixteen times closer
+_AROUND = np.linspace(-1.0, 1.0, 33)
 
 _T = np.linspace(-0.25, 1.25, 601)  # across one interval, and a little on either side
 _JUMP = 10.0  # a difference so many times its neighbour is a jump
 _INSIDE = (_T >= 0.0) & (_T <= 1.0)
+
+
+def highest(time: Array, values: Array, at: Callable[[Array], Array] | None) -> tuple[Array, Array]:
+    """The largest values of q quantities over a stretch of time, and when they are reached.
+
+    Around every sample that none of its neighbours exceeds, and from which the quantity, bending
+    as it does there, could rise to the largest, it is evaluated ever closer: exact to rounding
+    where smooth or bent, and on either side of a jump.
+
+    Parameters
+    ----------
+    time : shape (n,) [s]; values : shape (q, n), so fine that no maximum hides between two samples
+        of which neither is one
+    at : values of shape (q, m) at times of shape (m,), or None: the samples are all there is
+
+    Returns
+    -------
+    times, values : shape (q,)
+    """
+    which, k = _candidates(values)
+    last = len(time) - 1
+    low, middle, high = time[np.maximum(k - 1, 0)], time[k], time[np.minimum(k + 1, last)]
+    top, row = values[which, k], np.arange(len(k))
+    for _ in range(_ROUNDS):
+        if at is None:
+            break
+        side = np.where(_AROUND < 0.0, (middle - low)[:, None], (high - middle)[:, None])
+        t = middle[:, None] + _AROUND * side
+        found = at(t.ravel()).reshape(-1, *t.shape)[which, row]
+        best = np.argmax(found, axis=1)
+        beside = np.clip([best - 1, best + 1], 0, len(_AROUND) - 1)
+        low, middle, high = t[row, beside[0]], t[row, best], t[row, beside[1]]
+        top = found[row, best]
+    order = np.lexsort((-top, which))
+    first = order[np.searchsorted(which[order], np.arange(len(values)))]
+    return middle[first], top[first]
+
+
+def _candidates(values: Array) -> tuple[Indices, Indices]:
+    """Quantity and sample of every local maximum that may exceed all others between samples."""
+    apart = np.diff(values, axis=1)
+    ends = np.zeros((len(values), 1))
+    before, after = np.hstack([ends, apart]), np.hstack([-apart, ends])
+    kept = (before >= 0.0) & (after >= 0.0)
+    kept &= values + before + after >= values.max(axis=1, keepdims=True)
+    order = np.argsort(np.where(kept, -values, np.inf), axis=1, kind="stable")[:, :_MOST]
+    which, k = np.repeat(np.arange(len(values)), order.shape[1]), order.ravel()
+    chosen = kept[which, k]
+    return which[chosen], k[chosen]
 
 
 def rise(values: Array, at: int) -> float:

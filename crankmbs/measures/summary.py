@@ -4,47 +4,29 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, fields, replace
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline
 
 from crankmbs.geometry import close_loop, dead_centres
-from crankmbs.measures.between import refined
+from crankmbs.measures.between import Between, refined
+from crankmbs.measures.joints import (
+    Estimate,
+    JointForce,
+    apart,
+    mean_over_time,
+    peaks,
+    stated,
+)
 from crankmbs.measures.peak import rise
 from crankmbs.measures.window import Window, integral, last_window, same_window
 from crankmbs.result import Result
 
-__all__ = ["Estimate", "JointForce", "Measures", "fluctuation", "mean_speed", "measure"]
+__all__ = ["Measures", "fluctuation", "mean_speed", "measure"]
 
 Array = NDArray[np.float64]
-
-
-class Estimate(NamedTuple):
-    """A value and an estimate of its absolute error, in one unit."""
-
-    value: float
-    error: float
-
-
-@dataclass(frozen=True)
-class JointForce:
-    """Magnitude of one joint's force over the window.
-
-    joint : "main bearing", "crank pin", "piston pin" or "side force"
-    cylinder : its number; None for the main bearing, which carries all of them
-    peak [N] : largest sample; crank_angle [rad], unwrapped, and cycle_angle [rad] of its cylinder
-        say where that sample is
-    mean [N] : over time
-    """
-
-    joint: str
-    cylinder: int | None
-    peak: Estimate
-    mean: Estimate
-    crank_angle: float
-    cycle_angle: float | None
 
 
 @dataclass(frozen=True)
@@ -76,54 +58,69 @@ class Measures:
 def measure(result: Result) -> Measures:
     """Sum up a run over its last whole cycle (or revolution, or the run).
 
-    A value is that of the samples. Its error is what it differs by from the same measure of the
-    motion between them (`crankmbs.measures.between.refined`), plus that measure's own error: the
-    stated errors of the variables in it, the quadrature's (the spline through all points against
-    that through every second one) and how far a peak may rise between two points
-    (`crankmbs.measures.peak.rise`). It is infinite where a free crank turns or swings so far
-    between two samples that they do not tell how.
+    A value is that of the motion between the samples (`crankmbs.measures.between.refined`). Its
+    error sums the stated errors of the variables in it, the quadrature's (the spline through all
+    points against that through every second one) and, where the crank is free, what the value
+    differs by from that of the coarser motion between the samples. Where a free crank turns or
+    swings so far between two samples that they do not tell how, the value is that of the samples
+    and its error infinite.
 
     >>> measure(simulate(load_scene("propeller"))).window.kind
     'last cycle'
     """
     window = last_window(result)
-    finer = refined(result, window.first)
     closure = _energy_closure(result)
-    here = _measures(result, window, closure)
-    there = finer and _measures(finer, same_window(window, finer), closure)
-    found: Measures = _beside(here, there)
-    return found
+    motions = refined(result, window.first)
+    if not motions:
+        unknown: Measures = _beside(_measures(result, window, closure), None)
+        return unknown
+    missed = apart(result, motions)
+    *coarser, found = (
+        _measures(motion.result, same_window(window, motion.result), closure, motion, missed)
+        for motion in motions
+    )
+    for other in coarser:
+        found = _beside(found, other)
+    return replace(found, window=window)
 
 
-def _beside(found: Any, finer: Any) -> Any:
-    """Measures with the errors that finer ones show, without them with infinite errors."""
+def _beside(found: Any, other: Any) -> Any:
+    """Measures with the errors that others show besides, without others with infinite errors."""
     if isinstance(found, Estimate):
-        if finer is None:
-            return Estimate(found.value, math.inf)
-        return Estimate(found.value, abs(found.value - finer.value) + finer.error)
+        apart = math.inf if other is None else abs(found.value - other.value)
+        return Estimate(found.value, found.error + apart)
     if isinstance(found, tuple):
-        others = [None] * len(found) if finer is None else finer
+        others = [None] * len(found) if other is None else other
         return tuple(_beside(*pair) for pair in zip(found, others, strict=True))
     if isinstance(found, Measures | JointForce):
         names = [field.name for field in fields(found)]
-        parts = {name: _beside(getattr(found, name), getattr(finer, name, None)) for name in names}
+        parts = {name: _beside(getattr(found, name), getattr(other, name, None)) for name in names}
         return replace(found, **parts)
     return found
 
 
-def _measures(result: Result, window: Window, energy_closure: float) -> Measures:
+def _measures(
+    result: Result,
+    window: Window,
+    energy_closure: float,
+    between: Between | None = None,
+    missed: Array | float = 0.0,
+) -> Measures:
     power, imep = _indicated(result, window)
     rods = result.data["crank_torque"]
-    rods_error = _stated(result, "crank_torque") * rods.sizes["cylinder"]
+    rods_error = stated(result, "crank_torque") * rods.sizes["cylinder"]
     outside = result.data["external_torque"].values
+    missed = np.broadcast_to(missed, 3 + 3 * rods.sizes["cylinder"])
+    joints, high, low = peaks(result, window, between, missed)
+    of_speed = float(missed[-1])
     return Measures(
         window=window,
         mean_speed=mean_speed(result, window),
-        fluctuation=fluctuation(result, window),
-        speed_gain=_speed_gain(result, window),
-        joints=tuple(_joints(result, window)),
+        fluctuation=_coefficient(result, window, high, low, error=2.0 * of_speed),
+        speed_gain=_speed_gain(result, window, of_speed),
+        joints=joints,
         crank_torque=_mean_torque(result, window, rods.values.sum(axis=1), rods_error),
-        external_torque=_mean_torque(result, window, outside, _stated(result, "external_torque")),
+        external_torque=_mean_torque(result, window, outside, stated(result, "external_torque")),
         indicated_power=power,
         imep=imep,
         energy_closure=energy_closure,
@@ -135,26 +132,33 @@ def mean_speed(result: Result, window: Window) -> Estimate:
     error is that of the samples; `measure` adds that of a beginning between two of them."""
     if window.duration == 0.0:
         speed = float(result.data["crank_speed"].values[-1])
-        return Estimate(speed, _stated(result, "crank_speed"))
+        return Estimate(speed, stated(result, "crank_speed"))
     mean = window.angle / window.duration
-    ends = _stated(result, "crank_angle") + abs(mean) * _stated(result, "time")
+    ends = stated(result, "crank_angle") + abs(mean) * stated(result, "time")
     return Estimate(mean, 2.0 * ends / window.duration)
 
 
 def fluctuation(result: Result, window: Window) -> Estimate:
-    """Coefficient of fluctuation over a window [1]: (max - min) / |mean speed|; NaN at rest. The
-    error guesses from the samples how far the speed goes between them; `measure` looks there."""
+    """Coefficient of fluctuation of the samples over a window [1]: (max - min) / |mean speed|; NaN
+    at rest. The error guesses from them how far the speed goes in between; `measure` looks there.
+    """
     speed = result.data["crank_speed"].values
+    high = window.inside + int(np.argmax(speed[window.inside :]))
+    low = window.inside + int(np.argmin(speed[window.inside :]))
+    beyond = rise(speed, high) + rise(-speed, low)
+    return _coefficient(result, window, float(speed[high]), float(speed[low]), error=beyond)
+
+
+def _coefficient(
+    result: Result, window: Window, high: float, low: float, *, error: float
+) -> Estimate:
     mean = abs(mean_speed(result, window).value)
     if mean == 0.0:
         return Estimate(math.nan, math.nan)
-    high = window.inside + int(np.argmax(speed[window.inside :]))
-    low = window.inside + int(np.argmin(speed[window.inside :]))
-    error = 2.0 * _stated(result, "crank_speed") + rise(speed, high) + rise(-speed, low)
-    return Estimate(float(speed[high] - speed[low]) / mean, error / mean)
+    return Estimate((high - low) / mean, (2.0 * stated(result, "crank_speed") + error) / mean)
 
 
-def _speed_gain(result: Result, window: Window) -> Estimate:
+def _speed_gain(result: Result, window: Window, missed: float) -> Estimate:
     """Where the window begins between two samples the speed there is that of the cubic through
     their speeds and accelerations."""
     names = ("time", "crank_speed", "crank_acceleration")
@@ -163,39 +167,7 @@ def _speed_gain(result: Result, window: Window) -> Estimate:
     if window.first < window.inside:
         pair = [window.first, window.inside]
         begin = float(CubicHermiteSpline(time[pair], speed[pair], rate[pair])(window.begin))
-    return Estimate(float(speed[-1]) - begin, 2.0 * _stated(result, "crank_speed"))
-
-
-def _joints(result: Result, window: Window) -> list[JointForce]:
-    rows = [_joint(result, window, "main bearing", "main_bearing_force", None)]
-    for joint, name in (("crank pin", "crank_pin_force"), ("piston pin", "piston_pin_force")):
-        rows += [_joint(result, window, joint, name, k) for k in _numbers(result)]
-    rows += [_joint(result, window, "side force", "side_force", k) for k in _numbers(result)]
-    return rows
-
-
-def _joint(result: Result, window: Window, joint: str, name: str, number: int | None) -> JointForce:
-    parts = [name] if name in result.data else [f"{name}_x", f"{name}_y"]
-    columns = [result.data[part].values for part in parts]
-    if number is not None:
-        columns = [column[:, number - 1] for column in columns]
-    size = np.sqrt(sum(column**2 for column in columns))
-    stated = math.hypot(*(_stated(result, part) for part in parts))
-    at = window.inside + int(np.argmax(size[window.inside :]))
-    crank_angle = float(result.data["crank_angle"].values[at])
-    cycle_angle = None
-    if number is not None:
-        phase = result.scene.cylinders[number - 1].phase
-        cycle_angle = (crank_angle + phase) % result.scene.period
-    mean = _mean(result, window, size)
-    return JointForce(
-        joint=joint,
-        cylinder=number,
-        peak=Estimate(float(size[at]), stated + rise(size, at)),
-        mean=Estimate(mean.value, mean.error + stated),
-        crank_angle=crank_angle,
-        cycle_angle=cycle_angle,
-    )
+    return Estimate(float(speed[-1]) - begin, 2.0 * stated(result, "crank_speed") + missed)
 
 
 def _indicated(
@@ -208,16 +180,16 @@ def _indicated(
         return None, None
     force, velocity = (result.data[name].values for name in ("gas_force", "piston_velocity"))
     work, quadrature = integral(result, window, force * velocity)
-    stated = np.mean(np.abs(force), axis=0) * _stated(result, "piston_velocity")
-    stated = stated + np.mean(np.abs(velocity), axis=0) * _stated(result, "gas_force")
-    error = quadrature + stated * window.duration
-    power = Estimate(float(work.sum()) / window.duration, float(error.sum()) / window.duration)
+    power = np.mean(np.abs(force), axis=0) * stated(result, "piston_velocity")
+    power = power + np.mean(np.abs(velocity), axis=0) * stated(result, "gas_force")
+    error = quadrature + power * window.duration
+    mean = Estimate(float(work.sum()) / window.duration, float(error.sum()) / window.duration)
     if window.kind != "last cycle":
-        return power, None
+        return mean, None
     r, l, e = scene.crank.radius, scene.rod.length, scene.piston.offset
     top, bottom = close_loop(dead_centres(r, l, e), r, l, e).x
     volume = area * float(top - bottom)
-    return power, tuple(
+    return mean, tuple(
         Estimate(float(w) / volume, float(d) / volume) for w, d in zip(work, error, strict=True)
     )
 
@@ -228,31 +200,15 @@ def _energy_closure(result: Result) -> float:
     return worst / peak if peak > 0.0 else 0.0
 
 
-def _mean_torque(result: Result, window: Window, torque: Array, stated: float) -> Estimate:
+def _mean_torque(result: Result, window: Window, torque: Array, own: float) -> Estimate:
     """Work per angle turned; where none is turned, the mean over time."""
     if window.angle == 0.0:
-        mean = _mean(result, window, torque)
-        return Estimate(mean.value, mean.error + stated)
+        mean = mean_over_time(result, window, torque)
+        return Estimate(mean.value, mean.error + own)
     speed = result.data["crank_speed"].values
     work, quadrature = integral(result, window, torque * speed)
     error = float(quadrature) + window.duration * (
-        stated * float(np.max(np.abs(speed)))
-        + float(np.max(np.abs(torque))) * _stated(result, "crank_speed")
+        own * float(np.max(np.abs(speed)))
+        + float(np.max(np.abs(torque))) * stated(result, "crank_speed")
     )
     return Estimate(float(work) / window.angle, error / abs(window.angle))
-
-
-def _mean(result: Result, window: Window, values: Array) -> Estimate:
-    """Mean over time with the error of its quadrature."""
-    if window.duration == 0.0:
-        return Estimate(float(values[-1]), 0.0)
-    total, error = integral(result, window, values)
-    return Estimate(float(total) / window.duration, float(error) / window.duration)
-
-
-def _stated(result: Result, name: str) -> float:
-    return float(result.data[name].attrs["error_estimate"])
-
-
-def _numbers(result: Result) -> list[int]:
-    return [int(number) for number in result.data["cylinder"].values]

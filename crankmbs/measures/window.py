@@ -94,8 +94,9 @@ def integral(result: Result, window: Window, values: Array) -> tuple[Array, Arra
     """Integral over time across a window, and an estimate of its quadrature error.
 
     A cubic spline through the samples is integrated: order 4 in the spacing where the quantity is
-    smooth, order 1 across a jump. The error is the difference from the spline through every
-    second sample: of the right size at a jump, 16 times too large where smooth.
+    smooth, 2 across a bend, 1 across a jump. The error is the difference from the splines through
+    the even and through the odd samples: their sum, where smooth 16 times too large, or its parts'
+    root of squares, as those at jumps and bends may cancel by luck; whichever is largest.
 
     Parameters
     ----------
@@ -109,9 +110,14 @@ def integral(result: Result, window: Window, values: Array) -> tuple[Array, Arra
     inner = values[window.first :]
     if len(time) < 2:
         return np.zeros(values.shape[1:]), np.zeros(values.shape[1:])
-    every_second = np.unique(np.append(np.arange(0, len(time), 2), len(time) - 1))
-    fine, coarse = (
-        CubicSpline(time[chosen], inner[chosen]).integrate(window.begin, window.end)
-        for chosen in (slice(None), every_second)
-    )
-    return np.asarray(fine), np.abs(np.asarray(fine - coarse))
+    number, last = np.arange(len(time)), len(time) - 1
+    found = CubicSpline(time, inner).antiderivative()
+    error = np.zeros(values.shape[1:])
+    for odd in (0, 1):
+        chosen = (number % 2 == odd) | (number == 0) | (number == last)
+        coarse = CubicSpline(time[chosen], inner[chosen]).antiderivative()
+        edges = np.maximum(time[chosen], window.begin)
+        apart = np.diff(found(edges) - coarse(edges), axis=0)
+        error = np.maximum(error, np.abs(apart.sum(axis=0)))
+        error = np.maximum(error, np.sqrt((apart**2).sum(axis=0)))
+    return np.asarray(found(window.end) - found(window.begin)), error

@@ -59,7 +59,7 @@ class Assembly:
     def _bodies(self, reference: Array) -> tuple[Any, list[Any]]:
         crank, rod = self._scene.crank, self._scene.rod
         centre, a = crank.center_of_mass, rod.center_of_mass
-        own = max(crank.inertia - crank.mass * centre**2, 0.0)
+        own = max(crank.moment_of_inertia - crank.mass * centre**2, 0.0)
         crank_node, body = self._rigid(reference[:3], crank.mass, own)
         self._revolute("bearing", (self._ground, 0.0), (body, -centre))
         pistons = []

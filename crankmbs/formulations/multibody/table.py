@@ -214,7 +214,7 @@ def _complex(planar: Array) -> Array:
 
 def _kinetic_energy(scene: Scene, crank: Array, rods: Array, pistons: Array) -> Array:
     c, rod, piston = scene.crank, scene.rod, scene.piston
-    own = c.inertia - c.mass * c.center_of_mass**2
+    own = c.moment_of_inertia - c.mass * c.center_of_mass**2
     twice = c.mass * (crank[:, :2] ** 2).sum(axis=1) + own * crank[:, 2] ** 2
     twice += rod.mass * (rods[..., :2] ** 2).sum(axis=(1, 2))
     twice += rod.moment_of_inertia * (rods[..., 2] ** 2).sum(axis=1)

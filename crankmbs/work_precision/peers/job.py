@@ -103,7 +103,7 @@ def job_of(scene: Scene, times: Array) -> Job:
     pull, towards = (0.0, 0.0) if gravity is None else (gravity.acceleration, gravity.angle)
     return Job(
         radius=scene.crank.radius,
-        crank_inertia=scene.crank.inertia,
+        crank_inertia=scene.crank.moment_of_inertia,
         crank_mass=scene.crank.mass,
         crank_center=scene.crank.center_of_mass,
         rod_length=scene.rod.length,
