@@ -183,3 +183,11 @@ def test_a_truncated_file(file, saved, share):
     whole = saved.read_bytes()
     file.write_bytes(whole[: int(share * len(whole))])
     refused(file)
+
+
+@pytest.mark.parametrize("status", [-1, 0, 1])
+def test_an_infinite_error_is_kept(status, tmp_path):
+    error = dataclasses.replace(RESULT.error, estimated=np.inf)
+    result = dataclasses.replace(RESULT, error=error, status=status)
+    loaded = Result.load(result.save(tmp_path))
+    assert (loaded.error, loaded.status) == (error, status)
