@@ -22,7 +22,7 @@ from crankmbs.torque import Course
 __all__ = ["edges_missing"]
 
 _WORST = 0.31  # over s^2: what s nodes miss of a kink of slope 1; (pi / 2)^2 / 8, for many nodes
-_HALVES = 40
+_HALVES = 20
 _NEWTON = 5
 _LITTLE = 1e-3  # of what a cell may miss: a kink worth less stays in it beside others
 
