@@ -37,7 +37,7 @@ _PASSES = 12
 _VAIN = 8  # after as many vain hand-overs the crank must turn through a period before the next
 _FAST = (2.0, 8.0)  # as many times as fast as need be either pass takes over: the better one later
 # what either pass may miss at kinks of the loads: of the local tolerance, and at most
-_KINKS, _MOST_MISSED = 0.1, (math.inf, 1e-11)
+_KINKS, _MOST_MISSED = 0.2, (math.inf, 1e-11)
 _ROAMING = 3.0  # of a step's tolerance: what it may miss of the largest torque across knots
 _EVALUATIONS = 500_000  # over time, for which a second of the cost cap stands
 _MOST_CELLS = 20_000

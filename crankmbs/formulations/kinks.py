@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from crankmbs.cells import largest_of_row
 from crankmbs.formulations.base import Array
 from crankmbs.formulations.window import Index, Window
 from crankmbs.torque import Course
@@ -21,7 +22,7 @@ from crankmbs.torque import Course
 __all__ = ["edges_missing"]
 
 _WORST = 0.31  # over s^2: what s nodes miss of a kink of slope 1; (pi / 2)^2 / 8, for many nodes
-_HALVES = 40
+_HALVES = 20
 _NEWTON = 5
 _LITTLE = 1e-3  # of what a cell may miss: a kink worth less stays in it beside others
 
@@ -49,18 +50,20 @@ class _Passed(NamedTuple):
 
 
 class _Points(NamedTuple):
-    """A variable at begin, nodes and end of every cell: positions 0 to 1, shape (s + 2,), values
-    and bends of the torque's slope at its rows; widths of the cells, and what each may miss [J]."""
+    """A variable at begin, nodes and end of some cells: positions 0 to 1, shape (s + 2,), values
+    and bends of the torque's slope at its rows; the cells' numbers and widths, and what each may
+    miss [J]."""
 
     x: Array
     values: Array
     rows: Array
     bends: Array
+    cell: Index
     width: Array
     least: Array
 
     def polynomials(self, k: Index) -> Array:
-        """Coefficients by descending power, shape (s + 2, n), of the variable in the cells k."""
+        """Coefficients by descending power, shape (s + 2, n), of the variable in these of them."""
         return np.asarray(np.linalg.solve(np.vander(self.x), self.values[k].T))
 
 
@@ -69,39 +72,46 @@ def edges_missing(window: Window, allowed: float) -> tuple[Array, Index]:
 
     allowed [1/rad] : of the energy that a cell may miss at kinks, per radian
     """
-    course, width = window.branch, window.strip.width
-    k, x = np.empty(0, dtype=np.intp), np.empty(0)
-    if not isinstance(course, Course):
+    width, k, x = window.strip.width, np.empty(0, dtype=np.intp), np.empty(0)
+    if not isinstance(window.branch, Course):
         return x, k
-    at = np.concatenate([[0.0], window.grid.rule.nodes, [1.0]])
     least = allowed * width * window.energy[1:]
-    found: list[tuple[_Points, _Passed]] = []
-    if len(course.times):
-        spent = width[:, None] * (window.slowness @ window.grid.rule.matrix.T)
-        time = np.column_stack([window.time[:-1], window.time[:-1, None] + spent, window.time[1:]])
-        points = _Points(at, time, course.times, np.diff(course.in_time[:, 1]), width, least)
-        found.append((points, _passed(points)))
-    if _near(course.speeds, window.sense / window.slowness):
-        before = np.append(window.begin.omega, window.speeds[:-1, -1])
-        omega = np.column_stack([before, window.speeds])
-        points = _Points(at, omega, course.speeds, np.diff(course.in_speed[:, 1]), width, least)
-        found.append((points, _passed(points)))
-        k, x = _turns(points)
+    found = [(points, _passed(points)) for points in _near_rows(window, window.branch, least)]
     missed = np.zeros_like(least)
-    for _, rows in found:
-        missed += np.bincount(rows.cell, rows.missed, len(least))
+    for points, rows in found:
+        missed += np.bincount(points.cell[rows.cell], rows.missed, len(least))
     bad = missed > least
     for points, rows in found:
-        worth = bad[rows.cell] & (rows.missed > _LITTLE * least[rows.cell])
-        k = np.append(k, rows.cell[worth])
-        x = np.append(x, _located(points, rows.select(worth)))
+        worth = bad[points.cell][rows.cell] & (rows.missed > _LITTLE * points.least[rows.cell])
+        passed, (turns, tops) = rows.select(worth), _turns(points)
+        k = np.concatenate([k, points.cell[passed.cell], points.cell[turns]])
+        x = np.concatenate([x, _located(points, passed), tops])
     return window.edges[k] + x * width[k], np.unique(k)
 
 
-def _near(rows: Array, values: Array) -> bool:
-    """Whether a row lies among the values, or no farther from them than they from one another."""
-    low, high = float(np.min(values)), float(np.max(values))
-    return bool(np.any((rows >= 2.0 * low - high) & (rows <= 2.0 * high - low)))
+def _near_rows(window: Window, course: Course, least: Array) -> list[_Points]:
+    """Time and speed in the cells that a row lies in, or is no farther from than the nodes from one
+    another."""
+    x = np.concatenate([[0.0], window.grid.rule.nodes, [1.0]])
+    width, found = window.strip.width, []
+    passed = np.diff(np.searchsorted(course.times, window.time))
+    k = np.flatnonzero(passed)
+    if len(k):
+        spent = width[k, None] * (window.slowness[k] @ window.grid.rule.matrix.T)
+        begin = window.time[k, None]
+        time = np.hstack([begin, begin + spent, window.time[k + 1, None]])
+        bends = np.diff(course.in_time[:, 1])
+        found.append(_Points(x, time, course.times, bends, k, width[k], least[k]))
+    slow, fast = 1.0 / largest_of_row(window.slowness), -1.0 / largest_of_row(-window.slowness)
+    rows = np.sort(window.sense * course.speeds)
+    before, after = np.searchsorted(rows, [2.0 * slow - fast, 2.0 * fast - slow])
+    k = np.flatnonzero(after > before)
+    if len(k):
+        begin, end = window.speeds_at(k), window.speeds_at(k + 1)
+        omega = np.column_stack([begin, window.sense / window.slowness[k], end])
+        bends = np.diff(course.in_speed[:, 1])
+        found.append(_Points(x, omega, course.speeds, bends, k, width[k], least[k]))
+    return found
 
 
 def _passed(points: _Points) -> _Passed:
@@ -138,27 +148,25 @@ def _located(points: _Points, passed: _Passed) -> Array:
 def _turns(points: _Points) -> tuple[Index, Array]:
     """Cells and positions where the variable turns beyond a row that no point beside it passed."""
     x, values, rows, bends = points[:4]
-    rise = np.diff(values, axis=1)
-    line = np.append(values[:, :-1], values[-1, -1])
-    before, after = np.append(0.0, rise), np.append(rise, 0.0)
+    rise, none = np.diff(values, axis=1), np.zeros((len(values), 1))
+    before, after = np.hstack([none, rise]), np.hstack([rise, none])
     reach, side = np.abs(before) + np.abs(after), np.sign(before - after)
-    worth = np.append(np.repeat(points.width, rise.shape[1]), points.width[-1])
-    worth *= np.max(np.abs(bends)) / np.append(points.least.repeat(rise.shape[1]), points.least[-1])
-    i = np.flatnonzero((before * after <= 0.0) & (worth * reach > 1.0))
-    below = np.searchsorted(rows, line[i])
-    may = np.searchsorted(rows, line[i] + side[i] * reach[i]) != below
-    i, below = i[may], below[may]
-    beside = np.concatenate([i - 1, i])  # the turn lies between the point and one of its two
-    inside = (beside >= 0) & (beside < rise.size)
-    (k, j), i = np.divmod(beside[inside], rise.shape[1]), np.tile(i, 2)[inside]
+    worth = np.max(np.abs(bends)) * points.width / points.least
+    k, i = np.nonzero((before * after <= 0.0) & (worth[:, None] * reach > 1.0))
+    at, side = values[k, i], side[k, i]
+    below = np.searchsorted(rows, at)
+    may = np.searchsorted(rows, at + side * reach[k, i]) != below
+    k, i, at, side, below = (np.tile(part[may], 2) for part in (k, i, at, side, below))
+    j = np.where(np.arange(len(i)) < len(i) // 2, i - 1, i)  # it turns before the point or after it
+    inside = (j >= 0) & (j < rise.shape[1])
+    k, j, at, side, below = (part[inside] for part in (k, j, at, side, below))
     of, low, high = points.polynomials(k), x[j], x[j + 1]
     for _ in range(_HALVES):
         middle = 0.5 * (low + high)
-        later = _value(of, middle)[1] * side[i] > 0.0
+        later = _value(of, middle)[1] * side > 0.0
         low, high = np.where(later, middle, low), np.where(later, high, middle)
     top = _value(of, low)[0]
-    passes = np.searchsorted(rows, top) != np.tile(below, 2)[inside]
-    passes &= worth[i] * np.abs(top - line[i]) > 1.0
+    passes = (np.searchsorted(rows, top) != below) & (worth[k] * np.abs(top - at) > 1.0)
     return k[passes], low[passes]
 
 

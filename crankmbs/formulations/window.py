@@ -150,17 +150,15 @@ class Window:
             landed=NOWHERE,
         )
 
-    @cached_property
-    def speeds(self) -> Array:
-        """Speed [rad/s] at the nodes and the end of every cell, shape (m, s + 1)."""
-        theta = self.begin.theta + self.sense * self.edges[1:]
-        inertia = reduce(self.grid.scene, None, theta)[0]
-        at_edges = self.sense * np.sqrt(2.0 * self.energy[1:] / inertia)
-        return np.column_stack([self.sense / self.slowness, at_edges])
+    def speeds_at(self, k: Index) -> Array:
+        """Speed [rad/s] at these edges."""
+        inertia = reduce(self.grid.scene, None, self.begin.theta + self.sense * self.edges[k])[0]
+        return np.asarray(self.sense * np.sqrt(2.0 * self.energy[k] / inertia))
 
     def _crossing(self, limit: float, *, above: bool) -> tuple[int, float] | None:
         """Cell and position where the speed first leaves its branch through ``limit``."""
-        omega = self.speeds
+        at_edges = self.speeds_at(np.arange(1, len(self.edges)))
+        omega = np.column_stack([self.sense / self.slowness, at_edges])
         positions = np.concatenate([[0.0], self.grid.rule.nodes, [1.0]])
         side = 1.0 if above else -1.0
         beyond = side * (np.append(self.begin.omega, omega) - limit)
