@@ -77,6 +77,7 @@ def assemble(scene: Scene, pressure: PeriodicPressure | None, solution: Solution
     if solution.errors:
         return Assembled(solution, variables, peaks, dict(solution.errors))
     answer, better = solution.samples, solution.better or solution.samples
+    off = pressure and pressure.off  # the better answer's
     late = better.time - answer.time
     ahead = better.theta - answer.theta - answer.omega * late
     rounding = ANGLE_ROUNDING * _peak(better.theta)
@@ -93,19 +94,19 @@ def assemble(scene: Scene, pressure: PeriodicPressure | None, solution: Solution
     before, missed = variables, 0.0
     for samples in chain:
         motion = (samples.theta, samples.omega, samples.alpha)
-        apart = deviations(scene, pressure, *motion, {**before, **samples.own})
+        apart = deviations(scene, off, *motion, {**before, **samples.own})
         # a free crank's acceleration at the rounded angle: where the torque needed is the one there
         missed = apart["external_torque"] if samples.own else 0.0
         given = {**_motion(samples), **samples.own}
         apart |= {name: _peak(before[name] - values) for name, values in given.items()}
         errors = {name: error + apart[name] for name, error in errors.items()}
         if samples is not rounded:
-            before = _variables(scene, pressure, samples)
+            before = _variables(scene, off, samples)
     if late.any() and late[-1] == 0.0 != ahead[-1]:  # else it ends at an angle, at the same time
         recent = ahead[np.abs(better.theta - better.theta[-1]) <= 2.0 * math.pi]
         more = math.copysign(_peak(recent) - abs(ahead[-1]), ahead[-1])
         last = replace(rounded, own={}).select(np.array([-1]))
-        end = _variables(scene, pressure, replace(last, theta=last.theta + more))
+        end = _variables(scene, off, replace(last, theta=last.theta + more))
         if better.own:
             there = better.own["external_torque"][-1:]
             missed = max(missed, _peak(there - end["external_torque"]))

@@ -81,9 +81,11 @@ class Grid:
 
     @cached_property
     def finer(self) -> Grid:
-        """The same cells for a rule of two more stages, which checks this one."""
+        """The same cells for a rule of two more stages, which checks this one, under a pressure
+        that is off by as much as this one may be."""
         rule = gauss(len(self.rule.nodes) + 2)
-        return Grid(self.scene, self.pressure, self.edges, rule, checks=True)
+        pressure = self.pressure and self.pressure.off
+        return Grid(self.scene, pressure, self.edges, rule, checks=True)
 
     def split(self, parts: NDArray[np.intp]) -> Grid:
         """Every cell cut into equal parts, as many as ``parts``, shape (n,), says."""

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import PPoly
 
-from crankmbs.indicator import indicator_pieces
+from crankmbs.indicator import INDICATOR_RTOL, indicator_pieces
 from crankmbs.machine import Gas
 from crankmbs.pressure_rows import close, closing_row, interpolate, overshoot
 from crankmbs.scene import Scene
@@ -44,10 +44,20 @@ class PeriodicPressure:
 
     knots : shape (n + 1,) [rad], increasing, the last one period above the first
     coefficients : shape (4, n) [Pa, by descending power of (angle - knots[i]) in rad]
+    missed : shape (4, n), alike: what the pieces may be off from the pressure that they stand for;
+        None where they are that pressure
     """
 
     knots: Array
     coefficients: Array
+    missed: Array | None = None
+
+    @property
+    def off(self) -> PeriodicPressure:
+        """A pressure as far from this one as the true pressure may be."""
+        if self.missed is None:
+            return self
+        return PeriodicPressure(self.knots, self.coefficients + self.missed)
 
     @property
     def period(self) -> float:
@@ -117,7 +127,9 @@ def pressure_of(scene: Scene) -> PeriodicPressure | None:
     if gas is None:
         return None
     if gas.indicator is not None:
-        return PeriodicPressure(*indicator_pieces(scene))
+        knots, coefficients = indicator_pieces(scene)
+        absolute = coefficients + np.array([[0.0], [0.0], [0.0], [gas.ambient or 0.0]])
+        return PeriodicPressure(knots, coefficients, INDICATOR_RTOL * absolute)
     assert gas.pressure is not None
     return _joined(gas, gas.pressure)
 
