@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from validation.judge import Verdict
+from validation.mutants.page import section
 
 __all__ = ["REPORT", "write_report"]
 
@@ -25,6 +26,7 @@ def write_report(verdicts: Sequence[Verdict], folder: Path = REPORT.parent) -> P
     lines += ["| claim | scene | measured | tolerance | verdict |", "|---|---|---|---|---|"]
     lines += [_row(verdict) for verdict in verdicts]
     lines += _hard_cases(verdicts)
+    lines += section()
     for verdict in verdicts:
         lines += ["", *_section(verdict)]
     (folder / "figures").mkdir(exist_ok=True)

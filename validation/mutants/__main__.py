@@ -18,8 +18,8 @@ from queue import SimpleQueue
 from validation.case import load_cases
 from validation.mutants.page import summary, write_page
 from validation.mutants.plan import Guards, Mutant, load_mutants, wide_guards
-from validation.mutants.results import PAGE, RESULTS, Row, commit, read_rows, write_rows
-from validation.mutants.scratch import NO_END, Red, Scratch
+from validation.mutants.results import NO_END, PAGE, RESULTS, Row, commit, read_rows, write_rows
+from validation.mutants.scratch import Red, Scratch
 
 _LIMIT = 300.0  # s for the guards of one mutant; unbroken they take a tenth of it or so
 _WIDE_LIMIT = 1800.0  # s for all others
@@ -27,8 +27,8 @@ _WIDE_LIMIT = 1800.0  # s for all others
 
 def main(arguments: list[str] | None = None) -> int:
     """Try the mutants asked for, keep the results of all others, and write the page."""
-    asked = _parser().parse_args(arguments)
     mutants, rows = load_mutants(), read_rows(RESULTS)
+    asked = _parser(mutants).parse_args(arguments)
     rows = {mutant.name: rows[mutant.name] for mutant in mutants if mutant.name in rows}
     for row in _tried([m for m in mutants if _is_asked(m, asked, rows)], asked.processes):
         rows[row.name] = row
@@ -43,10 +43,21 @@ def main(arguments: list[str] | None = None) -> int:
     return 0 if all(rows[m.name].dead or m.equivalent for m in mutants) else 1
 
 
-def _parser() -> argparse.ArgumentParser:
+def _parser(mutants: list[Mutant]) -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="python -m validation.mutants", description=__doc__)
-    parser.add_argument("--only", nargs="+", metavar="NAME", help="these mutants")
-    parser.add_argument("--room", nargs="+", metavar="ROOM", help="those of these TOML files")
+    parser.add_argument(
+        "--only",
+        nargs="+",
+        metavar="NAME",
+        choices=[mutant.name for mutant in mutants],
+        help="these mutants",
+    )
+    parser.add_argument(
+        "--room",
+        nargs="+",
+        choices=sorted({mutant.room for mutant in mutants}),
+        help="those of these TOML files",
+    )
     parser.add_argument(
         "--missing", action="store_true", help="those without a result, of the above or of all"
     )

@@ -6,10 +6,10 @@ from collections.abc import Iterator
 from itertools import groupby
 from pathlib import Path
 
-from validation.mutants.plan import Mutant
-from validation.mutants.results import PAGE, Row, score
+from validation.mutants.plan import Mutant, load_mutants
+from validation.mutants.results import NO_END, PAGE, Row, read_rows, score
 
-__all__ = ["summary", "write_page"]
+__all__ = ["section", "summary", "write_page"]
 
 
 def write_page(mutants: list[Mutant], rows: dict[str, Row], path: Path = PAGE) -> Path:
@@ -22,30 +22,46 @@ def write_page(mutants: list[Mutant], rows: dict[str, Row], path: Path = PAGE) -
     return path
 
 
+def section() -> list[str]:
+    """The committed results for the report, in half a page."""
+    lines = summary(load_mutants(), read_rows())
+    return ["", "## Every law guarded", "", *lines, "", f"All of them: [{PAGE.name}]({PAGE.name})."]
+
+
 def summary(mutants: list[Mutant], rows: dict[str, Row]) -> list[str]:
     """What was done and what came of it, in a few lines of Markdown."""
     dead, counted = score(mutants, rows)
-    equivalent = [mutant for mutant in mutants if mutant.equivalent]
-    endless = sum(rows[mutant.name].verdict == "no end" for mutant in mutants)
+    equivalent = sum(bool(mutant.equivalent) for mutant in mutants)
     commits = sorted({f"{row.date}, commit {row.commit}" for row in rows.values()})
-    claims = sum(not rows[mutant.name].by.startswith("tests/") for mutant in mutants) - len(
-        [mutant for mutant in mutants if not rows[mutant.name].dead]
-    )
+    killed = [row for row in rows.values() if row.verdict == "killed"]
+    by_test = sum(row.by.startswith("tests/") for row in killed)
+    endless = sum(row.verdict == NO_END for row in rows.values())
     return [
         "A claim can be trusted if it can fail. Here the source is broken, one law at a time: "
         "terms dropped, signs flipped, units, phases and orders mixed up; then tests and claims "
         "run, and one of them has to turn red.",
         "",
         f"**{dead} of {counted} mutants turn a test or a claim red: {100.0 * dead / counted:.1f} "
-        f"%.** {len(equivalent)} more change no number and are not counted; they are listed with "
+        f"%.** {equivalent} more change no number and are not counted; they are listed with "
         "the reason.",
         "",
         f"- run: {'; '.join(commits)}",
-        f"- a test turned red first for {dead - claims - endless}, a claim for {claims}; "
-        f"for {endless} the guards did not come to their end in the time they have",
+        f"- a test turned red first for {by_test}, a claim for {len(killed) - by_test}; for "
+        f"{endless} the guards did not come to their end in the time they have",
         "- command: `python -m validation.mutants`; the mutants are the TOML files in "
         "`validation/mutants`",
+        "",
+        "| what is broken | mutants | red | change no number |",
+        "|---|---|---|---|",
+        *_rooms(mutants, rows),
     ]
+
+
+def _rooms(mutants: list[Mutant], rows: dict[str, Row]) -> Iterator[str]:
+    for room, group in groupby(mutants, key=lambda mutant: mutant.room):
+        own = list(group)
+        dead, counted = score(own, rows)
+        yield f"| {room} | {len(own)} | {dead} of {counted} | {len(own) - counted} |"
 
 
 def _left(mutants: list[Mutant], rows: dict[str, Row]) -> list[str]:

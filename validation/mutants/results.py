@@ -10,9 +10,10 @@ from pathlib import Path
 
 from validation.mutants.plan import FOLDER, ROOT, Mutant
 
-__all__ = ["PAGE", "RESULTS", "Row", "commit", "read_rows", "score", "write_rows"]
+__all__ = ["NO_END", "PAGE", "RESULTS", "Row", "commit", "read_rows", "score", "write_rows"]
 
 RESULTS = FOLDER / "results.csv"
+NO_END = "no end"
 PAGE = FOLDER.parent / "MUTANTS.md"
 
 

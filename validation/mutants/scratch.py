@@ -14,15 +14,14 @@ from typing import NamedTuple
 
 from validation.mutants.plan import ROOT, Guards, Mutant
 
-__all__ = ["NO_END", "Red", "Scratch"]
+__all__ = ["Red", "Scratch"]
 
-NO_END = "no end"
 _PARTS = ("crankmbs", "models", "tests", "validation", "pyproject.toml", "README.md")
 _PYTEST = ("-x", "-q", "--tb=no", "-rfE", "-n", "0", "-p", "no:cacheprovider")
 
 
 class Red(NamedTuple):
-    """What turned red first: a test or a claim; or `NO_END` of which, within the time limit."""
+    """What turned red first, a test or a claim; or, not ended within the time limit, the last."""
 
     guard: str
     ended: bool
