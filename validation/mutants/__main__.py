@@ -102,8 +102,12 @@ def _tried(mutants: list[Mutant], processes: int) -> Iterator[Row]:
             verdict = "killed" if red.ended else NO_END
             return Row(mutant.name, verdict, red.guard, seconds, today, at)
 
-        for future in as_completed([pool.submit(tried, mutant) for mutant in mutants]):
-            yield future.result()
+        futures = [pool.submit(tried, mutant) for mutant in mutants]
+        try:
+            for future in as_completed(futures):
+                yield future.result()
+        finally:
+            pool.shutdown(cancel_futures=True)
 
 
 def _red(scratch: Scratch, mutant: Mutant, wide: Guards) -> Red | None:
@@ -113,7 +117,8 @@ def _red(scratch: Scratch, mutant: Mutant, wide: Guards) -> Red | None:
         if red is not None:
             return red
         others = wide.without(mutant.guards)
-        red = scratch.first_red(others, _WIDE_LIMIT)
+        red = scratch.first_red(Guards(tests=others.tests), _WIDE_LIMIT)
+        red = red or scratch.first_red(Guards(claims=others.claims), _WIDE_LIMIT)
     if red is not None and red.ended and scratch.first_red(others.only(red.guard)) is not None:
         raise SystemExit(f"without any mutant {red.guard} is red: mend that first")
     return red

@@ -22,7 +22,8 @@ _PYTEST = ("-p", "xdist.plugin", "-x", "-q", "--tb=no", "-rfE", "-n", "0", "-p",
 
 
 class Red(NamedTuple):
-    """What turned red first, a test or a claim; or, not ended within the time limit, the last."""
+    """What turned red first, a test or a claim; the last of those that did not come to their end,
+    by the time limit or a crash."""
 
     guard: str
     ended: bool
@@ -105,5 +106,5 @@ class Scratch:
         if names:
             return Red(names[0], ended=True)
         if process.returncode < 0:
-            return Red(f"signal {-process.returncode}", ended=True)
+            return Red(command[-1], ended=False)
         raise RuntimeError(f"{' '.join(command)} ended with {process.returncode}:\n{said[-2000:]}")
