@@ -111,10 +111,10 @@ def _tried(mutants: list[Mutant], processes: int) -> Iterator[Row]:
 
 
 def _red(scratch: Scratch, mutant: Mutant, wide: Guards) -> Red | None:
-    """What turns red with a mutant: of its own guards, or else of all others."""
+    """What turns red with a mutant: of its own guards, or else of all, if it is not equivalent."""
     with scratch.mutated(mutant):
         red = scratch.first_red(mutant.guards, _LIMIT)
-        if red is not None:
+        if red is not None or mutant.equivalent:
             return red
         others = wide.without(mutant.guards)
         red = scratch.first_red(Guards(tests=others.tests), _WIDE_LIMIT)
