@@ -70,6 +70,23 @@ def test_without_output_spacing_the_last_cycle_is_whole(until):
     assert found.window.begin == pytest.approx(usual.window.begin, rel=1e-12)
 
 
+def test_a_joint_force_is_the_magnitude_of_its_components(constant):
+    last = constant.data.isel(time=slice(-721, None))
+    x, y = (last[f"crank_pin_force_{axis}"].values[:, 0] for axis in "xy")
+    size, time = np.hypot(x, y), last["time"].values
+    (pin,) = (joint for joint in measure(constant).joints if joint.joint == "crank pin")
+    assert pin.peak.value == pytest.approx(size.max(), rel=1e-3)
+    mean = np.trapezoid(size, time) / (time[-1] - time[0])
+    assert pin.mean.value == pytest.approx(mean, rel=1e-4)
+
+
+def test_energy_closure_is_the_largest_residual_over_the_peak_of_the_kinetic_energy(constant):
+    data = constant.data.copy(deep=True)
+    data["energy_residual"][7] = -0.25 * float(data["kinetic_energy"].max())
+    found = measure(dataclasses.replace(constant, data=data))
+    assert found.energy_closure == pytest.approx(0.25, rel=1e-12)
+
+
 def test_a_periodic_motion_gains_no_speed(constant):
     found = measure(constant)
     assert abs(found.speed_gain.value) <= found.speed_gain.error < 1e-10

@@ -6,7 +6,18 @@ import math
 import numpy as np
 import pytest
 
-from crankmbs import Crank, Motion, Oscillation, Run, Start, Viscous, load_scene, simulate
+from crankmbs import (
+    Crank,
+    Motion,
+    Oscillation,
+    Run,
+    Start,
+    Table,
+    TimeTable,
+    Viscous,
+    load_scene,
+    simulate,
+)
 from crankmbs.digits import digits, error_digits
 from crankmbs.machine import Gravity
 from crankmbs.measures import Estimate, JointForce, measure
@@ -62,6 +73,20 @@ def test_every_error_covers_what_lies_between_the_samples(base, until, every, fi
         missed = abs(here.value - exact[name].value)
         assert missed <= 2.0 * here.error + exact[name].error, name
         assert here.error <= 10.0 * (missed + exact[name].error) + 0.01 * abs(here.value), name
+
+
+def test_a_pulse_of_a_load_between_two_samples_is_in_the_error_of_the_fluctuation():
+    """To and fro within a quarter turn: the samples show little of it."""
+    times = (0.0, 0.0155, 0.0155, 0.0165, 0.0165, 0.0175, 0.0175, 1.0)
+    pulse = Table(times, (0.0, 0.0, 2000.0, 2000.0, -2000.0, -2000.0, 0.0, 0.0))
+    base = dataclasses.replace(FREE, gas=None, torque=(TimeTable(file=pulse),))
+    coarse, fine = (
+        measure(simulate(dataclasses.replace(base, run=Run(until="1 cycle", every=step))))
+        for step in ("90 deg", "0.25 deg")
+    )
+    assert fine.fluctuation.value > 0.03
+    missed = abs(coarse.fluctuation.value - fine.fluctuation.value)
+    assert missed <= 2.0 * coarse.fluctuation.error + fine.fluctuation.error
 
 
 def test_an_error_that_the_samples_cannot_tell_is_said_to_be_unknown():

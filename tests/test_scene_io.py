@@ -52,6 +52,16 @@ def test_speeds(read, speed, kind):
     assert type(motion.speed).__name__ == kind
 
 
+def test_speeds_of_tables_are_in_revolutions_per_minute(read, tmp_path):
+    (tmp_path / "speed.csv").write_text("time_s,speed_rpm\n0,300\n1,600\n2,900\n")
+    (tmp_path / "load.csv").write_text("speed_rpm,torque_Nm\n0,-1\n3000,-5\n")
+    driven = edited(DRIVEN, '"3200 rpm"', '{ file = "speed.csv" }')
+    assert read(driven).motion.speed.file.y == pytest.approx([31.4159265, 62.831853, 94.2477796])
+    old = 'kind = "quadratic"\ncoefficient = "9.5e-5 N m s^2"'
+    (load,) = read(edited(FREE, old, 'kind = "speed_table"\nfile = "load.csv"')).torque
+    assert load.file.x == pytest.approx([0.0, 314.159265])
+
+
 def test_a_byte_order_mark_and_crlf_are_read(tmp_path):
     (tmp_path / "gas.csv").write_text(GAS)
     path = tmp_path / "scene.toml"

@@ -45,6 +45,12 @@ def test_a_branch_is_the_sum_of_the_loads(t, omega):
         assert branch(later, speed) == pytest.approx(torque(later, speed), rel=1e-13)
 
 
+@pytest.mark.parametrize("loads", [ALL + ALL, ALL[::-1] + ALL, ALL + ALL[::-1]])
+def test_loads_add_up_in_any_order(loads):
+    once, twice = (branch_of(some, 0.5, 3.0, rising=True) for some in (ALL, loads))
+    assert twice.coefficients == pytest.approx([2.0 * c for c in once.coefficients], rel=1e-14)
+
+
 def test_bounds():
     branch = branch_of(ALL, 0.5, 3.0, rising=True)
     assert (branch.t_end, branch.omega_low, branch.omega_high) == (1.0, 0.0, 10.0)

@@ -95,6 +95,7 @@ def test_report(monkeypatch, tmp_path):
     text = write_report([green, red], tmp_path).read_text(encoding="utf-8")
     assert "1 of 2 claims hold." in text
     assert "| 1 |" in text
+    assert "mutants turn a test or a claim red" in text
     assert "**fails**" in text
     for case in (green.case, red.case):
         assert text.count(f'<a id="{case.name}"></a>') == 1

@@ -8,6 +8,7 @@ from validation import bibliography, s1
 from validation.about import about
 from validation.case import Case
 from validation.judge import Verdict
+from validation.mutants.page import section
 
 __all__ = ["REPORT", "write_report"]
 
@@ -34,6 +35,7 @@ def write_report(verdicts: Sequence[Verdict], folder: Path = REPORT.parent) -> P
     lines += [_row(verdict) for verdict in verdicts]
     lines += _hard_cases(verdicts)
     lines += s1.section([verdict.case for verdict in verdicts])
+    lines += section()
     for verdict in verdicts:
         lines += ["", *_section(verdict)]
     lines += ["", *bibliography.links()]

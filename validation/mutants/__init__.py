@@ -1,0 +1,1 @@
+"""Physical mutants of crankmbs: one law of the mechanics broken at a time, and what turns red."""
