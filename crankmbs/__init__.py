@@ -4,10 +4,18 @@
 >>> result = crankmbs.simulate(crankmbs.load_scene("yi_diesel"))
 """
 
-from crankmbs.accumulate import accumulated_torque
 from crankmbs.choose import Choice, choose
 from crankmbs.compare import Budget, Comparison, budget, compare
-from crankmbs.drives import (
+from crankmbs.errors import (
+    CrankmbsError,
+    FormulationError,
+    InputError,
+    OutputError,
+    SceneError,
+)
+from crankmbs.lecture.accumulated_torque import accumulated_torque
+from crankmbs.result import Cost, Error, Result
+from crankmbs.scene.drives import (
     Constant,
     Motion,
     Oscillation,
@@ -19,19 +27,11 @@ from crankmbs.drives import (
     TimeTable,
     Viscous,
 )
-from crankmbs.errors import (
-    CrankmbsError,
-    FormulationError,
-    InputError,
-    OutputError,
-    SceneError,
-)
-from crankmbs.machine import Crank, Cylinder, Gas, Gravity, Indicator, Layout, Piston, Rod
-from crankmbs.result import Cost, Error, Result
-from crankmbs.scene import Extent, Run, Scene
-from crankmbs.scene_io import load_scene, shipped_scenes
+from crankmbs.scene.parts import Crank, Cylinder, Gas, Gravity, Indicator, Layout, Piston, Rod
+from crankmbs.scene.read import load_scene, shipped_scenes
+from crankmbs.scene.scene import Extent, Run, Scene
+from crankmbs.scene.tables import Table
 from crankmbs.simulate import simulate
-from crankmbs.tables import Table
 
 __all__ = [
     "Budget",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from crankmbs.errors import FormulationError
-from crankmbs.scene import Scene
+from crankmbs.scene.scene import Scene
 
 __all__ = ["Choice", "choose"]
 

@@ -5,60 +5,26 @@ from __future__ import annotations
 import json
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from pydantic import TypeAdapter
 
 from crankmbs.errors import OutputError
-from crankmbs.files import together
-from crankmbs.netcdf import read_netcdf, write_netcdf
-from crankmbs.scene import Scene
-from crankmbs.schema import SAVED
+from crankmbs.mechanics.variables import VARIABLES
+from crankmbs.scene.scene import Scene
+from crankmbs.scene.schema import SAVED
+from crankmbs.storage.files import together
+from crankmbs.storage.netcdf import read_netcdf, write_netcdf
 
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["VARIABLES", "Cost", "Error", "Result", "Variable"]
-
-
-class Variable(NamedTuple):
-    """Unit and long name of a variable; ``per_cylinder`` ones have the dimension cylinder."""
-
-    units: str
-    long_name: str
-    per_cylinder: bool = False
-
-    @property
-    def dims(self) -> tuple[str, ...]:
-        """The dimensions of its array."""
-        return ("time", "cylinder") if self.per_cylinder else ("time",)
-
-
-VARIABLES = {
-    "time": Variable("s", "time"),
-    "crank_angle": Variable("rad", "crank angle from the engine's X, unwrapped"),
-    "crank_speed": Variable("rad/s", "crank speed"),
-    "crank_acceleration": Variable("rad/s^2", "crank acceleration"),
-    "external_torque": Variable("N m", "torque on the crank from outside: drive and loads"),
-    "main_bearing_force_x": Variable("N", "bearing on crank, engine's X, all cylinders"),
-    "main_bearing_force_y": Variable("N", "bearing on crank, engine's Y, all cylinders"),
-    "kinetic_energy": Variable("J", "kinetic energy of crank, rods and pistons"),
-    "energy_residual": Variable("J", "kinetic energy gained minus work done"),
-    "rod_angle": Variable("rad", "rod angle beta from the cylinder axis", True),
-    "piston_position": Variable("m", "piston pin, cylinder's X from the crank axis", True),
-    "piston_displacement": Variable("m", "piston displacement from its top dead centre", True),
-    "piston_velocity": Variable("m/s", "piston velocity towards the crank", True),
-    "piston_acceleration": Variable("m/s^2", "piston acceleration towards the crank", True),
-    "gas_pressure": Variable("Pa", "pressure difference across the piston", True),
-    "gas_force": Variable("N", "gas force on the piston towards the crank", True),
-    "side_force": Variable("N", "cylinder wall on piston, cylinder's Y", True),
-    "piston_pin_force_x": Variable("N", "rod on piston, cylinder's X", True),
-    "piston_pin_force_y": Variable("N", "rod on piston, cylinder's Y", True),
-    "crank_pin_force_x": Variable("N", "crank on rod, cylinder's X", True),
-    "crank_pin_force_y": Variable("N", "crank on rod, cylinder's Y", True),
-    "crank_torque": Variable("N m", "moment of the rod's force on the crank", True),
-}
+__all__ = [
+    "Cost",
+    "Error",
+    "Result",
+]
 
 
 @dataclass(frozen=True)

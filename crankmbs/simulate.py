@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import time as clock
 
-from crankmbs import free
-from crankmbs.assemble import Assembled, assemble, dataset
 from crankmbs.choose import choose
 from crankmbs.errors import InputError, shown
-from crankmbs.formulations import kinetostatic
-from crankmbs.pressure import PeriodicPressure, pressure_of, remarks
+from crankmbs.mechanics.pressure import PeriodicPressure, pressure_of, remarks
+from crankmbs.motion import kinetostatic
+from crankmbs.motion.assemble import Assembled, assemble, dataset
+from crankmbs.motion.free import passes
 from crankmbs.result import Cost, Error, Result
-from crankmbs.scene import Scene
+from crankmbs.scene.scene import Scene
 
 __all__ = ["simulate"]
 
@@ -79,7 +79,7 @@ def _solve(
     if formulation == "kinetostatic":
         return assemble(scene, pressure, kinetostatic.run(scene, pressure))
     if formulation != "multibody":
-        return free.run(scene, pressure, formulation, asked, cost_cap)
-    from crankmbs.formulations import multibody  # exudyn is imported only when it is used
+        return passes.run(scene, pressure, formulation, asked, cost_cap)
+    from crankmbs.motion import multibody
 
     return assemble(scene, pressure, multibody.run(scene, asked, cost_cap))

@@ -4,7 +4,7 @@ import pytest
 from scene_texts import GAS
 
 from crankmbs.errors import SceneError
-from crankmbs.scene_io import parse_scene
+from crankmbs.scene.read import parse_scene
 
 
 @pytest.fixture

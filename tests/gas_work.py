@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from crankmbs.geometry import close_loop
-from crankmbs.pressure import pressure_of
+from crankmbs.mechanics.geometry import close_loop
+from crankmbs.mechanics.pressure import pressure_of
 
 
 def gas_work(scene):

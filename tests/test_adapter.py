@@ -28,7 +28,7 @@ from crankmbs import (
     load_scene,
     simulate,
 )
-from crankmbs.pressure import pressure_of
+from crankmbs.mechanics.pressure import pressure_of
 from validation.adapter import machine_of, reference_motion, reference_variables
 from validation.oracles import end_states
 from validation.oracles.arithmetic import distance

@@ -18,8 +18,8 @@ from crankmbs.errors import InputError, OutputError
 from crankmbs.figures.animation import check_format, save_animation
 from crankmbs.figures.frames import frames_of
 from crankmbs.figures.mechanism import Drawing, slices
+from crankmbs.figures.outline import mechanism
 from crankmbs.figures.style import panels
-from crankmbs.mechanism import mechanism
 
 SWINGING = dataclasses.replace(
     load_scene("compressor"),

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from crankmbs import load_scene
-from crankmbs.assemble import assemble, dataset
-from crankmbs.formulations.base import Samples, Solution
-from crankmbs.inertia import reduce
-from crankmbs.result import VARIABLES
+from crankmbs.mechanics.inertia import reduce
+from crankmbs.mechanics.variables import VARIABLES
+from crankmbs.motion.assemble import assemble, dataset
+from crankmbs.motion.base import Samples, Solution
 
 SCENE = load_scene("v_twin")
 TIME = np.linspace(0.0, 0.1, 11)

@@ -18,9 +18,9 @@ from crankmbs.compare import (
     save_budget_peaks,
 )
 from crankmbs.errors import InputError
-from crankmbs.geometry import close_loop
 from crankmbs.lecture import datum_shift
-from crankmbs.scene_io import shipped_scenes
+from crankmbs.mechanics.geometry import close_loop
+from crankmbs.scene.read import shipped_scenes
 
 ROUNDING = 1e-12  # of the peak
 S1 = list(LECTURES)[-1]

@@ -13,7 +13,7 @@ from command_line import SCENE, crankmbs_, names, refused
 import crankmbs.cli.run
 import crankmbs.figures
 from crankmbs import Result, simulate
-from crankmbs.scene_io import models_folder
+from crankmbs.scene.read import models_folder
 
 COMES_TO_REST = SCENE.replace('"3000 rpm"', '{ from = "900 rpm", to = "0 rpm", over = "0.1 s" }')
 DRAWN = ["speed", "piston_motion", "gas_and_side_force", "main_bearing", "crank_pin", "piston_pin"]

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from crankmbs.collocation import gauss
+from crankmbs.numerics.collocation import gauss
 
 STAGES = range(1, 10)
 

@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from crankmbs.confirm import differences
+from crankmbs.compare.runs import differences
 from crankmbs.result import Result
-from crankmbs.scene import Run
-from crankmbs.scene_io import load_scene
+from crankmbs.scene.read import load_scene
+from crankmbs.scene.scene import Run
 from crankmbs.simulate import simulate
 
 

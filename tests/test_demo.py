@@ -14,15 +14,7 @@ from bokeh.document import Document
 from bokeh.models import Div
 from bokeh.server.util import match_host
 
-from crankmbs import (
-    InputError,
-    OutputError,
-    Rod,
-    budget,
-    compare,
-    load_scene,
-    simulate,
-)
+from crankmbs import InputError, OutputError, Rod, budget, compare, load_scene, simulate
 from crankmbs.compare import CAUSES
 from crankmbs.demo import columns
 from crankmbs.demo.answer import unpacked

@@ -19,7 +19,7 @@ from crankmbs.cli.app import app
 from crankmbs.demo.knobs import turned
 from crankmbs.demo.outcome import prepared
 from crankmbs.measures import measure
-from crankmbs.scene_writer import scene_files
+from crankmbs.scene.write import scene_files
 
 SCENE = "propeller"
 

@@ -13,7 +13,7 @@ import pytest
 from command_line import names
 
 from crankmbs import OutputError, Result, Run, load_scene, simulate
-from crankmbs.files import together, write_in_one_move
+from crankmbs.storage.files import together, write_in_one_move
 
 SHORT = dataclasses.replace(load_scene("coasting"), run=Run(until="30 deg"))
 FIRST = simulate(SHORT)
@@ -108,7 +108,7 @@ def test_a_block_in_a_block_joins_it(tmp_path):
 KILLED = """
 import os, signal, sys
 from pathlib import Path
-from crankmbs.files import together
+from crankmbs.storage.files import together
 with together(Path(sys.argv[1])) as part:
     (part / "result.nc").write_text("half")
     os.kill(os.getpid(), signal.SIGKILL)

@@ -9,7 +9,7 @@ import psutil
 import pytest
 
 from crankmbs import InputError, Run, Start, Table, TimeTable, load_scene, simulate
-from crankmbs.result import VARIABLES
+from crankmbs.mechanics.variables import VARIABLES
 
 COASTING = load_scene("coasting")
 PER_SECOND = 500_000  # evaluations over time that a second of the cost cap allows

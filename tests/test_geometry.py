@@ -6,7 +6,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from crankmbs.geometry import close_loop, dead_centres, top_position
+from crankmbs.mechanics.geometry import close_loop, dead_centres, top_position
 
 ANGLES = np.concatenate([np.linspace(-8.0, 8.0, 23), [0.5 * math.pi, -0.5 * math.pi]])
 MECHANISMS = [

@@ -7,7 +7,7 @@ import pytest
 from references import reference_at_angles, true_errors
 
 from crankmbs import Run, load_scene, shipped_scenes, simulate
-from crankmbs.sampling import plan_of
+from crankmbs.motion.plan import plan_of
 
 RUNS = {
     "coasting": Run(until="2 rev", every="15 deg"),

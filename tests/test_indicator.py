@@ -9,10 +9,10 @@ from mpmath import mp, mpf
 from scipy.interpolate import PPoly
 
 from crankmbs import Crank, Gas, Indicator, Motion, Piston, Rod, Run, Scene, Start, simulate
-from crankmbs.free import run as run_free
-from crankmbs.geometry import close_loop, dead_centres
-from crankmbs.indicator import INDICATOR_RTOL, indicator_pieces
-from crankmbs.pressure import PeriodicPressure, pressure_of
+from crankmbs.mechanics.geometry import close_loop, dead_centres
+from crankmbs.mechanics.indicator import INDICATOR_RTOL, indicator_pieces
+from crankmbs.mechanics.pressure import PeriodicPressure, pressure_of
+from crankmbs.motion.free.passes import run as run_free
 from validation.oracles.indicator import Diagram, absolute_pressure
 
 mp.dps = 30

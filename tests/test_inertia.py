@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from crankmbs import Gravity
-from crankmbs.geometry import close_loop
-from crankmbs.inertia import gravity_vector, reduce, rod_centre
-from crankmbs.pressure import pressure_of
+from crankmbs.mechanics.geometry import close_loop
+from crankmbs.mechanics.inertia import gravity_vector, reduce, rod_centre
+from crankmbs.mechanics.pressure import pressure_of
 from validation.adapter import reference_variables
 from validation.oracles.arithmetic import multiprecision
 from validation.random_scenes import random_scene

@@ -24,15 +24,15 @@ from crankmbs import (
     Table,
     TimeTable,
     Viscous,
-    kernels,
     load_scene,
     simulate,
 )
-from crankmbs.cells import grid_of
-from crankmbs.collocation import gauss
-from crankmbs.drives import Torque
-from crankmbs.formulations.solvers import Begin, Cells, solve_affine, solve_newton
-from crankmbs.torque import branch_of
+from crankmbs.mechanics.torque import branch_of
+from crankmbs.motion.crank_angle.grid import grid_of
+from crankmbs.motion.crank_angle.solvers import Begin, Cells, solve_affine, solve_newton
+from crankmbs.numerics import kernels
+from crankmbs.numerics.collocation import gauss
+from crankmbs.scene.drives import Torque
 
 LOADS: dict[str, tuple[Torque, ...]] = {
     "none": (),
@@ -141,7 +141,7 @@ assert "numba" not in sys.modules
 """
 LONG = """
 import sys, crankmbs
-from crankmbs import kernels
+from crankmbs.numerics import kernels
 assert not kernels.pay(0.4) and "numba" not in sys.modules
 assert kernels.pay(0.4) and kernels.are_compiled
 """
@@ -160,7 +160,8 @@ def test_kernels_work_where_nothing_can_be_cached() -> None:
         "def cannot(*args):\n"
         "    raise RuntimeError('cannot cache function: no locator available')\n"
         "FunctionCache.__init__ = cannot\n"
-        "from crankmbs import kernels, load_scene, simulate\n"
+        "from crankmbs import load_scene, simulate\n"
+        "from crankmbs.numerics import kernels\n"
         "assert kernels.pay(0.0)\n"
         "assert simulate(load_scene('coasting')).status == 0\n"
     )

@@ -16,12 +16,12 @@ from crankmbs import (
     load_scene,
     simulate,
 )
-from crankmbs.cells import grid_of
-from crankmbs.collocation import gauss
-from crankmbs.confirm import differences
-from crankmbs.formulations import crank_angle
-from crankmbs.pressure import pressure_of
-from crankmbs.torque import branch_of, course_of, torque_at
+from crankmbs.compare.runs import differences
+from crankmbs.mechanics.pressure import pressure_of
+from crankmbs.mechanics.torque import branch_of, course_of, torque_at
+from crankmbs.motion.crank_angle import advance as crank_angle
+from crankmbs.motion.crank_angle.grid import grid_of
+from crankmbs.numerics.collocation import gauss
 
 SPEED = Table((-9.0, 2.0, 5.0, 5.0, 7.0, 9.0), (3.0, 1.0, 4.0, 2.0, 2.5, -1.0))
 TIME = Table((0.0, 1.0, 1.0, 2.0, 3.0), (0.0, 4.0, 1.0, 2.0, 9.0))

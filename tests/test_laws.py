@@ -9,10 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from crankmbs import Constant, Layout, Motion, Oscillation, Quadratic, Run, Start, Viscous, simulate
-from crankmbs.inertia import reduce
-from crankmbs.pressure import pressure_of
-from crankmbs.reactions import reactions
-from crankmbs.scene import Extent
+from crankmbs.mechanics.inertia import reduce
+from crankmbs.mechanics.pressure import pressure_of
+from crankmbs.mechanics.reactions import reactions
+from crankmbs.scene.scene import Extent
 from validation.random_scenes import random_scene
 
 SEEDS = st.integers(0, 10_000)

@@ -19,8 +19,8 @@ from crankmbs import (
     simulate,
 )
 from crankmbs.digits import digits, error_digits
-from crankmbs.machine import Gravity
 from crankmbs.measures import Estimate, JointForce, measure
+from crankmbs.scene.parts import Gravity
 from validation.adapter import reference_variables
 
 FREE = load_scene("yi_diesel_free")

@@ -19,11 +19,11 @@ from crankmbs import (
     load_scene,
     simulate,
 )
-from crankmbs.formulations.stretch import Equation
-from crankmbs.pressure import pressure_of
-from crankmbs.reactions import reactions
-from crankmbs.reduced import Reduced
-from crankmbs.torque import branch_of
+from crankmbs.mechanics.pressure import pressure_of
+from crankmbs.mechanics.reactions import reactions
+from crankmbs.mechanics.torque import branch_of
+from crankmbs.motion.minimal.reduced import Reduced
+from crankmbs.motion.minimal.stretch import Equation
 from validation.random_scenes import random_scene
 
 COASTING, PROPELLER = load_scene("coasting"), load_scene("propeller")

@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from crankmbs.drives import Motion, Oscillation, Ramp, Start
-from crankmbs.machine import Cylinder, Gravity, Layout
 from crankmbs.result import Result
-from crankmbs.scene import Extent, Run, Scene
-from crankmbs.scene_io import load_scene
+from crankmbs.scene.drives import Motion, Oscillation, Ramp, Start
+from crankmbs.scene.parts import Cylinder, Gravity, Layout
+from crankmbs.scene.read import load_scene
+from crankmbs.scene.scene import Extent, Run, Scene
 from crankmbs.simulate import simulate
 from validation.adapter import at_jumps, reference_motion, reference_variables
 

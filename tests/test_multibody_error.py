@@ -8,12 +8,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from crankmbs.formulations.multibody.beside import errors_beside_jumps
-from crankmbs.formulations.multibody.error import Convergence
-from crankmbs.formulations.multibody.held import held_by
-from crankmbs.formulations.multibody.problem import problem_of
-from crankmbs.scene import Run
-from crankmbs.scene_io import load_scene
+from crankmbs.motion.multibody.beside import errors_beside_jumps
+from crankmbs.motion.multibody.error import Convergence
+from crankmbs.motion.multibody.held import held_by
+from crankmbs.motion.multibody.problem import problem_of
+from crankmbs.scene.read import load_scene
+from crankmbs.scene.scene import Run
 
 X = np.linspace(0.0, 3.0, 50)
 EXACT = np.sin(X)

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from references import assert_within_stated
 
-from crankmbs.drives import Constant, Start, TimeTable, Viscous
 from crankmbs.result import Result
-from crankmbs.scene import Extent, Run, Scene
-from crankmbs.scene_io import load_scene
+from crankmbs.scene.drives import Constant, Start, TimeTable, Viscous
+from crankmbs.scene.read import load_scene
+from crankmbs.scene.scene import Extent, Run, Scene
+from crankmbs.scene.tables import Table
 from crankmbs.simulate import simulate
-from crankmbs.tables import Table
 
 COASTING = load_scene("coasting")
 

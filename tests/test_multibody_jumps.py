@@ -12,13 +12,13 @@ import numpy as np
 import pytest
 from references import assert_within_stated
 
-from crankmbs.drives import Motion, SpeedFile, Start, TimeTable, Torque, Viscous
-from crankmbs.machine import Gas
 from crankmbs.result import Result
-from crankmbs.scene import Run, Scene
-from crankmbs.scene_io import load_scene
+from crankmbs.scene.drives import Motion, SpeedFile, Start, TimeTable, Torque, Viscous
+from crankmbs.scene.parts import Gas
+from crankmbs.scene.read import load_scene
+from crankmbs.scene.scene import Run, Scene
+from crankmbs.scene.tables import Table
 from crankmbs.simulate import simulate
-from crankmbs.tables import Table
 
 COASTING = load_scene("coasting")
 RPM = math.pi / 30.0

@@ -9,17 +9,17 @@ import numpy as np
 import pytest
 from references import assert_within_stated
 
-from crankmbs.drives import Motion, SpeedFile, SpeedTable, Start, TimeTable, Torque
 from crankmbs.errors import FormulationError
-from crankmbs.formulations.multibody.landing import LEAST_STEPS, Bounds, Watch
-from crankmbs.formulations.multibody.path import Path, coarsest_step, model_of, solve
-from crankmbs.formulations.multibody.problem import erratic_order, kink_times, problem_of
-from crankmbs.machine import Gas
+from crankmbs.motion.multibody.landing import LEAST_STEPS, Bounds, Watch
+from crankmbs.motion.multibody.path import Path, coarsest_step, model_of, solve
+from crankmbs.motion.multibody.problem import erratic_order, kink_times, problem_of
 from crankmbs.result import Result
-from crankmbs.scene import Extent, Run, Scene
-from crankmbs.scene_io import load_scene
+from crankmbs.scene.drives import Motion, SpeedFile, SpeedTable, Start, TimeTable, Torque
+from crankmbs.scene.parts import Gas
+from crankmbs.scene.read import load_scene
+from crankmbs.scene.scene import Extent, Run, Scene
+from crankmbs.scene.tables import Table
 from crankmbs.simulate import simulate
-from crankmbs.tables import Table
 
 COASTING = replace(
     load_scene("coasting"),

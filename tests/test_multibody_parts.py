@@ -8,28 +8,24 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from crankmbs.drives import Constant, Quadratic, SpeedTable, TimeTable, Viscous
-from crankmbs.formulations.multibody.gas import Gas
-from crankmbs.formulations.multibody.loads import (
-    EVERYWHERE,
-    speeds_around,
-    torque_function,
-)
-from crankmbs.formulations.multibody.model import Model, Record
-from crankmbs.formulations.multibody.path import model_of, solve
-from crankmbs.formulations.multibody.problem import problem_of
-from crankmbs.formulations.multibody.run_up import RUN_UP, run_free
-from crankmbs.formulations.multibody.samples import Sampled, aligned_variables
-from crankmbs.formulations.multibody.start import angle_of, coordinates, quiet_start
-from crankmbs.formulations.multibody.taylor import taylor
-from crankmbs.inertia import reduce
-from crankmbs.machine import Cylinder, Layout
-from crankmbs.pressure import pressure_of
-from crankmbs.reactions import reactions
-from crankmbs.scene import Run
-from crankmbs.scene_io import load_scene
-from crankmbs.tables import Table
-from crankmbs.torque import branch_of
+from crankmbs.mechanics.inertia import reduce
+from crankmbs.mechanics.pressure import pressure_of
+from crankmbs.mechanics.reactions import reactions
+from crankmbs.mechanics.torque import branch_of
+from crankmbs.motion.multibody.gas import Gas
+from crankmbs.motion.multibody.loads import EVERYWHERE, speeds_around, torque_function
+from crankmbs.motion.multibody.model import Model, Record
+from crankmbs.motion.multibody.path import model_of, solve
+from crankmbs.motion.multibody.problem import problem_of
+from crankmbs.motion.multibody.run_up import RUN_UP, run_free
+from crankmbs.motion.multibody.samples import Sampled, aligned_variables
+from crankmbs.motion.multibody.start import angle_of, coordinates, quiet_start
+from crankmbs.motion.multibody.taylor import taylor
+from crankmbs.scene.drives import Constant, Quadratic, SpeedTable, TimeTable, Viscous
+from crankmbs.scene.parts import Cylinder, Layout
+from crankmbs.scene.read import load_scene
+from crankmbs.scene.scene import Run
+from crankmbs.scene.tables import Table
 
 COASTING = load_scene("coasting")
 V_TWIN = load_scene("v_twin")

@@ -19,9 +19,9 @@ from crankmbs import (
     shipped_scenes,
 )
 from crankmbs.demo.knobs import turned
-from crankmbs.plausible import warnings
-from crankmbs.scene_io import parse_scene
-from crankmbs.template import template
+from crankmbs.measures.plausible import warnings
+from crankmbs.scene.read import parse_scene
+from crankmbs.scene.template import template
 
 DIESEL, FOUR, V_TWIN = (load_scene(name) for name in ("yi_diesel", "yi_diesel_free", "v_twin"))
 COMPRESSOR, BARS = load_scene("compressor"), load_scene("torque_driven")

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from crankmbs import Cylinder, Gas, Layout, Table, load_scene
-from crankmbs.pressure import crank_angle_knots, pressure_of, repeat
+from crankmbs.mechanics.pressure import crank_angle_knots, pressure_of, repeat
 from validation.adapter import machine_of
 from validation.oracles.pressure import evaluate_pressure
 

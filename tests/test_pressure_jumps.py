@@ -9,7 +9,7 @@ from references import worst_ratio
 
 from crankmbs import Gas, InputError, Motion, Run, Start, Table, load_scene, simulate
 from crankmbs.demo.knobs import turned
-from crankmbs.pressure import pressure_of, remarks
+from crankmbs.mechanics.pressure import pressure_of, remarks
 from validation.adapter import machine_of
 from validation.oracles.arithmetic import distance, multiprecision
 from validation.oracles.pressure import evaluate_pressure

@@ -6,9 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from crankmbs import kernels, load_scene
-from crankmbs.pressure import pressure_of
-from crankmbs.reactions import deviations, reactions
+from crankmbs import load_scene
+from crankmbs.mechanics.pressure import pressure_of
+from crankmbs.mechanics.reactions import deviations, reactions
+from crankmbs.numerics import kernels
 from validation.adapter import reference_variables
 from validation.oracles.arithmetic import multiprecision
 from validation.random_scenes import random_scene

@@ -7,8 +7,8 @@ import pytest
 from references import worst_ratio
 
 from crankmbs import Gravity, Run, Viscous, load_scene, simulate
-from crankmbs.formulations.base import Samples
-from crankmbs.matching import match, stays
+from crankmbs.motion.base import Samples
+from crankmbs.motion.free.matching import match, stays
 from validation.random_scenes import random_scene
 
 BOTH = pytest.mark.parametrize("formulation", ["crank_angle", "minimal"])

@@ -19,9 +19,9 @@ from crankmbs import (
     Table,
     simulate,
 )
-from crankmbs.confirm import differences
-from crankmbs.pressure import pressure_of
-from crankmbs.reduced import Reduced
+from crankmbs.compare.runs import differences
+from crankmbs.mechanics.pressure import pressure_of
+from crankmbs.motion.minimal.reduced import Reduced
 
 THROWS = ((0, -30), (300, 30), (240, -30), (540, 30), (480, -30), (60, 30))  # phase, bank
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from crankmbs.roots import first_above, invert_monotone
+from crankmbs.numerics.roots import first_above, invert_monotone
 
 
 def cube(x):

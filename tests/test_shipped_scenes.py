@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from gas_work import gas_work
 
-from crankmbs.pressure import pressure_of
-from crankmbs.scene_io import load_scene, models_folder, shipped_scenes
+from crankmbs.mechanics.pressure import pressure_of
+from crankmbs.scene.read import load_scene, models_folder, shipped_scenes
 
 NAMES = [
     "coasting",

@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import quad
 
 from crankmbs import Motion, Oscillation, Ramp, SpeedFile, Table
-from crankmbs.speed import speed_law
+from crankmbs.mechanics.speed import speed_law
 
 TABLE = Table((0.0, 0.5, 1.2, 2.0, 3.0), (10.0, 40.0, 35.0, 35.0, 90.0))
 MOTIONS = {

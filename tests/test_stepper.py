@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 from scipy.integrate import DOP853
 
-from crankmbs import Piston, Rod, Start, load_scene, stepper
-from crankmbs.formulations.stretch import Equation
-from crankmbs.inertia import reduce
-from crankmbs.pressure import pressure_of
-from crankmbs.reduced import Reduced
-from crankmbs.torque import branch_of
+from crankmbs import Piston, Rod, Start, load_scene
+from crankmbs.mechanics.inertia import reduce
+from crankmbs.mechanics.pressure import pressure_of
+from crankmbs.mechanics.torque import branch_of
+from crankmbs.motion.minimal import stepper
+from crankmbs.motion.minimal.reduced import Reduced
+from crankmbs.motion.minimal.stretch import Equation
 
 COASTING = load_scene("coasting")
 

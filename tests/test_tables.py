@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from crankmbs.errors import InputError
-from crankmbs.tables import Table, read_table
+from crankmbs.scene.tables import Table, read_table
 
 X = {"time_s": 1.0, "time_ms": 1e-3}
 Y = {"torque_Nm": 1.0}

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 from gas_work import gas_work
 
-from crankmbs.scene_io import parse_scene
-from crankmbs.template import template
+from crankmbs.scene.read import parse_scene
+from crankmbs.scene.template import template
 
 FILE = Path("engine.toml")
 SCENE = template("engine")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from crankmbs import Constant, InputError, Quadratic, SpeedTable, Table, TimeTable, Viscous
-from crankmbs.torque import branch_at, branch_of, torque_at
+from crankmbs.mechanics.torque import branch_at, branch_of, torque_at
 
 RAMP = Table((0.0, 1.0, 1.0, 4.0), (0.0, 2.0, 5.0, -1.0))
 CURVE = Table((-20.0, -5.0, 10.0, 10.0, 30.0), (4.0, 7.0, 1.0, -6.0, -2.0))

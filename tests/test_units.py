@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from crankmbs.errors import InputError, shown
-from crankmbs.units import EXAMPLES, extent, quantity
+from crankmbs.scene.units import EXAMPLES, extent, quantity
 
 
 @pytest.mark.parametrize(

@@ -7,17 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from crankmbs import (
-    Constant,
-    Motion,
-    Quadratic,
-    Run,
-    Start,
-    Table,
-    TimeTable,
-    Viscous,
-    load_scene,
-)
+from crankmbs import Constant, Motion, Quadratic, Run, Start, Table, TimeTable, Viscous, load_scene
 from crankmbs.figures.work_precision import work_precision_figure
 from crankmbs.work_precision import (
     END,

@@ -10,7 +10,10 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from crankmbs.drives import (
+from crankmbs.mechanics.pressure import pressure_of
+from crankmbs.motion.plan import plan_of
+from crankmbs.result import Result
+from crankmbs.scene.drives import (
     Constant,
     Oscillation,
     Quadratic,
@@ -21,13 +24,10 @@ from crankmbs.drives import (
     Torque,
     Viscous,
 )
-from crankmbs.drives import Motion as Prescribed
-from crankmbs.machine import Gas
-from crankmbs.pressure import pressure_of
-from crankmbs.result import Result
-from crankmbs.sampling import plan_of
-from crankmbs.scene import Scene
-from crankmbs.tables import Table
+from crankmbs.scene.drives import Motion as Prescribed
+from crankmbs.scene.parts import Gas
+from crankmbs.scene.scene import Scene
+from crankmbs.scene.tables import Table
 from validation.oracles.arithmetic import LONG, Arithmetic, Array
 from validation.oracles.energy import kinetic_energy
 from validation.oracles.free_motion import Motion, series_path

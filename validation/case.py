@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from crankmbs.drives import Motion, Start
-from crankmbs.scene import Extent, Scene
-from crankmbs.scene_io import load_scene
+from crankmbs.scene.drives import Motion, Start
+from crankmbs.scene.read import load_scene
+from crankmbs.scene.scene import Extent, Scene
 
 __all__ = ["CASES", "Case", "Mutant", "driven", "load_case", "load_cases", "shifted"]
 

@@ -12,10 +12,11 @@ from types import FrameType
 
 import numpy as np
 
-from crankmbs import Run, Viscous, kernels, load_scene
+from crankmbs import Run, Viscous, load_scene
 from crankmbs.errors import InputError
+from crankmbs.numerics import kernels
 from crankmbs.result import Result
-from crankmbs.scene import Extent, Scene
+from crankmbs.scene.scene import Extent, Scene
 from crankmbs.simulate import simulate
 from validation.adapter import machine_of, reference_motion
 from validation.checks.honest import scales, true_errors

@@ -12,11 +12,11 @@ from typing import Literal, TypeVar
 import numpy as np
 
 from crankmbs import Scene
-from crankmbs.drives import Constant, Quadratic, SpeedTable, Start, TimeTable, Torque, Viscous
-from crankmbs.machine import Crank, Cylinder, Gas, Gravity, Indicator, Layout, Piston, Rod
-from crankmbs.scene import Extent, Run
-from crankmbs.schema import DEGREE
-from crankmbs.tables import Table
+from crankmbs.scene.drives import Constant, Quadratic, SpeedTable, Start, TimeTable, Torque, Viscous
+from crankmbs.scene.parts import Crank, Cylinder, Gas, Gravity, Indicator, Layout, Piston, Rod
+from crankmbs.scene.scene import Extent, Run
+from crankmbs.scene.schema import DEGREE
+from crankmbs.scene.tables import Table
 
 __all__ = ["random_scene"]
 

@@ -3,7 +3,7 @@
 from functools import lru_cache
 
 from crankmbs.result import Result
-from crankmbs.scene import Scene
+from crankmbs.scene.scene import Scene
 from crankmbs.simulate import simulate
 
 __all__ = ["run"]

@@ -8,7 +8,7 @@ import typer
 
 from crankmbs.cli.folder import writable
 from crankmbs.cli.progress import progress
-from crankmbs.scene_io import load_scene, scene_path
+from crankmbs.scene.read import load_scene, scene_path
 from crankmbs.simulate import simulate
 
 __all__ = ["animate_scene"]

@@ -21,8 +21,8 @@ from crankmbs.cli.run import run_scene
 from crankmbs.cli.validate import validate_scene
 from crankmbs.cli.work_precision import measure_scene
 from crankmbs.errors import InputError, OutputError
-from crankmbs.files import write_in_one_move
-from crankmbs.scene_io import load_scene, scene_path, shipped_scenes
+from crankmbs.scene.read import load_scene, scene_path, shipped_scenes
+from crankmbs.storage.files import write_in_one_move
 
 __all__ = ["app", "main"]
 
@@ -204,7 +204,7 @@ def new(
     name: Annotated[str, typer.Argument(metavar="NAME", help="Name or path of the new scene.")],
 ) -> None:
     """Write a commented scene to start from."""
-    from crankmbs.template import template
+    from crankmbs.scene.template import template
 
     path = Path(name if name.endswith(".toml") else f"{name}.toml")
     if path.name == ".toml":

@@ -7,7 +7,11 @@ import math
 import numpy as np
 
 from crankmbs.choose import Choice
-from crankmbs.drives import (
+from crankmbs.measures.plausible import warnings
+from crankmbs.mechanics.geometry import close_loop, dead_centres
+from crankmbs.mechanics.pressure import PeriodicPressure, pressure_of, remarks
+from crankmbs.mechanics.torque import torque_at
+from crankmbs.scene.drives import (
     Constant,
     Oscillation,
     Quadratic,
@@ -18,11 +22,7 @@ from crankmbs.drives import (
     Torque,
     Viscous,
 )
-from crankmbs.geometry import close_loop, dead_centres
-from crankmbs.plausible import warnings
-from crankmbs.pressure import PeriodicPressure, pressure_of, remarks
-from crankmbs.scene import Extent, Scene
-from crankmbs.torque import torque_at
+from crankmbs.scene.scene import Extent, Scene
 
 __all__ = ["describe"]
 

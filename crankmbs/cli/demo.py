@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from crankmbs.cli.progress import progress
-from crankmbs.scene_io import load_scene, scene_path
+from crankmbs.scene.read import load_scene, scene_path
 
 if TYPE_CHECKING:
     from bokeh.server.server import Server

@@ -6,10 +6,10 @@ import math
 from collections.abc import Sequence
 
 from crankmbs.cli.text import table
-from crankmbs.confirm import Difference
+from crankmbs.compare.runs import Difference
 from crankmbs.digits import digits, error_digits
 from crankmbs.measures import Estimate, JointForce, Measures
-from crankmbs.plausible import warnings
+from crankmbs.measures.plausible import warnings
 from crankmbs.result import Result
 
 __all__ = ["comparison", "report"]

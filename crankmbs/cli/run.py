@@ -13,14 +13,14 @@ from crankmbs.choose import choose
 from crankmbs.cli.folder import writable, wrote
 from crankmbs.cli.progress import progress
 from crankmbs.cli.report import comparison, report
-from crankmbs.confirm import Difference, differences
+from crankmbs.compare.runs import Difference, differences
 from crankmbs.errors import InputError
-from crankmbs.files import together
 from crankmbs.measures import measure
 from crankmbs.result import Result
-from crankmbs.scene import Scene
-from crankmbs.scene_io import load_scene, scene_path
+from crankmbs.scene.read import load_scene, scene_path
+from crankmbs.scene.scene import Scene
 from crankmbs.simulate import simulate
+from crankmbs.storage.files import together
 
 __all__ = ["override", "run_scene"]
 

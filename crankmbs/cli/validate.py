@@ -30,9 +30,9 @@ from crankmbs.compare import (
     save_comparison,
 )
 from crankmbs.digits import digits
-from crankmbs.files import together
-from crankmbs.scene_io import load_scene, scene_path
+from crankmbs.scene.read import load_scene, scene_path
 from crankmbs.simulate import simulate
+from crankmbs.storage.files import together
 
 __all__ = ["validate_scene"]
 

@@ -11,8 +11,8 @@ from crankmbs.cli.folder import writable, wrote
 from crankmbs.cli.progress import progress
 from crankmbs.cli.text import table
 from crankmbs.digits import error_digits
-from crankmbs.files import together
-from crankmbs.scene_io import load_scene, scene_path
+from crankmbs.scene.read import load_scene, scene_path
+from crankmbs.storage.files import together
 from crankmbs.work_precision import (
     TARGETS,
     Row,

@@ -14,7 +14,7 @@ from crankmbs.compare.causes import Budget, Split
 from crankmbs.compare.quantities import QUANTITIES
 from crankmbs.compare.size import Size, percent, within
 from crankmbs.compare.stretch import Stretch
-from crankmbs.files import write_in_one_move
+from crankmbs.storage.files import write_in_one_move
 
 __all__ = ["save_budget", "save_budget_peaks", "save_comparison"]
 

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from crankmbs import lecture
 from crankmbs.compare.quantities import cycle_angles
-from crankmbs.pressure import PeriodicPressure
-from crankmbs.scene import Scene
+from crankmbs.mechanics.pressure import PeriodicPressure
+from crankmbs.scene.scene import Scene
 
 __all__ = ["LECTURES", "S0", "S1", "UNTRUNCATED", "Formulas", "lectured"]
 

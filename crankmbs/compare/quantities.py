@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crankmbs.lecture import two_mass_rod
-from crankmbs.scene import Scene
+from crankmbs.scene.scene import Scene
 
 __all__ = ["QUANTITIES", "Quantity", "cycle_angles", "observed"]
 
@@ -58,7 +58,7 @@ def cycle_angles(scene: Scene, theta: Array) -> Array:
 def observed(
     scene: Scene, variables: Mapping[str, Array], theta: Array, omega: Array, alpha: Array
 ) -> dict[str, Array]:
-    """The compared quantities of a run, or of `crankmbs.reactions.reactions`.
+    """The compared quantities of a run, or of `crankmbs.mechanics.reactions.reactions`.
 
     With S the crank pin force and C the crank pin, the load through the rod is S - m_or C'':
 

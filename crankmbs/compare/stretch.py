@@ -14,10 +14,11 @@ from crankmbs.compare.quantities import QUANTITIES, observed
 from crankmbs.compare.size import Size, size_of
 from crankmbs.errors import InputError
 from crankmbs.measures import Window, last_window
-from crankmbs.pressure import PeriodicPressure, pressure_of
-from crankmbs.reactions import reactions
-from crankmbs.result import VARIABLES, Result
-from crankmbs.scene import Scene
+from crankmbs.mechanics.pressure import PeriodicPressure, pressure_of
+from crankmbs.mechanics.reactions import reactions
+from crankmbs.mechanics.variables import VARIABLES
+from crankmbs.result import Result
+from crankmbs.scene.scene import Scene
 
 __all__ = ["Answer", "LeftOut", "Stretch", "check_cylinder", "stretch_of", "vanishing"]
 

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from crankmbs.compare import CAUSES, LECTURES, Comparison
 from crankmbs.demo.outcome import Outcome
 from crankmbs.errors import InputError
+from crankmbs.figures.outline import Mechanism, in_engine_frame, mechanism
 from crankmbs.measures import mean_speed
-from crankmbs.mechanism import Mechanism, in_engine_frame, mechanism
 
 __all__ = [
     "BEARINGS",

@@ -9,8 +9,8 @@ import zipfile
 from pathlib import Path
 
 from crankmbs.result import Result
-from crankmbs.scene import Scene
-from crankmbs.scene_writer import scene_files
+from crankmbs.scene.scene import Scene
+from crankmbs.scene.write import scene_files
 
 __all__ = ["data_file", "download", "scene_file"]
 

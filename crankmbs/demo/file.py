@@ -24,8 +24,8 @@ from crankmbs.demo.outcome import Outcome, prepared, run
 from crankmbs.demo.state import Data, state_of
 from crankmbs.demo.views import STORES
 from crankmbs.errors import CrankmbsError, InputError, shown
-from crankmbs.files import write_in_one_move
-from crankmbs.scene import Scene
+from crankmbs.scene.scene import Scene
+from crankmbs.storage.files import write_in_one_move
 
 __all__ = ["save_page"]
 

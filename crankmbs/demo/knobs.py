@@ -7,10 +7,10 @@ import math
 from collections.abc import Mapping
 from typing import Any, Literal
 
-from crankmbs.drives import Oscillation, Quadratic, SpeedTable, TimeTable, Torque, Viscous
-from crankmbs.machine import Gas, Layout
-from crankmbs.scene import Scene
-from crankmbs.tables import Table
+from crankmbs.scene.drives import Oscillation, Quadratic, SpeedTable, TimeTable, Torque, Viscous
+from crankmbs.scene.parts import Gas, Layout
+from crankmbs.scene.scene import Scene
+from crankmbs.scene.tables import Table
 
 __all__ = ["AS_GIVEN", "FIRING_ORDERS", "Knob", "Values", "knobs_of", "turned"]
 

@@ -25,7 +25,7 @@ from crankmbs.demo.knobs import knobs_of, turned
 from crankmbs.demo.outcome import Outcome
 from crankmbs.demo.state import state_of
 from crankmbs.errors import CrankmbsError
-from crankmbs.scene import Scene
+from crankmbs.scene.scene import Scene
 
 __all__ = ["Live"]
 

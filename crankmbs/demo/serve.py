@@ -12,7 +12,7 @@ from bokeh.server.server import Server
 from crankmbs.demo.live import Live
 from crankmbs.demo.outcome import prepared, run
 from crankmbs.errors import InputError
-from crankmbs.scene import Scene
+from crankmbs.scene.scene import Scene
 
 __all__ = ["serve"]
 

@@ -9,7 +9,7 @@ from bokeh.plotting import figure
 
 from crankmbs.demo.columns import FORCES
 from crankmbs.demo.style import BLUE, GREEN, ORANGE, SKY, scratch
-from crankmbs.scene import Scene
+from crankmbs.scene.scene import Scene
 
 __all__ = ["ARROWS", "Stage", "stage"]
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from crankmbs.confirm import Difference
+from crankmbs.compare.runs import Difference
 from crankmbs.figures.compare import budget_figure, comparison_figure, save_validation
 from crankmbs.figures.difference import difference_figure
 from crankmbs.figures.polar import crank_pin_figure, main_bearing_figure, piston_pin_figure
@@ -18,8 +18,8 @@ from crankmbs.figures.strips import (
     torque_figure,
 )
 from crankmbs.figures.view import View, last_view
-from crankmbs.files import together, write_in_one_move
 from crankmbs.result import Result
+from crankmbs.storage.files import together, write_in_one_move
 
 __all__ = [
     "budget_figure",

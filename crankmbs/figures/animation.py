@@ -20,11 +20,11 @@ from numpy.typing import NDArray
 from crankmbs.errors import InputError, OutputError
 from crankmbs.figures.frames import Frames, frames_of
 from crankmbs.figures.mechanism import Drawing, on_paper, slices
+from crankmbs.figures.outline import mechanism
 from crankmbs.figures.style import STYLE, crank_axis, footer, line_of
 from crankmbs.figures.view import View, last_view
-from crankmbs.files import write_in_one_move
-from crankmbs.mechanism import mechanism
 from crankmbs.result import Result
+from crankmbs.storage.files import write_in_one_move
 
 __all__ = ["check_format", "save_animation"]
 

@@ -23,7 +23,7 @@ from crankmbs.compare import (
 )
 from crankmbs.figures.style import STYLE, crank_axis, footer, force_scale, line_of, panels
 from crankmbs.figures.view import last_view
-from crankmbs.files import together
+from crankmbs.storage.files import together
 
 __all__ = ["FAMILIES", "budget_figure", "comparison_figure", "save_validation"]
 

@@ -10,9 +10,9 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Polygon
 from numpy.typing import NDArray
 
+from crankmbs.figures.outline import Mechanism
 from crankmbs.figures.style import line_of
-from crankmbs.mechanism import Mechanism
-from crankmbs.scene import Scene
+from crankmbs.scene.scene import Scene
 
 __all__ = ["Drawing", "on_paper", "slices"]
 

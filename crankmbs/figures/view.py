@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from crankmbs.geometry import dead_centres
 from crankmbs.measures import Window, last_window
+from crankmbs.mechanics.geometry import dead_centres
 from crankmbs.result import Result
-from crankmbs.scene import Scene
-from crankmbs.schema import DEGREE
+from crankmbs.scene.scene import Scene
+from crankmbs.scene.schema import DEGREE
 
 if TYPE_CHECKING:
     import xarray as xr

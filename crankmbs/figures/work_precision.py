@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from crankmbs.figures.style import STYLE, caption, panels
-from crankmbs.files import write_in_one_move
+from crankmbs.storage.files import write_in_one_move
 from crankmbs.work_precision import END, MOTION, WorkPrecision
 
 __all__ = ["save_figure", "work_precision_figure"]

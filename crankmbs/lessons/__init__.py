@@ -9,8 +9,8 @@ from importlib import import_module
 from pathlib import Path
 
 from crankmbs.errors import InputError
-from crankmbs.files import write_in_one_move
-from crankmbs.sentences import did_you_mean
+from crankmbs.scene.sentences import did_you_mean
+from crankmbs.storage.files import write_in_one_move
 
 __all__ = ["LESSONS", "check_lesson", "write_lesson"]
 

@@ -14,7 +14,7 @@ from crankmbs.figures.view import last_view
 from crankmbs.lessons.parts import Formula, Lesson, Question, Slider, Step, exact, simulated
 from crankmbs.lessons.runs import changed, finely, one_cylinder, peak, peak_angle, sample, turn
 from crankmbs.result import Result
-from crankmbs.scene import Scene
+from crankmbs.scene.scene import Scene
 
 __all__ = ["lesson"]
 

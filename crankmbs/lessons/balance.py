@@ -12,10 +12,10 @@ from crankmbs.lessons.balance_figures import force_figure, polar_figure, torque_
 from crankmbs.lessons.parts import Formula, Lesson, Question, Slider, Step, exact, simulated
 from crankmbs.lessons.runs import changed
 from crankmbs.lessons.shaking import FRAME, amplitude, reciprocating, shaking, twin
-from crankmbs.machine import Layout
 from crankmbs.result import Result
-from crankmbs.scene import Scene
-from crankmbs.scene_io import load_scene
+from crankmbs.scene.parts import Layout
+from crankmbs.scene.read import load_scene
+from crankmbs.scene.scene import Scene
 from crankmbs.simulate import simulate
 
 __all__ = ["lesson"]

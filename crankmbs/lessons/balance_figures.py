@@ -14,11 +14,11 @@ from matplotlib.figure import Figure
 
 from crankmbs import lecture
 from crankmbs.figures.mechanism import Drawing
+from crankmbs.figures.outline import mechanism
 from crankmbs.figures.style import STYLE, crank_axis, legend, line_of, panels
 from crankmbs.figures.view import last_view
 from crankmbs.lessons.shaking import FRAME
 from crankmbs.measures import orders
-from crankmbs.mechanism import mechanism
 from crankmbs.result import Result
 
 __all__ = ["force_figure", "polar_figure", "torque_figure"]

@@ -10,12 +10,12 @@ from matplotlib.figure import Figure
 
 from crankmbs import lecture
 from crankmbs.figures.mechanism import Drawing
+from crankmbs.figures.outline import mechanism
 from crankmbs.figures.style import STYLE, crank_axis, legend, line_of, panels
 from crankmbs.figures.view import last_view
 from crankmbs.lessons.parts import Formula, Lesson, Question, Slider, Step, exact, simulated
 from crankmbs.lessons.runs import changed, one_cylinder, sample, turn
 from crankmbs.measures import Estimate
-from crankmbs.mechanism import mechanism
 from crankmbs.result import Result
 from crankmbs.simulate import simulate
 

@@ -19,8 +19,8 @@ from crankmbs.lessons.parts import Formula, Lesson, Question, Slider, Step, exac
 from crankmbs.measures import Estimate, measure
 from crankmbs.measures.peak import rise
 from crankmbs.result import Result
-from crankmbs.scene import Scene
-from crankmbs.scene_io import load_scene
+from crankmbs.scene.read import load_scene
+from crankmbs.scene.scene import Scene
 from crankmbs.simulate import simulate
 
 __all__ = ["lesson"]

@@ -7,11 +7,11 @@ import dataclasses
 import numpy as np
 from scipy.integrate import cumulative_simpson
 
-from crankmbs.drives import Motion
 from crankmbs.lessons.runs import changed
 from crankmbs.measures import measure
 from crankmbs.result import Result
-from crankmbs.scene import Extent, Scene
+from crankmbs.scene.drives import Motion
+from crankmbs.scene.scene import Extent, Scene
 from crankmbs.simulate import simulate
 
 __all__ = ["estimate", "excess", "held", "with_inertia"]

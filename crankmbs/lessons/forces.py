@@ -16,8 +16,8 @@ from crankmbs.lessons.parts import Formula, Lesson, Question, Slider, Step, exac
 from crankmbs.lessons.runs import changed, finely, peak, peak_angle
 from crankmbs.measures import Estimate, measure
 from crankmbs.result import Result
-from crankmbs.scene import Scene
-from crankmbs.scene_io import load_scene
+from crankmbs.scene.read import load_scene
+from crankmbs.scene.scene import Scene
 from crankmbs.simulate import simulate
 
 __all__ = ["lesson"]

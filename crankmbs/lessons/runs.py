@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from crankmbs.machine import Cylinder, Layout
 from crankmbs.measures import Estimate
 from crankmbs.measures.peak import rise
 from crankmbs.result import Result
-from crankmbs.scene import Extent, Run, Scene
-from crankmbs.scene_io import load_scene
+from crankmbs.scene.parts import Cylinder, Layout
+from crankmbs.scene.read import load_scene
+from crankmbs.scene.scene import Extent, Run, Scene
 from crankmbs.simulate import simulate
 
 __all__ = ["changed", "finely", "one_cylinder", "peak", "peak_angle", "sample", "turn"]

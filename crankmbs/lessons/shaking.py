@@ -9,10 +9,10 @@ import numpy as np
 
 from crankmbs import lecture
 from crankmbs.lessons.runs import changed
-from crankmbs.machine import Cylinder, Layout
 from crankmbs.measures import Estimate, orders
 from crankmbs.result import Result
-from crankmbs.scene import Scene
+from crankmbs.scene.parts import Cylinder, Layout
+from crankmbs.scene.scene import Scene
 from crankmbs.simulate import simulate
 
 __all__ = ["FRAME", "amplitude", "reciprocating", "shaking", "twin"]

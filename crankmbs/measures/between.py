@@ -11,14 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline
 
-from crankmbs.inertia import reduce
-from crankmbs.pressure import pressure_of
-from crankmbs.reactions import reactions
+from crankmbs.mechanics.inertia import reduce
+from crankmbs.mechanics.pressure import pressure_of
+from crankmbs.mechanics.reactions import reactions
+from crankmbs.mechanics.speed import speed_law
+from crankmbs.mechanics.torque import torque_at
 from crankmbs.result import Result
-from crankmbs.scene import Scene
-from crankmbs.schema import DEGREE
-from crankmbs.speed import speed_law
-from crankmbs.torque import torque_at
+from crankmbs.scene.scene import Scene
+from crankmbs.scene.schema import DEGREE
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -63,7 +63,7 @@ def refined(result: Result, first: int) -> tuple[Between, ...]:
     integrated across each interval and bent to meet the samples at both ends, so that it feels gas
     and loads between them; twice, in so many and in twice as many parts and passes, to tell its
     error. Where loads settle the speed faster than the samples follow their torque is linear
-    between them. Joint forces are those of `crankmbs.reactions.reactions`.
+    between them. Joint forces are those of `crankmbs.mechanics.reactions.reactions`.
 
     Returns
     -------

@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline
 
-from crankmbs.geometry import close_loop, dead_centres
 from crankmbs.measures.between import Between, refined
 from crankmbs.measures.joints import (
     Estimate,
@@ -22,6 +21,7 @@ from crankmbs.measures.joints import (
 )
 from crankmbs.measures.peak import rise
 from crankmbs.measures.window import Window, integral, last_window, same_window
+from crankmbs.mechanics.geometry import close_loop, dead_centres
 from crankmbs.result import Result
 
 __all__ = ["Measures", "fluctuation", "mean_speed", "measure"]

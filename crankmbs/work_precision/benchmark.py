@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from crankmbs.scene import Scene
+from crankmbs.scene.scene import Scene
 from crankmbs.work_precision.formulations import formulations_of
 from crankmbs.work_precision.kernel import kernels_of
 from crankmbs.work_precision.machine import about_machine

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 from pathlib import Path
 
-from crankmbs.files import write_in_one_move
+from crankmbs.storage.files import write_in_one_move
 from crankmbs.work_precision.benchmark import WorkPrecision
 
 __all__ = ["save_work_precision"]

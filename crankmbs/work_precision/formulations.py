@@ -6,7 +6,7 @@ from dataclasses import replace
 from functools import partial
 
 from crankmbs.errors import CrankmbsError
-from crankmbs.scene import Scene
+from crankmbs.scene.scene import Scene
 from crankmbs.simulate import simulate
 from crankmbs.work_precision.contender import Answer, Contender, ContenderFailed
 from crankmbs.work_precision.reference import Reference

@@ -8,16 +8,17 @@ from functools import cache
 
 import numpy as np
 
-from crankmbs import kernels, readout
-from crankmbs.cells import Grid, grid_of
-from crankmbs.collocation import gauss
-from crankmbs.formulations.solvers import Begin, solve_affine
-from crankmbs.inertia import reduce
-from crankmbs.pressure import pressure_of
-from crankmbs.reduced import Reduced
-from crankmbs.scene import Scene
-from crankmbs.schema import DEGREE
-from crankmbs.torque import branch_of
+from crankmbs.mechanics.inertia import reduce
+from crankmbs.mechanics.pressure import pressure_of
+from crankmbs.mechanics.torque import branch_of
+from crankmbs.motion.crank_angle import readout
+from crankmbs.motion.crank_angle.grid import Grid, grid_of
+from crankmbs.motion.crank_angle.solvers import Begin, solve_affine
+from crankmbs.motion.minimal.reduced import Reduced
+from crankmbs.numerics import kernels
+from crankmbs.numerics.collocation import gauss
+from crankmbs.scene.scene import Scene
+from crankmbs.scene.schema import DEGREE
 from crankmbs.work_precision.contender import Answer, Contender
 from crankmbs.work_precision.reference import Reference
 from crankmbs.work_precision.track import Track

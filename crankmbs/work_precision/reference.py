@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from crankmbs.choose import choose
 from crankmbs.result import Result
-from crankmbs.scene import Extent, Scene
+from crankmbs.scene.scene import Extent, Scene
 from crankmbs.simulate import simulate
 from crankmbs.work_precision.track import Track, stated, track_of
 

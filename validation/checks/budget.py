@@ -9,7 +9,7 @@ import numpy as np
 
 from crankmbs.compare import CAUSES, Budget, budget
 from crankmbs.figures.compare import budget_figure
-from crankmbs.scene import Scene
+from crankmbs.scene.scene import Scene
 from validation.adapter import reference_variables
 from validation.case import Case
 from validation.judge import Outcome

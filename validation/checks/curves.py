@@ -13,7 +13,7 @@ import numpy as np
 
 from crankmbs import lecture
 from crankmbs.result import Result
-from crankmbs.scene import Scene
+from crankmbs.scene.scene import Scene
 from validation import reference
 from validation.case import Case
 from validation.checks.s1_tables import printed_cells

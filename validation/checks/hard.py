@@ -11,8 +11,9 @@ from typing import NamedTuple
 import numpy as np
 
 from crankmbs.errors import FormulationError, InputError
-from crankmbs.result import VARIABLES, Result
-from crankmbs.scene import Extent, Scene
+from crankmbs.mechanics.variables import VARIABLES
+from crankmbs.result import Result
+from crankmbs.scene.scene import Extent, Scene
 from crankmbs.simulate import simulate
 from validation.adapter import machine_of
 from validation.case import Case, driven, shifted

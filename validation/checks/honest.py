@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from crankmbs.result import VARIABLES, Result
-from crankmbs.scene import Scene
+from crankmbs.mechanics.variables import VARIABLES
+from crankmbs.result import Result
+from crankmbs.scene.scene import Scene
 from validation.adapter import at_jumps, load_torque, reference_motion, reference_variables
 from validation.case import Case
 from validation.judge import Outcome

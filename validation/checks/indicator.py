@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from crankmbs.pressure import pressure_of
+from crankmbs.mechanics.pressure import pressure_of
 from validation.case import Case
 from validation.judge import Outcome
 from validation.oracles.arithmetic import LONG

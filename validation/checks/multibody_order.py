@@ -13,10 +13,10 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from crankmbs.figures.style import STYLE, line_of
-from crankmbs.formulations.multibody.path import coarsest_step, model_of, solve
-from crankmbs.formulations.multibody.problem import problem_of
-from crankmbs.formulations.multibody.samples import Sampled, aligned_variables
-from crankmbs.scene import Scene
+from crankmbs.motion.multibody.path import coarsest_step, model_of, solve
+from crankmbs.motion.multibody.problem import problem_of
+from crankmbs.motion.multibody.samples import Sampled, aligned_variables
+from crankmbs.scene.scene import Scene
 from validation.adapter import reference_motion, reference_variables
 from validation.case import Case
 from validation.judge import Outcome

@@ -8,10 +8,10 @@ import numpy as np
 from scipy.optimize import brentq
 
 from crankmbs import lecture
-from crankmbs.drives import Constant
-from crankmbs.inertia import reduce
-from crankmbs.pressure import pressure_of
-from crankmbs.scene import Scene
+from crankmbs.mechanics.inertia import reduce
+from crankmbs.mechanics.pressure import pressure_of
+from crankmbs.scene.drives import Constant
+from crankmbs.scene.scene import Scene
 from validation import reference
 from validation.case import Case
 from validation.judge import Outcome

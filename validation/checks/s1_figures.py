@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from crankmbs import lecture
-from crankmbs.accumulate import AccumulatedTorque, accumulated_torque
+from crankmbs.lecture.accumulated_torque import AccumulatedTorque, accumulated_torque
 from validation import reference
 from validation.case import Case
 from validation.checks.s1_cells import KGF, KGF_PER_CM2
@@ -100,7 +100,7 @@ def compression(case: Case) -> Outcome:
 
 
 def accumulated_cells(case: Case) -> Outcome:
-    """Table 6 as printed, added up along the crank by `crankmbs.accumulate`."""
+    """Table 6 as printed, added up along the crank by `crankmbs.lecture.accumulated_torque`."""
     ours = _accumulated_table(round(case.number("lag_deg")))
     worst, count = 0.0, 0
     for k, row in enumerate(reference.rows("s1_accumulated_torque")):

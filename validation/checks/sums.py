@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
-from crankmbs.drives import Oscillation
 from crankmbs.measures import measure, orders
-from crankmbs.scene import Scene
+from crankmbs.scene.drives import Oscillation
+from crankmbs.scene.scene import Scene
 from validation.case import Case
 from validation.judge import Outcome
 from validation.runs import run

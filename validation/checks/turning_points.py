@@ -12,7 +12,7 @@ from scipy.interpolate import CubicSpline
 from crankmbs import lecture
 from crankmbs.measures import orders
 from crankmbs.result import Result
-from crankmbs.scene import Scene
+from crankmbs.scene.scene import Scene
 from validation.case import Case
 from validation.checks.curves import lecture_geometry
 from validation.judge import Outcome

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from crankmbs import lecture
-from crankmbs.accumulate import accumulated_torque
+from crankmbs.lecture.accumulated_torque import accumulated_torque
 from crankmbs.result import Result
 from validation.case import Case
 from validation.checks.curves import lecture_geometry

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from crankmbs.scene import Scene
+from crankmbs.scene.scene import Scene
 from validation.case import Case
 from validation.judge import Outcome
 from validation.oracles.arithmetic import LONG, Array

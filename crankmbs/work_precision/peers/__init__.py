@@ -10,7 +10,7 @@ from dataclasses import replace
 from importlib import import_module
 from typing import NamedTuple
 
-from crankmbs.scene import Scene
+from crankmbs.scene.scene import Scene
 from crankmbs.work_precision.contender import Answer, Contender, ContenderFailed
 from crankmbs.work_precision.peers.job import Job, NotServed, job_of
 from crankmbs.work_precision.reference import Reference

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from crankmbs.drives import Constant, Quadratic, Viscous
-from crankmbs.pressure import pressure_of
-from crankmbs.scene import Scene
+from crankmbs.mechanics.pressure import pressure_of
+from crankmbs.scene.drives import Constant, Quadratic, Viscous
+from crankmbs.scene.scene import Scene
 
 __all__ = ["Job", "NotServed", "job_of"]
 

@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import DOP853
 
-from crankmbs.collocation import gauss
-from crankmbs.schema import DEGREE
+from crankmbs.numerics.collocation import gauss
+from crankmbs.scene.schema import DEGREE
 from crankmbs.work_precision.contender import Answer, Contender
 from crankmbs.work_precision.peers.job import Job, NotServed
 from crankmbs.work_precision.peers.reduced import parameters

@@ -1,0 +1,207 @@
+"""Numbers far outside what machines have: said, not refused, for a machine may be one's own.
+
+Each rule is one function of the scene that gives its sentences; its limits stand above it with
+their reason. They are wide: what they catch is a unit or a sign, not a bold design.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from crankmbs.mechanics.geometry import close_loop, dead_centres, top_position
+from crankmbs.mechanics.pressure import PeriodicPressure, pressure_of
+from crankmbs.mechanics.torque import torque_at
+from crankmbs.scene.scene import Scene
+
+__all__ = ["warnings"]
+
+_STEEL = 7850.0  # kg/m3
+_BAR = 1e5
+
+
+class _Machine(NamedTuple):
+    """A scene, its gas, the stroke [m] and the piston's diameter, without area the stroke [m]."""
+
+    scene: Scene
+    pressure: PeriodicPressure | None
+    stroke: float
+    diameter: float
+
+
+def warnings(scene: Scene) -> tuple[str, ...]:
+    """One sentence for each number that no machine is likely to have.
+
+    >>> warnings(load_scene("propeller"))
+    ()
+    """
+    r, l, e = shape = scene.crank.radius, scene.rod.length, scene.piston.offset
+    stroke = top_position(r, l, e) - float(close_loop(dead_centres(r, l, e)[1], *shape).x)
+    area = scene.piston.gas_area
+    diameter = stroke if area is None else math.sqrt(4.0 * area / math.pi)
+    machine = _Machine(scene, pressure_of(scene), stroke, diameter)
+    return tuple(said for rule in _RULES for said in rule(machine))
+
+
+# The longest strokes are those of ships' two-stroke engines, 3.5 m; model engines have 5 mm.
+_STROKES = 1e-3, 5.0
+
+
+def _stroke(machine: _Machine) -> Iterator[str]:
+    least, most = _STROKES
+    if not least <= machine.stroke <= most:
+        yield (
+            f"crank.radius: a stroke of {machine.stroke:.4g} m is outside {least:g} to {most:g} m, "
+            "where machines lie; a bare number is in metres"
+        )
+
+
+# Bore over stroke: 0.27 in ships' two-stroke engines, less in high-pressure plungers; 2.5 in the
+# racing engines of 18,000 rpm.
+_BORE_OVER_STROKE = 0.15, 3.5
+
+
+def _bore(machine: _Machine) -> Iterator[str]:
+    if machine.stroke < _STROKES[0]:  # that is said already
+        return
+    ratio = machine.diameter / machine.stroke
+    least, most = _BORE_OVER_STROKE
+    if not least <= ratio <= most:
+        name = "bore" if machine.scene.piston.area is None else "area"
+        yield (
+            f"piston.{name}: a piston {machine.diameter * 1e3:.4g} mm wide with a stroke of "
+            f"{machine.stroke * 1e3:.4g} mm has a bore {ratio:.3g} times the stroke; machines have "
+            f"{least:g} to {most:g} times; check its unit"
+        )
+
+
+# Solid steel as wide as the piston: a rod as long as it is, a piston (with piston rod and
+# crosshead) five diameters high. Rods and trunk pistons weigh a quarter of that and less.
+_DIAMETERS = 5.0
+
+
+def _masses(machine: _Machine) -> Iterator[str]:
+    rod, piston, d = machine.scene.rod, machine.scene.piston, machine.diameter
+    column = _STEEL * math.pi / 4.0 * d**2
+    for name, mass, height in (
+        ("rod", rod.mass, rod.length),
+        ("piston", piston.mass, _DIAMETERS * d),
+    ):
+        if mass > column * height:
+            yield (
+                f"{name}.mass: {mass:.4g} kg is more than solid steel {d * 1e3:.4g} mm wide and "
+                f"{height * 1e3:.4g} mm long, {column * height:.3g} kg; a bare number is in kg"
+            )
+
+
+# Radius of gyration over length: 0.29 for a uniform bar, at most 0.5 for two masses at the pins.
+_GYRATION = 0.7
+
+
+def _rod(machine: _Machine) -> Iterator[str]:
+    rod = machine.scene.rod
+    if rod.mass == 0.0:
+        return
+    if not 0.0 <= rod.center_of_mass <= rod.length:
+        yield (
+            f"rod.center_of_mass: {rod.center_of_mass * 1e3:.4g} mm from the crank pin is not "
+            f"between the pins, 0 to {rod.length * 1e3:.4g} mm; check its unit"
+        )
+    gyration = math.sqrt(max(rod.moment_of_inertia, 0.0) / rod.mass)
+    if gyration > _GYRATION * rod.length:
+        yield (
+            f"rod.inertia: {rod.moment_of_inertia:.4g} kg m^2 about the centre of mass is that of "
+            f"the whole mass {gyration * 1e3:.4g} mm away from it, and the rod is "
+            f"{rod.length * 1e3:.4g} mm long; check its unit"
+        )
+
+
+# 0.3 bar is the air on Mount Everest; refrigerating compressors have crankcases of up to 35 bar.
+_AMBIENT = 0.2 * _BAR, 50.0 * _BAR
+
+
+def _ambient(machine: _Machine) -> Iterator[str]:
+    gas = machine.scene.gas
+    if gas is None or gas.ambient is None:
+        return
+    least, most = _AMBIENT
+    if not least <= gas.ambient <= most:
+        yield (
+            f"gas.ambient: {gas.ambient / _BAR:.3g} bar is outside {least / _BAR:g} to "
+            f"{most / _BAR:g} bar, where crankcases lie; a bare number is in Pa"
+        )
+
+
+# Engines fire below 300 bar. A four-stroke engine that is only turned over, throttled, compresses
+# to several bar.
+_HIGHEST = 350.0 * _BAR
+_LOWEST_FOUR_STROKE = 2.0 * _BAR
+# Engines peak 5 to 20 degrees behind the firing dead centre, late diesels 30; a compressor delivers
+# up to it: what counts is the nearest angle with all but 2 % of the peak.
+_FAR = math.radians(45.0)
+_NEARLY = 0.98
+
+
+def _peak(machine: _Machine) -> Iterator[str]:
+    if machine.pressure is None or machine.scene.gas is None:
+        return
+    gas, (angle, peak) = machine.scene.gas, machine.pressure.peak
+    if peak > _HIGHEST:
+        yield (
+            f"gas: the pressure peaks at {peak / _BAR:.4g} bar, and engines fire below 300; check "
+            "its unit, such as MPa for bar"
+        )
+    if gas.stroke == 4 and peak < _LOWEST_FOUR_STROKE:
+        yield (
+            f"gas: the pressure of a four-stroke cycle peaks at {peak / _BAR:.3g} bar above "
+            "ambient; even turned over it reaches several bar; check its unit"
+        )
+    fired = gas.period / 2.0 if gas.stroke == 4 else 0.0
+    around = np.linspace(-_FAR, _FAR, 361)
+    if peak > 0.0 and np.max(machine.pressure(fired + around)) < _NEARLY * peak:
+        zero = ', and zero = "firing_tdc" where they count from there' if gas.stroke == 4 else ""
+        yield (
+            f"gas: the pressure peaks at a cycle angle of {math.degrees(angle):.4g} degrees, far "
+            f"from the firing dead centre at {math.degrees(fired):g}; check the table's angles"
+            f"{zero}"
+        )
+
+
+def _loads(machine: _Machine) -> Iterator[str]:
+    """A load that turns the crank on where the gas does so already has the wrong sign."""
+    scene, start = machine.scene, machine.scene.start
+    if start is None or start.speed == 0.0 or start.speed * _gas_work(machine) <= 0.0:
+        return
+    for number, load in enumerate(scene.torque, start=1):
+        torque = float(torque_at((load,), np.zeros(1), np.array([start.speed]))[0])
+        if torque * start.speed > 0.0:
+            yield (
+                f"torque[{number}]: the {load.kind.replace('_', ' ')} of {torque:+.4g} N m at the "
+                "start drives, as the gas does; a load that brakes has the sign opposite to the "
+                "speed's"
+            )
+
+
+def _gas_work(machine: _Machine) -> float:
+    """Work of one cylinder's gas over one period in the sense of +theta [J]."""
+    if machine.pressure is None:
+        return 0.0
+    scene, period = machine.scene, machine.pressure.period
+    angle = (np.arange(1440) + 0.5) * period / 1440
+    loop = close_loop(angle, scene.crank.radius, scene.rod.length, scene.piston.offset)
+    torque = -machine.pressure(angle) * (scene.piston.gas_area or 0.0) * loop.x_1
+    return float(np.mean(torque)) * period
+
+
+_RULES: tuple[Callable[[_Machine], Iterator[str]], ...] = (
+    _stroke,
+    _bore,
+    _masses,
+    _rod,
+    _ambient,
+    _peak,
+    _loads,
+)

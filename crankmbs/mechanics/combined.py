@@ -1,0 +1,36 @@
+"""Loops over samples, compiled by numba where that pays (`crankmbs.numerics.kernels`): what the
+samples make of tables over one period."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crankmbs.numerics.kernels import kernel
+
+__all__ = ["apart", "together"]
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+
+
+@kernel
+def together(parts: Array, which: Index, square: Array, alpha: Array, variable: Array) -> None:
+    """A variable from its parts (`reactions`) at the angles ``which``, in its place."""
+    for i in range(len(which)):
+        k = which[i]
+        variable[i] = parts[0, k] * square[i] + parts[1, k] * alpha[i] + parts[2, k]
+
+
+@kernel
+def apart(parts: Array, which: Index, square: Array, alpha: Array, variable: Array) -> float:
+    """Largest absolute difference of a variable from what `together` makes of parts; NaN where
+    one is."""
+    most = total = 0.0
+    for i in range(len(which)):
+        k = which[i]
+        here = parts[0, k] * square[i] + parts[1, k] * alpha[i] + parts[2, k] - variable[i]
+        most, total = max(most, abs(here)), total + here
+    return most if total == total else math.nan

@@ -1,0 +1,98 @@
+"""The crank train reduced to one rotation: inertia and torque as functions of the crank angle.
+
+Kinetic energy = J(theta) omega^2 / 2 with
+
+    J = J_crank + sum over cylinders of  m_p x_1^2 + m_r (G_x1^2 + G_y1^2) + I_r beta_1^2
+
+where G = (r cos(phi) + a cos(beta), r sin(phi) - a sin(beta)) is the rod's centre of mass.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from crankmbs.mechanics.geometry import Loop, close_loop
+from crankmbs.mechanics.pressure import PeriodicPressure
+from crankmbs.scene.scene import Scene
+
+__all__ = ["RodCentre", "gravity_vector", "reduce", "rod_centre"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class RodCentre:
+    """Derivatives of the rod's centre of mass in the cycle angle [m], in the cylinder's frame."""
+
+    x_1: Array
+    y_1: Array
+    x_2: Array
+    y_2: Array
+
+
+def rod_centre(loop: Loop, radius: float, center_of_mass: float) -> RodCentre:
+    """First and second derivatives in phi of the rod's centre of mass, exact."""
+    r, a = radius, center_of_mass
+    sin_b, cos_b, b_1, b_2 = loop.sin_beta, loop.cos_beta, loop.beta_1, loop.beta_2
+    return RodCentre(
+        x_1=-r * loop.sin_phi - a * sin_b * b_1,
+        y_1=r * loop.cos_phi - a * cos_b * b_1,
+        x_2=-r * loop.cos_phi - a * (cos_b * b_1**2 + sin_b * b_2),
+        y_2=-r * loop.sin_phi - a * (cos_b * b_2 - sin_b * b_1**2),
+    )
+
+
+def gravity_vector(scene: Scene, bank: float = 0.0) -> tuple[float, float]:
+    """Gravity [m/s2] in the frame of a cylinder at this bank [rad]; (0, 0) without gravity."""
+    if scene.gravity is None:
+        return 0.0, 0.0
+    angle = scene.gravity.angle - bank
+    g = scene.gravity.acceleration
+    return g * math.cos(angle), g * math.sin(angle)
+
+
+def reduce(
+    scene: Scene, pressure: PeriodicPressure | None, theta: ArrayLike
+) -> tuple[Array, Array, Array]:
+    """Return J, dJ/dtheta and the torque of gas and gravity on the crank.
+
+    The equation of motion is J alpha + J_1 omega^2 / 2 = torque + torque from outside.
+
+    Parameters
+    ----------
+    pressure : of the scene, or None to leave the gas out
+    theta : shape (...) [rad], crank angle
+
+    Returns
+    -------
+    J, J_1 : shape (...) [kg m2, kg m2/rad]; exact
+    torque : shape (...) [N m], the generalized force of gas and weights
+
+    >>> J, J_1, torque = reduce(load_scene("torque_driven"), None, 0.0)
+    """
+    theta = np.asarray(theta, dtype=np.float64)
+    crank, rod, piston = scene.crank, scene.rod, scene.piston
+    inertia = np.full(theta.shape, crank.moment_of_inertia)
+    slope = np.zeros(theta.shape)
+    gx, gy = gravity_vector(scene)
+    torque = (crank.mass * crank.center_of_mass) * (gy * np.cos(theta) - gx * np.sin(theta))
+    for cylinder in scene.cylinders:
+        loop = close_loop(theta + cylinder.phase, crank.radius, rod.length, piston.offset)
+        g = rod_centre(loop, crank.radius, rod.center_of_mass)
+        inertia += piston.mass * loop.x_1**2
+        slope += 2.0 * piston.mass * loop.x_1 * loop.x_2
+        if rod.mass or rod.moment_of_inertia:
+            inertia += rod.mass * (g.x_1**2 + g.y_1**2) + rod.moment_of_inertia * loop.beta_1**2
+            slope += 2.0 * (
+                rod.mass * (g.x_1 * g.x_2 + g.y_1 * g.y_2)
+                + rod.moment_of_inertia * loop.beta_1 * loop.beta_2
+            )
+        gx, gy = gravity_vector(scene, cylinder.bank)
+        if pressure is not None:
+            torque -= (piston.gas_area or 0.0) * pressure(theta + cylinder.phase) * loop.x_1
+        torque += piston.mass * gx * loop.x_1 + rod.mass * (gx * g.x_1 + gy * g.y_1)
+    return inertia, slope, torque

@@ -1,0 +1,205 @@
+"""The gas: pressure difference across the piston as a periodic piecewise cubic of the cycle angle.
+
+Whatever the scene gives, a table or an indicator diagram, becomes one set of knots and polynomial
+pieces. The solvers need the pieces themselves: a knot is a step boundary, and each piece can be
+continued beyond its knots.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.interpolate import PPoly
+
+from crankmbs.mechanics.indicator import INDICATOR_RTOL, indicator_pieces
+from crankmbs.scene.parts import Gas
+from crankmbs.scene.pressure_rows import close, closing_row, interpolate, overshoot
+from crankmbs.scene.scene import Scene
+from crankmbs.scene.tables import Table
+
+__all__ = [
+    "PeriodicPressure",
+    "crank_angle_knots",
+    "merged_knots",
+    "pressure_of",
+    "remarks",
+    "repeat",
+]
+
+Array = NDArray[np.float64]
+
+_KNOT = 1e-9  # rad: an angle this close below a knot counts as on it, so rounding does not
+# decide the side of a pressure step
+_OVERSHOOT = 0.05  # of the range: a sine in rows 45 degrees apart is overshot by 0.04
+
+_WORTH = (0.5, 1 / 12, 0.0081, 1 / 720)  # max |B| / (m + 1)! of `PeriodicPressure.bends`
+
+
+@dataclass(frozen=True)
+class PeriodicPressure:
+    """Piecewise cubic, periodic in the cycle angle.
+
+    knots : shape (n + 1,) [rad], increasing, the last one period above the first
+    coefficients : shape (4, n) [Pa, by descending power of (angle - knots[i]) in rad]
+    missed : shape (4, n), alike: what the pieces may be off from the pressure that they stand for;
+        None where they are that pressure
+    """
+
+    knots: Array
+    coefficients: Array
+    missed: Array | None = None
+
+    @property
+    def off(self) -> PeriodicPressure:
+        """A pressure as far from this one as the true pressure may be."""
+        if self.missed is None:
+            return self
+        return PeriodicPressure(self.knots, self.coefficients + self.missed)
+
+    @property
+    def period(self) -> float:
+        """Period [rad]."""
+        return float(self.knots[-1] - self.knots[0])
+
+    @property
+    def peak(self) -> tuple[float, float]:
+        """Cycle angle [rad] and value [Pa] of the highest pressure, the first of equal ones."""
+        pieces = PPoly(self.coefficients, self.knots)
+        turning = pieces.derivative().roots(discontinuity=False, extrapolate=False)
+        turning = turning[np.isfinite(turning)]
+        ends = self.piece(np.arange(len(self.knots) - 1), np.diff(self.knots))
+        angle = np.concatenate([self.knots[:-1], self.knots[1:], turning])
+        value = np.concatenate([self.coefficients[-1], ends, pieces(turning)])
+        highest = np.flatnonzero(value >= value.max() - 1e-9 * abs(value.max()))
+        first = highest[np.argmin(angle[highest])]
+        return float(np.mod(angle[first] + _KNOT, self.period) - _KNOT), float(value[first])
+
+    def bends(self, least: float) -> Array:
+        """Knots [rad] of the first period where the pieces differ from one smooth curve by more
+        than ``least`` [Pa].
+
+        A jump of the derivative m at each of knots w apart is worth w^m max |B| / (m + 1)! of it,
+        with the Bernoulli polynomial B of degree m + 1.
+        """
+        width = np.diff(self.knots)
+        a, b, c, d = self.coefficients
+        before = np.array(
+            [
+                ((a * width + b) * width + c) * width + d,
+                (3.0 * a * width + 2.0 * b) * width + c,
+                6.0 * a * width + 2.0 * b,
+                6.0 * a,
+            ]
+        )
+        jumps = np.abs(np.roll(before, 1, axis=1) - np.array([d, c, 2.0 * b, 6.0 * a]))
+        wide = np.maximum(width, np.roll(width, 1)) ** np.arange(4.0)[:, None]
+        worth = np.array(_WORTH) @ (jumps * wide)
+        return np.asarray(self.knots[:-1][worth > least])
+
+    def __call__(self, cycle_angle: ArrayLike) -> Array:
+        """Pressure difference across the piston [Pa]; at a step the value after it.
+
+        cycle_angle : shape (...) [rad], any number of periods
+        """
+        angle = np.asarray(cycle_angle, dtype=np.float64)
+        within = np.mod(angle - self.knots[0] + _KNOT, self.period) - _KNOT
+        index = np.searchsorted(self.knots[1:-1] - self.knots[0], within + _KNOT, side="right")
+        return self.piece(index, within - (self.knots[index] - self.knots[0]))
+
+    def piece(self, index: NDArray[np.intp], distance: ArrayLike) -> Array:
+        """Value [Pa] of the pieces ``index`` at ``distance`` [rad] behind their first knot."""
+        a, b, c, d = self.coefficients[:, index]
+        x = np.asarray(distance, dtype=np.float64)
+        return np.asarray(((a * x + b) * x + c) * x + d)
+
+
+def pressure_of(scene: Scene) -> PeriodicPressure | None:
+    """The pressure difference across the piston of a scene; None without gas.
+
+    A table's rows are joined as `crankmbs.scene.pressure_rows.interpolate` says.
+
+    >>> pressure = pressure_of(load_scene("propeller"))
+    """
+    gas = scene.gas
+    if gas is None:
+        return None
+    if gas.indicator is not None:
+        knots, coefficients = indicator_pieces(scene)
+        absolute = coefficients + np.array([[0.0], [0.0], [0.0], [gas.ambient or 0.0]])
+        return PeriodicPressure(knots, coefficients, INDICATOR_RTOL * absolute)
+    assert gas.pressure is not None
+    return _joined(gas, gas.pressure)
+
+
+def remarks(scene: Scene) -> tuple[str, ...]:
+    """What a reader of the pressure table should know of what was made of it, in sentences.
+
+    >>> remarks(load_scene("propeller"))
+    ()
+    """
+    gas = scene.gas
+    if gas is None or gas.pressure is None:
+        return ()
+    table, said = gas.pressure, []
+    apart = closing_row(table, gas.period)
+    if apart:
+        said.append(
+            f"{table.source}: the closing row, {apart / 1e5:.3g} bar from the first one, is dropped"
+        )
+    joined = _joined(gas, table)
+    beyond, *between = overshoot(joined.knots, joined.coefficients)
+    share = beyond / ((max(table.y) - min(table.y)) or 1.0)
+    if gas.interpolation == "cubic" and share > _OVERSHOOT:
+        past = np.array(between) - _shift(gas) - table.x[0]
+        first, second = np.degrees(np.mod(past + _KNOT, gas.period) - _KNOT + table.x[0])
+        said.append(
+            f"warning: {table.source}: between the rows at {first:.8g} and {second:.8g} degrees "
+            f"the spline goes {100.0 * share:.3g} % of the table's range beyond both; the run is "
+            'that of the spline, not of the machine; use interpolation = "pchip", or give two rows '
+            "at one angle for a jump"
+        )
+    return tuple(said)
+
+
+def _joined(gas: Gas, table: Table) -> PeriodicPressure:
+    """The table gauge and in cycle angle, its rows joined."""
+    angle, value = np.add(table.x, _shift(gas)), np.subtract(table.y, gas.ambient or 0.0)
+    rows = close(Table(angle.tolist(), value.tolist()), gas.period)
+    return PeriodicPressure(*interpolate(rows, gas.interpolation))
+
+
+def _shift(gas: Gas) -> float:
+    """Cycle angle [rad] of the table's 0."""
+    return 2.0 * math.pi if gas.zero == "firing_tdc" and gas.stroke == 4 else 0.0
+
+
+def crank_angle_knots(scene: Scene, pressure: PeriodicPressure | None) -> Array:
+    """Crank angles in [0, period) at which the pressure of any cylinder changes its piece.
+
+    Returns
+    -------
+    shape (n,) [rad], increasing, cylinders merged; empty without gas
+    """
+    return np.empty(0) if pressure is None else merged_knots(scene, pressure.knots[:-1])
+
+
+def merged_knots(scene: Scene, knots: Array) -> Array:
+    """Crank angles in [0, period) at which any cylinder passes one of these cycle angles [rad]."""
+    if len(knots) == 0:
+        return knots
+    angles = [np.mod(knots - c.phase, scene.period) for c in scene.cylinders]
+    merged = np.unique(np.concatenate(angles))
+    merged = merged[np.append(True, np.diff(merged) > _KNOT)]
+    if scene.period - merged[-1] + merged[0] <= _KNOT:
+        merged = merged[:-1]
+    return np.asarray(merged)
+
+
+def repeat(knots: Array, period: float, low: float, high: float) -> Array:
+    """The knots of one period [rad], repeated over the open interval from ``low`` to ``high``."""
+    first, last = math.floor(low / period), math.floor(high / period)
+    tiled = (np.arange(first, last + 1)[:, None] * period + knots).ravel()
+    return np.asarray(tiled[(tiled > low) & (tiled < high)])

@@ -1,0 +1,251 @@
+"""Newton-Euler: every joint force from crank angle, speed and acceleration. Exact.
+
+Body by body from the piston down, in each cylinder's frame: the piston's X balance gives the rod
+on piston along the axis, the rod's moment about the crank pin gives it across, the piston's Y
+balance the wall, the rod's balance the crank pin, and the crank's balance the main bearing and
+the torque from outside. Gas pushes the piston towards the crank, -X.
+
+Every balance is linear in omega^2, alpha and 1. So where the angles of the samples repeat it is
+made for these three alone, once for every angle of a period, and put together for each sample.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from itertools import accumulate
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from crankmbs.mechanics import combined
+from crankmbs.mechanics.geometry import close_loop, top_position
+from crankmbs.mechanics.inertia import gravity_vector, rod_centre
+from crankmbs.mechanics.pressure import PeriodicPressure
+from crankmbs.mechanics.variables import VARIABLES
+from crankmbs.numerics import kernels
+from crankmbs.numerics.periodic import one_period
+from crankmbs.scene.parts import Cylinder
+from crankmbs.scene.scene import Scene
+
+__all__ = ["deviations", "reactions"]
+
+Array = NDArray[np.float64]
+
+
+class _Motion(NamedTuple):
+    """omega^2, alpha and 1 at the samples, shape (n,); or three units of them, shape (3, 1)."""
+
+    square: Array
+    alpha: Array
+    one: Array
+
+
+_OFTEN = 3  # so often an angle must come back for its parts to pay
+_UNITS = _Motion(*np.eye(3)[:, :, np.newaxis])
+
+
+def reactions(
+    scene: Scene,
+    pressure: PeriodicPressure | None,
+    theta: ArrayLike,
+    omega: ArrayLike,
+    alpha: ArrayLike,
+) -> dict[str, Array]:
+    """Motion of every part and force in every joint.
+
+    Parameters
+    ----------
+    pressure : `crankmbs.mechanics.pressure.pressure_of` the scene
+    theta, omega, alpha : shape (n,) [rad, rad/s, rad/s2]; any motion, prescribed or free
+
+    Returns
+    -------
+    dict of the variables of a result by name, in SI units: shape (n,) those of the crank,
+    (n, cylinders) those of a cylinder; signs and frames as in `crankmbs.result.VARIABLES`
+
+    >>> scene = load_scene("torque_driven")
+    >>> float(reactions(scene, None, [0.0], [10.0], [0.0])["side_force"][0, 0])
+    0.0
+    """
+    found = _found(scene, pressure, theta, omega, alpha)
+    rows = {name: len(columns) for name, columns in found.columns.items()}
+    # one piece of memory, so large that the system is not asked for every run's anew
+    room = np.empty((sum(rows.values()), len(found.omega)))
+    ends = zip(rows.items(), accumulate(rows.values()), strict=True)
+    variables = {name: room[end - count : end] for (name, count), end in ends}
+    for name, variable in variables.items():
+        for row, values in zip(variable, found.columns[name], strict=True):
+            found.put(name, values, row)
+    return {n: v.T if VARIABLES[n].per_cylinder else v[0] for n, v in variables.items()}
+
+
+def deviations(
+    scene: Scene,
+    pressure: PeriodicPressure | None,
+    theta: Array,
+    omega: Array,
+    alpha: Array,
+    variables: Mapping[str, Array],
+) -> dict[str, float]:
+    """Largest absolute difference of each variable, as `reactions` gives them for another motion,
+    from those of this motion, which are not kept.
+
+    Parameters are those of `reactions`; variables : by name, with the samples of this motion
+
+    >>> scene = load_scene("torque_driven")
+    >>> motion = np.zeros((3, 2))
+    >>> max(deviations(scene, None, *motion, reactions(scene, None, *motion)).values())
+    0.0
+    """
+    found = _found(scene, pressure, theta, omega, alpha)
+    largest = {}
+    for name, columns in found.columns.items():
+        rows = np.atleast_2d(variables[name].T)
+        apart = [found.apart(name, *pair) for pair in zip(columns, rows, strict=True)]
+        largest[name] = float(np.max(apart))
+    return largest
+
+
+class _Found(NamedTuple):
+    """Every variable at the samples, not yet put together.
+
+    columns : for the crank or for each cylinder, shape (n,) what depends on the angle alone, for
+        the piston's velocity per speed; shape (3, n) what belongs to omega^2, alpha and 1
+    which : shape (samples,), which of the n angles a sample is at; None where n are the samples
+    """
+
+    columns: dict[str, list[Array]]
+    which: NDArray[np.intp] | None
+    at: _Motion
+    omega: Array
+
+    def put(self, name: str, values: Array, variable: Array) -> None:
+        """A variable at the samples into its place."""
+        if kernels.are_compiled and self.which is not None and values.ndim > 1:
+            combined.together(values, self.which, self.at.square, self.at.alpha, variable)
+        else:
+            variable[:] = self._all(name, values)
+
+    def apart(self, name: str, values: Array, variable: Array) -> float:
+        """Largest difference of a variable from this one at the samples."""
+        if kernels.are_compiled and self.which is not None and values.ndim > 1:
+            return combined.apart(values, self.which, self.at.square, self.at.alpha, variable)
+        return float(np.max(np.abs(self._all(name, values) - variable), initial=0.0))
+
+    def _all(self, name: str, values: Array) -> Array:
+        if self.which is not None:
+            values = values.take(self.which, axis=-1)
+        if values.ndim > 1:
+            return np.asarray(values[0] * self.at.square + values[1] * self.at.alpha + values[2])
+        return values * self.omega if name == "piston_velocity" else values
+
+
+def _found(
+    scene: Scene,
+    pressure: PeriodicPressure | None,
+    theta: ArrayLike,
+    omega: ArrayLike,
+    alpha: ArrayLike,
+) -> _Found:
+    theta, omega, alpha = (np.asarray(q, dtype=np.float64) for q in (theta, omega, alpha))
+    samples = _Motion(omega**2, alpha, np.ones(1))
+    once, which = one_period(theta, scene.period)
+    by_parts = len(theta) > _OFTEN * len(once)
+    once, motion = (once, _UNITS) if by_parts else (theta, samples)
+    cylinders = [_cylinder(scene, pressure, once, motion, c) for c in scene.cylinders]
+    columns = {name: [part] for name, part in _crank(scene, once, motion, cylinders).items()}
+    for name in cylinders[0].variables:
+        columns[name] = [c.variables[name] for c in cylinders]
+    return _Found(columns, which if by_parts else None, samples, omega)
+
+
+class _Cylinder(NamedTuple):
+    """The variables of one cylinder by name, for its piston's velocity that per speed; what it
+    adds to the balance of the crank, in the engine's frame."""
+
+    variables: dict[str, Array]
+    pull_x: Array
+    pull_y: Array
+    kinetic_energy: Array
+
+
+def _cylinder(
+    scene: Scene,
+    pressure: PeriodicPressure | None,
+    theta: Array,
+    motion: _Motion,
+    cylinder: Cylinder,
+) -> _Cylinder:
+    crank, rod, piston = scene.crank, scene.rod, scene.piston
+    area = piston.gas_area or 0.0
+    r, l, a = crank.radius, rod.length, rod.center_of_mass
+    square, alpha, one = motion
+    gx, gy = gravity_vector(scene, cylinder.bank)
+    phi = theta + cylinder.phase
+    loop = close_loop(phi, r, l, piston.offset)
+    g = rod_centre(loop, r, a)
+    sin_b, cos_b = loop.sin_beta, loop.cos_beta
+    gas = pressure(phi) if pressure is not None else np.zeros_like(phi)
+
+    x_tt = loop.x_2 * square + loop.x_1 * alpha
+    beta_tt = loop.beta_2 * square + loop.beta_1 * alpha
+    felt_x = g.x_2 * square + g.x_1 * alpha - gx * one  # the rod's acceleration minus gravity
+    felt_y = g.y_2 * square + g.y_1 * alpha - gy * one
+    pin_x = piston.mass * (x_tt - gx * one) + gas * area * one
+    weight = rod.mass * (cos_b * felt_y + sin_b * felt_x)
+    pin_y = ((rod.moment_of_inertia * beta_tt - a * weight) / l - pin_x * sin_b) / cos_b
+    throw_x = rod.mass * felt_x + pin_x
+    throw_y = rod.mass * felt_y + pin_y
+    cos_bank, sin_bank = np.cos(cylinder.bank), np.sin(cylinder.bank)
+    inertia = (
+        piston.mass * loop.x_1**2
+        + rod.mass * (g.x_1**2 + g.y_1**2)
+        + rod.moment_of_inertia * loop.beta_1**2
+    )
+    variables = {
+        "rod_angle": loop.beta,
+        "piston_position": loop.x,
+        "piston_displacement": top_position(r, l, piston.offset) - loop.x,
+        "piston_velocity": -loop.x_1,
+        "piston_acceleration": -x_tt,
+        "gas_pressure": gas,
+        "gas_force": gas * area,
+        "side_force": -pin_y - piston.mass * gy * one,
+        "piston_pin_force_x": pin_x,
+        "piston_pin_force_y": pin_y,
+        "crank_pin_force_x": throw_x,
+        "crank_pin_force_y": throw_y,
+        "crank_torque": r * (loop.sin_phi * throw_x - loop.cos_phi * throw_y),
+    }
+    return _Cylinder(
+        variables,
+        cos_bank * throw_x - sin_bank * throw_y,
+        sin_bank * throw_x + cos_bank * throw_y,
+        0.5 * inertia * square,
+    )
+
+
+def _crank(
+    scene: Scene, theta: Array, motion: _Motion, cylinders: list[_Cylinder]
+) -> dict[str, Array]:
+    crank, (square, alpha, one) = scene.crank, motion
+    first_moment = crank.mass * crank.center_of_mass
+    sin_theta, cos_theta = np.sin(theta), np.cos(theta)
+    gx, gy = gravity_vector(scene)
+    x_tt = -cos_theta * square - sin_theta * alpha
+    y_tt = -sin_theta * square + cos_theta * alpha
+    weight = first_moment * (cos_theta * gy - sin_theta * gx)
+    return {
+        "external_torque": crank.moment_of_inertia * alpha
+        - weight * one
+        - sum(c.variables["crank_torque"] for c in cylinders),
+        "main_bearing_force_x": first_moment * x_tt
+        - crank.mass * gx * one
+        + sum(c.pull_x for c in cylinders),
+        "main_bearing_force_y": first_moment * y_tt
+        - crank.mass * gy * one
+        + sum(c.pull_y for c in cylinders),
+        "kinetic_energy": 0.5 * crank.moment_of_inertia * square
+        + sum(c.kinetic_energy for c in cylinders),
+    }

@@ -1,0 +1,166 @@
+"""Prescribed speeds: crank angle, speed and acceleration over time, and back. Exact.
+
+A law that is constant, ramped or tabled is a piecewise polynomial in time; the oscillating one
+has a closed form.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.interpolate import PchipInterpolator, PPoly
+
+from crankmbs.numerics.roots import invert_monotone
+from crankmbs.scene.drives import Motion, Oscillation, Ramp, SpeedFile
+
+__all__ = ["SpeedLaw", "speed_law"]
+
+Array = NDArray[np.float64]
+
+
+class SpeedLaw(Protocol):
+    """A prescribed rotation from time 0 on."""
+
+    @property
+    def turning_times(self) -> tuple[float, ...]:
+        """Times [s] that split the law into stretches of monotone angle; the last is its end."""
+
+    @property
+    def corners(self) -> tuple[float, ...]:
+        """Times [s] at which the acceleration or its slope jumps."""
+
+    def at_time(self, t: ArrayLike) -> tuple[Array, Array, Array]:
+        """theta, omega, alpha [rad, rad/s, rad/s2] at times [s]; right-hand limits at corners."""
+
+    def time_at(self, theta: ArrayLike, begin: float, end: float) -> Array:
+        """Times [s] between ``begin`` and ``end``, a monotone stretch, when angles are reached."""
+
+
+def speed_law(motion: Motion) -> SpeedLaw:
+    """The law of a scene's [motion].
+
+    >>> float(speed_law(Motion(speed=10.0)).at_time(2.0)[0])
+    20.0
+    """
+    speed = motion.speed
+    if isinstance(speed, Oscillation):
+        return _OscillatingLaw(speed, motion.angle)
+    if isinstance(speed, Ramp):
+        rate = (speed.to - speed.start) / speed.over
+        pieces = PPoly(
+            np.array([[rate, 0.0], [speed.start, speed.to]]),
+            np.array([0.0, speed.over, math.inf]),
+        )
+        return _PolynomialLaw(pieces, motion.angle)
+    if isinstance(speed, SpeedFile):
+        return _PolynomialLaw(PchipInterpolator(speed.file.x, speed.file.y), motion.angle)
+    return _PolynomialLaw(PPoly(np.array([[speed]]), np.array([0.0, math.inf])), motion.angle)
+
+
+class _PolynomialLaw:
+    """omega(t) piecewise polynomial of degree at most 3; the angle is its antiderivative."""
+
+    def __init__(self, omega: PPoly, start: float) -> None:
+        self._omega = omega
+        self._alpha = omega.derivative()
+        self._theta = _integral(omega, start)
+        self.turning_times = (*self._reversals(), float(omega.x[-1]))
+        self.corners = tuple(float(x) for x in omega.x[1:] if math.isfinite(x))
+
+    def at_time(self, t: ArrayLike) -> tuple[Array, Array, Array]:
+        t = np.asarray(t, dtype=np.float64)
+        return (self._theta(t), self._omega(t), self._alpha(t))
+
+    def time_at(self, theta: ArrayLike, begin: float, end: float) -> Array:
+        theta = np.atleast_1d(np.asarray(theta, dtype=np.float64))
+        breaks = self._theta.x[(self._theta.x > begin) & (self._theta.x < end)]
+        edges = np.concatenate([[begin], breaks, [end]])
+        reached = np.asarray(self._theta(np.where(np.isinf(edges), edges[-2], edges)))
+        if math.isinf(end):
+            reached[-1] = math.copysign(math.inf, float(self._omega(edges[-2])))
+        sign = 1.0 if reached[-1] >= reached[0] else -1.0
+        k = np.clip(np.searchsorted(sign * reached, sign * theta, side="left") - 1, 0, None)
+        k = np.minimum(k, len(edges) - 2)
+        low, high = edges[k], edges[k + 1]
+        held = np.isinf(high)
+        t = np.empty_like(theta)
+        t[held] = low[held] + (theta[held] - reached[k[held]]) / self._omega(low[held])
+        rest = ~held
+        t[rest] = invert_monotone(
+            lambda x: (self._theta(x), self._omega(x)), theta[rest], low[rest], high[rest]
+        )
+        return t
+
+    def _reversals(self) -> list[float]:
+        """Times at which the speed crosses zero, or from which it rests."""
+        finite = self._omega.x[-2] if math.isinf(self._omega.x[-1]) else self._omega.x[-1]
+        roots = np.asarray(self._omega.roots(discontinuity=False, extrapolate=False))
+        resting = self._omega.x[:-1][np.all(self._omega.c == 0.0, axis=0)]
+        times = np.concatenate([roots[np.isfinite(roots)], resting])
+        return sorted({float(t) for t in times if 0.0 < t <= finite and t < self._omega.x[-1]})
+
+
+def _integral(omega: PPoly, start: float) -> PPoly:
+    """Antiderivative with value ``start`` at time 0; the last piece may be endless."""
+    c = omega.c
+    powers = np.arange(len(c), 0, -1)[:, None]
+    width = np.diff(omega.x)[:-1]
+    raised = np.vstack([c / powers, np.zeros(c.shape[1])])
+    gained = np.array([np.polyval(raised[:, k], w) for k, w in enumerate(width)])
+    raised[-1] = start + np.concatenate([[0.0], np.cumsum(gained)])
+    theta = PPoly(raised, omega.x)
+    raised[-1] -= float(theta(0.0)) - start
+    return PPoly(raised, omega.x)
+
+
+@dataclass(frozen=True)
+class _OscillatingLaw:
+    """omega = m + A cos(psi), psi = n theta + phase.
+
+    u(psi) = 2 atan(kappa tan(psi / 2)), kappa^2 = (m - A) / (m + A), grows evenly in time:
+    u' = n sqrt(m^2 - A^2). The mean of omega over the angle is m.
+    """
+
+    speed: Oscillation
+    start: float
+
+    turning_times = (math.inf,)
+    corners = ()
+
+    def at_time(self, t: ArrayLike) -> tuple[Array, Array, Array]:
+        law = self.speed
+        u = self._even(self._psi(self.start)) + self._rate * np.asarray(t, dtype=np.float64)
+        psi = u + _bend(u, 1.0 / self._kappa)
+        omega = law.mean + law.amplitude * np.cos(psi)
+        alpha = -law.amplitude * law.order * np.sin(psi) * omega
+        return np.asarray((psi - law.phase) / law.order), omega, alpha
+
+    def time_at(self, theta: ArrayLike, begin: float, end: float) -> Array:
+        psi = self._psi(np.atleast_1d(np.asarray(theta, dtype=np.float64)))
+        return np.asarray((self._even(psi) - self._even(self._psi(self.start))) / self._rate)
+
+    @property
+    def _kappa(self) -> float:
+        m, a = self.speed.mean, self.speed.amplitude
+        return math.sqrt((m - a) / (m + a))
+
+    @property
+    def _rate(self) -> float:
+        m, a = self.speed.mean, self.speed.amplitude
+        return math.copysign(self.speed.order * math.sqrt((m - a) * (m + a)), m)
+
+    def _psi(self, theta: ArrayLike) -> Array:
+        return np.asarray(self.speed.order * np.asarray(theta) + self.speed.phase)
+
+    def _even(self, psi: Array) -> Array:
+        return psi + _bend(psi, self._kappa)
+
+
+def _bend(angle: Array, kappa: float) -> Array:
+    """2 atan(kappa tan(angle / 2)) - angle, without a branch cut."""
+    s, c = np.sin(0.5 * angle), np.cos(0.5 * angle)
+    return np.asarray(2.0 * np.arctan2((kappa - 1.0) * s * c, c * c + kappa * s * s))

@@ -1,0 +1,111 @@
+"""What every formulation takes and gives."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crankmbs.motion.plan import Plan
+
+__all__ = ["NOWHERE", "Array", "Piece", "Samples", "Solution", "State"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Samples:
+    """The motion at the output samples.
+
+    time, theta, omega, alpha : shape (n,) [s, rad, rad/s, rad/s2]; time strictly increases
+    energy_residual : shape (n,) [J], kinetic energy gained minus work done
+    own : variables of the result, by name, that the formulation computed by itself, shape (n,) or
+        (n, cylinders); everything else follows from theta, omega, alpha
+    """
+
+    time: Array
+    theta: Array
+    omega: Array
+    alpha: Array
+    energy_residual: Array
+    own: Mapping[str, Array] = field(default_factory=dict)
+
+    def select(self, which: slice | NDArray[np.bool_] | NDArray[np.intp]) -> Samples:
+        """Some of the samples."""
+        return Samples._mapped(lambda parts: np.asarray(parts[0][which]), [self])
+
+    @staticmethod
+    def joined(blocks: Sequence[Samples]) -> Samples:
+        """Blocks of samples, one after the other."""
+        return Samples._mapped(np.concatenate, blocks)
+
+    @staticmethod
+    def _mapped(function: Callable[[list[Array]], Array], blocks: Sequence[Samples]) -> Samples:
+        return Samples(
+            time=function([b.time for b in blocks]),
+            theta=function([b.theta for b in blocks]),
+            omega=function([b.omega for b in blocks]),
+            alpha=function([b.alpha for b in blocks]),
+            energy_residual=function([b.energy_residual for b in blocks]),
+            own={name: function([b.own[name] for b in blocks]) for name in blocks[0].own},
+        )
+
+
+@dataclass(frozen=True)
+class Solution:
+    """What a run returns.
+
+    samples : the answer
+    better : a second answer of higher order at the same samples; the difference is the error
+    errors : instead of ``better``: an absolute error per variable of the result
+    status, message : 0 reached the end; 1 a physical end; -1 a numerical one; and a sentence
+    evaluations, steps : what it cost
+    reasons : sentences about what the run had to do, beside the choice of the formulation
+    """
+
+    samples: Samples
+    status: int
+    message: str
+    evaluations: int
+    steps: int
+    better: Samples | None = None
+    errors: Mapping[str, float] = field(default_factory=dict)
+    reasons: tuple[str, ...] = ()
+
+
+class State(NamedTuple):
+    """Time [s], crank angle [rad], speed [rad/s] and energy residual so far [J]."""
+
+    time: float
+    theta: float
+    omega: float
+    residual: float
+
+
+NOWHERE = State(math.nan, math.nan, math.nan, math.nan)
+
+
+class Piece(Protocol):
+    """A solved stretch of a free motion, in which the sense of rotation does not change."""
+
+    @property
+    def steps(self) -> int:
+        """Steps or cells in it."""
+
+    @property
+    def evaluations(self) -> int:
+        """Evaluations of the equation of motion that it took."""
+
+    @property
+    def end(self) -> State:
+        """The state where it ends."""
+
+    def sample(self, plan: Plan) -> Samples:
+        """The samples of the plan after the beginning, up to the end and with it."""
+
+    def last(self) -> Samples:
+        """The one sample at the end."""

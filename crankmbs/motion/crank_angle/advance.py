@@ -1,0 +1,255 @@
+"""One free rotation with the crank angle as the variable.
+
+The kinetic energy E = J(theta) omega^2 / 2 obeys dE/dtheta = Q(theta, omega, t), and time follows
+from dt/dtheta = 1 / omega. J and the torque of gas and gravity depend on theta alone: they are
+tabulated once, at the nodes of a Gauss collocation whose cells no knot of the pressure lies
+inside. On every branch of the loads Q is quadratic in omega and linear in t; without linear terms
+it is linear in E, each cell is an affine map, and whole blocks of periods are solved at once.
+Otherwise Newton's method solves a window of cells at once, across kinks of the loads, which become
+edges of cells where they matter; at a jump a window ends.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Generator
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from crankmbs.mechanics.inertia import reduce
+from crankmbs.mechanics.torque import Branch, Course, branch_at, course_of
+from crankmbs.motion.base import State
+from crankmbs.motion.crank_angle.grid import Grid, Strip, largest_of_row
+from crankmbs.motion.crank_angle.kinks import edges_missing
+from crankmbs.motion.crank_angle.periods import period_of
+from crankmbs.motion.crank_angle.solvers import Begin, solve_affine, solve_newton
+from crankmbs.motion.crank_angle.window import Window
+from crankmbs.motion.plan import Plan
+from crankmbs.numerics import kernels
+from crankmbs.scene.schema import DEGREE
+
+__all__ = ["advance", "is_fast"]
+
+_SLOW = 0.5 * DEGREE  # where the energy would be gone within this angle, time must be the variable
+_BLOCK = 4096  # cells of one window
+_SPEED_BLOCK = 512  # where the loads' branch may end at a speed, and the rest is for nothing
+_REACH = 1.0  # rad: what arrays can hold of it in one Newton step after the other
+_AFFINE_TIME, _NEWTON_TIME = 4e-6, 1e-4  # s a cell with arrays
+_HAIR = 1e-6  # of a cell: as near its edge it is as exact as there
+_BEYOND = (_HAIR, 1e-4, 1e-2)  # of a cell: how far ahead a landing near a turn may really be
+_ROUNDS = 6  # of cutting cells at kinks
+_KEPT = 2  # whole periods at the end that are solved cell by cell when only the last is kept
+
+
+def is_fast(grid: Grid, state: State, branch: Branch, times: float) -> bool:
+    """Whether the energy lasts for so many times the angle at which this formulation gives up."""
+    scale = grid.scale[grid.cell_at(state.theta, math.copysign(1.0, state.omega))]
+    scale += abs(float(branch(state.time, state.omega)))
+    inertia = float(reduce(grid.scene, None, state.theta)[0])
+    return bool(0.5 * inertia * state.omega**2 > times * _SLOW * scale)
+
+
+def advance(grid: Grid, state: State, plan: Plan, allowed: float) -> Generator[Window, None, str]:
+    """Carry the motion on, window by window.
+
+    allowed [1/rad] : of the energy that a cell may miss at kinks of the loads, per radian
+
+    Returns
+    -------
+    "end" of the plan; "slow", where the energy comes near zero; "held", where a jump of a speed
+    table drives the speed back from both sides
+    """
+    sense = math.copysign(1.0, state.omega)
+    bound = plan.angle_bounds[1 if sense > 0.0 else 0]
+    skipped = 0
+    while True:
+        branch, energy = _enter(grid, state)
+        if branch is None:
+            return "held"
+        way = _Way(grid, state, energy, sense, bound, plan.time_bound, allowed)
+        window = _stretch(way, branch)
+        if window is None:
+            return "slow"
+        t_end = min(window.branch.t_end, plan.time_bound)
+        window = replace(window, skipped=skipped).cut(t_end, bound)
+        whole, window = _landed(way, window, t_end)
+        if whole is not None:
+            yield whole
+        yield window
+        if window.end.time >= plan.time_bound or window.end.theta == bound:
+            return "end"
+        if window.end.theta == state.theta:
+            return "held"
+        state, skipped = window.end, 0
+        t_end = min(branch.t_end, plan.time_bound)
+        if math.isfinite(plan.last) and state.time < t_end and branch.is_affine_in_energy:
+            state, skipped = _skip(way._replace(state=state, t_end=t_end), branch)
+
+
+class _Way(NamedTuple):
+    """From a state and its kinetic energy [J] on: sense of rotation, bounds in angle [rad] and time
+    [s], and what a cell may miss at kinks, as `advance` takes it."""
+
+    grid: Grid
+    state: State
+    energy: float
+    sense: float
+    bound: float
+    t_end: float
+    allowed: float
+
+
+def _stretch(way: _Way, branch: Branch) -> Window | None:
+    """The next cells on the course that continues a branch; on the branch alone where its cells are
+    affine, or where kinks are too strong to be found by solving again."""
+    course = course_of(way.grid.scene.torque, branch, way.state.time)
+    if isinstance(course, Branch):
+        return _solve(way, course)
+    window = _before_kink(way, branch, course) if branch.is_affine_in_energy else None
+    return window or _solve(way, course) or _solve(way, branch)
+
+
+def _before_kink(way: _Way, branch: Branch, course: Course) -> Window | None:
+    """The whole cells on an affine branch, as far as none of its kinks lies in them."""
+    window = _solve(way, branch)
+    if window is None:
+        return None
+    cut = window.cut(min(branch.t_end, way.t_end), way.bound)
+    bent = cut.landed.time < min(course.t_end, way.t_end)
+    bent |= course.omega_low < cut.landed.omega < course.omega_high
+    if not bent:
+        return window
+    return window.first(cut.stop[0]) if cut.stop[0] > 0 else None
+
+
+def _landed(way: _Way, window: Window, t_end: float) -> tuple[Window | None, Window]:
+    """A window that ends inside a cell in two: the whole cells, and that one solved again up to the
+    end. Inside a cell the answer is of lower order than at its edge."""
+    k, x = window.stop
+    width = float(window.strip.width[k])
+    if not _HAIR < x < 1.0 - _HAIR:
+        return None, window
+    whole = window.first(k) if k > 0 else None
+    begin = whole.end if whole else window.begin
+    energy = float(window.energy[k])
+    for beyond in _BEYOND:
+        turned = float(window.edges[k]) + (x + beyond) * width
+        bound = window.begin.theta + window.sense * turned
+        again = way._replace(state=begin, energy=energy, bound=bound, t_end=math.inf)
+        last = _solve(again, window.branch)
+        if last is None:
+            break
+        last = last.cut(t_end, math.inf)
+        if np.array_equal(last.landed, window.landed, equal_nan=True):
+            return whole, replace(last, skipped=0 if whole else window.skipped)
+    return None, window
+
+
+def _skip(way: _Way, branch: Branch) -> tuple[State, int]:
+    """Pass whole periods at once, all but the last ones; return the state after them and the
+    number of cells passed."""
+    grid, state, _, sense, bound, t_end, _ = way
+    period = float(grid.edges[-1])
+
+    def at(time: float, turned: float, energy: float) -> Window | None:
+        """The period that begins with this energy, if the motion passes it whole."""
+        theta = state.theta + sense * turned
+        omega = sense * math.sqrt(2.0 * energy / float(reduce(grid.scene, None, theta)[0]))
+        begin, end = State(time, theta, omega, state.residual), theta + sense * period
+        from_there = way._replace(state=begin, energy=energy, bound=end, t_end=math.inf)
+        window = _solve(from_there, branch)
+        if window is None or window.edges[-1] < (1.0 - 1e-9) * period:
+            return None
+        return window if window.cut(math.inf, math.inf).stop == window.stop else None
+
+    start = _enter(grid, state)[1]
+    first = at(state.time, 0.0, start)
+    most = min(abs(bound - state.theta) / period, 1e15) // 1.0 - _KEPT
+    if first is None:
+        return state, 0
+    one = period_of(grid, first.strip, branch, sense)
+    while most >= 1.0:
+        run = one.run(start, state.time, most, t_end, _KEPT)
+        if run.periods == 0:
+            break
+        far = at(run.time, run.periods * period, run.energy)
+        middle = at(state.time, 0.0, run.mean)
+        if far is not None and middle is not None:
+            missed = run.periods * float(middle.missed[-1])  # linear in the energy
+            passed = run.periods * len(first.torque)
+            return far.begin._replace(residual=state.residual - missed), passed
+        most = run.periods // 2
+    return state, 0
+
+
+def _enter(grid: Grid, state: State) -> tuple[Branch | None, float]:
+    """The branch of the loads that the motion enters, and its kinetic energy [J]."""
+    inertia, slope, torque = reduce(grid.scene, grid.pressure, state.theta)
+    rest = float(torque - 0.5 * slope * state.omega**2)
+    branch = branch_at(grid.scene.torque, state.time, state.omega, rest)
+    return branch, 0.5 * float(inertia) * state.omega**2
+
+
+def _solve(way: _Way, loads: Branch | Course) -> Window | None:
+    """Solve as many cells as one window holds; None when the first is too slow already, or misses
+    too much at kinks."""
+    grid, state, _, sense, bound, t_end, allowed = way
+    t_end = min(t_end, loads.t_end)
+    affine = isinstance(loads, Branch) and loads.is_affine_in_energy
+    n, period = len(grid.edges) - 1, float(grid.edges[-1])
+    ahead = 1.2 * (t_end - state.time) * abs(state.omega)
+    cells = min(ahead, abs(bound - state.theta)) / period * n + 2.0
+    few = max(2.0, _REACH / period * n)
+    arrays = min(cells, _BLOCK) * _AFFINE_TIME if affine else min(cells, few) * _NEWTON_TIME
+    compiled = kernels.pay(arrays)
+    if affine or compiled:
+        ends = (loads.omega_low * sense, loads.omega_high * sense)
+        few = _SPEED_BLOCK if any(0.0 < end < math.inf for end in ends) else _BLOCK
+    strip = grid.strip(state.theta, sense, int(min(cells, few)), bound)
+    window = _solved(way, loads, strip, t_end, compiled=compiled)
+    for _ in range(_ROUNDS):
+        if window is None:
+            return None
+        marks, missing = edges_missing(window, allowed)
+        if len(missing) == 0:
+            return window
+        strip = grid.cut(strip, state.theta, sense, marks)
+        window = _solved(way, loads, strip, t_end, compiled=compiled)
+    return None
+
+
+def _solved(
+    way: _Way, loads: Branch | Course, strip: Strip, t_end: float, *, compiled: bool
+) -> Window | None:
+    """The cells of a strip, up to where they are too slow."""
+    grid, state, energy, sense, *_ = way
+    begin = Begin(sense, energy, state.time, t_end)
+    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+        if isinstance(loads, Branch) and loads.is_affine_in_energy:
+            cells = solve_affine(grid, strip, loads, begin, compiled=compiled)
+        else:
+            cells = solve_newton(grid, strip, loads, begin, compiled=compiled)
+        edges, time, torque, slowness = cells
+        strip = strip.first(len(torque))
+        outside = loads(time[1:], sense / slowness[:, -1])
+        scale = grid.scale[strip.cell] + np.abs(outside)
+        least = 0.5 * grid.least[strip.cell] / largest_of_row(slowness) ** 2
+        good = np.minimum(least, np.minimum(edges[1:], edges[:-1])) > _SLOW * scale  # not of a NaN
+    m = len(good) if good.all() else int(np.argmin(good))
+    if m == 0:
+        return None
+    return Window(
+        grid,
+        strip.first(m),
+        loads,
+        sense,
+        state,
+        strip.turned[: m + 1],
+        edges[: m + 1],
+        time[: m + 1],
+        torque[:m],
+        slowness[:m],
+        (m - 1, 1.0),
+    )

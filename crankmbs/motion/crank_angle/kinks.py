@@ -1,0 +1,179 @@
+"""Where cells of the crank angle are cut because their loads bend inside them.
+
+A Gauss rule of s nodes misses of a kink at the position c of a cell, where the torque's slope
+changes by b per cell, at most b min(c^2 / 2, (1 - c)^2 / 2, 0.31 / s^2) of the mean torque. The
+cells are solved with the loads as they are; where the kinks in one of them are worth more than may
+be missed they become edges, and all is solved again. Rows of a fine table are so stepped over, and
+their number costs nothing.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crankmbs.mechanics.torque import Course
+from crankmbs.motion.base import Array
+from crankmbs.motion.crank_angle.grid import largest_of_row
+from crankmbs.motion.crank_angle.window import Index, Window
+
+__all__ = ["edges_missing"]
+
+_WORST = 0.31  # over s^2: what s nodes miss of a kink of slope 1; (pi / 2)^2 / 8, for many nodes
+_HALVES = 20
+_NEWTON = 5
+_LITTLE = 1e-3  # of what a cell may miss: a kink worth less stays in it beside others
+
+
+class _Passed(NamedTuple):
+    """Rows that a variable of the loads passes, shape (n,) each.
+
+    cell, row : their numbers; low, high : positions in the cell, 0 to 1, of points around it;
+    position : between them, where a straight line passes it; rises : sign of the slope; missed [J]
+    """
+
+    cell: Index
+    row: Index
+    low: Array
+    high: Array
+    position: Array
+    rises: Array
+    missed: Array
+
+    def select(self, which: NDArray[np.bool_]) -> _Passed:
+        """Some of them."""
+        cell, row, *others = self
+        low, high, position, rises, missed = (part[which] for part in others)
+        return _Passed(cell[which], row[which], low, high, position, rises, missed)
+
+
+class _Points(NamedTuple):
+    """A variable at begin, nodes and end of some cells: positions 0 to 1, shape (s + 2,), values
+    and bends of the torque's slope at its rows; the cells' numbers and widths, and what each may
+    miss [J]."""
+
+    x: Array
+    values: Array
+    rows: Array
+    bends: Array
+    cell: Index
+    width: Array
+    least: Array
+
+    def polynomials(self, k: Index) -> Array:
+        """Coefficients by descending power, shape (s + 2, n), of the variable in these of them."""
+        return np.asarray(np.linalg.solve(np.vander(self.x), self.values[k].T))
+
+
+def edges_missing(window: Window, allowed: float) -> tuple[Array, Index]:
+    """Angles turned [rad] at which cells are to be cut, and the cells that miss too much.
+
+    allowed [1/rad] : of the energy that a cell may miss at kinks, per radian
+    """
+    width, k, x = window.strip.width, np.empty(0, dtype=np.intp), np.empty(0)
+    if not isinstance(window.branch, Course):
+        return x, k
+    least = allowed * width * window.energy[1:]
+    found = [(points, _passed(points)) for points in _near_rows(window, window.branch, least)]
+    missed = np.zeros_like(least)
+    for points, rows in found:
+        missed += np.bincount(points.cell[rows.cell], rows.missed, len(least))
+    bad = missed > least
+    for points, rows in found:
+        worth = bad[points.cell][rows.cell] & (rows.missed > _LITTLE * points.least[rows.cell])
+        passed, (turns, tops) = rows.select(worth), _turns(points)
+        k = np.concatenate([k, points.cell[passed.cell], points.cell[turns]])
+        x = np.concatenate([x, _located(points, passed), tops])
+    return window.edges[k] + x * width[k], np.unique(k)
+
+
+def _near_rows(window: Window, course: Course, least: Array) -> list[_Points]:
+    """Time and speed in the cells that a row lies in, or is no farther from than the nodes from one
+    another."""
+    x = np.concatenate([[0.0], window.grid.rule.nodes, [1.0]])
+    width, found = window.strip.width, []
+    passed = np.diff(np.searchsorted(course.times, window.time))
+    k = np.flatnonzero(passed)
+    if len(k):
+        spent = width[k, None] * (window.slowness[k] @ window.grid.rule.matrix.T)
+        begin = window.time[k, None]
+        time = np.hstack([begin, begin + spent, window.time[k + 1, None]])
+        bends = np.diff(course.in_time[:, 1])
+        found.append(_Points(x, time, course.times, bends, k, width[k], least[k]))
+    slow, fast = 1.0 / largest_of_row(window.slowness), -1.0 / largest_of_row(-window.slowness)
+    rows = np.sort(window.sense * course.speeds)
+    before, after = np.searchsorted(rows, [2.0 * slow - fast, 2.0 * fast - slow])
+    k = np.flatnonzero(after > before)
+    if len(k):
+        begin, end = window.speeds_at(k), window.speeds_at(k + 1)
+        omega = np.column_stack([begin, window.sense / window.slowness[k], end])
+        bends = np.diff(course.in_speed[:, 1])
+        found.append(_Points(x, omega, course.speeds, bends, k, width[k], least[k]))
+    return found
+
+
+def _passed(points: _Points) -> _Passed:
+    """The rows between each two neighbouring points."""
+    x, values, rows, bends = points[:4]
+    below = np.searchsorted(rows, values)
+    k, j = np.nonzero(np.diff(below, axis=1))
+    times = np.abs(below[k, j + 1] - below[k, j])
+    row = np.minimum(below[k, j], below[k, j + 1]).repeat(times)
+    row += np.arange(len(row)) - (np.cumsum(times) - times).repeat(times)
+    k, j = k.repeat(times), j.repeat(times)
+    rise, low, high = values[k, j + 1] - values[k, j], x[j], x[j + 1]
+    position = np.clip(low + (rows[row] - values[k, j]) / rise * (high - low), low, high)
+    at_edge = 0.5 * np.minimum(position, 1.0 - position) ** 2
+    share = np.minimum(at_edge, _WORST / (len(x) - 2) ** 2)
+    missed = points.width[k] * np.abs(bends[row] * rise / (high - low)) * share
+    return _Passed(k, row, low, high, position, np.sign(rise), missed)
+
+
+def _located(points: _Points, passed: _Passed) -> Array:
+    """Positions in the cells where the variable passes its rows."""
+    of, target = points.polynomials(passed.cell), points.rows[passed.row]
+    low, high, x = passed[2:5]
+    for _ in range(_NEWTON):
+        value, slope = _value(of, x)
+        above = (value - target) * passed.rises > 0.0
+        low, high = np.where(above, low, x), np.where(above, x, high)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            new = x - (value - target) / slope
+        x = np.where((new > low) & (new < high), new, 0.5 * (low + high))
+    return x
+
+
+def _turns(points: _Points) -> tuple[Index, Array]:
+    """Cells and positions where the variable turns beyond a row that no point beside it passed."""
+    x, values, rows, bends = points[:4]
+    rise, none = np.diff(values, axis=1), np.zeros((len(values), 1))
+    before, after = np.hstack([none, rise]), np.hstack([rise, none])
+    reach, side = np.abs(before) + np.abs(after), np.sign(before - after)
+    worth = np.max(np.abs(bends)) * points.width / points.least
+    k, i = np.nonzero((before * after <= 0.0) & (worth[:, None] * reach > 1.0))
+    at, side = values[k, i], side[k, i]
+    below = np.searchsorted(rows, at)
+    may = np.searchsorted(rows, at + side * reach[k, i]) != below
+    k, i, at, side, below = (np.tile(part[may], 2) for part in (k, i, at, side, below))
+    j = np.where(np.arange(len(i)) < len(i) // 2, i - 1, i)  # it turns before the point or after it
+    inside = (j >= 0) & (j < rise.shape[1])
+    k, j, at, side, below = (part[inside] for part in (k, j, at, side, below))
+    of, low, high = points.polynomials(k), x[j], x[j + 1]
+    for _ in range(_HALVES):
+        middle = 0.5 * (low + high)
+        later = _value(of, middle)[1] * side > 0.0
+        low, high = np.where(later, middle, low), np.where(later, high, middle)
+    top = _value(of, low)[0]
+    passes = (np.searchsorted(rows, top) != below) & (worth[k] * np.abs(top - at) > 1.0)
+    return k[passes], low[passes]
+
+
+def _value(of: Array, x: Array) -> tuple[Array, Array]:
+    """Values and slopes of polynomials, coefficients by descending power in the rows of ``of``."""
+    value, slope = np.zeros_like(x), np.zeros_like(x)
+    for coefficient in of:
+        slope = slope * x + value
+        value = value * x + coefficient
+    return value, slope

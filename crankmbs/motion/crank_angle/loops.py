@@ -1,0 +1,227 @@
+"""Loops over cells of the crank angle, compiled by numba where that pays
+(`crankmbs.numerics.kernels`). Both ways give the same to rounding."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crankmbs.numerics.kernels import kernel
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+Branch = tuple[float, float, float, float]  # c0, ct, c1, c2 of `crankmbs.mechanics.torque`
+_SETTLED, _GOOD = 1e-14, 1e-11  # relative change of the energy in Newton's last step
+
+
+__all__ = ["affine", "newton"]
+
+Loads = tuple[Array, Array, Array, Array]  # the tables of a course of `crankmbs.mechanics.torque`
+_MOST_NEWTON = 20
+
+
+@kernel
+def affine(
+    which: Index,
+    loads: tuple[Array, Array, Array, Array],
+    maps: tuple[Array, Array, Array, Array],
+    room: Array,
+    rule: tuple[Array, Array],
+    ends: tuple[float, float, float],
+    width: Array,
+    edges: Array,
+    time: Array,
+    torque: Array,
+    slowness: Array,
+) -> int:
+    """Solve cells by affine maps, up to the end in time; fill what follows ``width``, count them.
+
+    which : row of the loads for every cell; loads : signed width, and push, rate and inertia at the
+    nodes, as `crankmbs.numerics.collocation.Rule.maps` takes them; maps : filled with what it
+    gives; room : shape (s, s + 2); rule : matrix and weights; ends : energy and time at the start,
+    last time
+    """
+    signed, push, rate, inertia = loads
+    (matrix, weights), (energy, t, t_end) = rule, ends
+    gain, shift, growth, rise = maps
+    s = len(weights)
+    system, both = room[:, :s], room[:, s:]
+    for c in range(len(signed)):
+        h, growth[c], rise[c] = signed[c], 0.0, 0.0
+        for j in range(len(weights)):
+            both[j, 0], both[j, 1] = 1.0, 0.0
+            for i in range(len(weights)):
+                both[j, 1] += h * matrix[j, i] * push[c, i]
+                system[j, i] = (1.0 if i == j else 0.0) - h * matrix[j, i] * rate[c, i]
+        _eliminate(system, both)
+        for j in range(len(weights)):
+            gain[c, j], shift[c, j] = both[j, 0], both[j, 1]
+            growth[c] += h * weights[j] * rate[c, j] * gain[c, j]
+            rise[c] += h * weights[j] * (push[c, j] + rate[c, j] * shift[c, j])
+    edges[0], time[0] = energy, t
+    lost, late = 0.0, 0.0  # of E and t by rounding: all passes over the cells lose it alike, unseen
+    for k in range(len(which)):
+        c = which[k]
+        spent = 0.0
+        for j in range(len(weights)):
+            e = gain[c, j] * energy + shift[c, j]
+            torque[k, j] = push[c, j] + rate[c, j] * e
+            slowness[k, j] = math.sqrt(0.5 * inertia[c, j] / e) if e > 0.0 else math.nan
+            spent += weights[j] * slowness[k, j]
+        before, step = energy, growth[c] * energy + rise[c] - lost
+        energy = before + step
+        lost = (energy - before) - step
+        before, step = t, width[k] * spent - late
+        t = before + step
+        late = (t - before) - step
+        edges[k + 1], time[k + 1] = energy, t
+        if not t < t_end:
+            return k + 1
+    return len(which)
+
+
+@kernel
+def newton(
+    loads: Loads,
+    bounds: tuple[float, float, float],
+    start: tuple[float, float, float],
+    rule: tuple[Array, Array],
+    cells: tuple[Array, Array, Array],
+    edges: Array,
+    time: Array,
+    torque: Array,
+    slowness: Array,
+) -> int:
+    """Solve cells by Newton's method, to the end of the loads' course; fill what follows ``cells``.
+
+    loads : their tables; bounds : their end in time, lowest and highest speed; start : energy, time
+    and sense; rule : matrix and weights; cells : width, and inertia and torque at the nodes
+
+    Returns
+    -------
+    cells solved, the last one across a bound; fewer where Newton's method does not converge
+    """
+    t_end, low, high = bounds
+    begin, t, sense = start
+    matrix, weights = rule
+    width, inertia, rest = cells
+    energy, room = np.empty(len(weights)), np.empty((len(weights) + 1, len(weights)))
+    steps = np.empty(matrix.shape)
+    row = np.zeros(2, np.intp)
+    edges[0], time[0] = begin, t
+    lost, late = 0.0, 0.0  # as in `affine`
+    for k in range(len(width)):
+        load = torque[k - 1, -1] - rest[k - 1, -1] if k > 0 else 0.0
+        for j in range(len(weights)):
+            energy[j] = begin
+            for i in range(len(weights)):
+                steps[j, i] = width[k] * matrix[j, i]
+                energy[j] += sense * steps[j, i] * (rest[k, i] + load)
+        at, of_angle, out = (begin, t, sense), (inertia[k], rest[k]), (torque[k], slowness[k])
+        if not _solve(energy, room, at, loads, row, steps, of_angle, out):
+            return k
+        inside, work, spent = True, 0.0, 0.0
+        for j in range(len(weights)):
+            work += weights[j] * torque[k, j]
+            spent += weights[j] * slowness[k, j]
+            inside = inside and low <= sense / slowness[k, j] <= high
+        before, step = begin, sense * width[k] * work - lost
+        begin = before + step
+        lost = (begin - before) - step
+        before, step = t, width[k] * spent - late
+        t = before + step
+        late = (t - before) - step
+        edges[k + 1], time[k + 1] = begin, t
+        if not (inside and t < t_end):
+            return k + 1
+    return len(width)
+
+
+@kernel
+def _solve(
+    energy: Array,
+    room: Array,
+    start: tuple[float, float, float],
+    loads: Loads,
+    row: Index,
+    steps: Array,
+    of_angle: tuple[Array, Array],
+    out: tuple[Array, Array],
+) -> bool:
+    """Newton's method in one cell, from the guess in ``energy``; whether it converges.
+
+    row : numbers of the last rows of the loads, kept from cell to cell; of_angle : inertia and
+    torque at the nodes; out : torque and slowness, filled
+    """
+    (times, in_time, speeds, in_speed), (inertia, rest), (torque, slowness) = loads, of_angle, out
+    begin, t, sense = start
+    stages = len(energy)
+    new, system = room[0].reshape(stages, 1), room[1:]
+    change, f, g = math.inf, row[0], row[1]
+    for _ in range(_MOST_NEWTON):
+        for j in range(stages):
+            slowness[j] = math.sqrt(0.5 * inertia[j] / energy[j]) if energy[j] > 0.0 else math.nan
+        for j in range(stages):
+            omega = sense / slowness[j]
+            at = t
+            for i in range(stages):
+                at += steps[j, i] * slowness[i]
+            f, g = _row(times, at, f), _row(speeds, omega, g)
+            torque[j] = rest[j] + in_time[f, 0] + in_time[f, 1] * at
+            torque[j] += in_speed[g, 0] + (in_speed[g, 1] + in_speed[g, 2] * omega) * omega
+        row[0], row[1] = f, g
+        if not change >= _SETTLED:
+            break
+        new[:] = begin
+        for j in range(stages):
+            omega = sense / slowness[j]
+            g = _row(speeds, omega, g)
+            rate = sense * (in_speed[g, 1] + 2.0 * in_speed[g, 2] * omega) / (inertia[j] * omega)
+            push = sense * torque[j] - rate * energy[j]
+            for i in range(stages):
+                new[i, 0] += steps[i, j] * push
+                system[i, j] = (1.0 if i == j else 0.0) - steps[i, j] * rate
+        _eliminate(system, new)
+        change = 0.0
+        for j in range(stages):
+            change += abs(new[j, 0] / energy[j] - 1.0)
+            energy[j] = new[j, 0]
+    return change <= _GOOD
+
+
+@kernel
+def _row(rows: Array, value: float, near: int) -> int:
+    """How many of the increasing rows are not above a value, counted from a number near it."""
+    while near < len(rows) and rows[near] <= value:
+        near += 1
+    while near > 0 and rows[near - 1] > value:
+        near -= 1
+    return near
+
+
+@kernel
+def _eliminate(system: Array, right: Array) -> None:
+    """Solve a small linear system in place, with pivoting; the answers are the columns of
+    ``right``."""
+    n = len(right)
+    for j in range(n):
+        p = j
+        for i in range(j + 1, n):
+            p = i if abs(system[i, j]) > abs(system[p, j]) else p
+        for k in range(right.shape[1]):
+            right[j, k], right[p, k] = right[p, k], right[j, k]
+        for i in range(j, n):
+            system[j, i], system[p, i] = system[p, i], system[j, i]
+        for i in range(j + 1, n):
+            factor = system[i, j] / system[j, j]
+            for k in range(j + 1, n):
+                system[i, k] -= factor * system[j, k]
+            for k in range(right.shape[1]):
+                right[i, k] -= factor * right[j, k]
+    for j in range(n - 1, -1, -1):
+        for m in range(right.shape[1]):
+            for k in range(j + 1, n):
+                right[j, m] -= system[j, k] * right[k, m]
+            right[j, m] /= system[j, j]

@@ -1,0 +1,124 @@
+"""Solved cells of the crank angle read at angles or times: loops over samples, compiled by numba
+where that pays (`crankmbs.numerics.kernels`)."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crankmbs.numerics.kernels import kernel
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+Branch = tuple[float, float, float, float]  # c0, ct, c1, c2 of `crankmbs.mechanics.torque`
+
+
+__all__ = ["motion", "read"]
+
+Solved = tuple[Array, Array, Array, Array, Array, Array]  # as `read` unpacks them
+_MOST_NEWTON = 100
+
+
+@kernel
+def read(
+    given: Array,
+    in_time: bool,
+    sense: float,
+    to_legendre: Array,
+    solved: Solved,
+    cell: Index,
+    position: Array,
+    at: Array,
+    kinetic: Array,
+) -> None:
+    """Cell, position in it from 0 to 1, time and energy at increasing times, or else angles since
+    the beginning; fills what follows ``solved``."""
+    edges, width, energy, time, torque, slowness = solved
+    s, k = len(to_legendre), -1
+    of = np.empty((5, s))  # torque and slowness as sums of P_j, and of P_j what `_integrals` needs
+    for j in range(s):
+        of[2, j], of[3, j] = (2.0 * j + 1.0) / (j + 1.0), j / (j + 1.0)
+        of[4, j] = 1.0 / (4.0 * j + 2.0)
+    for i in range(len(given)):
+        now, entered = float(given[i]), k < 0
+        while k < 0 or (now > (time[k + 1] if in_time else edges[k + 1]) and k + 1 < len(width)):
+            k, entered = k + 1, True
+        if entered:
+            for j in range(s):
+                of[0, j] = of[1, j] = 0.0
+                for m in range(s):
+                    of[0, j] += to_legendre[j, m] * torque[k, m]
+                    of[1, j] += to_legendre[j, m] * slowness[k, m]
+        h = float(width[k])
+        if in_time:
+            x = _inverted((now - float(time[k])) / h, (float(time[k + 1]) - float(time[k])) / h, of)
+        else:
+            x = (now - float(edges[k])) / h
+        gained, spent, _ = _integrals(of, x)
+        cell[i], position[i] = k, x
+        at[i] = now if in_time else float(time[k]) + h * spent
+        kinetic[i] = float(energy[k]) + sense * h * gained
+
+
+@kernel
+def _integrals(of: Array, x: float) -> tuple[float, float, float]:
+    """Integrals from 0 to x of the two polynomials, and the value of the second at x."""
+    z = 2.0 * x - 1.0
+    first, second, value, before, p = x * of[0, 0], x * of[1, 0], of[1, 0], 1.0, z
+    for j in range(1, of.shape[1]):
+        after = of[2, j] * z * p - of[3, j] * before
+        rise = (after - before) * of[4, j]
+        first += rise * of[0, j]
+        second += rise * of[1, j]
+        value += p * of[1, j]
+        before, p = p, after
+    return first, second, value
+
+
+@kernel
+def _inverted(target: float, whole: float, of: Array) -> float:
+    """Where the integral of the second polynomial, which rises to ``whole`` at 1, is ``target``:
+    Newton's method, bisecting where it leaves its bracket."""
+    low, high, x = 0.0, 1.0, min(max(target / whole, 0.0), 1.0)
+    for _ in range(_MOST_NEWTON):
+        _, spent, slope = _integrals(of, x)
+        excess = spent - target
+        if excess == 0.0:
+            break
+        low, high = (low, x) if excess > 0.0 else (x, high)
+        new = x - excess / slope
+        if not low < new < high:  # nor back to an end: rounding would send it to and fro
+            new = 0.5 * (low + high)
+        settled, x = abs(new - x) <= 4e-16 * high, new
+        if settled:
+            break
+    return x
+
+
+@kernel
+def motion(
+    which: Index,
+    of_angle: tuple[Array, Array, Array],
+    sense: float,
+    branch: Branch,
+    time: Array,
+    energy: Array,
+    omega: Array,
+    outside: Array,
+    alpha: Array,
+) -> None:
+    """Speed, torque from outside and acceleration at the angles ``which``; fills what follows
+    ``energy``.
+
+    of_angle : J, J_1 and torque of gas and gravity
+    """
+    inertia, slope, torque = of_angle
+    c0, ct, c1, c2 = branch
+    for i in range(len(which)):
+        k = which[i]
+        w = sense * math.sqrt(2.0 * max(energy[i], 0.0) / inertia[k])
+        load = c0 + ct * time[i] + (c1 + c2 * w) * w
+        omega[i], outside[i] = w, load
+        alpha[i] = (torque[k] + load - 0.5 * slope[k] * w * w) / inertia[k]

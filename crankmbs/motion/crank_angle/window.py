@@ -1,0 +1,248 @@
+"""Solved cells of the crank angle: the motion between their edges, and what they err."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crankmbs.mechanics.inertia import reduce
+from crankmbs.mechanics.torque import Branch, Course
+from crankmbs.motion.base import NOWHERE, Array, Samples, State
+from crankmbs.motion.crank_angle import readout
+from crankmbs.motion.crank_angle.grid import Grid, Strip, largest_of_row
+from crankmbs.motion.plan import Plan
+from crankmbs.numerics import kernels
+from crankmbs.numerics.periodic import one_period
+from crankmbs.numerics.roots import first_above, invert_monotone
+
+__all__ = ["Window"]
+
+Index = NDArray[np.intp]
+
+
+@dataclass(frozen=True)
+class Window:
+    """Consecutive solved cells on one branch or course of the loads.
+
+    edges : shape (m + 1,) [rad], angle turned since the beginning, u >= 0; energy and time at
+    them; torque : shape (m, s), Q at the nodes [N m]; slowness : shape (m, s), dt/du [s/rad];
+    stop : cell and position in it, 0 to 1, where the window ends; landed : what is exact there;
+    skipped : cells of whole periods passed before it and not kept.
+    """
+
+    grid: Grid
+    strip: Strip
+    branch: Branch | Course
+    sense: float
+    begin: State
+    edges: Array
+    energy: Array
+    time: Array
+    torque: Array
+    slowness: Array
+    stop: tuple[int, float]
+    landed: State = NOWHERE
+    skipped: int = 0
+
+    def sample(self, plan: Plan) -> Samples:
+        """The samples of the plan after the beginning, up to the end and with it."""
+        if plan.in_time:
+            k, x, t, energy = self._read(plan.between(self.begin.time, self.end.time), in_time=True)
+            return self._samples(k, self._theta(k, x), t, energy)
+        theta = plan.between(self.begin.theta, self.end.theta)
+        u = self.sense * (theta - self.begin.theta)
+        k, _, t, energy = self._read(u, in_time=False)
+        return self._samples(k, theta, t, energy)
+
+    def last(self) -> Samples:
+        """The one sample at the end."""
+        return self._last
+
+    @cached_property
+    def _last(self) -> Samples:
+        k, x = np.array([self.stop[0]]), np.array([self.stop[1]])
+        theta = _exact(self.landed.theta, self._theta(k, x))
+        t = _exact(self.landed.time, self._time(k, x))
+        at = self._samples(k, theta, t, self._energy(k, x))
+        return replace(at, omega=_exact(self.landed.omega, at.omega))
+
+    @property
+    def steps(self) -> int:
+        """Cells in the window and before it."""
+        return self.skipped + len(self.torque)
+
+    @property
+    def evaluations(self) -> int:
+        """Nodes in the window and before it."""
+        return self.steps * len(self.grid.rule.nodes)
+
+    @cached_property
+    def end(self) -> State:
+        """The state where the window ends."""
+        at = self.last()
+        rows = (at.time, at.theta, at.omega, at.energy_residual)
+        return State(*(float(q[0]) for q in rows))
+
+    @cached_property
+    def errors(self) -> tuple[Array, Array]:
+        """Errors of the energy [J] and the time [s] gained in each cell, shape (m, s + 3) each:
+        what a finer Gauss rule along the solution gives, at its nodes and at the cell's end."""
+        rule, finer = self.grid.rule, self.grid.finer.rule
+        strip = self.grid.finer.same(self.strip, self.begin.theta, self.sense)
+        inside = rule.integrals(finer.nodes).T
+        to_nodes = np.vstack([finer.matrix, finer.weights]).T
+        own = np.column_stack([inside, rule.weights])
+        width = self.strip.width[:, None]
+        energy = self.energy[:-1, None] + self.sense * width * (self.torque @ inside)
+        t = self.time[:-1, None] + width * (self.slowness @ inside)
+        with np.errstate(divide="ignore"):
+            slowness = np.sqrt(0.5 * strip.inertia / np.maximum(energy, 0.0))
+            torque = strip.torque + self.branch(t, self.sense / slowness)
+        gained = self.sense * width * (torque @ to_nodes - self.torque @ own)
+        return gained, width * (slowness @ to_nodes - self.slowness @ own)
+
+    @cached_property
+    def missed(self) -> Array:
+        """Error of the energy [J] that the cells have made up to each edge, shape (m + 1,); not
+        known, and 0, on a grid that itself checks another."""
+        if self.grid.checks:
+            return np.zeros_like(self.edges)
+        return np.concatenate([[0.0], np.cumsum(self.errors[0][:, -1])])
+
+    @property
+    def relative_errors(self) -> tuple[Array, Array]:
+        """Worst of energy and time in each cell, relative, at its end and inside, shape (m,)."""
+        energy, late = (np.abs(error) for error in self.errors)
+        per_time = np.maximum(1.0 / largest_of_row(self.slowness), 1.0 / self.time[1:])
+        both = energy / self.energy[1:, None] + late * per_time[:, None]
+        return both[:, -1], largest_of_row(both)
+
+    def cut(self, t_end: float, bound: float) -> Window:
+        """End where time, speed or angle leaves its bounds, whichever comes first."""
+        nowhere = self.landed
+        whole = self.begin.theta + self.sense * self.edges[-1]
+        at_bound = math.isfinite(bound) and abs(whole - bound) <= 1e-12 * max(1.0, abs(bound))
+        stops = [(self.stop, nowhere._replace(theta=bound) if at_bound else nowhere)]
+        if self.time[-1] >= t_end:
+            k, x, *_ = self._read(np.array([t_end]), in_time=True)
+            stops.append(((int(k[0]), float(x[0])), nowhere._replace(time=t_end)))
+        for limit, above in ((self.branch.omega_low, False), (self.branch.omega_high, True)):
+            if math.isfinite(limit) and limit * self.sense > 0.0:
+                stop = self._crossing(limit, above=above)
+                if stop is not None:
+                    stops.append((stop, nowhere._replace(omega=limit)))
+        stop, landed = min(stops, key=lambda item: item[0])
+        return replace(self.first(stop[0] + 1), stop=stop, landed=landed)
+
+    def first(self, m: int) -> Window:
+        """The first m cells."""
+        return replace(
+            self,
+            strip=self.strip.first(m),
+            edges=self.edges[: m + 1],
+            energy=self.energy[: m + 1],
+            time=self.time[: m + 1],
+            torque=self.torque[:m],
+            slowness=self.slowness[:m],
+            stop=(m - 1, 1.0),
+            landed=NOWHERE,
+        )
+
+    def speeds_at(self, k: Index) -> Array:
+        """Speed [rad/s] at these edges."""
+        inertia = reduce(self.grid.scene, None, self.begin.theta + self.sense * self.edges[k])[0]
+        return np.asarray(self.sense * np.sqrt(2.0 * self.energy[k] / inertia))
+
+    def _crossing(self, limit: float, *, above: bool) -> tuple[int, float] | None:
+        """Cell and position where the speed first leaves its branch through ``limit``."""
+        at_edges = self.speeds_at(np.arange(1, len(self.edges)))
+        omega = np.column_stack([self.sense / self.slowness, at_edges])
+        positions = np.concatenate([[0.0], self.grid.rule.nodes, [1.0]])
+        side = 1.0 if above else -1.0
+        beyond = side * (np.append(self.begin.omega, omega) - limit)
+        inside = int(np.argmax(np.append(beyond[1:] > 0.0, True)))  # stretches before it is seen
+        stretches = np.append(np.flatnonzero(_may_leave(beyond)[:inside]), inside)
+        for k, j in zip(*divmod(stretches, omega.shape[1]), strict=True):
+            if k == len(omega):
+                break
+
+            def speed(x: Array, k: int = k) -> tuple[Array, Array]:
+                at = np.array([k])
+                state = self._theta(at, x), self._time(at, x), self._energy(at, x)
+                there = self._samples(at, *state)
+                slope = self.strip.width[k] * there.alpha / np.abs(there.omega)
+                return side * (there.omega - limit), side * slope
+
+            x = first_above(speed, positions[j], positions[j + 1])
+            if x is not None:
+                return int(k), x
+        return None
+
+    def _energy(self, k: Index, x: Array) -> Array:
+        gained, _ = self.grid.rule.between(self.torque[k], x)
+        return np.asarray(self.energy[k] + self.sense * self.strip.width[k] * gained)
+
+    def _time(self, k: Index, x: Array) -> Array:
+        spent, _ = self.grid.rule.between(self.slowness[k], x)
+        return np.asarray(self.time[k] + self.strip.width[k] * spent)
+
+    def _theta(self, k: Index, x: Array) -> Array:
+        turned = self.edges[k] + x * self.strip.width[k]
+        return np.asarray(self.begin.theta + self.sense * turned)
+
+    def _read(self, given: Array, *, in_time: bool) -> tuple[Index, Array, Array, Array]:
+        """Cell, position in it, time and energy at increasing times, or angles turned."""
+        if kernels.are_compiled:
+            k, (x, t, energy) = np.empty(len(given), np.intp), np.empty((3, len(given)))
+            at_edges, at_nodes = (self.energy, self.time), (self.torque, self.slowness)
+            solved = self.edges, self.strip.width, *at_edges, *at_nodes
+            to_legendre = self.grid.rule.to_legendre
+            readout.read(given, in_time, self.sense, to_legendre, solved, k, x, t, energy)
+            return k, x, t, energy
+        passed = self.time if in_time else self.edges
+        k = np.clip(np.searchsorted(passed, given, side="left") - 1, 0, len(self.torque) - 1)
+        if not in_time:
+            x = (given - self.edges[k]) / self.strip.width[k]
+            return k, x, self._time(k, x), self._energy(k, x)
+        slowness, width = self.slowness[k], self.strip.width[k]
+
+        def elapsed(x: Array) -> tuple[Array, Array]:
+            spent, slope = self.grid.rule.between(slowness, x)
+            return self.time[k] + width * spent, width * slope
+
+        x = invert_monotone(elapsed, given, np.zeros_like(given), np.ones_like(given))
+        return k, x, given, self._energy(k, x)
+
+    def _samples(self, k: Index, theta: Array, t: Array, energy: Array) -> Samples:
+        """Samples in the cells k."""
+        once, which = one_period(theta, float(self.grid.edges[-1]))
+        of_angle = reduce(self.grid.scene, self.grid.pressure, once)
+        if kernels.are_compiled and isinstance(self.branch, Branch):
+            omega, outside, alpha = np.empty((3, len(theta)))
+            loads = self.branch.coefficients
+            readout.motion(which, of_angle, self.sense, loads, t, energy, omega, outside, alpha)
+        else:
+            inertia, slope, torque = (part[which] for part in of_angle)
+            omega = self.sense * np.sqrt(2.0 * np.maximum(energy, 0.0) / inertia)
+            outside = self.branch(t, omega)
+            alpha = (torque + outside - 0.5 * slope * omega**2) / inertia
+        residual = self.begin.residual - self.missed[k]
+        return Samples(t, theta, omega, alpha, residual, {"external_torque": outside})
+
+
+def _exact(landed: float, computed: Array) -> Array:
+    return computed if math.isnan(landed) else np.array([landed])
+
+
+def _may_leave(beyond: Array) -> NDArray[np.bool_]:
+    """Between which of neighbouring points a value, below zero at both, may be above: where it
+    turns, and falls off to the neighbours by more than is missing."""
+    rise = np.diff(beyond, prepend=beyond[0], append=beyond[-1])
+    before, after = rise[:-1], -rise[1:]
+    near = (beyond < 0.0) & (beyond + before + after > 0.0)
+    top = near & (before >= 0.0) & (after >= 0.0)
+    return np.asarray(top[:-1] | top[1:])

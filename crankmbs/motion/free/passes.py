@@ -1,0 +1,257 @@
+"""A free motion from start to end, and its error: solved twice, refined until what is asked is met.
+
+The crank angle carries the motion wherever the crank turns fast enough; time carries it across
+rest and reversal. This is where the one hands over to the other.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Generator
+from dataclasses import replace
+from functools import cache, partial
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crankmbs.mechanics.inertia import reduce
+from crankmbs.mechanics.pressure import PeriodicPressure
+from crankmbs.mechanics.torque import Branch, branch_at, branch_of
+from crankmbs.mechanics.variables import VARIABLES
+from crankmbs.motion.assemble import ANGLE_ROUNDING, Assembled, assemble
+from crankmbs.motion.base import Array, Piece, Samples, Solution, State
+from crankmbs.motion.crank_angle import advance as crank_angle
+from crankmbs.motion.crank_angle.grid import Grid, grid_of
+from crankmbs.motion.free.matching import match, stays
+from crankmbs.motion.free.path import Path
+from crankmbs.motion.minimal import advance as minimal
+from crankmbs.motion.minimal.reduced import Reduced
+from crankmbs.motion.plan import FOLDED, Plan, plan_of
+from crankmbs.numerics.collocation import gauss
+from crankmbs.scene.drives import TimeTable
+from crankmbs.scene.scene import Scene
+
+__all__ = ["run"]
+
+_PASSES = 12
+_VAIN = 8  # after as many vain hand-overs the crank must turn through a period before the next
+_FAST = (2.0, 8.0)  # as many times as fast as need be either pass takes over: the better one later
+# what either pass may miss at kinks of the loads: of the local tolerance, and at most
+_KINKS, _MOST_MISSED = 0.2, (math.inf, 1e-11)
+_ROAMING = 3.0  # of a step's tolerance: what it may miss of the largest torque across knots
+_EVALUATIONS = 500_000  # over time, for which a second of the cost cap stands
+_MOST_CELLS = 20_000
+_FINEST = 3e-14  # what rounding leaves of a cell
+_FINEST_STEP = 1e-15  # the same over time
+_ENDS = {
+    "end": (0, "reached the end of the run"),
+    "stuck": (1, "at rest at {angle:.6g} degrees: no torque moves the crank from here"),
+    "held": (
+        1,
+        "held at {speed:.6g} rpm at {angle:.6g} degrees: a jump of the loads drives the "
+        "speed back from both sides",
+    ),
+    "rest": (1, "came to rest at {angle:.6g} degrees"),
+    "swing": (
+        1,
+        "swings without reaching the end: {reversals} reversals, the last at {angle:.6g} degrees",
+    ),
+    "fold": (1, FOLDED),
+    "costly": (
+        -1,
+        "stopped at {angle:.6g} degrees: to follow the motion over time beyond it takes more than "
+        "the {allowed} evaluations that the cost cap allows; raise it or ask for less",
+    ),
+    "failed": (-1, "stopped at {angle:.6g} degrees: no step over time is short enough there"),
+}
+# what a pass may say that has not seen yet, or by its errors never, that the crank is at rest
+_RESTING = {"rest", "swing", "end"}
+_BROKEN = {"costly", "failed"}
+
+
+class _Pass(NamedTuple):
+    """One pass over the whole motion.
+
+    begin : the one sample at the start
+    local : shape (2, cells), errors at ends and inside
+    fast, slow : spans of time [s] that the crank angle carried, and where time took over
+    """
+
+    begin: Samples
+    samples: Samples
+    ending: str
+    path: Path
+    local: Array
+    fast: list[tuple[float, float]]
+    slow: list[float]
+
+
+def run(
+    scene: Scene,
+    pressure: PeriodicPressure | None,
+    formulation: str,
+    rtol: float,
+    cost_cap: float,
+) -> Assembled:
+    """Solve a free motion to a relative global error, twice: the second pass is of higher order.
+
+    formulation : "crank_angle" (time carries it across rest) or "minimal" (time throughout)
+    cost_cap [s] : for which time is evaluated in either pass before it gives up, on a slow machine
+    """
+    allowed = int(min(cost_cap * _EVALUATIONS, 1e18))
+    by_angle = formulation == "crank_angle"
+    stages = min(3 + round(-math.log10(rtol) / 3.0), 7)
+    grid = grid_of(scene, pressure, gauss(stages))
+    best: Assembled | None = None
+    local, least, rounded = rtol, math.inf, False
+    finest = _FINEST if by_angle else 100.0 * _FINEST_STEP
+    for left in reversed(range(_PASSES)):
+        answer = _travel(grid, local, allowed, by_angle=by_angle)
+        parts = _parts(grid, answer.local, local)
+        if left and parts.max() > 1 and len(grid.edges) < _MOST_CELLS:
+            grid = grid.split(parts)
+            continue
+        better = _travel(grid.finer, 1e-2 * local, allowed, by_angle=by_angle, first=answer)
+        solution = _solution(answer, better, plan_of(scene), allowed)
+        assembled = assemble(scene, pressure, solution)
+        near = local <= 10.0 * finest
+        estimate = assembled.relative_error * (2.0 if near else 1.0)
+        if estimate <= least:
+            best, least, rounded = assembled, estimate, near
+        if estimate <= rtol or local <= finest or answer.ending in _BROKEN:
+            break
+        local = max(local * max(1e-3, 0.1 * rtol / estimate), finest)
+    assert best is not None
+    if rounded or least > rtol:
+        # what is left is rounding, in both passes alike, and their difference too small an estimate
+        best = best._replace(errors={name: 2.0 * error for name, error in best.errors.items()})
+    if best.relative_error > rtol and best.solution.status >= 0:
+        text = f"asked for {rtol:.0e}, reached {best.relative_error:.0e}"
+        solution = replace(best.solution, message=f"{best.solution.message}; {text}")
+        best = best._replace(solution=solution)
+    return best
+
+
+def _travel(
+    grid: Grid, local: float, allowed: int, *, by_angle: bool, first: _Pass | None = None
+) -> _Pass:
+    """One pass from start to end, handing over between the formulations near rest; a second one
+    betters the ``first``. Over time it takes no more than the evaluations ``allowed``."""
+    scene = grid.scene
+    assert scene.start is not None
+    plan = plan_of(scene)
+    state = State(0.0, scene.start.angle, scene.start.speed, 0.0)
+    steady = not any(isinstance(load, TimeTable) for load in scene.torque)
+    begin = first.begin if first else _first(grid, state)
+    path = Path(plan, begin, can_swing=steady, allowed=allowed)
+    if first:  # it begins a rounding ahead: so the difference knows what the motion makes of one
+        ahead = math.copysign(ANGLE_ROUNDING * state.theta, state.omega or float(begin.alpha[0]))
+        state = state._replace(theta=state.theta + ahead)
+    tolerance = max(0.01 * local, _FINEST_STEP)
+    roaming = partial(Reduced, scene, grid.pressure, _ROAMING * tolerance)
+    reduced = cache(roaming)  # where the crank angle serves only near rest is it needed
+    worst = np.zeros((2, len(grid.edges) - 1))
+    fast: list[tuple[float, float]] = []
+    slow: list[float] = []
+
+    kinks = max(min(_KINKS * local, _MOST_MISSED[first is not None]), _FINEST_STEP)
+    vain = 0  # hand-overs to the crank angle that did not carry the motion through a period
+
+    def is_fast(at: State, branch: Branch) -> bool:
+        swings = abs(at.theta - path.turned_back) < min(vain / _VAIN, 1.0) * scene.period
+        # the grid is as fine as it must be where the first pass used it, and only there
+        usable = first is None or any(since <= at.time < end for since, end in first.fast)
+        may = by_angle and at.omega != 0.0 and not swings and usable
+        return may and crank_angle.is_fast(grid, at, branch, _FAST[first is not None])
+
+    def windows(at: State) -> Generator[Piece, None, str]:
+        pieces = crank_angle.advance(grid, at, plan, kinks)
+        while True:
+            try:
+                window = next(pieces)
+            except StopIteration as stop:
+                return str(stop.value)
+            if first is None:
+                for row, error in zip(worst, window.relative_errors, strict=True):
+                    np.maximum.at(row, window.strip.cell, error)
+            yield window
+
+    ending = "fast" if by_angle and state.omega != 0.0 else "slow"
+    while ending in ("slow", "fast"):
+        at = path.state or state
+        if ending == "slow":
+            parts = 2 if first else 1
+            slow.append(at.time)
+            pieces = minimal.advance(reduced(), at, plan, tolerance, parts, path.left, is_fast)
+            ending = path.follow(pieces, over_time=True)
+        else:
+            ending = path.follow(windows(at), over_time=False)
+            now = path.state or state
+            fast.append((at.time, now.time))
+            vain += bool(slow) and abs(now.theta - at.theta) < scene.period
+    if ending == "end" and plan.folds_at((path.state or state).theta):
+        ending = "fold"
+    return _Pass(begin, path.samples(), ending, path, worst, fast, slow if by_angle else [])
+
+
+def _first(grid: Grid, state: State) -> Samples:
+    """The sample at the start."""
+    inertia, slope, torque = reduce(grid.scene, grid.pressure, state.theta)
+    rest = float(torque - 0.5 * slope * state.omega**2)
+    torques = grid.scene.torque
+    branch = branch_at(torques, state.time, state.omega, rest)
+    branch = branch or branch_of(torques, state.time, state.omega, rising=True)
+    outside = float(branch(state.time, state.omega))
+    return Samples(
+        time=np.array([state.time]),
+        theta=np.array([state.theta]),
+        omega=np.array([state.omega]),
+        alpha=np.array([(rest + outside) / float(inertia)]),
+        energy_residual=np.zeros(1),
+        own={"external_torque": np.array([outside])},
+    )
+
+
+def _parts(grid: Grid, worst: Array, local: float) -> NDArray[np.intp]:
+    """Into how many parts to cut every cell, to err by ``local`` per radian at its end, and by
+    ``local`` inside, where the order is lower."""
+    stages = len(grid.rule.nodes)
+    at_end = worst[0] / np.maximum(local * np.diff(grid.edges), _FINEST)
+    inside = worst[1] / max(local, _FINEST)
+    parts = np.ceil(np.maximum(at_end ** (0.5 / stages), inside ** (1.0 / (stages + 1))))
+    return np.asarray(np.clip(np.nan_to_num(parts, nan=2.0), 1, 4), dtype=np.intp)
+
+
+def _solution(answer: _Pass, better: _Pass, plan: Plan, allowed: int) -> Solution:
+    path, endings = answer.path, {answer.ending, better.ending}
+    ends = _RESTING if plan.until_time else _RESTING - {"end"}
+    both, in_time, reversals = (answer.samples, better.samples), plan.in_time, path.reversals
+    still = endings <= ends and stays(*both)
+    at_rest = still and "rest" in endings
+    matched = match(*both, in_time=in_time, reversals=reversals, at_rest=at_rest)
+    if matched.parted and still and not at_rest:  # both swing on by their errors alone
+        matched = match(*both, in_time=in_time, reversals=reversals, at_rest=True)
+        at_rest = not matched.parted
+    samples, check, parted = matched
+    ending = "rest" if at_rest and answer.ending != "end" else answer.ending
+    broken = sorted(endings & _BROKEN)
+    status, message = _ENDS[broken[0] if broken else ending]
+    if status >= 0 and ((len(endings) > 1 and not at_rest) or parted):
+        status = -1
+        message = "two passes of different order end differently, at {angle:.6g} degrees and later"
+    text = message.format(
+        angle=math.degrees(float(samples.theta[-1])),
+        speed=float(samples.omega[-1]) * 30.0 / math.pi,
+        reversals=path.reversals,
+        allowed=allowed,
+    )
+    reasons: tuple[str, ...] = ()
+    if answer.slow:
+        times = ", ".join(f"{t:.4g}" for t in answer.slow[:5])
+        more = " and later" if len(answer.slow) > 5 else ""
+        reasons = (f"minimal carried it across slow stretches that begin at {times} s{more}",)
+    evaluations = path.evaluations + better.path.evaluations
+    steps = path.steps + better.path.steps
+    unknown = {} if check else dict.fromkeys(VARIABLES, math.inf)
+    return Solution(samples, status, text, evaluations, steps, check, unknown, reasons)

@@ -1,0 +1,96 @@
+"""The way of a free motion, piece by piece."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from collections.abc import Generator
+
+import numpy as np
+
+from crankmbs.motion.base import Piece, Samples, State
+from crankmbs.motion.plan import Plan
+
+__all__ = ["Path"]
+
+_VAIN = 20  # as many reversals that reach no farther, and the end is not coming
+_SAMPLE = 50  # evaluations as costly as a sample of a swing
+
+
+class Path:
+    """The pieces of one pass, sampled as they come; with a finite plan.last only the last stay.
+
+    can_swing : whether a swing that reaches no farther is known to go on so for ever
+    left : evaluations over time that are still allowed
+    """
+
+    def __init__(self, plan: Plan, first: Samples, *, can_swing: bool, allowed: int) -> None:
+        self._plan, self._can_swing, self.left = plan, can_swing, allowed
+        self._farthest, self._since = 0.0, 0  # reach [rad], and reversals that reached no farther
+        self.turned_back = plan.start  # crank angle of the last reversal [rad]
+        self._blocks, self._count = [first], 1
+        self._tail: deque[Piece] = deque()
+        self.reversals = self.steps = self.evaluations = 0
+
+    def follow(self, pieces: Generator[Piece, None, str], *, over_time: bool) -> str:
+        """Add every piece; return why they ended."""
+        while True:
+            try:
+                piece = next(pieces)
+            except StopIteration as stop:
+                return str(stop.value)
+            count = self._count
+            self._add(piece)
+            self.left -= piece.evaluations if over_time else 0
+            if self._swings():
+                if self._can_swing:
+                    return "swing"
+                self.left -= _SAMPLE * (self._count - count)
+                if self.left <= 0:
+                    return "costly"
+
+    def _add(self, piece: Piece) -> None:
+        self.steps += piece.steps
+        self.evaluations += piece.evaluations
+        if piece.end.omega == 0.0:
+            self.turned_back = piece.end.theta
+            self.reversals += 1
+            reach = abs(piece.end.theta - self._plan.start)
+            if reach > self._farthest * (1.0 + 1e-4):
+                self._farthest, self._since = reach, 0
+            self._since += 1
+        if math.isinf(self._plan.last):
+            self._blocks.append(piece.sample(self._plan))
+            self._count += len(self._blocks[-1].time)
+            self._plan.room.check(self._count)
+            self._tail.clear()
+        self._tail.append(piece)
+        while abs(piece.end.theta - self._tail[0].end.theta) > self._plan.last:
+            self._tail.popleft()
+            self._blocks = []  # the sample at the start lies before what is kept
+
+    def _swings(self) -> bool:
+        """Whether an end in angle is not coming nearer, reversal by reversal."""
+        return self._since > _VAIN and not self._plan.until_time
+
+    def samples(self) -> Samples:
+        """All samples, the last one exactly at the end."""
+        if not self._tail:
+            return self._blocks[0]
+        blocks = self._blocks
+        if math.isfinite(self._plan.last):
+            blocks = blocks + [piece.sample(self._plan) for piece in self._tail]
+        joined = Samples.joined([*blocks, self._tail[-1].last()])
+        kept = np.ones(len(joined.time), dtype=np.bool_)
+        values = joined.time if self._plan.in_time else joined.theta
+        if len(values) > 1:
+            kept[-2] = not self._plan.is_end(float(values[-2]), float(values[-1]))
+        if math.isfinite(self._plan.last):
+            near = np.abs(joined.theta - joined.theta[-1]) <= self._plan.last * (1.0 + 1e-12)
+            kept &= near
+        return joined if kept.all() else joined.select(kept)
+
+    @property
+    def state(self) -> State | None:
+        """The state reached, None before the first piece."""
+        return self._tail[-1].end if self._tail else None

@@ -1,0 +1,160 @@
+"""The speed is prescribed: algebra gives every joint force, and the torque the drive must give."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from crankmbs.errors import InputError
+from crankmbs.mechanics.inertia import reduce
+from crankmbs.mechanics.pressure import PeriodicPressure, crank_angle_knots, repeat
+from crankmbs.mechanics.reactions import reactions
+from crankmbs.mechanics.speed import SpeedLaw, speed_law
+from crankmbs.motion.base import Array, Samples, Solution
+from crankmbs.motion.plan import FOLDED, Plan, plan_of
+from crankmbs.scene.scene import Scene
+from crankmbs.scene.schema import DEGREE
+
+__all__ = ["run"]
+
+_PANEL = 5.0 * DEGREE  # widest panel of the work integral; Gauss with 4 points errs below 1e-12
+
+
+def run(scene: Scene, pressure: PeriodicPressure | None) -> Solution:
+    """Sample the prescribed motion. Exact but for rounding; there is nothing to integrate.
+
+    Raises
+    ------
+    InputError : a speed table that ends before the run does
+    """
+    assert scene.motion is not None
+    plan = plan_of(scene)
+    law = speed_law(scene.motion)
+    stretches, reached = _stretches(plan, law)
+    stretches = _kept(plan, law, stretches)
+    time, theta = _sample(plan, law, stretches, reached)
+    _, omega, alpha = law.at_time(time)
+    edges = _panel_edges(scene, pressure, law, stretches, time)
+    residual = _energy_residual(scene, pressure, law, time, edges)
+    samples = Samples(time, theta, omega, alpha, residual)
+    angle = math.degrees(theta[-1])
+    if plan.folds_at(float(theta[-1])):
+        return Solution(samples, 1, FOLDED.format(angle=angle), len(time), 0)
+    if reached:
+        return Solution(samples, 0, "reached the end of the run", len(time), 0)
+    message = (
+        f"the prescribed speed comes to rest at {angle:.6g} degrees, before the end of the run"
+    )
+    return Solution(samples, 1, message, len(time), 0)
+
+
+def _stretches(plan: Plan, law: SpeedLaw) -> tuple[list[tuple[float, float]], bool]:
+    """Monotone stretches (begin, end) in time up to the end of the run; and whether that comes."""
+    stretches: list[tuple[float, float]] = []
+    begin = 0.0
+    for turn in law.turning_times:
+        end = min(turn, plan.time_bound)
+        sense = float(law.at_time(begin + 1.0 if math.isinf(end) else 0.5 * (begin + end))[1])
+        bound = plan.angle_bounds[1 if sense > 0.0 else 0]
+        if sense != 0.0 and math.isfinite(bound):
+            passed = math.inf if math.isinf(end) else (float(law.at_time(end)[0]) - bound) * sense
+            if passed >= -1e-13 * abs(bound):
+                stretches.append((begin, float(law.time_at(bound, begin, end)[0])))
+                return stretches, True
+        if sense == 0.0 and math.isinf(end):
+            return stretches, False
+        stretches.append((begin, end))
+        if end == plan.time_bound:
+            return stretches, True
+        begin = end
+    raise InputError(
+        f"motion.speed: the speed table ends at {begin:g} s, before the run does; "
+        "lengthen the table or shorten the run"
+    )
+
+
+def _kept(
+    plan: Plan, law: SpeedLaw, stretches: list[tuple[float, float]]
+) -> list[tuple[float, float]]:
+    """The stretches that hold all samples to be kept, and one before them."""
+    begin, end = stretches[-1]
+    first, last = (float(q) for q in law.at_time([begin, end])[0])
+    if not abs(last - first) > plan.last + 2.0 * plan.every:
+        return stretches
+    since = last - math.copysign(plan.last + 2.0 * plan.every, last - first)
+    return [(float(law.time_at(since, begin, end)[0]), end)]
+
+
+def _sample(
+    plan: Plan, law: SpeedLaw, stretches: list[tuple[float, float]], reached: bool
+) -> tuple[Array, Array]:
+    times, angles = [np.zeros(1)], [np.array([plan.start])]
+    for begin, end in stretches:
+        if plan.in_time:
+            t = plan.between(begin, end)
+            theta = law.at_time(t)[0]
+        else:
+            turned, bound = (float(q) for q in law.at_time([begin, end])[0])
+            theta = plan.between(turned, bound)
+            # where a stretch begins on a sample, but for rounding, the one before it ends there
+            theta = theta[np.abs(theta - turned) > plan.hair]
+            t = law.time_at(theta, begin, end)
+        times.append(t)
+        angles.append(theta)
+    time, theta = np.concatenate(times), np.concatenate(angles)
+    end = stretches[-1][1]
+    theta_end = float(law.at_time(end)[0])
+    if reached and not plan.until_time:
+        low, high = plan.angle_bounds
+        theta_end = high if theta_end > plan.start else low
+    is_end = (time >= end) if plan.in_time else (time >= end * (1.0 - 1e-12))
+    near = abs(time[-1] - end) if plan.in_time else abs(theta[-1] - theta_end)
+    keep = ~is_end & ~((np.arange(len(time)) == len(time) - 1) & (near <= plan.hair))
+    time, theta = np.append(time[keep], end), np.append(theta[keep], theta_end)
+    first = np.flatnonzero(np.abs(theta - theta_end) > plan.last * (1.0 + 1e-12))
+    begin_at = first[-1] + 1 if len(first) else 0
+    return time[begin_at:], theta[begin_at:]
+
+
+def _panel_edges(
+    scene: Scene,
+    pressure: PeriodicPressure | None,
+    law: SpeedLaw,
+    stretches: list[tuple[float, float]],
+    time: Array,
+) -> Array:
+    """Times between which the power is smooth and short: samples, knots, corners, panels."""
+    knots = crank_angle_knots(scene, pressure)
+    edges = [time, np.array(law.corners)]
+    for begin, end in stretches:
+        a, b = (float(q) for q in law.at_time([begin, end])[0])
+        low, high = min(a, b), max(a, b)
+        count = math.ceil((high - low) / _PANEL)
+        inside = np.concatenate(
+            [repeat(knots, scene.period, low, high), np.linspace(low, high, count + 1)[1:-1]]
+        )
+        edges += [np.array([begin, end]), law.time_at(inside, begin, end)]
+    merged = np.unique(np.concatenate(edges))
+    return np.asarray(merged[(merged >= time[0]) & (merged <= time[-1])])
+
+
+def _energy_residual(
+    scene: Scene, pressure: PeriodicPressure | None, law: SpeedLaw, time: Array, edges: Array
+) -> Array:
+    """Kinetic energy gained since the first sample minus the work of gas, gravity and drive.
+
+    The work is the integral of power over time by Gauss quadrature between the edges.
+    """
+    nodes, weights = np.polynomial.legendre.leggauss(4)
+    half = 0.5 * np.diff(edges)[:, None]
+    t = edges[:-1, None] + half * (1.0 + nodes)
+    theta, omega, alpha = law.at_time(t.ravel())
+    all_of = reactions(scene, pressure, theta, omega, alpha)
+    gas = (all_of["gas_force"] * all_of["piston_velocity"]).sum(axis=1)
+    weight = reduce(scene, None, theta)[2] * omega
+    power = (all_of["external_torque"] * omega + gas + weight).reshape(t.shape)
+    work = np.concatenate([[0.0], np.cumsum((half * power) @ weights)])
+    theta, omega, alpha = law.at_time(time)
+    kinetic = reactions(scene, pressure, theta, omega, alpha)["kinetic_energy"]
+    return np.asarray(kinetic - kinetic[0] - work[np.searchsorted(edges, time)])

@@ -1,0 +1,192 @@
+"""One free rotation with time as the variable: (theta, omega), also at rest and backwards.
+
+    alpha = (T_gas + T_gravity + T_outside - J_1 omega^2 / 2) / J
+
+The `stepper` integrates piece by piece: between two knots of the pressure each cylinder keeps its
+polynomial, continued beyond the knot, and the piece is cut exactly at the knot; likewise at a bound
+of the loads' branch and at a reversal. Where a load damps the speed far faster than the crank
+turns, SciPy's Radau takes its place.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Generator
+from typing import Any, NamedTuple
+
+import numpy as np
+from scipy.integrate import Radau
+
+from crankmbs.mechanics.torque import Branch, branch_at, branch_of
+from crankmbs.motion.base import Array, State
+from crankmbs.motion.minimal import stepper
+from crankmbs.motion.minimal.reduced import Reduced
+from crankmbs.motion.minimal.stretch import BALANCED, Equation, Stretch, Track
+from crankmbs.motion.plan import Plan
+from crankmbs.numerics import kernels
+
+__all__ = ["advance"]
+
+_MOST_STEPS = 512  # of one stretch
+_RADAU = 1e-13  # finest tolerance of a step, half of it where steps are halved; SciPy's is 2.3e-14
+_PLAIN_TIME = 5e-4  # s a step that is not compiled
+
+
+def advance(
+    reduced: Reduced,
+    state: State,
+    plan: Plan,
+    tolerance: float,
+    parts: int,
+    allowed: int,
+    is_fast: Callable[[State, Branch], bool],
+) -> Generator[Stretch, None, str]:
+    """Carry the motion on, in stretches of ever more steps: a short crossing is soon over.
+
+    tolerance : relative, of each step; parts : into how many each is divided then; allowed :
+    evaluations; is_fast : whether the crank angle can take over again
+
+    Returns
+    -------
+    "end" of the plan; "fast"; "stuck" at rest in an equilibrium; "held" by a jump of a speed
+    table; "rest" when the motion has died away; "costly" when it takes more evaluations,
+    "failed" when no step is short enough
+    """
+    scale = reduced.torque_scale
+    evaluations, most, h, room = 0, 0.0, math.inf, 1
+    while evaluations < allowed:
+        equation = _enter(reduced, state, scale)
+        if isinstance(equation, str):
+            return equation
+        inertia = reduced(state.theta, equation.between.pieces)[0]
+        speed = max(abs(state.omega), math.sqrt(2.0 * scale / inertia), 1e-150)
+        h = tolerance**0.125 / speed if math.isinf(h) else h
+        bound = min(plan.time_bound, equation.branch.t_end)
+        room = min(room, (allowed - evaluations) // 12 + 1)
+        control = _Control(tolerance, speed, bound, h, most, room, parts)
+        speeds = (0.0, equation.branch.omega_low, equation.branch.omega_high)
+        limits = np.array([*equation.between[:2], *plan.angle_bounds, *speeds])
+        kernels.pay(room * _PLAIN_TIME)
+        method = _radau if equation.is_stiff(state, inertia) else _dop853
+        track = method(equation, state, control, limits)
+        if len(track.widths) == 0:
+            return "failed"
+        stretch = Stretch.of(equation, track, state)
+        yield stretch
+        state, h, most = stretch.end, track.next_step, track.most
+        evaluations, room = evaluations + track.evaluations, min(2 * room, _MOST_STEPS)
+        if state.time >= plan.time_bound or state.theta in plan.angle_bounds:
+            return "end"
+        kinetic = equation.kinetic(state.theta, state.omega)
+        if kinetic <= tolerance**2 * most and equation.is_balanced(state, scale):
+            return "rest"
+        if is_fast(state, equation.branch):
+            return "fast"
+    return "costly"
+
+
+def _enter(reduced: Reduced, state: State, scale: float) -> Equation | str:
+    """The piece that the motion enters, or why it enters none."""
+    torques = reduced.scene.torque
+    if state.omega != 0.0:
+        between = reduced.around(state.theta, math.copysign(1.0, state.omega))
+        _, slope, torque = reduced(state.theta, between.pieces)
+        rest = torque - 0.5 * slope * state.omega**2
+        branch = branch_at(torques, state.time, state.omega, rest)
+        return "held" if branch is None else Equation(reduced, between, branch)
+    sides: list[Equation] = []
+    resisted = False
+    for sense in (1.0, -1.0):
+        branch = branch_of(torques, state.time, 0.0, rising=sense > 0.0)
+        equation = Equation(reduced, reduced.around(state.theta, sense), branch)
+        pull = equation.pull(state)
+        if pull * sense > BALANCED * scale:
+            return equation
+        resisted = resisted or pull * sense < -BALANCED * scale
+        sides.append(equation)
+    if resisted:
+        return "held"
+    later = sides[1] if sides[0].branch.ct < 0.0 else sides[0]  # where a load that sets in drives
+    return "stuck" if later.is_balanced(state, scale) else later
+
+
+class _Control(NamedTuple):
+    """Tolerance of a step, speed [rad/s] to which it is relative, end in time [s], next step [s],
+    largest kinetic energy so far [J], most steps, and into how many each is divided."""
+
+    tolerance: float
+    speed: float
+    bound: float
+    h: float
+    most: float
+    room: int
+    parts: int
+
+
+def _dop853(equation: Equation, begin: State, control: _Control, limits: Array) -> Track:
+    """Steps of order 8."""
+    begins, widths = np.empty((2, control.room + 1))
+    rows, y = np.empty((control.room + 1, 8, 3)), np.array([begin.theta, begin.omega, 0.0])
+    asked = (*control[:3], control.parts)
+    start = (begin.time, control.h, control.most)
+    with np.errstate(all="ignore"):
+        n, t, h, most, evaluations = stepper.travel(
+            equation.system, asked, start, y, limits, (begins, widths, rows)
+        )
+    return Track(begins[:n], widths[:n], rows[:n], t, y, h, most, evaluations)
+
+
+def _radau(equation: Equation, begin: State, control: _Control, limits: Array) -> Track:
+    """Steps of SciPy's Radau, up to the end of the piece."""
+    parts = control.parts
+    tolerance = max(control.tolerance, _RADAU / parts)
+    atol = np.array([tolerance, tolerance * control.speed, math.inf])
+    options: dict[str, Any] = {"rtol": tolerance, "atol": atol}
+
+    def start(t: float, y: Array, bound: float, first: float, longest: float) -> Radau:
+        first = min(first, longest, bound - t)
+        return Radau(equation, t, y, bound, first_step=first, max_step=longest, **options)
+
+    track: list[tuple[float, float, Array]] = []
+    most, evaluations, y = control.most, 0, np.array([begin.theta, begin.omega, 0.0])
+    longest = (control.bound - begin.time) / parts if parts > 1 else math.inf
+    solver = start(begin.time, y, control.bound, control.h, longest)
+    t, h, i = begin.time, control.h, -1
+    while solver.status == "running" and len(track) < control.room and i < 0:
+        if solver.step():  # a sentence why it failed
+            break
+        track.append(_interpolant(solver))
+        x, i = stepper.first_exit(track[-1][2], solver.y, limits)
+        if i < 0:
+            t, y, h = float(solver.t), solver.y, solver.h_abs
+        elif x > 0.0:  # again, up to there only: its end is more exact than its inside
+            t, width, row = track.pop()
+            y = row[0]
+            again = start(t, y, t + x * width, x * width / parts, x * width / parts)
+            while again.status == "running" and not again.step():
+                track.append(_interpolant(again))
+            t, y, evaluations = float(again.t), again.y, evaluations + again.nfev
+        state = State(t, float(y[0]), float(y[1]), 0.0)
+        kinetic = equation.kinetic(state.theta, state.omega)
+        most = max(most, kinetic)
+        inertia = equation.reduced(state.theta, equation.between.pieces)[0]
+        if kinetic <= control.tolerance**2 * most or not equation.is_stiff(state, inertia):
+            break
+    y = np.array(y)
+    if i >= 0:
+        near = stepper.NEAR * track[-1][1]
+        t = stepper.land(t, y, equation(t, y), 0 if i < 4 else 1, limits[i], near)
+    begins, widths, rows = ([step[part] for step in track] for part in range(3))
+    arrays = np.array(begins), np.array(widths), np.array(rows)
+    return Track(*arrays, t, y, h, most, evaluations + solver.nfev)
+
+
+def _interpolant(solver: Radau) -> tuple[float, float, Array]:
+    """Beginning and length of the last step, and its cubic as the `stepper` takes it."""
+    dense = solver.dense_output()
+    begin, width, row = float(dense.t_min), float(dense.t_max - dense.t_min), np.zeros((8, 3))
+    old = np.asarray(solver.y_old)
+    rise = solver.y - old
+    near, far = (4.5 * (dense(begin + x * width) - old - x * rise) for x in (1 / 3, 2 / 3))
+    row[:4] = old, rise, 2.0 * near - far, 3.0 * (far - near)
+    return begin, width, row

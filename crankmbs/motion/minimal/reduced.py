@@ -1,0 +1,105 @@
+"""The crank train reduced to one rotation, at one crank angle: what the `stepper` works on.
+
+The pressure is given as the polynomials between two knots, which can be continued beyond them.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crankmbs.mechanics.inertia import reduce
+from crankmbs.mechanics.pressure import PeriodicPressure, crank_angle_knots, merged_knots
+from crankmbs.motion.minimal import stepper
+from crankmbs.motion.minimal.system import Machine, bare
+from crankmbs.scene.drives import Constant, SpeedTable, TimeTable
+from crankmbs.scene.scene import Scene
+
+__all__ = ["Between", "Reduced"]
+
+Array = NDArray[np.float64]
+
+
+class Between(NamedTuple):
+    """Two neighbouring knots [rad], and the pressure of every cylinder between them, as
+    `stepper.enter` says."""
+
+    low: float
+    high: float
+    pieces: Array
+
+
+class Reduced:
+    """J, J_1 and the torque of gas and gravity at one crank angle, in plain floats.
+
+    missed : of the largest torque, what a step across knots may miss of the gas
+    """
+
+    def __init__(
+        self, scene: Scene, pressure: PeriodicPressure | None, missed: float = 0.0
+    ) -> None:
+        crank, rod, piston = scene.crank, scene.rod, scene.piston
+        self.scene, self.pressure = scene, pressure
+        knots = crank_angle_knots(scene, pressure)
+        if len(knots) == 0:  # no step of many turns: it would overlook a light rod near a fold
+            knots = np.arange(0.0, scene.period, 0.5)
+        g = scene.gravity.acceleration if scene.gravity else 0.0
+        pull = scene.gravity.angle if scene.gravity else 0.0
+        axes = [
+            (c.phase, g * math.cos(pull - c.bank), g * math.sin(pull - c.bank))
+            for c in scene.cylinders
+        ]
+        bends = knots
+        if pressure and missed > 0.0:
+            lever = (piston.gas_area or 0.0) * crank.radius
+            bends = merged_knots(scene, pressure.bends(missed * self.torque_scale / lever))
+        first = float(pressure.knots[0]) if pressure else 0.0
+        machine = Machine(
+            radius=crank.radius,
+            rod_length=rod.length,
+            center_of_mass=rod.center_of_mass,
+            offset=piston.offset,
+            crank_inertia=crank.moment_of_inertia,
+            rod_inertia=rod.moment_of_inertia,
+            rod_mass=rod.mass,
+            piston_mass=piston.mass,
+            area=piston.gas_area or 0.0,
+            first_moment=crank.mass * crank.center_of_mass,
+            gravity_x=g * math.cos(pull),
+            gravity_y=g * math.sin(pull),
+            cylinders=np.array(axes),
+            knots=knots,
+            period=scene.period,
+            first=first,
+            starts=pressure.knots - first if pressure else np.empty(0),
+            coefficients=pressure.coefficients.copy() if pressure else np.empty((4, 0)),
+            bends=bends,
+        )
+        self.machine = bare(machine)
+
+    def around(self, theta: float, sense: float) -> Between:
+        """The knots next to theta in the sense of rotation, and the polynomials between them."""
+        pieces = np.zeros((len(self.scene.cylinders), 6))
+        low, high = stepper.enter(theta, sense, self.machine, pieces)
+        return Between(low, high, pieces)
+
+    @cached_property
+    def torque_scale(self) -> float:
+        """Largest torque of gas and gravity over one period, and of constant and tabled loads
+        [N m]."""
+        load = sum(
+            abs(t.torque) if isinstance(t, Constant) else max(map(abs, t.file.y))
+            for t in self.scene.torque
+            if isinstance(t, Constant | TimeTable | SpeedTable)
+        )
+        angles = 0.1 + np.linspace(0.0, self.scene.period, 721)  # no fold lies there
+        torque = reduce(self.scene, self.pressure, angles)[2]
+        return load + float(np.max(np.abs(torque)))
+
+    def __call__(self, theta: float, pieces: Array) -> tuple[float, float, float]:
+        """J [kg m2], dJ/dtheta [kg m2/rad], torque of gas and gravity [N m]."""
+        return stepper.reduced(theta, self.machine, pieces)

@@ -1,0 +1,342 @@
+"""Steps over time of one free rotation, compiled by numba where that pays
+(`crankmbs.numerics.kernels`).
+
+All that is evaluated step by step: the crank train reduced to one rotation, and the method of
+Dormand and Prince of order 8; in scalars, so that they and `mechanics.inertia` check each other.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crankmbs.motion.minimal.dop853 import E3, E5, A, C, D
+from crankmbs.motion.minimal.system import Machine, System
+from crankmbs.numerics.kernels import kernel
+
+__all__ = ["NEAR", "enter", "first_exit", "land", "reduced", "slopes", "travel"]
+
+Array = NDArray[np.float64]
+Asked = tuple[float, float, float, int]  # as in `travel`
+Steps = tuple[Array, Array, Array]  # beginnings and lengths [s], and rows as in `first_exit`
+
+_PASSED = 1e-9  # rad: a knot this close ahead has been passed
+_MANY, _FAR = 4.0, 0.5  # knots apart; rad: longer steps roam across knots, none so long
+NEAR = 0.01  # of a step: a landing is as close to its limit
+_BISECTIONS, _SCAN = 60, 16
+_HARD = 1e3 / math.radians(5.0)  # 1/rad: damped a thousand times while the crank turns 5 degrees
+
+
+@kernel
+def enter(theta: float, sense: float, machine: Machine, pieces: Array) -> tuple[float, float]:
+    """The knots next to theta in the sense of rotation; fills ``pieces``.
+
+    pieces : shape (cylinders, 6), of every cylinder's pressure between the two: the crank angle
+        [rad] where its cubic begins, its coefficients [Pa], highest power first, and the width
+        after which `reduced` takes the next one; 0, where it is continued
+    """
+    base, low, high = _beside(machine[13], theta + sense * _PASSED, machine[14])
+    for j in range(len(pieces) if len(machine[16]) > 0 else 0):
+        _fill(j, base, 0.5 * (low + high), machine, pieces)
+        pieces[j, 5] = 0.0
+    return base + low, base + high
+
+
+@kernel
+def _beside(knots: Array, theta: float, period: float) -> tuple[float, float, float]:
+    """Where the period at an angle begins, and from there the knots beside; infinite without
+    any."""
+    base = math.floor(theta / period) * period
+    if len(knots) == 0:
+        return base, -math.inf, math.inf
+    k = _passed(knots, theta - base)
+    low = knots[k - 1] if k > 0 else knots[-1] - period
+    high = knots[k] if k < len(knots) else knots[0] + period
+    return base, float(low), float(high)
+
+
+@kernel
+def _fill(j: int, base: float, local: float, machine: Machine, pieces: Array) -> None:
+    """Put the cubic of cylinder j at the crank angle base + local into ``pieces``, to its end."""
+    cylinders, _, _, first, starts, coefficients = machine[12:18]
+    within = (local + cylinders[j, 0] - first) % starts[-1]
+    i = min(_passed(starts, within), len(starts) - 1) - 1
+    pieces[j, 0] = base + local - (within - starts[i])
+    for power in range(4):
+        pieces[j, 1 + power] = coefficients[power, i]
+    pieces[j, 5] = starts[i + 1] - starts[i]
+
+
+@kernel
+def _roam(y: Array, h: float, machine: Machine, pieces: Array, limits: Array, roams: bool) -> bool:
+    """Whether a step is so long that it roams across knots; ``limits`` are then only those where a
+    pressure bends, and ``pieces`` end with their knots."""
+    theta, sense = float(y[0]), math.copysign(1.0, y[1])
+    if roams:
+        limits[0], limits[1] = enter(theta, sense, machine, pieces)
+    if abs(y[1]) * h <= _MANY * (limits[1] - limits[0]):
+        return False
+    for j in range(len(pieces)):
+        _fill(j, 0.0, theta, machine, pieces)
+    base, low, high = _beside(machine[18], theta + sense * _PASSED, machine[14])
+    limits[0], limits[1] = base + low, base + high
+    return True
+
+
+@kernel
+def _passed(knots: Array, value: float) -> int:
+    """How many of the increasing knots are not above a value."""
+    low, high = -1, len(knots)
+    while high - low > 1:
+        middle = (low + high) // 2
+        low, high = (middle, high) if knots[middle] <= value else (low, middle)
+    return high
+
+
+@kernel
+def reduced(theta: float, machine: Machine, pieces: Array) -> tuple[float, float, float]:
+    """J [kg m2], dJ/dtheta [kg m2/rad], torque of gas and gravity [N m]."""
+    r, l, a, e, i_crank, i_rod, m_rod, m_piston, area, unbalance, gx, gy, cylinders = machine[:13]
+    spare, far = max(l - r - abs(e), 0.0), abs(e)
+    inertia, slope = i_crank, 0.0
+    torque = unbalance * (gy * math.cos(theta) - gx * math.sin(theta))
+    for j in range(len(pieces)):
+        phi = theta + float(cylinders[j, 0])
+        gx, gy = float(cylinders[j, 1]), float(cylinders[j, 2])
+        sin_p, cos_p = math.sin(phi), math.cos(phi)
+        sin_b = (r * sin_p - e) / l
+        wide = 1.0 + abs(sin_p)
+        narrow = cos_p * cos_p / wide
+        above, below = (narrow, wide) if sin_p > 0.0 else (wide, narrow)  # 1 - sin_p, 1 + sin_p
+        cos_b = math.sqrt((spare + far + e + r * above) * (spare + far - e + r * below)) / l
+        b1 = r * cos_p / (l * cos_b)
+        towards = (below if e >= 0.0 else above) / l
+        bend = sin_p * (spare / l) * (1.0 + (r + far) / l) + e * r * towards * towards
+        b2 = -r * bend / (l * cos_b * cos_b * cos_b)
+        x1 = -r * sin_p - l * sin_b * b1
+        x2 = -r * cos_p - l * (cos_b * b1 * b1 + sin_b * b2)
+        gx1, gy1 = -r * sin_p - a * sin_b * b1, r * cos_p - a * cos_b * b1
+        gx2 = -r * cos_p - a * (cos_b * b1 * b1 + sin_b * b2)
+        gy2 = -r * sin_p - a * (cos_b * b2 - sin_b * b1 * b1)
+        inertia += m_piston * x1 * x1 + m_rod * (gx1 * gx1 + gy1 * gy1) + i_rod * b1 * b1
+        slope += 2.0 * (m_piston * x1 * x2 + m_rod * (gx1 * gx2 + gy1 * gy2) + i_rod * b1 * b2)
+        if pieces[j, 5] > 0.0 and not 0.0 <= theta - pieces[j, 0] <= pieces[j, 5]:
+            _fill(j, 0.0, theta, machine, pieces)
+        d = theta - float(pieces[j, 0])
+        cubic = (float(pieces[j, 1]) * d + float(pieces[j, 2])) * d + float(pieces[j, 3])
+        gas = area * (cubic * d + float(pieces[j, 4]))
+        torque += (m_piston * gx - gas) * x1 + m_rod * (gx * gx1 + gy * gy1)
+    return inertia, slope, torque
+
+
+@kernel
+def slopes(t: float, y: Array, system: System, out: Array) -> None:
+    """Slopes of (theta, omega, work) in time; no numbers where a trial step went far too far."""
+    theta, omega, (machine, pieces, load) = float(y[0]), float(y[1]), system
+    out[0] = out[1] = out[2] = math.nan
+    if math.isfinite(theta * omega):
+        inertia, slope, torque = reduced(theta, machine, pieces)
+        torque += load[0] + load[1] * t + (load[2] + load[3] * omega) * omega
+        alpha, power = (torque - 0.5 * slope * omega * omega) / inertia, torque * omega
+        if math.isfinite(alpha * power):
+            out[0], out[1], out[2] = omega, alpha, power
+
+
+@kernel
+def _stages(
+    which: range, t: float, h: float, y: Array, system: System, k: Array, at: Array
+) -> None:
+    """The slopes k of some stages of a step from y; leaves the state of the last one in ``at``."""
+    for s in which:
+        for q in range(3):
+            rise = 0.0
+            for i in range(s):
+                rise += float(A[s, i]) * float(k[i, q])
+            at[q] = float(y[q]) + h * rise
+        slopes(t + h * float(C[s]), at, system, k[s])
+
+
+@kernel
+def _error(h: float, k: Array, allowed: tuple[float, float]) -> float:
+    """A step's error over what is allowed of angle and speed, from estimates of order 5 and 3.
+
+    The work takes no part: its order 3 estimate, in the same sum, would hide that of the speed.
+    """
+    five = three = 0.0
+    for q in range(2):
+        by_five = by_three = 0.0
+        for i in range(13):
+            by_five += float(E5[i]) * float(k[i, q])
+            by_three += float(E3[i]) * float(k[i, q])
+        five, three = five + (by_five / allowed[q]) ** 2, three + (by_three / allowed[q]) ** 2
+    return h * five / math.sqrt(2.0 * (five + 0.01 * three)) if five != 0.0 else 0.0
+
+
+@kernel
+def _interpolate(
+    t: float, h: float, y: Array, new: Array, system: System, k: Array, row: Array
+) -> None:
+    """The interpolant of order 7 of a step from y to ``new``, as `first_exit` takes it."""
+    _stages(range(13, 16), t, h, y, system, k, row[0])
+    for q in range(3):
+        rise, first, last = new[q] - y[q], h * k[0, q], h * k[12, q]
+        row[0, q], row[1, q], row[2, q] = y[q], rise, first - rise
+        row[3, q] = 2.0 * rise - first - last
+        for p in range(4):
+            total = 0.0
+            for i in range(16):
+                total += float(D[p, i]) * float(k[i, q])
+            row[4 + p, q] = h * total
+
+
+@kernel
+def _value(row: Array, q: int, x: float) -> float:
+    """Component q of an interpolant at the fraction x of its step."""
+    y = 0.0
+    for i in range(7):
+        y = (y + float(row[7 - i, q])) * (x if i % 2 == 0 else 1.0 - x)
+    return float(row[0, q]) + y
+
+
+@kernel
+def first_exit(row: Array, new: Array, limits: Array) -> tuple[float, int]:
+    """Fraction of a step where the motion first leaves a limit, and its number; or (1, -1).
+
+    row : shape (8, 3), of (theta, omega, work): the value y at the beginning, then f with
+        y + x (f1 + (1 - x) (f2 + x (f3 + (1 - x) (...)))) at the fraction x of the step
+    new : shape (3,), the values at the end
+    limits : shape (7,), four crank angles [rad], then three speeds [rad/s], of which one is 0
+    """
+    first, which = 1.0, -1
+    push = float(row[1, 1] + row[2, 1])  # the acceleration gives the sense of a start on a speed
+    for i in (4, 5, 6, 0, 1, 2, 3):  # the angle is monotone up to the reversal
+        limit, q = float(limits[i]), 0 if i < 4 else 1
+        begin = float(row[0, q]) - limit
+        sense = push if i >= 4 and begin == 0.0 else begin
+        if sense == 0.0 or math.isinf(limit):
+            continue
+        low, high, near, least, most = 0.0, -1.0, 0.0, math.inf, 0.0
+        scan, left = 1 if i < 4 else _SCAN, begin != 0.0  # a speed may come back within the step
+        for j in range(1, scan + 1):
+            x = first * j / scan
+            inside = sense * ((float(new[q]) if x == 1.0 else _value(row, q, x)) - limit)
+            if inside < 0.0 and not left:  # before, it must have left to the side it is pushed
+                low = _lowest(row, q, -sense, low, x)
+                left = sense * (_value(row, q, low) - limit) > 0.0
+            if (inside < 0.0 and left) or (i < 4 and inside == 0.0):
+                high = x
+                break
+            low, left = (x, True) if inside > 0.0 else (low, left)
+            near, least, most = x if inside < least else near, min(inside, least), max(inside, most)
+        if high < 0.0 and left and scan * least < most:  # it may have left between two of them
+            low = max(near - first / scan, 0.0)
+            x = _lowest(row, q, sense, low, min(near + first / scan, first))
+            high = x if sense * (_value(row, q, x) - limit) < 0.0 else high
+        for _ in range(_BISECTIONS if high >= 0.0 else 0):
+            middle = 0.5 * (low + high)
+            outside = sense * (_value(row, q, middle) - limit) < 0.0
+            low, high = (low, middle) if outside else (middle, high)
+        if high >= 0.0 and (high < first or which < 0):
+            first, which = high, i
+    return first, which
+
+
+@kernel
+def _lowest(row: Array, q: int, sign: float, low: float, high: float) -> float:
+    """Where component q of an interpolant, times a sign, is lowest between two fractions."""
+    for _ in range(_BISECTIONS):
+        third = (high - low) / 3.0
+        falls = sign * _value(row, q, low + third) > sign * _value(row, q, high - third)
+        low, high = (low + third, high) if falls else (low, high - third)
+    return low
+
+
+@kernel
+def land(t: float, y: Array, slope: Array, q: int, limit: float, within: float) -> float:
+    """Put component q of a state on a limit close to it; the time of that, if it is ``within``."""
+    late = (limit - y[q]) / slope[q] if abs(limit - y[q]) < within * abs(slope[q]) else 0.0
+    speed = y[1] + slope[1] * late
+    y[0], y[1] = y[0] + slope[0] * late, speed if speed * y[1] > 0.0 else 0.0  # it turns there
+    y[q] = limit
+    return t + late
+
+
+@kernel
+def travel(
+    system: System, control: Asked, start: tuple[float, ...], y: Array, limits: Array, steps: Steps
+) -> tuple[int, float, float, float, int]:
+    """Step from knot to knot while the loads keep their branch; fill ``steps``, and return their
+    number, time, next step, largest kinetic energy, and evaluations.
+
+    Every piece keeps its own cubics beyond the knot, and is cut at the knot: there the step is
+    taken again, as its end is more exact than its inside. A step much longer than knots are apart
+    roams across those where no pressure bends. It ends where all room is used, at any
+    other limit, at the end in time, where no step is short enough, and where the motion dies away
+    or is damped hard.
+
+    control : tolerance of a step, speed [rad/s] to which it is relative, end in time [s], and into
+        how many every step is divided: of a second answer none is as long as of the first
+    start : time [s], next step [s], largest kinetic energy so far [J]
+    y : shape (3,), theta, omega, work; limits : as in `first_exit`; carried on, as the pieces are
+    """
+    (tolerance, speed, t_bound, parts), (t, h, most), (begins, widths, rows) = control, start, steps
+    k, new, (machine, pieces, load) = np.empty((16, 3)), np.empty(3), system
+    n, evaluations, entered, roams = 0, 0, True, False
+    while n + parts <= len(widths):
+        if entered:
+            slopes(t, y, system, k[0])
+            evaluations, entered = evaluations + 1, False
+        least, refused = 2e-15 * t, False
+        h = max(h, least)
+        if len(machine[18]) < len(machine[13]):
+            roams = _roam(y, h, machine, pieces, limits, roams)
+            h = min(h, _FAR / abs(y[1])) if roams else h
+        while True:
+            width = min(h, t_bound - t)
+            _stages(range(1, 13), t, width, y, system, k, new)
+            fastest = speed + max(abs(float(y[1])), abs(float(new[1])))
+            error = _error(width, k, (tolerance, tolerance * fastest))
+            evaluations += 12
+            if error < 1.0:
+                break
+            shrunk, refused = 0.9 * error**-0.125, True
+            h = width * (shrunk if shrunk > 0.2 else 0.2)
+            if h <= least:
+                return n, t, h, most, evaluations
+        grown = min(10.0, 0.9 * error**-0.125) if error > 0.0 else 10.0
+        h = width * (min(grown, 1.0) if refused else grown)
+        _interpolate(t, width, y, new, system, k, rows[n])
+        evaluations += 3
+        x, i = first_exit(rows[n], new, limits)
+        end, cut = t_bound if width == t_bound - t else t + width, i >= 0 and x > 0.0
+        again = cut or (i < 0 and parts > 1)
+        width = (x if cut else 1.0) * width / (parts if again else 1)
+        for j in range(parts if again else 1):
+            if again:
+                _stages(range(1, 13), t, width, y, system, k, new)
+                _interpolate(t, width, y, new, system, k, rows[n])
+                evaluations += 15
+            begins[n], widths[n] = t, width
+            n += 1
+            if again or i < 0:  # and not where the motion leaves at once
+                t = t + width if cut or j + 1 < parts else end
+                for q in range(3):
+                    y[q], k[0, q] = new[q], k[12, q]
+        if again and not cut:  # the better end may be beyond a limit that the first was before
+            i = first_exit(rows[n - 1], new, limits)[1]
+        if i >= 0:
+            t = land(t, y, k[0], 0 if i < 4 else 1, float(limits[i]), NEAR * width)
+            ends = i > 1 or y[0] == limits[2] or y[0] == limits[3]
+            if ends or y[1] == 0.0 or not limits[5] < y[1] < limits[6]:
+                break
+            sense, entered = math.copysign(1.0, y[1]), True
+            limits[0], limits[1] = enter(float(y[0]), sense, machine, pieces)
+            roams = False
+        inertia, omega = reduced(float(y[0]), machine, pieces)[0], float(y[1])
+        kinetic, damping = 0.5 * inertia * omega * omega, load[2] + 2.0 * load[3] * omega
+        most, hard = max(most, kinetic), abs(damping) > _HARD * inertia * abs(omega)
+        if hard or kinetic <= tolerance * tolerance * most or t >= t_bound:
+            break
+    return n, t, h, most, evaluations

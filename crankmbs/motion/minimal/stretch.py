@@ -1,0 +1,165 @@
+"""The equation of motion over time on one piece, and its solution on a stretch of steps."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crankmbs.mechanics.inertia import reduce
+from crankmbs.mechanics.torque import Branch
+from crankmbs.motion.base import Array, Samples, State
+from crankmbs.motion.minimal import stepper
+from crankmbs.motion.minimal.reduced import Between, Reduced
+from crankmbs.motion.minimal.system import System
+from crankmbs.motion.plan import Plan
+from crankmbs.numerics.roots import invert_monotone
+from crankmbs.scene.schema import DEGREE
+
+__all__ = ["BALANCED", "Equation", "Stretch", "Track"]
+
+BALANCED = 1e-13  # of the largest torque: what the rounding of an angle leaves at a dead centre
+
+
+@dataclass(frozen=True)
+class Equation:
+    """The equation of motion on one piece: between two knots and on one branch of the loads."""
+
+    reduced: Reduced
+    between: Between
+    branch: Branch
+
+    def __call__(self, t: float, y: Array) -> Array:
+        """Slopes of (theta, omega, work) in time."""
+        out = np.empty(3)
+        with np.errstate(all="ignore"):
+            stepper.slopes(t, y, self.system, out)
+        return out
+
+    @property
+    def system(self) -> System:
+        """The same for `crankmbs.motion.minimal.stepper`."""
+        return self.reduced.machine, self.between.pieces, self.branch.coefficients
+
+    def outside(self, t: float, omega: float) -> float:
+        """Torque from outside [N m]."""
+        b = self.branch
+        return b.c0 + b.ct * t + (b.c1 + b.c2 * omega) * omega
+
+    def is_stiff(self, state: State, inertia: float) -> bool:
+        """Whether the loads damp the speed a thousand times while the crank turns 5 degrees, and
+        what they had to damp is gone: while it still dies away small steps are needed anyway."""
+        damping = abs(self.branch.c1 + 2.0 * self.branch.c2 * state.omega) / inertia
+        strong = damping * 5.0 * DEGREE > 1e3 * abs(state.omega)
+        return strong and abs(self.pull(state)) < 0.01 * inertia * damping * abs(state.omega)
+
+    def is_balanced(self, state: State, scale: float) -> bool:
+        """Whether no torque acts on a crank at rest here, now or later."""
+        changes = self.branch.ct != 0.0 or math.isfinite(self.branch.t_end)
+        return not changes and abs(self.pull(state._replace(omega=0.0))) <= BALANCED * scale
+
+    def pull(self, state: State) -> float:
+        """Torque of gas, gravity and loads at a state [N m]."""
+        torque = self.reduced(state.theta, self.between.pieces)[2]
+        return torque + self.outside(state.time, state.omega)
+
+    def kinetic(self, theta: float, omega: float) -> float:
+        """Kinetic energy [J]."""
+        return 0.5 * self.reduced(theta, self.between.pieces)[0] * omega * omega
+
+
+class Track(NamedTuple):
+    """Steps one after the other.
+
+    begins, widths : shape (n,) [s]
+    rows : shape (n, 8, 3), their interpolants, as in `crankmbs.motion.minimal.stepper.first_exit`
+    time [s], y : the end, and (theta, omega, work) there
+    next_step [s] : what the error control proposes; most [J] : largest kinetic energy so far
+    """
+
+    begins: Array
+    widths: Array
+    rows: Array
+    time: float
+    y: Array
+    next_step: float
+    most: float
+    evaluations: int
+
+    def at(self, t: Array, k: NDArray[np.intp]) -> Array:
+        """(theta, omega, work), shape (3, n), at times in the steps k."""
+        x = ((t - self.begins[k]) / self.widths[k])[:, None]
+        row = self.rows[k]
+        y = np.zeros((len(t), 3))
+        for i in range(7):
+            y = (y + row[:, 7 - i]) * (x if i % 2 == 0 else 1.0 - x)
+        return np.asarray((row[:, 0] + y).T)
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """Steps on one branch of the loads in one sense of rotation, across any number of knots."""
+
+    equation: Equation
+    track: Track
+    begin: State
+    end: State
+
+    @staticmethod
+    def of(equation: Equation, track: Track, begin: State) -> Stretch:
+        """The steps of a track, and the state after them."""
+        theta, omega, work = track.y.tolist()
+        gained = equation.kinetic(theta, omega) - equation.kinetic(begin.theta, begin.omega)
+        end = State(track.time, theta, omega, begin.residual + gained - work)
+        return Stretch(equation, track, begin, end)
+
+    @property
+    def steps(self) -> int:
+        """Accepted steps."""
+        return len(self.track.widths)
+
+    @property
+    def evaluations(self) -> int:
+        """Evaluations of the equation of motion."""
+        return self.track.evaluations
+
+    def sample(self, plan: Plan) -> Samples:
+        """The samples of the plan after the beginning, up to the end and with it."""
+        track = self.track
+        if plan.in_time:
+            t = plan.between(self.begin.time, self.end.time)
+            k = np.maximum(np.searchsorted(track.begins, t, side="left") - 1, 0)
+            return self._samples(t, k)
+        theta = plan.between(self.begin.theta, self.end.theta)
+        sense = math.copysign(1.0, self.end.theta - self.begin.theta)
+        passed = np.searchsorted(sense * track.rows[:, 0, 0], sense * theta, side="left")
+        k = np.maximum(passed - 1, 0)
+        ends = np.append(track.begins[1:], self.end.time)
+
+        def angle(t: Array) -> tuple[Array, Array]:
+            y = track.at(t, k)
+            return y[0], y[1]
+
+        t = invert_monotone(angle, theta, track.begins[k], ends[k])
+        return self._samples(t, k, theta)
+
+    def last(self) -> Samples:
+        """The one sample at the end."""
+        t, theta = np.array([self.end.time]), np.array([self.end.theta])
+        at = self._samples(t, np.array([self.steps - 1]), theta)
+        return replace(at, omega=np.array([self.end.omega]))
+
+    def _samples(self, t: Array, k: NDArray[np.intp], theta: Array | None = None) -> Samples:
+        reached, omega, work = self.track.at(t, k)
+        theta = reached if theta is None else theta
+        # on a step of the pressure the value after it counts, here as in the joint forces
+        reduced = self.equation.reduced
+        inertia, slope, torque = reduce(reduced.scene, reduced.pressure, theta)
+        outside = self.equation.branch(t, omega)
+        alpha = (torque + outside - 0.5 * slope * omega**2) / inertia
+        start = self.equation.kinetic(self.begin.theta, self.begin.omega)
+        residual = self.begin.residual + 0.5 * inertia * omega**2 - start - work
+        return Samples(t, theta, omega, alpha, residual, {"external_torque": outside})

@@ -1,0 +1,55 @@
+"""What the `stepper` solves, in plain numbers and arrays."""
+
+from __future__ import annotations
+
+from typing import NamedTuple, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Machine", "System", "bare"]
+
+Array = NDArray[np.float64]
+
+
+class Machine(NamedTuple):
+    """The reduced crank train.
+
+    radius, rod_length, center_of_mass, offset [m]; crank_inertia, rod_inertia [kg m2]; rod_mass,
+    piston_mass [kg]; area [m2]; first_moment [kg m] of the crank; gravity_x, gravity_y [m/s2]
+    cylinders : shape (n, 3), phase [rad], gravity along and across the axis [m/s2]
+    knots : shape (k,) [rad], crank angles in one period where a step must end
+    period, first [rad] : of the crank train; first knot of the pressure
+    starts, coefficients : knots of the pressure behind its first one, and its cubics; may be empty
+    """
+
+    radius: float
+    rod_length: float
+    center_of_mass: float
+    offset: float
+    crank_inertia: float
+    rod_inertia: float
+    rod_mass: float
+    piston_mass: float
+    area: float
+    first_moment: float
+    gravity_x: float
+    gravity_y: float
+    cylinders: Array
+    knots: Array
+    period: float
+    first: float
+    starts: Array
+    coefficients: Array
+    bends: Array
+
+
+System = tuple[Machine, Array, tuple[float, float, float, float]]
+"""The equation of motion between two knots: machine, pressure as `stepper.enter` fills it,
+and the load's c0, ct, c1, c2 of `crankmbs.mechanics.torque`."""
+
+
+def bare(machine: Machine) -> Machine:
+    """The same as a tuple without a name: numba's cache on disk is lost, with an error, when a
+    class that it names changes its place."""
+    return cast(Machine, tuple(machine))

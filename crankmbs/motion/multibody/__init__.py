@@ -1,0 +1,64 @@
+"""Crank, rods and pistons as rigid bodies on joints, in exudyn: the independent check.
+
+Every body has its own coordinates, every joint its multipliers: nothing of the reduced mechanics
+is used, except that the loop closure gives consistent initial positions and speeds. The method
+(generalized alpha, index 3) is of order 2; runs at step sizes halved again and again give the
+answer, extrapolated where that is sound, and its error.
+"""
+
+from __future__ import annotations
+
+import math
+
+from crankmbs.motion.base import Array, Samples, Solution
+from crankmbs.motion.multibody.beside import errors_beside_jumps
+from crankmbs.motion.multibody.error import Convergence, relative_error
+from crankmbs.motion.multibody.runs import Runs
+from crankmbs.motion.multibody.samples import Sampled, aligned_variables
+from crankmbs.scene.scene import Scene
+
+__all__ = ["run"]
+
+_WORSE = 2.0  # a halving that makes the error so much larger only adds rounding
+_MOTION = ("time", "crank_angle", "crank_speed", "crank_acceleration", "energy_residual")
+
+
+def run(scene: Scene, rtol: float, cost_cap: float) -> Solution:
+    """Run the multibody model; halve its step until ``rtol`` is met or ``cost_cap`` [s] is near.
+
+    Raises
+    ------
+    FormulationError : exudyn cannot take a single step of this scene
+    InputError : a speed table that ends before the run does
+    """
+    runs = Runs(scene, cost_cap)
+    try:
+        status, message = runs.first()
+        convergence = Convergence(runs.erratic_order)
+        sampled = [Sampled(runs.problem, runs.paths[-1])]
+        answer: dict[str, Array] = {}
+        worst = latest = before = math.inf
+        while not answer or (worst > rtol and runs.affords_another()):
+            if not runs.halve():
+                message += "; at a finer step exudyn's Newton iteration does not converge"
+                if not answer:
+                    answer, errors = convergence.answer(aligned_variables(runs.problem, sampled))
+                break
+            sampled = [*sampled, Sampled(runs.problem, runs.paths[-1])][-3:]
+            found = convergence.answer(aligned_variables(runs.problem, sampled))
+            latest, before = relative_error(*found), latest
+            if latest < worst or not answer:
+                (answer, errors), worst = found, latest
+            elif latest > _WORSE * worst:
+                break
+        errors = errors_beside_jumps(runs.problem, answer, errors)
+        if not runs.moves:
+            answer = {name: values[:1] for name, values in answer.items()}
+        elif worst > rtol:
+            message += runs.shortfall(rtol, worst, before / latest)
+    finally:
+        runs.close()
+    own = {name: value for name, value in answer.items() if name not in _MOTION}
+    time, theta, omega, alpha, residual = (answer[name] for name in _MOTION)
+    samples = Samples(time, theta, omega, alpha, residual, own)
+    return Solution(samples, status, message, runs.iterations, runs.steps, errors=errors)

@@ -1,0 +1,161 @@
+"""From runs at step sizes h, h/2, h/4, ... to one answer and its error."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from crankmbs.mechanics.variables import VARIABLES
+from crankmbs.motion.base import Array
+
+__all__ = ["Convergence", "relative_error"]
+
+_SAFETY = 1.5
+_UNPROVEN = 5.0  # instead, where two runs say nothing about an order
+_SHARE = 1.0 / 8.0  # of what is usual beside it: what changes less does so by chance
+_BENT = 1.0 / 32.0  # of D, what bends within the steps leave in a first correction
+_ROUNDING = 5e-13  # of a variable's peak: what Newton's method and the interpolation leave
+_OF_ANGLE = ("rod_angle", "piston_position", "piston_displacement")
+_FAST = 32.0  # a halving that gains more: at a given angle these err by their interpolation alone
+_NOTHING = 1e-10  # of the largest value of its unit
+
+Runs = Sequence[Mapping[str, Array]]
+
+
+class Convergence:
+    """Answer and error of a sequence of runs, each at half the step of the one before.
+
+    With f, f', f'' of the last runs, coarse to fine, a halving changes a variable by
+    D = max |f'' - f'| and its correction, the answer extrapolated at order 2, by
+    X = max |f'' + (f'' - f')/3 - f' - (f' - f)/3|. All D and X so far are kept.
+
+    order : power of the step with which the erratic part of an error goes at least: 1 where loads
+        jump within a step, 2 where they bend, else 3
+    """
+
+    def __init__(self, order: int) -> None:
+        self._shrinks = 2.0**order
+        self._changes: dict[str, list[float]] = {}
+        self._corrections: dict[str, list[float]] = {}
+
+    def answer(self, runs: Runs) -> tuple[dict[str, Array], dict[str, float]]:
+        """The variables, corrected where that is sound, and an absolute error for each.
+
+        The correction is taken where the slopes agree to it, 3 X <= D, and no jump lies within a
+        step; the error is then about X. Elsewhere the answer is the finest run, with an error of
+        about D. Of what depends on the angle alone only the interpolation between steps errs, at
+        samples in angle; where a halving gained more than 32-fold the next would gain as much, and
+        D/8 is stated. All are stated half as large again. A variable that is but rounding beside
+        the others of its unit is zero.
+
+        runs : the last three at most, coarsest first, at the same samples; each call adds one. Of
+            one alone the error is unknown, infinite. "ahead", the crank angle at the same times,
+            gives the crank angle's error and is left out
+        """
+        answer = dict(runs[-1])
+        errors = dict.fromkeys(answer, math.inf)
+        if len(runs) > 1:
+            self._compare(runs)
+            usual = self._usual() if len(runs) > 2 else self._usual_change(runs[-1])
+            for name, value in runs[-1].items():
+                peak, change = _peak(value), self._changes[name][-1]
+                error = _UNPROVEN * max(change, _SHARE * usual * peak) if change else 0.0
+                if len(runs) > 2:
+                    error = _SAFETY * self._uncorrected(name)
+                    if self._is_clean(name):
+                        answer[name] = value + (value - runs[-2][name]) / 3.0
+                        error = _SAFETY * self._corrected(name, usual)
+                errors[name] = error + _ROUNDING * peak
+        _silence(answer)
+        del answer["ahead"]
+        errors["crank_angle"] = errors.pop("ahead")
+        return answer, errors
+
+    def _compare(self, runs: Runs) -> None:
+        """Note what the last halving changed."""
+        for name, value in runs[-1].items():
+            change = value - runs[-2][name]
+            self._changes.setdefault(name, []).append(_peak(change))
+            if len(runs) > 2:
+                before = runs[-2][name] - runs[-3][name]
+                correction = _peak(before - 4.0 * change) / 3.0
+                self._corrections.setdefault(name, []).append(correction)
+
+    def _is_clean(self, name: str) -> bool:
+        return self._shrinks > 2.0 and 3.0 * self._corrections[name][-1] <= self._changes[name][-1]
+
+    def _usual_change(self, run: Mapping[str, Array]) -> float:
+        """D over the peak of the variables, the median: they all come from one motion."""
+        sizes = {name: _peak(value) for name, value in run.items()}
+        shares = [self._changes[name][-1] / size for name, size in sizes.items() if size > 0.0]
+        return float(np.median(shares))
+
+    def _usual(self) -> float:
+        """The same of X over D."""
+        shares = [
+            corrections[-1] / self._changes[name][-1]
+            for name, corrections in self._corrections.items()
+            if self._changes[name][-1] > 0.0
+        ]
+        return float(np.median(shares)) if shares else 0.0
+
+    def _corrected(self, name: str, usual: float) -> float:
+        """X, or what it must be but for chance: by those of the others, or by the one before."""
+        corrections = self._corrections[name]
+        if len(corrections) == 1:
+            least = max(_SHARE * usual, _BENT if self._shrinks < 8.0 else 0.0)
+            return max(corrections[-1], least * self._changes[name][-1])
+        return _largest(corrections, self._shrinks, 8.0, 2.0)
+
+    def _uncorrected(self, name: str) -> float:
+        """D, or what it must be but for chance, at the order of the method or of a jump."""
+        changes = self._changes[name]
+        before, last = changes[-2:]
+        if name in _OF_ANGLE and _FAST * last < before:
+            return last / 8.0
+        shrinks = min(self._shrinks, 4.0)
+        return _largest(changes, shrinks, 4.0, 0.55 * shrinks)
+
+
+def relative_error(variables: Mapping[str, Array], errors: Mapping[str, float]) -> float:
+    """The worst of all: the crank angle's per radian turned, others relative to their peak."""
+    angle = variables["crank_angle"]
+    turned = float(np.max(np.abs(angle - angle[0])))
+    worst = 0.0
+    for name, error in errors.items():
+        scale = turned if name == "crank_angle" else _peak(variables[name])
+        if name != "energy_residual" and scale > 0.0:
+            worst = max(worst, error / scale)
+    return worst
+
+
+def _largest(sizes: Sequence[float], shrinks: float, most: float, stalled: float) -> float:
+    """The last size, or what the one before leaves of itself, if that is more with no margin.
+
+    Each shrinks by as much as the one before did, but at least by ``shrinks`` and at most by
+    ``most``. Where they shrink by less than ``stalled`` it is rounding that is left, and twice the
+    larger is taken.
+    """
+    last, before = sizes[-1], sizes[-2]
+    earlier = sizes[-3] if len(sizes) > 2 else math.inf
+    if stalled * last > before or stalled * before > earlier:
+        return 2.0 * max(last, before)
+    shrunk = earlier / before if before > 0.0 and math.isfinite(earlier) else 0.0
+    return max(last, before / min(max(shrinks, shrunk), most) / _SAFETY)
+
+
+def _silence(answer: dict[str, Array]) -> None:
+    """Make zero what is but rounding beside the others of its unit, or beside speed squared."""
+    largest = {VARIABLES["crank_acceleration"].units: _peak(answer["crank_speed"]) ** 2}
+    units = {name: VARIABLES[name].units for name in answer if name in VARIABLES}
+    for name, unit in units.items():
+        largest[unit] = max(largest.get(unit, 0.0), _peak(answer[name]))
+    for name, unit in units.items():
+        if _peak(answer[name]) < _NOTHING * largest[unit]:
+            answer[name] = np.zeros_like(answer[name])
+
+
+def _peak(values: Array) -> float:
+    return float(np.max(np.abs(values), initial=0.0))

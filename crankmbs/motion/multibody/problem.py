@@ -1,0 +1,124 @@
+"""What a multibody run has to solve: where it ends, and where it jumps."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from crankmbs.errors import InputError
+from crankmbs.mechanics.pressure import pressure_of
+from crankmbs.mechanics.speed import SpeedLaw, speed_law
+from crankmbs.motion.multibody.gas import Gas
+from crankmbs.motion.plan import Plan, plan_of
+from crankmbs.scene.drives import TimeTable
+from crankmbs.scene.scene import Scene
+
+__all__ = ["Problem", "erratic_order", "jump_times", "kink_times", "problem_of"]
+
+_MOST_KINKS = 12  # in a run; each costs a run-up, and a table of more is run over as it is
+
+
+class Problem(NamedTuple):
+    """A free crank, or one on a prescribed law.
+
+    end [s] : infinite where only the crank angle ends the run
+    rests : the law comes to rest at ``end``, before the end of the run
+    """
+
+    scene: Scene
+    plan: Plan
+    gas: Gas
+    law: SpeedLaw | None
+    end: float
+    rests: bool
+
+    @property
+    def start(self) -> tuple[float, float]:
+        """Crank angle [rad] and speed [rad/s] at time 0."""
+        if self.law is None:
+            assert self.scene.start is not None
+            return self.scene.start.angle, self.scene.start.speed
+        theta, omega, _ = self.law.at_time(0.0)
+        return float(theta), float(omega)
+
+
+def problem_of(scene: Scene) -> Problem:
+    """The problem of a scene.
+
+    Raises
+    ------
+    InputError : a speed table that ends before the run does
+    """
+    plan, gas = plan_of(scene), Gas(scene, pressure_of(scene))
+    if scene.motion is None:
+        return Problem(scene, plan, gas, None, plan.time_bound, False)
+    law = speed_law(scene.motion)
+    end, rests = _end_of(law, plan)
+    return Problem(scene, plan, gas, law, end, rests)
+
+
+def jump_times(problem: Problem) -> list[float]:
+    """Times [s] above 0 at which a load or the prescribed acceleration jumps."""
+    times: set[float] = set()
+    for load in problem.scene.torque:
+        if isinstance(load, TimeTable):
+            x, y = load.file.x, load.file.y
+            times |= {x[k] for k in range(1, len(x)) if x[k] == x[k - 1] and y[k] != y[k - 1]}
+    if problem.law is not None:
+        for corner in problem.law.corners:
+            before, after = problem.law.at_time(corner * np.array([1.0 - 1e-9, 1.0 + 1e-9]))[2]
+            if abs(after - before) > 1e-6 * max(abs(after), abs(before)):
+                times.add(corner)
+    return sorted(t for t in times if t > 0.0)
+
+
+def kink_times(problem: Problem) -> list[float]:
+    """Times [s] within the run at which a load bends, if they are few.
+
+    A bend within a step, and one between the steps of an interpolation, would leave an error that
+    changes erratically with the step.
+    """
+    times = _row_times(problem)
+    return times if len(times) <= _MOST_KINKS else []
+
+
+def erratic_order(problem: Problem) -> int:
+    """Power of the step with which the erratic part of an error goes, at least; 3 at most.
+
+    It is 1 where a load jumps within a step, at a place in it that changes with the step, and 2
+    where it bends; loads over speed are not counted. No load bends a prescribed motion.
+    """
+    if problem.law is not None:
+        return 2 if set(problem.law.corners) - set(jump_times(problem)) else 3
+    return min(problem.gas.order, 2 if len(_row_times(problem)) > _MOST_KINKS else 3)
+
+
+def _row_times(problem: Problem) -> list[float]:
+    """Times [s] within the run of the rows of all loads over time."""
+    loads = (load for load in problem.scene.torque if isinstance(load, TimeTable))
+    return sorted({t for load in loads for t in load.file.x if 0.0 < t < problem.end})
+
+
+def _end_of(law: SpeedLaw, plan: Plan) -> tuple[float, bool]:
+    """Time [s] at which the prescribed motion ends, and whether it comes to rest there."""
+    begin = 0.0
+    for turn in law.turning_times:
+        end = min(turn, plan.time_bound)
+        inside = begin + 1.0 if math.isinf(end) else 0.5 * (begin + end)
+        sense = float(np.sign(law.at_time(inside)[1]))
+        bound = plan.angle_bounds[1 if sense > 0.0 else 0]
+        if sense != 0.0 and math.isfinite(bound):
+            passed = math.inf if math.isinf(end) else sense * (float(law.at_time(end)[0]) - bound)
+            if passed >= -1e-13 * abs(bound):
+                return float(law.time_at(bound, begin, end)[0]), False
+        if sense == 0.0 and math.isinf(end):
+            return begin, True
+        if end == plan.time_bound:
+            return end, False
+        begin = end
+    raise InputError(
+        f"motion.speed: the speed table ends at {begin:g} s, before the run does; "
+        "lengthen the table or shorten the run"
+    )

@@ -1,0 +1,121 @@
+"""Where a run is sampled: exactly at start + k * every, in angle or time, and at its end."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crankmbs.mechanics.variables import VARIABLES
+from crankmbs.motion.memory import Room
+from crankmbs.scene.scene import Scene
+from crankmbs.scene.schema import DEGREE
+
+__all__ = ["FOLDED", "Plan", "plan_of"]
+
+Array = NDArray[np.float64]
+
+FOLDED = "the rod folds onto the crank at {angle:.6g} degrees, where the motion is not determined"
+
+_LESS = 1.0 - 1e-6  # of a spacing: the samples that are kept beyond the last period reach so far
+_HAIR = 1e-6  # rad: so near a fold the forces still have all their digits but the last few
+
+
+@dataclass(frozen=True)
+class Plan:
+    """The samples of a run and its end.
+
+    start [rad] : crank angle at time 0
+    every : spacing, [rad] or [s]; in_time says which
+    until : end, [s] if ``until_time``, else |theta - start| [rad]
+    last [rad] : only the last stretch of this angle is kept; infinite when everything is
+    folds [rad] : crank angles, backwards and forwards, where a rod as long as crank radius and
+        offset together folds onto the crank; nothing can be said beyond
+    room : the memory for the samples
+    """
+
+    start: float
+    every: float
+    in_time: bool
+    until: float
+    until_time: bool
+    last: float = math.inf
+    folds: tuple[float, float] = (-math.inf, math.inf)
+    room: Room = field(default_factory=lambda: Room(len(VARIABLES)), compare=False)
+
+    @property
+    def angle_bounds(self) -> tuple[float, float]:
+        """Crank angles [rad] at which the run ends, backwards and forwards."""
+        reach = math.inf if self.until_time else self.until
+        return max(self.start - reach, self.folds[0]), min(self.start + reach, self.folds[1])
+
+    def folds_at(self, theta: float) -> bool:
+        """Whether a motion that ends at this angle [rad] ends at a fold."""
+        return min(abs(theta - fold) for fold in self.folds) < 1e-9
+
+    @property
+    def time_bound(self) -> float:
+        """Time [s] at which the run ends."""
+        return self.until if self.until_time else math.inf
+
+    def between(self, begin: float, end: float) -> Array:
+        """Grid values in (begin, end], in the order in which they are passed; angles or times.
+
+        Raises
+        ------
+        InputError : more than memory holds
+        """
+        origin = 0.0 if self.in_time else self.start
+        sign = 1.0 if end >= begin else -1.0
+        a, b = sorted(((begin - origin) / self.every, (end - origin) / self.every))
+        self.room.check(b - a)
+        grid = origin + self.every * np.arange(math.floor(a) - 1, math.ceil(b) + 2)
+        inside = grid[(sign * grid > sign * begin) & (sign * grid <= sign * end)]
+        return np.asarray(inside if sign > 0 else inside[::-1])
+
+    def is_end(self, value: float, end: float) -> bool:
+        """Whether a grid value and the end of the run are one sample."""
+        return abs(value - end) <= self.hair
+
+    @property
+    def hair(self) -> float:
+        """Samples nearer than this [rad or s] are one but for rounding."""
+        return 1e-9 * self.every
+
+
+def plan_of(scene: Scene) -> Plan:
+    """The plan of a scene; with every = "none" the last period at 1 degree is kept, with the sample
+    before it where it begins between two.
+
+    Raises
+    ------
+    InputError : more samples than memory holds
+
+    >>> plan_of(load_scene("coasting")).until
+    0.5
+    """
+    start = scene.motion.angle if scene.motion is not None else 0.0
+    start = scene.start.angle if scene.start is not None else start
+    until, until_time = scene.run.until.resolve(scene.period)
+    folds = _folds(scene, start)
+    if scene.run.every is None:
+        last = scene.period + _LESS * DEGREE
+        return Plan(start, DEGREE, False, until, until_time, last, folds)
+    every, in_time = scene.run.every.resolve(scene.period)
+    cylinders = len(scene.cylinders)
+    room = Room(sum(cylinders if one.per_cylinder else 1 for one in VARIABLES.values()))
+    if in_time == until_time:  # else their number shows on the way
+        room.check(until / every)
+    return Plan(start, every, in_time, until, until_time, folds=folds, room=room)
+
+
+def _folds(scene: Scene, start: float) -> tuple[float, float]:
+    """The nearest angles around ``start`` at which a rod folds, drawn in by a hair."""
+    r, l, e = scene.crank.radius, scene.rod.length, scene.piston.offset
+    angles = [0.5 * math.pi] * (l - r + e <= 1e-15 * l) + [1.5 * math.pi] * (l - r - e <= 1e-15 * l)
+    ahead = [(a - c.phase - start) % (2 * math.pi) for a in angles for c in scene.cylinders]
+    if not ahead:
+        return -math.inf, math.inf
+    return start + max(ahead) - 2 * math.pi + _HAIR, start + min(ahead) - _HAIR

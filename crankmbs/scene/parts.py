@@ -1,0 +1,257 @@
+"""What the machine is made of: crank, rod, piston, cylinders, gas, gravity.
+
+Frozen dataclasses in SI units, each checking itself. Every quantity is a float in SI units, or a
+string with its unit (``"46 mm"``), which is converted on the way in.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Literal
+
+from annotated_types import Ge, Gt, Le, Len
+from pydantic import Discriminator, Strict, Tag
+
+from crankmbs.errors import InputError, shown
+from crankmbs.scene.pressure_rows import check_rows
+from crankmbs.scene.schema import DEGREE, Float, from_file, part, si
+from crankmbs.scene.tables import Table
+
+__all__ = ["Crank", "Cylinder", "Gas", "Gravity", "Indicator", "Layout", "Piston", "Rod"]
+
+Length = Annotated[Float, Gt(0), si("length")]
+Distance = Annotated[Float, si("length")]
+Mass = Annotated[Float, Ge(0), si("mass")]
+Inertia = Annotated[Float, Ge(0), si("inertia")]
+Area = Annotated[Float, Gt(0), si("area")]
+Angle = Annotated[Float, si("angle")]
+Pressure = Annotated[Float, Gt(0), si("pressure")]
+
+_PRESSURE_COLUMNS = {
+    "pressure_bar": 1e5,
+    "pressure_kPa": 1e3,
+    "pressure_Pa": 1.0,
+    "pressure_MPa": 1e6,
+    "pressure_kgf_cm2": 98066.5,
+}
+
+
+def _number_or_word(value: object) -> str:
+    return "Word" if isinstance(value, str) and value[:1].isalpha() else "Number"
+
+
+RodInertia = Annotated[
+    Annotated[Inertia, Tag("Number")] | Annotated[Literal["two-mass"], Tag("Word")],
+    Discriminator(_number_or_word),
+]
+
+
+@part
+class Crank:
+    """Everything that turns with the crank, flywheel included.
+
+    radius [m]; inertia about the crank axis [kg m2], which a prescribed speed does without; mass
+    [kg]; center_of_mass [m] from the axis along the reference line, negative for a counterweight.
+    """
+
+    radius: Length
+    inertia: Inertia | None = None
+    mass: Mass = 0.0
+    center_of_mass: Distance = 0.0
+
+    def __post_init__(self) -> None:
+        least = self.mass * self.center_of_mass**2
+        if self.moment_of_inertia < least * (1.0 - 1e-12):
+            raise InputError(
+                f"inertia about the crank axis must be at least mass * center_of_mass^2 = "
+                f"{least:.6g} kg m^2; {self.inertia:.6g} came"
+            )
+
+    @property
+    def moment_of_inertia(self) -> float:
+        """Inertia about the crank axis [kg m2]; left out, that of a mass at its center_of_mass."""
+        return self.mass * self.center_of_mass**2 if self.inertia is None else self.inertia
+
+
+@part
+class Rod:
+    """The connecting rod.
+
+    length [m] between the pins; mass [kg]; center_of_mass [m] from the crank pin towards the
+    piston pin; inertia [kg m2] about the centre of mass, or "two-mass": m a (l - a), the inertia
+    of the lecture's two lumped masses.
+    """
+
+    length: Length
+    mass: Mass = 0.0
+    center_of_mass: Distance = 0.0
+    inertia: RodInertia = 0.0
+
+    @property
+    def moment_of_inertia(self) -> float:
+        """Inertia about the centre of mass [kg m2], the word "two-mass" resolved."""
+        if self.inertia == "two-mass":
+            return self.mass * self.center_of_mass * (self.length - self.center_of_mass)
+        return float(self.inertia)
+
+
+@part
+class Piston:
+    """mass [kg]; bore [m] or area [m2], needed with gas; offset [m] of the cylinder axis in +Y."""
+
+    mass: Mass
+    bore: Length | None = None
+    area: Area | None = None
+    offset: Distance = 0.0
+
+    def __post_init__(self) -> None:
+        if self.bore is not None and self.area is not None:
+            raise InputError("give bore or area, not both; both came")
+
+    @property
+    def gas_area(self) -> float | None:
+        """Piston area [m2], or None when neither bore nor area is given."""
+        return self.area if self.bore is None else math.pi / 4.0 * self.bore**2
+
+
+@part
+class Cylinder:
+    """phase [rad]: its cycle angle at crank angle 0; bank [rad]: its axis from the engine's X."""
+
+    phase: Angle = 0.0
+    bank: Angle = 0.0
+
+
+@part
+class Layout:
+    """Where the cylinders stand: a firing order (even, in line) or a list of cylinders."""
+
+    firing_order: Annotated[tuple[Annotated[int, Strict()], ...], Len(1)] | None = None
+    cylinders: Annotated[tuple[Cylinder, ...], Len(1)] | None = None
+
+    def __post_init__(self) -> None:
+        if (self.firing_order is None) == (self.cylinders is None):
+            came = "neither" if self.cylinders is None else "both"
+            raise InputError(f"give firing_order or cylinders, exactly one of the two; {came} came")
+        order = self.firing_order
+        if order is not None and sorted(order) != list(range(1, len(order) + 1)):
+            raise InputError(
+                f"firing_order must name each of the cylinders 1 to {len(order)} once; "
+                f"{shown(list(order))} came"
+            )
+
+    def resolve(self, period: float) -> tuple[Cylinder, ...]:
+        """The cylinders, in the order of their numbers; the k-th to fire lags k period / n."""
+        if self.cylinders is not None:
+            return self.cylinders
+        assert self.firing_order is not None
+        n = len(self.firing_order)
+        lag = {number: k for k, number in enumerate(self.firing_order)}
+        return tuple(
+            Cylinder(phase=(n - lag[number]) % n * period / n) for number in range(1, n + 1)
+        )
+
+
+@part
+class Indicator:
+    """An indicator diagram from polytropes over the cylinder's exact volume.
+
+    compression_ratio [1]; n_compression, n_expansion [1]; intake_pressure, exhaust_pressure,
+    peak_pressure [Pa], absolute; pre_expansion [1]: volume after combustion at constant pressure
+    over the volume before. A two-stroke cycle needs no exhaust_pressure: its cylinder is emptied
+    and filled at the bottom dead centre.
+    """
+
+    compression_ratio: Annotated[Float, Gt(1), Le(1e4)]
+    n_compression: Annotated[Float, Gt(0), Le(10)]
+    n_expansion: Annotated[Float, Gt(0), Le(10)]
+    intake_pressure: Pressure
+    exhaust_pressure: Pressure | None = None
+    peak_pressure: Pressure
+    pre_expansion: Annotated[Float, Ge(1)] = 1.0
+
+    def __post_init__(self) -> None:
+        if self.pre_expansion >= self.compression_ratio:
+            raise InputError(
+                f"pre_expansion must be below the compression_ratio {self.compression_ratio:.6g}, "
+                f"or nothing is left to expand; {self.pre_expansion:.6g} came"
+            )
+        reached = self.intake_pressure * self.compression_ratio**self.n_compression
+        if self.peak_pressure < reached * (1.0 - 1e-12):
+            raise InputError(
+                "peak_pressure must be at least what compression reaches, intake_pressure * "
+                f"compression_ratio^n_compression = {reached:.6g} Pa; {self.peak_pressure:.6g} came"
+            )
+
+
+@part
+class Gas:
+    """The gas in the cylinder: a periodic pressure table, or an indicator diagram.
+
+    pressure: table of crank angle [rad] and pressure [Pa]; absolute: whether the pressure is;
+    ambient [Pa]: crankcase side; stroke: 4 (period 720 degrees) or 2 (360); zero: the cycle angle
+    of the table's 0; interpolation between the rows, two of which at one angle are a jump; closing
+    [Pa]: a closing row so near the first is dropped, by default 1 % of the range.
+    """
+
+    pressure: (
+        Annotated[
+            Table,
+            from_file(
+                {"crank_angle_deg": DEGREE},
+                _PRESSURE_COLUMNS,
+                "crank angles [rad], pressures [Pa]",
+            ),
+        ]
+        | None
+    ) = None
+    indicator: Indicator | None = None
+    absolute: Annotated[bool, Strict()] = True
+    ambient: Pressure | None = None
+    stroke: Literal[2, 4] = 4
+    zero: Literal["gas_exchange_tdc", "firing_tdc"] = "gas_exchange_tdc"
+    interpolation: Literal["pchip", "linear", "cubic", "step"] = "pchip"
+    closing: Annotated[Float, Ge(0), si("pressure")] | None = None
+
+    def __post_init__(self) -> None:
+        if (self.pressure is None) == (self.indicator is None):
+            came = "neither" if self.indicator is None else "both"
+            raise InputError(f"give pressure or indicator, exactly one of the two; {came} came")
+        if self.absolute and self.ambient is None:
+            raise InputError(
+                "an absolute pressure needs ambient, the crankcase side; "
+                'give ambient = "1 bar", or absolute = false when the file is gauge'
+            )
+        if not self.absolute and self.ambient is not None:
+            raise InputError(
+                "a gauge pressure has its ambient subtracted already; remove ambient, or give "
+                "absolute = true"
+            )
+        if self.pressure is not None:
+            check_rows(self.pressure, self.period, self.absolute, self.closing)
+        if self.indicator is not None:
+            self._check_indicator(self.indicator)
+
+    @property
+    def period(self) -> float:
+        """Period of the pressure [rad]: 4 pi with stroke 4, 2 pi with stroke 2."""
+        return self.stroke * math.pi
+
+    def _check_indicator(self, indicator: Indicator) -> None:
+        if not self.absolute:
+            raise InputError("an indicator diagram is absolute; remove absolute = false")
+        if (self.zero, self.interpolation, self.closing) != ("gas_exchange_tdc", "pchip", None):
+            raise InputError(
+                "zero, interpolation and closing belong to a pressure file; remove them beside an "
+                "indicator"
+            )
+        if self.stroke == 4 and indicator.exhaust_pressure is None:
+            raise InputError("indicator: a four-stroke cycle needs its exhaust_pressure; none came")
+
+
+@part
+class Gravity:
+    """acceleration [m/s2] and the direction in which it pulls, angle [rad] from the engine's X."""
+
+    acceleration: Annotated[Float, Ge(0), si("acceleration")]
+    angle: Angle = math.pi

@@ -1,0 +1,193 @@
+"""The scene: one machine, how it moves, and for how long. Nothing here says how to solve it.
+
+Frame and signs: X along the cylinder from the crank axis to the head, Y is X turned by +90
+degrees, angles counter-clockwise.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Annotated, Literal
+
+from annotated_types import Ge, Le
+from pydantic import BeforeValidator, Strict, ValidationInfo
+
+from crankmbs.errors import InputError, shown
+from crankmbs.scene.drives import Motion, SpeedFile, Start, TimeTable, Torque
+from crankmbs.scene.parts import Crank, Cylinder, Gas, Gravity, Layout, Piston, Rod
+from crankmbs.scene.schema import DEGREE, Float, dumped, part
+from crankmbs.scene.units import EXAMPLES, extent
+
+__all__ = ["Extent", "Run", "Scene"]
+
+_FARTHEST = 1e9  # rad: its last digit is 1e-7
+_MOST_SAMPLES = 2e7  # the memory of a machine may hold less: `crankmbs.motion.memory`
+
+
+@dataclass(frozen=True, kw_only=True)
+class Extent:
+    """A stretch of angle ("rad"), of engine periods ("cycle") or of time ("s")."""
+
+    value: float
+    unit: Literal["rad", "cycle", "s"]
+
+    def __post_init__(self) -> None:
+        _check_positive(self.value, f"{self.value:g} {self.unit}")
+        if self.unit not in ("rad", "cycle", "s"):
+            raise InputError(f'unit must be "rad", "cycle" or "s"; {shown(self.unit)} came')
+
+    def resolve(self, period: float) -> tuple[float, bool]:
+        """Return (value, is_time): [s] when a time, else [rad]."""
+        return (self.value * period if self.unit == "cycle" else self.value), self.unit == "s"
+
+
+def _check_positive(number: float, came: str) -> None:
+    if not 0.0 < number < math.inf:
+        raise InputError(f"must be finite and above 0; {came} came")
+
+
+def _extent(value: object, info: ValidationInfo) -> object:
+    if isinstance(value, Extent) or dumped(value, info):
+        return value
+    if not isinstance(value, str):
+        raise InputError(
+            f"must be an angle or a time with its unit, such as {EXAMPLES['extent']}; "
+            f"{shown(value)} came"
+        )
+    number, unit = extent(value)
+    _check_positive(number, shown(value))
+    return Extent(value=number, unit=unit)  # type: ignore[arg-type]
+
+
+def _spacing(value: object, info: ValidationInfo) -> object:
+    return None if value is None or value == "none" else _extent(value, info)
+
+
+@part
+class Run:
+    """until: where the run ends; every: output spacing, or "none"; rtol; formulation by name."""
+
+    until: Annotated[Extent, BeforeValidator(_extent)]
+    every: Annotated[Extent | None, BeforeValidator(_spacing)] = Extent(value=DEGREE, unit="rad")
+    rtol: Annotated[Float, Ge(1e-13), Le(1e-2)] = 1e-8
+    formulation: Literal["auto", "kinetostatic", "crank_angle", "minimal", "multibody"] = "auto"
+
+
+@part
+class Scene:
+    """One machine, how it moves, and for how long.
+
+    Exactly one of ``motion`` (the speed is prescribed) and ``start`` (the crank is free) is given.
+    """
+
+    crank: Crank
+    rod: Rod
+    piston: Piston
+    run: Run
+    layout: Layout = Layout(cylinders=(Cylinder(),))
+    gas: Gas | None = None
+    gravity: Gravity | None = None
+    motion: Motion | None = None
+    start: Start | None = None
+    torque: tuple[Torque, ...] = ()
+    title: Annotated[str, Strict()] = ""
+    source: Annotated[str, Strict()] = ""
+
+    def __post_init__(self) -> None:
+        self._check_loop()
+        self._check_motion()
+        self._check_tables()
+        self._check_size()
+
+    @property
+    def period(self) -> float:
+        """The engine's period [rad]; without gas 4 pi."""
+        return 4.0 * math.pi if self.gas is None else self.gas.period
+
+    @cached_property
+    def cylinders(self) -> tuple[Cylinder, ...]:
+        """The cylinders in the order of their numbers, firing order resolved."""
+        return self.layout.resolve(self.period)
+
+    def _check_loop(self) -> None:
+        least = self.crank.radius + abs(self.piston.offset)
+        if self.rod.length < least * (1.0 - 1e-15):
+            raise InputError(
+                f"rod.length must be at least crank.radius + |piston.offset| = {least:.12g} m, or "
+                f"the crank cannot turn; {self.rod.length:.12g} m came"
+            )
+        if self.rod.moment_of_inertia < 0.0:  # after its length, which may be what is wrong
+            raise InputError(
+                'rod: the inertia "two-mass" needs a center_of_mass between the pins, 0 to '
+                f"{self.rod.length:.6g} m; {self.rod.center_of_mass:.6g} m came"
+            )
+        if self.gas is not None and self.piston.gas_area is None:
+            raise InputError(
+                "piston.bore: with [gas] the piston needs its bore, or its area; neither came"
+            )
+
+    def _check_motion(self) -> None:
+        if (self.motion is None) == (self.start is None):
+            came = "neither" if self.motion is None else "both"
+            raise InputError(
+                "give [motion] (the speed is prescribed) or [start] (the crank is free), "
+                f"exactly one of the two; {came} came"
+            )
+        if self.motion is not None and self.torque:
+            raise InputError(
+                "torque: with [motion] the drive is an answer, not a load; remove [[torque]], or "
+                "free the crank with [start]"
+            )
+        if self.motion is not None and self.motion.speed == 0.0 and self.run.until.unit != "s":
+            raise InputError(
+                "motion.speed: at speed 0 no angle is ever reached; until must be a time"
+            )
+        rod_turns = self.rod.moment_of_inertia > 0.0 or (
+            self.rod.mass > 0.0 and self.rod.center_of_mass != self.rod.length
+        )
+        if self.start is not None and self.crank.inertia is None:
+            raise InputError(
+                "crank.inertia: this key is missing; a free crank needs it, only a prescribed "
+                "speed, [motion], does without"
+            )
+        if self.start is not None and self.crank.inertia == 0.0 and not rod_turns:
+            raise InputError(
+                "crank.inertia: a free crank needs an inertia above 0, or nothing resists it at "
+                "the dead centres; 0 came"
+            )
+
+    def _check_tables(self) -> None:
+        tables = [load.file for load in self.torque if isinstance(load, TimeTable)]
+        if self.motion is not None and isinstance(self.motion.speed, SpeedFile):
+            tables.append(self.motion.speed.file)
+        end = self.run.until.value if self.run.until.unit == "s" else 0.0
+        for table in tables:
+            if table.x[0] > 0.0 or table.x[-1] < end:
+                raise InputError(
+                    f"{table.source}: the table must cover the run, 0 to {end:g} s; it goes from "
+                    f"{table.x[0]:g} to {table.x[-1]:g} s"
+                )
+
+    def _check_size(self) -> None:
+        """Refuse what no memory holds and what double precision cannot tell apart."""
+        until, until_time = self.run.until.resolve(self.period)
+        if not until_time and until > _FARTHEST:
+            raise InputError(
+                f"run.until: beyond {_FARTHEST / (2 * math.pi):.2g} rev an angle has too few "
+                f"digits left; {until / (2 * math.pi):.3g} rev came"
+            )
+        if self.run.every is None:
+            return
+        every, in_time = self.run.every.resolve(self.period)
+        if in_time == until_time:
+            _check_count(until / every)
+
+
+def _check_count(samples: float) -> None:
+    if samples > _MOST_SAMPLES:
+        raise InputError(
+            f"run.every: {samples:.3g} samples came, more than {_MOST_SAMPLES:.0e}; give a wider "
+            'spacing, or every = "none" to keep the last cycle alone'
+        )

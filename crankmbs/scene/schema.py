@@ -1,0 +1,118 @@
+"""The bridge to pydantic: what a frozen part of a scene is, and the fields it may have.
+
+Rules are written once, as type annotations and ``__post_init__`` checks of the dataclasses of this
+room; they hold for a TOML file and for a call from Python alike. A validation context is given for
+a TOML file, its folder, and for a scene that was saved with a result.
+"""
+
+from __future__ import annotations
+
+import math
+from numbers import Real
+from pathlib import Path
+from typing import Annotated, Any, TypeVar, dataclass_transform
+
+import pydantic
+from pydantic import BeforeValidator, ConfigDict, Strict, ValidationError, ValidationInfo
+
+from crankmbs.errors import InputError, shown
+from crankmbs.scene.sentences import sentence
+from crankmbs.scene.tables import Table, read_table
+from crankmbs.scene.units import EXAMPLES, check_size, quantity
+
+__all__ = ["DEGREE", "SAVED", "Float", "dumped", "from_file", "part", "si"]
+
+T = TypeVar("T")
+_CONFIG = ConfigDict(
+    allow_inf_nan=False, extra="forbid", validate_by_name=True, validate_by_alias=True
+)
+
+_WITH_UNIT = "one number and one unit,"
+
+DEGREE = math.pi / 180.0
+SAVED = {"saved": True}  # validation context of a dumped scene: it has its tables in itself
+Float = Annotated[float, Strict()]  # lax mode would take true as 1.0 and "3" as 3.0
+
+
+@dataclass_transform(kw_only_default=True, frozen_default=True)
+def part(cls: type[T]) -> type[T]:
+    """Make a frozen, keyword-only, validated dataclass whose constructor raises InputError."""
+    made: Any = pydantic.dataclasses.dataclass(frozen=True, kw_only=True, config=_CONFIG)(cls)
+    validate = made.__init__
+
+    def __init__(self: Any, *unnamed: Any, **values: Any) -> None:
+        if unnamed:
+            raise InputError(_by_name(made, len(unnamed)))
+        try:
+            validate(self, **values)
+        except ValidationError as error:
+            raise InputError(sentence(error, made, values, in_python=True)) from None
+
+    made.__init__ = __init__
+    return made  # type: ignore[no-any-return]
+
+
+def _by_name(made: Any, count: int) -> str:
+    called = ", ".join(f"{name}=..." for name in list(made.__pydantic_fields__)[:count])
+    return (
+        f"{made.__name__} takes its values by name, {made.__name__}({called}); {count} came without"
+    )
+
+
+def si(dimension: str) -> BeforeValidator:
+    """Accept a quantity string of this dimension, or a bare SI number.
+
+    In a file an angle or an angular speed needs its unit: 90 could mean degrees.
+    """
+
+    def convert(value: Any, info: ValidationInfo) -> float:
+        number = converted(value, info)
+        check_size(number, dimension, value)
+        return number
+
+    def converted(value: Any, info: ValidationInfo) -> float:
+        if isinstance(value, str):
+            return quantity(value, dimension)
+        if isinstance(value, bool) or not isinstance(value, Real):
+            rule = _WITH_UNIT if _of_file(info) else "a number in SI units, or text"
+            raise InputError(f"must be {rule} such as {EXAMPLES[dimension]}; {shown(value)} came")
+        if _of_file(info) and dimension in {"angle", "angular speed"}:
+            raise InputError(f"needs a unit, such as {EXAMPLES[dimension]}; {shown(value)} came")
+        try:
+            return float(value)
+        except OverflowError:
+            return math.inf
+
+    return BeforeValidator(convert)
+
+
+def dumped(value: object, info: ValidationInfo) -> bool:
+    """Whether this is a dumped dataclass; a file writes it as a string."""
+    return isinstance(value, dict) and not _of_file(info)
+
+
+def from_file(
+    x_units: dict[str, float], y_units: dict[str, float], columns: str
+) -> BeforeValidator:
+    """Accept the path of a CSV file (relative to the scene file), or a `Table` in SI units.
+
+    columns : what a caller from Python puts into such a table
+    """
+
+    def convert(value: Any, info: ValidationInfo) -> Any:
+        if isinstance(value, Table) or dumped(value, info):
+            return value
+        if info.context is SAVED:
+            raise InputError(f"must hold its rows in a saved scene; {shown(value)} came")
+        if not isinstance(value, str | Path):
+            table = f" or a Table({columns})" if info.context is None else ""
+            raise InputError(f"must be the name of a CSV file{table}; {shown(value)} came")
+        folder = info.context["folder"] if info.context else Path()
+        return read_table(folder / value, x_units, y_units)
+
+    return BeforeValidator(convert)
+
+
+def _of_file(info: ValidationInfo) -> bool:
+    """Whether this is read from a TOML file."""
+    return info.context is not None and info.context is not SAVED
