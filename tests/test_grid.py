@@ -10,7 +10,8 @@ from references import worst_ratio
 
 from crankmbs import load_scene, simulate
 from crankmbs.mechanics.inertia import reduce
-from crankmbs.mechanics.pressure import crank_angle_knots, pressure_of
+from crankmbs.mechanics.pressure import pressure_of
+from crankmbs.mechanics.train import CrankTrain, crank_angle_knots
 from crankmbs.motion.crank_angle.grid import grid_of
 from crankmbs.numerics.collocation import gauss
 from crankmbs.scene.schema import DEGREE
@@ -18,11 +19,11 @@ from validation.random_scenes import random_scene
 
 SCENE = load_scene("v_twin")
 PRESSURE = pressure_of(SCENE)
-GRID = grid_of(SCENE, PRESSURE, gauss(4))
+GRID = grid_of(CrankTrain(SCENE, PRESSURE), gauss(4))
 
 
 def test_no_knot_lies_inside_a_cell():
-    knots = crank_angle_knots(SCENE, PRESSURE)
+    knots = crank_angle_knots(CrankTrain(SCENE, PRESSURE))
     gap = np.min(np.abs(knots[:, None] - GRID.edges), axis=1)
     assert gap.max() <= 1e-12
     assert np.all(np.diff(GRID.edges) > 0.0)
@@ -32,7 +33,7 @@ def test_no_knot_lies_inside_a_cell():
 
 def test_tables_hold_what_the_angle_gives():
     at = GRID.edges[:-1, None] + np.diff(GRID.edges)[:, None] * GRID.rule.nodes
-    inertia, _, torque = reduce(SCENE, PRESSURE, at)
+    inertia, _, torque = reduce(CrankTrain(SCENE, PRESSURE), at)
     np.testing.assert_array_equal(GRID.tables[0], inertia)
     np.testing.assert_array_equal(GRID.tables[1], torque)
 
@@ -56,7 +57,7 @@ def test_cell_at_is_the_one_ahead(theta, sense):
 
 def test_without_gas():
     coasting = load_scene("coasting")
-    grid = grid_of(coasting, None, gauss(3))
+    grid = grid_of(CrankTrain(coasting, None), gauss(3))
     np.testing.assert_allclose(np.diff(grid.edges), 6.0 * DEGREE, rtol=1e-9)
 
 
@@ -93,7 +94,7 @@ def test_cells_are_narrow_around_a_fold_that_the_rod_escapes(offset, folds):
     radius = scene.crank.radius
     rod = replace(scene.rod, length=radius + abs(offset) + 1e-5 * radius)
     scene = replace(scene, rod=rod, piston=replace(scene.piston, offset=offset))
-    edges = grid_of(scene, None, gauss(3)).edges
+    edges = grid_of(CrankTrain(scene, None), gauss(3)).edges
     width = np.sqrt(2e-5)
     beside = np.min(np.abs(edges[:, None] - np.pi * np.array([0.5, 1.5])), axis=1)
     near = (beside > 0.0) & (beside < 1.01 * width)

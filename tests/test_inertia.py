@@ -8,7 +8,7 @@ import pytest
 from crankmbs import Gravity
 from crankmbs.mechanics.geometry import close_loop
 from crankmbs.mechanics.inertia import gravity_vector, reduce, rod_centre
-from crankmbs.mechanics.pressure import pressure_of
+from crankmbs.mechanics.train import CrankTrain, crank_train
 from validation.adapter import reference_variables
 from validation.oracles.arithmetic import multiprecision
 from validation.random_scenes import random_scene
@@ -28,7 +28,7 @@ def torque_from_outside(scene, omega, alpha):
 def test_every_term_of_the_equation_of_motion(seed):
     """T = J alpha + J_1 omega^2 / 2 - torque, term by term: at rest, then with one rate alone."""
     scene = random_scene(seed)
-    inertia, slope, torque = reduce(scene, pressure_of(scene), ANGLES)
+    inertia, slope, torque = reduce(crank_train(scene), ANGLES)
     held = torque_from_outside(scene, 0, 0)
     expected = {
         "torque": (torque, -held),
@@ -43,7 +43,7 @@ def test_every_term_of_the_equation_of_motion(seed):
 
 def test_the_gas_is_left_out_on_request():
     scene = replace(random_scene(0), gravity=None, torque=())
-    assert np.all(reduce(scene, None, ANGLES)[2] == 0.0)
+    assert np.all(reduce(CrankTrain(scene, None), ANGLES)[2] == 0.0)
 
 
 def test_gravity_turns_against_the_bank():

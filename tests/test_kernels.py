@@ -28,6 +28,7 @@ from crankmbs import (
     simulate,
 )
 from crankmbs.mechanics.torque import branch_of
+from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion.crank_angle.grid import grid_of
 from crankmbs.motion.crank_angle.solvers import Begin, Cells, solve_affine, solve_newton
 from crankmbs.numerics import kernels
@@ -93,7 +94,7 @@ def test_clock_and_energy_lose_nothing_over_many_cells(
     solve: Callable[..., Cells], compiled: bool
 ) -> None:
     """What rounding takes is the same in every pass, and their difference would not show it."""
-    grid = grid_of(load_scene("coasting"), None, gauss(3))
+    grid = grid_of(CrankTrain(load_scene("coasting"), None), gauss(3))
     strip = grid.strip(0.0, 1.0, 4000, math.inf)
     branch = branch_of((Constant(torque=0.1),), 0.0, 1.0, rising=True)
     cells = solve(grid, strip, branch, Begin(1.0, 50.0, 0.1, math.inf), compiled=compiled)

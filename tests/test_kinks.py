@@ -17,8 +17,8 @@ from crankmbs import (
     simulate,
 )
 from crankmbs.compare.runs import differences
-from crankmbs.mechanics.pressure import pressure_of
 from crankmbs.mechanics.torque import branch_of, course_of, torque_at
+from crankmbs.mechanics.train import crank_train
 from crankmbs.motion.crank_angle import advance as crank_angle
 from crankmbs.motion.crank_angle.grid import grid_of
 from crankmbs.numerics.collocation import gauss
@@ -102,7 +102,7 @@ def test_a_course_is_the_sum_of_the_loads_between_jumps():
 @pytest.mark.parametrize("sense", [1.0, -1.0])
 def test_cells_cut_are_parts_of_cells(sense):
     scene = load_scene("propeller")
-    grid = grid_of(scene, pressure_of(scene), gauss(5))
+    grid = grid_of(crank_train(scene), gauss(5))
     strip = grid.strip(3.0, sense, 40, np.inf)
     marks = strip.turned[[7, 7, 20]] + np.array([0.25, 0.5, 0.5]) * strip.width[[7, 7, 20]]
     cut = grid.cut(strip, 3.0, sense, np.append(marks, strip.turned[11]))

@@ -12,6 +12,7 @@ from crankmbs import Constant, Layout, Motion, Oscillation, Quadratic, Run, Star
 from crankmbs.mechanics.inertia import reduce
 from crankmbs.mechanics.pressure import pressure_of
 from crankmbs.mechanics.reactions import reactions
+from crankmbs.mechanics.train import CrankTrain, crank_train
 from crankmbs.scene.scene import Extent
 from validation.random_scenes import random_scene
 
@@ -23,7 +24,7 @@ RATE = 150.0  # rad/s: fast enough for these machines to turn through
 def turning(seed, turns=1.0, rtol=1e-10, **changes):
     """A random machine that turns through, with smooth loads, sampled at a few angles."""
     scene = random_scene(seed)
-    inertia, _, torque = reduce(scene, pressure_of(scene), np.linspace(0.0, 4 * np.pi, 500))
+    inertia, _, torque = reduce(crank_train(scene), np.linspace(0.0, 4 * np.pi, 500))
     speed = math.copysign(
         max(RATE, 8.0 * math.sqrt(np.abs(torque).max() / inertia.min())), 0.5 - seed % 2
     )
@@ -65,7 +66,7 @@ def test_inverse_after_forward_is_the_identity(seed, formulation):
     given_torque = (
         constant.torque - viscous.coefficient * omega - quadratic.coefficient * omega * abs(omega)
     )
-    needed = reactions(scene, pressure_of(scene), theta, omega, alpha)
+    needed = reactions(crank_train(scene), theta, omega, alpha)
     scale = peak(needed["crank_torque"]) + peak(alpha) * scene.crank.inertia + peak(given_torque)
     assert peak(needed["external_torque"] - given_torque) < 1e-12 * scale
     assert peak(data["external_torque"].values - given_torque) < 1e-12 * scale
@@ -79,7 +80,7 @@ def test_forward_after_inverse_is_the_identity(seed):
     scene = replace(turning(seed), start=None, torque=(), motion=Motion(speed=speed, angle=1.0))
     data = simulate(scene).data
     theta, omega, alpha = motion_of(data)
-    inertia, slope, torque = reduce(scene, pressure_of(scene), theta)
+    inertia, slope, torque = reduce(crank_train(scene), theta)
     forward = (data["external_torque"].values + torque - 0.5 * slope * omega**2) / inertia
     scale = peak(alpha) + peak(torque / inertia) + peak(slope * omega**2 / inertia)
     assert peak(forward - alpha) < 1e-12 * scale
@@ -92,11 +93,11 @@ def test_power_flows(seed):
     scene = turning(seed)
     pressure = pressure_of(scene)
     theta, omega, alpha = np.linspace(0.0, 6.0, 9), np.linspace(-200.0, 200.0, 9), 3e3
-    found = reactions(scene, pressure, theta, omega, alpha + 0.0 * theta)
-    inertia, slope, _ = reduce(scene, pressure, theta)
+    found = reactions(CrankTrain(scene, pressure), theta, omega, alpha + 0.0 * theta)
+    inertia, slope, _ = reduce(CrankTrain(scene, pressure), theta)
     rate = inertia * omega * alpha + 0.5 * slope * omega**3
     gas = (found["gas_force"] * found["piston_velocity"]).sum(axis=1)
-    weight = reduce(scene, None, theta)[2] * omega
+    weight = reduce(CrankTrain(scene, None), theta)[2] * omega
     outside = found["external_torque"] * omega
     scale = peak(rate) + peak(gas) + peak(weight) + peak(outside)
     assert peak(rate - gas - weight - outside) < 1e-12 * scale
@@ -111,7 +112,7 @@ def test_joint_forces_do_no_net_work(seed):
     rod = replace(scene.rod, mass=0.0, inertia=0.0)
     scene = replace(scene, rod=rod)
     theta, omega = np.linspace(0.0, 6.0, 9), np.linspace(-200.0, 200.0, 9)
-    found = reactions(scene, pressure_of(scene), theta, omega, 2e3 + 0.0 * theta)
+    found = reactions(crank_train(scene), theta, omega, 2e3 + 0.0 * theta)
     into_rods = -found["crank_torque"] * omega[:, None]
     out_of_rods = -found["piston_pin_force_x"] * found["piston_velocity"]
     np.testing.assert_allclose(into_rods, out_of_rods, atol=1e-12 * peak(into_rods) + 1e-300)
@@ -181,7 +182,9 @@ def test_scaling_of_length(seed, factor):
         ),
         piston=replace(piston, offset=factor * piston.offset),
     )
-    one, other = (reactions(s, None, *np.broadcast_arrays(*motion)) for s in (scene, larger))
+    one, other = (
+        reactions(CrankTrain(s, None), *np.broadcast_arrays(*motion)) for s in (scene, larger)
+    )
     for name, power in (("crank_pin_force_x", 1), ("side_force", 1), ("external_torque", 2)):
         assert peak(factor**power * one[name] - other[name]) < 1e-9 * peak(other[name]), name
 
@@ -195,7 +198,7 @@ def test_a_long_rod_gives_the_harmonic_slider(ratio):
     scene = replace(scene, rod=rod, piston=replace(scene.piston, offset=0.0))
     theta = np.linspace(0.0, 6.0, 50)
     phi = theta[:, None] + np.array([c.phase for c in scene.cylinders])
-    found = reactions(scene, None, theta, 10.0 + 0.0 * theta, 0.0 * theta)
+    found = reactions(CrankTrain(scene, None), theta, 10.0 + 0.0 * theta, 0.0 * theta)
     assert peak(found["piston_position"] - r / ratio - r * np.cos(phi)) <= 0.5 * ratio * r * 1.01
     harmonic = 100.0 * r * np.cos(phi)
     assert peak(found["piston_acceleration"] - harmonic) <= 100.0 * r * ratio * 1.01

@@ -19,9 +19,9 @@ from crankmbs import (
     load_scene,
     simulate,
 )
-from crankmbs.mechanics.pressure import pressure_of
 from crankmbs.mechanics.reactions import reactions
 from crankmbs.mechanics.torque import branch_of
+from crankmbs.mechanics.train import crank_train
 from crankmbs.motion.minimal.reduced import Reduced
 from crankmbs.motion.minimal.stretch import Equation
 from validation.random_scenes import random_scene
@@ -102,7 +102,7 @@ def test_on_a_step_of_the_pressure_the_value_after_it_counts(speed):
     )
     found = simulate(stepped, formulation="minimal").data
     names = ("crank_angle", "crank_speed", "crank_acceleration")
-    needed = reactions(stepped, pressure_of(stepped), *(found[name].values for name in names))
+    needed = reactions(crank_train(stepped), *(found[name].values for name in names))
     scale = np.abs(found["crank_torque"]).max().item()
     assert np.abs(needed["external_torque"] - found["external_torque"]).max() < 1e-12 * scale
 
@@ -126,7 +126,7 @@ def test_the_tolerance_is_kept(rtol):
 
 @pytest.mark.parametrize("state", [(0.3, 1e160), (1e160, 1e160), (0.3, inf), (1e300, 1.0)])
 def test_a_trial_step_far_too_long_is_no_number(state):
-    reduced = Reduced(PROPELLER, pressure_of(PROPELLER))
+    reduced = Reduced(crank_train(PROPELLER))
     branch = branch_of(PROPELLER.torque, 0.0, 1.0, rising=True)
     equation = Equation(reduced, reduced.around(0.3, 1.0), branch)
     assert np.isnan(equation(0.0, np.array([*state, 0.0]))).all()

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from crankmbs.mechanics.train import crank_train
 from crankmbs.motion.multibody.beside import errors_beside_jumps
 from crankmbs.motion.multibody.error import Convergence
 from crankmbs.motion.multibody.held import held_by
@@ -112,7 +113,7 @@ def test_what_depends_on_the_angle_alone_errs_by_its_interpolation() -> None:
 
 def test_a_jump_of_the_gas_within_reach_of_a_sample_is_an_error() -> None:
     scene = replace(load_scene("v_twin"), run=Run(until="0.01 s", every="0.002 s"))
-    problem = problem_of(scene)
+    problem = problem_of(crank_train(scene))
     jump = problem.gas.stretch(0.1, 1.0).high
     rise = float(np.max(np.abs(problem.gas.stretch(0.1, 1.0).rises[1])))
     names = ("gas_force", "gas_pressure", *held_by(scene, np.zeros((1, 2)), np.zeros(1)))

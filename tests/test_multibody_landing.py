@@ -10,6 +10,7 @@ import pytest
 from references import assert_within_stated
 
 from crankmbs.errors import FormulationError
+from crankmbs.mechanics.train import crank_train
 from crankmbs.motion.multibody.landing import LEAST_STEPS, Bounds, Watch
 from crankmbs.motion.multibody.path import Path, coarsest_step, model_of, solve
 from crankmbs.motion.multibody.problem import erratic_order, kink_times, problem_of
@@ -37,7 +38,7 @@ def loaded(*torque: Torque) -> Scene:
 
 
 def paths(scene: Scene, halvings: int) -> list[Path]:
-    problem = problem_of(scene)
+    problem = problem_of(crank_train(scene))
     model = model_of(problem)
     step, _ = coarsest_step(problem, model)
     found = [solve(problem, model, step, k, lambda: True) for k in range(halvings)]
@@ -101,10 +102,10 @@ def test_a_speed_held_from_the_start_is_refused() -> None:
 
 
 def test_rows_over_time_are_landed_on_where_they_are_few() -> None:
-    assert kink_times(problem_of(loaded(BENT))) == [0.013, 0.031]
+    assert kink_times(problem_of(crank_train(loaded(BENT)))) == [0.013, 0.031]
     t = np.linspace(0.0, 0.1, 60)
     many = TimeTable(file=Table(t.tolist(), np.sin(99.0 * t).tolist()))
-    problem = problem_of(loaded(many))
+    problem = problem_of(crank_train(loaded(many)))
     assert kink_times(problem) == []
     assert erratic_order(problem) == 2
 
@@ -118,13 +119,15 @@ def test_the_erratic_order_of_a_pressure(interpolation: str, rows: int, order: i
     table = Table(angle.tolist(), (1e5 * np.sin(angle)).tolist())
     gas = Gas(pressure=table, absolute=False, stroke=2, interpolation=interpolation)
     piston = replace(COASTING.piston, area=1e-3)
-    assert erratic_order(problem_of(replace(COASTING, gas=gas, piston=piston))) == order
+    assert (
+        erratic_order(problem_of(crank_train(replace(COASTING, gas=gas, piston=piston)))) == order
+    )
 
 
 def test_the_erratic_order_of_a_speed_over_time() -> None:
     table = Table((0.0, 0.02, 0.04, 0.2), (100.0, 90.0, 120.0, 100.0))
     motion = Motion(speed=SpeedFile(file=table))
-    assert erratic_order(problem_of(replace(COASTING, start=None, motion=motion))) == 2
+    assert erratic_order(problem_of(crank_train(replace(COASTING, start=None, motion=motion)))) == 2
 
 
 def test_a_speed_that_comes_back_over_its_bound_still_ends_the_stretch() -> None:

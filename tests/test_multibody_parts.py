@@ -12,6 +12,7 @@ from crankmbs.mechanics.inertia import reduce
 from crankmbs.mechanics.pressure import pressure_of
 from crankmbs.mechanics.reactions import reactions
 from crankmbs.mechanics.torque import branch_of
+from crankmbs.mechanics.train import CrankTrain, crank_train
 from crankmbs.motion.multibody.gas import Gas
 from crankmbs.motion.multibody.loads import EVERYWHERE, speeds_around, torque_function
 from crankmbs.motion.multibody.model import Model, Record
@@ -77,7 +78,7 @@ def test_a_speed_table_goes_on_straight_beyond_the_rows_around_a_speed() -> None
 def test_gas_has_no_jump_on_a_stretch_and_is_the_pressure_within() -> None:
     pressure = pressure_of(V_TWIN)
     assert pressure is not None
-    gas = Gas(V_TWIN, pressure)
+    gas = Gas(CrankTrain(V_TWIN, pressure))
     stretch = gas.stretch(0.1, 1.0)
     assert -math.inf < stretch.low <= 0.1 < stretch.high < 4.0 * math.pi
     theta = np.linspace(stretch.low - 0.3, stretch.high + 0.3, 20_001)
@@ -91,7 +92,7 @@ def test_gas_has_no_jump_on_a_stretch_and_is_the_pressure_within() -> None:
 
 
 def test_a_motion_enters_the_stretch_on_its_own_side_of_a_jump() -> None:
-    gas = Gas(V_TWIN, pressure_of(V_TWIN))
+    gas = Gas(crank_train(V_TWIN))
     jump = gas.stretch(0.1, 1.0).high
     assert gas.stretch(jump, 1.0).low == pytest.approx(jump, abs=1e-12)
     assert gas.stretch(jump, -1.0).high == pytest.approx(jump, abs=1e-12)
@@ -117,9 +118,9 @@ def test_coordinates_are_the_taylor_series_of_those_on_the_closed_loop() -> None
 def ringing(record: Record, first: int) -> np.ndarray:
     """Largest error of the crank pin's force over each step from a row on, relative to its peak."""
     theta, omega = record.position[first:, 2], record.velocity[first:, 2]
-    inertia, slope, torque = reduce(COASTING, None, theta)
+    inertia, slope, torque = reduce(CrankTrain(COASTING, None), theta)
     alpha = (torque - 0.5 * slope * omega**2) / inertia
-    exact = reactions(COASTING, None, theta, omega, alpha)
+    exact = reactions(CrankTrain(COASTING, None), theta, omega, alpha)
     force = np.stack([exact["crank_pin_force_x"], exact["crank_pin_force_y"]], axis=-1)
     return np.max(np.abs(record.crank_pin[first:] - force), axis=(1, 2)) / np.max(np.abs(force))
 
@@ -178,9 +179,9 @@ def test_accelerations_and_forces_of_a_start_are_exact_to_ten_digits(theta: floa
     omega = np.array([100.0])
     row = model.consistent(coordinates(COASTING, theta, 100.0), 0.0)
     model.close()
-    inertia, slope, torque = reduce(COASTING, None, np.array([theta]))
+    inertia, slope, torque = reduce(CrankTrain(COASTING, None), np.array([theta]))
     alpha = (torque - 0.5 * slope * omega**2) / inertia
-    exact = reactions(COASTING, None, np.array([theta]), omega, alpha)
+    exact = reactions(CrankTrain(COASTING, None), np.array([theta]), omega, alpha)
     assert row.acceleration[0, 2] == pytest.approx(alpha[0], abs=1e-10 * 100.0**2)
     for axis, name in enumerate(("crank_pin_force_x", "crank_pin_force_y")):
         force = exact[name][0, 0]
@@ -201,7 +202,7 @@ def test_a_run_up_leaves_no_ringing() -> None:
 
 def test_runs_that_end_at_a_time_are_compared_at_the_angles_of_the_finest() -> None:
     scene = replace(COASTING, run=Run(until="0.05 s", every="1 deg"))
-    problem = problem_of(scene)
+    problem = problem_of(crank_train(scene))
     model = model_of(problem)
     coarse, fine = (Sampled(problem, solve(problem, model, 2e-3, k, lambda: True)) for k in (0, 3))
     model.close()

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from crankmbs import Cylinder, Gas, Layout, Table, load_scene
-from crankmbs.mechanics.pressure import crank_angle_knots, pressure_of, repeat
+from crankmbs.mechanics.pressure import pressure_of, repeat
+from crankmbs.mechanics.train import CrankTrain, crank_angle_knots, crank_train
 from validation.adapter import machine_of
 from validation.oracles.pressure import evaluate_pressure
 
@@ -73,13 +74,13 @@ def test_at_a_step_the_value_after_it_counts(hair):
 
 def test_no_gas_no_pressure():
     assert pressure_of(load_scene("coasting")) is None
-    assert len(crank_angle_knots(load_scene("coasting"), None)) == 0
+    assert len(crank_angle_knots(CrankTrain(load_scene("coasting"), None))) == 0
 
 
 def test_knots_of_every_cylinder_once():
     cylinders = (Cylinder(), Cylinder(phase=1.0, bank=1.0), Cylinder(phase=4 * pi))
     scene = replace(with_gas(), layout=Layout(cylinders=cylinders))
-    knots = crank_angle_knots(scene, pressure_of(scene))
+    knots = crank_angle_knots(crank_train(scene))
     expected = np.sort(np.concatenate([ROWS.x, np.mod(np.array(ROWS.x) - 1.0, 4 * pi)]))
     np.testing.assert_allclose(knots, expected, atol=1e-12)
 

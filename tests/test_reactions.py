@@ -9,6 +9,7 @@ import pytest
 from crankmbs import load_scene
 from crankmbs.mechanics.pressure import pressure_of
 from crankmbs.mechanics.reactions import deviations, reactions
+from crankmbs.mechanics.train import CrankTrain, crank_train
 from crankmbs.numerics import kernels
 from validation.adapter import reference_variables
 from validation.oracles.arithmetic import multiprecision
@@ -26,7 +27,7 @@ def motion(seed, samples=7):
 
 def misfit(scene, state, exact):
     """Largest error of each variable relative to its peak; of a force, to that of the vector."""
-    ours = reactions(scene, pressure_of(scene), *state)
+    ours = reactions(crank_train(scene), *state)
     assert ours.keys() == exact.keys()
     peaks = {name: np.abs(values.astype(float)).max() for name, values in exact.items()}
     worst = {}
@@ -77,7 +78,7 @@ def test_a_shifted_parameter_is_seen(part):
 
 def test_a_state_of_any_length():
     scene = load_scene("v_twin")
-    found = reactions(scene, pressure_of(scene), [0.1], [1.0], [0.0])
+    found = reactions(crank_train(scene), [0.1], [1.0], [0.0])
     assert found["main_bearing_force_x"].shape == (1,)
     assert found["side_force"].shape == (1, 2)
 
@@ -87,10 +88,10 @@ def test_cycles_after_one_another_are_as_each_alone():
     scene = load_scene("v_twin")
     theta = np.radians(np.arange(0.25, 2000.0, 1.0))
     omega, alpha = 300.0 + 10.0 * np.sin(theta / 3), 500.0 * np.cos(theta / 5)
-    together = reactions(scene, pressure_of(scene), theta, omega, alpha)
+    together = reactions(crank_train(scene), theta, omega, alpha)
     for samples in (slice(0, 700), slice(700, 1400), slice(1400, None)):
         state = theta[samples], omega[samples], alpha[samples]
-        alone = reactions(scene, pressure_of(scene), *state)
+        alone = reactions(crank_train(scene), *state)
         for name, values in alone.items():
             scale = np.abs(together[name]).max()
             np.testing.assert_allclose(together[name][samples], values, rtol=0, atol=1e-12 * scale)
@@ -105,11 +106,11 @@ def test_deviations_are_those_between_two_motions(compiled, samples, monkeypatch
     monkeypatch.setattr(kernels, "are_compiled", compiled)
     pressure, theta = pressure_of(scene), 0.3 + scene.period / 6 * np.arange(samples)
     one, other = ((theta + 1e-3 * k, *motion(k, samples)[1:]) for k in (1, 2))
-    first, second = (reactions(scene, pressure, *state) for state in (one, other))
-    found = deviations(scene, pressure, *other, first)
+    first, second = (reactions(CrankTrain(scene, pressure), *state) for state in (one, other))
+    found = deviations(CrankTrain(scene, pressure), *other, first)
     assert found.keys() == first.keys()
     for name, most in found.items():
         assert most == pytest.approx(np.abs(first[name] - second[name]).max(), rel=1e-12), name
     first["side_force"][samples // 2, 1] = np.nan
-    found = deviations(scene, pressure, *other, first)
+    found = deviations(CrankTrain(scene, pressure), *other, first)
     assert [name for name, most in found.items() if math.isnan(most)] == ["side_force"]

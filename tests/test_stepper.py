@@ -10,6 +10,7 @@ from crankmbs import Piston, Rod, Start, load_scene
 from crankmbs.mechanics.inertia import reduce
 from crankmbs.mechanics.pressure import pressure_of
 from crankmbs.mechanics.torque import branch_of
+from crankmbs.mechanics.train import CrankTrain, crank_train
 from crankmbs.motion.minimal import stepper
 from crankmbs.motion.minimal.reduced import Reduced
 from crankmbs.motion.minimal.stretch import Equation
@@ -22,23 +23,23 @@ COASTING = load_scene("coasting")
 def test_the_reduced_equation_is_the_one_of_the_arrays(name, sense):
     scene = load_scene(name)
     pressure = pressure_of(scene)
-    reduced = Reduced(scene, pressure)
+    reduced = Reduced(CrankTrain(scene, pressure))
     angles = np.linspace(-13.0, 27.0, 301)
     found = np.array([reduced(a, reduced.around(a, sense).pieces) for a in angles.tolist()]).T
-    for values, exact in zip(found, reduce(scene, pressure, angles), strict=True):
+    for values, exact in zip(found, reduce(CrankTrain(scene, pressure), angles), strict=True):
         assert np.abs(values - exact).max() <= 1e-12 * np.abs(exact).max()
 
 
 def test_knots_lie_around_the_angle_on_either_side():
     scene = load_scene("propeller")
-    reduced = Reduced(scene, pressure_of(scene))
+    reduced = Reduced(crank_train(scene))
     knot = reduced.around(-4.0, 1.0).high
     before, after = reduced.around(knot, -1.0), reduced.around(knot, 1.0)
     assert before.high == after.low == knot
     assert before.low < knot < after.high
     middles = 0.5 * (before.low + knot), 0.5 * (knot + after.high)
     for pieces, middle in zip((before.pieces, after.pieces), middles, strict=True):
-        torque = reduce(scene, pressure_of(scene), middle)[2]
+        torque = reduce(crank_train(scene), middle)[2]
         assert reduced(middle, pieces)[2] == pytest.approx(float(torque), rel=1e-12)
 
 
@@ -48,7 +49,9 @@ def test_a_trial_step_that_lands_on_a_fold_does_not_divide_by_zero(offset, turns
     rod = Rod(
         length=COASTING.crank.radius + abs(offset), mass=1.0, center_of_mass=0.02, inertia=0.1
     )
-    reduced = Reduced(replace(COASTING, rod=rod, piston=Piston(mass=1.0, offset=offset)), None)
+    reduced = Reduced(
+        CrankTrain(replace(COASTING, rod=rod, piston=Piston(mass=1.0, offset=offset)), None)
+    )
     pieces = reduced.around(0.0, 1.0).pieces
     for quarter in (0.5, 1.5):
         fold = (quarter + 2.0 * turns) * np.pi
@@ -59,7 +62,7 @@ def test_a_trial_step_that_lands_on_a_fold_does_not_divide_by_zero(offset, turns
 
 def equation_of(name):
     scene = replace(load_scene(name), start=Start(angle=0.4, speed=20.0))
-    reduced = Reduced(scene, pressure_of(scene))
+    reduced = Reduced(crank_train(scene))
     branch = branch_of(scene.torque, 0.0, 20.0, rising=True)
     return Equation(reduced, reduced.around(0.4, 1.0), branch)
 

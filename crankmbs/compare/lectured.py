@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from crankmbs import lecture
 from crankmbs.compare.quantities import cycle_angles
-from crankmbs.mechanics.pressure import PeriodicPressure
+from crankmbs.mechanics.train import CrankTrain
 from crankmbs.scene.scene import Scene
 
 __all__ = ["LECTURES", "S0", "S1", "UNTRUNCATED", "Formulas", "lectured"]
@@ -102,8 +102,7 @@ LECTURES = {
 
 def lectured(
     formulas: Formulas,
-    scene: Scene,
-    pressure: PeriodicPressure | None,
+    train: CrankTrain,
     theta: Array,
     omega: Array,
     alpha: Array,
@@ -114,7 +113,6 @@ def lectured(
 
     Parameters
     ----------
-    pressure : of the scene, the difference to ambient; None without gas
     theta, omega, alpha : shape (n,) [rad, rad/s, rad/s2]
 
     Returns
@@ -126,6 +124,7 @@ def lectured(
     ------
     InputError : truncated formulas with a rod ratio of 1
     """
+    scene, pressure = train.scene, train.pressure
     crank, rod, piston = scene.crank, scene.rod, scene.piston
     r = crank.radius
     gear = _Gear(r, rod.length, piston.offset)

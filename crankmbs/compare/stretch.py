@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -14,8 +14,8 @@ from crankmbs.compare.quantities import QUANTITIES, observed
 from crankmbs.compare.size import Size, size_of
 from crankmbs.errors import InputError
 from crankmbs.measures import Window, last_window
-from crankmbs.mechanics.pressure import PeriodicPressure, pressure_of
 from crankmbs.mechanics.reactions import reactions
+from crankmbs.mechanics.train import CrankTrain, crank_train
 from crankmbs.mechanics.variables import VARIABLES
 from crankmbs.result import Result
 from crankmbs.scene.scene import Scene
@@ -56,7 +56,7 @@ class Stretch:
     omega: Array
     alpha: Array
     mean_speed: float
-    pressure: PeriodicPressure | None
+    train: CrankTrain
 
     def simulated(self) -> Answer:
         """What the run says, in the lectures' quantities."""
@@ -65,7 +65,9 @@ class Stretch:
 
     def newton_euler(self, scene: Scene) -> Answer:
         """The exact closed form at the run's own theta, omega, alpha; ``scene`` may differ."""
-        return self._of(reactions(scene, self.pressure, self.theta, self.omega, self.alpha))
+        return self._of(
+            reactions(replace(self.train, scene=scene), self.theta, self.omega, self.alpha)
+        )
 
     def lecture(self, formulas: Formulas, *, constant_speed: bool) -> Answer:
         """The lectures' formulas at the run's own theta, at its mean or its own speed."""
@@ -73,7 +75,9 @@ class Stretch:
         speed = still + self.mean_speed if constant_speed else self.omega
         rate = still if constant_speed else self.alpha
         scene = self.result.scene
-        return self._seen(lectured(formulas, scene, self.pressure, self.theta, speed, rate))
+        return self._seen(
+            lectured(formulas, replace(self.train, scene=scene), self.theta, speed, rate)
+        )
 
     def angles(self, quantity: str) -> Array:
         """Cycle angle of the cylinder, for the whole engine's quantities the crank angle [rad]."""
@@ -101,7 +105,7 @@ class Stretch:
 
     def left_out(self) -> dict[str, str]:
         """Quantities that this run does not have, and why."""
-        if self.pressure is None:
+        if self.train.pressure is None:
             return {"gas torque": "the scene has no gas"}
         if np.any(self.omega == 0.0):
             return {"gas torque": "the crank stands still, and it is gas power over speed"}
@@ -150,5 +154,5 @@ def stretch_of(result: Result, cylinder: int) -> Stretch:
         for name in ("crank_angle", "crank_speed", "crank_acceleration")
     )
     mean = window.angle / window.duration if window.duration > 0.0 else float(omega[-1])
-    pressure = pressure_of(result.scene)
-    return Stretch(result, window, cylinder, samples, theta, omega, alpha, mean, pressure)
+    train = crank_train(result.scene)
+    return Stretch(result, window, cylinder, samples, theta, omega, alpha, mean, train)

@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline
 
-from crankmbs.mechanics.inertia import reduce
-from crankmbs.mechanics.pressure import pressure_of
+from crankmbs.mechanics.inertia import inertia_alone, reduce
 from crankmbs.mechanics.reactions import reactions
 from crankmbs.mechanics.speed import speed_law
 from crankmbs.mechanics.torque import torque_at
+from crankmbs.mechanics.train import crank_train
 from crankmbs.result import Result
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.schema import DEGREE
@@ -52,7 +52,7 @@ class Between:
         """Every variable but the energy residual at times of shape (n,) [s]."""
         scene = self.result.scene
         theta, omega, alpha = self.state(time)
-        found = reactions(scene, pressure_of(scene), theta, omega, alpha)
+        found = reactions(crank_train(scene), theta, omega, alpha)
         return found | {"crank_angle": theta, "crank_speed": omega, "crank_acceleration": alpha}
 
 
@@ -106,10 +106,10 @@ class _Free:
         self._theta, self._omega = (data[name].values for name in _MOTION[:2])
         late, ahead = (float(data[n].attrs["error_estimate"]) for n in ("time", "crank_angle"))
         self._unsure = 2.0 * (ahead + late * float(np.max(np.abs(self._omega))))  # angle [rad]
-        self._scene, self._pressure = scene, pressure_of(scene)
+        self._scene, self._train = scene, crank_train(scene)
         self._beside = self._outside - torque_at(scene.torque, self._time, self._omega)
         # where the speed follows its loads faster than samples follow one another passes diverge
-        rate = _steepness(scene, self._time, self._omega) / reduce(scene, None, self._theta)[0]
+        rate = _steepness(scene, self._time, self._omega) / inertia_alone(scene, self._theta)
         self._stiff = np.maximum(rate[:-1], rate[1:]) * np.diff(self._time) > 1.0
 
     def motion(self, parts: int, passes: int) -> tuple[Array, Array, Array, Array] | None:
@@ -156,7 +156,7 @@ class _Free:
         return state
 
     def _acceleration(self, t: Array, angle: Array, speed: Array) -> Array:
-        inertia, slope, given = reduce(self._scene, self._pressure, angle)
+        inertia, slope, given = reduce(self._train, angle)
         outside, beside = (np.interp(t, self._time, q) for q in (self._outside, self._beside))
         interval = np.searchsorted(self._time[1:-1], t, side="right")
         torque = torque_at(self._scene.torque, t, speed) + beside
@@ -198,7 +198,7 @@ def _sampled(
     at the samples of ``data`` its error grows by as much, relatively, as the result states."""
     import xarray as xr
 
-    found = reactions(result.scene, pressure_of(result.scene), theta, omega, alpha)
+    found = reactions(crank_train(result.scene), theta, omega, alpha)
     found |= {"time": time, "crank_angle": theta, "crank_speed": omega, "crank_acceleration": alpha}
 
     def stated(name: str) -> dict[str, object]:

@@ -11,15 +11,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crankmbs.mechanics.geometry import Loop, close_loop
-from crankmbs.mechanics.pressure import PeriodicPressure
+from crankmbs.mechanics.train import CrankTrain
 from crankmbs.scene.scene import Scene
 
-__all__ = ["RodCentre", "gravity_vector", "reduce", "rod_centre"]
+__all__ = ["Reduction", "RodCentre", "gravity_vector", "inertia_alone", "reduce", "rod_centre"]
 
 Array = NDArray[np.float64]
 
@@ -55,25 +56,35 @@ def gravity_vector(scene: Scene, bank: float = 0.0) -> tuple[float, float]:
     return g * math.cos(angle), g * math.sin(angle)
 
 
-def reduce(
-    scene: Scene, pressure: PeriodicPressure | None, theta: ArrayLike
-) -> tuple[Array, Array, Array]:
-    """Return J, dJ/dtheta and the torque of gas and gravity on the crank.
+class Reduction(NamedTuple):
+    """The crank train at crank angles, all of one shape; exact.
 
-    The equation of motion is J alpha + J_1 omega^2 / 2 = torque + torque from outside.
+    The equation of motion is inertia alpha + slope omega^2 / 2 = torque + torque from outside.
 
-    Parameters
-    ----------
-    pressure : of the scene, or None to leave the gas out
-    theta : shape (...) [rad], crank angle
-
-    Returns
-    -------
-    J, J_1 : shape (...) [kg m2, kg m2/rad]; exact
-    torque : shape (...) [N m], the generalized force of gas and weights
-
-    >>> J, J_1, torque = reduce(load_scene("torque_driven"), None, 0.0)
+    inertia, slope : J [kg m2] and dJ/dtheta [kg m2/rad]
+    torque : generalized force of gas and weights on the crank [N m]
     """
+
+    inertia: Array
+    slope: Array
+    torque: Array
+
+
+def inertia_alone(scene: Scene, theta: ArrayLike) -> Array:
+    """J at crank angles, shape (...) [rad]; shape (...) [kg m2], exact.
+
+    >>> float(inertia_alone(load_scene("torque_driven"), 0.0)) > 0.0
+    True
+    """
+    return reduce(CrankTrain(scene, None), theta).inertia
+
+
+def reduce(train: CrankTrain, theta: ArrayLike) -> Reduction:
+    """Reduce the crank train to one rotation at crank angles, shape (...) [rad].
+
+    >>> inertia, slope, torque = reduce(crank_train(load_scene("torque_driven")), 0.0)
+    """
+    scene, pressure = train.scene, train.pressure
     theta = np.asarray(theta, dtype=np.float64)
     crank, rod, piston = scene.crank, scene.rod, scene.piston
     inertia = np.full(theta.shape, crank.moment_of_inertia)
@@ -95,4 +106,4 @@ def reduce(
         if pressure is not None:
             torque -= (piston.gas_area or 0.0) * pressure(theta + cylinder.phase) * loop.x_1
         torque += piston.mass * gx * loop.x_1 + rod.mass * (gx * g.x_1 + gy * g.y_1)
-    return inertia, slope, torque
+    return Reduction(inertia, slope, torque)

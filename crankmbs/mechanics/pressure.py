@@ -21,9 +21,8 @@ from crankmbs.scene.scene import Scene
 from crankmbs.scene.tables import Table
 
 __all__ = [
+    "KNOT",
     "PeriodicPressure",
-    "crank_angle_knots",
-    "merged_knots",
     "pressure_of",
     "remarks",
     "repeat",
@@ -31,7 +30,7 @@ __all__ = [
 
 Array = NDArray[np.float64]
 
-_KNOT = 1e-9  # rad: an angle this close below a knot counts as on it, so rounding does not
+KNOT = 1e-9  # rad: an angle this close below a knot counts as on it, so rounding does not
 # decide the side of a pressure step
 _OVERSHOOT = 0.05  # of the range: a sine in rows 45 degrees apart is overshot by 0.04
 
@@ -75,7 +74,7 @@ class PeriodicPressure:
         value = np.concatenate([self.coefficients[-1], ends, pieces(turning)])
         highest = np.flatnonzero(value >= value.max() - 1e-9 * abs(value.max()))
         first = highest[np.argmin(angle[highest])]
-        return float(np.mod(angle[first] + _KNOT, self.period) - _KNOT), float(value[first])
+        return float(np.mod(angle[first] + KNOT, self.period) - KNOT), float(value[first])
 
     def bends(self, least: float) -> Array:
         """Knots [rad] of the first period where the pieces differ from one smooth curve by more
@@ -105,8 +104,8 @@ class PeriodicPressure:
         cycle_angle : shape (...) [rad], any number of periods
         """
         angle = np.asarray(cycle_angle, dtype=np.float64)
-        within = np.mod(angle - self.knots[0] + _KNOT, self.period) - _KNOT
-        index = np.searchsorted(self.knots[1:-1] - self.knots[0], within + _KNOT, side="right")
+        within = np.mod(angle - self.knots[0] + KNOT, self.period) - KNOT
+        index = np.searchsorted(self.knots[1:-1] - self.knots[0], within + KNOT, side="right")
         return self.piece(index, within - (self.knots[index] - self.knots[0]))
 
     def piece(self, index: NDArray[np.intp], distance: ArrayLike) -> Array:
@@ -154,7 +153,7 @@ def remarks(scene: Scene) -> tuple[str, ...]:
     share = beyond / ((max(table.y) - min(table.y)) or 1.0)
     if gas.interpolation == "cubic" and share > _OVERSHOOT:
         past = np.array(between) - _shift(gas) - table.x[0]
-        first, second = np.degrees(np.mod(past + _KNOT, gas.period) - _KNOT + table.x[0])
+        first, second = np.degrees(np.mod(past + KNOT, gas.period) - KNOT + table.x[0])
         said.append(
             f"warning: {table.source}: between the rows at {first:.8g} and {second:.8g} degrees "
             f"the spline goes {100.0 * share:.3g} % of the table's range beyond both; the run is "
@@ -174,28 +173,6 @@ def _joined(gas: Gas, table: Table) -> PeriodicPressure:
 def _shift(gas: Gas) -> float:
     """Cycle angle [rad] of the table's 0."""
     return 2.0 * math.pi if gas.zero == "firing_tdc" and gas.stroke == 4 else 0.0
-
-
-def crank_angle_knots(scene: Scene, pressure: PeriodicPressure | None) -> Array:
-    """Crank angles in [0, period) at which the pressure of any cylinder changes its piece.
-
-    Returns
-    -------
-    shape (n,) [rad], increasing, cylinders merged; empty without gas
-    """
-    return np.empty(0) if pressure is None else merged_knots(scene, pressure.knots[:-1])
-
-
-def merged_knots(scene: Scene, knots: Array) -> Array:
-    """Crank angles in [0, period) at which any cylinder passes one of these cycle angles [rad]."""
-    if len(knots) == 0:
-        return knots
-    angles = [np.mod(knots - c.phase, scene.period) for c in scene.cylinders]
-    merged = np.unique(np.concatenate(angles))
-    merged = merged[np.append(True, np.diff(merged) > _KNOT)]
-    if scene.period - merged[-1] + merged[0] <= _KNOT:
-        merged = merged[:-1]
-    return np.asarray(merged)
 
 
 def repeat(knots: Array, period: float, low: float, high: float) -> Array:

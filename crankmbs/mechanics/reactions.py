@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike, NDArray
 from crankmbs.mechanics import combined
 from crankmbs.mechanics.geometry import close_loop, top_position
 from crankmbs.mechanics.inertia import gravity_vector, rod_centre
-from crankmbs.mechanics.pressure import PeriodicPressure
+from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.variables import VARIABLES
 from crankmbs.numerics import kernels
 from crankmbs.numerics.periodic import one_period
@@ -46,8 +46,7 @@ _UNITS = _Motion(*np.eye(3)[:, :, np.newaxis])
 
 
 def reactions(
-    scene: Scene,
-    pressure: PeriodicPressure | None,
+    train: CrankTrain,
     theta: ArrayLike,
     omega: ArrayLike,
     alpha: ArrayLike,
@@ -56,7 +55,6 @@ def reactions(
 
     Parameters
     ----------
-    pressure : `crankmbs.mechanics.pressure.pressure_of` the scene
     theta, omega, alpha : shape (n,) [rad, rad/s, rad/s2]; any motion, prescribed or free
 
     Returns
@@ -64,11 +62,11 @@ def reactions(
     dict of the variables of a result by name, in SI units: shape (n,) those of the crank,
     (n, cylinders) those of a cylinder; signs and frames as in `crankmbs.result.VARIABLES`
 
-    >>> scene = load_scene("torque_driven")
-    >>> float(reactions(scene, None, [0.0], [10.0], [0.0])["side_force"][0, 0])
+    >>> train = crank_train(load_scene("torque_driven"))
+    >>> float(reactions(train, [0.0], [10.0], [0.0])["side_force"][0, 0])
     0.0
     """
-    found = _found(scene, pressure, theta, omega, alpha)
+    found = _found(train, theta, omega, alpha)
     rows = {name: len(columns) for name, columns in found.columns.items()}
     # one piece of memory, so large that the system is not asked for every run's anew
     room = np.empty((sum(rows.values()), len(found.omega)))
@@ -81,8 +79,7 @@ def reactions(
 
 
 def deviations(
-    scene: Scene,
-    pressure: PeriodicPressure | None,
+    train: CrankTrain,
     theta: Array,
     omega: Array,
     alpha: Array,
@@ -93,12 +90,12 @@ def deviations(
 
     Parameters are those of `reactions`; variables : by name, with the samples of this motion
 
-    >>> scene = load_scene("torque_driven")
+    >>> train = crank_train(load_scene("torque_driven"))
     >>> motion = np.zeros((3, 2))
-    >>> max(deviations(scene, None, *motion, reactions(scene, None, *motion)).values())
+    >>> max(deviations(train, *motion, reactions(train, *motion)).values())
     0.0
     """
-    found = _found(scene, pressure, theta, omega, alpha)
+    found = _found(train, theta, omega, alpha)
     largest = {}
     for name, columns in found.columns.items():
         rows = np.atleast_2d(variables[name].T)
@@ -142,18 +139,18 @@ class _Found(NamedTuple):
 
 
 def _found(
-    scene: Scene,
-    pressure: PeriodicPressure | None,
+    train: CrankTrain,
     theta: ArrayLike,
     omega: ArrayLike,
     alpha: ArrayLike,
 ) -> _Found:
+    scene = train.scene
     theta, omega, alpha = (np.asarray(q, dtype=np.float64) for q in (theta, omega, alpha))
     samples = _Motion(omega**2, alpha, np.ones(1))
     once, which = one_period(theta, scene.period)
     by_parts = len(theta) > _OFTEN * len(once)
     once, motion = (once, _UNITS) if by_parts else (theta, samples)
-    cylinders = [_cylinder(scene, pressure, once, motion, c) for c in scene.cylinders]
+    cylinders = [_cylinder(train, once, motion, c) for c in scene.cylinders]
     columns = {name: [part] for name, part in _crank(scene, once, motion, cylinders).items()}
     for name in cylinders[0].variables:
         columns[name] = [c.variables[name] for c in cylinders]
@@ -171,12 +168,12 @@ class _Cylinder(NamedTuple):
 
 
 def _cylinder(
-    scene: Scene,
-    pressure: PeriodicPressure | None,
+    train: CrankTrain,
     theta: Array,
     motion: _Motion,
     cylinder: Cylinder,
 ) -> _Cylinder:
+    scene, pressure = train.scene, train.pressure
     crank, rod, piston = scene.crank, scene.rod, scene.piston
     area = piston.gas_area or 0.0
     r, l, a = crank.radius, rod.length, rod.center_of_mass

@@ -8,13 +8,12 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from crankmbs.mechanics.inertia import reduce
-from crankmbs.mechanics.pressure import PeriodicPressure
+from crankmbs.mechanics.inertia import inertia_alone
 from crankmbs.mechanics.reactions import deviations, reactions
+from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.variables import VARIABLES
 from crankmbs.motion.base import Array, Samples, Solution
 from crankmbs.numerics.periodic import one_period
-from crankmbs.scene.scene import Scene
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -61,7 +60,7 @@ class Assembled(NamedTuple):
         return max(ratios, default=0.0)
 
 
-def assemble(scene: Scene, pressure: PeriodicPressure | None, solution: Solution) -> Assembled:
+def assemble(train: CrankTrain, solution: Solution) -> Assembled:
     """Every variable of a result at the samples, and an estimate of its largest error.
 
     The error is the difference between the answer and the better one of the solution, to which
@@ -72,12 +71,12 @@ def assemble(scene: Scene, pressure: PeriodicPressure | None, solution: Solution
     errs where the others are at angles: it is taken to err as it does, or as much as in the last
     revolution, whichever makes more.
     """
-    variables = _variables(scene, pressure, solution.samples)
+    variables = _variables(train, solution.samples)
     peaks = {name: _peak(values) for name, values in variables.items()}
     if solution.errors:
         return Assembled(solution, variables, peaks, dict(solution.errors))
     answer, better = solution.samples, solution.better or solution.samples
-    off = pressure and pressure.off  # the better answer's
+    off = train.off  # the better answer's
     late = better.time - answer.time
     ahead = better.theta - answer.theta - answer.omega * late
     rounding = ANGLE_ROUNDING * _peak(better.theta)
@@ -94,19 +93,19 @@ def assemble(scene: Scene, pressure: PeriodicPressure | None, solution: Solution
     before, missed = variables, 0.0
     for samples in chain:
         motion = (samples.theta, samples.omega, samples.alpha)
-        apart = deviations(scene, off, *motion, {**before, **samples.own})
+        apart = deviations(off, *motion, {**before, **samples.own})
         # a free crank's acceleration at the rounded angle: where the torque needed is the one there
         missed = apart["external_torque"] if samples.own else 0.0
         given = {**_motion(samples), **samples.own}
         apart |= {name: _peak(before[name] - values) for name, values in given.items()}
         errors = {name: error + apart[name] for name, error in errors.items()}
         if samples is not rounded:
-            before = _variables(scene, off, samples)
+            before = _variables(off, samples)
     if late.any() and late[-1] == 0.0 != ahead[-1]:  # else it ends at an angle, at the same time
         recent = ahead[np.abs(better.theta - better.theta[-1]) <= 2.0 * math.pi]
         more = math.copysign(_peak(recent) - abs(ahead[-1]), ahead[-1])
         last = replace(rounded, own={}).select(np.array([-1]))
-        end = _variables(scene, off, replace(last, theta=last.theta + more))
+        end = _variables(off, replace(last, theta=last.theta + more))
         if better.own:
             there = better.own["external_torque"][-1:]
             missed = max(missed, _peak(there - end["external_torque"]))
@@ -114,7 +113,7 @@ def assemble(scene: Scene, pressure: PeriodicPressure | None, solution: Solution
             most = _peak(variables[name][-1:] - end[name]) + _ROUNDING * peaks[name]
             errors[name] = max(errors[name], most)
     if missed:  # of a free crank, which has inertia at every angle; a driven one may have none
-        least = np.min(reduce(scene, None, one_period(better.theta, scene.period)[0])[0])
+        least = np.min(inertia_alone(train.scene, one_period(better.theta, train.scene.period)[0]))
         errors["crank_acceleration"] += missed / float(least)
     errors["crank_angle"] = _peak(ahead) + _ROUNDING * peaks["crank_angle"]
     # in the true motion the energy gained is the work done
@@ -154,10 +153,8 @@ def dataset(assembled: Assembled) -> xr.Dataset:
     )
 
 
-def _variables(
-    scene: Scene, pressure: PeriodicPressure | None, samples: Samples
-) -> dict[str, Array]:
-    found = reactions(scene, pressure, samples.theta, samples.omega, samples.alpha)
+def _variables(train: CrankTrain, samples: Samples) -> dict[str, Array]:
+    found = reactions(train, samples.theta, samples.omega, samples.alpha)
     return {**_motion(samples), **found, **samples.own}
 
 

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
 from crankmbs.errors import InputError
 from crankmbs.mechanics.inertia import reduce
-from crankmbs.mechanics.pressure import PeriodicPressure, crank_angle_knots, repeat
+from crankmbs.mechanics.pressure import repeat
 from crankmbs.mechanics.reactions import reactions
 from crankmbs.mechanics.speed import SpeedLaw, speed_law
+from crankmbs.mechanics.train import CrankTrain, crank_angle_knots
 from crankmbs.motion.base import Array, Samples, Solution
 from crankmbs.motion.plan import FOLDED, Plan, plan_of
-from crankmbs.scene.scene import Scene
 from crankmbs.scene.schema import DEGREE
 
 __all__ = ["run"]
@@ -21,13 +22,14 @@ __all__ = ["run"]
 _PANEL = 5.0 * DEGREE  # widest panel of the work integral; Gauss with 4 points errs below 1e-12
 
 
-def run(scene: Scene, pressure: PeriodicPressure | None) -> Solution:
+def run(train: CrankTrain) -> Solution:
     """Sample the prescribed motion. Exact but for rounding; there is nothing to integrate.
 
     Raises
     ------
     InputError : a speed table that ends before the run does
     """
+    scene = train.scene
     assert scene.motion is not None
     plan = plan_of(scene)
     law = speed_law(scene.motion)
@@ -35,8 +37,8 @@ def run(scene: Scene, pressure: PeriodicPressure | None) -> Solution:
     stretches = _kept(plan, law, stretches)
     time, theta = _sample(plan, law, stretches, reached)
     _, omega, alpha = law.at_time(time)
-    edges = _panel_edges(scene, pressure, law, stretches, time)
-    residual = _energy_residual(scene, pressure, law, time, edges)
+    edges = _panel_edges(train, law, stretches, time)
+    residual = _energy_residual(train, law, time, edges)
     samples = Samples(time, theta, omega, alpha, residual)
     angle = math.degrees(theta[-1])
     if plan.folds_at(float(theta[-1])):
@@ -118,30 +120,27 @@ def _sample(
 
 
 def _panel_edges(
-    scene: Scene,
-    pressure: PeriodicPressure | None,
+    train: CrankTrain,
     law: SpeedLaw,
     stretches: list[tuple[float, float]],
     time: Array,
 ) -> Array:
     """Times between which the power is smooth and short: samples, knots, corners, panels."""
-    knots = crank_angle_knots(scene, pressure)
+    knots = crank_angle_knots(train)
     edges = [time, np.array(law.corners)]
     for begin, end in stretches:
         a, b = (float(q) for q in law.at_time([begin, end])[0])
         low, high = min(a, b), max(a, b)
         count = math.ceil((high - low) / _PANEL)
         inside = np.concatenate(
-            [repeat(knots, scene.period, low, high), np.linspace(low, high, count + 1)[1:-1]]
+            [repeat(knots, train.scene.period, low, high), np.linspace(low, high, count + 1)[1:-1]]
         )
         edges += [np.array([begin, end]), law.time_at(inside, begin, end)]
     merged = np.unique(np.concatenate(edges))
     return np.asarray(merged[(merged >= time[0]) & (merged <= time[-1])])
 
 
-def _energy_residual(
-    scene: Scene, pressure: PeriodicPressure | None, law: SpeedLaw, time: Array, edges: Array
-) -> Array:
+def _energy_residual(train: CrankTrain, law: SpeedLaw, time: Array, edges: Array) -> Array:
     """Kinetic energy gained since the first sample minus the work of gas, gravity and drive.
 
     The work is the integral of power over time by Gauss quadrature between the edges.
@@ -150,11 +149,11 @@ def _energy_residual(
     half = 0.5 * np.diff(edges)[:, None]
     t = edges[:-1, None] + half * (1.0 + nodes)
     theta, omega, alpha = law.at_time(t.ravel())
-    all_of = reactions(scene, pressure, theta, omega, alpha)
+    all_of = reactions(train, theta, omega, alpha)
     gas = (all_of["gas_force"] * all_of["piston_velocity"]).sum(axis=1)
-    weight = reduce(scene, None, theta)[2] * omega
+    weight = reduce(replace(train, pressure=None), theta).torque * omega
     power = (all_of["external_torque"] * omega + gas + weight).reshape(t.shape)
     work = np.concatenate([[0.0], np.cumsum((half * power) @ weights)])
     theta, omega, alpha = law.at_time(time)
-    kinetic = reactions(scene, pressure, theta, omega, alpha)["kinetic_energy"]
+    kinetic = reactions(train, theta, omega, alpha)["kinetic_energy"]
     return np.asarray(kinetic - kinetic[0] - work[np.searchsorted(edges, time)])

@@ -8,9 +8,9 @@ from functools import cache
 
 import numpy as np
 
-from crankmbs.mechanics.inertia import reduce
-from crankmbs.mechanics.pressure import pressure_of
+from crankmbs.mechanics.inertia import inertia_alone
 from crankmbs.mechanics.torque import branch_of
+from crankmbs.mechanics.train import CrankTrain, crank_train
 from crankmbs.motion.crank_angle import readout
 from crankmbs.motion.crank_angle.grid import Grid, grid_of
 from crankmbs.motion.crank_angle.solvers import Begin, solve_affine
@@ -61,7 +61,7 @@ def kernels_of(scene: Scene, reference: Reference) -> tuple[Contender, ...]:
 
 
 def _grid(scene: Scene, widest: float) -> Grid:
-    return grid_of(scene, pressure_of(scene), gauss(_STAGES), widest * DEGREE)
+    return grid_of(crank_train(scene), gauss(_STAGES), widest * DEGREE)
 
 
 def _loop(scene: Scene, grid: Grid, reference: Reference) -> Callable[[], Answer]:
@@ -75,9 +75,9 @@ def _loop(scene: Scene, grid: Grid, reference: Reference) -> Callable[[], Answer
     far = float(reference.track.end().theta[0]) + sense * float(np.max(np.diff(grid.edges)))
     count = int(abs(far - theta) / float(grid.edges[-1]) * len(grid.edges)) + 2
     strip = grid.strip(theta, sense, count, far)
-    energy = 0.5 * float(reduce(scene, None, theta)[0]) * omega**2
+    energy = 0.5 * float(inertia_alone(scene, theta)) * omega**2
     begin = Begin(sense, energy, 0.0, until if until_time else math.inf)
-    reduced, given = Reduced(scene, None), np.array([until])
+    reduced, given = Reduced(CrankTrain(scene, None)), np.array([until])
     no_gas = np.zeros((len(scene.cylinders), 6))
 
     def run() -> Answer:

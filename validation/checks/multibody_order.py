@@ -13,6 +13,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from crankmbs.figures.style import STYLE, line_of
+from crankmbs.mechanics.train import crank_train
 from crankmbs.motion.multibody.path import coarsest_step, model_of, solve
 from crankmbs.motion.multibody.problem import problem_of
 from crankmbs.motion.multibody.samples import Sampled, aligned_variables
@@ -79,7 +80,7 @@ def _errors(ours: Scene, theirs: Scene, count: int) -> _Errors:
     reference = run(theirs, "crank_angle")  # only its samples' crank angles are used
     motion = reference_motion(reference, theirs)
     exact = reference_variables(theirs, motion.theta, motion.omega, motion.alpha)
-    problem = problem_of(ours)
+    problem = problem_of(crank_train(ours))
     model = model_of(problem)
     try:
         step, _ = coarsest_step(problem, model)

@@ -10,6 +10,7 @@ from scipy.optimize import brentq
 from crankmbs import lecture
 from crankmbs.mechanics.inertia import reduce
 from crankmbs.mechanics.pressure import pressure_of
+from crankmbs.mechanics.train import CrankTrain
 from crankmbs.scene.drives import Constant
 from crankmbs.scene.scene import Scene
 from validation import reference
@@ -95,7 +96,9 @@ def integration(case: Case) -> Outcome:
     torque = load.torque
 
     def slope(_: float, state: Vector) -> Vector:
-        inertia, inertia_1, _ = (float(value) for value in reduce(scene, None, state[0]))
+        inertia, inertia_1, _ = (
+            float(value) for value in reduce(CrankTrain(scene, None), state[0])
+        )
         return np.array([state[1], (torque - 0.5 * inertia_1 * state[1] ** 2) / inertia])
 
     start = scene.start

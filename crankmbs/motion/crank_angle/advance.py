@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from crankmbs.mechanics.inertia import reduce
+from crankmbs.mechanics.inertia import inertia_alone, reduce
 from crankmbs.mechanics.torque import Branch, Course, branch_at, course_of
 from crankmbs.motion.base import State
 from crankmbs.motion.crank_angle.grid import Grid, Strip, largest_of_row
@@ -47,7 +47,7 @@ def is_fast(grid: Grid, state: State, branch: Branch, times: float) -> bool:
     """Whether the energy lasts for so many times the angle at which this formulation gives up."""
     scale = grid.scale[grid.cell_at(state.theta, math.copysign(1.0, state.omega))]
     scale += abs(float(branch(state.time, state.omega)))
-    inertia = float(reduce(grid.scene, None, state.theta)[0])
+    inertia = float(inertia_alone(grid.train.scene, state.theta))
     return bool(0.5 * inertia * state.omega**2 > times * _SLOW * scale)
 
 
@@ -104,7 +104,7 @@ class _Way(NamedTuple):
 def _stretch(way: _Way, branch: Branch) -> Window | None:
     """The next cells on the course that continues a branch; on the branch alone where its cells are
     affine, or where kinks are too strong to be found by solving again."""
-    course = course_of(way.grid.scene.torque, branch, way.state.time)
+    course = course_of(way.grid.train.scene.torque, branch, way.state.time)
     if isinstance(course, Branch):
         return _solve(way, course)
     window = _before_kink(way, branch, course) if branch.is_affine_in_energy else None
@@ -156,7 +156,7 @@ def _skip(way: _Way, branch: Branch) -> tuple[State, int]:
     def at(time: float, turned: float, energy: float) -> Window | None:
         """The period that begins with this energy, if the motion passes it whole."""
         theta = state.theta + sense * turned
-        omega = sense * math.sqrt(2.0 * energy / float(reduce(grid.scene, None, theta)[0]))
+        omega = sense * math.sqrt(2.0 * energy / float(inertia_alone(grid.train.scene, theta)))
         begin, end = State(time, theta, omega, state.residual), theta + sense * period
         from_there = way._replace(state=begin, energy=energy, bound=end, t_end=math.inf)
         window = _solve(from_there, branch)
@@ -186,9 +186,9 @@ def _skip(way: _Way, branch: Branch) -> tuple[State, int]:
 
 def _enter(grid: Grid, state: State) -> tuple[Branch | None, float]:
     """The branch of the loads that the motion enters, and its kinetic energy [J]."""
-    inertia, slope, torque = reduce(grid.scene, grid.pressure, state.theta)
+    inertia, slope, torque = reduce(grid.train, state.theta)
     rest = float(torque - 0.5 * slope * state.omega**2)
-    branch = branch_at(grid.scene.torque, state.time, state.omega, rest)
+    branch = branch_at(grid.train.scene.torque, state.time, state.omega, rest)
     return branch, 0.5 * float(inertia) * state.omega**2
 
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crankmbs.mechanics.inertia import reduce
-from crankmbs.mechanics.pressure import PeriodicPressure, crank_angle_knots
+from crankmbs.mechanics.train import CrankTrain, crank_angle_knots
 from crankmbs.numerics.collocation import Rule, gauss
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.schema import DEGREE
@@ -54,8 +54,7 @@ class Grid:
     checks : whether it is there to check another grid, and nothing checks it
     """
 
-    scene: Scene
-    pressure: PeriodicPressure | None
+    train: CrankTrain
     edges: Array
     rule: Rule
     checks: bool = False
@@ -84,15 +83,14 @@ class Grid:
         """The same cells for a rule of two more stages, which checks this one, under a pressure
         that is off by as much as this one may be."""
         rule = gauss(len(self.rule.nodes) + 2)
-        pressure = self.pressure and self.pressure.off
-        return Grid(self.scene, pressure, self.edges, rule, checks=True)
+        return Grid(self.train.off, self.edges, rule, checks=True)
 
     def split(self, parts: NDArray[np.intp]) -> Grid:
         """Every cell cut into equal parts, as many as ``parts``, shape (n,), says."""
         cell = np.repeat(np.arange(len(parts)), parts)
         part = np.arange(len(cell)) - (np.cumsum(parts) - parts)[cell]
         edges = self.edges[cell] + part * (np.diff(self.edges) / parts)[cell]
-        return Grid(self.scene, self.pressure, np.append(edges, self.edges[-1]), self.rule)
+        return Grid(self.train, np.append(edges, self.edges[-1]), self.rule)
 
     def cell_at(self, theta: float, sense: float) -> int:
         """Number of the cell that the motion is about to pass at a crank angle [rad]."""
@@ -155,20 +153,18 @@ class Grid:
 
     def _tabulate(self, start: Array, width: Array) -> tuple[Array, Array]:
         theta = start[:, None] + width[:, None] * self.rule.nodes
-        inertia, _, torque = reduce(self.scene, self.pressure, theta)
-        return inertia, torque
+        found = reduce(self.train, theta)
+        return found.inertia, found.torque
 
 
-def grid_of(
-    scene: Scene, pressure: PeriodicPressure | None, rule: Rule, widest: float = _WIDEST
-) -> Grid:
-    """The coarsest grid of a scene: edges at the pressure's knots and around folds that a rod just
-    escapes, no cell wider than ``widest`` [rad]."""
-    knots = crank_angle_knots(scene, pressure)
+def grid_of(train: CrankTrain, rule: Rule, widest: float = _WIDEST) -> Grid:
+    """The coarsest grid of a crank train: edges at the pressure's knots and around folds that a rod
+    just escapes, no cell wider than ``widest`` [rad]."""
+    scene, knots = train.scene, crank_angle_knots(train)
     marks = np.unique(np.concatenate([[0.0], knots, _near_folds(scene), [scene.period]]))
     marks = marks[np.append(True, np.diff(marks) > _SLIVER)]
     marks[-1] = scene.period
-    grid = Grid(scene, pressure, marks, rule)
+    grid = Grid(train, marks, rule)
     return grid.split(np.ceil(np.diff(marks) / widest - 1e-9).astype(np.intp))
 
 

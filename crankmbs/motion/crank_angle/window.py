@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from crankmbs.mechanics.inertia import reduce
+from crankmbs.mechanics.inertia import inertia_alone, reduce
 from crankmbs.mechanics.torque import Branch, Course
 from crankmbs.motion.base import NOWHERE, Array, Samples, State
 from crankmbs.motion.crank_angle import readout
@@ -154,7 +154,9 @@ class Window:
 
     def speeds_at(self, k: Index) -> Array:
         """Speed [rad/s] at these edges."""
-        inertia = reduce(self.grid.scene, None, self.begin.theta + self.sense * self.edges[k])[0]
+        inertia = inertia_alone(
+            self.grid.train.scene, self.begin.theta + self.sense * self.edges[k]
+        )
         return np.asarray(self.sense * np.sqrt(2.0 * self.energy[k] / inertia))
 
     def _crossing(self, limit: float, *, above: bool) -> tuple[int, float] | None:
@@ -220,7 +222,8 @@ class Window:
     def _samples(self, k: Index, theta: Array, t: Array, energy: Array) -> Samples:
         """Samples in the cells k."""
         once, which = one_period(theta, float(self.grid.edges[-1]))
-        of_angle = reduce(self.grid.scene, self.grid.pressure, once)
+        inertia, slope, torque = reduce(self.grid.train, once)
+        of_angle = (inertia, slope, torque)  # bare: numba's cache must not name a class
         if kernels.are_compiled and isinstance(self.branch, Branch):
             omega, outside, alpha = np.empty((3, len(theta)))
             loads = self.branch.coefficients

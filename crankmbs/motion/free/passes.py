@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crankmbs.mechanics.inertia import reduce
-from crankmbs.mechanics.pressure import PeriodicPressure
 from crankmbs.mechanics.torque import Branch, branch_at, branch_of
+from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.variables import VARIABLES
 from crankmbs.motion.assemble import ANGLE_ROUNDING, Assembled, assemble
 from crankmbs.motion.base import Array, Piece, Samples, Solution, State
@@ -30,7 +30,6 @@ from crankmbs.motion.minimal.reduced import Reduced
 from crankmbs.motion.plan import FOLDED, Plan, plan_of
 from crankmbs.numerics.collocation import gauss
 from crankmbs.scene.drives import TimeTable
-from crankmbs.scene.scene import Scene
 
 __all__ = ["run"]
 
@@ -87,22 +86,15 @@ class _Pass(NamedTuple):
     slow: list[float]
 
 
-def run(
-    scene: Scene,
-    pressure: PeriodicPressure | None,
-    formulation: str,
-    rtol: float,
-    cost_cap: float,
-) -> Assembled:
+def run(train: CrankTrain, rtol: float, cost_cap: float, *, by_angle: bool) -> Assembled:
     """Solve a free motion to a relative global error, twice: the second pass is of higher order.
 
-    formulation : "crank_angle" (time carries it across rest) or "minimal" (time throughout)
+    by_angle : the crank angle is the variable wherever it can be; else time throughout
     cost_cap [s] : for which time is evaluated in either pass before it gives up, on a slow machine
     """
     allowed = int(min(cost_cap * _EVALUATIONS, 1e18))
-    by_angle = formulation == "crank_angle"
     stages = min(3 + round(-math.log10(rtol) / 3.0), 7)
-    grid = grid_of(scene, pressure, gauss(stages))
+    grid = grid_of(train, gauss(stages))
     best: Assembled | None = None
     local, least, rounded = rtol, math.inf, False
     finest = _FINEST if by_angle else 100.0 * _FINEST_STEP
@@ -113,8 +105,8 @@ def run(
             grid = grid.split(parts)
             continue
         better = _travel(grid.finer, 1e-2 * local, allowed, by_angle=by_angle, first=answer)
-        solution = _solution(answer, better, plan_of(scene), allowed)
-        assembled = assemble(scene, pressure, solution)
+        solution = _solution(answer, better, plan_of(train.scene), allowed)
+        assembled = assemble(train, solution)
         near = local <= 10.0 * finest
         estimate = assembled.relative_error * (2.0 if near else 1.0)
         if estimate <= least:
@@ -138,7 +130,7 @@ def _travel(
 ) -> _Pass:
     """One pass from start to end, handing over between the formulations near rest; a second one
     betters the ``first``. Over time it takes no more than the evaluations ``allowed``."""
-    scene = grid.scene
+    scene = grid.train.scene
     assert scene.start is not None
     plan = plan_of(scene)
     state = State(0.0, scene.start.angle, scene.start.speed, 0.0)
@@ -149,7 +141,7 @@ def _travel(
         ahead = math.copysign(ANGLE_ROUNDING * state.theta, state.omega or float(begin.alpha[0]))
         state = state._replace(theta=state.theta + ahead)
     tolerance = max(0.01 * local, _FINEST_STEP)
-    roaming = partial(Reduced, scene, grid.pressure, _ROAMING * tolerance)
+    roaming = partial(Reduced, grid.train, _ROAMING * tolerance)
     reduced = cache(roaming)  # where the crank angle serves only near rest is it needed
     worst = np.zeros((2, len(grid.edges) - 1))
     fast: list[tuple[float, float]] = []
@@ -197,9 +189,9 @@ def _travel(
 
 def _first(grid: Grid, state: State) -> Samples:
     """The sample at the start."""
-    inertia, slope, torque = reduce(grid.scene, grid.pressure, state.theta)
+    inertia, slope, torque = reduce(grid.train, state.theta)
     rest = float(torque - 0.5 * slope * state.omega**2)
-    torques = grid.scene.torque
+    torques = grid.train.scene.torque
     branch = branch_at(torques, state.time, state.omega, rest)
     branch = branch or branch_of(torques, state.time, state.omega, rising=True)
     outside = float(branch(state.time, state.omega))

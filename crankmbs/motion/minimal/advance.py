@@ -87,7 +87,7 @@ def advance(
 
 def _enter(reduced: Reduced, state: State, scale: float) -> Equation | str:
     """The piece that the motion enters, or why it enters none."""
-    torques = reduced.scene.torque
+    torques = reduced.train.scene.torque
     if state.omega != 0.0:
         between = reduced.around(state.theta, math.copysign(1.0, state.omega))
         _, slope, torque = reduced(state.theta, between.pieces)

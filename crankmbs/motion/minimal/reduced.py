@@ -13,11 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crankmbs.mechanics.inertia import reduce
-from crankmbs.mechanics.pressure import PeriodicPressure, crank_angle_knots, merged_knots
+from crankmbs.mechanics.train import CrankTrain, crank_angle_knots, merged_knots
 from crankmbs.motion.minimal import stepper
 from crankmbs.motion.minimal.system import Machine, bare
 from crankmbs.scene.drives import Constant, SpeedTable, TimeTable
-from crankmbs.scene.scene import Scene
 
 __all__ = ["Between", "Reduced"]
 
@@ -39,12 +38,10 @@ class Reduced:
     missed : of the largest torque, what a step across knots may miss of the gas
     """
 
-    def __init__(
-        self, scene: Scene, pressure: PeriodicPressure | None, missed: float = 0.0
-    ) -> None:
+    def __init__(self, train: CrankTrain, missed: float = 0.0) -> None:
+        self.train, scene, pressure = train, train.scene, train.pressure
         crank, rod, piston = scene.crank, scene.rod, scene.piston
-        self.scene, self.pressure = scene, pressure
-        knots = crank_angle_knots(scene, pressure)
+        knots = crank_angle_knots(train)
         if len(knots) == 0:  # no step of many turns: it would overlook a light rod near a fold
             knots = np.arange(0.0, scene.period, 0.5)
         g = scene.gravity.acceleration if scene.gravity else 0.0
@@ -83,7 +80,7 @@ class Reduced:
 
     def around(self, theta: float, sense: float) -> Between:
         """The knots next to theta in the sense of rotation, and the polynomials between them."""
-        pieces = np.zeros((len(self.scene.cylinders), 6))
+        pieces = np.zeros((len(self.train.scene.cylinders), 6))
         low, high = stepper.enter(theta, sense, self.machine, pieces)
         return Between(low, high, pieces)
 
@@ -93,11 +90,11 @@ class Reduced:
         [N m]."""
         load = sum(
             abs(t.torque) if isinstance(t, Constant) else max(map(abs, t.file.y))
-            for t in self.scene.torque
+            for t in self.train.scene.torque
             if isinstance(t, Constant | TimeTable | SpeedTable)
         )
-        angles = 0.1 + np.linspace(0.0, self.scene.period, 721)  # no fold lies there
-        torque = reduce(self.scene, self.pressure, angles)[2]
+        angles = 0.1 + np.linspace(0.0, self.train.scene.period, 721)  # no fold lies there
+        torque = reduce(self.train, angles).torque
         return load + float(np.max(np.abs(torque)))
 
     def __call__(self, theta: float, pieces: Array) -> tuple[float, float, float]:

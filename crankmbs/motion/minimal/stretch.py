@@ -157,7 +157,7 @@ class Stretch:
         theta = reached if theta is None else theta
         # on a step of the pressure the value after it counts, here as in the joint forces
         reduced = self.equation.reduced
-        inertia, slope, torque = reduce(reduced.scene, reduced.pressure, theta)
+        inertia, slope, torque = reduce(reduced.train, theta)
         outside = self.equation.branch(t, omega)
         alpha = (torque + outside - 0.5 * slope * omega**2) / inertia
         start = self.equation.kinetic(self.begin.theta, self.begin.omega)

@@ -10,12 +10,12 @@ from __future__ import annotations
 
 import math
 
+from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion.base import Array, Samples, Solution
 from crankmbs.motion.multibody.beside import errors_beside_jumps
 from crankmbs.motion.multibody.error import Convergence, relative_error
 from crankmbs.motion.multibody.runs import Runs
 from crankmbs.motion.multibody.samples import Sampled, aligned_variables
-from crankmbs.scene.scene import Scene
 
 __all__ = ["run"]
 
@@ -23,7 +23,7 @@ _WORSE = 2.0  # a halving that makes the error so much larger only adds rounding
 _MOTION = ("time", "crank_angle", "crank_speed", "crank_acceleration", "energy_residual")
 
 
-def run(scene: Scene, rtol: float, cost_cap: float) -> Solution:
+def run(train: CrankTrain, rtol: float, cost_cap: float) -> Solution:
     """Run the multibody model; halve its step until ``rtol`` is met or ``cost_cap`` [s] is near.
 
     Raises
@@ -31,7 +31,7 @@ def run(scene: Scene, rtol: float, cost_cap: float) -> Solution:
     FormulationError : exudyn cannot take a single step of this scene
     InputError : a speed table that ends before the run does
     """
-    runs = Runs(scene, cost_cap)
+    runs = Runs(train, cost_cap)
     try:
         status, message = runs.first()
         convergence = Convergence(runs.erratic_order)

@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crankmbs.mechanics.pressure import PeriodicPressure
+from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion.base import Array
-from crankmbs.scene.scene import Scene
 
 __all__ = ["NEAR", "Gas", "GasStretch"]
 
@@ -28,9 +28,10 @@ _MOST_JUMPS = 60  # in a period; a table of more steps is run over as it is
 
 
 class Gas:
-    """The gas forces of a scene; without gas all zero."""
+    """The gas forces of a crank train; without gas all zero."""
 
-    def __init__(self, scene: Scene, pressure: PeriodicPressure | None) -> None:
+    def __init__(self, train: CrankTrain) -> None:
+        scene, pressure = train.scene, train.pressure
         self.phases = np.array([cylinder.phase for cylinder in scene.cylinders])
         self._pressure, self._period = pressure, scene.period
         self._area = scene.piston.gas_area or 0.0

@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from crankmbs.errors import InputError
-from crankmbs.mechanics.pressure import pressure_of
 from crankmbs.mechanics.speed import SpeedLaw, speed_law
+from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion.multibody.gas import Gas
 from crankmbs.motion.plan import Plan, plan_of
 from crankmbs.scene.drives import TimeTable
@@ -44,14 +44,15 @@ class Problem(NamedTuple):
         return float(theta), float(omega)
 
 
-def problem_of(scene: Scene) -> Problem:
-    """The problem of a scene.
+def problem_of(train: CrankTrain) -> Problem:
+    """The problem of a crank train.
 
     Raises
     ------
     InputError : a speed table that ends before the run does
     """
-    plan, gas = plan_of(scene), Gas(scene, pressure_of(scene))
+    scene = train.scene
+    plan, gas = plan_of(scene), Gas(train)
     if scene.motion is None:
         return Problem(scene, plan, gas, None, plan.time_bound, False)
     law = speed_law(scene.motion)

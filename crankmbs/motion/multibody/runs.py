@@ -6,10 +6,10 @@ import math
 import time as clock
 
 from crankmbs.errors import FormulationError
+from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion.multibody.path import Path, coarsest_step, model_of, solve
 from crankmbs.motion.multibody.problem import erratic_order, problem_of
 from crankmbs.motion.multibody.samples import reached, slowed
-from crankmbs.scene.scene import Scene
 
 __all__ = ["Runs"]
 
@@ -27,9 +27,9 @@ class Runs:
     moves : False where the crank stays at rest
     """
 
-    def __init__(self, scene: Scene, cost_cap: float) -> None:
+    def __init__(self, train: CrankTrain, cost_cap: float) -> None:
         self._begin = clock.perf_counter()
-        self.problem = problem_of(scene)
+        self.problem = problem_of(train)
         self.paths: list[Path] = []
         self.steps = self.iterations = 0
         self._model = model_of(self.problem)
