@@ -6,6 +6,7 @@ from typer.testing import CliRunner
 
 from crankmbs.cli import app
 from crankmbs.work_precision import END, MOTION, formulations, rounds
+from validation.speed.__main__ import main as beside_others
 
 REACTIONS = ("main bearing", "crank pin", "piston pin", "side force")
 
@@ -49,7 +50,6 @@ def test_the_command_prints_tables_and_writes_a_file_and_a_figure(tmp_path):
     for name in (
         "crank_angle",
         "crank_angle, end only",
-        "crank_angle, kernel",
         "minimal",
         "multibody",
     ):
@@ -69,25 +69,30 @@ def test_the_command_prints_tables_and_writes_a_file_and_a_figure(tmp_path):
 
 
 @pytest.mark.usefixtures("one_round")
-def test_with_a_prescribed_speed_only_the_reactions_have_errors_to_compare(tmp_path):
+def test_with_a_prescribed_speed_only_the_reactions_have_errors_to_compare(tmp_path, capsys):
     scene = tmp_path / "prescribed.toml"
     start = '[start]\nangle = "0 deg"'
     scene.write_text(SCENE.format(speed="1000 rpm").replace(start, "[motion]"))
-    outcome = measured(scene, "--peers", "--out", tmp_path)
-    assert outcome.exit_code == 0, outcome.output
-    assert "no peers: a prescribed speed leaves the peers nothing to integrate" in outcome.stdout
-    assert "  drive torque" in outcome.stdout
-    assert "to an end within" not in outcome.stdout
+    assert beside_others([str(scene), "--out", str(tmp_path)]) == 0
+    out = capsys.readouterr().out
+    assert "no peers: a prescribed speed leaves the peers nothing to integrate" in out
+    assert "  drive torque" in out
+    assert "to an end within" not in out
 
 
 @pytest.mark.usefixtures("one_round")
-def test_a_scene_that_ends_early_is_compared_and_exits_with_3(tmp_path):
+def test_a_scene_that_ends_early_is_compared_and_exits_with_3(tmp_path, capsys):
     scene = tmp_path / "resting.toml"
     scene.write_text(SCENE.format(speed="0 rpm"))
-    outcome = measured(scene, "--peers", "--out", tmp_path)
-    assert outcome.exit_code == 3, outcome.output
-    assert "no peers: the run does not reach its end (at rest at 0 degrees" in outcome.stdout
-    assert "crank_angle " in outcome.stdout
+    assert beside_others([str(scene), "--out", str(tmp_path)]) == 3
+    out = capsys.readouterr().out
+    assert "no peers: the run does not reach its end (at rest at 0 degrees" in out
+    assert "crank_angle " in out
+
+
+def test_beside_others_a_scene_that_is_none_exits_with_2(capsys):
+    assert beside_others(["no_such_scene"]) == 2
+    assert capsys.readouterr().err.startswith("error: ")
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from crankmbs import Constant, Motion, Quadratic, Run, Start, Table, TimeTable, Viscous, load_scene
+from crankmbs import Motion, Run, load_scene
 from crankmbs.figures.work_precision import work_precision_figure
 from crankmbs.work_precision import (
     END,
@@ -18,7 +18,6 @@ from crankmbs.work_precision import (
 )
 from crankmbs.work_precision.contender import Answer, Contender, ContenderFailed
 from crankmbs.work_precision.formulations import formulations_of
-from crankmbs.work_precision.kernel import kernels_of
 from crankmbs.work_precision.reference import reference_of
 from crankmbs.work_precision.rounds import Row, play
 from crankmbs.work_precision.track import Track, differences
@@ -112,36 +111,6 @@ def test_every_formulation_errs_by_no_more_than_twice_what_it_states(reference, 
     assert max(found.values()) <= 2.0 * answer.stated + 2e-11
     assert answer.evaluations > 0
     assert ("end only" in contender.name) == (tuple(found) == (END,))
-
-
-@pytest.mark.parametrize("run", [SHORT.run, Run(until="3.3 rev", every="5 deg")])
-@pytest.mark.parametrize("speed", [1000.0, -1000.0])
-def test_the_kernel_alone_converges_to_the_same_end(run, speed):
-    start = dataclasses.replace(SHORT.start, speed=speed * np.pi / 30.0)
-    scene = dataclasses.replace(SHORT, run=run, start=start, torque=(Quadratic(coefficient=1e-6),))
-    reference = reference_of(scene)
-    (kernel,) = kernels_of(scene, reference)
-    first, *_, last = (
-        differences(kernel.run(widest).track, reference.track.end(), reference.start)[END]
-        for widest in kernel.settings
-    )
-    assert first < 1e-4
-    assert last < max(1e-6 * first, 2e-12)
-
-
-@pytest.mark.parametrize(
-    "change",
-    [
-        {"torque": (Viscous(coefficient=1e-3),)},
-        {"torque": (TimeTable(file=Table((0.0, 1.0), (0.0, 1e-3))),)},
-        {"start": Start(angle=0.3, speed=0.0)},
-        {"start": Start(angle=0.3, speed=40.0), "torque": (Constant(torque=-50.0),)},
-    ],
-    ids=["viscous", "in time", "from rest", "turns back"],
-)
-def test_there_is_no_kernel_where_one_loop_does_not_solve_the_scene(change):
-    scene = dataclasses.replace(SHORT, **change)
-    assert kernels_of(scene, reference_of(scene)) == ()
 
 
 def test_a_formulation_that_stops_early_is_named(reference):

@@ -141,15 +141,12 @@ def validate(
 @app.command("work-precision")
 def work_precision(
     scene: _Scene,
-    peers: Annotated[
-        bool, typer.Option("--peers", help="Run other tools too, where they are installed.")
-    ] = False,
     out: Annotated[
         Path | None, typer.Option(help="Folder of the results; default results/NAME.")
     ] = None,
 ) -> None:
-    """Measure speed against error of every formulation; compare with other tools."""
-    if not measure_scene(scene, peers=peers, out=out):
+    """Measure speed against error of every formulation that serves the scene."""
+    if not measure_scene(scene, out=out):
         raise typer.Exit(3)
 
 

@@ -15,6 +15,7 @@ from crankmbs.scene.read import load_scene, scene_path
 from crankmbs.storage.files import together
 from crankmbs.work_precision import (
     TARGETS,
+    Beside,
     Row,
     WorkPrecision,
     save_work_precision,
@@ -24,13 +25,13 @@ from crankmbs.work_precision import (
 __all__ = ["measure_scene"]
 
 
-def measure_scene(name: str, *, peers: bool, out: Path | None) -> bool:
+def measure_scene(name: str, *, out: Path | None, beside: Beside | None = None) -> bool:
     """Compare what can serve a scene, print and write it; return whether the scene reached its end.
 
     Parameters
     ----------
-    peers : run other tools and a limit in C too
     out : folder of the results; None: results/NAME
+    beside : what else takes its turns, as in `work_precision`
 
     Raises
     ------
@@ -40,7 +41,7 @@ def measure_scene(name: str, *, peers: bool, out: Path | None) -> bool:
     scene = load_scene(path)
     folder = writable(Path("results", path.stem) if out is None else out)
     with progress("speed against error"):
-        outcome = work_precision(scene, peers=peers)
+        outcome = work_precision(scene, beside)
     with together(folder) as part, progress("figure"):  # before anything is printed
         from crankmbs.figures.work_precision import save_figure  # matplotlib only when it is used
 

@@ -1,6 +1,14 @@
-"""Speed against error: every formulation, and on request its peers, against one reference."""
+"""Speed against error: every formulation, and what is put beside them, against one reference.
 
-from crankmbs.work_precision.benchmark import TARGETS, WorkPrecision, work_precision
+Other tools and limits live with the evidence, in validation/speed.
+"""
+
+from crankmbs.work_precision.benchmark import (
+    TARGETS,
+    Beside,
+    WorkPrecision,
+    work_precision,
+)
 from crankmbs.work_precision.files import save_work_precision
 from crankmbs.work_precision.rounds import Row
 from crankmbs.work_precision.track import END, MOTION
@@ -9,6 +17,7 @@ __all__ = [
     "END",
     "MOTION",
     "TARGETS",
+    "Beside",
     "Row",
     "WorkPrecision",
     "save_work_precision",

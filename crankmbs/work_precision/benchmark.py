@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from crankmbs.scene.scene import Scene
+from crankmbs.work_precision.contender import Contender
 from crankmbs.work_precision.formulations import formulations_of
-from crankmbs.work_precision.kernel import kernels_of
 from crankmbs.work_precision.machine import about_machine
-from crankmbs.work_precision.peers import peers_of
 from crankmbs.work_precision.reference import Reference, reference_of
 from crankmbs.work_precision.rounds import Row, play
 from crankmbs.work_precision.track import END
 
-__all__ = ["TARGETS", "WorkPrecision", "work_precision"]
+__all__ = ["TARGETS", "Beside", "WorkPrecision", "work_precision"]
 
 TARGETS = (1e-3, 1e-6, 1e-9, 1e-12)
+
+Beside = Callable[[Scene, Reference], tuple[Sequence[Contender], Sequence[str]]]
+"""What else runs on a scene: contenders, and a sentence for each that cannot."""
 
 
 @dataclass(frozen=True)
@@ -48,13 +51,13 @@ class WorkPrecision:
         return min((row.time for row in rows if row.errors[END] <= target), default=None)
 
 
-def work_precision(scene: Scene, *, peers: bool = False) -> WorkPrecision:
+def work_precision(scene: Scene, beside: Beside | None = None) -> WorkPrecision:
     """Run everything that can serve a scene over its settings, in turns, against a reference.
 
     Errors are relative, as in `differences`; wall times are medians over rounds in which all take
     their turns. What takes longer than two seconds runs once or twice only.
 
-    peers : also other tools, where they are installed, and a limit in C, where there is a compiler
+    beside : what else takes its turns, made for the scene and its reference
 
     Raises
     ------
@@ -64,7 +67,6 @@ def work_precision(scene: Scene, *, peers: bool = False) -> WorkPrecision:
     ('end', 'motion')
     """
     reference = reference_of(scene)
-    contenders, absent = peers_of(scene, reference) if peers else ([], [])
-    own = *formulations_of(scene, reference), *kernels_of(scene, reference)
-    rows, failed = play((*own, *contenders), reference.start)
+    others, absent = beside(scene, reference) if beside else ((), ())
+    rows, failed = play((*formulations_of(scene, reference), *others), reference.start)
     return WorkPrecision(reference, rows, (*absent, *failed), about_machine())

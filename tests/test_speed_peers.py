@@ -22,9 +22,10 @@ from crankmbs import (
 )
 from crankmbs.work_precision import END, MOTION
 from crankmbs.work_precision.contender import Contender, ContenderFailed
-from crankmbs.work_precision.peers import _guarded, limit, peers_of
 from crankmbs.work_precision.reference import reference_of
 from crankmbs.work_precision.track import Track, differences
+from validation.speed import limit
+from validation.speed.peers import _guarded, peers_of
 
 FIRED = load_scene("propeller")
 LOPSIDED = dataclasses.replace(
@@ -95,7 +96,7 @@ def test_a_peer_that_is_not_installed_is_named_with_the_way_to_it(
 ):
     monkeypatch.setitem(sys.modules, module, None)
     _, notes = peers_of(LOPSIDED, lopsided[0])
-    assert f'{name}: {module} is not installed; pip install "crankmbs[bench]"' in notes
+    assert f'{name}: {module} is not installed; pip install ".[bench]"' in notes
 
 
 def test_without_a_compiler_the_limit_is_named(lopsided, monkeypatch, tmp_path):

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from crankmbs.work_precision.contender import Answer, Contender
-from crankmbs.work_precision.peers.job import Job
 from crankmbs.work_precision.track import Track
+from validation.speed.job import Job
 
 __all__ = ["LADDER", "integrated", "parameters", "scipy_contenders"]
 

@@ -18,15 +18,15 @@ from scipy.integrate import DOP853
 from crankmbs.numerics.collocation import gauss
 from crankmbs.scene.schema import DEGREE
 from crankmbs.work_precision.contender import Answer, Contender
-from crankmbs.work_precision.peers.job import Job, NotServed
-from crankmbs.work_precision.peers.reduced import parameters
 from crankmbs.work_precision.track import Track
+from validation.speed.job import Job, NotServed
+from validation.speed.reduced import parameters
 
 __all__ = ["dop853_contenders", "gauss_contenders"]
 
 Array = NDArray[np.float64]
 
-_SOURCE = Path(__file__).parent.parent / "limit.c"
+_SOURCE = Path(__file__).parent / "limit.c"
 _FLAGS = ("-O3", "-march=native", "-fno-math-errno", "-shared", "-fPIC")
 _STAGES = 4  # as in limit.c
 _WIDEST = (90.0, 45.0, 22.5, 12.0, 6.0, 3.0)  # deg

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from crankmbs.work_precision.contender import Answer, Contender
-from crankmbs.work_precision.peers.gas import gas_function
-from crankmbs.work_precision.peers.job import Job
 from crankmbs.work_precision.track import Track
+from validation.speed.gas import gas_function
+from validation.speed.job import Job
 
 __all__ = ["mujoco_contenders"]
 

@@ -7,7 +7,7 @@
 
 enum { GAUSS = 4, STAGES = 12 }; /* stages of either method */
 
-/* numbers: those of peers/reduced.py, in their order; n cubics of the gas force over the knots */
+/* numbers: those of reduced.py, in their order; n cubics of the gas force over the knots */
 typedef struct {
     const double *numbers, *knots, *force;
     int n;

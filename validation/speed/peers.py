@@ -12,9 +12,9 @@ from typing import NamedTuple
 
 from crankmbs.scene.scene import Scene
 from crankmbs.work_precision.contender import Answer, Contender, ContenderFailed
-from crankmbs.work_precision.peers.job import Job, NotServed, job_of
 from crankmbs.work_precision.reference import Reference
 from crankmbs.work_precision.track import Track
+from validation.speed.job import Job, NotServed, job_of
 
 __all__ = ["peers_of"]
 
@@ -52,11 +52,11 @@ def peers_of(scene: Scene, reference: Reference) -> tuple[list[Contender], list[
     notes: list[str] = []
     for name, module, function in _PEERS:
         try:
-            make: _Make = getattr(import_module(f"{__name__}.{module}"), function)
+            make: _Make = getattr(import_module(f"{__package__}.{module}"), function)
             contenders += [_guarded(contender) for contender in make(job, track)]
         except ImportError as error:
             missing = error.name or str(error)
-            notes.append(f'{name}: {missing} is not installed; pip install "crankmbs[bench]"')
+            notes.append(f'{name}: {missing} is not installed; pip install ".[bench]"')
         except NotServed as why:
             notes.append(f"{name}: {why}")
         except Exception as error:  # others' code may fail in any way

@@ -6,10 +6,10 @@ from functools import partial
 from typing import Any
 
 from crankmbs.work_precision.contender import Contender
-from crankmbs.work_precision.peers.gas import gas_function
-from crankmbs.work_precision.peers.job import Job
-from crankmbs.work_precision.peers.reduced import LADDER, integrated
 from crankmbs.work_precision.track import Track
+from validation.speed.gas import gas_function
+from validation.speed.job import Job
+from validation.speed.reduced import LADDER, integrated
 
 __all__ = ["sympy_contenders"]
 

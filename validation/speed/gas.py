@@ -5,7 +5,7 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Callable
 
-from crankmbs.work_precision.peers.job import Job
+from validation.speed.job import Job
 
 __all__ = ["gas_function"]
 
