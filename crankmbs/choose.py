@@ -5,12 +5,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from crankmbs.errors import FormulationError
+from crankmbs.motion import formulations
 from crankmbs.scene.scene import Scene
 
-__all__ = ["Choice", "choose"]
-
-_SERVES_PRESCRIBED = ("kinetostatic", "multibody")
-_SERVES_FREE = ("crank_angle", "minimal", "multibody")
+__all__ = ["Choice", "choose", "chosen"]
 
 
 class Choice(NamedTuple):
@@ -30,22 +28,22 @@ def choose(scene: Scene, formulation: str = "auto") -> Choice:
     >>> choose(load_scene("propeller")).formulation
     'crank_angle'
     """
-    prescribed = scene.motion is not None
-    serves = _SERVES_PRESCRIBED if prescribed else _SERVES_FREE
+    serves = [one.name for one in formulations.serving(scene)]
     if formulation == "auto":
         return Choice(serves[0], _reasons(scene))
     if formulation not in serves:
-        known = formulation in _SERVES_PRESCRIBED + _SERVES_FREE
-        why = (
-            f"the speed is {'prescribed' if prescribed else 'free'}"
-            if known
-            else "no such formulation"
-        )
+        refusals = {one.name: one.refuses(scene) for one in formulations.FORMULATIONS}
         raise FormulationError(
-            f"formulation {formulation!r} cannot serve this scene: {why}; "
+            f"formulation {formulation!r} cannot serve this scene: "
+            f"{refusals.get(formulation, 'no such formulation')}; "
             f"choose auto, {', '.join(serves[:-1])} or {serves[-1]}"
         )
     return Choice(formulation, (f"asked for; auto would choose {serves[0]}",))
+
+
+def chosen(choice: Choice) -> formulations.Formulation:
+    """The formulation of a choice."""
+    return next(one for one in formulations.FORMULATIONS if one.name == choice.formulation)
 
 
 def _reasons(scene: Scene) -> tuple[str, ...]:

@@ -4,18 +4,15 @@ from __future__ import annotations
 
 import time as clock
 
-from crankmbs.choose import choose
+from crankmbs.choose import choose, chosen
 from crankmbs.errors import InputError, shown
-from crankmbs.mechanics.pressure import PeriodicPressure, pressure_of, remarks
-from crankmbs.motion import kinetostatic
-from crankmbs.motion.assemble import Assembled, assemble, dataset
-from crankmbs.motion.free import passes
+from crankmbs.mechanics.pressure import remarks
+from crankmbs.mechanics.train import crank_train
+from crankmbs.motion.assemble import dataset
 from crankmbs.result import Cost, Error, Result
 from crankmbs.scene.scene import Scene
 
 __all__ = ["simulate"]
-
-_MULTIBODY_RTOL = 1e-5  # second order: more costs minutes, and is to be asked for
 
 
 def simulate(
@@ -55,11 +52,9 @@ def simulate(
         raise InputError(f"cost_cap must be a time above 0 s; {cost_cap!r} came")
     begin = clock.perf_counter()
     choice = choose(scene, formulation or scene.run.formulation)
-    pressure = pressure_of(scene)
-    asked = scene.run.rtol if rtol is None else rtol
-    if choice.formulation == "multibody" and rtol is None:
-        asked = max(asked, _MULTIBODY_RTOL)
-    assembled = _solve(scene, pressure, choice.formulation, asked, cost_cap)
+    one = chosen(choice)
+    asked = max(scene.run.rtol, one.least_rtol) if rtol is None else rtol
+    assembled = one.run(crank_train(scene), asked, cost_cap)
     solution = assembled.solution
     return Result(
         scene=scene,
@@ -71,15 +66,3 @@ def simulate(
         cost=Cost(clock.perf_counter() - begin, solution.evaluations, solution.steps),
         error=Error(asked, assembled.relative_error),
     )
-
-
-def _solve(
-    scene: Scene, pressure: PeriodicPressure | None, formulation: str, asked: float, cost_cap: float
-) -> Assembled:
-    if formulation == "kinetostatic":
-        return assemble(scene, pressure, kinetostatic.run(scene, pressure))
-    if formulation != "multibody":
-        return passes.run(scene, pressure, formulation, asked, cost_cap)
-    from crankmbs.motion import multibody
-
-    return assemble(scene, pressure, multibody.run(scene, asked, cost_cap))

@@ -4,8 +4,12 @@ from dataclasses import replace
 
 import pytest
 
-from crankmbs import FormulationError, Run, Start, load_scene, simulate
+from crankmbs import FormulationError, Motion, Run, Start, load_scene, simulate
 from crankmbs.choose import choose
+from crankmbs.motion import formulations, kinetostatic
+from crankmbs.motion.assemble import assemble
+from crankmbs.work_precision.formulations import formulations_of
+from crankmbs.work_precision.reference import reference_of
 
 PRESCRIBED, FREE = load_scene("yi_diesel"), load_scene("propeller")
 
@@ -49,3 +53,29 @@ def test_the_scene_itself_may_ask():
     scene = replace(FREE, run=Run(until="10 deg", formulation="minimal"))
     assert simulate(scene).formulation == "minimal"
     assert simulate(scene, formulation="crank_angle").formulation == "crank_angle"
+
+
+def test_a_formulation_is_one_record(monkeypatch):
+    """Even a toy, which turns at the speed of the start and forgets the torques."""
+    steady = replace(FREE, start=None, torque=(), motion=Motion(speed=FREE.start.speed))
+
+    def run(train, rtol, cost_cap):
+        toy = replace(train, scene=steady)
+        return assemble(toy, kinetostatic.run(toy))
+
+    toy = formulations.Formulation("toy", lambda scene: "it has gas" if scene.gas else "", run)
+    monkeypatch.setattr(formulations, "FORMULATIONS", (*formulations.FORMULATIONS, toy))
+    coasting = load_scene("coasting")
+    assert "choose auto, crank_angle, minimal, multibody or toy" in refusal(coasting, "lagrange")
+    assert "it has gas; choose" in refusal(FREE, "toy")
+    scene = replace(FREE, gas=None)
+    result = simulate(scene, formulation="toy")
+    assert result.formulation == "toy"
+    assert float(result.data["crank_speed"].max()) == FREE.start.speed
+    assert "toy" in [one.name for one in formulations_of(scene, reference_of(scene))]
+
+
+def refusal(scene, formulation):
+    with pytest.raises(FormulationError) as got:
+        choose(scene, formulation)
+    return str(got.value)

@@ -6,6 +6,7 @@ from dataclasses import replace
 from functools import partial
 
 from crankmbs.errors import CrankmbsError
+from crankmbs.motion.formulations import Formulation, serving
 from crankmbs.scene.scene import Scene
 from crankmbs.simulate import simulate
 from crankmbs.work_precision.contender import Answer, Contender, ContenderFailed
@@ -21,28 +22,25 @@ _ALGEBRA = (1e-8,)  # nothing to set
 def formulations_of(scene: Scene, reference: Reference) -> tuple[Contender, ...]:
     """Every formulation that can serve the scene, over its settings, with all it gives.
 
-    Those that integrate one rotation come a second time, for the state at the end alone: that is
-    what a bare integrator gives. ``multibody`` keeps every step anyway.
+    Those whose steps are wider than samples come a second time, for the state at the end alone:
+    that is what a bare integrator gives.
     """
 
-    def contender(name: str, *, end_only: bool = False) -> Contender:
+    def contender(one: Formulation, *, end_only: bool = False) -> Contender:
         return Contender(
-            name=f"{name}, end only" if end_only else name,
+            name=f"{one.name}, end only" if end_only else one.name,
             knob="rtol",
-            settings=_ALGEBRA if name == "kinetostatic" else _LADDER,
-            run=partial(_run, scene, name, end_only, reference.result.status),
+            settings=_LADDER if one.integrates else _ALGEBRA,
+            run=partial(_run, scene, one.name, end_only, reference.result.status),
             reference=reference.track,
         )
 
-    if scene.motion is not None:
-        return contender("kinetostatic"), contender("multibody")
-    return (
-        contender("crank_angle"),
-        contender("crank_angle", end_only=True),
-        contender("minimal"),
-        contender("minimal", end_only=True),
-        contender("multibody"),
-    )
+    contenders = []
+    for one in serving(scene):
+        contenders.append(contender(one))
+        if one.integrates and one.dense:
+            contenders.append(contender(one, end_only=True))
+    return tuple(contenders)
 
 
 def _run(scene: Scene, name: str, end_only: bool, status: int, rtol: float) -> Answer:

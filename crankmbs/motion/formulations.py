@@ -1,0 +1,78 @@
+"""The formulations, smallest first: which scenes each serves, and how it runs one.
+
+A new formulation is a file in this room that gives samples of the motion, and one record here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import NamedTuple
+
+from crankmbs.mechanics.train import CrankTrain
+from crankmbs.motion import kinetostatic
+from crankmbs.motion.assemble import Assembled, assemble
+from crankmbs.motion.free import passes
+from crankmbs.scene.scene import Scene
+
+__all__ = ["FORMULATIONS", "Formulation", "serving"]
+
+Run = Callable[[CrankTrain, float, float], Assembled]
+
+
+class Formulation(NamedTuple):
+    """One way to solve a scene.
+
+    refuses : scene -> why it cannot serve it; empty where it can
+    run : crank train, rtol, cost cap [s] -> a solution, all its variables and their errors
+    least_rtol : what it is content with unless more is asked for
+    integrates : whether rtol changes anything
+    dense : whether its steps are wider than samples, so that a run for its end alone costs less
+    """
+
+    name: str
+    refuses: Callable[[Scene], str]
+    run: Run
+    least_rtol: float = 0.0
+    integrates: bool = True
+    dense: bool = True
+
+
+def serving(scene: Scene) -> tuple[Formulation, ...]:
+    """Those that can serve a scene, smallest first.
+
+    >>> [one.name for one in serving(load_scene("yi_diesel"))]
+    ['kinetostatic', 'multibody']
+    """
+    return tuple(one for one in FORMULATIONS if not one.refuses(scene))
+
+
+def _if_free(scene: Scene) -> str:
+    return "the speed is free" if scene.motion is None else ""
+
+
+def _if_prescribed(scene: Scene) -> str:
+    return "the speed is prescribed" if scene.motion is not None else ""
+
+
+def _never(_: Scene) -> str:
+    return ""
+
+
+def _kinetostatic(train: CrankTrain, _rtol: float, _cost_cap: float) -> Assembled:
+    return assemble(train, kinetostatic.run(train))
+
+
+def _multibody(train: CrankTrain, rtol: float, cost_cap: float) -> Assembled:
+    from crankmbs.motion import multibody  # exudyn is imported only when it is used
+
+    return assemble(train, multibody.run(train, rtol, cost_cap))
+
+
+FORMULATIONS = (
+    Formulation("kinetostatic", _if_free, _kinetostatic, integrates=False),
+    Formulation("crank_angle", _if_prescribed, partial(passes.run, by_angle=True)),
+    Formulation("minimal", _if_prescribed, partial(passes.run, by_angle=False)),
+    # second order: more than 1e-5 costs minutes, and is to be asked for
+    Formulation("multibody", _never, _multibody, least_rtol=1e-5, dense=False),
+)
