@@ -63,7 +63,7 @@ def reactions(
     (n, cylinders) those of a cylinder; signs and frames as in `crankmbs.result.VARIABLES`
 
     >>> train = crank_train(load_scene("torque_driven"))
-    >>> float(reactions(train, [0.0], [10.0], [0.0])["side_force"][0, 0])
+    >>> float(reactions(train, [0.0], [10.0], [0.0])["rod_angle"][0, 0])
     0.0
     """
     found = _found(train, theta, omega, alpha)
