@@ -14,6 +14,7 @@ from crankmbs.errors import OutputError
 from crankmbs.mechanics.variables import VARIABLES
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.schema import SAVED
+from crankmbs.scene.units import RPM
 from crankmbs.storage.files import together
 from crankmbs.storage.netcdf import read_netcdf, write_netcdf
 
@@ -68,7 +69,7 @@ class Result:
     def __str__(self) -> str:
         time, angle = self.data["time"].values, self.data["crank_angle"].values
         turned = abs(angle[-1] - angle[0]) / (2.0 * np.pi)
-        speed = self.data["crank_speed"].values * 30.0 / np.pi
+        speed = self.data["crank_speed"].values / RPM
         whole = self.scene.run.every is not None  # else only the last cycle is kept
         length = (
             f"{time[-1]:.6g} s, {turned:.6g} rev"

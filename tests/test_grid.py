@@ -14,7 +14,7 @@ from crankmbs.mechanics.pressure import pressure_of
 from crankmbs.mechanics.train import CrankTrain, crank_angle_knots
 from crankmbs.motion.crank_angle.grid import grid_of
 from crankmbs.numerics.collocation import gauss
-from crankmbs.scene.schema import DEGREE
+from crankmbs.scene.units import DEGREE
 from validation.random_scenes import random_scene
 
 SCENE = load_scene("v_twin")

@@ -9,7 +9,7 @@ import pytest
 from crankmbs import Motion, Ramp, Run, Start, load_scene, simulate
 from crankmbs.motion.plan import plan_of
 from crankmbs.numerics.periodic import one_period
-from crankmbs.scene.schema import DEGREE
+from crankmbs.scene.units import DEGREE
 
 FREE = replace(load_scene("propeller"), start=Start(angle=0.1, speed=300.0))
 BACKWARDS = replace(FREE, start=Start(angle=0.1, speed=-300.0))

@@ -15,8 +15,8 @@ from crankmbs import Scene
 from crankmbs.scene.drives import Constant, Quadratic, SpeedTable, Start, TimeTable, Torque, Viscous
 from crankmbs.scene.parts import Crank, Cylinder, Gas, Gravity, Indicator, Layout, Piston, Rod
 from crankmbs.scene.scene import Extent, Run
-from crankmbs.scene.schema import DEGREE
 from crankmbs.scene.tables import Table
+from crankmbs.scene.units import DEGREE
 
 __all__ = ["random_scene"]
 

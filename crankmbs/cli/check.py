@@ -23,6 +23,7 @@ from crankmbs.scene.drives import (
     Viscous,
 )
 from crankmbs.scene.scene import Extent, Scene
+from crankmbs.scene.units import RPM
 
 __all__ = ["describe"]
 
@@ -156,7 +157,7 @@ def _speed(speed: float | Oscillation | Ramp | SpeedFile) -> str:
 
 
 def _rpm(speed: float) -> str:
-    return f"{speed * 30.0 / math.pi:.6g} rpm"
+    return f"{speed / RPM:.6g} rpm"
 
 
 def _sense(speed: float) -> str:

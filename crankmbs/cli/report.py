@@ -11,10 +11,9 @@ from crankmbs.digits import digits, error_digits
 from crankmbs.measures import Estimate, JointForce, Measures
 from crankmbs.measures.plausible import warnings
 from crankmbs.result import Result
+from crankmbs.scene.units import RPM
 
 __all__ = ["comparison", "report"]
-
-_RPM = 30.0 / math.pi
 
 
 def report(name: str, result: Result, measures: Measures) -> str:
@@ -100,7 +99,7 @@ def _about(result: Result, measures: Measures) -> str:
             ),
             f"{'end':<12} {result.message}",
             f"{'samples':<12} {samples}",
-            f"{'last sample':<12} {math.degrees(angle[-1]):.6g} deg, {speed[-1] * _RPM:.6g} rpm",
+            f"{'last sample':<12} {math.degrees(angle[-1]):.6g} deg, {speed[-1] / RPM:.6g} rpm",
             _error_line(result),
             f"{'energy':<12} closes to {measures.energy_closure:.1e} of the peak kinetic energy",
             _cost_line(result),
@@ -123,9 +122,9 @@ def _cost_line(result: Result) -> str:
 
 def _values(measures: Measures) -> list[list[str]]:
     rows = [
-        _value("mean speed [rpm]", measures.mean_speed, _RPM),
+        _value("mean speed [rpm]", measures.mean_speed, 1.0 / RPM),
         _value("coefficient of fluctuation, (max - min)/mean [1]", measures.fluctuation),
-        _value("speed at its end less that at its beginning [rpm]", measures.speed_gain, _RPM),
+        _value("speed at its end less that at its beginning [rpm]", measures.speed_gain, 1.0 / RPM),
         _value("mean torque of the rods on the crank [N m]", measures.crank_torque),
         _value("mean torque from outside [N m]", measures.external_torque),
     ]

@@ -31,6 +31,7 @@ from crankmbs.compare import (
 )
 from crankmbs.digits import digits
 from crankmbs.scene.read import load_scene, scene_path
+from crankmbs.scene.units import RPM
 from crankmbs.simulate import simulate
 from crankmbs.storage.files import together
 
@@ -93,7 +94,7 @@ def validate_scene(
 
 def _about(stretch: Stretch) -> str:
     count = len(stretch.result.scene.cylinders)
-    rpm = stretch.mean_speed * 30.0 / math.pi
+    rpm = stretch.mean_speed / RPM
     inside = stretch.result.data.sizes["time"] - stretch.window.inside
     folded = len(stretch.samples) < inside
     return (

@@ -5,17 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crankmbs.compare.lectured import LECTURES
 from crankmbs.compare.size import Size
 from crankmbs.compare.stretch import Answer, LeftOut, Stretch, stretch_of, vanishing
 from crankmbs.errors import InputError
+from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 
 __all__ = ["CLOSED_FORM", "Comparison", "Deviation", "compare"]
 
-Array = NDArray[np.float64]
 
 CLOSED_FORM = "closed form"
 

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crankmbs import lecture
 from crankmbs.compare.lectured import S1, UNTRUNCATED
@@ -16,11 +15,11 @@ from crankmbs.compare.size import Size, percent
 from crankmbs.compare.stretch import Answer, LeftOut, Stretch, stretch_of, vanishing
 from crankmbs.digits import digits
 from crankmbs.errors import InputError
+from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 
 __all__ = ["CAUSES", "Budget", "Cause", "Split", "budget"]
 
-Array = NDArray[np.float64]
 
 CAUSES = {
     "series": "the truncated series",

@@ -10,16 +10,14 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crankmbs import lecture
 from crankmbs.compare.quantities import cycle_angles
 from crankmbs.mechanics.train import CrankTrain
+from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 
 __all__ = ["LECTURES", "S0", "S1", "UNTRUNCATED", "Formulas", "lectured"]
-
-Array = NDArray[np.float64]
 
 
 class _Gear(NamedTuple):

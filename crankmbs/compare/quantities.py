@@ -11,14 +11,12 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crankmbs.lecture import two_mass_rod
+from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 
 __all__ = ["QUANTITIES", "Quantity", "cycle_angles", "observed"]
-
-Array = NDArray[np.float64]
 
 
 class Quantity(NamedTuple):

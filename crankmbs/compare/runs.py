@@ -6,15 +6,14 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crankmbs.errors import InputError
 from crankmbs.motion.plan import Plan, plan_of
+from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 
 __all__ = ["Difference", "differences"]
 
-Array = NDArray[np.float64]
 
 _SAME = 1e-6  # of the sample spacing: so near each other two samples are one
 _MOTION = {

@@ -6,11 +6,11 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+
+from crankmbs.numerics.arrays import Array
 
 __all__ = ["Size", "percent", "size_of", "within"]
 
-Array = NDArray[np.float64]
 
 _TIE = 1e-9  # relative: the same peak in two turns differs by rounding, the first one counts
 

@@ -17,12 +17,12 @@ from crankmbs.measures import Window, last_window
 from crankmbs.mechanics.reactions import reactions
 from crankmbs.mechanics.train import CrankTrain, crank_train
 from crankmbs.mechanics.variables import VARIABLES
+from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 from crankmbs.scene.scene import Scene
 
 __all__ = ["Answer", "LeftOut", "Stretch", "check_cylinder", "stretch_of", "vanishing"]
 
-Array = NDArray[np.float64]
 Answer = dict[str, Array]
 
 _NOTHING = 1e-9  # of the largest quantity of the same unit

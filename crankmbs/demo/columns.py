@@ -5,7 +5,6 @@ A column's name says what it is, `unit_of` in what unit.
 
 from __future__ import annotations
 
-import math
 from contextlib import suppress
 
 import numpy as np
@@ -16,6 +15,8 @@ from crankmbs.demo.outcome import Outcome
 from crankmbs.errors import InputError
 from crankmbs.figures.outline import Mechanism, in_engine_frame, mechanism
 from crankmbs.measures import mean_speed
+from crankmbs.numerics.arrays import Array
+from crankmbs.scene.units import RPM
 
 __all__ = [
     "BEARINGS",
@@ -34,10 +35,8 @@ __all__ = [
     "unit_of",
 ]
 
-Array = NDArray[np.float64]
 Columns = dict[str, Array]
 
-_RPM = math.pi / 30.0
 
 CURVES = ("simulated", "exact formula", "lecture")
 """The three curves of a quantity: the run; the formulas at constant speed, exact and truncated."""
@@ -85,7 +84,7 @@ def frames(outcome: Outcome, force: float) -> Columns:
     columns = {
         "degrees": view.degrees,
         "time": time - time[0],
-        "speed": view.values("crank_speed") / _RPM,
+        "speed": view.values("crank_speed") / RPM,
         "pressure": view.values("gas_pressure")[:, outcome.cylinder - 1] / 1e5,
     }
     for k in range(len(scene.cylinders)):
@@ -127,8 +126,8 @@ def shapes(outcome: Outcome) -> dict[str, list[list[float]]]:
 def speeds(outcome: Outcome) -> Columns:
     """Speed of the crank over the cycle, and its mean over time [rpm]."""
     view = outcome.view
-    mean = mean_speed(outcome.result, view.window).value / _RPM
-    speed = view.values("crank_speed") / _RPM
+    mean = mean_speed(outcome.result, view.window).value / RPM
+    speed = view.values("crank_speed") / RPM
     return {
         "degrees": view.degrees,
         "speed, simulated": speed,

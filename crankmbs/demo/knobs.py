@@ -11,6 +11,7 @@ from crankmbs.scene.drives import Oscillation, Quadratic, SpeedTable, TimeTable,
 from crankmbs.scene.parts import Gas, Layout
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.tables import Table
+from crankmbs.scene.units import RPM
 
 __all__ = ["AS_GIVEN", "FIRING_ORDERS", "Knob", "Values", "knobs_of", "turned"]
 
@@ -26,8 +27,6 @@ FIRING_ORDERS = {
     "6": (1, 5, 3, 6, 2, 4),
 }
 """Usual firing orders, evenly spaced, in line."""
-
-_RPM = math.pi / 30.0
 
 
 @dataclasses.dataclass(frozen=True)
@@ -67,7 +66,7 @@ def knobs_of(scene: Scene) -> tuple[Knob, ...]:
         )
     speed = _speed(scene)
     if speed:
-        rpm = speed / _RPM
+        rpm = speed / RPM
         low, high = sorted((0.25 * rpm, _above(1.75 * abs(rpm)) * math.copysign(1.0, rpm)))
         knobs.append(Knob("speed", "speed [rpm]", low, high, abs(rpm) / 100.0, rpm, "0"))
     if scene.torque:
@@ -104,8 +103,8 @@ def turned(scene: Scene, values: Values) -> Scene:
         parts["crank"] = dataclasses.replace(scene.crank, inertia=new["flywheel"])
     faster = 1.0
     if "speed" in changed:
-        faster = new["speed"] * _RPM / _speed(scene)
-        parts |= _sped(scene, new["speed"] * _RPM, faster)
+        faster = new["speed"] * RPM / _speed(scene)
+        parts |= _sped(scene, new["speed"] * RPM, faster)
     cylinders = str(values.get("cylinders", AS_GIVEN))
     share = new.get("load", 100.0) / 100.0
     if cylinders != AS_GIVEN:

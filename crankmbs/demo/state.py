@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import html
 import itertools
-import math
 from collections.abc import Callable, Iterable
 from typing import Any
 
@@ -13,6 +12,7 @@ from crankmbs.demo.outcome import Outcome
 from crankmbs.demo.views import STORES
 from crankmbs.errors import InputError
 from crankmbs.measures import fluctuation, mean_speed
+from crankmbs.scene.units import RPM
 
 __all__ = ["ALL", "Data", "state_of"]
 
@@ -20,8 +20,6 @@ Data = dict[str, dict[str, Any]]
 
 ALL = range(len(STORES))
 _SERIAL = itertools.count()
-
-_RPM = math.pi / 30.0
 
 
 def state_of(outcome: Outcome, force: float, tabs: Iterable[int] = ALL) -> Data:
@@ -57,7 +55,7 @@ def _numbers(outcome: Outcome) -> str:
     swing = fluctuation(result, window)
     speed = mean_speed(result, window)
     cells = (
-        ("mean speed", f"{speed.value / _RPM:.1f} rpm"),
+        ("mean speed", f"{speed.value / RPM:.1f} rpm"),
         ("fluctuation", f"{100.0 * swing.value:.3f} %"),
         ("formulation", result.formulation),
         ("relative error", f"{result.error.estimated:.0e}, asked {result.error.asked:.0e}"),

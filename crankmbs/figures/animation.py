@@ -23,14 +23,14 @@ from crankmbs.figures.mechanism import Drawing, on_paper, slices
 from crankmbs.figures.outline import mechanism
 from crankmbs.figures.style import STYLE, crank_axis, footer, line_of
 from crankmbs.figures.view import View, last_view
+from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
+from crankmbs.scene.units import RPM
 from crankmbs.storage.files import write_in_one_move
 
 __all__ = ["check_format", "save_animation"]
 
-Array = NDArray[np.float64]
 
-_RPM = 30.0 / math.pi
 _RATES = {".gif": 20, ".mp4": 25}  # frames per second; whole hundredths of a second a frame
 _DPI = {".gif": 62.5, ".mp4": 100.0}  # 800 x 450 and 1280 x 720 pixels
 _SIZE = (12.8, 7.2)  # inch
@@ -135,7 +135,7 @@ class _Film:
     def _show(self, k: int) -> None:
         frames = self._frames
         degrees = math.degrees(frames.angle[k]) + self._shift
-        rpm = frames.speed[k] * _RPM
+        rpm = frames.speed[k] / RPM
         self._cursor.set_data([degrees], [rpm])
         self._now.set_text(f"{frames.time[k] * 1e3:7.2f} ms  {rpm:7.1f} rpm")
         for drawing, (ring, pin) in zip(self._drawings, self._rings, strict=True):
@@ -167,10 +167,10 @@ def _places(figure: Figure, cuts: int) -> tuple[list[Axes], Axes]:
 
 
 def _speed_axis(ax: Axes, view: View, mean: float) -> None:
-    speed = view.values("crank_speed") * _RPM
+    speed = view.values("crank_speed") / RPM
     ax.plot(view.degrees, speed, **line_of(0), label="crank speed")
-    ax.axhline(mean * _RPM, color="0.5", linestyle=(0, (4, 2)), label="mean over time")
-    half = max(0.6 * float(np.ptp(speed)), _FLAT * abs(mean) * _RPM) or 1.0  # rpm, at rest
+    ax.axhline(mean / RPM, color="0.5", linestyle=(0, (4, 2)), label="mean over time")
+    half = max(0.6 * float(np.ptp(speed)), _FLAT * abs(mean) / RPM) or 1.0  # rpm, at rest
     middle = 0.5 * float(speed.min() + speed.max())
     ax.set_ylim(middle - 1.7 * half, middle + 1.1 * half)  # room for legend and numbers below
     ax.set_ylabel("crank speed [rpm]")

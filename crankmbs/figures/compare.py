@@ -5,11 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from crankmbs.compare import (
     CAUSES,
@@ -23,11 +21,11 @@ from crankmbs.compare import (
 )
 from crankmbs.figures.style import STYLE, crank_axis, footer, force_scale, line_of, panels
 from crankmbs.figures.view import last_view
+from crankmbs.numerics.arrays import Array
 from crankmbs.storage.files import together
 
 __all__ = ["FAMILIES", "budget_figure", "comparison_figure", "save_validation"]
 
-Array = NDArray[np.float64]
 
 FAMILIES = {
     "motion": ("piston displacement", "piston velocity", "piston acceleration"),

@@ -5,17 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline
 
 from crankmbs.digits import digits
 from crankmbs.errors import InputError
 from crankmbs.measures import last_window
+from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 
 __all__ = ["Frames", "frames_of"]
 
-Array = NDArray[np.float64]
 
 _LASTS = 6.0  # s, about: one cycle on the screen
 

@@ -8,15 +8,14 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Polygon
-from numpy.typing import NDArray
 
 from crankmbs.figures.outline import Mechanism
 from crankmbs.figures.style import line_of
+from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 
 __all__ = ["Drawing", "on_paper", "slices"]
 
-Array = NDArray[np.float64]
 
 _MM = 1e3
 _METAL, _EDGE, _GAS = "0.75", "0.25", "#E69F00"

@@ -10,14 +10,14 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from crankmbs.mechanics.geometry import close_loop, dead_centres
+from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 
 __all__ = ["Mechanism", "in_engine_frame", "mechanism"]
 
-Array = NDArray[np.float64]
 
 _WIDTH = 1.6  # of the crank radius: a piston without bore
 _CROWN, _SKIRT = 0.4, 0.3  # of the piston's width: above and below its pin

@@ -14,7 +14,6 @@ import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from crankmbs.figures.style import (
     STYLE,
@@ -27,10 +26,10 @@ from crankmbs.figures.style import (
     panels,
 )
 from crankmbs.figures.view import View
+from crankmbs.numerics.arrays import Array
 
 __all__ = ["crank_pin_figure", "main_bearing_figure", "piston_pin_figure"]
 
-Array = NDArray[np.float64]
 
 _CYLINDER = ("X, from crank to head", "Y, 90 deg ahead of X")
 _ENGINE = ("engine's X", "engine's Y, 90 deg ahead of X")

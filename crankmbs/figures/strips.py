@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from crankmbs.figures.style import (
     STYLE,
@@ -22,12 +19,12 @@ from crankmbs.figures.style import (
     panels,
 )
 from crankmbs.figures.view import View
+from crankmbs.numerics.arrays import Array
+from crankmbs.scene.units import RPM
 
 __all__ = ["forces_figure", "piston_motion_figure", "speed_figure", "torque_figure"]
 
-Array = NDArray[np.float64]
 
-_RPM = 30.0 / math.pi
 _FLAT = 1e-6  # of the mean: a speed that varies less is drawn as constant
 
 
@@ -122,9 +119,9 @@ def _per_cylinder(ax: Axes, view: View, values: Array) -> None:
 
 
 def _speed(ax: Axes, angle: Array, speed: Array) -> None:
-    ax.plot(angle, speed * _RPM, **line_of(0))
+    ax.plot(angle, speed / RPM, **line_of(0))
     ax.set_ylabel("crank speed [rpm]")
-    mean = abs(float(np.mean(speed))) * _RPM
-    if np.ptp(speed) * _RPM <= _FLAT * mean:  # keep rounding from being blown up to a curve
-        middle, margin = float(speed[0]) * _RPM, 0.01 * mean or 1.0
+    mean = abs(float(np.mean(speed))) / RPM
+    if np.ptp(speed) / RPM <= _FLAT * mean:  # keep rounding from being blown up to a curve
+        middle, margin = float(speed[0]) / RPM, 0.01 * mean or 1.0
         ax.set_ylim(middle - margin, middle + margin)

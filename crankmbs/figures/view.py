@@ -7,20 +7,19 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crankmbs.measures import Window, last_window
 from crankmbs.mechanics.geometry import dead_centres
+from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 from crankmbs.scene.scene import Scene
-from crankmbs.scene.schema import DEGREE
+from crankmbs.scene.units import DEGREE
 
 if TYPE_CHECKING:
     import xarray as xr
 
 __all__ = ["View", "last_view"]
 
-Array = NDArray[np.float64]
 
 _SAME = 0.5  # deg: dead centres closer than this share one line
 

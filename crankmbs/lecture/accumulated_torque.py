@@ -5,13 +5,12 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from crankmbs.errors import InputError
+from crankmbs.numerics.arrays import Array
 
 __all__ = ["AccumulatedTorque", "accumulated_torque"]
-
-Array = NDArray[np.float64]
 
 
 class AccumulatedTorque(NamedTuple):

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
@@ -21,6 +19,7 @@ from crankmbs.measures.peak import rise
 from crankmbs.result import Result
 from crankmbs.scene.read import load_scene
 from crankmbs.scene.scene import Scene
+from crankmbs.scene.units import RPM
 from crankmbs.simulate import simulate
 
 __all__ = ["lesson"]
@@ -28,7 +27,6 @@ __all__ = ["lesson"]
 _INERTIAS = (0.02, 0.05, 0.1, 0.15, 0.3, 0.6, 1.2)  # kg m^2
 _SCENE = 3  # of the inertias: the scene's own
 _WANTED = 0.01  # coefficient of fluctuation asked for in a question
-_RPM = 30.0 / math.pi
 _QUANTITIES = (
     "torque",
     "side thrust",
@@ -110,10 +108,10 @@ def _off(runs: list[Result]) -> Estimate:
 def _speed(result: Result, widest: Result) -> Figure:
     figure, (ax,) = panels(1, 1, 11.0, 4.6)
     view, measures = last_view(result), measure(result)
-    mean = measures.mean_speed.value * _RPM
-    ax.plot(view.degrees, view.values("crank_speed") * _RPM, **line_of(0), label="simulated")
+    mean = measures.mean_speed.value / RPM
+    ax.plot(view.degrees, view.values("crank_speed") / RPM, **line_of(0), label="simulated")
     ax.axhline(mean, color="0.5", linestyle=(0, (4, 2)), label="constant speed")
-    limits = widest.data["crank_speed"].values[-721:] * _RPM  # one scale for every flywheel
+    limits = widest.data["crank_speed"].values[-721:] / RPM  # one scale for every flywheel
     ax.set_ylim(limits.min() - 10.0, limits.max() + 60.0)
     ax.text(
         0.99,
@@ -171,7 +169,7 @@ def _own(result: Result) -> Question:
         f"This engine has {result.scene.crank.moment_of_inertia:g} kg m². What is its coefficient "
         "of fluctuation?",
         f"{simulated('fluctuation', measures.fluctuation, '%', 100.0)} at a mean of "
-        f"{simulated('mean_speed', measures.mean_speed, 'rpm', _RPM, 6)}; "
+        f"{simulated('mean_speed', measures.mean_speed, 'rpm', 1.0 / RPM, 6)}; "
         f"$W/(J\\omega_m^2)$ gives {exact('formula', estimate(result), '%', 100.0)}.",
     )
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import inspect
-import math
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -14,6 +13,7 @@ from matplotlib.figure import Figure
 from crankmbs.digits import digits, error_digits
 from crankmbs.measures import Estimate, measure
 from crankmbs.result import Result
+from crankmbs.scene.units import RPM
 
 __all__ = ["Formula", "Lesson", "Number", "Question", "Slider", "Step", "exact", "simulated"]
 
@@ -139,7 +139,7 @@ class Lesson:
         """The run behind the page, in a line."""
         scene, result = self.result.scene, self.result
         radius, length, offset = scene.crank.radius, scene.rod.length, scene.piston.offset
-        speed = measure(result).mean_speed.value * 30.0 / math.pi
+        speed = measure(result).mean_speed.value / RPM
         parts = [
             f"r = {digits(radius * 1e3, most=4)} mm",
             f"l = {digits(length * 1e3, most=4)} mm",

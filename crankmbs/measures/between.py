@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline
 
 from crankmbs.mechanics.inertia import inertia_alone, reduce
@@ -16,16 +15,16 @@ from crankmbs.mechanics.reactions import reactions
 from crankmbs.mechanics.speed import speed_law
 from crankmbs.mechanics.torque import torque_at
 from crankmbs.mechanics.train import crank_train
+from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 from crankmbs.scene.scene import Scene
-from crankmbs.scene.schema import DEGREE
+from crankmbs.scene.units import DEGREE
 
 if TYPE_CHECKING:
     import xarray as xr
 
 __all__ = ["Between", "refined"]
 
-Array = NDArray[np.float64]
 State = tuple[Array, Array, Array]
 
 _MOTION = ("crank_angle", "crank_speed", "crank_acceleration")

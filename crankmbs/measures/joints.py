@@ -8,16 +8,14 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crankmbs.measures.between import Between
 from crankmbs.measures.peak import highest
 from crankmbs.measures.window import Window, integral
+from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 
 __all__ = ["Estimate", "JointForce", "apart", "mean_over_time", "peaks", "stated"]
-
-Array = NDArray[np.float64]
 
 
 class Estimate(NamedTuple):

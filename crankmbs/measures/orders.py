@@ -11,11 +11,10 @@ from scipy.interpolate import CubicSpline
 
 from crankmbs.errors import InputError
 from crankmbs.measures.window import last_window
+from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 
 __all__ = ["Orders", "orders"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

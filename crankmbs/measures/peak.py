@@ -7,9 +7,10 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from crankmbs.numerics.arrays import Array
+
 __all__ = ["highest", "rise"]
 
-Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
 _MOST = 12  # candidates for one quantity's maximum

@@ -7,7 +7,6 @@ from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline
 
 from crankmbs.measures.between import Between, refined
@@ -22,11 +21,10 @@ from crankmbs.measures.joints import (
 from crankmbs.measures.peak import rise
 from crankmbs.measures.window import Window, integral, last_window, same_window
 from crankmbs.mechanics.geometry import close_loop, dead_centres
+from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 
 __all__ = ["Measures", "fluctuation", "mean_speed", "measure"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -6,14 +6,13 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline, CubicSpline
 
+from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 
 __all__ = ["Window", "integral", "last_window", "same_window"]
 
-Array = NDArray[np.float64]
 
 _SAME_ANGLE = 1e-9  # rad: rounding of start + k * every must not lose a cycle
 

@@ -5,15 +5,10 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
-
+from crankmbs.numerics.arrays import Array, Index
 from crankmbs.numerics.kernels import kernel
 
 __all__ = ["apart", "together"]
-
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
 
 
 @kernel

@@ -14,11 +14,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
+
+from crankmbs.numerics.arrays import Array
 
 __all__ = ["Loop", "close_loop", "dead_centres", "top_position"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -13,15 +13,14 @@ from collections.abc import Callable
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crankmbs.mechanics.geometry import close_loop, dead_centres, top_position
+from crankmbs.numerics.arrays import Array
 from crankmbs.scene.parts import Gas, Indicator
 from crankmbs.scene.scene import Scene
 
 __all__ = ["INDICATOR_RTOL", "indicator_pieces"]
 
-Array = NDArray[np.float64]
 Stroke = tuple[float, float, Callable[[Array], Array]]
 
 INDICATOR_RTOL = 5e-13  # of the absolute pressure

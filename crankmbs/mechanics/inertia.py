@@ -14,15 +14,14 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from crankmbs.mechanics.geometry import Loop, close_loop
 from crankmbs.mechanics.train import CrankTrain
+from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 
 __all__ = ["Reduction", "RodCentre", "gravity_vector", "inertia_alone", "reduce", "rod_centre"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

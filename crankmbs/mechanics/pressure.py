@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import PPoly
 
 from crankmbs.mechanics.indicator import INDICATOR_RTOL, indicator_pieces
+from crankmbs.numerics.arrays import Array
 from crankmbs.scene.parts import Gas
 from crankmbs.scene.pressure_rows import close, closing_row, interpolate, overshoot
 from crankmbs.scene.scene import Scene
@@ -28,7 +29,6 @@ __all__ = [
     "repeat",
 ]
 
-Array = NDArray[np.float64]
 
 KNOT = 1e-9  # rad: an angle this close below a knot counts as on it, so rounding does not
 # decide the side of a pressure step

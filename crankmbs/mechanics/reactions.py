@@ -24,13 +24,12 @@ from crankmbs.mechanics.inertia import gravity_vector, rod_centre
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.variables import VARIABLES
 from crankmbs.numerics import kernels
+from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.periodic import one_period
 from crankmbs.scene.parts import Cylinder
 from crankmbs.scene.scene import Scene
 
 __all__ = ["deviations", "reactions"]
-
-Array = NDArray[np.float64]
 
 
 class _Motion(NamedTuple):

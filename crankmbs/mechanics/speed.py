@@ -11,15 +11,14 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.interpolate import PchipInterpolator, PPoly
 
+from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.roots import invert_monotone
 from crankmbs.scene.drives import Motion, Oscillation, Ramp, SpeedFile
 
 __all__ = ["SpeedLaw", "speed_law"]
-
-Array = NDArray[np.float64]
 
 
 class SpeedLaw(Protocol):

@@ -17,15 +17,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from crankmbs.errors import InputError
+from crankmbs.numerics.arrays import Array
 from crankmbs.scene.drives import Constant, Quadratic, SpeedTable, TimeTable, Torque, Viscous
 from crankmbs.scene.tables import Table
 
 __all__ = ["Branch", "Course", "Tables", "branch_at", "branch_of", "course_of", "torque_at"]
 
-Array = NDArray[np.float64]
 Tables = tuple[Array, Array, Array, Array]  # times, in_time, speeds and in_speed of `Course`
 
 

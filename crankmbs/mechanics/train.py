@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crankmbs.mechanics.pressure import KNOT, PeriodicPressure, pressure_of
+from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 
 __all__ = ["CrankTrain", "crank_angle_knots", "crank_train", "merged_knots"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

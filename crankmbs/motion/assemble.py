@@ -12,7 +12,8 @@ from crankmbs.mechanics.inertia import inertia_alone
 from crankmbs.mechanics.reactions import deviations, reactions
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.variables import VARIABLES
-from crankmbs.motion.base import Array, Samples, Solution
+from crankmbs.motion.base import Samples, Solution
+from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.periodic import one_period
 
 if TYPE_CHECKING:

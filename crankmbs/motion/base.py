@@ -11,10 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crankmbs.motion.plan import Plan
+from crankmbs.numerics.arrays import Array
 
-__all__ = ["NOWHERE", "Array", "Piece", "Samples", "Solution", "State"]
-
-Array = NDArray[np.float64]
+__all__ = ["NOWHERE", "Piece", "Samples", "Solution", "State"]
 
 
 @dataclass(frozen=True)

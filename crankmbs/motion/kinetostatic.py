@@ -13,9 +13,10 @@ from crankmbs.mechanics.pressure import repeat
 from crankmbs.mechanics.reactions import reactions
 from crankmbs.mechanics.speed import SpeedLaw, speed_law
 from crankmbs.mechanics.train import CrankTrain, crank_angle_knots
-from crankmbs.motion.base import Array, Samples, Solution
+from crankmbs.motion.base import Samples, Solution
 from crankmbs.motion.plan import FOLDED, Plan, plan_of
-from crankmbs.scene.schema import DEGREE
+from crankmbs.numerics.arrays import Array
+from crankmbs.scene.units import DEGREE
 
 __all__ = ["run"]
 

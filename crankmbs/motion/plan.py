@@ -6,16 +6,15 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crankmbs.mechanics.variables import VARIABLES
 from crankmbs.motion.memory import Room
+from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
-from crankmbs.scene.schema import DEGREE
+from crankmbs.scene.units import DEGREE
 
 __all__ = ["FOLDED", "Plan", "plan_of"]
 
-Array = NDArray[np.float64]
 
 FOLDED = "the rod folds onto the crank at {angle:.6g} degrees, where the motion is not determined"
 

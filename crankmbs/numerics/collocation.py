@@ -7,11 +7,10 @@ from functools import cache
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+
+from crankmbs.numerics.arrays import Array
 
 __all__ = ["Maps", "Rule", "gauss"]
-
-Array = NDArray[np.float64]
 
 
 class Maps(NamedTuple):

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-
+from crankmbs.numerics.arrays import Array
 
 __all__ = ["one_period"]
 

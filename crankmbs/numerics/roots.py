@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
+
+from crankmbs.numerics.arrays import Array
 
 __all__ = ["first_above", "invert_monotone"]
 
-Array = NDArray[np.float64]
 
 _HALVES = 50
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from itertools import pairwise
 from numbers import Real
 from typing import Annotated, Literal
@@ -14,6 +13,7 @@ from crankmbs.errors import InputError, shown
 from crankmbs.scene.schema import Float, from_file, part, si
 from crankmbs.scene.sentences import did_you_mean
 from crankmbs.scene.tables import Table
+from crankmbs.scene.units import RPM
 
 __all__ = [
     "Constant",
@@ -31,8 +31,6 @@ __all__ = [
 
 Angle = Annotated[Float, si("angle")]
 AngularSpeed = Annotated[Float, si("angular speed")]
-
-_RPM = math.pi / 30.0
 
 
 @part
@@ -69,7 +67,7 @@ class SpeedFile:
     """Speed over time: table of time [s] and speed [rad/s]; pchip between the rows."""
 
     file: Annotated[
-        Table, from_file({"time_s": 1.0}, {"speed_rpm": _RPM}, "times [s], speeds [rad/s]")
+        Table, from_file({"time_s": 1.0}, {"speed_rpm": RPM}, "times [s], speeds [rad/s]")
     ]
 
     def __post_init__(self) -> None:
@@ -174,7 +172,7 @@ class SpeedTable:
 
     kind: Literal["speed_table"] = "speed_table"
     file: Annotated[
-        Table, from_file({"speed_rpm": _RPM}, {"torque_Nm": 1.0}, "speeds [rad/s], torques [N m]")
+        Table, from_file({"speed_rpm": RPM}, {"torque_Nm": 1.0}, "speeds [rad/s], torques [N m]")
     ]
 
     def __post_init__(self) -> None:

@@ -14,8 +14,9 @@ from pydantic import Discriminator, Strict, Tag
 
 from crankmbs.errors import InputError, shown
 from crankmbs.scene.pressure_rows import check_rows
-from crankmbs.scene.schema import DEGREE, Float, from_file, part, si
+from crankmbs.scene.schema import Float, from_file, part, si
 from crankmbs.scene.tables import Table
+from crankmbs.scene.units import DEGREE
 
 __all__ = ["Crank", "Cylinder", "Gas", "Gravity", "Indicator", "Layout", "Piston", "Rod"]
 

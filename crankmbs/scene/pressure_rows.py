@@ -11,16 +11,15 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline, PchipInterpolator, PPoly
 
 from crankmbs.errors import InputError
-from crankmbs.scene.schema import DEGREE
+from crankmbs.numerics.arrays import Array
 from crankmbs.scene.tables import Table
+from crankmbs.scene.units import DEGREE
 
 __all__ = ["Period", "check_rows", "close", "closing_row", "interpolate", "overshoot"]
 
-Array = NDArray[np.float64]
 
 _SAME_ANGLE = 1e-9  # rad: two angles of a table closer than this are one
 _CLOSING = 0.01  # of the range of the pressures: so far a measured cycle may miss its beginning

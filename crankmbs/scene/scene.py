@@ -17,8 +17,8 @@ from pydantic import BeforeValidator, Strict, ValidationInfo
 from crankmbs.errors import InputError, shown
 from crankmbs.scene.drives import Motion, SpeedFile, Start, TimeTable, Torque
 from crankmbs.scene.parts import Crank, Cylinder, Gas, Gravity, Layout, Piston, Rod
-from crankmbs.scene.schema import DEGREE, Float, dumped, part
-from crankmbs.scene.units import EXAMPLES, extent
+from crankmbs.scene.schema import Float, dumped, part
+from crankmbs.scene.units import DEGREE, EXAMPLES, extent
 
 __all__ = ["Extent", "Run", "Scene"]
 

@@ -20,7 +20,7 @@ from crankmbs.scene.sentences import sentence
 from crankmbs.scene.tables import Table, read_table
 from crankmbs.scene.units import EXAMPLES, check_size, quantity
 
-__all__ = ["DEGREE", "SAVED", "Float", "dumped", "from_file", "part", "si"]
+__all__ = ["SAVED", "Float", "dumped", "from_file", "part", "si"]
 
 T = TypeVar("T")
 _CONFIG = ConfigDict(
@@ -29,7 +29,6 @@ _CONFIG = ConfigDict(
 
 _WITH_UNIT = "one number and one unit,"
 
-DEGREE = math.pi / 180.0
 SAVED = {"saved": True}  # validation context of a dumped scene: it has its tables in itself
 Float = Annotated[float, Strict()]  # lax mode would take true as 1.0 and "3" as 3.0
 

@@ -34,10 +34,9 @@ _SI = {
     "torque": "N m",
     "viscous coefficient": "N m s",
 }
-_DEGREE = math.pi / 180.0
-_ANGLE = {"rad": 1.0, "deg": _DEGREE, "rev": 2.0 * math.pi}
+_ANGLE = {"rad": 1.0, "deg": DEGREE, "rev": 2.0 * math.pi}
 _SMALLEST, _LARGEST = 1e-50, 1e15  # in SI units: products of several neither vanish nor overflow
-_ANGULAR_SPEED = {"rpm": math.pi / 30.0, "rad/s": 1.0, "deg/s": _DEGREE}
+_ANGULAR_SPEED = {"rpm": RPM, "rad/s": 1.0, "deg/s": DEGREE}
 _CYCLE = {"cycle", "cycles"}
 
 EXAMPLES = {

@@ -10,15 +10,14 @@ from typing import Any
 
 from crankmbs.scene.drives import Ramp
 from crankmbs.scene.scene import Extent, Scene
-from crankmbs.scene.schema import DEGREE
 from crankmbs.scene.tables import Table
+from crankmbs.scene.units import DEGREE, RPM
 
 __all__ = ["scene_files"]
 
-_RPM = math.pi / 30.0
 _ANGULAR = {
     **dict.fromkeys(("angle", "phase", "bank"), (DEGREE, "deg", "rad")),
-    **dict.fromkeys(("speed", "mean", "amplitude", "from", "to"), (_RPM, "rpm", "rad/s")),
+    **dict.fromkeys(("speed", "mean", "amplitude", "from", "to"), (RPM, "rpm", "rad/s")),
 }
 _WORDS = ("title", "source")
 _UNITS = {
@@ -34,9 +33,9 @@ _UNITS = {
 }
 _COLUMNS = {
     "pressure": ("crank_angle_deg", DEGREE, "pressure_Pa", 1.0),
-    "speed": ("time_s", 1.0, "speed_rpm", _RPM),
+    "speed": ("time_s", 1.0, "speed_rpm", RPM),
     "time_table": ("time_s", 1.0, "torque_Nm", 1.0),
-    "speed_table": ("speed_rpm", _RPM, "torque_Nm", 1.0),
+    "speed_table": ("speed_rpm", RPM, "torque_Nm", 1.0),
 }
 """Table by its use -> heading and factor to SI of its two columns."""
 

@@ -9,11 +9,11 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 
 __all__ = ["END", "MOTION", "Track", "differences", "stated", "track_of"]
 
-Array = NDArray[np.float64]
 
 END, MOTION = "end", "motion"
 

@@ -18,7 +18,7 @@ from crankmbs.motion.minimal.reduced import Reduced
 from crankmbs.numerics import kernels
 from crankmbs.numerics.collocation import gauss
 from crankmbs.scene.scene import Scene
-from crankmbs.scene.schema import DEGREE
+from crankmbs.scene.units import DEGREE
 from crankmbs.work_precision.contender import Answer, Contender
 from crankmbs.work_precision.reference import Reference
 from crankmbs.work_precision.track import Track

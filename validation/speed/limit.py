@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from scipy.integrate import DOP853
 
 from crankmbs.numerics.collocation import gauss
-from crankmbs.scene.schema import DEGREE
+from crankmbs.scene.units import DEGREE
 from crankmbs.work_precision.contender import Answer, Contender
 from crankmbs.work_precision.track import Track
 from validation.speed.job import Job, NotServed

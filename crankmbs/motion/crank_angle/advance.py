@@ -28,7 +28,7 @@ from crankmbs.motion.crank_angle.solvers import Begin, solve_affine, solve_newto
 from crankmbs.motion.crank_angle.window import Window
 from crankmbs.motion.plan import Plan
 from crankmbs.numerics import kernels
-from crankmbs.scene.schema import DEGREE
+from crankmbs.scene.units import DEGREE
 
 __all__ = ["advance", "is_fast"]
 

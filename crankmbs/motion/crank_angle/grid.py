@@ -14,13 +14,13 @@ from numpy.typing import NDArray
 
 from crankmbs.mechanics.inertia import reduce
 from crankmbs.mechanics.train import CrankTrain, crank_angle_knots
+from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.collocation import Rule, gauss
 from crankmbs.scene.scene import Scene
-from crankmbs.scene.schema import DEGREE
+from crankmbs.scene.units import DEGREE
 
 __all__ = ["Grid", "Strip", "grid_of", "largest_of_row"]
 
-Array = NDArray[np.float64]
 
 _WIDEST = 6.0 * DEGREE
 _SLIVER = 1e-12  # rad: a start this close to an edge is on it

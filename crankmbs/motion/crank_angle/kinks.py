@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crankmbs.mechanics.torque import Course
-from crankmbs.motion.base import Array
 from crankmbs.motion.crank_angle.grid import largest_of_row
 from crankmbs.motion.crank_angle.window import Index, Window
+from crankmbs.numerics.arrays import Array
 
 __all__ = ["edges_missing"]
 

@@ -15,8 +15,8 @@ from typing import NamedTuple
 import numpy as np
 
 from crankmbs.mechanics.torque import Branch
-from crankmbs.motion.base import Array
 from crankmbs.motion.crank_angle.grid import Grid, Strip
+from crankmbs.numerics.arrays import Array
 
 __all__ = ["Period", "Run", "period_of"]
 

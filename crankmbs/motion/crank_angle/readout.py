@@ -6,12 +6,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from crankmbs.numerics.arrays import Array, Index
 from crankmbs.numerics.kernels import kernel
 
-Array = NDArray[np.float64]
-Index = NDArray[np.intp]
 Branch = tuple[float, float, float, float]  # c0, ct, c1, c2 of `crankmbs.mechanics.torque`
 
 

@@ -12,9 +12,9 @@ from typing import NamedTuple
 import numpy as np
 
 from crankmbs.mechanics.torque import Branch, Course
-from crankmbs.motion.base import Array
 from crankmbs.motion.crank_angle import loops
 from crankmbs.motion.crank_angle.grid import Grid, Strip
+from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.collocation import Maps
 
 __all__ = ["Begin", "Cells", "solve_affine", "solve_newton"]

@@ -11,17 +11,16 @@ from numpy.typing import NDArray
 
 from crankmbs.mechanics.inertia import inertia_alone, reduce
 from crankmbs.mechanics.torque import Branch, Course
-from crankmbs.motion.base import NOWHERE, Array, Samples, State
+from crankmbs.motion.base import NOWHERE, Samples, State
 from crankmbs.motion.crank_angle import readout
 from crankmbs.motion.crank_angle.grid import Grid, Strip, largest_of_row
 from crankmbs.motion.plan import Plan
 from crankmbs.numerics import kernels
+from crankmbs.numerics.arrays import Array, Index
 from crankmbs.numerics.periodic import one_period
 from crankmbs.numerics.roots import first_above, invert_monotone
 
 __all__ = ["Window"]
-
-Index = NDArray[np.intp]
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ from crankmbs.mechanics.torque import Branch, branch_at, branch_of
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.variables import VARIABLES
 from crankmbs.motion.assemble import ANGLE_ROUNDING, Assembled, assemble
-from crankmbs.motion.base import Array, Piece, Samples, Solution, State
+from crankmbs.motion.base import Piece, Samples, Solution, State
 from crankmbs.motion.crank_angle import advance as crank_angle
 from crankmbs.motion.crank_angle.grid import Grid, grid_of
 from crankmbs.motion.free.matching import match, stays
@@ -28,8 +28,10 @@ from crankmbs.motion.free.path import Path
 from crankmbs.motion.minimal import advance as minimal
 from crankmbs.motion.minimal.reduced import Reduced
 from crankmbs.motion.plan import FOLDED, Plan, plan_of
+from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.collocation import gauss
 from crankmbs.scene.drives import TimeTable
+from crankmbs.scene.units import RPM
 
 __all__ = ["run"]
 
@@ -234,7 +236,7 @@ def _solution(answer: _Pass, better: _Pass, plan: Plan, allowed: int) -> Solutio
         message = "two passes of different order end differently, at {angle:.6g} degrees and later"
     text = message.format(
         angle=math.degrees(float(samples.theta[-1])),
-        speed=float(samples.omega[-1]) * 30.0 / math.pi,
+        speed=float(samples.omega[-1]) / RPM,
         reversals=path.reversals,
         allowed=allowed,
     )

@@ -18,12 +18,13 @@ import numpy as np
 from scipy.integrate import Radau
 
 from crankmbs.mechanics.torque import Branch, branch_at, branch_of
-from crankmbs.motion.base import Array, State
+from crankmbs.motion.base import State
 from crankmbs.motion.minimal import stepper
 from crankmbs.motion.minimal.reduced import Reduced
 from crankmbs.motion.minimal.stretch import BALANCED, Equation, Stretch, Track
 from crankmbs.motion.plan import Plan
 from crankmbs.numerics import kernels
+from crankmbs.numerics.arrays import Array
 
 __all__ = ["advance"]
 

@@ -10,17 +10,15 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crankmbs.mechanics.inertia import reduce
 from crankmbs.mechanics.train import CrankTrain, crank_angle_knots, merged_knots
 from crankmbs.motion.minimal import stepper
 from crankmbs.motion.minimal.system import Machine, bare
+from crankmbs.numerics.arrays import Array
 from crankmbs.scene.drives import Constant, SpeedTable, TimeTable
 
 __all__ = ["Between", "Reduced"]
-
-Array = NDArray[np.float64]
 
 
 class Between(NamedTuple):

@@ -10,15 +10,14 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crankmbs.motion.minimal.dop853 import E3, E5, A, C, D
 from crankmbs.motion.minimal.system import Machine, System
+from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.kernels import kernel
 
 __all__ = ["NEAR", "enter", "first_exit", "land", "reduced", "slopes", "travel"]
 
-Array = NDArray[np.float64]
 Asked = tuple[float, float, float, int]  # as in `travel`
 Steps = tuple[Array, Array, Array]  # beginnings and lengths [s], and rows as in `first_exit`
 

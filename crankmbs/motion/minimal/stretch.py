@@ -11,13 +11,14 @@ from numpy.typing import NDArray
 
 from crankmbs.mechanics.inertia import reduce
 from crankmbs.mechanics.torque import Branch
-from crankmbs.motion.base import Array, Samples, State
+from crankmbs.motion.base import Samples, State
 from crankmbs.motion.minimal import stepper
 from crankmbs.motion.minimal.reduced import Between, Reduced
 from crankmbs.motion.minimal.system import System
 from crankmbs.motion.plan import Plan
+from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.roots import invert_monotone
-from crankmbs.scene.schema import DEGREE
+from crankmbs.scene.units import DEGREE
 
 __all__ = ["BALANCED", "Equation", "Stretch", "Track"]
 

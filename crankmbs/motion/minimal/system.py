@@ -4,12 +4,9 @@ from __future__ import annotations
 
 from typing import NamedTuple, cast
 
-import numpy as np
-from numpy.typing import NDArray
+from crankmbs.numerics.arrays import Array
 
 __all__ = ["Machine", "System", "bare"]
-
-Array = NDArray[np.float64]
 
 
 class Machine(NamedTuple):

@@ -11,11 +11,12 @@ from __future__ import annotations
 import math
 
 from crankmbs.mechanics.train import CrankTrain
-from crankmbs.motion.base import Array, Samples, Solution
+from crankmbs.motion.base import Samples, Solution
 from crankmbs.motion.multibody.beside import errors_beside_jumps
 from crankmbs.motion.multibody.error import Convergence, relative_error
 from crankmbs.motion.multibody.runs import Runs
 from crankmbs.motion.multibody.samples import Sampled, aligned_variables
+from crankmbs.numerics.arrays import Array
 
 __all__ = ["run"]
 

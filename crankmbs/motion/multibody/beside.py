@@ -6,9 +6,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from crankmbs.motion.base import Array
 from crankmbs.motion.multibody.held import held_by
 from crankmbs.motion.multibody.problem import Problem
+from crankmbs.numerics.arrays import Array
 
 __all__ = ["errors_beside_jumps"]
 

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from crankmbs.mechanics.variables import VARIABLES
-from crankmbs.motion.base import Array
+from crankmbs.numerics.arrays import Array
 
 __all__ = ["Convergence", "relative_error"]
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from crankmbs.mechanics.pressure import PeriodicPressure
 from crankmbs.mechanics.train import CrankTrain
-from crankmbs.motion.base import Array
+from crankmbs.numerics.arrays import Array
 
 __all__ = ["NEAR", "Gas", "GasStretch"]
 

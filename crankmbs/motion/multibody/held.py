@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from crankmbs.mechanics.geometry import close_loop
-from crankmbs.motion.base import Array
+from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 
 __all__ = ["held_by"]

@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from crankmbs.motion.base import Array
 from crankmbs.motion.multibody.table import ROWS, Table
+from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.roots import invert_monotone
 
 __all__ = [

@@ -8,10 +8,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from crankmbs.motion.base import Array
 from crankmbs.motion.multibody.loads import Load
 from crankmbs.motion.multibody.parts import Assembly, exu
 from crankmbs.motion.multibody.start import SPECTRAL_RADIUS, Start
+from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 
 __all__ = ["Model", "Record"]

@@ -15,7 +15,7 @@ import exudyn
 import numpy as np
 from exudyn import itemInterface
 
-from crankmbs.motion.base import Array
+from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 
 __all__ = ["Assembly"]

@@ -8,7 +8,6 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from crankmbs.mechanics.speed import SpeedLaw
-from crankmbs.motion.base import Array
 from crankmbs.motion.multibody.model import Model, Record
 from crankmbs.motion.multibody.start import (
     DIES_AWAY,
@@ -19,6 +18,7 @@ from crankmbs.motion.multibody.start import (
     quiet_start,
 )
 from crankmbs.motion.multibody.taylor import taylor
+from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 
 __all__ = ["RUN_UP", "run_free", "run_prescribed"]

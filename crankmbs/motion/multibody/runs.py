@@ -10,6 +10,7 @@ from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion.multibody.path import Path, coarsest_step, model_of, solve
 from crankmbs.motion.multibody.problem import erratic_order, problem_of
 from crankmbs.motion.multibody.samples import reached, slowed
+from crankmbs.scene.units import RPM
 
 __all__ = ["Runs"]
 
@@ -136,7 +137,7 @@ class Runs:
         omega = omega if self.moves else 0.0
         degrees, plan = math.degrees(theta), self.problem.plan
         if path.ending == "held":
-            return 1, f"held at {omega * 30.0 / math.pi:.6g} rpm at {degrees:.6g} degrees: {_HELD}"
+            return 1, f"held at {omega / RPM:.6g} rpm at {degrees:.6g} degrees: {_HELD}"
         if self.problem.rests:
             return 1, f"the prescribed speed comes to rest at {degrees:.6g} degrees, before the end"
         if min(abs(theta - fold) for fold in plan.folds) < 1e-9:

@@ -9,11 +9,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from crankmbs.motion.base import Array
 from crankmbs.motion.multibody.gas import NEAR
 from crankmbs.motion.multibody.path import Path
 from crankmbs.motion.multibody.problem import Problem
 from crankmbs.motion.multibody.table import Table
+from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.roots import invert_monotone
 
 __all__ = ["Sampled", "aligned_variables", "reached", "slowed"]

@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from crankmbs.motion.base import Array
 from crankmbs.motion.multibody.taylor import taylor
+from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 
 __all__ = ["DIES_AWAY", "SPECTRAL_RADIUS", "Start", "angle_of", "coordinates", "quiet_start"]

@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from crankmbs.mechanics.geometry import top_position
-from crankmbs.motion.base import Array
 from crankmbs.motion.multibody.gas import GasStretch
 from crankmbs.motion.multibody.held import held_by
 from crankmbs.motion.multibody.model import Record
+from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 
 __all__ = ["ROWS", "Table", "table_of"]
