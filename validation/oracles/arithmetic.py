@@ -29,9 +29,11 @@ class Arithmetic:
     dtype: type
 
     def array(self, values: Sequence[Number] | Array) -> Array:
+        """Values in this arithmetic."""
         return np.array([self.number(value) for value in values], dtype=self.dtype)
 
     def zeros(self, *shape: int) -> Array:
+        """Zeros in this arithmetic."""
         return np.full(shape, self.number(0), dtype=self.dtype)
 
     def whole_turns(self, angle: Number) -> Number:

@@ -29,6 +29,7 @@ class Formulas:
         self.times = time_grid(machine.loads, arithmetic)
 
     def gas(self, place: Place) -> GasPiece | None:
+        """The gas there; None without gas."""
         return self._gas.piece(place.angle) if self._gas else None
 
     def load(self, place: Place, time: Number) -> LoadPiece:

@@ -16,6 +16,7 @@ class Grid:
     arithmetic: Arithmetic
 
     def knot(self, index: int) -> Number:
+        """The knot of an index, also beyond the first period; infinite beyond both ends."""
         count = len(self.knots)
         if self.period is not None:
             return self.knots[index % count] + (index // count) * self.period
@@ -24,6 +25,7 @@ class Grid:
         return self.arithmetic.number("-inf" if index < 0 else "inf")
 
     def bounds(self, piece: int) -> tuple[Number, Number]:
+        """The knots at both ends of a piece."""
         return self.knot(piece), self.knot(piece + 1)
 
     def inside(self, piece: int) -> Number:

@@ -63,7 +63,8 @@ class Stepper(Protocol):
     """Takes single steps by the formulas of a place."""
 
     @property
-    def formulas(self) -> Formulas: ...
+    def formulas(self) -> Formulas:
+        """The equation of motion that is stepped."""
 
     def alpha(self, state: State, place: Place) -> Number:
         """The acceleration [rad/s2]."""

@@ -60,6 +60,7 @@ class Watch:
         self.called_off = False
 
     def __call__(self, theta: float, omega: float) -> bool:
+        """Whether to go on after a step to this crank angle [rad] and speed [rad/s]."""
         self._count += 1
         inside = self._low < theta < self._high
         self._beyond = 0 if inside else self._beyond + 1
