@@ -7,6 +7,7 @@ from typing import NamedTuple
 from crankmbs.errors import FormulationError
 from crankmbs.motion import formulations
 from crankmbs.scene.scene import Scene
+from crankmbs.scene.sentences import did_you_mean
 
 __all__ = ["Choice", "choose", "chosen"]
 
@@ -37,6 +38,7 @@ def choose(scene: Scene, formulation: str = "auto") -> Choice:
             f"formulation {formulation!r} cannot serve this scene: "
             f"{refusals.get(formulation, 'no such formulation')}; "
             f"choose auto, {', '.join(serves[:-1])} or {serves[-1]}"
+            f"{did_you_mean(formulation, serves)}"
         )
     return Choice(formulation, (f"asked for; auto would choose {serves[0]}",))
 

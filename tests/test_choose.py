@@ -41,6 +41,7 @@ def test_asked_for(formulation):
         (PRESCRIBED, "minimal", "the speed is prescribed; choose auto, kinetostatic or multibody"),
         (FREE, "kinetostatic", "is free; choose auto, crank_angle, minimal or multibody"),
         (FREE, "lagrange", "no such formulation; choose auto, crank_angle, minimal or multibody"),
+        (FREE, "multi-body", 'minimal or multibody; did you mean "multibody"?'),
     ],
 )
 def test_one_that_cannot_serve_says_which_can(scene, formulation, sentence):

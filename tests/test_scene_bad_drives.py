@@ -69,12 +69,6 @@ KINDS = "constant, viscous, quadratic, time_table, speed_table"
         ('"0.75 s"', '"1 s"\nrtol = nan', "run.rtol: must be finite; nan came"),
         ('"0.75 s"', '"1 s"\nrtol = 1', "run.rtol: must be at most 0.01; 1 came"),
         ('"0.75 s"', '"1 s"\nrtol = "1e-8"', 'run.rtol: must be a number; "1e-8" came'),
-        (
-            '"0.75 s"',
-            '"1 s"\nformulation = "multi-body"',
-            'run.formulation: must be "auto", "kinetostatic", "crank_angle", "minimal" or '
-            '"multibody"; "multi-body" came; did you mean "multibody"?',
-        ),
     ],
 )
 def test_a_bad_drive_gets_one_sentence(read, old, new, message):
