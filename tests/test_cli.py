@@ -111,7 +111,10 @@ def test_a_run_cut_short_writes_its_results_and_exits_with_3():
         (["--until", "3 cyclos"], "--until: "),
         (["--until", "0 s"], "--until: "),
         (["--every", "-1 deg"], "--every: "),
-        (["--formulation", "minmal"], "no such formulation; choose auto, kinetostatic or multibody"),
+        (
+            ["--formulation", "minmal"],
+            "no such formulation; choose auto, kinetostatic or multibody",
+        ),
         (["--formulation", "minimal"], "cannot serve this scene"),
         (["--formulation", "multibody", "--confirm"], "--confirm"),
     ],

@@ -13,7 +13,10 @@ from functools import cache
 
 from crankmbs.errors import InputError, shown
 
-__all__ = ["EXAMPLES", "check_size", "extent", "quantity"]
+__all__ = ["DEGREE", "EXAMPLES", "RPM", "check_size", "extent", "quantity"]
+
+DEGREE = math.pi / 180.0  # rad
+RPM = math.pi / 30.0  # rad/s
 
 _NUMBER_AND_UNIT = re.compile(
     r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)(\s.*|[^\W\d_].*)"

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 from crankmbs.mechanics.torque import Course
 from crankmbs.motion.crank_angle.grid import largest_of_row
-from crankmbs.motion.crank_angle.window import Index, Window
-from crankmbs.numerics.arrays import Array
+from crankmbs.motion.crank_angle.window import Window
+from crankmbs.numerics.arrays import Array, Index
 
 __all__ = ["edges_missing"]
 
