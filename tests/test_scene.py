@@ -114,7 +114,7 @@ def test_every_part_survives_a_dump():
         (
             lambda: scene(crank=Crank(radius=0.046)),
             "crank.inertia: this key is missing; a free crank needs it, only a prescribed speed, "
-            "[motion], does without",
+            "motion, does without",
         ),
         (lambda: Crank(radius=1, inertia=1, mas=1), 'mas: unknown argument; did you mean "mass"?'),
         (
