@@ -73,7 +73,7 @@ def test_the_angle_turned_is_that_of_the_cells_however_many(sense):
 
 
 def test_a_strip_ends_at_its_bound():
-    strip = GRID.strip(0.37, 1.0, 40000, 40.0)
+    strip = GRID.strip(0.37, 1.0, 4000, 40.0)
     assert strip.turned[-1] == 40.0 - 0.37
     assert strip.width[-1] == strip.turned[-1] - strip.turned[-2]
     assert len(strip.width) == len(strip.turned) - 1
