@@ -7,14 +7,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from crankmbs.errors import InputError
 from crankmbs.mechanics.inertia import reduce
 from crankmbs.mechanics.pressure import repeat
 from crankmbs.mechanics.reactions import reactions
 from crankmbs.mechanics.speed import SpeedLaw, speed_law
 from crankmbs.mechanics.train import CrankTrain, crank_angle_knots
 from crankmbs.motion.base import Samples, Solution
-from crankmbs.motion.plan import FOLDED, Plan, plan_of
+from crankmbs.motion.ending import Ending
+from crankmbs.motion.plan import Plan, plan_of
+from crankmbs.motion.prescribed import monotone_stretches
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.units import DEGREE
 
@@ -34,47 +35,17 @@ def run(train: CrankTrain) -> Solution:
     assert scene.motion is not None
     plan = plan_of(scene)
     law = speed_law(scene.motion)
-    stretches, reached = _stretches(plan, law)
+    stretches, reached = monotone_stretches(plan, law)
     stretches = _kept(plan, law, stretches)
     time, theta = _sample(plan, law, stretches, reached)
     _, omega, alpha = law.at_time(time)
     edges = _panel_edges(train, law, stretches, time)
     residual = _energy_residual(train, law, time, edges)
     samples = Samples(time, theta, omega, alpha, residual)
-    angle = math.degrees(theta[-1])
+    ending = Ending.COMPLETE if reached else Ending.LAW_RESTS
     if plan.folds_at(float(theta[-1])):
-        return Solution(samples, 1, FOLDED.format(angle=angle), len(time), 0)
-    if reached:
-        return Solution(samples, 0, "reached the end of the run", len(time), 0)
-    message = (
-        f"the prescribed speed comes to rest at {angle:.6g} degrees, before the end of the run"
-    )
-    return Solution(samples, 1, message, len(time), 0)
-
-
-def _stretches(plan: Plan, law: SpeedLaw) -> tuple[list[tuple[float, float]], bool]:
-    """Monotone stretches (begin, end) in time up to the end of the run; and whether that comes."""
-    stretches: list[tuple[float, float]] = []
-    begin = 0.0
-    for turn in law.turning_times:
-        end = min(turn, plan.time_bound)
-        sense = float(law.at_time(begin + 1.0 if math.isinf(end) else 0.5 * (begin + end))[1])
-        bound = plan.angle_bounds[1 if sense > 0.0 else 0]
-        if sense != 0.0 and math.isfinite(bound):
-            passed = math.inf if math.isinf(end) else (float(law.at_time(end)[0]) - bound) * sense
-            if passed >= -1e-13 * abs(bound):
-                stretches.append((begin, float(law.time_at(bound, begin, end)[0])))
-                return stretches, True
-        if sense == 0.0 and math.isinf(end):
-            return stretches, False
-        stretches.append((begin, end))
-        if end == plan.time_bound:
-            return stretches, True
-        begin = end
-    raise InputError(
-        f"motion.speed: the speed table ends at {begin:g} s, before the run does; "
-        "lengthen the table or shorten the run"
-    )
+        ending = Ending.FOLD
+    return Solution(samples, *ending.said(float(theta[-1])), len(time), 0)
 
 
 def _kept(

@@ -13,10 +13,8 @@ from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.units import DEGREE
 
-__all__ = ["FOLDED", "Plan", "plan_of"]
+__all__ = ["Plan", "plan_of"]
 
-
-FOLDED = "the rod folds onto the crank at {angle:.6g} degrees, where the motion is not determined"
 
 _LESS = 1.0 - 1e-6  # of a spacing: the samples that are kept beyond the last period reach so far
 _HAIR = 1e-6  # rad: so near a fold the forces still have all their digits but the last few

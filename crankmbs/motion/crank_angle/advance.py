@@ -26,6 +26,7 @@ from crankmbs.motion.crank_angle.kinks import edges_missing
 from crankmbs.motion.crank_angle.periods import period_of
 from crankmbs.motion.crank_angle.solvers import Begin, solve_affine, solve_newton
 from crankmbs.motion.crank_angle.window import Window
+from crankmbs.motion.ending import Ending
 from crankmbs.motion.plan import Plan
 from crankmbs.numerics import kernels
 from crankmbs.scene.units import DEGREE
@@ -51,15 +52,16 @@ def is_fast(grid: Grid, state: State, branch: Branch, times: float) -> bool:
     return bool(0.5 * inertia * state.omega**2 > times * _SLOW * scale)
 
 
-def advance(grid: Grid, state: State, plan: Plan, allowed: float) -> Generator[Window, None, str]:
+def advance(
+    grid: Grid, state: State, plan: Plan, allowed: float
+) -> Generator[Window, None, Ending | None]:
     """Carry the motion on, window by window.
 
     allowed [1/rad] : of the energy that a cell may miss at kinks of the loads, per radian
 
     Returns
     -------
-    "end" of the plan; "slow", where the energy comes near zero; "held", where a jump of a speed
-    table drives the speed back from both sides
+    how the motion ends; None where it goes on over time, as the energy comes near zero
     """
     sense = math.copysign(1.0, state.omega)
     bound = plan.angle_bounds[1 if sense > 0.0 else 0]
@@ -67,11 +69,11 @@ def advance(grid: Grid, state: State, plan: Plan, allowed: float) -> Generator[W
     while True:
         branch, energy = _enter(grid, state)
         if branch is None:
-            return "held"
+            return Ending.HELD
         way = _Way(grid, state, energy, sense, bound, plan.time_bound, allowed)
         window = _stretch(way, branch)
         if window is None:
-            return "slow"
+            return None
         t_end = min(window.branch.t_end, plan.time_bound)
         window = replace(window, skipped=skipped).cut(t_end, bound)
         whole, window = _landed(way, window, t_end)
@@ -79,9 +81,9 @@ def advance(grid: Grid, state: State, plan: Plan, allowed: float) -> Generator[W
             yield whole
         yield window
         if window.end.time >= plan.time_bound or window.end.theta == bound:
-            return "end"
+            return Ending.COMPLETE
         if window.end.theta == state.theta:
-            return "held"
+            return Ending.HELD
         state, skipped = window.end, 0
         t_end = min(branch.t_end, plan.time_bound)
         if math.isfinite(plan.last) and state.time < t_end and branch.is_affine_in_energy:

@@ -20,18 +20,19 @@ from crankmbs.mechanics.torque import Branch, branch_at, branch_of
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.variables import VARIABLES
 from crankmbs.motion.assemble import ANGLE_ROUNDING, Assembled, assemble
-from crankmbs.motion.base import Piece, Samples, Solution, State
+from crankmbs.motion.base import Samples, Solution, State
 from crankmbs.motion.crank_angle import advance as crank_angle
 from crankmbs.motion.crank_angle.grid import Grid, grid_of
+from crankmbs.motion.crank_angle.window import Window
+from crankmbs.motion.ending import Ending
 from crankmbs.motion.free.matching import match, stays
-from crankmbs.motion.free.path import Path
+from crankmbs.motion.free.path import Path, Pieces
 from crankmbs.motion.minimal import advance as minimal
 from crankmbs.motion.minimal.reduced import Reduced
-from crankmbs.motion.plan import FOLDED, Plan, plan_of
+from crankmbs.motion.plan import Plan, plan_of
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.collocation import gauss
 from crankmbs.scene.drives import TimeTable
-from crankmbs.scene.units import RPM
 
 __all__ = ["run"]
 
@@ -45,30 +46,9 @@ _EVALUATIONS = 500_000  # over time, for which a second of the cost cap stands
 _MOST_CELLS = 20_000
 _FINEST = 3e-14  # what rounding leaves of a cell
 _FINEST_STEP = 1e-15  # the same over time
-_ENDS = {
-    "end": (0, "reached the end of the run"),
-    "stuck": (1, "at rest at {angle:.6g} degrees: no torque moves the crank from here"),
-    "held": (
-        1,
-        "held at {speed:.6g} rpm at {angle:.6g} degrees: a jump of the loads drives the "
-        "speed back from both sides",
-    ),
-    "rest": (1, "came to rest at {angle:.6g} degrees"),
-    "swing": (
-        1,
-        "swings without reaching the end: {reversals} reversals, the last at {angle:.6g} degrees",
-    ),
-    "fold": (1, FOLDED),
-    "costly": (
-        -1,
-        "stopped at {angle:.6g} degrees: to follow the motion over time beyond it takes more than "
-        "the {allowed} evaluations that the cost cap allows; raise it or ask for less",
-    ),
-    "failed": (-1, "stopped at {angle:.6g} degrees: no step over time is short enough there"),
-}
 # what a pass may say that has not seen yet, or by its errors never, that the crank is at rest
-_RESTING = {"rest", "swing", "end"}
-_BROKEN = {"costly", "failed"}
+_RESTING = {Ending.REST, Ending.SWING, Ending.COMPLETE}
+_BROKEN = (Ending.COSTLY, Ending.FAILED)
 
 
 class _Pass(NamedTuple):
@@ -81,7 +61,7 @@ class _Pass(NamedTuple):
 
     begin: Samples
     samples: Samples
-    ending: str
+    ending: Ending
     path: Path
     local: Array
     fast: list[tuple[float, float]]
@@ -159,34 +139,38 @@ def _travel(
         may = by_angle and at.omega != 0.0 and not swings and usable
         return may and crank_angle.is_fast(grid, at, branch, _FAST[first is not None])
 
-    def windows(at: State) -> Generator[Piece, None, str]:
-        pieces = crank_angle.advance(grid, at, plan, kinks)
-        while True:
-            try:
-                window = next(pieces)
-            except StopIteration as stop:
-                return str(stop.value)
-            if first is None:
-                for row, error in zip(worst, window.relative_errors, strict=True):
-                    np.maximum.at(row, window.strip.cell, error)
-            yield window
-
-    ending = "fast" if by_angle and state.omega != 0.0 else "slow"
-    while ending in ("slow", "fast"):
+    ending, over_time = None, not by_angle or state.omega == 0.0
+    while ending is None:
         at = path.state or state
-        if ending == "slow":
-            parts = 2 if first else 1
+        if over_time:
+            effort = minimal.Effort(tolerance, 2 if first else 1, path.left)
             slow.append(at.time)
-            pieces = minimal.advance(reduced(), at, plan, tolerance, parts, path.left, is_fast)
+            pieces = minimal.advance(reduced(), at, plan, effort, is_fast)
             ending = path.follow(pieces, over_time=True)
         else:
-            ending = path.follow(windows(at), over_time=False)
+            windows = crank_angle.advance(grid, at, plan, kinks)
+            noted = _noted(windows, worst) if first is None else windows
+            ending = path.follow(noted, over_time=False)
             now = path.state or state
             fast.append((at.time, now.time))
             vain += bool(slow) and abs(now.theta - at.theta) < scene.period
-    if ending == "end" and plan.folds_at((path.state or state).theta):
-        ending = "fold"
+        over_time = not over_time
+    if ending is Ending.COMPLETE and plan.folds_at((path.state or state).theta):
+        ending = Ending.FOLD
     return _Pass(begin, path.samples(), ending, path, worst, fast, slow if by_angle else [])
+
+
+def _noted(windows: Generator[Window, None, Ending | None], worst: Array) -> Pieces:
+    """The windows as they come; their cells' largest errors so far go into ``worst``."""
+    while True:
+        try:
+            window = next(windows)
+        except StopIteration as stop:
+            ending: Ending | None = stop.value
+            return ending
+        for row, error in zip(worst, window.relative_errors, strict=True):
+            np.maximum.at(row, window.strip.cell, error)
+        yield window
 
 
 def _first(grid: Grid, state: State) -> Samples:
@@ -219,27 +203,23 @@ def _parts(grid: Grid, worst: Array, local: float) -> NDArray[np.intp]:
 
 def _solution(answer: _Pass, better: _Pass, plan: Plan, allowed: int) -> Solution:
     path, endings = answer.path, {answer.ending, better.ending}
-    ends = _RESTING if plan.until_time else _RESTING - {"end"}
+    ends = _RESTING if plan.until_time else _RESTING - {Ending.COMPLETE}
     both, in_time, reversals = (answer.samples, better.samples), plan.in_time, path.reversals
     still = endings <= ends and stays(*both)
-    at_rest = still and "rest" in endings
+    at_rest = still and Ending.REST in endings
     matched = match(*both, in_time=in_time, reversals=reversals, at_rest=at_rest)
     if matched.parted and still and not at_rest:  # both swing on by their errors alone
         matched = match(*both, in_time=in_time, reversals=reversals, at_rest=True)
         at_rest = not matched.parted
     samples, check, parted = matched
-    ending = "rest" if at_rest and answer.ending != "end" else answer.ending
-    broken = sorted(endings & _BROKEN)
-    status, message = _ENDS[broken[0] if broken else ending]
-    if status >= 0 and ((len(endings) > 1 and not at_rest) or parted):
-        status = -1
-        message = "two passes of different order end differently, at {angle:.6g} degrees and later"
-    text = message.format(
-        angle=math.degrees(float(samples.theta[-1])),
-        speed=float(samples.omega[-1]) / RPM,
-        reversals=path.reversals,
-        allowed=allowed,
-    )
+    ending = Ending.REST if at_rest and answer.ending is not Ending.COMPLETE else answer.ending
+    broken = [one for one in _BROKEN if one in endings]
+    if broken:
+        ending = broken[0]
+    elif (len(endings) > 1 and not at_rest) or parted:
+        ending = Ending.PARTED
+    last = float(samples.theta[-1]), float(samples.omega[-1])
+    status, text = ending.said(*last, reversals=path.reversals, allowed=allowed)
     reasons: tuple[str, ...] = ()
     if answer.slow:
         times = ", ".join(f"{t:.4g}" for t in answer.slow[:5])

@@ -9,12 +9,15 @@ from collections.abc import Generator
 import numpy as np
 
 from crankmbs.motion.base import Piece, Samples, State
+from crankmbs.motion.ending import Ending
 from crankmbs.motion.plan import Plan
 
-__all__ = ["Path"]
+__all__ = ["Path", "Pieces"]
 
 _VAIN = 20  # as many reversals that reach no farther, and the end is not coming
 _SAMPLE = 50  # evaluations as costly as a sample of a swing
+
+Pieces = Generator[Piece, None, Ending | None]
 
 
 class Path:
@@ -32,22 +35,23 @@ class Path:
         self._tail: deque[Piece] = deque()
         self.reversals = self.steps = self.evaluations = 0
 
-    def follow(self, pieces: Generator[Piece, None, str], *, over_time: bool) -> str:
-        """Add every piece; return why they ended."""
+    def follow(self, pieces: Pieces, *, over_time: bool) -> Ending | None:
+        """Add every piece; return how the motion ends, None where it goes on otherwise."""
         while True:
             try:
                 piece = next(pieces)
             except StopIteration as stop:
-                return str(stop.value)
+                ending: Ending | None = stop.value
+                return ending
             count = self._count
             self._add(piece)
             self.left -= piece.evaluations if over_time else 0
             if self._swings():
                 if self._can_swing:
-                    return "swing"
+                    return Ending.SWING
                 self.left -= _SAMPLE * (self._count - count)
                 if self.left <= 0:
-                    return "costly"
+                    return Ending.COSTLY
 
     def _add(self, piece: Piece) -> None:
         self.steps += piece.steps

@@ -19,6 +19,7 @@ from scipy.integrate import Radau
 
 from crankmbs.mechanics.torque import Branch, branch_at, branch_of
 from crankmbs.motion.base import State
+from crankmbs.motion.ending import Ending
 from crankmbs.motion.minimal import stepper
 from crankmbs.motion.minimal.reduced import Reduced
 from crankmbs.motion.minimal.stretch import BALANCED, Equation, Stretch, Track
@@ -26,38 +27,43 @@ from crankmbs.motion.plan import Plan
 from crankmbs.numerics import kernels
 from crankmbs.numerics.arrays import Array
 
-__all__ = ["advance"]
+__all__ = ["Effort", "advance"]
 
 _MOST_STEPS = 512  # of one stretch
 _RADAU = 1e-13  # finest tolerance of a step, half of it where steps are halved; SciPy's is 2.3e-14
 _PLAIN_TIME = 5e-4  # s a step that is not compiled
 
 
+class Effort(NamedTuple):
+    """Relative tolerance of each step, into how many it is divided then, and the evaluations that
+    are allowed."""
+
+    tolerance: float
+    parts: int
+    allowed: int
+
+
 def advance(
     reduced: Reduced,
     state: State,
     plan: Plan,
-    tolerance: float,
-    parts: int,
-    allowed: int,
+    effort: Effort,
     is_fast: Callable[[State, Branch], bool],
-) -> Generator[Stretch, None, str]:
+) -> Generator[Stretch, None, Ending | None]:
     """Carry the motion on, in stretches of ever more steps: a short crossing is soon over.
 
-    tolerance : relative, of each step; parts : into how many each is divided then; allowed :
-    evaluations; is_fast : whether the crank angle can take over again
+    is_fast : whether the crank angle can take over again
 
     Returns
     -------
-    "end" of the plan; "fast"; "stuck" at rest in an equilibrium; "held" by a jump of a speed
-    table; "rest" when the motion has died away; "costly" when it takes more evaluations,
-    "failed" when no step is short enough
+    how the motion ends; None where the crank angle takes over
     """
+    tolerance, parts, allowed = effort
     scale = reduced.torque_scale
     evaluations, most, h, room = 0, 0.0, math.inf, 1
     while evaluations < allowed:
         equation = _enter(reduced, state, scale)
-        if isinstance(equation, str):
+        if isinstance(equation, Ending):
             return equation
         inertia = reduced(state.theta, equation.between.pieces)[0]
         speed = max(abs(state.omega), math.sqrt(2.0 * scale / inertia), 1e-150)
@@ -71,22 +77,22 @@ def advance(
         method = _radau if equation.is_stiff(state, inertia) else _dop853
         track = method(equation, state, control, limits)
         if len(track.widths) == 0:
-            return "failed"
+            return Ending.FAILED
         stretch = Stretch.of(equation, track, state)
         yield stretch
         state, h, most = stretch.end, track.next_step, track.most
         evaluations, room = evaluations + track.evaluations, min(2 * room, _MOST_STEPS)
         if state.time >= plan.time_bound or state.theta in plan.angle_bounds:
-            return "end"
+            return Ending.COMPLETE
         kinetic = equation.kinetic(state.theta, state.omega)
         if kinetic <= tolerance**2 * most and equation.is_balanced(state, scale):
-            return "rest"
+            return Ending.REST
         if is_fast(state, equation.branch):
-            return "fast"
-    return "costly"
+            return None
+    return Ending.COSTLY
 
 
-def _enter(reduced: Reduced, state: State, scale: float) -> Equation | str:
+def _enter(reduced: Reduced, state: State, scale: float) -> Equation | Ending:
     """The piece that the motion enters, or why it enters none."""
     torques = reduced.train.scene.torque
     if state.omega != 0.0:
@@ -94,7 +100,7 @@ def _enter(reduced: Reduced, state: State, scale: float) -> Equation | str:
         _, slope, torque = reduced(state.theta, between.pieces)
         rest = torque - 0.5 * slope * state.omega**2
         branch = branch_at(torques, state.time, state.omega, rest)
-        return "held" if branch is None else Equation(reduced, between, branch)
+        return Ending.HELD if branch is None else Equation(reduced, between, branch)
     sides: list[Equation] = []
     resisted = False
     for sense in (1.0, -1.0):
@@ -106,9 +112,9 @@ def _enter(reduced: Reduced, state: State, scale: float) -> Equation | str:
         resisted = resisted or pull * sense < -BALANCED * scale
         sides.append(equation)
     if resisted:
-        return "held"
+        return Ending.HELD
     later = sides[1] if sides[0].branch.ct < 0.0 else sides[0]  # where a load that sets in drives
-    return "stuck" if later.is_balanced(state, scale) else later
+    return Ending.STUCK if later.is_balanced(state, scale) else later
 
 
 class _Control(NamedTuple):

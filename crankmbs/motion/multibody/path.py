@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from crankmbs.motion.ending import Ending
 from crankmbs.motion.multibody.gas import NEAR
 from crankmbs.motion.multibody.landing import LEAST_STEPS, PASSED
 from crankmbs.motion.multibody.model import Model
@@ -34,14 +35,13 @@ class Path(NamedTuple):
     """A run at one step size.
 
     tables : the stretches, one after the other
-    ending : "complete", "called off", "held" where a jump of the loads drives the speed back from
-        both sides, or "failed" where the solver gave up
+    ending : COMPLETE, CALLED_OFF, HELD, or DIVERGED where the solver gave up
     blind : whether it ran over bends or jumps of the loads over speed
     steps, iterations : what it cost
     """
 
     tables: tuple[Table, ...]
-    ending: str
+    ending: Ending
     blind: bool
     steps: int
     iterations: int
@@ -65,12 +65,12 @@ def solve(
     jumps = jump_times(problem)
     cuts = sorted({*jumps, *kink_times(problem)})
     ends = [*(t for t in cuts if t < problem.end * (1.0 - _SAME)), problem.end]
-    bounds, ending = problem.plan.angle_bounds, "complete"
+    bounds, ending = problem.plan.angle_bounds, Ending.COMPLETE
 
     def at_jump_in_time() -> bool:
         return any(math.isclose(walk.time, t, rel_tol=_SAME) for t in jumps)
 
-    while ending == "complete" and ends and walk.bound not in bounds:
+    while ending is Ending.COMPLETE and ends and walk.bound not in bounds:
         h, count = _steps(ends[0] - walk.time, step, halvings)
         anew = not walk.tables or at_jump_in_time()
         if anew and not walk.goes_up and walk.is_at_gas_jump(NEAR):
@@ -78,16 +78,16 @@ def solve(
         ending = walk.stretch(ends[0], h, count, bounds)
         while ends and walk.time >= ends[0] * (1.0 - _SAME):
             ends.pop(0)
-        if ending == "complete" and ends and go_on is not None and not go_on():
+        if ending is Ending.COMPLETE and ends and go_on is not None and not go_on():
             last = walk.tables[-1]  # half of it: an end at a jump has no certain side
             walk.tables[-1] = last._replace(until=0.5 * (last.after + last.until))
-            return _path(walk, "called off")
+            return _path(walk, Ending.CALLED_OFF)
     if walk.time > 0.0 and (walk.is_at_gas_jump(PASSED) or at_jump_in_time()):
         walk.above(h)  # what comes after the jump is asked for at the end, too
     return _path(walk, ending)
 
 
-def _path(walk: Walk, ending: str) -> Path:
+def _path(walk: Walk, ending: Ending) -> Path:
     return Path(tuple(walk.tables), ending, walk.is_blind, walk.steps, walk.iterations)
 
 

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 
-from crankmbs.errors import InputError
 from crankmbs.mechanics.speed import SpeedLaw, speed_law
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion.multibody.gas import Gas
 from crankmbs.motion.plan import Plan, plan_of
+from crankmbs.motion.prescribed import monotone_stretches
 from crankmbs.scene.drives import TimeTable
 from crankmbs.scene.scene import Scene
 
@@ -56,8 +55,9 @@ def problem_of(train: CrankTrain) -> Problem:
     if scene.motion is None:
         return Problem(scene, plan, gas, None, plan.time_bound, False)
     law = speed_law(scene.motion)
-    end, rests = _end_of(law, plan)
-    return Problem(scene, plan, gas, law, end, rests)
+    stretches, reached = monotone_stretches(plan, law)
+    end = stretches[-1][1] if stretches else 0.0
+    return Problem(scene, plan, gas, law, end, not reached)
 
 
 def jump_times(problem: Problem) -> list[float]:
@@ -100,26 +100,3 @@ def _row_times(problem: Problem) -> list[float]:
     """Times [s] within the run of the rows of all loads over time."""
     loads = (load for load in problem.scene.torque if isinstance(load, TimeTable))
     return sorted({t for load in loads for t in load.file.x if 0.0 < t < problem.end})
-
-
-def _end_of(law: SpeedLaw, plan: Plan) -> tuple[float, bool]:
-    """Time [s] at which the prescribed motion ends, and whether it comes to rest there."""
-    begin = 0.0
-    for turn in law.turning_times:
-        end = min(turn, plan.time_bound)
-        inside = begin + 1.0 if math.isinf(end) else 0.5 * (begin + end)
-        sense = float(np.sign(law.at_time(inside)[1]))
-        bound = plan.angle_bounds[1 if sense > 0.0 else 0]
-        if sense != 0.0 and math.isfinite(bound):
-            passed = math.inf if math.isinf(end) else sense * (float(law.at_time(end)[0]) - bound)
-            if passed >= -1e-13 * abs(bound):
-                return float(law.time_at(bound, begin, end)[0]), False
-        if sense == 0.0 and math.isinf(end):
-            return begin, True
-        if end == plan.time_bound:
-            return end, False
-        begin = end
-    raise InputError(
-        f"motion.speed: the speed table ends at {begin:g} s, before the run does; "
-        "lengthen the table or shorten the run"
-    )

@@ -7,18 +7,18 @@ import time as clock
 
 from crankmbs.errors import FormulationError
 from crankmbs.mechanics.train import CrankTrain
+from crankmbs.motion.ending import Ending
 from crankmbs.motion.multibody.path import Path, coarsest_step, model_of, solve
 from crankmbs.motion.multibody.problem import erratic_order, problem_of
 from crankmbs.motion.multibody.samples import reached, slowed
-from crankmbs.scene.units import RPM
 
 __all__ = ["Runs"]
 
 _SHARE = 1.0 / 3.0  # of the cost cap, for the coarsest run: the next costs twice as much
 _RETRIES = 4
 _AT_REST = 1e-6  # of the fastest speed
-_FAILED = "exudyn's Newton iteration does not converge, or a rod turns over at a fold"
 _HELD = "a jump of the loads drives the speed back from both sides"
+_NO_STEP = "exudyn's Newton iteration does not converge"
 _UNTOUCHED = 0.98  # of the time to where the solver fails: before it goes wrong
 
 
@@ -57,17 +57,18 @@ class Runs:
             return self._at_rest()
         for _ in range(_RETRIES):
             path = self._run(_SHARE * self._cap)
-            if path.ending != "failed":
+            if path.ending is not Ending.DIVERGED:
                 break
             self._model.stiff = True
             self._step *= 0.25
         if not path.tables:
-            why = _HELD if path.ending == "held" else "exudyn's Newton iteration does not converge"
+            held = path.ending is Ending.HELD
+            why = _HELD if held else _NO_STEP
             raise FormulationError(
                 f"formulation 'multibody' cannot serve this scene: {why} at its start; choose auto"
             )
         self.paths = [path]
-        if path.ending in ("complete", "held"):
+        if path.ending in (Ending.COMPLETE, Ending.HELD):
             self.moves = reached(path)[0] > 0.0
             return self._end(path)
         return self._cut(path)
@@ -76,7 +77,8 @@ class Runs:
         """One more run, at half the step; False, and no run more, where it fails."""
         self._halvings += 1
         path = self._run(math.inf)
-        if path.ending != ("held" if self.paths[-1].ending == "held" else "complete"):
+        held = self.paths[-1].ending is Ending.HELD
+        if path.ending is not (Ending.HELD if held else Ending.COMPLETE):
             return False
         self.paths = [*self.paths, path][-3:]
         return True
@@ -100,7 +102,10 @@ class Runs:
             return said + "a finer step brings no more"
         order = min(math.log2(gain), 4.0)
         cost = self._spent() + 2.0 * self._cost * (worst / rtol) ** (1.0 / order)
-        return said + f"that would take about {_seconds(cost)}, {self._above()}"
+        return (
+            said
+            + f"that would take about {_rounded(cost):g} s, above the cost cap of {self._cap:g} s"
+        )
 
     def _run(self, budget: float) -> Path:
         begin = clock.perf_counter()
@@ -119,52 +124,36 @@ class Runs:
     def _spent(self) -> float:
         return clock.perf_counter() - self._begin
 
-    def _above(self) -> str:
-        return f"above the cost cap of {self._cap:g} s"
-
     def _at_rest(self) -> tuple[int, str]:
         """A crank that nothing moves: a few steps give its reactions, and the start is returned."""
         plan = self.problem.plan
         self.problem = self.problem._replace(end=8.0 * self._step)
         self.paths = [self._run(math.inf)]
-        return 1, (
-            f"did not move: at rest at {math.degrees(plan.start):.6g} degrees, where no torque "
-            "turns the crank"
-        )
+        return Ending.UNMOVED.said(plan.start)
 
     def _end(self, path: Path) -> tuple[int, str]:
         _, theta, omega = reached(path)
-        omega = omega if self.moves else 0.0
-        degrees, plan = math.degrees(theta), self.problem.plan
-        if path.ending == "held":
-            return 1, f"held at {omega / RPM:.6g} rpm at {degrees:.6g} degrees: {_HELD}"
-        if self.problem.rests:
-            return 1, f"the prescribed speed comes to rest at {degrees:.6g} degrees, before the end"
-        if min(abs(theta - fold) for fold in plan.folds) < 1e-9:
-            return 1, (
-                f"the rod folds onto the crank at {degrees:.6g} degrees, where the motion is not "
-                "determined"
-            )
-        return 0, "reached the end of the run"
+        ending = path.ending
+        if ending is not Ending.HELD and self.problem.rests:
+            ending = Ending.LAW_RESTS
+        elif ending is not Ending.HELD and self.problem.plan.folds_at(theta):
+            ending = Ending.FOLD
+        return ending.said(theta, omega if self.moves else 0.0)
 
     def _cut(self, path: Path) -> tuple[int, str]:
         time, theta, _ = reached(path)
         plan = self.problem.plan
-        where = f"at {math.degrees(theta):.6g} degrees, {time:.6g} s"
-        if path.ending == "failed":
+        if path.ending is Ending.DIVERGED:
             self.problem = self.problem._replace(end=_UNTOUCHED * time)
             self.paths = [self._run(math.inf)]
-            return -1, f"stopped {where}: {_FAILED}"
+            return Ending.DIVERGED.said(theta, time=time)
         share = (time if plan.until_time else abs(theta - plan.start)) / plan.until
         self.problem = self.problem._replace(end=time)
         if slowed(path) < _AT_REST:
-            return 1, f"came to rest {where}, before the end of the run"
+            return Ending.SLOWED.said(theta, time=time)
         whole = self._cost / share / _SHARE
-        return (
-            -1,
-            f"stopped {where}: the whole run would take about {_seconds(whole)}, {self._above()}",
-        )
+        return Ending.CALLED_OFF.said(theta, time=time, whole=_rounded(whole), cap=self._cap)
 
 
-def _seconds(cost: float) -> str:
-    return f"{float(f'{cost:.2g}'):g} s"
+def _rounded(cost: float) -> float:
+    return float(f"{cost:.2g}")

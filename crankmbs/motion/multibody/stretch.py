@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from crankmbs.mechanics.geometry import close_loop
+from crankmbs.motion.ending import Ending
 from crankmbs.motion.multibody.gas import GasStretch
 from crankmbs.motion.multibody.landing import (
     LEAST_STEPS,
@@ -73,7 +74,7 @@ class Walk:
         """Whether the crank angle rises."""
         return self._state[1] > 0.0
 
-    def stretch(self, end: float, step: float, steps: int, angles: tuple[float, float]) -> str:
+    def stretch(self, end: float, step: float, steps: int, angles: tuple[float, float]) -> Ending:
         """Run one more, to time ``end`` [s] if no crank angle or speed ends it before.
 
         Returns
@@ -82,7 +83,7 @@ class Walk:
         """
         entered = self.enter(end)
         if entered is None:
-            return "held"
+            return Ending.HELD
         gas, speeds = entered
         for _ in range(2):
             bounds = Bounds((max(angles[0], gas.low), min(angles[1], gas.high)), speeds)
@@ -96,11 +97,11 @@ class Walk:
                 if not begun and passed[0] not in angles:  # it is the gas beyond that it meets
                     gas = self._gas_beside(passed[1])
                     continue
-            elif ending == "complete":
+            elif ending is Ending.COMPLETE:
                 table = table._replace(until=end)
             self._land(table, bounds, None if passed is None else passed[0])
             return ending
-        return "held"
+        return Ending.HELD
 
     def above(self, step: float) -> None:
         """Take a stretch of no length, with what is above a jump of the gas force here.
@@ -117,7 +118,7 @@ class Walk:
 
     def _run(
         self, gas: GasStretch, bounds: Bounds, end: float, step: float, steps: int
-    ) -> tuple[Table | None, str]:
+    ) -> tuple[Table | None, Ending]:
         """Run with the loads of the model; the table, if it has its rows, and how it ended."""
         problem, model, time = self._problem, self._model, self.time
         watch = Watch(bounds, self._go_on)
@@ -132,15 +133,15 @@ class Walk:
         self.steps += len(record.time) - 1
         self.iterations += record.iterations
         if len(record.time) < lead + LEAST_STEPS:
-            return None, "failed"
+            return None, Ending.DIVERGED
         torque = record.drive
         if problem.law is None:
             rates = record.velocity[:, 2].tolist()
             torque = np.array(list(map(model.torque, record.time.tolist(), rates)))
         table = table_of(problem.scene, gas, torque, record, time, self._residual)
         if watch.called_off:
-            return table, "called off"
-        return table, "complete" if record.complete else "failed"
+            return table, Ending.CALLED_OFF
+        return table, Ending.COMPLETE if record.complete else Ending.DIVERGED
 
     def enter(self, end: float) -> tuple[GasStretch, tuple[float, float]] | None:
         """Give the model the loads of the stretch from here to time ``end`` [s].

@@ -1,0 +1,70 @@
+"""How a run ends: a status, and the sentence that says so."""
+
+from __future__ import annotations
+
+import math
+from enum import Enum
+
+from crankmbs.scene.units import RPM
+
+__all__ = ["Ending"]
+
+
+class Ending(Enum):
+    """Status 0: the end of the run is reached; 1: a physical end before it; -1: a numerical one."""
+
+    COMPLETE = 0, "reached the end of the run"
+    STUCK = 1, "at rest at {angle:.6g} degrees: no torque moves the crank from here"
+    UNMOVED = 1, "did not move: at rest at {angle:.6g} degrees, where no torque turns the crank"
+    HELD = (
+        1,
+        "held at {speed:.6g} rpm at {angle:.6g} degrees: a jump of the loads drives the speed back "
+        "from both sides",
+    )
+    REST = 1, "came to rest at {angle:.6g} degrees"
+    SLOWED = 1, "came to rest at {angle:.6g} degrees, {time:.6g} s, before the end of the run"
+    LAW_RESTS = (
+        1,
+        "the prescribed speed comes to rest at {angle:.6g} degrees, before the end of the run",
+    )
+    SWING = (
+        1,
+        "swings without reaching the end: {reversals} reversals, the last at {angle:.6g} degrees",
+    )
+    FOLD = (
+        1,
+        "the rod folds onto the crank at {angle:.6g} degrees, where the motion is not determined",
+    )
+    COSTLY = (
+        -1,
+        "stopped at {angle:.6g} degrees: to follow the motion over time beyond it takes more than "
+        "the {allowed} evaluations that the cost cap allows; raise it or ask for less",
+    )
+    FAILED = -1, "stopped at {angle:.6g} degrees: no step over time is short enough there"
+    PARTED = (
+        -1,
+        "two passes of different order end differently, at {angle:.6g} degrees and later",
+    )
+    DIVERGED = (
+        -1,
+        "stopped at {angle:.6g} degrees, {time:.6g} s: exudyn's Newton iteration does not "
+        "converge, or a rod turns over at a fold",
+    )
+    CALLED_OFF = (
+        -1,
+        "stopped at {angle:.6g} degrees, {time:.6g} s: the whole run would take about {whole:g} "
+        "s, above the cost cap of {cap:g} s",
+    )
+
+    def said(self, angle: float, speed: float = math.nan, **numbers: float) -> tuple[int, str]:
+        """Status and sentence.
+
+        Parameters
+        ----------
+        angle [rad], speed [rad/s] : of the crank at the end; numbers : what else the sentence names
+
+        >>> Ending.REST.said(angle=0.0)
+        (1, 'came to rest at 0 degrees')
+        """
+        status, sentence = self.value
+        return status, sentence.format(angle=math.degrees(angle), speed=speed / RPM, **numbers)
