@@ -7,6 +7,7 @@ import pytest
 from references import reference_at_angles, true_errors
 
 from crankmbs import Run, load_scene, shipped_scenes, simulate
+from crankmbs.mechanics.indicator import INDICATOR_RTOL
 from crankmbs.motion.plan import plan_of
 
 RUNS = {
@@ -40,7 +41,10 @@ def test_stated_errors(name, rtol, formulation):
     scene = replace(load_scene(name), run=RUNS[name])
     result = simulate(scene, formulation=formulation, rtol=rtol)
     assert result.status == 0
-    assert result.error.estimated <= rtol
+    shared = INDICATOR_RTOL if scene.gas and scene.gas.indicator else 0.0
+    assert result.error.estimated <= rtol + 5.0 * shared
     for variable, error in true_errors(result, exact(name)).items():
         assert error.true <= 2.0 * error.stated + TINY * error.peak, (variable, error)
-        assert error.stated <= IDLE * error.true + TINY * error.peak, (variable, error)
+        # the oracle has the indicator's own pieces; what they miss of the diagram is stated, too
+        unseen = error.true + shared * error.peak
+        assert error.stated <= IDLE * unseen + TINY * error.peak, (variable, error)

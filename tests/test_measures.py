@@ -75,7 +75,7 @@ def test_a_joint_force_is_the_magnitude_of_its_components(constant):
     x, y = (last[f"crank_pin_force_{axis}"].values[:, 0] for axis in "xy")
     size, time = np.hypot(x, y), last["time"].values
     (pin,) = (joint for joint in measure(constant).joints if joint.joint == "crank pin")
-    assert pin.peak.value == pytest.approx(size.max(), rel=1e-3)
+    assert size.max() <= pin.peak.value <= 1.005 * size.max()  # it lies between two samples
     mean = np.trapezoid(size, time) / (time[-1] - time[0])
     assert pin.mean.value == pytest.approx(mean, rel=1e-4)
 
