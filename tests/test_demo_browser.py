@@ -127,6 +127,12 @@ def test_the_mechanism_is_drawn_to_scale(live, scene):
         assert x1 == pytest.approx(scene.piston.offset, abs=1e-12)
 
 
+def fluctuation_of_samples(scene):
+    """As the page has it."""
+    result = simulate(scene)
+    return fluctuation(result, last_window(result)).value
+
+
 def test_dragging_the_flywheel_draws_what_simulate_gives(live, scene):
     drawn = live.fluctuation()
     slider = live.page.locator(".bk-Slider").filter(has_text="flywheel")
@@ -139,8 +145,7 @@ def test_dragging_the_flywheel_draws_what_simulate_gives(live, scene):
     live.page.mouse.up()
     inertia = live.settled().get("flywheel", "value")
     assert inertia > 1.3 * scene.crank.inertia
-    result = simulate(turned(scene, {"flywheel": inertia}))
-    expected = fluctuation(result, last_window(result)).value  # the page's is that of the samples
+    expected = fluctuation_of_samples(turned(scene, {"flywheel": inertia}))
     assert live.fluctuation() == pytest.approx(expected, rel=1e-9)
     assert live.fluctuation() < 0.8 * drawn
     assert f"{100.0 * expected:.3f} %" in live.get("numbers", "text")
@@ -238,7 +243,7 @@ def test_the_single_file_opens_from_disk_without_network(browser, file, scene, t
         named = float(ratios[5])
         shown = read(*visit.saved("scene TOML"), tmp_path)
         assert shown.crank.radius / shown.rod.length == pytest.approx(named, abs=5e-4)
-        expected = measure(simulate(shown)).fluctuation.value
+        expected = fluctuation_of_samples(shown)
         assert visit.fluctuation() == pytest.approx(expected, rel=1e-4)
         _, content = visit.saved("data CSV")
         head, *rows = content.decode().splitlines()
