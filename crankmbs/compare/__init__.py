@@ -1,4 +1,8 @@
-"""Simulation against exact and against lecture formula, and the error budget of the latter."""
+"""Simulation against exact and against lecture formula, the error budget of the latter, and two runs
+of one scene beside each other.
+
+The formulas themselves belong in lecture and mechanics, what a run amounts to in measures.
+"""
 
 from crankmbs.compare.against import CLOSED_FORM, Comparison, Deviation, compare
 from crankmbs.compare.causes import CAUSES, Budget, Cause, Split, budget

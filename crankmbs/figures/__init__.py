@@ -1,4 +1,7 @@
-"""Figures of a result, drawn with matplotlib and without its global state."""
+"""Figures of a result, drawn with matplotlib and without its global state.
+
+What is drawn is computed elsewhere: in measures, compare and mechanics; here are axes and labels.
+"""
 
 from __future__ import annotations
 

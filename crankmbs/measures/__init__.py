@@ -1,4 +1,8 @@
-"""What a run amounts to: means, peaks, power and orders, from the samples of a result."""
+"""What a run amounts to: means, peaks, power and orders, with the motion between its samples; and
+which numbers of a scene no machine has.
+
+Differences from formulas or other runs belong in compare.
+"""
 
 from crankmbs.measures.joints import Estimate, JointForce
 from crankmbs.measures.orders import Orders, orders
