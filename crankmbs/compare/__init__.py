@@ -1,5 +1,5 @@
-"""Simulation against exact and against lecture formula, the error budget of the latter, and two runs
-of one scene beside each other.
+"""Simulation against exact and against lecture formula, the error budget of the latter, and two
+runs of one scene beside each other.
 
 The formulas themselves belong in lecture and mechanics, what a run amounts to in measures.
 """

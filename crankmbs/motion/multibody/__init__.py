@@ -1,7 +1,9 @@
 """Crank, rods and pistons as rigid bodies on joints, in exudyn: the independent check.
 
-Every body has its own coordinates, every joint its multipliers: nothing of the reduced mechanics
-is used, except that the loop closure gives consistent initial positions and speeds. The method
+Every body has its own coordinates, every joint its multipliers: motion and reactions are exudyn's.
+With the others it shares what is given to it, pressure, loads and prescribed speed, and the loop
+closure: for consistent starts, to see that a rod has not turned over, for the gas's share of a
+force between two steps (taken off and put back) and as the datum of the displacement. The method
 (generalized alpha, index 3) is of order 2; runs at step sizes halved again and again give the
 answer, extrapolated where that is sound, and its error.
 """
