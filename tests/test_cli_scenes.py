@@ -92,6 +92,23 @@ def test_check_shows_what_the_machine_is_made_of_and_warns_of_nothing_shipped(na
 
 
 @pytest.mark.parametrize(
+    ("crank", "said"),
+    [
+        ('radius = "46 mm"', "radius 46 mm, mass 0 kg, inertia 0 kg m^2 about its axis, left out"),
+        (
+            'radius = "46 mm"\nmass = "2 kg"\ncenter_of_mass = "-10 mm"',
+            "radius 46 mm, mass 2 kg, centre of mass at -10 mm, "
+            "inertia 0.0002 kg m^2 about its axis, left out",
+        ),
+    ],
+)
+def test_check_says_what_a_crank_without_inertia_counts_as(crank, said):
+    text = re.sub(r"\[crank\][^\[]*", f"[crank]\n{crank}\n\n", SCENE)
+    Path("engine.toml").write_text(text)
+    assert f"crank        {said}\n" in crankmbs_("check", "engine.toml").stdout
+
+
+@pytest.mark.parametrize(
     ("speed", "said"),
     [
         ('"-900 rpm"', "-900 rpm, clockwise (-theta), from 0 deg"),

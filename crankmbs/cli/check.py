@@ -55,8 +55,10 @@ def describe(path: str, scene: Scene, choice: Choice) -> str:
 
 def _crank(scene: Scene) -> str:
     crank = scene.crank
-    return f"radius {crank.radius * 1e3:.6g} mm, {_body(crank.mass, crank.center_of_mass)}" + (
-        f", inertia {crank.inertia:.6g} kg m^2 about its axis"
+    left_out = ", left out" if crank.inertia is None else ""
+    return (
+        f"radius {crank.radius * 1e3:.6g} mm, {_body(crank.mass, crank.center_of_mass)}, "
+        f"inertia {crank.moment_of_inertia:.6g} kg m^2 about its axis{left_out}"
     )
 
 
