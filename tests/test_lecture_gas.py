@@ -48,6 +48,11 @@ def test_brauer_refuses_an_angle_that_leads_nowhere(angle):
         lecture.brauer_angle(volume_angle=angle, exponent=1.3)
 
 
+def test_the_pistons_area_is_that_of_a_circle():
+    radius = np.array([0.03, 0.05])
+    np.testing.assert_allclose(lecture.piston_area(bore=2.0 * radius), np.pi * radius**2)
+
+
 def test_polytrope_keeps_p_times_v_to_the_n():
     volume = np.array([1.0, 2.0, 7.0])
     pressure = lecture.polytropic_pressure(

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import DOP853
 
-from crankmbs import Piston, Rod, Start, load_scene
+from crankmbs import Gravity, Piston, Rod, Start, load_scene
 from crankmbs.mechanics.inertia import reduce
 from crankmbs.mechanics.pressure import pressure_of
 from crankmbs.mechanics.torque import branch_of
@@ -16,12 +16,19 @@ from crankmbs.motion.minimal.reduced import Reduced
 from crankmbs.motion.minimal.stretch import Equation
 
 COASTING = load_scene("coasting")
+UNBALANCED = replace(
+    COASTING,
+    crank=replace(COASTING.crank, center_of_mass=-0.02),
+    gravity=Gravity(acceleration=9.81, angle=2.0),
+)
+SCENES = {name: load_scene(name) for name in ("coasting", "propeller", "torque_driven", "v_twin")}
+SCENES["unbalanced"] = UNBALANCED
 
 
 @pytest.mark.parametrize("sense", [1.0, -1.0])
-@pytest.mark.parametrize("name", ["coasting", "propeller", "torque_driven", "v_twin"])
+@pytest.mark.parametrize("name", SCENES)
 def test_the_reduced_equation_is_the_one_of_the_arrays(name, sense):
-    scene = load_scene(name)
+    scene = SCENES[name]
     pressure = pressure_of(scene)
     reduced = Reduced(CrankTrain(scene, pressure))
     angles = np.linspace(-13.0, 27.0, 301)
