@@ -207,6 +207,11 @@ def test_every_part_survives_a_dump():
             'absolute: must be True or False; "no" came',
         ),
         (
+            lambda: Gas(pressure=Table((0, 360, 720), (1, 2, 1)), absolute=False),
+            "table: the rows span 41253 degrees, more than the period of 720; check stroke, 4 "
+            "came; a Table has its angles in radians",
+        ),
+        (
             lambda: Gas(pressure=Table((0, 6), (1, 1))),
             'an absolute pressure needs ambient, the crankcase side; give ambient="1 bar", or '
             "absolute=False when the file is gauge",

@@ -54,9 +54,10 @@ def check_rows(table: Table, period: float, absolute: bool, closing: float | Non
     _check_order(table)
     span = angle[-1] - angle[0]
     if span > period + _SAME_ANGLE:
+        from_python = "; a Table has its angles in radians" if where == Table.source else ""
         raise InputError(
             f"{where}: the rows span {span / DEGREE:g} degrees, more than the period of "
-            f"{period / DEGREE:g}; check stroke, {stroke} came"
+            f"{period / DEGREE:g}; check stroke, {stroke} came{from_python}"
         )
     _check_closing(table, period, closing)
     if stroke == 4 and abs(span - 0.5 * period) < _SAME_ANGLE and table.y[-1] == table.y[0]:
