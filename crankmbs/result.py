@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from pydantic import TypeAdapter
 
-from crankmbs.errors import OutputError
+from crankmbs.errors import OutputError, shown
 from crankmbs.mechanics.variables import VARIABLES
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.schema import SAVED
@@ -107,6 +107,8 @@ class Result:
         ------
         OutputError : there is no such result, or the file is none
         """
+        if not isinstance(path, str | Path):
+            raise OutputError(f"a saved result is named by its folder or file; {shown(path)} came")
         file = Path(path)
         file = file / "result.nc" if file.is_dir() else file
         if not file.is_file():

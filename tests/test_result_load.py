@@ -191,3 +191,8 @@ def test_an_infinite_error_is_kept(status, tmp_path):
     result = dataclasses.replace(RESULT, error=error, status=status)
     loaded = Result.load(result.save(tmp_path))
     assert (loaded.error, loaded.status) == (error, status)
+
+
+def test_what_names_no_file_is_refused_in_a_sentence():
+    with pytest.raises(OutputError, match="named by its folder or file; 3 came"):
+        Result.load(3)

@@ -225,4 +225,4 @@ def _readable(share: float) -> str:
 
 def _listed(words: list[str]) -> str:
     *most, last = words
-    return f"{', '.join(most)} and {last}" if most else last
+    return f"{', '.join(most)} or {last}" if most else last
