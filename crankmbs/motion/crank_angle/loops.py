@@ -14,7 +14,7 @@ Branch = tuple[float, float, float, float]  # c0, ct, c1, c2 of `crankmbs.mechan
 _SETTLED, _GOOD = 1e-14, 1e-11  # relative change of the energy in Newton's last step
 
 
-__all__ = ["affine", "newton"]
+__all__ = ["affine", "carried", "newton"]
 
 Loads = tuple[Array, Array, Array, Array]  # the tables of a course of `crankmbs.mechanics.torque`
 _MOST_NEWTON = 20
@@ -206,6 +206,14 @@ def _solve(
             change += abs(new[j, 0] / energy[j] - 1.0)
             energy[j] = new[j, 0]
     return left <= _GOOD
+
+
+@kernel
+def carried(growth: Array, gained: Array, more: Array) -> None:
+    """Energy more at every edge, filled, of which cells grow by a part and gain a further one."""
+    more[0] = 0.0
+    for k in range(len(gained)):
+        more[k + 1] = more[k] + (growth[k] * more[k] + gained[k])
 
 
 @kernel
