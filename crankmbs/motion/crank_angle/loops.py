@@ -174,10 +174,11 @@ def _solve(
             if timed:
                 for i in range(stages):
                     at += steps[j, i] * slowness[i]
-            f, g = _row(times, at, f), _row(speeds, omega, g)
+                f = _row(times, at, f)
+                stiffness += abs(steps[stages - 1, j] * in_time[f, 1] * (at - t) / energy[j])
+            g = _row(speeds, omega, g)
             slope = in_speed[g, 1] + 2.0 * in_speed[g, 2] * omega
             stiffness += abs(steps[stages - 1, j] * slope / (inertia[j] * omega))
-            stiffness += abs(steps[stages - 1, j] * in_time[f, 1] * (at - t) / energy[j])
             torque[j] = rest[j] + in_time[f, 0] + in_time[f, 1] * at
             torque[j] += in_speed[g, 0] + (in_speed[g, 1] + in_speed[g, 2] * omega) * omega
         row[0], row[1] = f, g
