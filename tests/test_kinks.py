@@ -19,9 +19,13 @@ from crankmbs import (
 from crankmbs.compare.runs import differences
 from crankmbs.mechanics.torque import branch_of, course_of, torque_at
 from crankmbs.mechanics.train import crank_train
+from crankmbs.motion.base import State
 from crankmbs.motion.crank_angle import advance as crank_angle
 from crankmbs.motion.crank_angle.grid import grid_of
+from crankmbs.motion.plan import plan_of
+from crankmbs.numerics import kernels
 from crankmbs.numerics.collocation import gauss
+from crankmbs.numerics.kernels import pay
 
 SPEED = Table((-9.0, 2.0, 5.0, 5.0, 7.0, 9.0), (3.0, 1.0, 4.0, 2.0, 2.5, -1.0))
 TIME = Table((0.0, 1.0, 1.0, 2.0, 3.0), (0.0, 4.0, 1.0, 2.0, 9.0))
@@ -64,6 +68,32 @@ def test_rows_are_crossed_without_a_stop(rows, table, monkeypatch):
     count, evaluations = solves(table(rows), monkeypatch)
     assert count <= 10  # two passes of few windows, cut at their kinks once or twice
     assert evaluations <= 3 * simulate(DIESEL).cost.evaluations
+
+
+def test_a_fine_table_costs_what_its_curve_costs(monkeypatch):
+    count, evaluations = solves(with_speed_table(1000), monkeypatch)
+    assert count <= 4  # two passes of one window and the cell it ends in, each solved once
+    assert evaluations <= 1.01 * simulate(DIESEL).cost.evaluations
+
+
+def speed_at_end(rows, grid, allowed):
+    """Speed [rad/s] where one pass over the diesel engine ends in angle."""
+    scene = replace(with_speed_table(rows), run=Run(until="1000 deg"))
+    grid = replace(grid, train=crank_train(scene))
+    start = State(0.0, scene.start.angle, scene.start.speed, 0.0)
+    *_, last = crank_angle.advance(grid, start, plan_of(scene), allowed)
+    return last.end.omega
+
+
+@pytest.mark.parametrize("compiled", [False, True])
+@pytest.mark.parametrize("rows", [150, 400, 1000])
+def test_what_little_kinks_miss_is_added(rows, compiled, monkeypatch):
+    monkeypatch.setattr(kernels, "pay", lambda _: compiled and pay(1.0))
+    grid = grid_of(crank_train(DIESEL), gauss(7)).finer
+    cut = speed_at_end(rows, replace(grid, checks=False), 1e-13)
+    missing = speed_at_end(rows, replace(grid, checks=False), 1e-7) / cut - 1.0
+    added = speed_at_end(rows, grid, 1e-11) / cut - 1.0
+    assert abs(added) <= 0.05 * abs(missing)
 
 
 @pytest.mark.parametrize("rtol", [1e-5, 1e-8, 1e-11])

@@ -89,6 +89,11 @@ class Course:
     is_affine_in_energy = False
 
     @property
+    def is_steady(self) -> bool:
+        """Whether it is a function of the speed alone."""
+        return not self.in_time[:, 1].any()
+
+    @property
     def tables(self) -> Tables:
         """times, in_time, speeds and in_speed."""
         return self.times, self.in_time, self.speeds, self.in_speed
@@ -103,8 +108,9 @@ class Course:
 
     def slope(self, omega: Array) -> Array:
         """dT/domega [N m s/rad] at speeds [rad/s], above a row where one is."""
-        g = self.in_speed[np.searchsorted(self.speeds, omega, side="right")]
-        return np.asarray(g[..., 1] + 2.0 * g[..., 2] * omega)
+        k = np.searchsorted(self.speeds, omega, side="right")
+        _, linear, square = self.in_speed.T
+        return np.asarray(linear[k] + 2.0 * square[k] * omega)
 
 
 def branch_of(torques: tuple[Torque, ...], t: float, omega: float, *, rising: bool) -> Branch:

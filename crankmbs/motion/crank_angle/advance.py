@@ -22,7 +22,7 @@ from crankmbs.mechanics.inertia import inertia_alone, reduce
 from crankmbs.mechanics.torque import Branch, Course, branch_at, course_of
 from crankmbs.motion.base import State
 from crankmbs.motion.crank_angle.grid import Grid, Strip, largest_of_row
-from crankmbs.motion.crank_angle.kinks import edges_missing
+from crankmbs.motion.crank_angle.kinks import what_misses
 from crankmbs.motion.crank_angle.periods import period_of
 from crankmbs.motion.crank_angle.solvers import Begin, solve_affine, solve_newton
 from crankmbs.motion.crank_angle.window import Window
@@ -214,9 +214,9 @@ def _solve(way: _Way, loads: Branch | Course) -> Window | None:
     for _ in range(_ROUNDS):
         if window is None:
             return None
-        marks, missing = edges_missing(window, allowed)
+        marks, missing, gained = what_misses(window, allowed)
         if len(missing) == 0:
-            return window
+            return window.with_more(gained) if gained.any() else window
         strip = grid.cut(strip, state.theta, sense, marks)
         window = _solved(way, loads, strip, t_end, compiled=compiled)
     return None

@@ -3,8 +3,9 @@
 A Gauss rule of s nodes misses of a kink at the position c of a cell, where the torque's slope
 changes by b per cell, at most b min(c^2 / 2, (1 - c)^2 / 2, 0.31 / s^2) of the mean torque. The
 cells are solved with the loads as they are; where the kinks in one of them are worth more than may
-be missed they become edges, and all is solved again. Rows of a fine table are so stepped over, and
-their number costs nothing.
+be missed they become edges, and all is solved again; where they are worth little more, on a grid
+that checks another, what the rule misses of them is computed and added. Rows of a fine table are so
+stepped over, and their number costs nothing.
 """
 
 from __future__ import annotations
@@ -19,11 +20,13 @@ from crankmbs.motion.crank_angle.grid import largest_of_row
 from crankmbs.motion.crank_angle.window import Window
 from crankmbs.numerics.arrays import Array, Index
 
-__all__ = ["edges_missing"]
+__all__ = ["Missing", "what_misses"]
 
 _WORST = 0.31  # over s^2: what s nodes miss of a kink of slope 1; (pi / 2)^2 / 8, for many nodes
 _HALVES = 20
 _NEWTON = 5
+_MENDED = 50.0  # times what may be missed: kinks whose errors, known to a hundredth, are added
+_CALM = 0.01  # of a cell's energy, by the slopes of its loads: what a missed kink feeds back
 _LITTLE = 1e-3  # of what a cell may miss: a kink worth less stays in it beside others
 
 
@@ -67,26 +70,66 @@ class _Points(NamedTuple):
         return np.asarray(np.linalg.solve(np.vander(self.x), self.values[k].T))
 
 
-def edges_missing(window: Window, allowed: float) -> tuple[Array, Index]:
-    """Angles turned [rad] at which cells are to be cut, and the cells that miss too much.
+class Missing(NamedTuple):
+    """What cells miss at kinks.
+
+    marks : angles turned [rad] at which cells are to be cut; cells : those that miss too much
+    gained [J] : in each of the others, to be added
+    """
+
+    marks: Array
+    cells: Index
+    gained: Array
+
+
+def what_misses(window: Window, allowed: float) -> Missing:
+    """What the cells of a window miss at kinks of its loads.
+
+    On a grid that checks another, little kinks cut no cell: their errors are known well enough to
+    be added. Elsewhere the finer rule by which the cells' errors are read would count them again.
 
     allowed [1/rad] : of the energy that a cell may miss at kinks, per radian
     """
     width, k, x = window.strip.width, np.empty(0, dtype=np.intp), np.empty(0)
-    if not isinstance(window.branch, Course):
-        return x, k
     least = allowed * width * window.energy[1:]
-    found = [(points, _passed(points)) for points in _near_rows(window, window.branch, least)]
-    missed = np.zeros_like(least)
-    for points, rows in found:
+    missed, gained = np.zeros_like(least), np.zeros_like(least)
+    if not isinstance(window.branch, Course):
+        return Missing(x, k, gained)
+    found = [
+        (points, _passed(points), _turns(points))
+        for points in _near_rows(window, window.branch, least)
+    ]
+    for points, rows, _ in found:
         missed += np.bincount(points.cell[rows.cell], rows.missed, len(least))
     bad = missed > least
-    for points, rows in found:
+    mended = bad & (missed < _MENDED * least) & window.grid.checks & window.branch.is_steady
+    mended[mended] = np.abs(window.rate(mended)).sum(axis=1) * width[mended] < _CALM
+    for points, _, (turning, _) in found:
+        mended[points.cell[turning]] = False
+    for points, rows, (turning, tops) in found:
         worth = bad[points.cell][rows.cell] & (rows.missed > _LITTLE * points.least[rows.cell])
-        passed, (turns, tops) = rows.select(worth), _turns(points)
-        k = np.concatenate([k, points.cell[passed.cell], points.cell[turns]])
-        x = np.concatenate([x, _located(points, passed), tops])
-    return window.edges[k] + x * width[k], np.unique(k)
+        passed = rows.select(worth)
+        cell, at = points.cell[passed.cell], _located(points, passed)
+        added = mended[cell]
+        more = _gained(points, passed.select(added), at[added], window)
+        gained += np.bincount(cell[added], more, len(gained))
+        k = np.concatenate([k, cell[~added], points.cell[turning]])
+        x = np.concatenate([x, at[~added], tops])
+    return Missing(window.edges[k] + x * width[k], np.unique(k), gained)
+
+
+def _gained(points: _Points, passed: _Passed, x: Array, window: Window) -> Array:
+    """Energy [J] that the Gauss rule misses of the rows' kinks at positions x: the integral of the
+    variable's polynomial beyond the row, less its sum over the nodes there."""
+    of, nodes, weights = points.polynomials(passed.cell), points.x[1:-1], window.grid.rule.weights
+    degree = np.arange(len(of), 0, -1.0)[:, None]
+    whole = np.vstack([of / degree, np.zeros(len(x))])
+    integral = _value(whole, np.ones_like(x))[0] - _value(whole, x)[0]
+    above = points.values[passed.cell, 1:-1] - points.rows[passed.row][:, None]
+    total = np.where(nodes > x[:, None], above, 0.0) @ weights
+    error = integral - points.rows[passed.row] * (1.0 - x) - total
+    width = window.sense * points.width[passed.cell]
+    return np.asarray(width * points.bends[passed.row] * passed.rises * error)
 
 
 def _near_rows(window: Window, course: Course, least: Array) -> list[_Points]:
@@ -106,12 +149,29 @@ def _near_rows(window: Window, course: Course, least: Array) -> list[_Points]:
     rows = np.sort(window.sense * course.speeds)
     before, after = np.searchsorted(rows, [2.0 * slow - fast, 2.0 * fast - slow])
     k = np.flatnonzero(after > before)
+    bends = np.diff(course.in_speed[:, 1])
+    most = np.append(0.0, np.cumsum(np.abs(bends)[:: int(window.sense)]))
+    k = k[_may_miss(window, k, (most[after] - most[before])[k] * width[k] / least[k])]
     if len(k):
-        begin, end = window.speeds_at(k), window.speeds_at(k + 1)
+        ends, at = np.unique(np.concatenate([k, k + 1]), return_inverse=True)
+        begin, end = np.split(window.speeds_at(ends)[at], 2)
         omega = np.column_stack([begin, window.sense / window.slowness[k], end])
-        bends = np.diff(course.in_speed[:, 1])
         found.append(_Points(x, omega, course.speeds, bends, k, width[k], least[k]))
     return found
+
+
+def _may_miss(window: Window, k: Index, worth: Array) -> NDArray[np.bool_]:
+    """Whether rows that are worth so much in each of the cells k, by the slope of the speed, can
+    make it miss more than it may: between nodes where it rises or falls, or where it turns."""
+    nodes = window.grid.rule.nodes
+    slope = np.diff(1.0 / window.slowness[k]).T / np.diff(nodes)[:, None]
+    before, after = 1.5 * slope[0] - 0.5 * slope[1], 1.5 * slope[-1] - 0.5 * slope[-2]
+    slopes = np.vstack([before, slope, after])
+    low, high = slopes.min(axis=0), slopes.max(axis=0)
+    steepest = np.maximum(high, -low)
+    turns = low * high <= 0.0
+    missed = worth * steepest * np.where(turns, 1.0, 2.0 * _WORST / len(nodes) ** 2)
+    return np.asarray(missed > 1.0)
 
 
 def _passed(points: _Points) -> _Passed:

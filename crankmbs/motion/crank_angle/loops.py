@@ -14,10 +14,14 @@ Branch = tuple[float, float, float, float]  # c0, ct, c1, c2 of `crankmbs.mechan
 _SETTLED, _GOOD = 1e-14, 1e-11  # relative change of the energy in Newton's last step
 
 
-__all__ = ["affine", "newton"]
+__all__ = ["affine", "carried", "newton"]
 
 Loads = tuple[Array, Array, Array, Array]  # the tables of a course of `crankmbs.mechanics.torque`
 _MOST_NEWTON = 20
+_WEAK = (
+    0.01  # of the energy, by the slopes of a cell's loads: without them a step gains two digits,
+)
+_FAST = 0.1  # and if it gains less than one, at kinks, with them
 
 
 @kernel
@@ -148,7 +152,8 @@ def _solve(
     of_angle: tuple[Array, Array],
     out: tuple[Array, Array],
 ) -> bool:
-    """Newton's method in one cell, from the guess in ``energy``; whether it converges.
+    """Newton's method in one cell, from the guess in ``energy``; whether it converges. Where the
+    loads hardly change with the speed it takes them as constant in each step.
 
     row : numbers of the last rows of the loads, kept from cell to cell; of_angle : inertia and
     torque at the nodes; out : torque and slowness, filled
@@ -157,36 +162,59 @@ def _solve(
     begin, t, sense = start
     stages = len(energy)
     new, system = room[0].reshape(stages, 1), room[1:]
-    change, f, g = math.inf, row[0], row[1]
-    for _ in range(_MOST_NEWTON):
+    before = change = left = math.inf
+    weak, stiffness, f, g = False, 0.0, row[0], row[1]
+    timed = len(times) > 0 or in_time[0, 1] != 0.0
+    for n in range(_MOST_NEWTON):
+        last, stiffness = stiffness, 0.0
         for j in range(stages):
             slowness[j] = math.sqrt(0.5 * inertia[j] / energy[j]) if energy[j] > 0.0 else math.nan
         for j in range(stages):
-            omega = sense / slowness[j]
-            at = t
-            for i in range(stages):
-                at += steps[j, i] * slowness[i]
-            f, g = _row(times, at, f), _row(speeds, omega, g)
+            omega, at = sense / slowness[j], t
+            if timed:
+                for i in range(stages):
+                    at += steps[j, i] * slowness[i]
+                f = _row(times, at, f)
+                stiffness += abs(steps[stages - 1, j] * in_time[f, 1] * (at - t) / energy[j])
+            g = _row(speeds, omega, g)
+            slope = in_speed[g, 1] + 2.0 * in_speed[g, 2] * omega
+            stiffness += abs(steps[stages - 1, j] * slope / (inertia[j] * omega))
             torque[j] = rest[j] + in_time[f, 0] + in_time[f, 1] * at
             torque[j] += in_speed[g, 0] + (in_speed[g, 1] + in_speed[g, 2] * omega) * omega
         row[0], row[1] = f, g
-        if not change >= _SETTLED:
+        if n > 0:
+            left = change * max(stiffness, last, change / before) if weak else change
+        if not left >= _SETTLED:
             break
+        weak = stiffness < _WEAK if n == 0 else weak and change < _FAST * before
         new[:] = begin
         for j in range(stages):
-            omega = sense / slowness[j]
-            g = _row(speeds, omega, g)
-            rate = sense * (in_speed[g, 1] + 2.0 * in_speed[g, 2] * omega) / (inertia[j] * omega)
-            push = sense * torque[j] - rate * energy[j]
+            push, rate = sense * torque[j], 0.0
+            if not weak:
+                omega = sense / slowness[j]
+                g = _row(speeds, omega, g)
+                rate = sense * (in_speed[g, 1] + 2.0 * in_speed[g, 2] * omega)
+                rate /= inertia[j] * omega
+                push -= rate * energy[j]
             for i in range(stages):
                 new[i, 0] += steps[i, j] * push
-                system[i, j] = (1.0 if i == j else 0.0) - steps[i, j] * rate
-        _eliminate(system, new)
-        change = 0.0
+                if not weak:
+                    system[i, j] = (1.0 if i == j else 0.0) - steps[i, j] * rate
+        if not weak:
+            _eliminate(system, new)
+        before, change = change, 0.0
         for j in range(stages):
             change += abs(new[j, 0] / energy[j] - 1.0)
             energy[j] = new[j, 0]
-    return change <= _GOOD
+    return left <= _GOOD
+
+
+@kernel
+def carried(growth: Array, gained: Array, more: Array) -> None:
+    """Energy more at every edge, filled, of which cells grow by a part and gain a further one."""
+    more[0] = 0.0
+    for k in range(len(gained)):
+        more[k + 1] = more[k] + (growth[k] * more[k] + gained[k])
 
 
 @kernel

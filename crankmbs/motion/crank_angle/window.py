@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from crankmbs.mechanics.inertia import inertia_alone, reduce
 from crankmbs.mechanics.torque import Branch, Course
 from crankmbs.motion.base import NOWHERE, Samples, State
-from crankmbs.motion.crank_angle import readout
+from crankmbs.motion.crank_angle import loops, readout
 from crankmbs.motion.crank_angle.grid import Grid, Strip, largest_of_row
 from crankmbs.motion.plan import Plan
 from crankmbs.numerics import kernels
@@ -149,6 +149,30 @@ class Window:
             slowness=self.slowness[:m],
             stop=(m - 1, 1.0),
             landed=NOWHERE,
+        )
+
+    def rate(self, which: NDArray[np.bool_]) -> Array:
+        """dQ/dE [1/rad] at the nodes of some cells."""
+        omega = self.sense / self.slowness[which]
+        return self.branch.slope(omega) / (self.strip.inertia[which] * omega)
+
+    def with_more(self, gained: Array) -> Window:
+        """With so much more energy [J] gained in each cell, little enough for what follows from it
+        to be linear; in the cell itself the torque is higher by as much throughout."""
+        width, weights = self.sense * self.strip.width, self.grid.rule.weights
+        rate = self.rate(np.ones(len(width), dtype=np.bool_))
+        more = np.empty_like(self.energy)
+        loops.carried(width * (rate @ weights), gained, more)
+        before = more[:-1, None]
+        torque = self.torque + rate * before + (gained / width)[:, None]
+        faster = self.slowness * (self.slowness**2 / self.strip.inertia * before)
+        late = np.append(0.0, np.cumsum(self.strip.width * (faster @ weights)))
+        return replace(
+            self,
+            energy=self.energy + more,
+            time=self.time - late,
+            torque=torque,
+            slowness=self.slowness - faster,
         )
 
     def speeds_at(self, k: Index) -> Array:
