@@ -83,7 +83,7 @@ def test_the_two_mass_rod_of_the_diesel_costs_a_sixth_of_the_side_thrust(yi):
     assert yi.split("side thrust").sentence() == (
         "side thrust: off by up to 16.3 % of the peak, at 658 degrees: the two-mass rod is worth "
         "up to 17.7 %, at 270 degrees; the truncated series 5.68 %, at 262 degrees; nothing comes "
-        "from the datum, the constant speed, gravity and the solver"
+        "from the datum, the constant speed, gravity or the solver"
     )
 
 
