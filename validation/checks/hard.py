@@ -102,11 +102,12 @@ def _answer(case: Case, formulation: str) -> _Answer:
     if formulation == "kinetostatic" and case.parameters.get("constant_speed"):
         ours, theirs = driven(ours, "constant"), driven(theirs, "constant")
         note = "at constant speed, "
-    cap = float(case.parameters.get("cost_cap", _CAP))
+    limit = float(case.parameters.get("cost_cap", _CAP))
+    cap = {"cost_cap": limit} if formulation == "multibody" else {}
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error")
-            result = simulate(ours, formulation=formulation, cost_cap=cap)
+            result = simulate(ours, formulation=formulation, **cap)
         return _judged(case, result, theirs, note)
     except FormulationError as error:
         return _Answer(0.0, f"refused: {error}")

@@ -34,7 +34,7 @@ from crankmbs.scene.units import DEGREE
 __all__ = ["advance", "is_fast"]
 
 _SLOW = 0.5 * DEGREE  # where the energy would be gone within this angle, time must be the variable
-_BLOCK = 4096  # cells of one window
+_BLOCK = 8192  # cells of one window
 _SPEED_BLOCK = 512  # where the loads' branch may end at a speed, and the rest is for nothing
 _REACH = 1.0  # rad: what arrays can hold of it in one Newton step after the other
 _AFFINE_TIME, _NEWTON_TIME = 4e-6, 1e-4  # s a cell with arrays
