@@ -30,7 +30,7 @@ def simulate(
     rtol : relative global error asked for, 1e-13 to 1e-2; None takes the scene's, for
         "multibody" at least 1e-5
     cost_cap : wall time [s] at which "multibody" stops refining; a motion followed over time is
-        given up after 500,000 evaluations for each of these seconds
+        given up after 2,000,000 evaluations for each of these seconds
 
     Returns
     -------

@@ -42,7 +42,7 @@ _FAST = (2.0, 8.0)  # as many times as fast as need be either pass takes over: t
 # what either pass may miss at kinks of the loads: of the local tolerance, and at most
 _KINKS, _MOST_MISSED = 0.2, (math.inf, 1e-11)
 _ROAMING = 3.0  # of a step's tolerance: what it may miss of the largest torque across knots
-_EVALUATIONS = 500_000  # over time, for which a second of the cost cap stands
+_EVALUATIONS = 2_000_000  # over time, for which a second of the cost cap stands: as measured
 _MOST_CELLS = 20_000
 _FINEST = 3e-14  # what rounding leaves of a cell
 _FINEST_STEP = 1e-15  # the same over time

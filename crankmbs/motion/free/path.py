@@ -15,7 +15,7 @@ from crankmbs.motion.plan import Plan
 __all__ = ["Path", "Pieces"]
 
 _VAIN = 20  # as many reversals that reach no farther, and the end is not coming
-_SAMPLE = 50  # evaluations as costly as a sample of a swing
+_SAMPLE = 200  # evaluations as costly as a sample of a swing
 
 Pieces = Generator[Piece, None, Ending | None]
 
