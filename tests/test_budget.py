@@ -102,11 +102,11 @@ def test_other_causes_of_the_diesel_have_their_size(yi, quantity, cause, size):
 
 def test_the_missing_couple_is_what_the_two_mass_rod_costs(swinging):
     found = budget(swinging)
-    scene, stretch = swinging.scene, found.stretch
+    scene, excerpt = swinging.scene, found.excerpt
     rod, r = scene.rod, scene.crank.radius
-    loop = close_loop(stretch.theta, r, rod.length, scene.piston.offset)
+    loop = close_loop(excerpt.theta, r, rod.length, scene.piston.offset)
     lacking = rod.mass * rod.center_of_mass * (rod.length - rod.center_of_mass) - rod.inertia
-    turning = loop.beta_2 * stretch.omega**2 + loop.beta_1 * stretch.alpha
+    turning = loop.beta_2 * excerpt.omega**2 + loop.beta_1 * excerpt.alpha
     couple = lacking * turning
     expected = {
         "side thrust": -couple / (rod.length * loop.cos_beta),
@@ -147,12 +147,12 @@ def test_the_datum_shifts_the_displacement_and_nothing_else(swinging):
 
 def test_constant_speed_is_the_time_mean(swinging):
     found = budget(swinging)
-    loop = close_loop(found.stretch.theta, 0.046, swinging.scene.rod.length, 0.0012972)
+    loop = close_loop(found.excerpt.theta, 0.046, swinging.scene.rod.length, 0.0012972)
     time = swinging.data["time"].values
     mean = 4.0 * math.pi / (time[-1] - time[0])
     assert mean < 299.9  # the mean over the angle is 300
     velocity = found.split("piston velocity").cause("constant speed").curve
-    expected = -loop.x_1 * (mean - found.stretch.omega)
+    expected = -loop.x_1 * (mean - found.excerpt.omega)
     assert velocity == pytest.approx(expected, abs=1e-9)
 
 

@@ -36,7 +36,7 @@ def shares(comparison, reference):
 
 def from_lecture_datum(comparison):
     """The displacement's error, less the constant between both datums, over its peak."""
-    scene, row = comparison.stretch.result.scene, comparison.row("piston displacement", UNTRUNCATED)
+    scene, row = comparison.excerpt.result.scene, comparison.row("piston displacement", UNTRUNCATED)
     shift = datum_shift(
         crank_radius=scene.crank.radius, rod_length=scene.rod.length, offset=scene.piston.offset
     )
@@ -196,7 +196,7 @@ def test_where_the_rod_folds_nothing_is_compared():
         run=Run(until="1 rev"),
     )
     comparison = compare(simulate(scene))  # it ends at the fold, 90 degrees
-    assert math.degrees(comparison.stretch.theta[-1]) == pytest.approx(89.0)
+    assert math.degrees(comparison.excerpt.theta[-1]) == pytest.approx(89.0)
     assert max(shares(comparison, UNTRUNCATED).values()) < 1e-8
     with pytest.raises(InputError, match="folded"):
         compare(simulate(dataclasses.replace(scene, motion=Motion(speed=10.0, angle=1.57))))

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from crankmbs.compare.runs import differences
+from crankmbs.compare.confirm import differences
 from crankmbs.result import Result
 from crankmbs.scene.read import load_scene
 from crankmbs.scene.scene import Run

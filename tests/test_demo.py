@@ -25,7 +25,7 @@ from crankmbs.demo.live import Live
 from crankmbs.demo.outcome import prepared, run
 from crankmbs.demo.state import state_of
 from crankmbs.demo.views import STORES
-from crankmbs.measures import fluctuation, last_window, measure
+from crankmbs.measures import fluctuation, last_span, measure
 
 SINGLE, DIESEL = load_scene("propeller"), load_scene("yi_diesel_free")
 RPM = np.pi / 30.0
@@ -68,7 +68,7 @@ def test_columns_are_those_of_simulate_compare_and_budget(diesel):
         result.data["crank_speed"].values / RPM, rel=1e-14
     )
     assert shown["speed"]["speed, constant"][0] * RPM == pytest.approx(measured.mean_speed.value)
-    swing = fluctuation(result, last_window(result))  # the page's is that of the samples
+    swing = fluctuation(result, last_span(result))  # the page's is that of the samples
     assert f"{100.0 * swing.value:.3f} %" in shown["numbers"]["text"][0]
     rows = compare(result)
     for quantity, store, scale in (

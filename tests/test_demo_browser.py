@@ -18,7 +18,7 @@ from crankmbs import load_scene, simulate
 from crankmbs.cli.app import app
 from crankmbs.demo.knobs import turned
 from crankmbs.demo.outcome import prepared
-from crankmbs.measures import fluctuation, last_window
+from crankmbs.measures import fluctuation, last_span
 from crankmbs.scene.write import scene_files
 
 SCENE = "propeller"
@@ -130,7 +130,7 @@ def test_the_mechanism_is_drawn_to_scale(live, scene):
 def fluctuation_of_samples(scene):
     """As the page has it."""
     result = simulate(scene)
-    return fluctuation(result, last_window(result)).value
+    return fluctuation(result, last_span(result)).value
 
 
 def test_dragging_the_flywheel_draws_what_simulate_gives(live, scene):

@@ -9,7 +9,7 @@ import pytest
 from PIL import Image
 
 from crankmbs import Cylinder, Layout, Motion, Oscillation, Ramp, Run, load_scene, simulate
-from crankmbs.compare.runs import differences
+from crankmbs.compare.confirm import differences
 from crankmbs.errors import InputError, OutputError
 from crankmbs.figures import (
     crank_pin_figure,

@@ -16,7 +16,7 @@ from crankmbs import (
     load_scene,
     simulate,
 )
-from crankmbs.compare.runs import differences
+from crankmbs.compare.confirm import differences
 from crankmbs.mechanics.torque import branch_of, course_of, torque_at
 from crankmbs.mechanics.train import crank_train
 from crankmbs.motion.base import State

@@ -9,7 +9,7 @@ from scipy.interpolate import CubicSpline
 
 from crankmbs import Motion, Oscillation, Ramp, Run, load_scene, simulate
 from crankmbs.errors import InputError
-from crankmbs.measures import last_window, measure, orders
+from crankmbs.measures import last_span, measure, orders
 from crankmbs.measures.peak import highest, rise
 
 RPM = math.pi / 30.0
@@ -103,7 +103,7 @@ def test_a_periodic_motion_gains_no_speed(constant):
     ],
 )
 def test_window_is_the_last_cycle_else_revolution_else_the_run(until, angle, kind, turned):
-    window = last_window(simulate(scene(until=until, angle=angle)))
+    window = last_span(simulate(scene(until=until, angle=angle)))
     assert window.kind == kind
     assert math.degrees(window.angle) == pytest.approx(turned, rel=1e-14)
     assert window.duration == pytest.approx(math.radians(turned) / SPEED, rel=1e-12)

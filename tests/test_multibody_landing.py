@@ -12,8 +12,8 @@ from references import assert_within_stated
 from crankmbs.errors import FormulationError
 from crankmbs.mechanics.train import crank_train
 from crankmbs.motion.multibody.landing import LEAST_STEPS, Bounds, Watch
-from crankmbs.motion.multibody.path import Path, coarsest_step, model_of, solve
 from crankmbs.motion.multibody.problem import erratic_order, kink_times, problem_of
+from crankmbs.motion.multibody.stepped import Stepped, coarsest_step, model_of, solve
 from crankmbs.result import Result
 from crankmbs.scene.drives import Motion, SpeedFile, SpeedTable, Start, TimeTable, Torque
 from crankmbs.scene.parts import Gas
@@ -37,7 +37,7 @@ def loaded(*torque: Torque) -> Scene:
     return replace(COASTING, torque=torque)
 
 
-def paths(scene: Scene, halvings: int) -> list[Path]:
+def paths(scene: Scene, halvings: int) -> list[Stepped]:
     problem = problem_of(crank_train(scene))
     model = model_of(problem)
     step, _ = coarsest_step(problem, model)
@@ -46,7 +46,7 @@ def paths(scene: Scene, halvings: int) -> list[Path]:
     return found
 
 
-def speed_at_end(path: Path) -> float:
+def speed_at_end(path: Stepped) -> float:
     last = path.tables[-1]
     return float(last.one_at("crank_speed", np.array([last.until]))[0])
 

@@ -13,14 +13,14 @@ from crankmbs.mechanics.pressure import pressure_of
 from crankmbs.mechanics.reactions import reactions
 from crankmbs.mechanics.torque import branch_of
 from crankmbs.mechanics.train import CrankTrain, crank_train
-from crankmbs.motion.multibody.gas import Gas
+from crankmbs.motion.multibody.gas import GasForces
 from crankmbs.motion.multibody.loads import EVERYWHERE, speeds_around, torque_function
 from crankmbs.motion.multibody.model import Model, Record
-from crankmbs.motion.multibody.path import model_of, solve
 from crankmbs.motion.multibody.problem import problem_of
 from crankmbs.motion.multibody.run_up import RUN_UP, run_free
 from crankmbs.motion.multibody.samples import Sampled, aligned_variables
 from crankmbs.motion.multibody.start import angle_of, coordinates, quiet_start
+from crankmbs.motion.multibody.stepped import model_of, solve
 from crankmbs.motion.multibody.taylor import taylor
 from crankmbs.scene.drives import Constant, Quadratic, SpeedTable, TimeTable, Viscous
 from crankmbs.scene.parts import Cylinder, Layout
@@ -78,7 +78,7 @@ def test_a_speed_table_goes_on_straight_beyond_the_rows_around_a_speed() -> None
 def test_gas_has_no_jump_on_a_stretch_and_is_the_pressure_within() -> None:
     pressure = pressure_of(V_TWIN)
     assert pressure is not None
-    gas = Gas(CrankTrain(V_TWIN, pressure))
+    gas = GasForces(CrankTrain(V_TWIN, pressure))
     stretch = gas.stretch(0.1, 1.0)
     assert -math.inf < stretch.low <= 0.1 < stretch.high < 4.0 * math.pi
     theta = np.linspace(stretch.low - 0.3, stretch.high + 0.3, 20_001)
@@ -92,7 +92,7 @@ def test_gas_has_no_jump_on_a_stretch_and_is_the_pressure_within() -> None:
 
 
 def test_a_motion_enters_the_stretch_on_its_own_side_of_a_jump() -> None:
-    gas = Gas(crank_train(V_TWIN))
+    gas = GasForces(crank_train(V_TWIN))
     jump = gas.stretch(0.1, 1.0).high
     assert gas.stretch(jump, 1.0).low == pytest.approx(jump, abs=1e-12)
     assert gas.stretch(jump, -1.0).high == pytest.approx(jump, abs=1e-12)

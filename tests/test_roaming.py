@@ -19,7 +19,7 @@ from crankmbs import (
     Table,
     simulate,
 )
-from crankmbs.compare.runs import differences
+from crankmbs.compare.confirm import differences
 from crankmbs.mechanics.pressure import pressure_of
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion.minimal.reduced import Reduced

@@ -8,7 +8,7 @@ import pytest
 from crankmbs import Constant, Quadratic, Run, Start, Table, TimeTable, Viscous, load_scene
 from crankmbs.work_precision import END
 from crankmbs.work_precision.reference import reference_of
-from crankmbs.work_precision.track import differences
+from crankmbs.work_precision.trace import differences
 from validation.speed.kernel import kernels_of
 
 SHORT = dataclasses.replace(load_scene("coasting"), run=Run(until="50 ms", every="5 deg"))
@@ -22,7 +22,7 @@ def test_the_kernel_alone_converges_to_the_same_end(run, speed):
     reference = reference_of(scene)
     (kernel,) = kernels_of(scene, reference)
     first, *_, last = (
-        differences(kernel.run(widest).track, reference.track.end(), reference.start)[END]
+        differences(kernel.run(widest).trace, reference.trace.end(), reference.start)[END]
         for widest in kernel.settings
     )
     assert first < 1e-4

@@ -23,7 +23,7 @@ from crankmbs import (
 from crankmbs.work_precision import END, MOTION
 from crankmbs.work_precision.contender import Contender, ContenderFailed
 from crankmbs.work_precision.reference import reference_of
-from crankmbs.work_precision.track import Track, differences
+from crankmbs.work_precision.trace import Trace, differences
 from validation.speed import limit
 from validation.speed.peers import _guarded, peers_of
 
@@ -68,7 +68,7 @@ def test_a_peer_solves_the_same_machine_by_its_own_equations(lopsided, name):
         pytest.skip("no C compiler")
     reference, peers, _ = lopsided
     answer = peers[name].run(setting)
-    found = differences(answer.track, peers[name].reference, reference.start)
+    found = differences(answer.trace, peers[name].reference, reference.start)
     assert found[END] <= end
     assert (reaction is None) == (tuple(found) == (END,))
     if reaction is not None:
@@ -148,7 +148,7 @@ def test_a_load_that_one_peer_does_not_know_is_its_own_sentence():
     (note,) = (note for note in notes if note.startswith("C, Gauss over theta: "))
     assert note.endswith("written for a crank that turns forwards, without a viscous torque")
     (other,) = (one for one in contenders if one.name == "C, DOP853 in time")
-    found = differences(other.run(512.0).track, other.reference, reference.start)
+    found = differences(other.run(512.0).trace, other.reference, reference.start)
     assert found[END] < 1e-10
 
 
@@ -156,7 +156,7 @@ def test_whatever_a_peer_raises_becomes_one_line():
     def run(setting):
         raise ZeroDivisionError("first line\nsecond line")
 
-    track = Track(*[np.zeros(1)] * 3)
-    contender = _guarded(Contender("peer", "rtol", (1.0,), run, track))
+    trace = Trace(*[np.zeros(1)] * 3)
+    contender = _guarded(Contender("peer", "rtol", (1.0,), run, trace))
     with pytest.raises(ContenderFailed, match=r"^failed: first line$"):
         contender.run(1.0)

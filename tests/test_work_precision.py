@@ -20,7 +20,7 @@ from crankmbs.work_precision.contender import Answer, Contender, ContenderFailed
 from crankmbs.work_precision.formulations import formulations_of
 from crankmbs.work_precision.reference import reference_of
 from crankmbs.work_precision.rounds import Row, play
-from crankmbs.work_precision.track import Track, differences
+from crankmbs.work_precision.trace import Trace, differences
 
 KNOWN = Path(__file__).parent.parent / "validation" / "reference" / "end_states.csv"
 SHORT = dataclasses.replace(load_scene("coasting"), run=Run(until="50 ms", every="5 deg"))
@@ -55,10 +55,10 @@ def test_the_reference_ends_where_20_digits_say(name):
         lines = csv.DictReader(line for line in stream if not line.startswith("#"))
         (known,) = (line for line in lines if line["case"] == name)
     found = reference_of(scene)
-    end = Track(
+    end = Trace(
         *(np.array([float(known[key])]) for key in ("time_s", "theta_rad", "omega_rad_per_s"))
     )
-    assert differences(end, found.track, found.start)[END] <= found.floors[END]
+    assert differences(end, found.trace, found.start)[END] <= found.floors[END]
     assert max(found.floors.values()) < 2e-12
     assert "rtol 1e-13, two passes of different order agree within " in found.sentence()
 
@@ -77,8 +77,8 @@ def test_with_a_prescribed_speed_the_reference_is_algebra_and_the_drive_a_reacti
 def test_differences_are_of_the_angle_at_equal_times_the_speed_and_forces_as_vectors():
     time = np.linspace(0.0, 1.0, 11)
     force = np.column_stack([3.0 * np.ones(11), 4.0 * np.ones(11)])
-    right = Track(time, 2.0 + 10.0 * time, 10.0 * np.ones(11), {"pin": force})
-    late = Track(time + 1e-4, right.theta, right.omega, {"pin": force + np.array([0.0, 0.05])})
+    right = Trace(time, 2.0 + 10.0 * time, 10.0 * np.ones(11), {"pin": force})
+    late = Trace(time + 1e-4, right.theta, right.omega, {"pin": force + np.array([0.0, 0.05])})
     found = differences(late, right, 2.0)
     assert found == pytest.approx({END: 1e-4, MOTION: 1e-4, "pin": 0.01})
     faster = dataclasses.replace(right, omega=right.omega + np.eye(1, 11, 3)[0])
@@ -94,7 +94,7 @@ def test_ends_on_either_side_of_a_grid_angle_are_compared_on_what_both_sampled(f
     def passing(grid, end):
         theta = np.append(grid, end).astype(float)
         time = np.append(grid / 10.0, 1.0)  # at 10 rad/s; the end is at 1 s for both
-        return Track(time, theta, np.full(len(theta), 10.0), {"pin": theta[:, None]})
+        return Trace(time, theta, np.full(len(theta), 10.0), {"pin": theta[:, None]})
 
     near = passing(np.arange(0, 10), 10.0 - 1e-3)
     far = passing(np.arange(first, 11), 10.0 + 1e-3)
@@ -107,7 +107,7 @@ def test_ends_on_either_side_of_a_grid_angle_are_compared_on_what_both_sampled(f
 def test_every_formulation_errs_by_no_more_than_twice_what_it_states(reference, index):
     contender = formulations_of(SHORT, reference)[index]
     answer = contender.run(1e-5)
-    found = differences(answer.track, reference.track, reference.start)
+    found = differences(answer.trace, reference.trace, reference.start)
     assert max(found.values()) <= 2.0 * answer.stated + 2e-11
     assert answer.evaluations > 0
     assert ("end only" in contender.name) == (tuple(found) == (END,))
@@ -121,8 +121,8 @@ def test_a_formulation_that_stops_early_is_named(reference):
 
 
 def contender(run, settings=(1e-3, 1e-5, 1e-7), name="one"):
-    track = Track(np.array([0.0, 1.0]), np.array([0.0, 2.0]), np.array([2.0, 2.0]))
-    return Contender(name, "rtol", settings, lambda setting: run(setting, track), track)
+    trace = Trace(np.array([0.0, 1.0]), np.array([0.0, 2.0]), np.array([2.0, 2.0]))
+    return Contender(name, "rtol", settings, lambda setting: run(setting, trace), trace)
 
 
 def test_contenders_take_turns_after_a_run_that_is_not_counted(monkeypatch):
@@ -130,9 +130,9 @@ def test_contenders_take_turns_after_a_run_that_is_not_counted(monkeypatch):
     played = []
 
     def running(name):
-        def run(setting, track):
+        def run(setting, trace):
             played.append((name, setting))
-            return Answer(track, 5, setting)
+            return Answer(trace, 5, setting)
 
         return contender(run, (1e-3, 1e-5), name)
 
@@ -153,22 +153,22 @@ def test_the_time_of_a_row_is_the_median():
 def test_what_takes_too_long_is_neither_refined_nor_repeated(monkeypatch):
     monkeypatch.setattr(rounds, "_LONGEST", 0.0)
     monkeypatch.setattr(rounds, "_PATIENCE", 0.0)
-    rows, notes = play((contender(lambda setting, track: Answer(track, 1)),), 0.0)
+    rows, notes = play((contender(lambda setting, trace: Answer(trace, 1)),), 0.0)
     assert [(one.setting, len(one.times)) for one in rows] == [(1e-3, 1)]
     assert notes == ("one, rtol 0.001: took 0 s; nothing finer was run",)
 
 
 def test_what_states_more_than_asked_is_not_refined():
-    rows, notes = play((contender(lambda setting, track: Answer(track, 1, 2e-5)),), 0.0)
+    rows, notes = play((contender(lambda setting, trace: Answer(trace, 1, 2e-5)),), 0.0)
     assert [one.setting for one in rows] == [1e-3, 1e-5]
     assert notes == ("one, rtol 1e-05: states 2.0e-05, no less; nothing finer was run",)
 
 
 def test_what_fails_is_named_with_its_settings_and_the_others_go_on():
-    def run(setting, track):
+    def run(setting, trace):
         if setting > 1e-6:
             raise ContenderFailed("too coarse")
-        return Answer(track, 1)
+        return Answer(trace, 1)
 
     rows, notes = play((contender(run),), 0.0)
     assert [one.setting for one in rows] == [1e-7]

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 
 from crankmbs.cli.text import table
-from crankmbs.compare.runs import Difference
+from crankmbs.compare.confirm import Difference
 from crankmbs.digits import digits, error_digits
 from crankmbs.measures import Estimate, JointForce, Measures
 from crankmbs.measures.plausible import warnings

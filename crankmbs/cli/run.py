@@ -13,7 +13,7 @@ from crankmbs.choose import choose
 from crankmbs.cli.folder import writable, wrote
 from crankmbs.cli.progress import progress
 from crankmbs.cli.report import comparison, report
-from crankmbs.compare.runs import Difference, differences
+from crankmbs.compare.confirm import Difference, differences
 from crankmbs.errors import InputError
 from crankmbs.measures import measure
 from crankmbs.result import Result

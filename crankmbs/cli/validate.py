@@ -19,8 +19,8 @@ from crankmbs.compare import (
     QUANTITIES,
     Budget,
     Comparison,
+    Excerpt,
     LeftOut,
-    Stretch,
     budget,
     check_cylinder,
     compare,
@@ -82,7 +82,7 @@ def validate_scene(
 
             with progress("figures"):
                 written += save_validation(comparison, split, part)
-    typer.echo(f"{_first(comparison, split)}\n\n{result}\n\n{_about(comparison.stretch)}\n")
+    typer.echo(f"{_first(comparison, split)}\n\n{result}\n\n{_about(comparison.excerpt)}\n")
     typer.echo(f"{_causes(split)}\n\n{_ADDED}\n\n{_words(split)}\n")
     for reference in comparison.references:
         typer.echo(f"{_against(comparison, reference)}\n")
@@ -92,15 +92,15 @@ def validate_scene(
     return result.status == 0
 
 
-def _about(stretch: Stretch) -> str:
-    count = len(stretch.result.scene.cylinders)
-    rpm = stretch.mean_speed / RPM
-    inside = stretch.result.data.sizes["time"] - stretch.window.inside
-    folded = len(stretch.samples) < inside
+def _about(excerpt: Excerpt) -> str:
+    count = len(excerpt.result.scene.cylinders)
+    rpm = excerpt.mean_speed / RPM
+    inside = excerpt.result.data.sizes["time"] - excerpt.window.inside
+    folded = len(excerpt.samples) < inside
     return (
-        f"over the {stretch.window.kind}"
+        f"over the {excerpt.window.kind}"
         f"{' but for where the rod folds onto the crank' if folded else ''}, "
-        f"cylinder {stretch.cylinder} of {count}, mean speed {digits(rpm)} rpm\n"
+        f"cylinder {excerpt.cylinder} of {count}, mean speed {digits(rpm)} rpm\n"
         "angles: cycle angle of the cylinder, for the main bearing the crank angle\n"
         "peak: the largest magnitude in the run\n"
         "lectures: S0 is Grega's, S1 that of Yi, Win and Htay; the budget splits the error of S1"
@@ -117,7 +117,7 @@ def _first(comparison: Comparison, split: Budget) -> str:
         for row in comparison.rows
         if row.reference == CLOSED_FORM and row.peak > 0.0
     ]
-    if comparison.stretch.result.formulation != "multibody":
+    if comparison.excerpt.result.formulation != "multibody":
         lines.append("the run takes its forces from the closed form; multibody has its own")
     elif shares:
         share, quantity = max(shares)

@@ -6,11 +6,11 @@ The formulas themselves belong in lecture and mechanics, what a run amounts to i
 
 from crankmbs.compare.against import CLOSED_FORM, Comparison, Deviation, compare
 from crankmbs.compare.causes import CAUSES, Budget, Cause, Split, budget
+from crankmbs.compare.excerpt import Excerpt, LeftOut, check_cylinder
 from crankmbs.compare.files import save_budget, save_budget_peaks, save_comparison
 from crankmbs.compare.lectured import LECTURES
 from crankmbs.compare.quantities import QUANTITIES, Quantity
 from crankmbs.compare.size import Size, percent
-from crankmbs.compare.stretch import LeftOut, Stretch, check_cylinder
 
 __all__ = [
     "CAUSES",
@@ -21,11 +21,11 @@ __all__ = [
     "Cause",
     "Comparison",
     "Deviation",
+    "Excerpt",
     "LeftOut",
     "Quantity",
     "Size",
     "Split",
-    "Stretch",
     "budget",
     "check_cylinder",
     "compare",

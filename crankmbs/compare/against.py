@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from crankmbs.compare.excerpt import Answer, Excerpt, LeftOut, excerpt_of, vanishing
 from crankmbs.compare.lectured import LECTURES
 from crankmbs.compare.size import Size
-from crankmbs.compare.stretch import Answer, LeftOut, Stretch, stretch_of, vanishing
 from crankmbs.errors import InputError
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
@@ -45,7 +45,7 @@ class Comparison:
     rows : reference by reference; left_out : what could not be compared, and why
     """
 
-    stretch: Stretch
+    excerpt: Excerpt
     simulated: Answer
     rows: tuple[Deviation, ...]
     left_out: tuple[LeftOut, ...]
@@ -99,28 +99,28 @@ def compare(result: Result, cylinder: int = 1) -> Comparison:
     >>> comparison.row("side thrust", "untruncated lecture").size.largest > 290.0
     True
     """
-    stretch = stretch_of(result, cylinder)
-    simulated = stretch.simulated()
-    references = {CLOSED_FORM: stretch.newton_euler(result.scene)}
-    left_out = [LeftOut(name, "", reason) for name, reason in stretch.left_out().items()]
+    excerpt = excerpt_of(result, cylinder)
+    simulated = excerpt.simulated()
+    references = {CLOSED_FORM: excerpt.newton_euler(result.scene)}
+    left_out = [LeftOut(name, "", reason) for name, reason in excerpt.left_out().items()]
     for reference, formulas in LECTURES.items():
         try:
-            references[reference] = stretch.lecture(formulas, constant_speed=True)
+            references[reference] = excerpt.lecture(formulas, constant_speed=True)
         except InputError as error:
             left_out += [LeftOut(name, reference, str(error)) for name in simulated]
     nothing = vanishing([simulated, *references.values()])
     left_out += [LeftOut(name, "", reason) for name, reason in nothing.items()]
     kept = {name: curve for name, curve in simulated.items() if name not in nothing}
     rows = tuple(
-        _deviation(stretch, reference, name, curve, answer[name])
+        _deviation(excerpt, reference, name, curve, answer[name])
         for reference, answer in references.items()
         for name, curve in kept.items()
     )
-    return Comparison(stretch, kept, rows, tuple(left_out))
+    return Comparison(excerpt, kept, rows, tuple(left_out))
 
 
 def _deviation(
-    stretch: Stretch, reference: str, quantity: str, simulated: Array, values: Array
+    excerpt: Excerpt, reference: str, quantity: str, simulated: Array, values: Array
 ) -> Deviation:
     error = values - simulated
     return Deviation(
@@ -128,6 +128,6 @@ def _deviation(
         reference=reference,
         values=values,
         error=error,
-        size=stretch.size(quantity, error),
+        size=excerpt.size(quantity, error),
         peak=float(np.max(np.abs(simulated))),
     )

@@ -10,9 +10,9 @@ from itertools import pairwise
 import numpy as np
 
 from crankmbs import lecture
+from crankmbs.compare.excerpt import Answer, Excerpt, LeftOut, excerpt_of, vanishing
 from crankmbs.compare.lectured import S1, UNTRUNCATED
 from crankmbs.compare.size import Size, percent
-from crankmbs.compare.stretch import Answer, LeftOut, Stretch, stretch_of, vanishing
 from crankmbs.digits import digits
 from crankmbs.errors import InputError
 from crankmbs.numerics.arrays import Array
@@ -108,7 +108,7 @@ class Split:
 class Budget:
     """The error of every quantity; left_out : quantity, missing cause (or all) and reason."""
 
-    stretch: Stretch
+    excerpt: Excerpt
     splits: tuple[Split, ...]
     left_out: tuple[LeftOut, ...]
 
@@ -164,41 +164,41 @@ def budget(result: Result, cylinder: int = 1) -> Budget:
     >>> f"{split.share(split.cause('two-mass rod')):.1f} % of the peak"
     '17.7 % of the peak'
     """
-    stretch = stretch_of(result, cylinder)
+    excerpt = excerpt_of(result, cylinder)
     answers: dict[str, Answer] = {}
-    left_out = [LeftOut(name, "", reason) for name, reason in stretch.left_out().items()]
-    simulated = stretch.simulated()
+    left_out = [LeftOut(name, "", reason) for name, reason in excerpt.left_out().items()]
+    simulated = excerpt.simulated()
     try:
-        answers["series"] = stretch.lecture(S1, constant_speed=True)
+        answers["series"] = excerpt.lecture(S1, constant_speed=True)
     except InputError as error:
         left_out += [LeftOut(name, "series", str(error)) for name in simulated]
     scene = result.scene
-    answers["datum"] = stretch.lecture(UNTRUNCATED, constant_speed=True)
-    answers["constant speed"] = _from_top(stretch, answers["datum"])
-    own_motion = stretch.lecture(UNTRUNCATED, constant_speed=False)
-    answers["two-mass rod"] = _from_top(stretch, own_motion)
-    answers["gravity"] = stretch.newton_euler(dataclasses.replace(scene, gravity=None))
-    answers["solver"] = stretch.newton_euler(scene)
+    answers["datum"] = excerpt.lecture(UNTRUNCATED, constant_speed=True)
+    answers["constant speed"] = _from_top(excerpt, answers["datum"])
+    own_motion = excerpt.lecture(UNTRUNCATED, constant_speed=False)
+    answers["two-mass rod"] = _from_top(excerpt, own_motion)
+    answers["gravity"] = excerpt.newton_euler(dataclasses.replace(scene, gravity=None))
+    answers["solver"] = excerpt.newton_euler(scene)
     nothing = vanishing([*answers.values(), simulated])
     left_out += [LeftOut(name, "", reason) for name, reason in nothing.items()]
     splits = tuple(
-        _split(stretch, name, {cause: answers[cause][name] for cause in answers}, simulated[name])
+        _split(excerpt, name, {cause: answers[cause][name] for cause in answers}, simulated[name])
         for name in simulated
         if name not in nothing
     )
-    return Budget(stretch, splits, tuple(left_out))
+    return Budget(excerpt, splits, tuple(left_out))
 
 
-def _from_top(stretch: Stretch, answer: Answer) -> Answer:
+def _from_top(excerpt: Excerpt, answer: Answer) -> Answer:
     """The answer with its displacement counted from the true top dead centre."""
-    scene = stretch.result.scene
+    scene = excerpt.result.scene
     shift = lecture.datum_shift(
         crank_radius=scene.crank.radius, rod_length=scene.rod.length, offset=scene.piston.offset
     )
     return {**answer, "piston displacement": answer["piston displacement"] - shift}
 
 
-def _split(stretch: Stretch, quantity: str, before: Answer, simulated: Array) -> Split:
+def _split(excerpt: Excerpt, quantity: str, before: Answer, simulated: Array) -> Split:
     """``before`` holds, by cause, the answer that the cause still spoils."""
     chain = [*before.values(), simulated]
     curves = [a - b for a, b in pairwise(chain)]
@@ -207,10 +207,10 @@ def _split(stretch: Stretch, quantity: str, before: Answer, simulated: Array) ->
         lecture=chain[0],
         simulated=simulated,
         causes=tuple(
-            Cause(name, curve, stretch.size(quantity, curve))
+            Cause(name, curve, excerpt.size(quantity, curve))
             for name, curve in zip(before, curves, strict=True)
         ),
-        total=Cause("total", chain[0] - simulated, stretch.size(quantity, chain[0] - simulated)),
+        total=Cause("total", chain[0] - simulated, excerpt.size(quantity, chain[0] - simulated)),
         peak=float(np.max(np.abs(simulated))),
     )
 

@@ -11,9 +11,9 @@ import numpy as np
 
 from crankmbs.compare.against import Comparison
 from crankmbs.compare.causes import Budget, Split
+from crankmbs.compare.excerpt import Excerpt
 from crankmbs.compare.quantities import QUANTITIES
 from crankmbs.compare.size import Size, percent, within
-from crankmbs.compare.stretch import Stretch
 from crankmbs.storage.files import write_in_one_move
 
 __all__ = ["save_budget", "save_budget_peaks", "save_comparison"]
@@ -29,7 +29,7 @@ def save_comparison(comparison: Comparison, folder: Path) -> Path:
     OutputError : the folder cannot be made or written
     """
     lines = (
-        [row.reference, *_whose(comparison.stretch, row.quantity), *_cells(row.size, row.peak)]
+        [row.reference, *_whose(comparison.excerpt, row.quantity), *_cells(row.size, row.peak)]
         for row in comparison.rows
     )
     heading = ["reference", "quantity", "unit", "cylinder", *_SIZE]
@@ -49,7 +49,7 @@ def save_budget(budget: Budget, folder: Path) -> Path:
     """
     causes = [cause.name for cause in budget.splits[0].causes] if budget.splits else []
     heading = ["quantity", "unit", "cylinder", "crank_angle_deg", "angle_deg"]
-    lines = (line for split in budget.splits for line in _curves(budget.stretch, split))
+    lines = (line for split in budget.splits for line in _curves(budget.excerpt, split))
     heading += ["run", "lecture", "total", *causes]
     return _write(folder / "budget.csv", heading, lines)
 
@@ -62,7 +62,7 @@ def save_budget_peaks(budget: Budget, folder: Path) -> Path:
     OutputError : the folder cannot be made or written
     """
     lines = (
-        [*_whose(budget.stretch, split.quantity), cause.name, *_cells(cause.size, split.peak)]
+        [*_whose(budget.excerpt, split.quantity), cause.name, *_cells(cause.size, split.peak)]
         for split in budget.splits
         for cause in (*split.causes, split.total)
     )
@@ -70,19 +70,19 @@ def save_budget_peaks(budget: Budget, folder: Path) -> Path:
     return _write(folder / "budget_peaks.csv", heading, lines)
 
 
-def _curves(stretch: Stretch, split: Split) -> Iterator[list[str]]:
+def _curves(excerpt: Excerpt, split: Split) -> Iterator[list[str]]:
     """The lines of a quantity, sample by sample."""
-    about = _whose(stretch, split.quantity)
-    angle = within(stretch.angles(split.quantity), stretch.result.scene.period)
-    curves = [np.degrees(stretch.theta), np.degrees(angle), split.simulated, split.lecture]
+    about = _whose(excerpt, split.quantity)
+    angle = within(excerpt.angles(split.quantity), excerpt.result.scene.period)
+    curves = [np.degrees(excerpt.theta), np.degrees(angle), split.simulated, split.lecture]
     curves += [cause.curve for cause in (split.total, *split.causes)]
     for row in np.transpose(curves).tolist():
         yield [*about, *(f"{value:.15g}" for value in row)]
 
 
-def _whose(stretch: Stretch, quantity: str) -> list[str]:
+def _whose(excerpt: Excerpt, quantity: str) -> list[str]:
     about = QUANTITIES[quantity]
-    return [quantity, about.units, str(stretch.cylinder) if about.per_cylinder else "all"]
+    return [quantity, about.units, str(excerpt.cylinder) if about.per_cylinder else "all"]
 
 
 def _cells(size: Size, peak: float) -> list[str]:

@@ -26,7 +26,7 @@ class _Gear(NamedTuple):
     offset: float
 
 
-class _Motion(NamedTuple):
+class _PistonMotion(NamedTuple):
     displacement: Array
     velocity: Array
     acceleration: Array
@@ -42,22 +42,22 @@ class _RodForces(NamedTuple):
 class Formulas(NamedTuple):
     """A choice among the lectures' formulas: how the piston moves, and how its force goes on."""
 
-    motion: Callable[[Array, _Gear, Array, Array], _Motion]
+    motion: Callable[[Array, _Gear, Array, Array], _PistonMotion]
     forces: Callable[[Array, _Gear, Array], _RodForces]
 
 
-def _exact_motion(phi: Array, gear: _Gear, omega: Array, alpha: Array) -> _Motion:
+def _exact_motion(phi: Array, gear: _Gear, omega: Array, alpha: Array) -> _PistonMotion:
     where = gear._asdict()
-    return _Motion(
+    return _PistonMotion(
         np.asarray(lecture.piston_displacement(phi, **where)),
         np.asarray(lecture.piston_velocity(phi, omega=omega, **where)),
         np.asarray(lecture.piston_acceleration(phi, omega=omega, alpha=alpha, **where)),
     )
 
 
-def _truncated_motion(phi: Array, gear: _Gear, omega: Array, _: Array) -> _Motion:
+def _truncated_motion(phi: Array, gear: _Gear, omega: Array, _: Array) -> _PistonMotion:
     where = gear._asdict()
-    return _Motion(
+    return _PistonMotion(
         np.asarray(lecture.piston_displacement_series(phi, **where)),
         np.asarray(lecture.piston_velocity_series(phi, omega=omega, **where)),
         np.asarray(lecture.piston_acceleration_series(phi, omega=omega, **where)),

@@ -154,7 +154,7 @@ def bearings(outcome: Outcome, force: float) -> Columns:
 def budgets(outcome: Outcome, force: float) -> Columns:
     """What each cause adds to the lecture's answer, for every quantity of `BUDGETED`."""
     budget = outcome.budget
-    columns = {"degrees": _degrees(outcome, budget.stretch.samples)}
+    columns = {"degrees": _degrees(outcome, budget.excerpt.samples)}
     for name in BUDGETED:
         scale = SCALES.get(name, (force, ""))[0]
         nothing = np.zeros_like(columns["degrees"])
@@ -171,7 +171,7 @@ def budgets(outcome: Outcome, force: float) -> Columns:
 
 def _compared(outcome: Outcome, names: tuple[str, ...], force: float) -> Columns:
     comparison = outcome.comparison
-    columns = {"degrees": _degrees(outcome, comparison.stretch.samples)}
+    columns = {"degrees": _degrees(outcome, comparison.excerpt.samples)}
     for name in names:
         scale = SCALES.get(name, (force, ""))[0]
         run = comparison.simulated.get(name)

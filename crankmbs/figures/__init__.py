@@ -10,7 +10,7 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from crankmbs.compare.runs import Difference
+from crankmbs.compare.confirm import Difference
 from crankmbs.figures.compare import budget_figure, comparison_figure, save_validation
 from crankmbs.figures.difference import difference_figure
 from crankmbs.figures.polar import crank_pin_figure, main_bearing_figure, piston_pin_figure

@@ -16,8 +16,8 @@ from crankmbs.compare import (
     QUANTITIES,
     Budget,
     Comparison,
+    Excerpt,
     Split,
-    Stretch,
 )
 from crankmbs.figures.style import STYLE, crank_axis, footer, force_scale, line_of, panels
 from crankmbs.figures.view import last_view
@@ -86,7 +86,7 @@ def comparison_figure(comparison: Comparison, quantities: tuple[str, ...]) -> Fi
         above = {row.reference: row.values for row in rows if row.reference in drawn}
         errors = {row.reference: row.error for row in rows}
         columns.append((name, {"run": comparison.simulated[name], **above}, errors))
-    return _figure(comparison.stretch, columns, "formula minus run", "run against formulas")
+    return _figure(comparison.excerpt, columns, "formula minus run", "run against formulas")
 
 
 @rc_context(STYLE)
@@ -112,7 +112,7 @@ def budget_figure(budget: Budget, quantities: tuple[str, ...]) -> Figure | None:
     about = "error budget of the lecture"
     if unseen:
         about += f" (too small to be seen: {', '.join(unseen)})"
-    return _figure(budget.stretch, columns, "lecture minus run", about)
+    return _figure(budget.excerpt, columns, "lecture minus run", about)
 
 
 def _seen(split: Split) -> dict[str, Array]:
@@ -122,7 +122,7 @@ def _seen(split: Split) -> dict[str, Array]:
 
 
 def _figure(
-    stretch: Stretch,
+    excerpt: Excerpt,
     columns: list[tuple[str, dict[str, Array], dict[str, Array]]],
     below: str,
     about: str,
@@ -130,9 +130,9 @@ def _figure(
     """A column for each quantity: its curves above, its errors below, one crank-angle axis."""
     n = len(columns)
     figure, axes = panels(2, n, max(9.0, 5.6 * n), 8.0)
-    view = last_view(stretch.result)
-    degrees = view.degrees[stretch.samples - stretch.window.first]
-    several = len(stretch.result.scene.cylinders) > 1
+    view = last_view(excerpt.result)
+    degrees = view.degrees[excerpt.samples - excerpt.window.first]
+    several = len(excerpt.result.scene.cylinders) > 1
     of_one = several and any(QUANTITIES[name].per_cylinder for name, _, _ in columns)
     for k, (name, curves, errors) in enumerate(columns):
         top, bottom = axes[k], axes[n + k]
@@ -153,7 +153,7 @@ def _figure(
         loc="outside upper center",
         ncols=-(-len(handles) // -(-len(handles) // int(figure.get_figwidth() / 3.0))),
     )
-    footer(figure, stretch.result, f"{about}, cylinder {stretch.cylinder}" if of_one else about)
+    footer(figure, excerpt.result, f"{about}, cylinder {excerpt.cylinder}" if of_one else about)
     return figure
 
 

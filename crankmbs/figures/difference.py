@@ -9,7 +9,7 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from crankmbs.compare.runs import Difference
+from crankmbs.compare.confirm import Difference
 from crankmbs.figures.style import STYLE, footer, legend, line_of, name_of, panels
 from crankmbs.result import Result
 

@@ -9,7 +9,7 @@ from scipy.interpolate import CubicHermiteSpline
 
 from crankmbs.digits import digits
 from crankmbs.errors import InputError
-from crankmbs.measures import last_window
+from crankmbs.measures import last_span
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 
@@ -52,7 +52,7 @@ def frames_of(result: Result, rate: float) -> Frames:
     ------
     InputError : the run has no stretch of time
     """
-    window = last_window(result)
+    window = last_span(result)
     if window.duration <= 0.0:
         raise InputError(f"nothing moves that could be animated: {result.message}")
     slower = float(f"{_LASTS / window.duration:.2g}")

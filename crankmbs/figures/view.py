@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from crankmbs.measures import Window, last_window
+from crankmbs.measures import Span, last_span
 from crankmbs.mechanics.geometry import dead_centres
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
@@ -33,7 +33,7 @@ class View:
     """
 
     result: Result
-    window: Window
+    window: Span
     data: xr.Dataset
     degrees: Array
     low: float
@@ -103,7 +103,7 @@ def _top_centres(fires: dict[int, bool]) -> str:
 
 def last_view(result: Result) -> View:
     """The view of a result's last cycle, or of what there is."""
-    window = last_window(result)
+    window = last_span(result)
     data = result.data.isel(time=slice(window.first, None))
     angle = data["crank_angle"].values
     end = float(angle[-1])

@@ -163,7 +163,7 @@ def _greatest(result: Result) -> Question:
         answers.row("side thrust", name)
         for name in ("untruncated lecture", "S1 (motion and forces truncated)")
     )
-    where = math.degrees(answers.stretch.size("side thrust", np.maximum(two.values, 0.0)).angle)
+    where = math.degrees(answers.excerpt.size("side thrust", np.maximum(two.values, 0.0)).angle)
     return Question(
         "How hard does the piston press against the wall towards +Y, and when?",
         f"{simulated('side_peak', thrust, 'kN', 1e-3, 5)} at "

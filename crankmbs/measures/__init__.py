@@ -6,17 +6,17 @@ Differences from formulas or other runs belong in compare.
 
 from crankmbs.measures.joints import Estimate, JointForce
 from crankmbs.measures.orders import Orders, orders
+from crankmbs.measures.span import Span, last_span
 from crankmbs.measures.summary import Measures, fluctuation, mean_speed, measure
-from crankmbs.measures.window import Window, last_window
 
 __all__ = [
     "Estimate",
     "JointForce",
     "Measures",
     "Orders",
-    "Window",
+    "Span",
     "fluctuation",
-    "last_window",
+    "last_span",
     "mean_speed",
     "measure",
     "orders",

@@ -11,7 +11,7 @@ import numpy as np
 
 from crankmbs.measures.between import Between
 from crankmbs.measures.peak import highest
-from crankmbs.measures.window import Window, integral
+from crankmbs.measures.span import Span, integral
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 
@@ -45,7 +45,7 @@ class JointForce:
 
 
 def peaks(
-    result: Result, window: Window, between: Between | None, missed: Array
+    result: Result, window: Span, between: Between | None, missed: Array
 ) -> tuple[tuple[JointForce, ...], float, float]:
     """The joint forces, highest and lowest speed over the window; without the motion between the
     samples theirs.
@@ -137,7 +137,7 @@ def _joint(
     )
 
 
-def mean_over_time(result: Result, window: Window, values: Array) -> Estimate:
+def mean_over_time(result: Result, window: Span, values: Array) -> Estimate:
     """Mean over time of values at the samples, with the error of its quadrature."""
     if window.duration == 0.0:
         return Estimate(float(values[-1]), 0.0)

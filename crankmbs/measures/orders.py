@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from crankmbs.errors import InputError
-from crankmbs.measures.window import last_window
+from crankmbs.measures.span import last_span
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 
@@ -58,7 +58,7 @@ def orders(result: Result, name: str, highest: float = 12.0) -> Orders:
         raise InputError(
             f"{name!r} is no variable of the result: {', '.join(map(str, result.data))}"
         )
-    window = last_window(result)
+    window = last_span(result)
     if window.kind != "last cycle":
         raise InputError("orders need one whole cycle; let the run last longer")
     angle = result.data["crank_angle"].values[window.first :] * math.copysign(1.0, window.angle)

@@ -23,7 +23,7 @@ _STEEL = 7850.0  # kg/m3
 _BAR = 1e5
 
 
-class _Machine(NamedTuple):
+class _Sized(NamedTuple):
     """A scene, its gas, the stroke [m] and the piston's diameter, without area the stroke [m]."""
 
     scene: Scene
@@ -42,7 +42,7 @@ def warnings(scene: Scene) -> tuple[str, ...]:
     stroke = top_position(r, l, e) - float(close_loop(dead_centres(r, l, e)[1], *shape).x)
     area = scene.piston.gas_area
     diameter = stroke if area is None else math.sqrt(4.0 * area / math.pi)
-    machine = _Machine(scene, pressure_of(scene), stroke, diameter)
+    machine = _Sized(scene, pressure_of(scene), stroke, diameter)
     return tuple(said for rule in _RULES for said in rule(machine))
 
 
@@ -50,7 +50,7 @@ def warnings(scene: Scene) -> tuple[str, ...]:
 _STROKES = 1e-3, 5.0
 
 
-def _stroke(machine: _Machine) -> Iterator[str]:
+def _stroke(machine: _Sized) -> Iterator[str]:
     least, most = _STROKES
     if not least <= machine.stroke <= most:
         yield (
@@ -64,7 +64,7 @@ def _stroke(machine: _Machine) -> Iterator[str]:
 _BORE_OVER_STROKE = 0.15, 3.5
 
 
-def _bore(machine: _Machine) -> Iterator[str]:
+def _bore(machine: _Sized) -> Iterator[str]:
     if machine.stroke < _STROKES[0]:  # that is said already
         return
     ratio = machine.diameter / machine.stroke
@@ -83,7 +83,7 @@ def _bore(machine: _Machine) -> Iterator[str]:
 _DIAMETERS = 5.0
 
 
-def _masses(machine: _Machine) -> Iterator[str]:
+def _masses(machine: _Sized) -> Iterator[str]:
     rod, piston, d = machine.scene.rod, machine.scene.piston, machine.diameter
     column = _STEEL * math.pi / 4.0 * d**2
     for name, mass, height in (
@@ -101,7 +101,7 @@ def _masses(machine: _Machine) -> Iterator[str]:
 _GYRATION = 0.7
 
 
-def _rod(machine: _Machine) -> Iterator[str]:
+def _rod(machine: _Sized) -> Iterator[str]:
     rod = machine.scene.rod
     if rod.mass == 0.0:
         return
@@ -123,7 +123,7 @@ def _rod(machine: _Machine) -> Iterator[str]:
 _AMBIENT = 0.2 * _BAR, 50.0 * _BAR
 
 
-def _ambient(machine: _Machine) -> Iterator[str]:
+def _ambient(machine: _Sized) -> Iterator[str]:
     gas = machine.scene.gas
     if gas is None or gas.ambient is None:
         return
@@ -145,7 +145,7 @@ _FAR = math.radians(45.0)
 _NEARLY = 0.98
 
 
-def _peak(machine: _Machine) -> Iterator[str]:
+def _peak(machine: _Sized) -> Iterator[str]:
     if machine.pressure is None or machine.scene.gas is None:
         return
     gas, (angle, peak) = machine.scene.gas, machine.pressure.peak
@@ -170,7 +170,7 @@ def _peak(machine: _Machine) -> Iterator[str]:
         )
 
 
-def _loads(machine: _Machine) -> Iterator[str]:
+def _loads(machine: _Sized) -> Iterator[str]:
     """A load that turns the crank on where the gas does so already has the wrong sign."""
     scene, start = machine.scene, machine.scene.start
     if start is None or start.speed == 0.0 or start.speed * _gas_work(machine) <= 0.0:
@@ -185,7 +185,7 @@ def _loads(machine: _Machine) -> Iterator[str]:
             )
 
 
-def _gas_work(machine: _Machine) -> float:
+def _gas_work(machine: _Sized) -> float:
     """Work of one cylinder's gas over one period in the sense of +theta [J]."""
     if machine.pressure is None:
         return 0.0
@@ -196,7 +196,7 @@ def _gas_work(machine: _Machine) -> float:
     return float(np.mean(torque)) * period
 
 
-_RULES: tuple[Callable[[_Machine], Iterator[str]], ...] = (
+_RULES: tuple[Callable[[_Sized], Iterator[str]], ...] = (
     _stroke,
     _bore,
     _masses,

@@ -19,7 +19,7 @@ from crankmbs.measures.joints import (
     stated,
 )
 from crankmbs.measures.peak import rise
-from crankmbs.measures.window import Window, integral, last_window, same_window
+from crankmbs.measures.span import Span, integral, last_span, same_span
 from crankmbs.mechanics.geometry import close_loop, dead_centres
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
@@ -41,7 +41,7 @@ class Measures:
     energy_closure : max |energy residual| / peak kinetic energy over the whole run
     """
 
-    window: Window
+    window: Span
     mean_speed: Estimate
     fluctuation: Estimate
     speed_gain: Estimate
@@ -66,7 +66,7 @@ def measure(result: Result) -> Measures:
     >>> measure(simulate(load_scene("propeller"))).window.kind
     'last cycle'
     """
-    window = last_window(result)
+    window = last_span(result)
     closure = _energy_closure(result)
     motions = refined(result, window.first)
     if not motions:
@@ -74,7 +74,7 @@ def measure(result: Result) -> Measures:
         return unknown
     missed = apart(result, motions)
     *coarser, found = (
-        _measures(motion.result, same_window(window, motion.result), closure, motion, missed)
+        _measures(motion.result, same_span(window, motion.result), closure, motion, missed)
         for motion in motions
     )
     for other in coarser:
@@ -99,7 +99,7 @@ def _beside(found: Any, other: Any) -> Any:
 
 def _measures(
     result: Result,
-    window: Window,
+    window: Span,
     energy_closure: float,
     between: Between | None = None,
     missed: Array | float = 0.0,
@@ -125,7 +125,7 @@ def _measures(
     )
 
 
-def mean_speed(result: Result, window: Window) -> Estimate:
+def mean_speed(result: Result, window: Span) -> Estimate:
     """Mean speed over a window [rad/s]: the angle turned over the time it took, no quadrature. The
     error is that of the samples; `measure` adds that of a beginning between two of them."""
     if window.duration == 0.0:
@@ -136,7 +136,7 @@ def mean_speed(result: Result, window: Window) -> Estimate:
     return Estimate(mean, 2.0 * ends / window.duration)
 
 
-def fluctuation(result: Result, window: Window) -> Estimate:
+def fluctuation(result: Result, window: Span) -> Estimate:
     """Coefficient of fluctuation of the samples over a window [1]: (max - min) / |mean speed|; NaN
     at rest. The error guesses from them how far the speed goes in between; `measure` looks there.
     """
@@ -148,7 +148,7 @@ def fluctuation(result: Result, window: Window) -> Estimate:
 
 
 def _coefficient(
-    result: Result, window: Window, high: float, low: float, *, error: float
+    result: Result, window: Span, high: float, low: float, *, error: float
 ) -> Estimate:
     mean = abs(mean_speed(result, window).value)
     if mean == 0.0:
@@ -156,7 +156,7 @@ def _coefficient(
     return Estimate((high - low) / mean, (2.0 * stated(result, "crank_speed") + error) / mean)
 
 
-def _speed_gain(result: Result, window: Window, missed: float) -> Estimate:
+def _speed_gain(result: Result, window: Span, missed: float) -> Estimate:
     """Where the window begins between two samples the speed there is that of the cubic through
     their speeds and accelerations."""
     names = ("time", "crank_speed", "crank_acceleration")
@@ -168,9 +168,7 @@ def _speed_gain(result: Result, window: Window, missed: float) -> Estimate:
     return Estimate(float(speed[-1]) - begin, 2.0 * stated(result, "crank_speed") + missed)
 
 
-def _indicated(
-    result: Result, window: Window
-) -> tuple[Estimate | None, tuple[Estimate, ...] | None]:
+def _indicated(result: Result, window: Span) -> tuple[Estimate | None, tuple[Estimate, ...] | None]:
     """Work of the gas force on the piston velocity: indicated power and imep."""
     scene = result.scene
     area = scene.piston.gas_area
@@ -198,7 +196,7 @@ def _energy_closure(result: Result) -> float:
     return worst / peak if peak > 0.0 else 0.0
 
 
-def _mean_torque(result: Result, window: Window, torque: Array, own: float) -> Estimate:
+def _mean_torque(result: Result, window: Span, torque: Array, own: float) -> Estimate:
     """Work per angle turned; where none is turned, the mean over time."""
     if window.angle == 0.0:
         mean = mean_over_time(result, window, torque)

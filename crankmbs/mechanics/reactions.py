@@ -32,7 +32,7 @@ from crankmbs.scene.scene import Scene
 __all__ = ["deviations", "reactions"]
 
 
-class _Motion(NamedTuple):
+class _Powers(NamedTuple):
     """omega^2, alpha and 1 at the samples, shape (n,); or three units of them, shape (3, 1)."""
 
     square: Array
@@ -41,7 +41,7 @@ class _Motion(NamedTuple):
 
 
 _OFTEN = 3  # so often an angle must come back for its parts to pay
-_UNITS = _Motion(*np.eye(3)[:, :, np.newaxis])
+_UNITS = _Powers(*np.eye(3)[:, :, np.newaxis])
 
 
 def reactions(
@@ -113,7 +113,7 @@ class _Found(NamedTuple):
 
     columns: dict[str, list[Array]]
     which: NDArray[np.intp] | None
-    at: _Motion
+    at: _Powers
     omega: Array
 
     def put(self, name: str, values: Array, variable: Array) -> None:
@@ -145,7 +145,7 @@ def _found(
 ) -> _Found:
     scene = train.scene
     theta, omega, alpha = (np.asarray(q, dtype=np.float64) for q in (theta, omega, alpha))
-    samples = _Motion(omega**2, alpha, np.ones(1))
+    samples = _Powers(omega**2, alpha, np.ones(1))
     once, which = one_period(theta, scene.period)
     by_parts = len(theta) > _OFTEN * len(once)
     once, motion = (once, _UNITS) if by_parts else (theta, samples)
@@ -169,7 +169,7 @@ class _Cylinder(NamedTuple):
 def _cylinder(
     train: CrankTrain,
     theta: Array,
-    motion: _Motion,
+    motion: _Powers,
     cylinder: Cylinder,
 ) -> _Cylinder:
     scene, pressure = train.scene, train.pressure
@@ -223,7 +223,7 @@ def _cylinder(
 
 
 def _crank(
-    scene: Scene, theta: Array, motion: _Motion, cylinders: list[_Cylinder]
+    scene: Scene, theta: Array, motion: _Powers, cylinders: list[_Cylinder]
 ) -> dict[str, Array]:
     crank, (square, alpha, one) = scene.crank, motion
     first_moment = crank.mass * crank.center_of_mass

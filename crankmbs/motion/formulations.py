@@ -17,7 +17,7 @@ from crankmbs.scene.scene import Scene
 
 __all__ = ["FORMULATIONS", "Formulation", "serving"]
 
-Run = Callable[[CrankTrain, float, float], Assembled]
+Solve = Callable[[CrankTrain, float, float], Assembled]
 
 
 class Formulation(NamedTuple):
@@ -32,7 +32,7 @@ class Formulation(NamedTuple):
 
     name: str
     refuses: Callable[[Scene], str]
-    run: Run
+    run: Solve
     least_rtol: float = 0.0
     integrates: bool = True
     dense: bool = True

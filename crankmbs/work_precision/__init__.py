@@ -11,7 +11,7 @@ from crankmbs.work_precision.benchmark import (
 )
 from crankmbs.work_precision.files import save_work_precision
 from crankmbs.work_precision.rounds import Row
-from crankmbs.work_precision.track import END, MOTION
+from crankmbs.work_precision.trace import END, MOTION
 
 __all__ = [
     "END",

@@ -11,7 +11,7 @@ from crankmbs.work_precision.formulations import formulations_of
 from crankmbs.work_precision.machine import about_machine
 from crankmbs.work_precision.reference import Reference, reference_of
 from crankmbs.work_precision.rounds import Row, play
-from crankmbs.work_precision.track import END
+from crankmbs.work_precision.trace import END
 
 __all__ = ["TARGETS", "Beside", "WorkPrecision", "work_precision"]
 

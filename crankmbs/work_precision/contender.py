@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from crankmbs.work_precision.track import Track
+from crankmbs.work_precision.trace import Trace
 
 __all__ = ["Answer", "Contender", "ContenderFailed"]
 
@@ -22,7 +22,7 @@ class Answer(NamedTuple):
     stated : the relative error it states itself; None when it states none
     """
 
-    track: Track
+    trace: Trace
     evaluations: int
     stated: float | None = None
 
@@ -40,5 +40,5 @@ class Contender:
     knob: str
     settings: tuple[float, ...]
     run: Callable[[float], Answer]
-    reference: Track
+    reference: Trace
     is_peer: bool = False

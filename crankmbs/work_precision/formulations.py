@@ -11,7 +11,7 @@ from crankmbs.scene.scene import Scene
 from crankmbs.simulate import simulate
 from crankmbs.work_precision.contender import Answer, Contender, ContenderFailed
 from crankmbs.work_precision.reference import Reference
-from crankmbs.work_precision.track import track_of
+from crankmbs.work_precision.trace import trace_of
 
 __all__ = ["formulations_of"]
 
@@ -32,7 +32,7 @@ def formulations_of(scene: Scene, reference: Reference) -> tuple[Contender, ...]
             knob="rtol",
             settings=_LADDER if one.integrates else _ALGEBRA,
             run=partial(_run, scene, one.name, end_only, reference.result.status),
-            reference=reference.track,
+            reference=reference.trace,
         )
 
     contenders = []
@@ -51,6 +51,6 @@ def _run(scene: Scene, name: str, end_only: bool, status: int, rtol: float) -> A
         raise ContenderFailed(str(error)) from None
     if result.status != status:
         raise ContenderFailed(result.message)
-    track = track_of(result)
-    answer = track.end() if end_only else track
+    trace = trace_of(result)
+    answer = trace.end() if end_only else trace
     return Answer(answer, result.cost.evaluations, result.error.estimated)

@@ -9,7 +9,7 @@ from crankmbs.choose import choose
 from crankmbs.result import Result
 from crankmbs.scene.scene import Extent, Scene
 from crankmbs.simulate import simulate
-from crankmbs.work_precision.track import Track, stated, track_of
+from crankmbs.work_precision.trace import Trace, stated, trace_of
 
 __all__ = ["Reference", "reference_of"]
 
@@ -22,12 +22,12 @@ _PER_TURN = 10  # samples that the peers give
 class Reference:
     """A run at the limit of double precision.
 
-    result : on the scene's own samples, which `track` holds
+    result : on the scene's own samples, which `trace` holds
     floors : by name, its own error, relative as in `differences`: what it states, or rounding
     """
 
     result: Result
-    track: Track
+    trace: Trace
     floors: dict[str, float]
 
     @property
@@ -45,22 +45,22 @@ class Reference:
             f"{floor:.1g}"
         )
 
-    def at_times(self) -> Track:
+    def at_times(self) -> Trace:
         """The same motion at equal times, ten a revolution, for contenders of fixed step."""
         data = self.result.data
         end = float(data["time"].values[-1])
         turns = abs(float(data["crank_angle"].values[-1]) - self.start) / (2.0 * math.pi)
         every = Extent(value=end / max(math.ceil(_PER_TURN * turns), 1), unit="s")
         run = replace(self.result.scene.run, until=Extent(value=end, unit="s"), every=every)
-        return track_of(_run(replace(self.result.scene, run=run)))
+        return trace_of(_run(replace(self.result.scene, run=run)))
 
 
 def reference_of(scene: Scene) -> Reference:
     """Solve a scene as exactly as double precision lets it: algebra, or the crank angle."""
     result = _run(scene)
-    track = track_of(result)
-    own = stated(result, track, _origin(scene))
-    return Reference(result, track, {name: max(own[name], _ROUNDING) for name in own})
+    trace = trace_of(result)
+    own = stated(result, trace, _origin(scene))
+    return Reference(result, trace, {name: max(own[name], _ROUNDING) for name in own})
 
 
 def _run(scene: Scene) -> Result:

@@ -9,7 +9,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 
 from crankmbs.work_precision.contender import Answer, Contender, ContenderFailed
-from crankmbs.work_precision.track import differences
+from crankmbs.work_precision.trace import differences
 
 __all__ = ["Row", "play"]
 
@@ -76,7 +76,7 @@ class _Entry:
             is_peer=contender.is_peer,
             knob=contender.knob,
             setting=self.setting,
-            errors=differences(answer.track, contender.reference, start),
+            errors=differences(answer.trace, contender.reference, start),
             stated=answer.stated,
             evaluations=answer.evaluations,
             times=tuple(self.times),

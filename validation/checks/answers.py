@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from crankmbs.compare import QUANTITIES
+from crankmbs.compare.excerpt import Answer, excerpt_of
 from crankmbs.compare.lectured import UNTRUNCATED
-from crankmbs.compare.stretch import Answer, stretch_of
 from crankmbs.lecture import datum_shift
 from validation.case import Case
 from validation.checks.curves import lecture_geometry
@@ -25,9 +25,9 @@ def untruncated(case: Case) -> Outcome:
     shift = float(datum_shift(**lecture_geometry(result)))
     apart: dict[str, float] = {}
     for cylinder in range(1, len(result.scene.cylinders) + 1):
-        answer = stretch_of(result, cylinder).lecture(UNTRUNCATED, constant_speed=False)
+        answer = excerpt_of(result, cylinder).lecture(UNTRUNCATED, constant_speed=False)
         answer["piston displacement"] = answer["piston displacement"] - shift
-        simulated = stretch_of(ours, cylinder).simulated()
+        simulated = excerpt_of(ours, cylinder).simulated()
         own = _apart(answer, simulated)
         apart |= {f"{name} of cylinder {cylinder}": error for name, error in own.items()}
     worst = max(apart, key=lambda name: apart[name])
@@ -37,8 +37,8 @@ def untruncated(case: Case) -> Outcome:
 def at_constant_speed(case: Case) -> Outcome:
     """The lectures' answers for a free run take the time mean of its speed and no acceleration:
     against Newton-Euler of just that at the run's angles, over the peak of the quantity's unit."""
-    result, theirs = run(case.ours()), stretch_of(run(case.theirs()), 1)
-    answer = stretch_of(result, 1).lecture(UNTRUNCATED, constant_speed=True)
+    result, theirs = run(case.ours()), excerpt_of(run(case.theirs()), 1)
+    answer = excerpt_of(result, 1).lecture(UNTRUNCATED, constant_speed=True)
     answer["piston displacement"] -= float(datum_shift(**lecture_geometry(result)))
     time, angle = (theirs.result.data[name].values for name in ("time", "crank_angle"))
     before = np.argmin(np.abs(angle - (angle[-1] - theirs.result.scene.period)))

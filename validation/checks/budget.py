@@ -56,7 +56,7 @@ def causes(case: Case) -> Outcome:
 
 def _oracle(scene: Scene, split: Budget) -> dict[str, Array]:
     """Variables of the cylinder looked at, by Newton-Euler of the oracle."""
-    stretch = split.stretch
+    stretch = split.excerpt
     found = reference_variables(scene, stretch.theta, stretch.omega, stretch.alpha)
     column = stretch.cylinder - 1
     return {name: np.asarray(found[name])[:, column] for name in _QUANTITIES.values()}

@@ -14,9 +14,9 @@ from matplotlib.figure import Figure
 
 from crankmbs.figures.style import STYLE, line_of
 from crankmbs.mechanics.train import crank_train
-from crankmbs.motion.multibody.path import coarsest_step, model_of, solve
 from crankmbs.motion.multibody.problem import problem_of
 from crankmbs.motion.multibody.samples import Sampled, aligned_variables
+from crankmbs.motion.multibody.stepped import coarsest_step, model_of, solve
 from crankmbs.scene.scene import Scene
 from validation.adapter import reference_motion, reference_variables
 from validation.case import Case

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from crankmbs.work_precision.contender import Answer, Contender
-from crankmbs.work_precision.track import Track
+from crankmbs.work_precision.trace import Trace
 from validation.speed.gas import gas_function
 from validation.speed.job import Job
 
@@ -18,7 +18,7 @@ __all__ = ["exudyn_contenders"]
 _STEPS_PER_TURN = (250.0, 500.0, 1000.0, 2000.0, 4000.0)
 
 
-def exudyn_contenders(job: Job, reference: Track) -> tuple[Contender, ...]:
+def exudyn_contenders(job: Job, reference: Trace) -> tuple[Contender, ...]:
     """The script with the settings it starts from, and with the best ones for this mechanism."""
     return tuple(
         Contender(
@@ -168,10 +168,10 @@ def _run(job: Job, best: bool, steps_per_turn: float) -> Answer:
     turned, omega, *reactions = (table[:, 1:] for table in stored)
     main, crank_pin, piston_pin, side = (-values[:, :2] for values in reactions)
     names = ("main bearing", "crank pin", "piston pin", "side force")
-    track = Track(
+    trace = Trace(
         job.times,
         job.theta + turned[:, 2],
         omega[:, 2],
         dict(zip(names, (main, crank_pin, piston_pin, side), strict=True)),
     )
-    return Answer(track, steps)
+    return Answer(trace, steps)

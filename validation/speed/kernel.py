@@ -21,7 +21,7 @@ from crankmbs.scene.scene import Scene
 from crankmbs.scene.units import DEGREE
 from crankmbs.work_precision.contender import Answer, Contender
 from crankmbs.work_precision.reference import Reference
-from crankmbs.work_precision.track import Track
+from crankmbs.work_precision.trace import Trace
 
 __all__ = ["kernels_of"]
 
@@ -36,12 +36,12 @@ def kernels_of(scene: Scene, reference: Reference) -> tuple[Contender, ...]:
     None where one such loop does not solve the scene: it starts from rest or turns back, its loads
     depend on time or on the speed otherwise than by its square, it ends early or is very long.
     """
-    start, end = scene.start, reference.track.end()
+    start, end = scene.start, reference.trace.end()
     if start is None or start.speed == 0.0 or reference.result.status != 0:
         return ()
     branch = branch_of(scene.torque, 0.0, start.speed, rising=True)
     one = branch.is_affine_in_energy and math.isinf(branch.t_end)
-    omega = reference.track.omega
+    omega = reference.trace.omega
     one = one and bool(np.all(omega * math.copysign(1.0, start.speed) > 0.0))
     one = one and branch.omega_low <= omega.min() and omega.max() <= branch.omega_high
     turned = abs(float(end.theta[0]) - start.angle)
@@ -55,7 +55,7 @@ def kernels_of(scene: Scene, reference: Reference) -> tuple[Contender, ...]:
             knob="deg",
             settings=_WIDEST,
             run=lambda widest: loop(widest)(),
-            reference=reference.track.end(),
+            reference=reference.trace.end(),
         ),
     )
 
@@ -72,7 +72,7 @@ def _loop(scene: Scene, grid: Grid, reference: Reference) -> Callable[[], Answer
     sense = math.copysign(1.0, omega)
     branch = branch_of(scene.torque, 0.0, omega, rising=True)
     until, until_time = scene.run.until.resolve(scene.period)
-    far = float(reference.track.end().theta[0]) + sense * float(np.max(np.diff(grid.edges)))
+    far = float(reference.trace.end().theta[0]) + sense * float(np.max(np.diff(grid.edges)))
     count = int(abs(far - theta) / float(grid.edges[-1]) * len(grid.edges)) + 2
     strip = grid.strip(theta, sense, count, far)
     energy = 0.5 * float(inertia_alone(scene, theta)) * omega**2
@@ -87,6 +87,6 @@ def _loop(scene: Scene, grid: Grid, reference: Reference) -> Callable[[], Answer
         readout.read(given, until_time, sense, grid.rule.to_legendre, solved, k, x, t, kinetic)
         at = theta + sense * (strip.turned[k] + x * strip.width[k])
         speed = sense * math.sqrt(2.0 * float(kinetic[0]) / reduced(float(at[0]), no_gas)[0])
-        return Answer(Track(t, at, np.array([speed])), cells.torque.size)
+        return Answer(Trace(t, at, np.array([speed])), cells.torque.size)
 
     return run

@@ -18,7 +18,7 @@ from scipy.integrate import DOP853
 from crankmbs.numerics.collocation import gauss
 from crankmbs.scene.units import DEGREE
 from crankmbs.work_precision.contender import Answer, Contender
-from crankmbs.work_precision.track import Track
+from crankmbs.work_precision.trace import Trace
 from validation.speed.job import Job, NotServed
 from validation.speed.reduced import parameters
 
@@ -33,7 +33,7 @@ _WIDEST = (90.0, 45.0, 22.5, 12.0, 6.0, 3.0)  # deg
 _STEPS_PER_TURN = (8.0, 16.0, 32.0, 64.0, 128.0, 256.0, 512.0)
 
 
-def gauss_contenders(job: Job, reference: Track) -> tuple[Contender, ...]:
+def gauss_contenders(job: Job, reference: Trace) -> tuple[Contender, ...]:
     """Gauss collocation over the crank angle.
 
     Raises
@@ -55,7 +55,7 @@ def gauss_contenders(job: Job, reference: Track) -> tuple[Contender, ...]:
     )
 
 
-def dop853_contenders(job: Job, reference: Track) -> tuple[Contender, ...]:
+def dop853_contenders(job: Job, reference: Trace) -> tuple[Contender, ...]:
     """DOP853 in time, with a fixed step and SciPy's coefficients.
 
     Raises
@@ -90,7 +90,7 @@ def _function(name: str, job: Job, method: Sequence[Array]) -> Callable[[float],
         )
         if evaluations < 0:
             raise RuntimeError("the energy is used up before the end")
-        return Answer(Track(job.times[-1:], state[:1], state[1:]), evaluations)
+        return Answer(Trace(job.times[-1:], state[:1], state[1:]), evaluations)
 
     return call
 

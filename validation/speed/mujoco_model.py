@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from crankmbs.work_precision.contender import Answer, Contender
-from crankmbs.work_precision.track import Track
+from crankmbs.work_precision.trace import Trace
 from validation.speed.gas import gas_function
 from validation.speed.job import Job
 
@@ -49,7 +49,7 @@ _MODEL = """
 """
 
 
-def mujoco_contenders(job: Job, reference: Track) -> tuple[Contender, ...]:
+def mujoco_contenders(job: Job, reference: Trace) -> tuple[Contender, ...]:
     """RK4 with the hardest constraint."""
     import mujoco  # noqa: F401  its absence is to be known before anything runs
 
@@ -107,7 +107,7 @@ def _run(job: Job, steps_per_turn: float) -> Answer:
         "side force": table[:, 8:9],
     }
     evaluations = 4 * per_sample * intervals
-    return Answer(Track(job.times, table[:, 0], table[:, 1], forces), evaluations)
+    return Answer(Trace(job.times, table[:, 0], table[:, 1], forces), evaluations)
 
 
 def _xml(job: Job, step: float) -> str:

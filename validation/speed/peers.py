@@ -13,12 +13,12 @@ from typing import NamedTuple
 from crankmbs.scene.scene import Scene
 from crankmbs.work_precision.contender import Answer, Contender, ContenderFailed
 from crankmbs.work_precision.reference import Reference
-from crankmbs.work_precision.track import Track
+from crankmbs.work_precision.trace import Trace
 from validation.speed.job import Job, NotServed, job_of
 
 __all__ = ["peers_of"]
 
-_Make = Callable[[Job, Track], tuple[Contender, ...]]
+_Make = Callable[[Job, Trace], tuple[Contender, ...]]
 
 
 class _Peer(NamedTuple):
@@ -44,8 +44,8 @@ def peers_of(scene: Scene, reference: Reference) -> tuple[list[Contender], list[
     if reference.result.status != 0:
         return [], [f"no peers: the run does not reach its end ({reference.result.message})"]
     try:
-        track = reference.at_times()
-        job = job_of(scene, track.time)
+        trace = reference.at_times()
+        job = job_of(scene, trace.time)
     except NotServed as why:
         return [], [f"no peers: {why}"]
     contenders: list[Contender] = []
@@ -53,7 +53,7 @@ def peers_of(scene: Scene, reference: Reference) -> tuple[list[Contender], list[
     for name, module, function in _PEERS:
         try:
             make: _Make = getattr(import_module(f"{__package__}.{module}"), function)
-            contenders += [_guarded(contender) for contender in make(job, track)]
+            contenders += [_guarded(contender) for contender in make(job, trace)]
         except ImportError as error:
             missing = error.name or str(error)
             notes.append(f'{name}: {missing} is not installed; pip install ".[bench]"')

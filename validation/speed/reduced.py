@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from crankmbs.work_precision.contender import Answer, Contender
-from crankmbs.work_precision.track import Track
+from crankmbs.work_precision.trace import Trace
 from validation.speed.job import Job
 
 __all__ = ["LADDER", "integrated", "parameters", "scipy_contenders"]
@@ -69,7 +69,7 @@ def parameters(job: Job) -> Array:
     )
 
 
-def scipy_contenders(job: Job, reference: Track) -> tuple[Contender, ...]:
+def scipy_contenders(job: Job, reference: Trace) -> tuple[Contender, ...]:
     """LSODA and DOP853."""
     import numba
 
@@ -105,4 +105,4 @@ def integrated(job: Job, slope: Slope, method: Method, rtol: float) -> Answer:
     if not solved.success:
         raise RuntimeError(solved.message)
     theta, omega = solved.y[:, -1:]
-    return Answer(Track(np.array([job.end]), theta, omega), int(solved.nfev))
+    return Answer(Trace(np.array([job.end]), theta, omega), int(solved.nfev))

@@ -6,7 +6,7 @@ from functools import partial
 from typing import Any
 
 from crankmbs.work_precision.contender import Contender
-from crankmbs.work_precision.track import Track
+from crankmbs.work_precision.trace import Trace
 from validation.speed.gas import gas_function
 from validation.speed.job import Job
 from validation.speed.reduced import LADDER, integrated
@@ -14,7 +14,7 @@ from validation.speed.reduced import LADDER, integrated
 __all__ = ["sympy_contenders"]
 
 
-def sympy_contenders(job: Job, reference: Track) -> tuple[Contender, ...]:
+def sympy_contenders(job: Job, reference: Trace) -> tuple[Contender, ...]:
     """One contender; the derivation is not timed."""
     acceleration, gas = _derived(job), gas_function(job)
 

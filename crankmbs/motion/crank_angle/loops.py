@@ -10,7 +10,7 @@ import numpy as np
 from crankmbs.numerics.arrays import Array, Index
 from crankmbs.numerics.kernels import kernel
 
-Branch = tuple[float, float, float, float]  # c0, ct, c1, c2 of `crankmbs.mechanics.torque`
+Coefficients = tuple[float, float, float, float]  # c0, ct, c1, c2 of `crankmbs.mechanics.torque`
 _SETTLED, _GOOD = 1e-14, 1e-11  # relative change of the energy in Newton's last step
 
 

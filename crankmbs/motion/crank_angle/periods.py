@@ -18,12 +18,12 @@ from crankmbs.mechanics.torque import Branch
 from crankmbs.motion.crank_angle.grid import Grid, Strip
 from crankmbs.numerics.arrays import Array
 
-__all__ = ["Period", "Run", "period_of"]
+__all__ = ["Period", "Skipped", "period_of"]
 
 _TOGETHER = 60_000  # nodes: they stay in the processor's cache
 
 
-class Run(NamedTuple):
+class Skipped(NamedTuple):
     """Periods passed, the energy [J] after them, its mean at their beginnings, and the time [s]."""
 
     periods: int
@@ -45,7 +45,7 @@ class Period(NamedTuple):
     shift: Array
     weight: Array
 
-    def run(self, energy: float, time: float, most: float, t_end: float, spare: int) -> Run:
+    def run(self, energy: float, time: float, most: float, t_end: float, spare: int) -> Skipped:
         """As many periods as end ``spare`` periods before ``t_end``, ``most`` at most."""
         block = max(8 * spare, _TOGETHER // len(self.gain))
         done, total = 0, 0.0
@@ -72,7 +72,7 @@ class Period(NamedTuple):
                 time + float(spent[count - 1]),
                 done + count,
             )
-        return Run(done, energy, total / max(done, 1), time)
+        return Skipped(done, energy, total / max(done, 1), time)
 
 
 def period_of(grid: Grid, strip: Strip, branch: Branch, sense: float) -> Period:

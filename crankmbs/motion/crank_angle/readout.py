@@ -10,7 +10,7 @@ import numpy as np
 from crankmbs.numerics.arrays import Array, Index
 from crankmbs.numerics.kernels import kernel
 
-Branch = tuple[float, float, float, float]  # c0, ct, c1, c2 of `crankmbs.mechanics.torque`
+Coefficients = tuple[float, float, float, float]  # c0, ct, c1, c2 of `crankmbs.mechanics.torque`
 
 
 __all__ = ["motion", "read"]
@@ -100,7 +100,7 @@ def motion(
     which: Index,
     of_angle: tuple[Array, Array, Array],
     sense: float,
-    branch: Branch,
+    branch: Coefficients,
     time: Array,
     energy: Array,
     omega: Array,

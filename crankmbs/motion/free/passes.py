@@ -26,7 +26,7 @@ from crankmbs.motion.crank_angle.grid import Grid, grid_of
 from crankmbs.motion.crank_angle.window import Window
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.free.matching import match, stays
-from crankmbs.motion.free.path import Path, Pieces
+from crankmbs.motion.free.passage import Passage, Pieces
 from crankmbs.motion.minimal import advance as minimal
 from crankmbs.motion.minimal.reduced import Reduced
 from crankmbs.motion.plan import Plan, plan_of
@@ -62,7 +62,7 @@ class _Pass(NamedTuple):
     begin: Samples
     samples: Samples
     ending: Ending
-    path: Path
+    path: Passage
     local: Array
     fast: list[tuple[float, float]]
     slow: list[float]
@@ -118,7 +118,7 @@ def _travel(
     state = State(0.0, scene.start.angle, scene.start.speed, 0.0)
     steady = not any(isinstance(load, TimeTable) for load in scene.torque)
     begin = first.begin if first else _first(grid, state)
-    path = Path(plan, begin, can_swing=steady, allowed=allowed)
+    path = Passage(plan, begin, can_swing=steady, allowed=allowed)
     if first:  # it begins a rounding ahead: so the difference knows what the motion makes of one
         ahead = math.copysign(ANGLE_ROUNDING * state.theta, state.omega or float(begin.alpha[0]))
         state = state._replace(theta=state.theta + ahead)

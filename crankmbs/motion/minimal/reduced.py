@@ -18,10 +18,10 @@ from crankmbs.motion.minimal.system import Machine, bare
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.drives import Constant, SpeedTable, TimeTable
 
-__all__ = ["Between", "Reduced"]
+__all__ = ["KnotPair", "Reduced"]
 
 
-class Between(NamedTuple):
+class KnotPair(NamedTuple):
     """Two neighbouring knots [rad], and the pressure of every cylinder between them, as
     `stepper.enter` says."""
 
@@ -76,11 +76,11 @@ class Reduced:
         )
         self.machine = bare(machine)
 
-    def around(self, theta: float, sense: float) -> Between:
+    def around(self, theta: float, sense: float) -> KnotPair:
         """The knots next to theta in the sense of rotation, and the polynomials between them."""
         pieces = np.zeros((len(self.train.scene.cylinders), 6))
         low, high = stepper.enter(theta, sense, self.machine, pieces)
-        return Between(low, high, pieces)
+        return KnotPair(low, high, pieces)
 
     @cached_property
     def torque_scale(self) -> float:

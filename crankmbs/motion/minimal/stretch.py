@@ -13,7 +13,7 @@ from crankmbs.mechanics.inertia import reduce
 from crankmbs.mechanics.torque import Branch
 from crankmbs.motion.base import Samples, State
 from crankmbs.motion.minimal import stepper
-from crankmbs.motion.minimal.reduced import Between, Reduced
+from crankmbs.motion.minimal.reduced import KnotPair, Reduced
 from crankmbs.motion.minimal.system import System
 from crankmbs.motion.plan import Plan
 from crankmbs.numerics.arrays import Array
@@ -30,7 +30,7 @@ class Equation:
     """The equation of motion on one piece: between two knots and on one branch of the loads."""
 
     reduced: Reduced
-    between: Between
+    between: KnotPair
     branch: Branch
 
     def __call__(self, t: float, y: Array) -> Array:

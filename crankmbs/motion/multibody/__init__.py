@@ -16,7 +16,7 @@ from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion.base import Samples, Solution
 from crankmbs.motion.multibody.beside import errors_beside_jumps
 from crankmbs.motion.multibody.error import Convergence, relative_error
-from crankmbs.motion.multibody.runs import Runs
+from crankmbs.motion.multibody.halvings import Halvings
 from crankmbs.motion.multibody.samples import Sampled, aligned_variables
 from crankmbs.numerics.arrays import Array
 
@@ -34,7 +34,7 @@ def run(train: CrankTrain, rtol: float, cost_cap: float) -> Solution:
     FormulationError : exudyn cannot take a single step of this scene
     InputError : a speed table that ends before the run does
     """
-    runs = Runs(train, cost_cap)
+    runs = Halvings(train, cost_cap)
     try:
         status, message = runs.first()
         convergence = Convergence(runs.erratic_order)

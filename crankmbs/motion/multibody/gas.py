@@ -1,4 +1,4 @@
-"""Gas forces over the crank angle, smooth between the angles at which one of them jumps.
+"""GasForces forces over the crank angle, smooth between the angles at which one of them jumps.
 
 A step of the pressure would ring in the solver. So a run is cut where a cylinder's pressure jumps,
 and on a stretch between two jumps the forces go on without them.
@@ -18,7 +18,7 @@ from crankmbs.mechanics.pressure import PeriodicPressure
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.numerics.arrays import Array
 
-__all__ = ["NEAR", "Gas", "GasStretch"]
+__all__ = ["NEAR", "GasForces", "GasStretch"]
 
 Force = Callable[[float], float]
 
@@ -27,7 +27,7 @@ _JUMP = 1e-9  # of the highest pressure or slope: less is rounding
 _MOST_JUMPS = 60  # in a period; a table of more steps is run over as it is
 
 
-class Gas:
+class GasForces:
     """The gas forces of a crank train; without gas all zero."""
 
     def __init__(self, train: CrankTrain) -> None:
@@ -53,7 +53,7 @@ class Gas:
         return 2 if len(bends) > 0 else 3
 
     def force(self, theta: Array) -> Array:
-        """Gas forces [N] towards the crank, shape (m, n), at crank angles of shape (m,)."""
+        """GasForces forces [N] towards the crank, shape (m, n), at crank angles of shape (m,)."""
         angles = theta[:, None] + self.phases
         if self._pressure is None:
             return np.zeros_like(angles)
@@ -111,18 +111,18 @@ class Gas:
 
 @dataclass(frozen=True)
 class GasStretch:
-    """Gas forces between the crank angles ``low`` and ``high`` [rad], and smoothly beyond.
+    """GasForces forces between the crank angles ``low`` and ``high`` [rad], and smoothly beyond.
 
     rises : shape (2, n) [N], what each cylinder's force rises by at low and at high
     """
 
-    gas: Gas
+    gas: GasForces
     low: float
     high: float
     rises: Array
 
     def force(self, theta: Array) -> Array:
-        """Gas forces [N] towards the crank, shape (m, n), at crank angles of shape (m,)."""
+        """GasForces forces [N] towards the crank, shape (m, n), at crank angles of shape (m,)."""
         below, above = theta < self.low - NEAR, theta >= self.high - NEAR
         lifted = below[:, None] * self.rises[0] - above[:, None] * self.rises[1]
         return np.asarray(self.gas.force(theta) + lifted)

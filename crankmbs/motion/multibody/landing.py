@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from crankmbs.motion.multibody.table import ROWS, Table
+from crankmbs.motion.multibody.step_table import ROWS, StepTable
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.roots import invert_monotone
 
@@ -74,7 +74,7 @@ class Watch:
         return max(self._beyond, self._past_speed) <= ROWS // 2 or self._count <= LEAST_STEPS
 
 
-def angle_passed(table: Table, angles: tuple[float, float]) -> tuple[float, float] | None:
+def angle_passed(table: StepTable, angles: tuple[float, float]) -> tuple[float, float] | None:
     """The bound that a table ends at or beyond, if it does, and the sense (a sign) to pass it.
 
     A crank that rests on a bound does not pass it.
@@ -87,7 +87,7 @@ def angle_passed(table: Table, angles: tuple[float, float]) -> tuple[float, floa
     return None
 
 
-def cut_at_angle(table: Table, bound: float, sense: float) -> Table:
+def cut_at_angle(table: StepTable, bound: float, sense: float) -> StepTable:
     """End a table where its crank angle last comes to a bound, in this sense (a sign).
 
     It ends where it begins if it lies beyond the bound from there on. An excursion to this side may
@@ -113,7 +113,7 @@ def cut_at_angle(table: Table, bound: float, sense: float) -> Table:
     return table._replace(until=begin)
 
 
-def cut_at_speed(table: Table, bounds: Bounds) -> tuple[Table, float] | None:
+def cut_at_speed(table: StepTable, bounds: Bounds) -> tuple[StepTable, float] | None:
     """End a table where its speed first leaves its range; also the end of the range it leaves by.
 
     The row that the stretch begins with may lie on a bound.
@@ -131,7 +131,9 @@ def cut_at_speed(table: Table, bounds: Bounds) -> tuple[Table, float] | None:
     return _cut(table, _SPEED, bound, between), bound
 
 
-def _cut(table: Table, names: tuple[str, str], bound: float, between: tuple[float, float]) -> Table:
+def _cut(
+    table: StepTable, names: tuple[str, str], bound: float, between: tuple[float, float]
+) -> StepTable:
     """End a table where a variable, given with its rate, comes to a bound between two times."""
 
     def value(time: Array) -> tuple[Array, Array]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from crankmbs.mechanics.speed import SpeedLaw, speed_law
 from crankmbs.mechanics.train import CrankTrain
-from crankmbs.motion.multibody.gas import Gas
+from crankmbs.motion.multibody.gas import GasForces
 from crankmbs.motion.plan import Plan, plan_of
 from crankmbs.motion.prescribed import monotone_stretches
 from crankmbs.scene.drives import TimeTable
@@ -28,7 +28,7 @@ class Problem(NamedTuple):
 
     scene: Scene
     plan: Plan
-    gas: Gas
+    gas: GasForces
     law: SpeedLaw | None
     end: float
     rests: bool
@@ -51,7 +51,7 @@ def problem_of(train: CrankTrain) -> Problem:
     InputError : a speed table that ends before the run does
     """
     scene = train.scene
-    plan, gas = plan_of(scene), Gas(train)
+    plan, gas = plan_of(scene), GasForces(train)
     if scene.motion is None:
         return Problem(scene, plan, gas, None, plan.time_bound, False)
     law = speed_law(scene.motion)

@@ -10,9 +10,9 @@ from typing import NamedTuple
 import numpy as np
 
 from crankmbs.motion.multibody.gas import NEAR
-from crankmbs.motion.multibody.path import Path
 from crankmbs.motion.multibody.problem import Problem
-from crankmbs.motion.multibody.table import Table
+from crankmbs.motion.multibody.step_table import StepTable
+from crankmbs.motion.multibody.stepped import Stepped
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.roots import invert_monotone
 
@@ -33,7 +33,7 @@ class _Samples(NamedTuple):
 class Sampled:
     """A run with its samples, and the variables there once they are asked for."""
 
-    def __init__(self, problem: Problem, path: Path) -> None:
+    def __init__(self, problem: Problem, path: Stepped) -> None:
         self.path, self.samples = path, _samples(problem, path)
         self._problem = problem
         self._at_angles: dict[int, dict[str, Array] | None] = {}  # by the number of samples
@@ -108,7 +108,7 @@ def _ending_as(run: _Samples, finest: _Samples) -> _Samples:
     return _Samples(*joined)
 
 
-def reached(path: Path) -> tuple[float, float, float]:
+def reached(path: Stepped) -> tuple[float, float, float]:
     """Time [s], crank angle [rad] and speed [rad/s] where a run ends."""
     last = path.tables[-1]
     at = np.array([last.until])
@@ -116,13 +116,13 @@ def reached(path: Path) -> tuple[float, float, float]:
     return last.until, theta, omega
 
 
-def slowed(path: Path) -> float:
+def slowed(path: Stepped) -> float:
     """The fastest speed in the last tenth of a run, relative to the fastest of all."""
     speeds = np.abs(np.concatenate([table.column("crank_speed") for table in path.tables]))
     return float(np.max(speeds[-(len(speeds) // 10) :]) / np.max(speeds))
 
 
-def _samples(problem: Problem, path: Path) -> _Samples:
+def _samples(problem: Problem, path: Stepped) -> _Samples:
     """Where the plan wants samples on this run, the start and the end included."""
     plan = problem.plan
     end, theta_end, _ = reached(path)
@@ -155,7 +155,7 @@ def _samples(problem: Problem, path: Path) -> _Samples:
     return _Samples(time[first:], theta[first:], stretch[first:])
 
 
-def _above_jumps(path: Path, time: Array, theta: Array, stretch: Array) -> Array:
+def _above_jumps(path: Stepped, time: Array, theta: Array, stretch: Array) -> Array:
     """The stretches of samples in time and angle, those that one begins with backwards from a jump
     of the gas force in the stretch before: at the jump the value above it counts."""
     tables = path.tables
@@ -168,7 +168,7 @@ def _above_jumps(path: Path, time: Array, theta: Array, stretch: Array) -> Array
     return stretch
 
 
-def _same_angles(path: Path, own: _Samples, finest: _Samples) -> _Samples | None:
+def _same_angles(path: Stepped, own: _Samples, finest: _Samples) -> _Samples | None:
     """The crank angles of a finer run, but for its end, on a run without a reversal."""
     sense = 1.0 if own.theta[-1] >= own.theta[0] else -1.0
     theta = finest.theta[:-1]
@@ -200,7 +200,7 @@ def _grid(origin: float, every: float, begin: float, end: float) -> Array:
     return np.asarray(origin + sign * every * np.arange(first, last))
 
 
-def _monotone(table: Table) -> list[tuple[float, float]]:
+def _monotone(table: StepTable) -> list[tuple[float, float]]:
     """Times between which the crank does not reverse."""
     times, speed = table.times, table.column("crank_speed")
     moving = (times > table.after) & (times < table.until)
@@ -217,7 +217,7 @@ def _monotone(table: Table) -> list[tuple[float, float]]:
     return list(itertools.pairwise([table.after, *turns, table.until]))
 
 
-def _times_of(table: Table, theta: Array, begin: float, end: float) -> Array:
+def _times_of(table: StepTable, theta: Array, begin: float, end: float) -> Array:
     """Times at which the crank comes to the angles, where it does not reverse."""
     times = table.times
     between, ends = (times > begin) & (times < end), np.array([begin, end])
@@ -242,7 +242,7 @@ def _times_of(table: Table, theta: Array, begin: float, end: float) -> Array:
 
 
 def _variables_at(
-    problem: Problem, path: Path, samples: _Samples, *, by_angle: bool = False
+    problem: Problem, path: Stepped, samples: _Samples, *, by_angle: bool = False
 ) -> dict[str, Array]:
     parts = []
     stretch = np.minimum(samples.stretch, len(path.tables) - 1)  # a coarser run may have fewer

@@ -8,11 +8,11 @@ import time as clock
 from crankmbs.errors import FormulationError
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion.ending import Ending
-from crankmbs.motion.multibody.path import Path, coarsest_step, model_of, solve
 from crankmbs.motion.multibody.problem import erratic_order, problem_of
 from crankmbs.motion.multibody.samples import reached, slowed
+from crankmbs.motion.multibody.stepped import Stepped, coarsest_step, model_of, solve
 
-__all__ = ["Runs"]
+__all__ = ["Halvings"]
 
 _SHARE = 1.0 / 3.0  # of the cost cap, for the coarsest run: the next costs twice as much
 _RETRIES = 4
@@ -22,7 +22,7 @@ _NO_STEP = "exudyn's Newton iteration does not converge"
 _UNTOUCHED = 0.98  # of the time to where the solver fails: before it goes wrong
 
 
-class Runs:
+class Halvings:
     """The last three runs of a problem, coarsest first.
 
     moves : False where the crank stays at rest
@@ -31,7 +31,7 @@ class Runs:
     def __init__(self, train: CrankTrain, cost_cap: float) -> None:
         self._begin = clock.perf_counter()
         self.problem = problem_of(train)
-        self.paths: list[Path] = []
+        self.paths: list[Stepped] = []
         self.steps = self.iterations = 0
         self._model = model_of(self.problem)
         self._step, self.moves = coarsest_step(self.problem, self._model)
@@ -107,7 +107,7 @@ class Runs:
             + f"that would take about {_rounded(cost):g} s, above the cost cap of {self._cap:g} s"
         )
 
-    def _run(self, budget: float) -> Path:
+    def _run(self, budget: float) -> Stepped:
         begin = clock.perf_counter()
         path = solve(
             self.problem,
@@ -131,7 +131,7 @@ class Runs:
         self.paths = [self._run(math.inf)]
         return Ending.UNMOVED.said(plan.start)
 
-    def _end(self, path: Path) -> tuple[int, str]:
+    def _end(self, path: Stepped) -> tuple[int, str]:
         _, theta, omega = reached(path)
         ending = path.ending
         if ending is not Ending.HELD and self.problem.rests:
@@ -140,7 +140,7 @@ class Runs:
             ending = Ending.FOLD
         return ending.said(theta, omega if self.moves else 0.0)
 
-    def _cut(self, path: Path) -> tuple[int, str]:
+    def _cut(self, path: Stepped) -> tuple[int, str]:
         time, theta, _ = reached(path)
         plan = self.problem.plan
         if path.ending is Ending.DIVERGED:

@@ -18,11 +18,11 @@ from crankmbs.motion.multibody.landing import LEAST_STEPS, PASSED
 from crankmbs.motion.multibody.model import Model
 from crankmbs.motion.multibody.problem import Problem, jump_times, kink_times
 from crankmbs.motion.multibody.start import coordinates
-from crankmbs.motion.multibody.stretch import Walk, initial_acceleration
-from crankmbs.motion.multibody.table import Table
+from crankmbs.motion.multibody.step_table import StepTable
+from crankmbs.motion.multibody.walk import Walk, initial_acceleration
 from crankmbs.scene.drives import TimeTable
 
-__all__ = ["Path", "coarsest_step", "model_of", "solve"]
+__all__ = ["Stepped", "coarsest_step", "model_of", "solve"]
 
 _ENDLESS = 1_000_000_000
 _SAME = 1e-12  # relative: times nearer than this are one
@@ -31,7 +31,7 @@ _STEPS = 125  # of the coarsest run, at least
 _STUCK = 1e-9  # rad/s2
 
 
-class Path(NamedTuple):
+class Stepped(NamedTuple):
     """A run at one step size.
 
     tables : the stretches, one after the other
@@ -40,7 +40,7 @@ class Path(NamedTuple):
     steps, iterations : what it cost
     """
 
-    tables: tuple[Table, ...]
+    tables: tuple[StepTable, ...]
     ending: Ending
     blind: bool
     steps: int
@@ -56,7 +56,7 @@ def model_of(problem: Problem) -> Model:
 
 def solve(
     problem: Problem, model: Model, step: float, halvings: int, go_on: Callable[[], bool] | None
-) -> Path:
+) -> Stepped:
     """Run from time 0 to the end with ``step`` halved so often.
 
     go_on : asked now and then; False calls the run off. None: nothing does
@@ -87,8 +87,8 @@ def solve(
     return _path(walk, ending)
 
 
-def _path(walk: Walk, ending: Ending) -> Path:
-    return Path(tuple(walk.tables), ending, walk.is_blind, walk.steps, walk.iterations)
+def _path(walk: Walk, ending: Ending) -> Stepped:
+    return Stepped(tuple(walk.tables), ending, walk.is_blind, walk.steps, walk.iterations)
 
 
 def coarsest_step(problem: Problem, model: Model) -> tuple[float, bool]:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 
-__all__ = ["END", "MOTION", "Track", "differences", "stated", "track_of"]
+__all__ = ["END", "MOTION", "Trace", "differences", "stated", "trace_of"]
 
 
 END, MOTION = "end", "motion"
@@ -27,7 +27,7 @@ _DRIVE = {"drive torque": ("external_torque",)}
 
 
 @dataclass(frozen=True)
-class Track:
+class Trace:
     """Samples of a run, the last one at its end.
 
     time, theta, omega : shape (n,) [s, rad, rad/s]
@@ -39,16 +39,16 @@ class Track:
     omega: Array
     forces: Mapping[str, Array] = field(default_factory=dict)
 
-    def end(self) -> Track:
+    def end(self) -> Trace:
         """The last sample alone, without its forces."""
         last = slice(-1, None)
-        return Track(self.time[last], self.theta[last], self.omega[last])
+        return Trace(self.time[last], self.theta[last], self.omega[last])
 
 
-def track_of(result: Result) -> Track:
-    """The track of a result; where the speed is prescribed, the drive's torque is a reaction."""
+def trace_of(result: Result) -> Trace:
+    """The trace of a result; where the speed is prescribed, the drive's torque is a reaction."""
     data = result.data
-    return Track(
+    return Trace(
         data["time"].values,
         data["crank_angle"].values,
         data["crank_speed"].values,
@@ -59,49 +59,49 @@ def track_of(result: Result) -> Track:
     )
 
 
-def stated(result: Result, track: Track, start: float) -> dict[str, float]:
+def stated(result: Result, trace: Trace, start: float) -> dict[str, float]:
     """What a result states of its own error, by the names and scales of `differences`."""
     error = {name: float(values.attrs["error_estimate"]) for name, values in result.data.items()}
-    angle = float(result.data["crank_angle"].attrs["error_estimate"]) / _turned(track, start)
-    motion = max(angle, error["crank_speed"] / _peak(track.omega[:, None]))
+    angle = float(result.data["crank_angle"].attrs["error_estimate"]) / _turned(trace, start)
+    motion = max(angle, error["crank_speed"] / _peak(trace.omega[:, None]))
     forces = {
-        name: math.hypot(*(error[part] for part in parts)) / _peak(track.forces[name])
+        name: math.hypot(*(error[part] for part in parts)) / _peak(trace.forces[name])
         for name, parts in _names(result).items()
     }
     return {END: motion, MOTION: motion, **forces}
 
 
-def differences(track: Track, reference: Track, start: float) -> dict[str, float]:
+def differences(trace: Trace, reference: Trace, start: float) -> dict[str, float]:
     """Largest relative differences, by name.
 
     "end" and "motion": the worse of the crank angle at equal times, per radian turned since
     ``start`` [rad], and of the speed relative to its peak; at the last sample and over all. Then
-    each force, as a vector, relative to its peak. What the track does not have is left out.
+    each force, as a vector, relative to its peak. What the trace does not have is left out.
     """
     turned = _turned(reference, start)
-    rows, others = _matched(track, reference)
-    late = track.time[rows] - reference.time[others]
-    ahead = track.theta[rows] - reference.theta[others] - reference.omega[others] * late
-    faster = track.omega[rows] - reference.omega[others]
+    rows, others = _matched(trace, reference)
+    late = trace.time[rows] - reference.time[others]
+    ahead = trace.theta[rows] - reference.theta[others] - reference.omega[others] * late
+    faster = trace.omega[rows] - reference.omega[others]
     motion = np.maximum(np.abs(ahead) / turned, np.abs(faster) / _peak(reference.omega[:, None]))
     errors = {END: float(motion[-1])}
-    if len(track.time) > 1:
+    if len(trace.time) > 1:
         errors[MOTION] = float(np.max(motion))
-    for name, force in track.forces.items():
+    for name, force in trace.forces.items():
         right = reference.forces[name]
         size = np.linalg.norm(force[rows] - right[others].reshape(force[rows].shape), axis=-1)
         errors[name] = float(np.max(size)) / _peak(right)
     return errors
 
 
-def _matched(track: Track, reference: Track) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+def _matched(trace: Trace, reference: Trace) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     """Rows of both that are one sample: the ends, and before them what lies on the same grid.
 
     Runs that end at one time may differ in the grid angle they pass last, and, where only the
     last cycle is kept, in the one they keep first.
     """
-    n, m = len(track.time) - 1, len(reference.time) - 1
-    ahead = float(track.theta[0] - reference.theta[0]) if n > 0 else 0.0
+    n, m = len(trace.time) - 1, len(reference.time) - 1
+    ahead = float(trace.theta[0] - reference.theta[0]) if n > 0 else 0.0
     skip = round(ahead / float(reference.theta[1] - reference.theta[0])) if ahead else 0
     mine, other = max(-skip, 0), max(skip, 0)
     common = max(min(n - mine, m - other), 0)
@@ -115,8 +115,8 @@ def _names(result: Result) -> dict[str, tuple[str, ...]]:
     return _FORCES | (_DRIVE if result.scene.motion is not None else {})
 
 
-def _turned(track: Track, start: float) -> float:
-    return float(np.max(np.abs(track.theta - start))) or 1.0
+def _turned(trace: Trace, start: float) -> float:
+    return float(np.max(np.abs(trace.theta - start))) or 1.0
 
 
 def _peak(values: Array) -> float:

@@ -12,7 +12,7 @@ from crankmbs.motion.base import Piece, Samples, State
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.plan import Plan
 
-__all__ = ["Path", "Pieces"]
+__all__ = ["Passage", "Pieces"]
 
 _VAIN = 20  # as many reversals that reach no farther, and the end is not coming
 _SAMPLE = 200  # evaluations as costly as a sample of a swing
@@ -20,7 +20,7 @@ _SAMPLE = 200  # evaluations as costly as a sample of a swing
 Pieces = Generator[Piece, None, Ending | None]
 
 
-class Path:
+class Passage:
     """The pieces of one pass, sampled as they come; with a finite plan.last only the last stay.
 
     can_swing : whether a swing that reaches no farther is known to go on so for ever

@@ -15,7 +15,7 @@ from crankmbs.motion.multibody.model import Record
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 
-__all__ = ["ROWS", "Table", "table_of"]
+__all__ = ["ROWS", "StepTable", "table_of"]
 
 ROWS = 6  # that an interpolated value takes
 _MIDDLE = 0.5 * (ROWS - 1)
@@ -23,7 +23,7 @@ _NEWTON = 6  # steps from the straight line between two rows
 _LEFT = 1e-13  # of what Newton may leave
 
 
-class Table(NamedTuple):
+class StepTable(NamedTuple):
     """Variables at the equidistant steps of a stretch.
 
     begin, step [s] : time of the first row, and between rows
@@ -123,7 +123,7 @@ class Table(NamedTuple):
 
 def table_of(
     scene: Scene, gas: GasStretch, torque: Array, record: Record, after: float, residual: float
-) -> Table:
+) -> StepTable:
     """The variables at every step, from exudyn's own coordinates and multipliers.
 
     The energy residual is ``residual`` at time ``after``. The work of gas and outside torque is
@@ -176,7 +176,7 @@ def table_of(
     columns = np.column_stack(list(variables.values()))
     step = float(record.time[1] - record.time[0])
     begin, end = float(record.time[0]), float(record.time[-1])
-    return Table(begin, step, after, end, scene, gas, tuple(variables), columns)
+    return StepTable(begin, step, after, end, scene, gas, tuple(variables), columns)
 
 
 def _weights(u: Array) -> Array:

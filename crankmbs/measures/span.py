@@ -11,14 +11,14 @@ from scipy.interpolate import CubicHermiteSpline, CubicSpline
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 
-__all__ = ["Window", "integral", "last_window", "same_window"]
+__all__ = ["Span", "integral", "last_span", "same_span"]
 
 
 _SAME_ANGLE = 1e-9  # rad: rounding of start + k * every must not lose a cycle
 
 
 @dataclass(frozen=True)
-class Window:
+class Span:
     """A stretch of a run up to its end.
 
     kind : "last cycle", "last revolution" or "whole run"
@@ -40,13 +40,13 @@ class Window:
         return self.end - self.begin
 
 
-def last_window(result: Result) -> Window:
+def last_span(result: Result) -> Span:
     """The last whole cycle of a run; without one the last whole revolution, or else the run.
 
     It ends with the run. Where it begins between two samples the time follows from the cubic
     through their angles and speeds; exact to fourth order in the spacing.
 
-    >>> last_window(simulate(load_scene("propeller"))).kind
+    >>> last_span(simulate(load_scene("propeller"))).kind
     'last cycle'
     """
     lengths = (("last cycle", result.scene.period), ("last revolution", 2.0 * math.pi))
@@ -57,7 +57,7 @@ def last_window(result: Result) -> Window:
     return _whole_run(result)
 
 
-def same_window(window: Window, result: Result) -> Window:
+def same_span(window: Span, result: Result) -> Span:
     """The window of the same kind and length in the same run, sampled otherwise."""
     found = None
     if window.kind != "whole run":
@@ -65,7 +65,7 @@ def same_window(window: Window, result: Result) -> Window:
     return found or _whole_run(result)
 
 
-def _ending(result: Result, kind: str, wanted: float) -> Window | None:
+def _ending(result: Result, kind: str, wanted: float) -> Span | None:
     """The stretch up to the end in which the crank turns through an angle [rad], if any."""
     time, angle = result.data["time"].values, result.data["crank_angle"].values
     turned = np.abs(angle[-1] - angle)
@@ -75,21 +75,21 @@ def _ending(result: Result, kind: str, wanted: float) -> Window | None:
     k = int(before[-1])
     sense = math.copysign(1.0, angle[-1] - angle[k])
     if turned[k] <= wanted + _SAME_ANGLE:
-        return Window(kind, float(time[k]), float(time[-1]), sense * wanted, k, k)
+        return Span(kind, float(time[k]), float(time[-1]), sense * wanted, k, k)
     pair = slice(k, k + 2)
     speed = result.data["crank_speed"].values
     path = CubicHermiteSpline(time[pair], angle[pair], speed[pair])
     begin = float(path.solve(angle[-1] - sense * wanted, extrapolate=False)[-1])
-    return Window(kind, begin, float(time[-1]), sense * wanted, k, k + 1)
+    return Span(kind, begin, float(time[-1]), sense * wanted, k, k + 1)
 
 
-def _whole_run(result: Result) -> Window:
+def _whole_run(result: Result) -> Span:
     time, angle = result.data["time"].values, result.data["crank_angle"].values
     whole = float(angle[-1] - angle[0])
-    return Window("whole run", float(time[0]), float(time[-1]), whole, 0, 0)
+    return Span("whole run", float(time[0]), float(time[-1]), whole, 0, 0)
 
 
-def integral(result: Result, window: Window, values: Array) -> tuple[Array, Array]:
+def integral(result: Result, window: Span, values: Array) -> tuple[Array, Array]:
     """Integral over time across a window, and an estimate of its quadrature error.
 
     A cubic spline through the samples is integrated: order 4 in the spacing where the quantity is

@@ -28,7 +28,7 @@ from crankmbs.motion.multibody.model import Model, Record
 from crankmbs.motion.multibody.problem import Problem
 from crankmbs.motion.multibody.run_up import run_free, run_prescribed
 from crankmbs.motion.multibody.start import coordinates
-from crankmbs.motion.multibody.table import Table, table_of
+from crankmbs.motion.multibody.step_table import StepTable, table_of
 
 __all__ = ["Walk", "initial_acceleration"]
 
@@ -47,7 +47,7 @@ class Walk:
     """
 
     def __init__(self, problem: Problem, model: Model, go_on: Callable[[], bool] | None) -> None:
-        self.tables: list[Table] = []
+        self.tables: list[StepTable] = []
         self.time, self._state = 0.0, problem.start
         self.bound: float | None = None
         self._problem, self._model, self._go_on = problem, model, go_on
@@ -79,7 +79,7 @@ class Walk:
 
         Returns
         -------
-        how it ended, as in `Path`
+        how it ended, as in `Stepped`
         """
         entered = self.enter(end)
         if entered is None:
@@ -118,7 +118,7 @@ class Walk:
 
     def _run(
         self, gas: GasStretch, bounds: Bounds, end: float, step: float, steps: int
-    ) -> tuple[Table | None, Ending]:
+    ) -> tuple[StepTable | None, Ending]:
         """Run with the loads of the model; the table, if it has its rows, and how it ended."""
         problem, model, time = self._problem, self._model, self.time
         watch = Watch(bounds, self._go_on)
@@ -191,7 +191,7 @@ class Walk:
         below, above = (torque(self.time, omega) for torque in sides)
         return abs(above - below) > 1e-9 * max(abs(above), abs(below))
 
-    def _land(self, table: Table, bounds: Bounds, bound: float | None) -> None:
+    def _land(self, table: StepTable, bounds: Bounds, bound: float | None) -> None:
         """Cut the table where it leaves its range of speeds; take it, and go to its end.
 
         bound [rad] : the crank angle that it ends at, if one ends it

@@ -13,7 +13,7 @@ from crankmbs.compare.lectured import Formulas, lectured
 from crankmbs.compare.quantities import QUANTITIES, observed
 from crankmbs.compare.size import Size, size_of
 from crankmbs.errors import InputError
-from crankmbs.measures import Window, last_window
+from crankmbs.measures import Span, last_span
 from crankmbs.mechanics.reactions import reactions
 from crankmbs.mechanics.train import CrankTrain, crank_train
 from crankmbs.mechanics.variables import VARIABLES
@@ -21,7 +21,7 @@ from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 from crankmbs.scene.scene import Scene
 
-__all__ = ["Answer", "LeftOut", "Stretch", "check_cylinder", "stretch_of", "vanishing"]
+__all__ = ["Answer", "Excerpt", "LeftOut", "check_cylinder", "excerpt_of", "vanishing"]
 
 Answer = dict[str, Array]
 
@@ -38,7 +38,7 @@ class LeftOut(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Stretch:
+class Excerpt:
     """The samples of a run's last whole cycle (or revolution, or the run), and one cylinder.
 
     samples : shape (n,), numbers of the samples; those within 0.6 degrees of a rod square to its
@@ -49,7 +49,7 @@ class Stretch:
     """
 
     result: Result
-    window: Window
+    window: Span
     cylinder: int
     samples: NDArray[np.intp]
     theta: Array
@@ -86,7 +86,7 @@ class Stretch:
         return self.theta + self.result.scene.cylinders[self.cylinder - 1].phase
 
     def size(self, quantity: str, curve: Array) -> Size:
-        """Measure a curve of this stretch."""
+        """Measure a curve of this excerpt."""
         return size_of(curve, self.angles(quantity), self.result.scene.period)
 
     def _of(self, variables: dict[str, Array]) -> Answer:
@@ -136,7 +136,7 @@ def check_cylinder(scene: Scene, cylinder: int) -> None:
         raise InputError(f"cylinder must be from 1 to {count}; {cylinder} came")
 
 
-def stretch_of(result: Result, cylinder: int) -> Stretch:
+def excerpt_of(result: Result, cylinder: int) -> Excerpt:
     """The last cycle of a run, seen from a cylinder, counted from 1.
 
     Raises
@@ -144,7 +144,7 @@ def stretch_of(result: Result, cylinder: int) -> Stretch:
     InputError : no such cylinder, or no sample but at a fold
     """
     check_cylinder(result.scene, cylinder)
-    window = last_window(result)
+    window = last_span(result)
     folded = np.min(np.cos(result.data["rod_angle"].values), axis=1) < _FOLD
     samples = np.flatnonzero(~folded[window.inside :]) + window.inside
     if len(samples) == 0:
@@ -155,4 +155,4 @@ def stretch_of(result: Result, cylinder: int) -> Stretch:
     )
     mean = window.angle / window.duration if window.duration > 0.0 else float(omega[-1])
     train = crank_train(result.scene)
-    return Stretch(result, window, cylinder, samples, theta, omega, alpha, mean, train)
+    return Excerpt(result, window, cylinder, samples, theta, omega, alpha, mean, train)
