@@ -145,7 +145,7 @@ def swing(inertia):
     end = 20 * 4.0 * math.pi
     last = np.linspace(end - 4.0 * math.pi, end, 14401)
     start = 0.5 * moved(0.0) * scene.start.speed**2
-    done = solve_ivp(slope, (0.0, end), [start], "DOP853", last, rtol=1e-9, max_step=0.2)
+    done = solve_ivp(slope, (0.0, end), [start], "DOP853", last, rtol=1e-9, max_step=0.05)
     omega = np.sqrt(2.0 * done.y[0] / moved(last))
     return np.ptp(omega) * np.mean(1.0 / omega)  # mean over time: angle over the time it takes
 
