@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from crankmbs.mechanics.inertia import inertia_alone
+from crankmbs.mechanics.peaks import peak, relative_error
 from crankmbs.mechanics.reactions import deviations, reactions
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.variables import VARIABLES
@@ -23,7 +24,6 @@ if TYPE_CHECKING:
 __all__ = ["ANGLE_ROUNDING", "Assembled", "assemble", "dataset"]
 
 _ROUNDING = 64 * float(np.finfo(float).eps)  # of a variable's peak: what the formulas round
-_NOTHING = 1e-9  # of the largest variable of the same unit: zero but for rounding
 _FEW = 32  # samples: among more there is one where nothing cancels
 ANGLE_ROUNDING = 2 * float(np.finfo(float).eps)  # of the crank angle
 
@@ -39,27 +39,10 @@ class Assembled(NamedTuple):
 
     @property
     def relative_error(self) -> float:
-        """The worst relative error: of the crank angle per radian turned, of each other variable
-        relative to its peak.
-
-        The energy residual is a check and does not count; nor does a variable that is zero but for
-        rounding, against the others of its unit.
-        """
+        """The worst relative error, as `crankmbs.mechanics.peaks` has it; 0 where nothing moved."""
         angle = self.variables["crank_angle"]
-        turned = _peak(angle - angle[0])
-        if turned == 0.0:  # nothing moved, nothing was integrated
-            return 0.0
-        peaks = self.peaks | {"crank_angle": turned}
-        largest: dict[str, float] = {}
-        for name, peak in peaks.items():
-            unit = VARIABLES[name].units
-            largest[unit] = max(largest.get(unit, 0.0), peak)
-        ratios = [
-            self.errors[name] / peak
-            for name, peak in peaks.items()
-            if name != "energy_residual" and peak > _NOTHING * largest[VARIABLES[name].units]
-        ]
-        return max(ratios, default=0.0)
+        turned = peak(angle - angle[0])
+        return relative_error(self.peaks, self.errors, turned) if turned else 0.0
 
 
 def assemble(train: CrankTrain, solution: Solution) -> Assembled:
@@ -85,14 +68,14 @@ def assemble(train: CrankTrain, solution: Solution) -> Assembled:
     Where the formulation states errors they are taken.
     """
     variables = _variables(train, solution.samples)
-    peaks = {name: _peak(values) for name, values in variables.items()}
+    peaks = {name: peak(values) for name, values in variables.items()}
     if solution.errors:
         return Assembled(solution, variables, peaks, dict(solution.errors))
     answer, better = solution.samples, solution.better or solution.samples
     late = better.time - answer.time
     ahead = better.theta - answer.theta - answer.omega * late
     passes = _Passes(train.off, answer, _turned_by_rounding(better), variables)
-    errors = {name: _ROUNDING * peak for name, peak in peaks.items()}
+    errors = {name: _ROUNDING * size for name, size in peaks.items()}
     differences = list(passes.differences())
     missed = differences[-1][1]
     for apart, _ in differences:
@@ -104,7 +87,7 @@ def assemble(train: CrankTrain, solution: Solution) -> Assembled:
             errors[name] = max(errors[name], most + _ROUNDING * peaks[name])
     if missed:
         errors["crank_acceleration"] += missed / _least_inertia(train, better.theta)
-    errors["crank_angle"] = _peak(ahead) + _ROUNDING * peaks["crank_angle"]
+    errors["crank_angle"] = peak(ahead) + _ROUNDING * peaks["crank_angle"]
     errors["energy_residual"] = peaks["energy_residual"] + _ROUNDING * peaks["kinetic_energy"]
     return Assembled(solution, variables, peaks, errors)
 
@@ -135,7 +118,7 @@ class _Passes(NamedTuple):
             apart = deviations(self.off, *motion, {**before, **samples.own})
             missed = apart["external_torque"] if samples.own else 0.0
             given = {**_motion(samples), **samples.own}
-            apart |= {name: _peak(before[name] - values) for name, values in given.items()}
+            apart |= {name: peak(before[name] - values) for name, values in given.items()}
             yield apart, missed
             if samples is not self.rounded:
                 before = _variables(self.off, samples)
@@ -156,17 +139,17 @@ class _Passes(NamedTuple):
         """
         theta, own = self.rounded.theta, self.rounded.own
         recent = ahead[np.abs(theta - theta[-1]) <= 2.0 * math.pi]
-        more = math.copysign(_peak(recent) - abs(ahead[-1]), ahead[-1])
+        more = math.copysign(peak(recent) - abs(ahead[-1]), ahead[-1])
         last = replace(self.rounded, own={}).select(np.array([-1]))
         end = _variables(self.off, replace(last, theta=last.theta + more))
-        missed = _peak(own["external_torque"][-1:] - end["external_torque"]) if own else 0.0
+        missed = peak(own["external_torque"][-1:] - end["external_torque"]) if own else 0.0
         names = self.variables.keys() - own.keys()
-        return {name: _peak(self.variables[name][-1:] - end[name]) for name in names}, missed
+        return {name: peak(self.variables[name][-1:] - end[name]) for name in names}, missed
 
 
 def _turned_by_rounding(samples: Samples) -> Samples:
     """The motion with the crank ahead by the rounding of its angle, and as fast as it is there."""
-    rounding = ANGLE_ROUNDING * _peak(samples.theta)
+    rounding = ANGLE_ROUNDING * peak(samples.theta)
     omega = samples.omega + _speed_change(samples, rounding)
     return replace(samples, theta=samples.theta + rounding, omega=omega)
 
@@ -222,7 +205,3 @@ def _motion(samples: Samples) -> dict[str, Array]:
         "crank_acceleration": samples.alpha,
         "energy_residual": samples.energy_residual,
     }
-
-
-def _peak(values: Array) -> float:
-    return max(float(values.max(initial=0.0)), -float(values.min(initial=0.0)))

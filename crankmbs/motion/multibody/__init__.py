@@ -25,10 +25,11 @@ from __future__ import annotations
 
 import math
 
+from crankmbs.mechanics.peaks import peak, relative_error
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion.base import Samples, Solution
 from crankmbs.motion.multibody.beside import errors_beside_jumps
-from crankmbs.motion.multibody.error import Convergence, relative_error
+from crankmbs.motion.multibody.error import Convergence
 from crankmbs.motion.multibody.halvings import Halvings
 from crankmbs.motion.multibody.samples import Sampled, aligned_variables
 from crankmbs.numerics.arrays import Array
@@ -62,7 +63,7 @@ def run(train: CrankTrain, rtol: float, cost_cap: float) -> Solution:
                 break
             sampled = [*sampled, Sampled(runs.problem, runs.paths[-1])][-3:]
             found = convergence.answer(aligned_variables(runs.problem, sampled))
-            latest, before = relative_error(*found), latest
+            latest, before = _worst(*found), latest
             if latest < worst or not answer:
                 (answer, errors), worst = found, latest
             elif latest > _WORSE * worst:
@@ -78,3 +79,9 @@ def run(train: CrankTrain, rtol: float, cost_cap: float) -> Solution:
     time, theta, omega, alpha, residual = (answer[name] for name in _MOTION)
     samples = Samples(time, theta, omega, alpha, residual, own)
     return Solution(samples, status, message, runs.iterations, runs.steps, errors=errors)
+
+
+def _worst(answer: dict[str, Array], errors: dict[str, float]) -> float:
+    angle = answer["crank_angle"]
+    peaks = {name: peak(values) for name, values in answer.items()}
+    return relative_error(peaks, errors, peak(angle - angle[0]))
