@@ -36,7 +36,7 @@ def examples():
 @pytest.mark.parametrize("test", list(examples()))
 def test_an_example_runs_as_it_stands(test, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    said = []
+    said: list[str] = []
     runner = doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE)
     with warnings.catch_warnings():
         warnings.simplefilter("error")

@@ -53,7 +53,8 @@ def test_two_runs_into_one_folder_do_not_mix(step, tmp_path, monkeypatch):
 
 
 def test_files_are_moved_while_no_other_run_moves_its_own(tmp_path, monkeypatch):
-    plain, others = Path.replace, []
+    plain = Path.replace
+    others: list[threading.Thread] = []
 
     def late(file, target):
         plain(file, target)

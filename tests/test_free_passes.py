@@ -140,9 +140,12 @@ def test_tighter_costs_more(load):
 def test_a_swing_is_left_to_time(monkeypatch):
     """Eight hand-overs that did not last a period are enough: from then on it must turn one."""
     pieces, advance = [], passes.crank_angle.advance
-    monkeypatch.setattr(
-        passes.crank_angle, "advance", lambda *args: pieces.append(args) or advance(*args)
-    )
+
+    def counted(*args):
+        pieces.append(args)
+        return advance(*args)
+
+    monkeypatch.setattr(passes.crank_angle, "advance", counted)
     swing = replace(COASTING, start=at_rest(1.0), run=Run(until="20 s", every="0.1 s", rtol=1e-7))
     result = simulate(swing, formulation="crank_angle")
     assert result.status == 0

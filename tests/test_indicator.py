@@ -14,7 +14,8 @@ from crankmbs.mechanics.indicator import INDICATOR_RTOL, indicator_pieces
 from crankmbs.mechanics.pressure import PeriodicPressure, pressure_of
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion.free.passes import run as run_free
-from validation.oracles.indicator import Diagram, absolute_pressure
+from validation.adapter import diagram_of
+from validation.oracles.indicator import absolute_pressure
 
 mp.dps = 30
 
@@ -240,20 +241,9 @@ def random_engine(seed):
 
 def exact_gauge(engine, angle):
     """Gauge pressure [Pa] of the polytropes themselves."""
-    given = engine.gas.indicator
-    diagram = Diagram(
-        crank_radius=engine.crank.radius,
-        rod_length=engine.rod.length,
-        offset=engine.piston.offset,
-        compression_ratio=given.compression_ratio,
-        n_compression=given.n_compression,
-        n_expansion=given.n_expansion,
-        intake=given.intake_pressure,
-        peak=given.peak_pressure,
-        exhaust=given.exhaust_pressure if engine.gas.stroke == 4 else None,
-        pre_expansion=given.pre_expansion,
+    return np.asarray(
+        absolute_pressure(diagram_of(engine), angle) - engine.gas.ambient, dtype=float
     )
-    return np.asarray(absolute_pressure(diagram, angle) - engine.gas.ambient, dtype=float)
 
 
 @dataclasses.dataclass(frozen=True)

@@ -82,10 +82,8 @@ def test_arrays_and_compiled_loops_agree(
         a, b = np.asarray(arrays.data[name]), np.asarray(compiled.data[name])
         assert a.shape == b.shape
         assert np.max(np.abs(a - b)) < 2e-12 * np.max(np.abs(a)), name
-    a, b = (r.error.estimated for r in (arrays, compiled))
-    assert a is not None
-    assert b is not None
-    assert 0.5 < a / b < 2.0 or max(a, b) < 1e-11
+    one, other = (r.error.estimated for r in (arrays, compiled))
+    assert 0.5 < one / other < 2.0 or max(one, other) < 1e-11
 
 
 @pytest.mark.parametrize("compiled", [False, True])

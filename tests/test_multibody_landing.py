@@ -85,7 +85,7 @@ def held(start: float) -> Scene:
 
 def test_a_speed_held_by_a_jump_ends_the_run() -> None:
     def run(**how: object) -> Result:
-        return simulate(held(110.0), **how)  # type: ignore[arg-type]
+        return simulate(held(110.0), **how)
 
     result, exact = run(formulation="multibody", cost_cap=60.0), run()
     assert result.status == exact.status == 1

@@ -31,13 +31,21 @@ from crankmbs.scene.tables import Table
 from validation.oracles.arithmetic import LONG, Arithmetic, Array
 from validation.oracles.energy import kinetic_energy
 from validation.oracles.free_motion import Motion, series_path
+from validation.oracles.indicator import Diagram
 from validation.oracles.loads import torque_at
 from validation.oracles.machine import Loads, LoadTable, Machine, PressurePieces, PressureTable
 from validation.oracles.newton_euler import newton_euler
 from validation.oracles.path import Path
 from validation.oracles.prescribed import oscillating_motion, pchip, polynomial_motion
 
-__all__ = ["at_jumps", "load_torque", "machine_of", "reference_motion", "reference_variables"]
+__all__ = [
+    "at_jumps",
+    "diagram_of",
+    "load_torque",
+    "machine_of",
+    "reference_motion",
+    "reference_variables",
+]
 
 _TOWARDS_CRANK = ("piston_velocity", "piston_acceleration")  # the oracle's point away from it
 _SAME_ANGLE = 1e-9
@@ -141,6 +149,25 @@ def load_torque(scene: Scene, motion: Motion, arithmetic: Arithmetic = LONG) -> 
     """The torque of all loads on a free crank. Inverse dynamics give it too, but with a heavy
     flywheel or near a fold as the small difference of large numbers."""
     return torque_at(_loads(scene.torque), motion.time, motion.omega, arithmetic)
+
+
+def diagram_of(scene: Scene) -> Diagram:
+    """The indicator diagram of a scene, for its oracle."""
+    assert scene.gas is not None
+    given = scene.gas.indicator
+    assert given is not None
+    return Diagram(
+        crank_radius=scene.crank.radius,
+        rod_length=scene.rod.length,
+        offset=scene.piston.offset,
+        compression_ratio=given.compression_ratio,
+        n_compression=given.n_compression,
+        n_expansion=given.n_expansion,
+        intake=given.intake_pressure,
+        peak=given.peak_pressure,
+        exhaust=given.exhaust_pressure if scene.gas.stroke == 4 else None,
+        pre_expansion=given.pre_expansion,
+    )
 
 
 def at_jumps(scene: Scene, theta: Array) -> NDArray[np.bool_]:

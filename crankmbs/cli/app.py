@@ -22,7 +22,7 @@ from crankmbs.cli.validate import validate_scene
 from crankmbs.cli.work_precision import measure_scene
 from crankmbs.errors import InputError, OutputError
 from crankmbs.scene.read import load_scene, scene_path, shipped_scenes
-from crankmbs.storage.files import write_in_one_move
+from crankmbs.storage.files import text_in_one_move
 
 __all__ = ["app", "main"]
 
@@ -209,7 +209,7 @@ def new(
     if path.exists():
         raise OutputError(f"{path}: exists already and is not overwritten; choose another name")
     text = template(path.stem)
-    write_in_one_move(path, lambda part: _write(part, text))
+    text_in_one_move(path, text)
     typer.echo(f"wrote {path}; check it with: crankmbs check {path}")
 
 
@@ -251,7 +251,3 @@ def main() -> None:
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(errors="replace")  # a title the terminal cannot show is no crash
     app()
-
-
-def _write(path: Path, text: str) -> None:
-    path.write_text(text, encoding="utf-8")

@@ -14,6 +14,7 @@ from crankmbs.compare.quantities import QUANTITIES, observed
 from crankmbs.compare.size import Size, size_of
 from crankmbs.errors import InputError
 from crankmbs.measures import Span, last_span
+from crankmbs.mechanics.peaks import negligible
 from crankmbs.mechanics.reactions import reactions
 from crankmbs.mechanics.train import CrankTrain, crank_train
 from crankmbs.mechanics.variables import VARIABLES
@@ -25,7 +26,6 @@ __all__ = ["Answer", "Excerpt", "LeftOut", "check_cylinder", "excerpt_of", "vani
 
 Answer = dict[str, Array]
 
-_NOTHING = 1e-9  # of the largest quantity of the same unit
 _FOLD = 0.01  # cosine of the rod angle; below it the formulas lose digits with its third power
 
 
@@ -118,15 +118,8 @@ def vanishing(answers: Iterable[Answer]) -> dict[str, str]:
     for answer in answers:
         for name, curve in answer.items():
             peaks[name] = max(peaks.get(name, 0.0), float(np.max(np.abs(curve))))
-    largest: dict[str, float] = {}
-    for name, peak in peaks.items():
-        units = QUANTITIES[name].units
-        largest[units] = max(largest.get(units, 0.0), peak)
-    return {
-        name: "it is zero but for rounding"
-        for name, peak in peaks.items()
-        if peak <= _NOTHING * largest[QUANTITIES[name].units]
-    }
+    units = {name: QUANTITIES[name].units for name in peaks}
+    return dict.fromkeys(negligible(peaks, units), "it is zero but for rounding")
 
 
 def check_cylinder(scene: Scene, cylinder: int) -> None:

@@ -25,7 +25,7 @@ from crankmbs.demo.state import Data, state_of
 from crankmbs.demo.views import STORES
 from crankmbs.errors import CrankmbsError, InputError, shown
 from crankmbs.scene.scene import Scene
-from crankmbs.storage.files import write_in_one_move
+from crankmbs.storage.files import text_in_one_move
 
 __all__ = ["save_page"]
 
@@ -65,7 +65,7 @@ def save_page(
         values = {n: v for n, (_, v) in zip(axes, point, strict=True) if v is not None}
         states[_BETWEEN.join(label for label, _ in point)] = _state(outcome, values, stem)
     text = file_html(_document(outcome, axes, states, stem), INLINE)
-    write_in_one_move(target, lambda part: _write(part, text))
+    text_in_one_move(target, text)
     return len(points)
 
 
@@ -179,7 +179,3 @@ def _own(outcome: Outcome, name: str, values: dict[str, float | str | None]) -> 
     if name == "rod":
         return "two-mass" if outcome.result.scene.rod.inertia == "two-mass" else "rigid"
     return next(label for label, value in values.items() if value is None)
-
-
-def _write(part: Path, text: str) -> None:
-    part.write_text(text, encoding="utf-8")

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from crankmbs.errors import InputError
 from crankmbs.scene.sentences import did_you_mean
-from crankmbs.storage.files import write_in_one_move
+from crankmbs.storage.files import text_in_one_move
 
 __all__ = ["LESSONS", "check_lesson", "write_lesson"]
 
@@ -49,9 +49,5 @@ def write_lesson(name: str, folder: Path) -> Path:
     number = list(LESSONS).index(name) + 1
     text = page(lesson, name=name, title=LESSONS[name], number=number, count=len(LESSONS))
     target = folder / f"{name}.html"
-    write_in_one_move(target, lambda part: _write(part, text))
+    text_in_one_move(target, text)
     return target
-
-
-def _write(part: Path, text: str) -> None:
-    part.write_text(text, encoding="utf-8")

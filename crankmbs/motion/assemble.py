@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from crankmbs.mechanics.inertia import inertia_alone
+from crankmbs.mechanics.peaks import peak, relative_error
 from crankmbs.mechanics.reactions import deviations, reactions
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.variables import VARIABLES
@@ -22,7 +24,6 @@ if TYPE_CHECKING:
 __all__ = ["ANGLE_ROUNDING", "Assembled", "assemble", "dataset"]
 
 _ROUNDING = 64 * float(np.finfo(float).eps)  # of a variable's peak: what the formulas round
-_NOTHING = 1e-9  # of the largest variable of the same unit: zero but for rounding
 _FEW = 32  # samples: among more there is one where nothing cancels
 ANGLE_ROUNDING = 2 * float(np.finfo(float).eps)  # of the crank angle
 
@@ -38,88 +39,125 @@ class Assembled(NamedTuple):
 
     @property
     def relative_error(self) -> float:
-        """The worst relative error: of the crank angle per radian turned, of each other variable
-        relative to its peak.
-
-        The energy residual is a check and does not count; nor does a variable that is zero but for
-        rounding, against the others of its unit.
-        """
+        """The worst relative error, as `crankmbs.mechanics.peaks` has it; 0 where nothing moved."""
         angle = self.variables["crank_angle"]
-        turned = _peak(angle - angle[0])
-        if turned == 0.0:  # nothing moved, nothing was integrated
-            return 0.0
-        peaks = self.peaks | {"crank_angle": turned}
-        largest: dict[str, float] = {}
-        for name, peak in peaks.items():
-            unit = VARIABLES[name].units
-            largest[unit] = max(largest.get(unit, 0.0), peak)
-        ratios = [
-            self.errors[name] / peak
-            for name, peak in peaks.items()
-            if name != "energy_residual" and peak > _NOTHING * largest[VARIABLES[name].units]
-        ]
-        return max(ratios, default=0.0)
+        turned = peak(angle - angle[0])
+        return relative_error(self.peaks, self.errors, turned) if turned else 0.0
 
 
 def assemble(train: CrankTrain, solution: Solution) -> Assembled:
     """Every variable of a result at the samples, and an estimate of its largest error.
 
-    The error is the difference between the answer and the better one of the solution, to which
-    the rounding of the crank angle is added, propagated through the same formulas; where the
-    formulation states its own errors they are taken. At a few samples the differences of angle,
-    speed and acceleration may cancel in a variable by chance: there what each makes is added up.
-    So may two passes agree in the angle by chance at an end in time, the only sample whose angle
-    errs where the others are at angles: it is taken to err as it does, or as much as in the last
-    revolution, whichever makes more.
+    With a the answer, b the better one (a itself where there is none), f a variable from angle,
+    speed and acceleration, eps the unit of rounding and maxima over the samples,
+
+        error of f = 64 eps max |f(a)| + max |f(b') - f(a)|
+
+    where b' is b turned ahead by the rounding of its angle, 2 eps max |theta_b|. Three terms are
+    more than the difference of two passes:
+
+        few samples        sum of what angle, speed and acceleration make one after the other
+        an end in time     at least |f(b'') - f(a)| there, b'' as far ahead as in the last turn
+        free crank         alpha also errs by (torque that b' needs, less what it has) / min J
+
+    Two variables have a law of their own:
+
+        crank_angle        max |theta_b - theta_a - omega_a (t_b - t_a)|, at equal time
+        energy_residual    its own peak: in the true motion the energy gained is the work done
+
+    Where the formulation states errors they are taken.
     """
     variables = _variables(train, solution.samples)
-    peaks = {name: _peak(values) for name, values in variables.items()}
+    peaks = {name: peak(values) for name, values in variables.items()}
     if solution.errors:
         return Assembled(solution, variables, peaks, dict(solution.errors))
     answer, better = solution.samples, solution.better or solution.samples
-    off = train.off  # the better answer's
     late = better.time - answer.time
     ahead = better.theta - answer.theta - answer.omega * late
-    rounding = ANGLE_ROUNDING * _peak(better.theta)
-    rounded = replace(
-        better,
-        theta=better.theta + rounding,
-        omega=better.omega + _speed_change(better, rounding),
-    )
-    chain = [rounded]
-    if len(better.time) <= _FEW:
-        turned = replace(answer, theta=rounded.theta)
-        chain[:0] = [turned, replace(turned, omega=rounded.omega)]
-    errors = {name: _ROUNDING * peak for name, peak in peaks.items()}
-    before, missed = variables, 0.0
-    for samples in chain:
-        motion = (samples.theta, samples.omega, samples.alpha)
-        apart = deviations(off, *motion, {**before, **samples.own})
-        # a free crank's acceleration at the rounded angle: where the torque needed is the one there
-        missed = apart["external_torque"] if samples.own else 0.0
-        given = {**_motion(samples), **samples.own}
-        apart |= {name: _peak(before[name] - values) for name, values in given.items()}
+    passes = _Passes(train.off, answer, _turned_by_rounding(better), variables)
+    errors = {name: _ROUNDING * size for name, size in peaks.items()}
+    differences = list(passes.differences())
+    missed = differences[-1][1]
+    for apart, _ in differences:
         errors = {name: error + apart[name] for name, error in errors.items()}
-        if samples is not rounded:
-            before = _variables(off, samples)
     if late.any() and late[-1] == 0.0 != ahead[-1]:  # else it ends at an angle, at the same time
-        recent = ahead[np.abs(better.theta - better.theta[-1]) <= 2.0 * math.pi]
-        more = math.copysign(_peak(recent) - abs(ahead[-1]), ahead[-1])
-        last = replace(rounded, own={}).select(np.array([-1]))
-        end = _variables(off, replace(last, theta=last.theta + more))
-        if better.own:
-            there = better.own["external_torque"][-1:]
-            missed = max(missed, _peak(there - end["external_torque"]))
-        for name in errors.keys() - better.own.keys():
-            most = _peak(variables[name][-1:] - end[name]) + _ROUNDING * peaks[name]
-            errors[name] = max(errors[name], most)
-    if missed:  # of a free crank, which has inertia at every angle; a driven one may have none
-        least = np.min(inertia_alone(train.scene, one_period(better.theta, train.scene.period)[0]))
-        errors["crank_acceleration"] += missed / float(least)
-    errors["crank_angle"] = _peak(ahead) + _ROUNDING * peaks["crank_angle"]
-    # in the true motion the energy gained is the work done
+        apart, missed_there = passes.end_in_time(ahead)
+        missed = max(missed, missed_there)
+        for name, most in apart.items():
+            errors[name] = max(errors[name], most + _ROUNDING * peaks[name])
+    if missed:
+        errors["crank_acceleration"] += missed / _least_inertia(train, better.theta)
+    errors["crank_angle"] = peak(ahead) + _ROUNDING * peaks["crank_angle"]
     errors["energy_residual"] = peaks["energy_residual"] + _ROUNDING * peaks["kinetic_energy"]
     return Assembled(solution, variables, peaks, errors)
+
+
+class _Passes(NamedTuple):
+    """Two passes of one motion.
+
+    off : the crank train of the better one
+    rounded : the better answer, turned ahead by the rounding of its angle
+    variables : of the answer
+    """
+
+    off: CrankTrain
+    answer: Samples
+    rounded: Samples
+    variables: dict[str, Array]
+
+    def differences(self) -> Iterator[tuple[dict[str, float], float]]:
+        """What each variable changes by from the answer to the better one, at most; and by how
+        much the torque that the better motion needs differs from the one it is given [N m].
+
+        In one go; of a few samples, where the differences may cancel in a variable by chance, in
+        three: the angle, the speed, the acceleration, whose changes are to be added up.
+        """
+        before = self.variables
+        for samples in self._chain():
+            motion = (samples.theta, samples.omega, samples.alpha)
+            apart = deviations(self.off, *motion, {**before, **samples.own})
+            missed = apart["external_torque"] if samples.own else 0.0
+            given = {**_motion(samples), **samples.own}
+            apart |= {name: peak(before[name] - values) for name, values in given.items()}
+            yield apart, missed
+            if samples is not self.rounded:
+                before = _variables(self.off, samples)
+
+    def _chain(self) -> list[Samples]:
+        if len(self.answer.time) > _FEW:
+            return [self.rounded]
+        turned = replace(self.answer, theta=self.rounded.theta)
+        return [turned, replace(turned, omega=self.rounded.omega), self.rounded]
+
+    def end_in_time(self, ahead: Array) -> tuple[dict[str, float], float]:
+        """The same at the last sample, its angle as far off as the passes were in the last turn.
+
+        At an end in time that sample is the only one whose angle errs where the others are at
+        angles, and two passes may agree in it by chance.
+
+        ahead : shape (n,) [rad], by which the better answer is ahead at equal time
+        """
+        theta, own = self.rounded.theta, self.rounded.own
+        recent = ahead[np.abs(theta - theta[-1]) <= 2.0 * math.pi]
+        more = math.copysign(peak(recent) - abs(ahead[-1]), ahead[-1])
+        last = replace(self.rounded, own={}).select(np.array([-1]))
+        end = _variables(self.off, replace(last, theta=last.theta + more))
+        missed = peak(own["external_torque"][-1:] - end["external_torque"]) if own else 0.0
+        names = self.variables.keys() - own.keys()
+        return {name: peak(self.variables[name][-1:] - end[name]) for name in names}, missed
+
+
+def _turned_by_rounding(samples: Samples) -> Samples:
+    """The motion with the crank ahead by the rounding of its angle, and as fast as it is there."""
+    rounding = ANGLE_ROUNDING * peak(samples.theta)
+    omega = samples.omega + _speed_change(samples, rounding)
+    return replace(samples, theta=samples.theta + rounding, omega=omega)
+
+
+def _least_inertia(train: CrankTrain, theta: Array) -> float:
+    """Of a free crank, which has inertia at every angle; a driven one may have none."""
+    angles, _ = one_period(theta, train.scene.period)
+    return float(np.min(inertia_alone(train.scene, angles)))
 
 
 def _speed_change(samples: Samples, ahead: float) -> Array:
@@ -167,7 +205,3 @@ def _motion(samples: Samples) -> dict[str, Array]:
         "crank_acceleration": samples.alpha,
         "energy_residual": samples.energy_residual,
     }
-
-
-def _peak(values: Array) -> float:
-    return max(float(values.max(initial=0.0)), -float(values.min(initial=0.0)))

@@ -16,7 +16,7 @@ from crankmbs.errors import CrankmbsError, OutputError
 if sys.platform != "win32":
     import fcntl
 
-__all__ = ["together", "write_in_one_move"]
+__all__ = ["text_in_one_move", "together", "write_in_one_move"]
 
 _PART = re.compile(r"\.part-[a-z0-9_]{8}(\.\w+)?")
 _OWNER = ".owner"  # in a part: who fills it holds its lock, which ends with the process
@@ -77,6 +77,12 @@ def write_in_one_move(target: Path, write: Callable[[Path], None]) -> None:
     """
     with together(target.parent) as part:
         write(part / target.name)
+
+
+def text_in_one_move(target: Path, text: str) -> None:
+    """Put a file with this text in place, in UTF-8, as `write_in_one_move` does."""
+    with together(target.parent) as part:
+        (part / target.name).write_text(text, encoding="utf-8")
 
 
 def _move(part: Path, folder: Path) -> None:

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from crankmbs.errors import FormulationError, InputError
+from crankmbs.mechanics.peaks import negligible
 from crankmbs.mechanics.variables import VARIABLES
 from crankmbs.result import Result
 from crankmbs.scene.scene import Extent, Scene
@@ -29,7 +30,6 @@ _CAP = 3.0  # s, for multibody
 _STOPS_OF_MULTIBODY = ("above the cost cap", "Newton iteration does not converge")
 _TOO_SMALL = 2.0  # the true error may be this many times the stated one
 _USUAL = 1e-3  # of a variable's peak: a larger stated error is no answer unless the case names it
-_NOTHING = 1e-9  # of the peak of what has the same unit: a variable that is zero but for rounding
 _FLOOR = 1e-12  # of the peak of what has the same unit: rounding
 _HEAD = ("| case |" + "".join(f" {name} |" for name in _FORMULATIONS), "|---" * 5 + "|")
 
@@ -167,13 +167,15 @@ def coarsest(result: Result, peaks: dict[str, float]) -> tuple[float, str]:
     Of the crank angle it is taken per radian turned; what is zero but for rounding does not count,
     and nothing does where nothing moved.
     """
-    scale, turned = scales(peaks), float(np.ptp(result.data["crank_angle"].values))
+    turned = float(np.ptp(result.data["crank_angle"].values))
     if turned == 0.0:
         return 0.0, "crank_angle"
+    peaks = peaks | {"crank_angle": turned}
+    ignored = negligible(peaks, {name: VARIABLES[name].units for name in peaks})
     shares = {
         name: float(result.data[name].attrs["error_estimate"]) / peak
-        for name, peak in (peaks | {"crank_angle": turned}).items()
-        if peak > _NOTHING * scale[name]
+        for name, peak in peaks.items()
+        if name not in ignored
     }
     name = max(shares, key=lambda name: shares[name])
     return shares[name], name

@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from crankmbs.mechanics.pressure import pressure_of
+from validation.adapter import diagram_of
 from validation.case import Case
 from validation.judge import Outcome
 from validation.oracles.arithmetic import LONG
-from validation.oracles.indicator import Diagram, absolute_pressure, dead_centres
+from validation.oracles.indicator import absolute_pressure, dead_centres
 
 __all__ = ["pieces"]
 
@@ -19,22 +20,8 @@ _BESIDE = 1e-8  # rad: at a dead centre the diagram jumps
 def pieces(case: Case) -> Outcome:
     """Largest difference over the absolute pressure, one period, dead centres left out."""
     scene = case.theirs()
-    gas = scene.gas
-    assert gas is not None
-    given = gas.indicator
-    assert given is not None
-    diagram = Diagram(
-        crank_radius=scene.crank.radius,
-        rod_length=scene.rod.length,
-        offset=scene.piston.offset,
-        compression_ratio=given.compression_ratio,
-        n_compression=given.n_compression,
-        n_expansion=given.n_expansion,
-        intake=given.intake_pressure,
-        peak=given.peak_pressure,
-        exhaust=given.exhaust_pressure,
-        pre_expansion=given.pre_expansion,
-    )
+    assert scene.gas is not None
+    diagram = diagram_of(scene)
     ours = pressure_of(case.ours())
     assert ours is not None
     angle = np.linspace(0.0, scene.period, _SAMPLES)
@@ -42,6 +29,6 @@ def pieces(case: Case) -> Outcome:
     smooth = [(x > _BESIDE) & (x < 2.0 * np.pi - _BESIDE) for x in beside]
     angle = angle[smooth[0] & smooth[1]]
     exact = absolute_pressure(diagram, angle)
-    error = np.abs(ours(angle) + LONG.number(gas.ambient or 0.0) - exact) / exact
+    error = np.abs(ours(angle) + LONG.number(scene.gas.ambient or 0.0) - exact) / exact
     worst = int(np.argmax(error))
     return Outcome(float(error[worst]), f"worst at {np.degrees(angle[worst]):.1f} deg")

@@ -7,10 +7,11 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from crankmbs.mechanics.peaks import negligible, peak
 from crankmbs.mechanics.variables import VARIABLES
 from crankmbs.numerics.arrays import Array
 
-__all__ = ["Convergence", "relative_error"]
+__all__ = ["Convergence"]
 
 _SAFETY = 1.5
 _UNPROVEN = 5.0  # instead, where two runs say nothing about an order
@@ -19,7 +20,6 @@ _BENT = 1.0 / 32.0  # of D, what bends within the steps leave in a first correct
 _ROUNDING = 5e-13  # of a variable's peak: what Newton's method and the interpolation leave
 _OF_ANGLE = ("rod_angle", "piston_position", "piston_displacement")
 _FAST = 32.0  # a halving that gains more: at a given angle these err by their interpolation alone
-_NOTHING = 1e-10  # of the largest value of its unit
 
 Runs = Sequence[Mapping[str, Array]]
 
@@ -60,14 +60,14 @@ class Convergence:
             self._compare(runs)
             usual = self._usual() if len(runs) > 2 else self._usual_change(runs[-1])
             for name, value in runs[-1].items():
-                peak, change = _peak(value), self._changes[name][-1]
-                error = _UNPROVEN * max(change, _SHARE * usual * peak) if change else 0.0
+                size, change = peak(value), self._changes[name][-1]
+                error = _UNPROVEN * max(change, _SHARE * usual * size) if change else 0.0
                 if len(runs) > 2:
                     error = _SAFETY * self._uncorrected(name)
                     if self._is_clean(name):
                         answer[name] = value + (value - runs[-2][name]) / 3.0
                         error = _SAFETY * self._corrected(name, usual)
-                errors[name] = error + _ROUNDING * peak
+                errors[name] = error + _ROUNDING * size
         _silence(answer)
         del answer["ahead"]
         errors["crank_angle"] = errors.pop("ahead")
@@ -77,10 +77,10 @@ class Convergence:
         """Note what the last halving changed."""
         for name, value in runs[-1].items():
             change = value - runs[-2][name]
-            self._changes.setdefault(name, []).append(_peak(change))
+            self._changes.setdefault(name, []).append(peak(change))
             if len(runs) > 2:
                 before = runs[-2][name] - runs[-3][name]
-                correction = _peak(before - 4.0 * change) / 3.0
+                correction = peak(before - 4.0 * change) / 3.0
                 self._corrections.setdefault(name, []).append(correction)
 
     def _is_clean(self, name: str) -> bool:
@@ -88,7 +88,7 @@ class Convergence:
 
     def _usual_change(self, run: Mapping[str, Array]) -> float:
         """D over the peak of the variables, the median: they all come from one motion."""
-        sizes = {name: _peak(value) for name, value in run.items()}
+        sizes = {name: peak(value) for name, value in run.items()}
         shares = [self._changes[name][-1] / size for name, size in sizes.items() if size > 0.0]
         return float(np.median(shares))
 
@@ -119,18 +119,6 @@ class Convergence:
         return _largest(changes, shrinks, 4.0, 0.55 * shrinks)
 
 
-def relative_error(variables: Mapping[str, Array], errors: Mapping[str, float]) -> float:
-    """The worst of all: the crank angle's per radian turned, others relative to their peak."""
-    angle = variables["crank_angle"]
-    turned = float(np.max(np.abs(angle - angle[0])))
-    worst = 0.0
-    for name, error in errors.items():
-        scale = turned if name == "crank_angle" else _peak(variables[name])
-        if name != "energy_residual" and scale > 0.0:
-            worst = max(worst, error / scale)
-    return worst
-
-
 def _largest(sizes: Sequence[float], shrinks: float, most: float, stalled: float) -> float:
     """The last size, or what the one before leaves of itself, if that is more with no margin.
 
@@ -148,14 +136,9 @@ def _largest(sizes: Sequence[float], shrinks: float, most: float, stalled: float
 
 def _silence(answer: dict[str, Array]) -> None:
     """Make zero what is but rounding beside the others of its unit, or beside speed squared."""
-    largest = {VARIABLES["crank_acceleration"].units: _peak(answer["crank_speed"]) ** 2}
-    units = {name: VARIABLES[name].units for name in answer if name in VARIABLES}
-    for name, unit in units.items():
-        largest[unit] = max(largest.get(unit, 0.0), _peak(answer[name]))
-    for name, unit in units.items():
-        if _peak(answer[name]) < _NOTHING * largest[unit]:
-            answer[name] = np.zeros_like(answer[name])
-
-
-def _peak(values: Array) -> float:
-    return float(np.max(np.abs(values), initial=0.0))
+    peaks = {name: peak(values) for name, values in answer.items() if name in VARIABLES}
+    units = {name: VARIABLES[name].units for name in peaks}
+    peaks["speed squared"] = peaks["crank_speed"] ** 2
+    units["speed squared"] = VARIABLES["crank_acceleration"].units
+    for name in negligible(peaks, units) - {"speed squared"}:
+        answer[name] = np.zeros_like(answer[name])

@@ -1,0 +1,49 @@
+"""How large variables are, and which are nothing beside the others."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from crankmbs.mechanics.variables import VARIABLES
+from crankmbs.numerics.arrays import Array
+
+__all__ = ["negligible", "peak", "relative_error"]
+
+_NOTHING = 1e-10  # of the largest of the same unit; multibody's Newton iterations leave more rarely
+
+
+def peak(values: Array) -> float:
+    """Largest absolute value, 0 of none.
+
+    >>> peak(np.array([1.0, -2.0]))
+    2.0
+    """
+    return max(float(values.max(initial=0.0)), -float(values.min(initial=0.0)))
+
+
+def negligible(peaks: Mapping[str, float], units: Mapping[str, str]) -> set[str]:
+    """What is zero but for rounding: at most 1e-10 of the largest peak of its unit.
+
+    >>> negligible({"x": 1.0, "y": 1e-12, "z": 1e-12}, {"x": "N", "y": "N", "z": "m"})
+    {'y'}
+    """
+    largest: dict[str, float] = {}
+    for name, size in peaks.items():
+        largest[units[name]] = max(largest.get(units[name], 0.0), size)
+    return {name for name, size in peaks.items() if size <= _NOTHING * largest[units[name]]}
+
+
+def relative_error(peaks: Mapping[str, float], errors: Mapping[str, float], turned: float) -> float:
+    """The worst relative error: of the crank angle per radian turned, of each other variable of a
+    result relative to its peak.
+
+    The energy residual is a check and does not count; nor does what is `negligible`.
+
+    >>> relative_error({"crank_speed": 100.0}, {"crank_speed": 1e-4, "crank_angle": 2e-6}, 1.0)
+    2e-06
+    """
+    sizes = {**peaks, "crank_angle": turned}
+    ignored = negligible(sizes, {name: VARIABLES[name].units for name in sizes})
+    ignored.add("energy_residual")
+    ratios = [errors[name] / size for name, size in sizes.items() if name not in ignored]
+    return max(ratios, default=0.0)
