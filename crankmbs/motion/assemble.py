@@ -11,7 +11,7 @@ import numpy as np
 from crankmbs.mechanics.inertia import inertia_alone
 from crankmbs.mechanics.reactions import deviations, reactions
 from crankmbs.mechanics.train import CrankTrain
-from crankmbs.mechanics.variables import VARIABLES
+from crankmbs.mechanics.variables import SUMS, VARIABLES
 from crankmbs.motion.base import Samples, Solution
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.periodic import one_period
@@ -23,6 +23,7 @@ __all__ = ["ANGLE_ROUNDING", "Assembled", "assemble", "dataset"]
 
 _ROUNDING = 64 * float(np.finfo(float).eps)  # of a variable's peak: what the formulas round
 _NOTHING = 1e-9  # of the largest variable of the same unit: zero but for rounding
+_UNASKED = SUMS | {"energy_residual"}
 _FEW = 32  # samples: among more there is one where nothing cancels
 ANGLE_ROUNDING = 2 * float(np.finfo(float).eps)  # of the crank angle
 
@@ -41,8 +42,8 @@ class Assembled(NamedTuple):
         """The worst relative error: of the crank angle per radian turned, of each other variable
         relative to its peak.
 
-        The energy residual is a check and does not count; nor does a variable that is zero but for
-        rounding, against the others of its unit.
+        The energy residual is a check and does not count, nor do sums in which the cylinders may
+        cancel; nor does a variable that is zero but for rounding, against the others of its unit.
         """
         angle = self.variables["crank_angle"]
         turned = _peak(angle - angle[0])
@@ -56,7 +57,7 @@ class Assembled(NamedTuple):
         ratios = [
             self.errors[name] / peak
             for name, peak in peaks.items()
-            if name != "energy_residual" and peak > _NOTHING * largest[VARIABLES[name].units]
+            if name not in _UNASKED and peak > _NOTHING * largest[VARIABLES[name].units]
         ]
         return max(ratios, default=0.0)
 
@@ -149,7 +150,7 @@ def dataset(assembled: Assembled) -> xr.Dataset:
     coordinates = {name: labelled(name) for name in ("time", "crank_angle")}
     number = xr.Variable("cylinder", cylinders, {"long_name": "cylinder number"})
     return xr.Dataset(
-        {name: labelled(name) for name in VARIABLES if name not in coordinates},
+        {name: labelled(name) for name in VARIABLES if name in variables.keys() - coordinates},
         coords={**coordinates, "cylinder": number},
     )
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from crankmbs.mechanics.variables import VARIABLES
+from crankmbs.mechanics.variables import SUMS, VARIABLES
 from crankmbs.numerics.arrays import Array
 
 __all__ = ["Convergence", "relative_error"]
@@ -19,6 +19,7 @@ _BENT = 1.0 / 32.0  # of D, what bends within the steps leave in a first correct
 _ROUNDING = 5e-13  # of a variable's peak: what Newton's method and the interpolation leave
 _OF_ANGLE = ("rod_angle", "piston_position", "piston_displacement")
 _FAST = 32.0  # a halving that gains more: at a given angle these err by their interpolation alone
+_UNASKED = SUMS | {"energy_residual"}
 _NOTHING = 1e-10  # of the largest value of its unit
 
 Runs = Sequence[Mapping[str, Array]]
@@ -89,7 +90,8 @@ class Convergence:
     def _usual_change(self, run: Mapping[str, Array]) -> float:
         """D over the peak of the variables, the median: they all come from one motion."""
         sizes = {name: _peak(value) for name, value in run.items()}
-        shares = [self._changes[name][-1] / size for name, size in sizes.items() if size > 0.0]
+        changes = {n: self._changes[n][-1] for n, size in sizes.items() if size > 0.0}
+        shares = [change / sizes[n] for n, change in changes.items() if n not in SUMS]
         return float(np.median(shares))
 
     def _usual(self) -> float:
@@ -97,7 +99,7 @@ class Convergence:
         shares = [
             corrections[-1] / self._changes[name][-1]
             for name, corrections in self._corrections.items()
-            if self._changes[name][-1] > 0.0
+            if self._changes[name][-1] > 0.0 and name not in SUMS
         ]
         return float(np.median(shares)) if shares else 0.0
 
@@ -120,13 +122,14 @@ class Convergence:
 
 
 def relative_error(variables: Mapping[str, Array], errors: Mapping[str, float]) -> float:
-    """The worst of all: the crank angle's per radian turned, others relative to their peak."""
+    """The worst of all: the crank angle's per radian turned, others relative to their peak, but for
+    sums in which the cylinders may cancel."""
     angle = variables["crank_angle"]
     turned = float(np.max(np.abs(angle - angle[0])))
     worst = 0.0
     for name, error in errors.items():
         scale = turned if name == "crank_angle" else _peak(variables[name])
-        if name != "energy_residual" and scale > 0.0:
+        if name not in _UNASKED and scale > 0.0:
             worst = max(worst, error / scale)
     return worst
 
