@@ -11,7 +11,7 @@ import numpy as np
 from pydantic import TypeAdapter
 
 from crankmbs.errors import OutputError, shown
-from crankmbs.mechanics.variables import VARIABLES
+from crankmbs.mechanics.variables import VARIABLES, variables_of
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.schema import SAVED
 from crankmbs.scene.units import RPM
@@ -161,7 +161,7 @@ def _check_labels(data: xr.Dataset, scene: Scene) -> None:
     """Raise ValueError unless the data are of the scene's cylinders, each with unit and error."""
     if data.sizes["cylinder"] != len(scene.cylinders) or data.sizes["time"] == 0:
         raise ValueError("not the samples of this scene")
-    for name, about in VARIABLES.items():
+    for name, about in variables_of(scene).items():
         attrs = data[name].attrs
         if attrs["units"] != about.units or not isinstance(attrs["error_estimate"], float):
             raise ValueError(f"{name}: no unit or no error")

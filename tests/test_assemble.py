@@ -8,7 +8,7 @@ import pytest
 from crankmbs import load_scene
 from crankmbs.mechanics.inertia import reduce
 from crankmbs.mechanics.train import CrankTrain
-from crankmbs.mechanics.variables import VARIABLES
+from crankmbs.mechanics.variables import VARIABLES, variables_of
 from crankmbs.motion.assemble import assemble, dataset
 from crankmbs.motion.base import Samples, Solution
 
@@ -27,8 +27,8 @@ def solution(better=None, **more):
 
 def test_every_variable_has_its_name_shape_and_labels():
     data = dataset(assemble(CrankTrain(SCENE, None), solution()))
-    assert set(data.variables) == VARIABLES.keys() | {"cylinder"}
-    for name, about in VARIABLES.items():
+    assert set(data.variables) == variables_of(SCENE).keys() | {"cylinder"}
+    for name, about in variables_of(SCENE).items():
         assert data[name].dims == (("time", "cylinder") if about.per_cylinder else ("time",))
         assert data[name].attrs["units"] == about.units
         assert data[name].attrs["long_name"] == about.long_name

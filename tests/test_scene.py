@@ -186,7 +186,8 @@ def test_every_part_survives_a_dump():
         ),
         (
             lambda: Layout(cylinders=Cylinder()),
-            "cylinders: must be a tuple or list of Cylinder; Cylinder(phase=0.0, bank=0.0) came",
+            "cylinders: must be a tuple or list of Cylinder; "
+            "Cylinder(phase=0.0, bank=0.0, position=None) came",
         ),
         (lambda: Layout(firing_order=3), "firing_order: must be a tuple or list; 3 came"),
         (

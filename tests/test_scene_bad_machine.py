@@ -177,7 +177,10 @@ KEYS = "crank, rod, piston, run, layout, gas, gravity, motion, start, torque, ti
                 ("firing_order = [1.0]", ".firing_order[1]: must be a whole number; 1.0 came"),
                 ("firing_order = [true]", ".firing_order[1]: must be a whole number; true came"),
                 ("cylinders = []", ".cylinders: must have at least 1 entry; [] came"),
-                ("cylinders = [1]", ".cylinders[1]: must be a table with phase, bank; 1 came"),
+                (
+                    "cylinders = [1]",
+                    ".cylinders[1]: must be a table with phase, bank, position; 1 came",
+                ),
                 (
                     "cylinders = [{ phase = 90 }]",
                     '.cylinders[1].phase: needs a unit, such as "30 deg"; 90 came',

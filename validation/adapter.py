@@ -30,6 +30,7 @@ from crankmbs.scene.scene import Scene
 from crankmbs.scene.tables import Table
 from validation.oracles.arithmetic import LONG, Arithmetic, Array
 from validation.oracles.energy import kinetic_energy
+from validation.oracles.frame import frame_loads
 from validation.oracles.free_motion import Motion, series_path
 from validation.oracles.indicator import Diagram
 from validation.oracles.loads import torque_at
@@ -73,6 +74,7 @@ def machine_of(scene: Scene) -> Machine:
         piston_area=piston.gas_area or 0.0,
         offset=piston.offset,
         cylinders=tuple((c.phase, c.bank) for c in scene.cylinders),
+        levers=scene.levers or (),
         pressure=_pressure(scene),
         gravity=(gx, gy),
         loads=_loads(scene.torque),
@@ -141,6 +143,7 @@ def reference_variables(
     variables = dict(vars(reactions))
     for name in _TOWARDS_CRANK:
         variables[name] = -variables[name]
+    variables |= frame_loads(machine, theta, omega, alpha, arithmetic)
     variables["kinetic_energy"] = kinetic_energy(machine, theta, omega, arithmetic)
     return variables
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from crankmbs.mechanics.variables import VARIABLES
+from crankmbs.mechanics.variables import SUMS, VARIABLES
 from crankmbs.numerics.arrays import Array
 
 __all__ = ["negligible", "peak", "relative_error"]
@@ -37,13 +37,14 @@ def relative_error(peaks: Mapping[str, float], errors: Mapping[str, float], turn
     """The worst relative error: of the crank angle per radian turned, of each other variable of a
     result relative to its peak.
 
-    The energy residual is a check and does not count; nor does what is `negligible`.
+    The energy residual is a check and does not count, nor do sums in which the cylinders may
+    cancel; nor does what is `negligible`.
 
     >>> relative_error({"crank_speed": 100.0}, {"crank_speed": 1e-4, "crank_angle": 2e-6}, 1.0)
     2e-06
     """
     sizes = {**peaks, "crank_angle": turned}
     ignored = negligible(sizes, {name: VARIABLES[name].units for name in sizes})
-    ignored.add("energy_residual")
+    ignored |= SUMS | {"energy_residual"}
     ratios = [errors[name] / size for name, size in sizes.items() if name not in ignored]
     return max(ratios, default=0.0)

@@ -3,7 +3,8 @@
 Body by body from the piston down, in each cylinder's frame: the piston's X balance gives the rod
 on piston along the axis, the rod's moment about the crank pin gives it across, the piston's Y
 balance the wall, the rod's balance the crank pin, and the crank's balance the main bearing and
-the torque from outside. Gas pushes the piston towards the crank, -X.
+the torque from outside. Gas pushes the piston towards the crank, -X. The frame, on mounts, feels
+m (g - a) of every moving part and, about the crank axis, the walls and the gas on the heads.
 
 Every balance is linear in omega^2, alpha and 1. So where the angles of the samples repeat it is
 made for these three alone, once for every angle of a period, and put together for each sample.
@@ -40,6 +41,7 @@ class _Powers(NamedTuple):
     one: Array
 
 
+_PER_SPEED = ("piston_velocity", "rod_angular_speed")
 _OFTEN = 3  # so often an angle must come back for its parts to pay
 _UNITS = _Powers(*np.eye(3)[:, :, np.newaxis])
 
@@ -107,7 +109,7 @@ class _Found(NamedTuple):
     """Every variable at the samples, not yet put together.
 
     columns : for the crank or for each cylinder, shape (n,) what depends on the angle alone, for
-        the piston's velocity per speed; shape (3, n) what belongs to omega^2, alpha and 1
+        velocities per speed; shape (3, n) what belongs to omega^2, alpha and 1
     which : shape (samples,), which of the n angles a sample is at; None where n are the samples
     """
 
@@ -134,7 +136,7 @@ class _Found(NamedTuple):
             values = values.take(self.which, axis=-1)
         if values.ndim > 1:
             return np.asarray(values[0] * self.at.square + values[1] * self.at.alpha + values[2])
-        return values * self.omega if name == "piston_velocity" else values
+        return values * self.omega if name in _PER_SPEED else values
 
 
 def _found(
@@ -153,17 +155,24 @@ def _found(
     columns = {name: [part] for name, part in _crank(scene, once, motion, cylinders).items()}
     for name in cylinders[0].variables:
         columns[name] = [c.variables[name] for c in cylinders]
+    torque = columns["crank_torque"]
+    columns["journal_torque"] = list(accumulate(torque))
+    pairs = zip(columns["journal_torque"], torque, strict=True)
+    columns["pin_torque"] = [journal - 0.5 * own for journal, own in pairs]
     return _Found(columns, which if by_parts else None, samples, omega)
 
 
 class _Cylinder(NamedTuple):
-    """The variables of one cylinder by name, for its piston's velocity that per speed; what it
-    adds to the balance of the crank, in the engine's frame."""
+    """The variables of one cylinder by name, for velocities those per speed; what it adds to the
+    balance of the crank and of the frame, in the engine's frame."""
 
     variables: dict[str, Array]
     pull_x: Array
     pull_y: Array
     kinetic_energy: Array
+    shake_x: Array
+    shake_y: Array
+    moment: Array
 
 
 def _cylinder(
@@ -188,11 +197,15 @@ def _cylinder(
     beta_tt = loop.beta_2 * square + loop.beta_1 * alpha
     felt_x = g.x_2 * square + g.x_1 * alpha - gx * one  # the rod's acceleration minus gravity
     felt_y = g.y_2 * square + g.y_1 * alpha - gy * one
-    pin_x = piston.mass * (x_tt - gx * one) + gas * area * one
+    felt = x_tt - gx * one  # the piston's, along the cylinder
+    pin_x = piston.mass * felt + gas * area * one
     weight = rod.mass * (cos_b * felt_y + sin_b * felt_x)
     pin_y = ((rod.moment_of_inertia * beta_tt - a * weight) / l - pin_x * sin_b) / cos_b
     throw_x = rod.mass * felt_x + pin_x
     throw_y = rod.mass * felt_y + pin_y
+    side = -pin_y - piston.mass * gy * one
+    shake_x = -rod.mass * felt_x - piston.mass * felt
+    shake_y = -rod.mass * felt_y + piston.mass * gy * one
     cos_bank, sin_bank = np.cos(cylinder.bank), np.sin(cylinder.bank)
     inertia = (
         piston.mass * loop.x_1**2
@@ -201,13 +214,15 @@ def _cylinder(
     )
     variables = {
         "rod_angle": loop.beta,
+        "rod_angular_speed": loop.beta_1,
+        "rod_angular_acceleration": beta_tt,
         "piston_position": loop.x,
         "piston_displacement": top_position(r, l, piston.offset) - loop.x,
         "piston_velocity": -loop.x_1,
         "piston_acceleration": -x_tt,
         "gas_pressure": gas,
         "gas_force": gas * area,
-        "side_force": -pin_y - piston.mass * gy * one,
+        "side_force": side,
         "piston_pin_force_x": pin_x,
         "piston_pin_force_y": pin_y,
         "crank_pin_force_x": throw_x,
@@ -219,6 +234,9 @@ def _cylinder(
         cos_bank * throw_x - sin_bank * throw_y,
         sin_bank * throw_x + cos_bank * throw_y,
         0.5 * inertia * square,
+        cos_bank * shake_x - sin_bank * shake_y,
+        sin_bank * shake_x + cos_bank * shake_y,
+        -loop.x * side - piston.offset * gas * area * one,
     )
 
 
@@ -232,7 +250,7 @@ def _crank(
     x_tt = -cos_theta * square - sin_theta * alpha
     y_tt = -sin_theta * square + cos_theta * alpha
     weight = first_moment * (cos_theta * gy - sin_theta * gx)
-    return {
+    return _rocking(scene, cylinders) | {
         "external_torque": crank.moment_of_inertia * alpha
         - weight * one
         - sum(c.variables["crank_torque"] for c in cylinders),
@@ -242,6 +260,24 @@ def _crank(
         "main_bearing_force_y": first_moment * y_tt
         - crank.mass * gy * one
         + sum(c.pull_y for c in cylinders),
+        "frame_force_x": crank.mass * gx * one
+        - first_moment * x_tt
+        + sum(c.shake_x for c in cylinders),
+        "frame_force_y": crank.mass * gy * one
+        - first_moment * y_tt
+        + sum(c.shake_y for c in cylinders),
+        "frame_moment": np.asarray(sum(c.moment for c in cylinders)),
         "kinetic_energy": 0.5 * crank.moment_of_inertia * square
         + sum(c.kinetic_energy for c in cylinders),
+    }
+
+
+def _rocking(scene: Scene, cylinders: list[_Cylinder]) -> dict[str, Array]:
+    """Moments about the middle of the crank, where every cylinder has its place along it."""
+    if scene.levers is None:
+        return {}
+    levers = np.array(scene.levers)
+    return {
+        "rocking_moment_x": -np.tensordot(levers, [c.shake_y for c in cylinders], 1),
+        "rocking_moment_y": np.tensordot(levers, [c.shake_x for c in cylinders], 1),
     }

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-__all__ = ["VARIABLES", "Variable"]
+from crankmbs.scene.scene import Scene
+
+__all__ = ["SUMS", "VARIABLES", "Variable", "variables_of"]
 
 
 class Variable(NamedTuple):
@@ -28,9 +30,16 @@ VARIABLES = {
     "external_torque": Variable("N m", "torque on the crank from outside: drive and loads"),
     "main_bearing_force_x": Variable("N", "bearing on crank, engine's X, all cylinders"),
     "main_bearing_force_y": Variable("N", "bearing on crank, engine's Y, all cylinders"),
+    "frame_force_x": Variable("N", "moving parts on the frame, engine's X, gas included"),
+    "frame_force_y": Variable("N", "moving parts on the frame, engine's Y, gas included"),
+    "frame_moment": Variable("N m", "moving parts on the frame about the crank axis, with gas"),
+    "rocking_moment_x": Variable("N m", "moving parts on the frame about X, middle of the crank"),
+    "rocking_moment_y": Variable("N m", "moving parts on the frame about Y, middle of the crank"),
     "kinetic_energy": Variable("J", "kinetic energy of crank, rods and pistons"),
     "energy_residual": Variable("J", "kinetic energy gained minus work done"),
     "rod_angle": Variable("rad", "rod angle beta from the cylinder axis", True),
+    "rod_angular_speed": Variable("rad/s", "rate of the rod angle beta", True),
+    "rod_angular_acceleration": Variable("rad/s^2", "second rate of the rod angle beta", True),
     "piston_position": Variable("m", "piston pin, cylinder's X from the crank axis", True),
     "piston_displacement": Variable("m", "piston displacement from its top dead centre", True),
     "piston_velocity": Variable("m/s", "piston velocity towards the crank", True),
@@ -43,4 +52,22 @@ VARIABLES = {
     "crank_pin_force_x": Variable("N", "crank on rod, cylinder's X", True),
     "crank_pin_force_y": Variable("N", "crank on rod, cylinder's Y", True),
     "crank_torque": Variable("N m", "moment of the rod's force on the crank", True),
+    "journal_torque": Variable("N m", "rods 1 to this one on the crank: its next journal", True),
+    "pin_torque": Variable("N m", "rods before this one and half of this one on the crank", True),
 }
+
+SUMS = frozenset({"journal_torque", "pin_torque"}) | {
+    name for name in VARIABLES if name.startswith(("frame_", "rocking_"))
+}
+"""Sums in which the cylinders may cancel to nothing: no error relative to their own peak is asked
+of them, for that of what they sum up is."""
+
+
+def variables_of(scene: Scene) -> dict[str, Variable]:
+    """The variables that a result of a scene has: rocking moments where the cylinders have places.
+
+    >>> "rocking_moment_x" in variables_of(load_scene("propeller"))
+    False
+    """
+    placed = scene.levers is not None
+    return {n: v for n, v in VARIABLES.items() if placed or not n.startswith("rocking_")}

@@ -187,7 +187,7 @@ def dataset(assembled: Assembled) -> xr.Dataset:
     coordinates = {name: labelled(name) for name in ("time", "crank_angle")}
     number = xr.Variable("cylinder", cylinders, {"long_name": "cylinder number"})
     return xr.Dataset(
-        {name: labelled(name) for name in VARIABLES if name not in coordinates},
+        {name: labelled(name) for name in VARIABLES if name in variables.keys() - coordinates},
         coords={**coordinates, "cylinder": number},
     )
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from crankmbs.mechanics.variables import VARIABLES
+from crankmbs.mechanics.variables import VARIABLES, variables_of
 from crankmbs.motion.memory import Room
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
@@ -102,7 +102,7 @@ def plan_of(scene: Scene) -> Plan:
         return Plan(start, DEGREE, False, until, until_time, last, folds)
     every, in_time = scene.run.every.resolve(scene.period)
     cylinders = len(scene.cylinders)
-    room = Room(sum(cylinders if one.per_cylinder else 1 for one in VARIABLES.values()))
+    room = Room(sum(cylinders if one.per_cylinder else 1 for one in variables_of(scene).values()))
     if in_time == until_time:  # else their number shows on the way
         room.check(until / every)
     return Plan(start, every, in_time, until, until_time, folds=folds, room=room)

@@ -7,6 +7,7 @@ string with its unit (``"46 mm"``), which is converted on the way in.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Annotated, Literal
 
 from annotated_types import Ge, Gt, Le, Len
@@ -117,18 +118,25 @@ class Piston:
 
 @part
 class Cylinder:
-    """phase [rad]: its cycle angle at crank angle 0; bank [rad]: its axis from the engine's X."""
+    """phase [rad]: its cycle angle at crank angle 0; bank [rad]: its axis from the engine's X;
+    position [m]: of its throw along the crank, in the sense of X turned into Y."""
 
     phase: Angle = 0.0
     bank: Angle = 0.0
+    position: Distance | None = None
 
 
 @part
 class Layout:
-    """Where the cylinders stand: a firing order (even, in line) or a list of cylinders."""
+    """Where the cylinders stand: a firing order (even, in line) or a list of cylinders.
+
+    spacing [m]: axial distance of neighbouring throws, one for each cylinder, in the order of
+    their numbers.
+    """
 
     firing_order: Annotated[tuple[Annotated[int, Strict()], ...], Len(1)] | None = None
     cylinders: Annotated[tuple[Cylinder, ...], Len(1)] | None = None
+    spacing: Length | None = None
 
     def __post_init__(self) -> None:
         if (self.firing_order is None) == (self.cylinders is None):
@@ -140,17 +148,42 @@ class Layout:
                 f"firing_order must name each of the cylinders 1 to {len(order)} once; "
                 f"{shown(list(order))} came"
             )
+        self._check_positions()
 
     def resolve(self, period: float) -> tuple[Cylinder, ...]:
-        """The cylinders, in the order of their numbers; the k-th to fire lags k period / n."""
+        """The cylinders, in the order of their numbers; the k-th to fire lags k period / n, and the
+        spacing places the k-th by number."""
         if self.cylinders is not None:
-            return self.cylinders
-        assert self.firing_order is not None
-        n = len(self.firing_order)
-        lag = {number: k for k, number in enumerate(self.firing_order)}
-        return tuple(
-            Cylinder(phase=(n - lag[number]) % n * period / n) for number in range(1, n + 1)
-        )
+            cylinders = self.cylinders
+        else:
+            assert self.firing_order is not None
+            n = len(self.firing_order)
+            lag = {number: k for k, number in enumerate(self.firing_order)}
+            cylinders = tuple(
+                Cylinder(phase=(n - lag[number]) % n * period / n) for number in range(1, n + 1)
+            )
+        if self.spacing is None:
+            return cylinders
+        return tuple(replace(c, position=k * self.spacing) for k, c in enumerate(cylinders))
+
+    def _check_positions(self) -> None:
+        """Every cylinder has its place along the crank, or none has."""
+        cylinders = self.cylinders or ()
+        placed = sum(cylinder.position is not None for cylinder in cylinders)
+        if 0 < placed < len(cylinders):
+            raise InputError(
+                "position: give it for every cylinder or for none; "
+                f"{placed} of {len(cylinders)} came with one"
+            )
+        if self.spacing is None:
+            return
+        if placed:
+            raise InputError("give spacing or each cylinder's position, not both; both came")
+        if len({cylinder.bank for cylinder in cylinders}) > 1:
+            raise InputError(
+                "spacing: cylinders of different banks may share a throw; give each cylinder's "
+                "position instead"
+            )
 
 
 @part

@@ -112,6 +112,16 @@ class Scene:
         """The cylinders in the order of their numbers, firing order resolved."""
         return self.layout.resolve(self.period)
 
+    @cached_property
+    def levers(self) -> tuple[float, ...] | None:
+        """How far each cylinder's throw stands beyond the middle of the crank, halfway between the
+        first and the last [m]; None where no positions are given."""
+        places = [c.position for c in self.cylinders if c.position is not None]
+        if not places:
+            return None
+        middle = 0.5 * (min(places) + max(places))
+        return tuple(place - middle for place in places)
+
     def _check_loop(self) -> None:
         least = self.crank.radius + abs(self.piston.offset)
         if self.rod.length < least * (1.0 - 1e-15):

@@ -22,6 +22,7 @@ _ANGULAR = {
 _WORDS = ("title", "source")
 _UNITS = {
     **dict.fromkeys(("radius", "length", "bore", "offset", "center_of_mass"), "m"),
+    **dict.fromkeys(("position", "spacing"), "m"),
     **dict.fromkeys(("intake_pressure", "exhaust_pressure", "peak_pressure"), "Pa"),
     **dict.fromkeys(("ambient", "closing"), "Pa"),
     "mass": "kg",

@@ -38,11 +38,11 @@ def write_netcdf(data: xr.Dataset, file: Path) -> None:
 def read_netcdf(file: Path, dims: Mapping[str, tuple[str, ...]]) -> xr.Dataset:
     """Read a dataset that `write_netcdf` wrote, all of it; nothing else is opened.
 
-    dims : variable -> dimensions, of those that must be there
+    dims : variable -> dimensions, of those that may be there
 
     Raises
     ------
-    ValueError : it holds links, or less than it promises, or not these variables as floats
+    ValueError : it holds links, or less than it promises, or one of these as no floats
     OSError, LookupError, RuntimeError, TypeError : HDF5 cannot make sense of it
     """
     import h5py
@@ -55,7 +55,7 @@ def read_netcdf(file: Path, dims: Mapping[str, tuple[str, ...]]) -> xr.Dataset:
     ) as opened:
         data = opened.load()
     for name, names in dims.items():
-        if data[name].dims != names or data[name].dtype.kind != "f":
+        if name in data.variables and (data[name].dims != names or data[name].dtype.kind != "f"):
             raise ValueError(f"{name} is no variable over {names}")
     return data
 

@@ -85,8 +85,9 @@ class Machine:
 
     crank_center_of_mass lies on the reference line, from the axis; crank_inertia is about the axis.
     rod_center_of_mass is measured from the crank pin, rod_inertia about it. cylinders holds
-    (phase, bank) [rad]. gravity is (gx, gy) [m/s2] in the engine's frame. The time of the loads'
-    time tables is that of the run, which starts at 0.
+    (phase, bank) [rad]; levers how far each stands beyond the middle of the crank [m], along X
+    turned into Y, empty where that is not known. gravity is (gx, gy) [m/s2] in the engine's frame.
+    The time of the loads' time tables is that of the run, which starts at 0.
     """
 
     crank_radius: Number
@@ -101,6 +102,7 @@ class Machine:
     piston_area: Number = 0.0
     offset: Number = 0.0
     cylinders: tuple[tuple[Number, Number], ...] = ((0.0, 0.0),)
+    levers: tuple[Number, ...] = ()
     pressure: PressureTable | PressurePieces | None = None
     gravity: tuple[Number, Number] = (0.0, 0.0)
     loads: Loads = Loads()

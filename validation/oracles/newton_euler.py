@@ -18,7 +18,8 @@ class Reactions:
     Crank quantities have shape (samples,) and stand in the engine's frame; the others have shape
     (samples, cylinders) and stand in their cylinder's frame. external_torque is what everything
     outside (drive and loads) puts on the crank; crank_torque is the moment of the rod's force on
-    the crank about its axis.
+    the crank about its axis, journal_torque that of this rod and all before it, and pin_torque
+    that of all before it and half of this one.
     """
 
     external_torque: Array
@@ -37,6 +38,10 @@ class Reactions:
     piston_displacement: Array
     piston_velocity: Array
     piston_acceleration: Array
+    rod_angular_speed: Array
+    rod_angular_acceleration: Array
+    journal_torque: Array
+    pin_torque: Array
 
 
 def newton_euler(
@@ -74,6 +79,8 @@ def newton_euler(
     cos_rod, sin_rod = cosine[:, 1 + count :], sine[:, 1 + count :]
     pin_x, pin_y = per_cylinder(bodies.CRANK_PIN_X), per_cylinder(bodies.CRANK_PIN_Y)
     position = radius * cos_throw + length * cos_rod
+    torque = radius * (sin_throw * pin_x - cos_throw * pin_y)
+    journals = np.cumsum(torque, axis=1)
     return Reactions(
         external_torque=unknown[:, bodies.TORQUE],
         main_bearing_force_x=unknown[:, bodies.BEARING_X],
@@ -83,7 +90,7 @@ def newton_euler(
         piston_pin_force_x=per_cylinder(bodies.PISTON_PIN_X),
         piston_pin_force_y=per_cylinder(bodies.PISTON_PIN_Y),
         side_force=per_cylinder(bodies.SIDE),
-        crank_torque=radius * (sin_throw * pin_x - cos_throw * pin_y),
+        crank_torque=torque,
         gas_pressure=pressure,
         gas_force=gas_force,
         rod_angle=-angle[:, 1 + count :],
@@ -92,6 +99,10 @@ def newton_euler(
         piston_velocity=-radius * sin_throw * rate[:, 1 : 1 + count]
         - length * sin_rod * rate[:, 1 + count :],
         piston_acceleration=per_cylinder(bodies.PISTON_X),
+        rod_angular_speed=-rate[:, 1 + count :],
+        rod_angular_acceleration=-per_cylinder(bodies.ROD_SPIN),
+        journal_torque=journals,
+        pin_torque=journals - torque / 2,
     )
 
 

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from crankmbs.mechanics.peaks import negligible, peak
-from crankmbs.mechanics.variables import VARIABLES
+from crankmbs.mechanics.variables import SUMS, VARIABLES
 from crankmbs.numerics.arrays import Array
 
 __all__ = ["Convergence"]
@@ -89,7 +89,8 @@ class Convergence:
     def _usual_change(self, run: Mapping[str, Array]) -> float:
         """D over the peak of the variables, the median: they all come from one motion."""
         sizes = {name: peak(value) for name, value in run.items()}
-        shares = [self._changes[name][-1] / size for name, size in sizes.items() if size > 0.0]
+        changes = {n: self._changes[n][-1] for n, size in sizes.items() if size > 0.0}
+        shares = [change / sizes[n] for n, change in changes.items() if n not in SUMS]
         return float(np.median(shares))
 
     def _usual(self) -> float:
@@ -97,7 +98,7 @@ class Convergence:
         shares = [
             corrections[-1] / self._changes[name][-1]
             for name, corrections in self._corrections.items()
-            if self._changes[name][-1] > 0.0
+            if self._changes[name][-1] > 0.0 and name not in SUMS
         ]
         return float(np.median(shares)) if shares else 0.0
 

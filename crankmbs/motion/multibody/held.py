@@ -39,4 +39,7 @@ def held_by(scene: Scene, gas: Array, theta: Array) -> dict[str, Array]:
         "crank_pin_force_x": gas,
         "crank_pin_force_y": across,
         "crank_torque": torque,
+        "journal_torque": np.cumsum(torque, axis=1),
+        "pin_torque": np.cumsum(torque, axis=1) - 0.5 * torque,
+        "frame_moment": -torque.sum(axis=1),
     }

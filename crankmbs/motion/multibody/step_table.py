@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from crankmbs.mechanics.geometry import top_position
+from crankmbs.motion.multibody.frame import frame_of
 from crankmbs.motion.multibody.gas import GasStretch
 from crankmbs.motion.multibody.held import held_by
 from crankmbs.motion.multibody.model import Record
@@ -137,10 +138,11 @@ def table_of(
     turn = np.exp(-1j * bank)
     crank, rods, pistons = _bodies(record.position, n)
     crank_v, rods_v, pistons_v = _bodies(record.velocity, n)
+    crank_a, rods_a, pistons_a = _bodies(record.acceleration, n)
     theta, omega = crank[:, 2], crank_v[:, 2]
     position = (_complex(pistons) * turn).real
     velocity = (_complex(pistons_v) * turn).real
-    acceleration = (_complex(_bodies(record.acceleration, n)[2]) * turn).real
+    acceleration = (_complex(pistons_a) * turn).real
     crank_pin, piston_pin = _complex(record.crank_pin) * turn, _complex(record.piston_pin) * turn
     phi = theta[:, None] + gas.gas.phases
     kinetic = _kinetic_energy(scene, crank_v, rods_v, pistons_v)
@@ -150,6 +152,7 @@ def table_of(
     closure += residual - np.interp(after, record.time, closure)
     top = top_position(scene.crank.radius, scene.rod.length, scene.piston.offset)
     lever = scene.crank.radius * np.exp(-1j * phi)
+    rod_torque = -(lever * crank_pin).imag
     variables = {
         "crank_angle": theta,
         "crank_speed": omega,
@@ -157,9 +160,12 @@ def table_of(
         "external_torque": torque,
         "main_bearing_force_x": record.bearing[:, 0],
         "main_bearing_force_y": record.bearing[:, 1],
+        **frame_of(scene, torque, (crank, rods, pistons), (crank_a, rods_a, pistons_a)),
         "kinetic_energy": kinetic,
         "energy_residual": closure,
         "rod_angle": bank - rods[..., 2],
+        "rod_angular_speed": -rods_v[..., 2],
+        "rod_angular_acceleration": -rods_a[..., 2],
         "piston_position": position,
         "piston_displacement": top - position,
         "piston_velocity": -velocity,
@@ -169,7 +175,9 @@ def table_of(
         "piston_pin_force_y": piston_pin.imag,
         "crank_pin_force_x": crank_pin.real,
         "crank_pin_force_y": crank_pin.imag,
-        "crank_torque": -(lever * crank_pin).imag,
+        "crank_torque": rod_torque,
+        "journal_torque": np.cumsum(rod_torque, axis=1),
+        "pin_torque": np.cumsum(rod_torque, axis=1) - 0.5 * rod_torque,
     }
     for name, force in held_by(scene, forces, theta).items():
         variables[name] = variables[name] - force
