@@ -29,7 +29,7 @@ from crankmbs.numerics.arrays import Array
 
 __all__ = ["Effort", "advance"]
 
-_MOST_STEPS = 512  # of one stretch
+_MOST_STEPS = 4096  # of one stretch
 _RADAU = 1e-13  # finest tolerance of a step, half of it where steps are halved; SciPy's is 2.3e-14
 _PLAIN_TIME = 5e-4  # s a step that is not compiled
 

@@ -1,8 +1,9 @@
 """Steps over time of one free rotation, compiled by numba where that pays
 (`crankmbs.numerics.kernels`).
 
-All that is evaluated step by step: the crank train reduced to one rotation, and the method of
-Dormand and Prince of order 8; in scalars, so that they and `mechanics.inertia` check each other.
+All that is evaluated step by step: the crank train reduced to one rotation, and the methods of
+Dormand and Prince of order 8 and 5; in scalars, so that they and `mechanics.inertia` check each
+other, and in one file, as numba's cache sees no change of a function in another.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ import math
 
 import numpy as np
 
-from crankmbs.motion.minimal.dop853 import E3, E5, A, C, D
+from crankmbs.motion.minimal.dop853 import D4, E3, E4, E5, A, C, D
 from crankmbs.motion.minimal.system import Machine, System
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.kernels import kernel
@@ -20,11 +21,14 @@ __all__ = ["NEAR", "enter", "first_exit", "land", "reduced", "slopes", "travel"]
 
 Asked = tuple[float, float, float, int]  # as in `travel`
 Steps = tuple[Array, Array, Array]  # beginnings and lengths [s], and rows as in `first_exit`
+Room = tuple[Array, Array, Array, Array]  # slopes of the stages, and of the steps what comes next
 
 _PASSED = 1e-9  # rad: a knot this close ahead has been passed
 _MANY, _FAR = 4.0, 0.5  # knots apart; rad: longer steps roam across knots, none so long
 NEAR = 0.01  # of a step: a landing is as close to its limit
 _BISECTIONS, _SCAN = 60, 16
+_OWN = 16  # the first stage of order 5 that is not of order 8
+_LONGER = 1.2  # a step of order 5 is tried again, that was too long before
 _HARD = 1e3 / math.radians(5.0)  # 1/rad: damped a thousand times while the crank turns 5 degrees
 
 
@@ -133,14 +137,26 @@ def reduced(theta: float, machine: Machine, pieces: Array) -> tuple[float, float
 @kernel
 def slopes(t: float, y: Array, system: System, out: Array) -> None:
     """Slopes of (theta, omega, work) in time; no numbers where a trial step went far too far."""
-    theta, omega, (machine, pieces, load) = float(y[0]), float(y[1]), system
+    theta, (machine, pieces, load) = float(y[0]), system
     out[0] = out[1] = out[2] = math.nan
-    if math.isfinite(theta * omega):
-        inertia, slope, torque = reduced(theta, machine, pieces)
-        torque += load[0] + load[1] * t + (load[2] + load[3] * omega) * omega
-        alpha, power = (torque - 0.5 * slope * omega * omega) / inertia, torque * omega
-        if math.isfinite(alpha * power):
-            out[0], out[1], out[2] = omega, alpha, power
+    if math.isfinite(theta * y[1]):
+        _slopes(t, float(y[1]), load, reduced(theta, machine, pieces), out)
+
+
+@kernel
+def _slopes(
+    t: float,
+    omega: float,
+    load: tuple[float, float, float, float],
+    of_angle: tuple[float, float, float],
+    out: Array,
+) -> None:
+    """The same where the train has been reduced."""
+    inertia, slope, torque = of_angle
+    torque += load[0] + load[1] * t + (load[2] + load[3] * omega) * omega
+    alpha, power = (torque - 0.5 * slope * omega * omega) / inertia, torque * omega
+    if math.isfinite(alpha * power):
+        out[0], out[1], out[2] = omega, alpha, power
 
 
 @kernel
@@ -150,8 +166,8 @@ def _stages(
     """The slopes k of some stages of a step from y; leaves the state of the last one in ``at``."""
     for s in which:
         for q in range(3):
-            rise = 0.0
-            for i in range(s):
+            rise = float(A[s, 0]) * float(k[0, q])
+            for i in range(_OWN if s >= _OWN else 1, s):
                 rise += float(A[s, i]) * float(k[i, q])
             at[q] = float(y[q]) + h * rise
         slopes(t + h * float(C[s]), at, system, k[s])
@@ -263,6 +279,75 @@ def land(t: float, y: Array, slope: Array, q: int, limit: float, within: float) 
 
 
 @kernel
+def _reach(y: Array, slope: Array, limits: Array) -> tuple[float, int]:
+    """In what time the motion comes to the next angle of ``limits``, at a constant acceleration,
+    and the number of that; infinite and -1 where it does not."""
+    nearest, which = math.inf, -1
+    for i in range(4):
+        ahead = abs(float(limits[i] - y[0]))
+        if (limits[i] - y[0]) * y[1] > 0.0 and ahead < nearest:
+            nearest, which = ahead, i
+    square = y[1] * y[1] + 2.0 * slope[1] * math.copysign(nearest, y[1]) if which >= 0 else -1.0
+    if not square > 0.0:
+        return math.inf, -1
+    return 2.0 * nearest / (abs(y[1]) + math.sqrt(square)), which
+
+
+@kernel
+def _short(
+    t: float, y: Array, system: System, asked: Asked, limits: Array, room: Room
+) -> tuple[float, float, int]:
+    """As many steps of order 5 as one is divided into, to the knot ahead, where it is so close.
+
+    Returns
+    -------
+    the time at the knot, NaN where y and k[0] are left as they were; the largest error of a step
+    over what is allowed; evaluations
+    """
+    (tolerance, speed, _, parts), (k, begins, widths, rows) = asked, room
+    begin, slope, new = y.copy(), k[0].copy(), np.empty(3)
+    which, worst, evaluations = _reach(y, slope, limits)[1], 0.0, 0
+    for j in range(parts):
+        width, late, lands = _reach(y, k[0], limits)[0] / (parts - j), 0.0, False
+        for _ in range(2):
+            width += late
+            _stages(range(_OWN, 22), t, width, y, system, k, new)
+            evaluations += 6
+            fastest = speed + max(abs(float(y[1])), abs(float(new[1])))
+            late = (float(limits[which]) - new[0]) / new[1] if j + 1 == parts else 0.0
+            bent = max(abs(k[21, 1]), abs(k[21, 1] - k[0, 1]) / (width * fastest)) * late * late
+            lands = bent <= tolerance
+            if lands:
+                break
+        wrong = 0.0
+        for q in range(2):
+            total = float(E4[0]) * float(k[0, q])
+            for i in range(_OWN, 22):
+                total += float(E4[i]) * float(k[i, q])
+            wrong += (width * total / (tolerance * (1.0 if q == 0 else fastest))) ** 2
+        worst = max(worst, math.sqrt(0.5 * wrong))
+        for q in range(3):
+            rise, first, last = new[q] - y[q], width * k[0, q], width * k[21, q]
+            total = float(D4[0]) * float(k[0, q])
+            for i in range(_OWN, 22):
+                total += float(D4[i]) * float(k[i, q])
+            rows[j, 0, q], rows[j, 1, q], rows[j, 2, q] = y[q], rise, first - rise
+            rows[j, 3, q], rows[j, 4, q] = 2.0 * rise - first - last, width * total
+            rows[j, 5, q] = rows[j, 6, q] = rows[j, 7, q] = 0.0
+        swing, inside = abs(float(new[1] - y[1])), True
+        for i in (4, 5, 6):
+            inside = inside and (new[1] - limits[i]) * (y[1] - limits[i]) > 0.0
+            inside = inside and abs(float(y[1] - limits[i])) > 2.0 * swing
+        if not (lands and worst < 1.0 and inside):
+            y[:], k[0] = begin, slope
+            return math.nan, worst, evaluations
+        begins[j], widths[j] = t, width
+        t = t + width
+        y[:], k[0] = new, k[21]
+    return t, worst, evaluations
+
+
+@kernel
 def travel(
     system: System, control: Asked, start: tuple[float, ...], y: Array, limits: Array, steps: Steps
 ) -> tuple[int, float, float, float, int]:
@@ -270,10 +355,10 @@ def travel(
     number, time, next step, largest kinetic energy, and evaluations.
 
     Every piece keeps its own cubics beyond the knot, and is cut at the knot: there the step is
-    taken again, as its end is more exact than its inside. A step much longer than knots are apart
-    roams across those where no pressure bends. It ends where all room is used, at any
-    other limit, at the end in time, where no step is short enough, and where the motion dies away
-    or is damped hard.
+    taken again, as its end is more exact than its inside; where it is close, steps of order 5 go
+    there at once. A step much longer than knots are apart roams across those where no pressure
+    bends. It ends where all room is used, at any other limit, at the end in time, where no step is
+    short enough, and where the motion dies away or is damped hard.
 
     control : tolerance of a step, speed [rad/s] to which it is relative, end in time [s], and into
         how many every step is divided: of a second answer none is as long as of the first
@@ -281,59 +366,75 @@ def travel(
     y : shape (3,), theta, omega, work; limits : as in `first_exit`; carried on, as the pieces are
     """
     (tolerance, speed, t_bound, parts), (t, h, most), (begins, widths, rows) = control, start, steps
-    k, new, (machine, pieces, load) = np.empty((16, 3)), np.empty(3), system
-    n, evaluations, entered, roams = 0, 0, True, False
+    k, new, (machine, pieces, load) = np.empty((22, 3)), np.empty(3), system
+    n, evaluations, roams, short = 0, 1, False, math.inf
+    slopes(t, y, system, k[0])
     while n + parts <= len(widths):
-        if entered:
-            slopes(t, y, system, k[0])
-            evaluations, entered = evaluations + 1, False
         least, refused = 2e-15 * t, False
         h = max(h, least)
         if len(machine[18]) < len(machine[13]):
             roams = _roam(y, h, machine, pieces, limits, roams)
             h = min(h, _FAR / abs(y[1])) if roams else h
-        while True:
-            width = min(h, t_bound - t)
-            _stages(range(1, 13), t, width, y, system, k, new)
-            fastest = speed + max(abs(float(y[1])), abs(float(new[1])))
-            error = _error(width, k, (tolerance, tolerance * fastest))
-            evaluations += 12
-            if error < 1.0:
-                break
-            shrunk, refused = 0.9 * error**-0.125, True
-            h = width * (shrunk if shrunk > 0.2 else 0.2)
-            if h <= least:
-                return n, t, h, most, evaluations
-        grown = min(10.0, 0.9 * error**-0.125) if error > 0.0 else 10.0
-        h = width * (min(grown, 1.0) if refused else grown)
-        _interpolate(t, width, y, new, system, k, rows[n])
-        evaluations += 3
-        x, i = first_exit(rows[n], new, limits)
-        end, cut = t_bound if width == t_bound - t else t + width, i >= 0 and x > 0.0
-        again = cut or (i < 0 and parts > 1)
-        width = (x if cut else 1.0) * width / (parts if again else 1)
-        for j in range(parts if again else 1):
-            if again:
+        ahead, i = _reach(y, k[0], limits)
+        late = math.nan
+        if ahead <= min(h, short) and t + ahead < t_bound:
+            room = (k, begins[n:], widths[n:], rows[n:])
+            asked = (tolerance * ahead / h, speed, t_bound, parts)  # in a long step there are many
+            late, error, more = _short(t, y, system, asked, limits, room)
+            short = ahead / parts * (0.9 * error**-0.25 if error > 0.0 else 10.0)
+            evaluations += more
+        else:
+            short = _LONGER * short
+        if late > t:
+            n, t, width = n + parts, late, ahead
+            h = max(h, min(_LONGER * h, 2.0 * _MANY * ahead))
+        else:
+            while True:
+                width = min(h, t_bound - t)
                 _stages(range(1, 13), t, width, y, system, k, new)
-                _interpolate(t, width, y, new, system, k, rows[n])
-                evaluations += 15
-            begins[n], widths[n] = t, width
-            n += 1
-            if again or i < 0:  # and not where the motion leaves at once
-                t = t + width if cut or j + 1 < parts else end
-                for q in range(3):
-                    y[q], k[0, q] = new[q], k[12, q]
-        if again and not cut:  # the better end may be beyond a limit that the first was before
-            i = first_exit(rows[n - 1], new, limits)[1]
+                fastest = speed + max(abs(float(y[1])), abs(float(new[1])))
+                error = _error(width, k, (tolerance, tolerance * fastest))
+                evaluations += 12
+                if error < 1.0:
+                    break
+                shrunk, refused = 0.9 * error**-0.125, True
+                h = width * (shrunk if shrunk > 0.2 else 0.2)
+                if h <= least:
+                    return n, t, h, most, evaluations
+            grown = min(10.0, 0.9 * error**-0.125) if error > 0.0 else 10.0
+            h = width * (min(grown, 1.0) if refused else grown)
+            _interpolate(t, width, y, new, system, k, rows[n])
+            evaluations += 3
+            x, i = first_exit(rows[n], new, limits)
+            end, cut = t_bound if width == t_bound - t else t + width, i >= 0 and x > 0.0
+            again = cut or (i < 0 and parts > 1)
+            width = (x if cut else 1.0) * width / (parts if again else 1)
+            for j in range(parts if again else 1):
+                if again:
+                    _stages(range(1, 13), t, width, y, system, k, new)
+                    _interpolate(t, width, y, new, system, k, rows[n])
+                    evaluations += 15
+                begins[n], widths[n] = t, width
+                n += 1
+                if again or i < 0:  # and not where the motion leaves at once
+                    t = t + width if cut or j + 1 < parts else end
+                    for q in range(3):
+                        y[q], k[0, q] = new[q], k[12, q]
+            if again and not cut:  # the better end may be beyond a limit that the first was before
+                i = first_exit(rows[n - 1], new, limits)[1]
         if i >= 0:
             t = land(t, y, k[0], 0 if i < 4 else 1, float(limits[i]), NEAR * width)
             ends = i > 1 or y[0] == limits[2] or y[0] == limits[3]
             if ends or y[1] == 0.0 or not limits[5] < y[1] < limits[6]:
                 break
-            sense, entered = math.copysign(1.0, y[1]), True
+            sense = math.copysign(1.0, y[1])
             limits[0], limits[1] = enter(float(y[0]), sense, machine, pieces)
             roams = False
-        inertia, omega = reduced(float(y[0]), machine, pieces)[0], float(y[1])
+        of_angle, omega = reduced(float(y[0]), machine, pieces), float(y[1])
+        if i >= 0:
+            _slopes(t, omega, load, of_angle, k[0])
+            evaluations += 1
+        inertia = of_angle[0]
         kinetic, damping = 0.5 * inertia * omega * omega, load[2] + 2.0 * load[3] * omega
         most, hard = max(most, kinetic), abs(damping) > _HARD * inertia * abs(omega)
         if hard or kinetic <= tolerance * tolerance * most or t >= t_bound:
