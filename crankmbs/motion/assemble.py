@@ -114,7 +114,7 @@ def assemble(train: CrankTrain, solution: Solution) -> Assembled:
             most = _peak(variables[name][-1:] - end[name]) + _ROUNDING * peaks[name]
             errors[name] = max(errors[name], most)
     if missed:  # of a free crank, which has inertia at every angle; a driven one may have none
-        least = np.min(inertia_alone(train.scene, one_period(better.theta, train.scene.period)[0]))
+        least = np.min(inertia_alone(train.scene, one_period(better.theta, train.period)[0]))
         errors["crank_acceleration"] += missed / float(least)
     errors["crank_angle"] = _peak(ahead) + _ROUNDING * peaks["crank_angle"]
     # in the true motion the energy gained is the work done
