@@ -27,15 +27,17 @@ from crankmbs.scene.drives import (
     TimeTable,
     Viscous,
 )
-from crankmbs.scene.parts import Crank, Cylinder, Gas, Gravity, Indicator, Layout, Piston, Rod
+from crankmbs.scene.gas import Gas, Indicator
+from crankmbs.scene.parts import Crank, Cylinder, Gravity, Layout, Piston, Rod
 from crankmbs.scene.read import load_scene, shipped_scenes
 from crankmbs.scene.scene import Extent, Run, Scene
-from crankmbs.scene.tables import Table
+from crankmbs.scene.tables import Columns, Table
 from crankmbs.simulate import simulate
 
 __all__ = [
     "Budget",
     "Choice",
+    "Columns",
     "Comparison",
     "Constant",
     "Cost",

@@ -3,12 +3,12 @@
 import numpy as np
 
 from crankmbs.mechanics.geometry import close_loop
-from crankmbs.mechanics.pressure import pressure_of
+from crankmbs.mechanics.pressure import pressures_of
 
 
 def gas_work(scene):
     """Work of one cylinder's gas over a cycle [J], by Gauss quadrature on each piece."""
-    pressure = pressure_of(scene)
+    pressure = pressures_of(scene)[0]
     node, weight = np.polynomial.legendre.leggauss(6)
     width = np.diff(pressure.knots)[:, None]
     distance = 0.5 * width * (node + 1.0)

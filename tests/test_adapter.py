@@ -28,7 +28,7 @@ from crankmbs import (
     load_scene,
     simulate,
 )
-from crankmbs.mechanics.pressure import pressure_of
+from crankmbs.mechanics.pressure import pressures_of
 from validation.adapter import machine_of, reference_motion, reference_variables
 from validation.oracles import end_states
 from validation.oracles.arithmetic import distance
@@ -140,6 +140,6 @@ def test_names_and_signs() -> None:
 def test_indicator_goes_over_piece_by_piece(read) -> None:
     scene = read(INDICATED)
     angle = np.linspace(-20.0, 20.0, 1001)
-    ours = pressure_of(scene)(angle)
+    ours = pressures_of(scene)[0](angle)
     theirs = evaluate_pressure(machine_of(scene).pressure, angle.astype(np.longdouble))
     np.testing.assert_allclose(ours, theirs.astype(float), rtol=1e-11)

@@ -10,7 +10,7 @@ from references import worst_ratio
 
 from crankmbs import load_scene, simulate
 from crankmbs.mechanics.inertia import reduce
-from crankmbs.mechanics.pressure import pressure_of
+from crankmbs.mechanics.pressure import pressures_of
 from crankmbs.mechanics.train import CrankTrain, crank_angle_knots
 from crankmbs.motion.crank_angle.grid import grid_of
 from crankmbs.numerics.collocation import gauss
@@ -18,7 +18,7 @@ from crankmbs.scene.units import DEGREE
 from validation.random_scenes import random_scene
 
 SCENE = load_scene("v_twin")
-PRESSURE = pressure_of(SCENE)
+PRESSURE = pressures_of(SCENE)
 GRID = grid_of(CrankTrain(SCENE, PRESSURE), gauss(4))
 
 

@@ -11,7 +11,7 @@ from scipy.interpolate import PPoly
 from crankmbs import Crank, Gas, Indicator, Motion, Piston, Rod, Run, Scene, Start, simulate
 from crankmbs.mechanics.geometry import close_loop, dead_centres
 from crankmbs.mechanics.indicator import INDICATOR_RTOL, indicator_pieces
-from crankmbs.mechanics.pressure import PeriodicPressure, pressure_of
+from crankmbs.mechanics.pressure import PeriodicPressure, pressures_of
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion.free.passes import run as run_free
 from validation.adapter import diagram_of
@@ -272,9 +272,9 @@ def test_a_driven_engine_states_what_the_pieces_miss_of_the_polytropes(seed):
 def test_a_free_engine_states_what_the_pieces_miss_of_the_polytropes(seed):
     """The same engine under the polytropes themselves, evaluated at every node of its cells."""
     engine = random_engine(seed)
-    pieces = pressure_of(engine)
+    pieces = pressures_of(engine)[0]
     pressure = Exact(pieces.knots, pieces.coefficients, engine=engine)
-    exact = run_free(CrankTrain(engine, pressure), 1e-11, 10.0, by_angle=True)
+    exact = run_free(CrankTrain(engine, (pressure,)), 1e-11, 10.0, by_angle=True)
     data = simulate(engine, rtol=1e-11).data
     names = ("time", "crank_speed", "main_bearing_force_x", "side_force", "crank_torque")
     apart = {n: np.abs(data[n].values - exact.variables[n]).max() for n in names}

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from crankmbs import Constant, Layout, Motion, Oscillation, Quadratic, Run, Start, Viscous, simulate
 from crankmbs.mechanics.inertia import reduce
-from crankmbs.mechanics.pressure import pressure_of
+from crankmbs.mechanics.pressure import pressures_of
 from crankmbs.mechanics.reactions import reactions
 from crankmbs.mechanics.train import CrankTrain, crank_train
 from crankmbs.scene.scene import Extent
@@ -91,7 +91,7 @@ def test_forward_after_inverse_is_the_identity(seed):
 def test_power_flows(seed):
     """The rate of the kinetic energy is the power of gas, weight and outside at every instant."""
     scene = turning(seed)
-    pressure = pressure_of(scene)
+    pressure = pressures_of(scene)
     theta, omega, alpha = np.linspace(0.0, 6.0, 9), np.linspace(-200.0, 200.0, 9), 3e3
     found = reactions(CrankTrain(scene, pressure), theta, omega, alpha + 0.0 * theta)
     inertia, slope, _ = reduce(CrankTrain(scene, pressure), theta)

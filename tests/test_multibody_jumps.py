@@ -14,7 +14,7 @@ from references import assert_within_stated
 
 from crankmbs.result import Result
 from crankmbs.scene.drives import Motion, SpeedFile, Start, TimeTable, Torque, Viscous
-from crankmbs.scene.parts import Gas
+from crankmbs.scene.gas import Gas
 from crankmbs.scene.read import load_scene
 from crankmbs.scene.scene import Run, Scene
 from crankmbs.scene.tables import Table

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from crankmbs.mechanics.inertia import reduce
-from crankmbs.mechanics.pressure import pressure_of
+from crankmbs.mechanics.pressure import pressures_of
 from crankmbs.mechanics.reactions import reactions
 from crankmbs.mechanics.torque import branch_of
 from crankmbs.mechanics.train import CrankTrain, crank_train
@@ -76,7 +76,7 @@ def test_a_speed_table_goes_on_straight_beyond_the_rows_around_a_speed() -> None
 
 
 def test_gas_has_no_jump_on_a_stretch_and_is_the_pressure_within() -> None:
-    pressure = pressure_of(V_TWIN)
+    pressure = pressures_of(V_TWIN)
     assert pressure is not None
     gas = GasForces(CrankTrain(V_TWIN, pressure))
     stretch = gas.stretch(0.1, 1.0)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from crankmbs import Cylinder, Gas, Layout, Table, load_scene
-from crankmbs.mechanics.pressure import pressure_of, repeat
+from crankmbs.mechanics.pressure import pressures_of, repeat
 from crankmbs.mechanics.train import CrankTrain, crank_angle_knots, crank_train
 from validation.adapter import machine_of
 from validation.oracles.pressure import evaluate_pressure
@@ -26,14 +26,14 @@ def with_gas(**changes):
 def test_interpolation(kind, zero):
     scene = with_gas(interpolation=kind, zero=zero)
     angle = np.linspace(-30.0, 30.0, 2003)
-    ours = pressure_of(scene)(angle)
+    ours = pressures_of(scene)[0](angle)
     exact = evaluate_pressure(machine_of(scene).pressure, angle.astype(np.longdouble))
     assert np.abs(ours - exact.astype(float)).max() < 1e-12 * np.abs(ours).max()
 
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_rows_are_met_and_the_period_closes(kind):
-    pressure = pressure_of(with_gas(interpolation=kind))
+    pressure = pressures_of(with_gas(interpolation=kind))[0]
     for turns in (0, 1, -3):
         angle = np.array(ROWS.x) + 4 * pi * turns
         np.testing.assert_allclose(pressure(angle), ROWS.y, rtol=1e-9, atol=1e-6)
@@ -41,7 +41,7 @@ def test_the_rows_are_met_and_the_period_closes(kind):
 
 
 def test_pchip_does_not_overshoot_across_the_periods_end():
-    pressure = pressure_of(with_gas(interpolation="pchip"))
+    pressure = pressures_of(with_gas(interpolation="pchip"))[0]
     values = pressure(np.linspace(12.4, 0.3 + 4 * pi, 500))
     assert values.min() == pytest.approx(3e4)
     assert np.all(np.diff(values) >= 0.0)
@@ -51,7 +51,7 @@ def test_a_closing_row_changes_nothing():
     closed = Table((*ROWS.x, 0.3 + 4 * pi), (*ROWS.y, ROWS.y[0]))
     for kind in KINDS:
         ours, others = (
-            pressure_of(with_gas(pressure=rows, interpolation=kind)) for rows in (ROWS, closed)
+            pressures_of(with_gas(pressure=rows, interpolation=kind))[0] for rows in (ROWS, closed)
         )
         np.testing.assert_array_equal(ours.coefficients, others.coefficients)
 
@@ -60,20 +60,20 @@ def test_ambient_is_subtracted():
     positive = Table(ROWS.x, tuple(abs(y) for y in ROWS.y))
     absolute = with_gas(pressure=positive, absolute=True, ambient=1e5)
     gauge = with_gas(pressure=positive)
-    difference = pressure_of(gauge)(0.7) - pressure_of(absolute)(0.7)
+    difference = pressures_of(gauge)[0](0.7) - pressures_of(absolute)[0](0.7)
     assert difference == pytest.approx(1e5, rel=1e-12)
 
 
 @pytest.mark.parametrize("hair", [0.0, 1e-15, -1e-15])
 def test_at_a_step_the_value_after_it_counts(hair):
-    pressure = pressure_of(with_gas(interpolation="step"))
+    pressure = pressures_of(with_gas(interpolation="step"))[0]
     for angle, value in zip(ROWS.x, ROWS.y, strict=True):
         assert pressure(angle + hair) == value
         assert pressure(angle + hair - 8 * pi) == value
 
 
 def test_no_gas_no_pressure():
-    assert pressure_of(load_scene("coasting")) is None
+    assert pressures_of(load_scene("coasting")) is None
     assert len(crank_angle_knots(CrankTrain(load_scene("coasting"), None))) == 0
 
 

@@ -9,7 +9,7 @@ from references import worst_ratio
 
 from crankmbs import Gas, InputError, Motion, Run, Start, Table, load_scene, simulate
 from crankmbs.demo.knobs import turned
-from crankmbs.mechanics.pressure import pressure_of, remarks
+from crankmbs.mechanics.pressure import pressures_of, remarks
 from validation.adapter import machine_of
 from validation.oracles.arithmetic import distance, multiprecision
 from validation.oracles.pressure import evaluate_pressure
@@ -48,7 +48,7 @@ TABLES = {
 def test_interpolation_runs_from_jump_to_jump(name, zero, kind):
     scene = with_gas(TABLES[name], interpolation=kind, zero=zero)
     angle = np.linspace(-30.0, 30.0, 2003)
-    ours = pressure_of(scene)(angle)
+    ours = pressures_of(scene)[0](angle)
     exact = evaluate_pressure(machine_of(scene).pressure, angle.astype(np.longdouble))
     assert np.abs(ours - exact.astype(float)).max() < 1e-12 * np.abs(ours).max()
 
@@ -75,7 +75,7 @@ def test_the_oracle_agrees_in_both_arithmetics(kind):
     ],
 )
 def test_at_a_jump_the_second_value_counts_and_the_first_just_below(name, at, before, after, kind):
-    pressure = pressure_of(with_gas(TABLES[name], interpolation=kind))
+    pressure = pressures_of(with_gas(TABLES[name], interpolation=kind))[0]
     assert pressure(np.radians(at)) == pytest.approx(after * BAR, rel=1e-12)
     assert pressure(np.radians(at) - 1e-8) == pytest.approx(before * BAR, rel=1e-5)
 
@@ -84,7 +84,7 @@ def test_at_a_jump_the_second_value_counts_and_the_first_just_below(name, at, be
 def test_the_ways_to_write_a_jump_at_the_periods_end_are_one(kind):
     angle = np.linspace(0.0, 4.0 * pi, 500)
     ways = [name for name in TABLES if name.startswith("where")]
-    found = [pressure_of(with_gas(TABLES[name], interpolation=kind))(angle) for name in ways]
+    found = [pressures_of(with_gas(TABLES[name], interpolation=kind))[0](angle) for name in ways]
     assert np.ptp(found, axis=0).max() == 0.0
 
 
@@ -92,7 +92,7 @@ def test_nothing_is_smeared_over_a_jump():
     """Two constants stay constant, whatever joins the rows."""
     square = rows((0, 5), (90, 5), (180, 5), (180, 1), (300, 1), (500, 1), (720, 1), (720, 5))
     angle = np.linspace(0.0, 4.0 * pi, 1000)
-    found = pressure_of(with_gas(square, interpolation="cubic"))(angle)
+    found = pressures_of(with_gas(square, interpolation="cubic"))[0](angle)
     expected = np.where(np.mod(angle, 4.0 * pi) < pi - 1e-9, 5.0, 1.0)
     np.testing.assert_allclose(found, BAR * expected, rtol=1e-12)
 
@@ -142,7 +142,8 @@ MEASURED = ((0, 1.0), (180, 1.5), (360, 3.0), (540, 2.0))  # a range of 2 bar
 def test_a_closing_row_near_the_first_is_dropped_and_said(last, closing):
     scene = with_gas(rows(*MEASURED, (720, last)), closing=closing)
     plain = with_gas(rows(*MEASURED))
-    np.testing.assert_array_equal(pressure_of(scene).coefficients, pressure_of(plain).coefficients)
+    ours, others = (pressures_of(one)[0].coefficients for one in (scene, plain))
+    np.testing.assert_array_equal(ours, others)
     apart = abs(last - 1.0)
     said = f"rows.csv: the closing row, {apart:.3g} bar from the first one, is dropped"
     assert remarks(scene) == (said,)
@@ -209,7 +210,7 @@ def test_the_size_of_an_overshoot_and_its_rows():
     scene = with_gas(table, interpolation="cubic")
     (warning,) = remarks(scene)
     angle = np.linspace(0.0, 4.0 * pi, 100_001)
-    share = (pressure_of(scene)(angle).max() / BAR - 10.0) / 10.0
+    share = (pressures_of(scene)[0](angle).max() / BAR - 10.0) / 10.0
     assert f"the spline goes {100.0 * share:.3g} % of the table's range beyond both" in warning
 
 

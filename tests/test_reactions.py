@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from crankmbs import load_scene
-from crankmbs.mechanics.pressure import pressure_of
+from crankmbs.mechanics.pressure import pressures_of
 from crankmbs.mechanics.reactions import deviations, reactions
 from crankmbs.mechanics.train import CrankTrain, crank_train
 from crankmbs.numerics import kernels
@@ -104,7 +104,7 @@ def test_deviations_are_those_between_two_motions(compiled, samples, monkeypatch
     scene = load_scene("v_twin")
     assert kernels.pay(math.inf)
     monkeypatch.setattr(kernels, "are_compiled", compiled)
-    pressure, theta = pressure_of(scene), 0.3 + scene.period / 6 * np.arange(samples)
+    pressure, theta = pressures_of(scene), 0.3 + scene.period / 6 * np.arange(samples)
     one, other = ((theta + 1e-3 * k, *motion(k, samples)[1:]) for k in (1, 2))
     first, second = (reactions(CrankTrain(scene, pressure), *state) for state in (one, other))
     found = deviations(CrankTrain(scene, pressure), *other, first)

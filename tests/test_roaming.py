@@ -20,7 +20,7 @@ from crankmbs import (
     simulate,
 )
 from crankmbs.compare.confirm import differences
-from crankmbs.mechanics.pressure import pressure_of
+from crankmbs.mechanics.pressure import pressures_of
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion.minimal.reduced import Reduced
 
@@ -79,15 +79,15 @@ def test_what_it_states_holds(interpolation, rtol):
     [("cubic", 4, 0.2), ("pchip", 3, 10.0), ("linear", 2, 200.0)],
 )
 def test_twice_the_rows_bend_so_much_less(interpolation, order, least):
-    coarse = pressure_of(engine(720, interpolation, 1e-6)).bends(least)
-    fine = pressure_of(engine(1440, interpolation, 1e-6)).bends(least / 2**order)
+    coarse = pressures_of(engine(720, interpolation, 1e-6))[0].bends(least)
+    fine = pressures_of(engine(1440, interpolation, 1e-6))[0].bends(least / 2**order)
     assert len(fine) / 1440 == pytest.approx(len(coarse) / 720, rel=0.2)
     assert 20 < len(coarse) < 700
 
 
 def test_knots_of_all_cylinders_bend_where_one_does():
     scene = engine(720, "linear", 1e-6)
-    pressure = pressure_of(scene)
+    pressure = pressures_of(scene)
     knots, bends = (
         Reduced(CrankTrain(scene, pressure), missed).machine[18] for missed in (0.0, 1e-4)
     )

@@ -153,7 +153,7 @@ def test_every_part_survives_a_dump():
         (
             lambda: Gas(pressure=[1, 2], ambient=1e5),
             "pressure: must be the name of a CSV file or a Table(crank angles [rad], pressures "
-            "[Pa]); [1, 2] came",
+            '[Pa]), a list of them, or a pressure such as "1 bar"; 1 came',
         ),
         (
             lambda: scene(torque=[Constant(torque=1.0), 3]),
@@ -162,7 +162,7 @@ def test_every_part_survives_a_dump():
         (
             lambda: Gas(pressure=np.zeros((5, 2)), ambient=1e5),
             "pressure: must be the name of a CSV file or a Table(crank angles [rad], pressures "
-            "[Pa]); an array of shape (5, 2) came",
+            '[Pa]), a list of them, or a pressure such as "1 bar"; an array of shape (5, 2) came',
         ),
         (
             lambda: SpeedTable(file=math.sin),
@@ -210,7 +210,8 @@ def test_every_part_survives_a_dump():
         (
             lambda: Gas(pressure=Table((0, 360, 720), (1, 2, 1)), absolute=False),
             "table: the rows span 41253 degrees, more than the period of 720; check stroke, 4 "
-            "came; a Table has its angles in radians",
+            'came, or for a file of several cycles give cycles="mean" or "sequence"; a Table has '
+            "its angles in radians",
         ),
         (
             lambda: Gas(pressure=Table((0, 6), (1, 1))),

@@ -25,8 +25,8 @@ from scene_texts import FREE, GAS, INDICATED, edited, refusal
         (
             "absolute = false",
             "absolute = false\nstroke = 2",
-            "gas: gas.csv: the rows span 480 degrees, more than the period of 360; check stroke, "
-            "2 came",
+            "gas: gas.csv: the rows span 480 degrees, more than the period of 360; check stroke, 2 "
+            'came, or for a file of several cycles give cycles = "mean" or "sequence"',
         ),
         (
             "absolute = false",
@@ -49,7 +49,12 @@ from scene_texts import FREE, GAS, INDICATED, edited, refusal
             '"gaz.csv"',
             "gas.pressure: file gaz.csv is missing; paths are relative to the scene file",
         ),
-        ('"gas.csv"', "3", "gas.pressure: must be the name of a CSV file; 3 came"),
+        (
+            '"gas.csv"',
+            "true",
+            "gas.pressure: must be the name of a CSV file, a list of them, or a pressure such as "
+            '"1 bar"; true came',
+        ),
         (
             'pressure = "gas.csv"',
             "",
@@ -82,7 +87,8 @@ def test_a_bad_gas_gets_one_sentence(read, old, new, message):
         ),
         (
             "0,1\n300,1\n721,1\n",
-            "the rows span 721 degrees, more than the period of 720; check stroke, 4 came",
+            "the rows span 721 degrees, more than the period of 720; check stroke, 4 came, or for "
+            'a file of several cycles give cycles = "mean" or "sequence"',
         ),
         (
             "0,1\n300,1\n720,2\n",
@@ -184,14 +190,14 @@ def test_an_absolute_pressure_cannot_be_negative(read, tmp_path):
         (
             'ambient = "1 bar"',
             'ambient = "1 bar"\ninterpolation = "cubic"',
-            ": zero, interpolation and closing belong to a pressure file; remove them beside an "
-            "indicator",
+            ": zero, interpolation, closing and cycles belong to a pressure file; remove them "
+            "beside an indicator",
         ),
         (
             'ambient = "1 bar"',
             'ambient = "1 bar"\nclosing = "0.1 bar"',
-            ": zero, interpolation and closing belong to a pressure file; remove them beside an "
-            "indicator",
+            ": zero, interpolation, closing and cycles belong to a pressure file; remove them "
+            "beside an indicator",
         ),
         (
             'ambient = "1 bar"',

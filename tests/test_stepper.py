@@ -8,7 +8,7 @@ from scipy.integrate import DOP853
 
 from crankmbs import Gravity, Piston, Rod, Start, load_scene
 from crankmbs.mechanics.inertia import reduce
-from crankmbs.mechanics.pressure import pressure_of
+from crankmbs.mechanics.pressure import pressures_of
 from crankmbs.mechanics.torque import branch_of
 from crankmbs.mechanics.train import CrankTrain, crank_train
 from crankmbs.motion.minimal import stepper
@@ -29,7 +29,7 @@ SCENES["unbalanced"] = UNBALANCED
 @pytest.mark.parametrize("name", SCENES)
 def test_the_reduced_equation_is_the_one_of_the_arrays(name, sense):
     scene = SCENES[name]
-    pressure = pressure_of(scene)
+    pressure = pressures_of(scene)
     reduced = Reduced(CrankTrain(scene, pressure))
     angles = np.linspace(-13.0, 27.0, 301)
     found = np.array([reduced(a, reduced.around(a, sense).pieces) for a in angles.tolist()]).T

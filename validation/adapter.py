@@ -10,7 +10,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from crankmbs.mechanics.pressure import pressure_of
+from crankmbs.mechanics.pressure import PeriodicPressure, pressures_of
 from crankmbs.motion.plan import plan_of
 from crankmbs.result import Result
 from crankmbs.scene.drives import (
@@ -25,16 +25,23 @@ from crankmbs.scene.drives import (
     Viscous,
 )
 from crankmbs.scene.drives import Motion as Prescribed
-from crankmbs.scene.parts import Gas
+from crankmbs.scene.gas import Gas
 from crankmbs.scene.scene import Scene
-from crankmbs.scene.tables import Table
+from crankmbs.scene.tables import Columns, Table
 from validation.oracles.arithmetic import LONG, Arithmetic, Array
 from validation.oracles.energy import kinetic_energy
 from validation.oracles.frame import frame_loads
 from validation.oracles.free_motion import Motion, series_path
 from validation.oracles.indicator import Diagram
 from validation.oracles.loads import torque_at
-from validation.oracles.machine import Loads, LoadTable, Machine, PressurePieces, PressureTable
+from validation.oracles.machine import (
+    Loads,
+    LoadTable,
+    Machine,
+    Pressure,
+    PressurePieces,
+    PressureTable,
+)
 from validation.oracles.newton_euler import newton_euler
 from validation.oracles.path import Path
 from validation.oracles.prescribed import oscillating_motion, pchip, polynomial_motion
@@ -175,18 +182,15 @@ def diagram_of(scene: Scene) -> Diagram:
 
 def at_jumps(scene: Scene, theta: Array) -> NDArray[np.bool_]:
     """Which crank angles lie on a jump of a cylinder's pressure: there two values are right."""
-    pressure = pressure_of(scene)
     on = np.zeros(len(theta), dtype=bool)
-    if pressure is None:
-        return on
-    width = np.diff(pressure.knots)
-    before = np.roll(pressure.piece(np.arange(len(width)), width), 1)
-    after = pressure.coefficients[-1]
-    jumps = np.abs(after - before) > _SAME_PRESSURE * np.abs(after).max()
-    for knot in pressure.knots[:-1][jumps]:
-        for cylinder in scene.cylinders:
-            beside = (np.asarray(theta, dtype=np.float64) + cylinder.phase - knot) % scene.period
-            on |= np.minimum(beside, scene.period - beside) < _SAME_ANGLE
+    for cylinder, pressure in zip(scene.cylinders, pressures_of(scene) or (), strict=False):
+        width = np.diff(pressure.knots)
+        before = np.roll(pressure.piece(np.arange(len(width)), width), 1)
+        after = pressure.coefficients[-1]
+        jumps = np.abs(after - before) > _SAME_PRESSURE * np.abs(after).max()
+        for knot in pressure.knots[:-1][jumps]:
+            beside = (np.asarray(theta, dtype=np.float64) + cylinder.phase - knot) % pressure.period
+            on |= np.minimum(beside, pressure.period - beside) < _SAME_ANGLE
     return on
 
 
@@ -215,28 +219,56 @@ def _first(motion: Motion) -> Motion:
     )
 
 
-def _pressure(scene: Scene) -> PressureTable | PressurePieces | None:
-    gas = scene.gas
+def _pressure(scene: Scene) -> Pressure | tuple[Pressure, ...] | None:
+    """One for all cylinders, or one for each."""
+    gas, cylinders = scene.gas, scene.cylinders
     if gas is None:
         return None
+    if isinstance(gas.pressure, float):
+        rows = Table((0.0, gas.period / 3.0, gas.period / 1.5), (gas.pressure,) * 3)
+        return _table(gas, rows)
+    if isinstance(gas.pressure, Table):
+        return _table(gas, gas.pressure)
     if gas.pressure is None:
-        pieces = pressure_of(scene)
-        assert pieces is not None
-        coefficients = tuple(map(tuple, pieces.coefficients[::-1].T.tolist()))
-        return PressurePieces(tuple(pieces.knots[:-1].tolist()), coefficients, scene.period)
-    return _table(gas, gas.pressure)
+        return _pieces((pressures_of(scene) or ())[0])
+    first = cylinders[0].phase
+    instants = isinstance(gas.pressure, Columns) and not gas.aligned
+    lags = [cylinder.phase - first if instants else 0.0 for cylinder in cylinders]
+    return tuple(
+        _table(gas, Table(tuple(angle + lag for angle in rows.x), rows.y))
+        for rows, lag in zip(gas.tables, lags, strict=True)
+    )
+
+
+def _pieces(pieces: PeriodicPressure) -> PressurePieces:
+    coefficients = tuple(map(tuple, pieces.coefficients[::-1].T.tolist()))
+    return PressurePieces(tuple(pieces.knots[:-1].tolist()), coefficients, pieces.period)
 
 
 def _table(gas: Gas, rows: Table) -> PressureTable:
-    angles, values = rows.x, rows.y
-    closing = sum(angle - angles[0] > gas.period - _SAME_ANGLE for angle in angles)
+    angles, values, period = rows.x, rows.y, gas.period
+    cycles = math.ceil((angles[-1] - angles[0] - _SAME_ANGLE) / period)
+    if cycles > 1 and gas.cycles == "mean":
+        angles, values = _mean(angles, values, period, cycles)
+    elif cycles > 1:
+        period *= cycles
+    closing = sum(angle - angles[0] > period - _SAME_ANGLE for angle in angles)
     before = [values[-2]] if closing == 2 and angles[1] > angles[0] else []
     count = len(angles) - closing
     angles, values = (*angles[: len(before)], *angles[:count]), (*before, *values[:count])
     if gas.zero == "firing_tdc" and gas.stroke == 4:
         angles = tuple(angle + 2.0 * math.pi for angle in angles)
     gauge = tuple(value - (gas.ambient or 0.0) for value in values)
-    return PressureTable(angles, gauge, gas.period, gas.interpolation)
+    return PressureTable(angles, gauge, period, gas.interpolation)
+
+
+def _mean(
+    angles: tuple[float, ...], values: tuple[float, ...], period: float, cycles: int
+) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """The mean of cycles whose rows, without jumps at their ends, stand at the same angles."""
+    rows = len(angles) - (angles[-1] - angles[0] > cycles * period - _SAME_ANGLE)
+    one = rows // cycles
+    return angles[:one], tuple(math.fsum(values[k:rows:one]) / cycles for k in range(one))
 
 
 def _loads(torques: tuple[Torque, ...]) -> Loads:

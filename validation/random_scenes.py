@@ -13,7 +13,8 @@ import numpy as np
 
 from crankmbs import Scene
 from crankmbs.scene.drives import Constant, Quadratic, SpeedTable, Start, TimeTable, Torque, Viscous
-from crankmbs.scene.parts import Crank, Cylinder, Gas, Gravity, Indicator, Layout, Piston, Rod
+from crankmbs.scene.gas import Gas, Indicator
+from crankmbs.scene.parts import Crank, Cylinder, Gravity, Layout, Piston, Rod
 from crankmbs.scene.scene import Extent, Run
 from crankmbs.scene.tables import Table
 from crankmbs.scene.units import DEGREE

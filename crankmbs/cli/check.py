@@ -9,8 +9,9 @@ import numpy as np
 from crankmbs.choose import Choice
 from crankmbs.measures.plausible import warnings
 from crankmbs.mechanics.geometry import close_loop, dead_centres
-from crankmbs.mechanics.pressure import PeriodicPressure, pressure_of, remarks
+from crankmbs.mechanics.pressure import PeriodicPressure, pressures_of, remarks
 from crankmbs.mechanics.torque import torque_at
+from crankmbs.scene.cycles import cycles_in
 from crankmbs.scene.drives import (
     Constant,
     Oscillation,
@@ -22,7 +23,9 @@ from crankmbs.scene.drives import (
     Torque,
     Viscous,
 )
+from crankmbs.scene.gas import Gas
 from crankmbs.scene.scene import Extent, Scene
+from crankmbs.scene.tables import Columns
 from crankmbs.scene.units import RPM
 
 __all__ = ["describe"]
@@ -30,7 +33,7 @@ __all__ = ["describe"]
 
 def describe(path: str, scene: Scene, choice: Choice) -> str:
     """The scene in a few lines."""
-    pressure = pressure_of(scene)
+    pressures = dict.fromkeys(pressures_of(scene) or ())
     rows = [
         ("scene", path),
         ("title", scene.title),
@@ -41,7 +44,7 @@ def describe(path: str, scene: Scene, choice: Choice) -> str:
         ("dead centres", _dead_centres(scene)),
         ("cylinders", _cylinders(scene)),
         ("gas", _gas(scene)),
-        *([("pressure", _pressure(scene, pressure))] if pressure is not None else []),
+        *(("pressure", _pressure(scene, pressure)) for pressure in pressures),
         *(("", remark) for remark in remarks(scene)),
         ("motion", _motion(scene)),
         *((f"torque[{k}]", _load(scene, load)) for k, load in enumerate(scene.torque, start=1)),
@@ -117,10 +120,26 @@ def _gas(scene: Scene) -> str:
         return "none"
     if gas.indicator is not None:
         origin = f"indicator diagram, compression ratio {gas.indicator.compression_ratio:.6g}"
+    elif isinstance(gas.pressure, float):
+        origin = f"constant pressure of {gas.pressure / 1e5:.6g} bar"
     else:
-        assert gas.pressure is not None
-        origin = f"{len(gas.pressure.x)} rows of {gas.pressure.source}, {gas.interpolation}"
+        origin = f"{_tables(gas)}, {gas.interpolation}"
     return f"{gas.stroke}-stroke, {origin}"
+
+
+def _tables(gas: Gas) -> str:
+    if isinstance(gas.pressure, Columns):
+        over = "its own cycle angle" if gas.aligned else "that of cylinder 1"
+        text = (
+            f"{len(gas.pressure.x)} rows of {gas.pressure.source}, {len(gas.pressure.y)} columns, "
+            f"each over {over}"
+        )
+    else:
+        text = " and ".join(f"{len(table.x)} rows of {table.source}" for table in gas.tables)
+    cycles = max(cycles_in(table, gas.period) for table in gas.tables)
+    if cycles == 1:
+        return text
+    return f"{text}, {'the mean' if gas.cycles == 'mean' else 'a sequence'} of {cycles} cycles"
 
 
 def _pressure(scene: Scene, pressure: PeriodicPressure) -> str:

@@ -133,7 +133,9 @@ def lectured(
     mass = lecture.reciprocating_mass(
         piston_mass=piston.mass, rod_piston_pin_mass=masses.piston_pin
     )
-    difference = np.zeros_like(phi) if pressure is None else pressure(phi)
+    difference = np.zeros_like(phi)
+    for k, each in enumerate(pressure or ()):
+        difference[:, k] = each(phi[:, k])
     gas = np.asarray(
         lecture.gas_force(
             gas_pressure=difference, ambient_pressure=0.0, piston_area=piston.gas_area or 0.0

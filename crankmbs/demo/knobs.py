@@ -8,9 +8,10 @@ from collections.abc import Mapping
 from typing import Any, Literal
 
 from crankmbs.scene.drives import Oscillation, Quadratic, SpeedTable, TimeTable, Torque, Viscous
-from crankmbs.scene.parts import Gas, Layout
+from crankmbs.scene.gas import Gas
+from crankmbs.scene.parts import Layout
 from crankmbs.scene.scene import Scene
-from crankmbs.scene.tables import Table
+from crankmbs.scene.tables import Columns, Table
 from crankmbs.scene.units import RPM
 
 __all__ = ["AS_GIVEN", "FIRING_ORDERS", "Knob", "Values", "knobs_of", "turned"]
@@ -180,13 +181,26 @@ def _pressed(gas: Gas, factor: float) -> Gas:
     """The pressures of the table or of the diagram times the factor; ambient stays."""
     if gas.pressure is not None:
         closing = None if gas.closing is None else factor * gas.closing
-        pressed = _scaled(gas.pressure, factor)
+        pressed = _pressed_more(gas.pressure, factor)
         return dataclasses.replace(gas, pressure=pressed, closing=closing)
     assert gas.indicator is not None
     names = ("intake_pressure", "exhaust_pressure", "peak_pressure")
     old = {name: getattr(gas.indicator, name) for name in names}
     new = {name: p * factor for name, p in old.items() if p is not None}
     return dataclasses.replace(gas, indicator=dataclasses.replace(gas.indicator, **new))
+
+
+def _pressed_more(
+    pressure: float | Table | Columns | tuple[Table, ...], factor: float
+) -> float | Table | Columns | tuple[Table, ...]:
+    if isinstance(pressure, float):
+        return factor * pressure
+    if isinstance(pressure, Table):
+        return _scaled(pressure, factor)
+    if isinstance(pressure, Columns):
+        more = tuple(_scaled(table, factor).y for table in pressure.tables)
+        return Columns(pressure.x, more, pressure.source)
+    return tuple(_scaled(table, factor) for table in pressure)
 
 
 def _above(value: float) -> float:

@@ -13,8 +13,9 @@ from typing import NamedTuple
 import numpy as np
 
 from crankmbs.mechanics.geometry import close_loop, dead_centres, top_position
-from crankmbs.mechanics.pressure import PeriodicPressure, pressure_of
+from crankmbs.mechanics.pressure import PeriodicPressure, pressures_of
 from crankmbs.mechanics.torque import torque_at
+from crankmbs.scene.gas import Gas
 from crankmbs.scene.scene import Scene
 
 __all__ = ["warnings"]
@@ -24,10 +25,11 @@ _BAR = 1e5
 
 
 class _Sized(NamedTuple):
-    """A scene, its gas, the stroke [m] and the piston's diameter, without area the stroke [m]."""
+    """A scene, the gas of its cylinders, the stroke [m] and the piston's diameter, without area the
+    stroke [m]."""
 
     scene: Scene
-    pressure: PeriodicPressure | None
+    pressure: tuple[PeriodicPressure, ...]
     stroke: float
     diameter: float
 
@@ -42,7 +44,7 @@ def warnings(scene: Scene) -> tuple[str, ...]:
     stroke = top_position(r, l, e) - float(close_loop(dead_centres(r, l, e)[1], *shape).x)
     area = scene.piston.gas_area
     diameter = stroke if area is None else math.sqrt(4.0 * area / math.pi)
-    machine = _Sized(scene, pressure_of(scene), stroke, diameter)
+    machine = _Sized(scene, pressures_of(scene) or (), stroke, diameter)
     return tuple(said for rule in _RULES for said in rule(machine))
 
 
@@ -146,25 +148,35 @@ _NEARLY = 0.98
 
 
 def _peak(machine: _Sized) -> Iterator[str]:
-    if machine.pressure is None or machine.scene.gas is None:
+    gas, pressures = machine.scene.gas, list(dict.fromkeys(machine.pressure))
+    if gas is None or isinstance(gas.pressure, float):
         return
-    gas, (angle, peak) = machine.scene.gas, machine.pressure.peak
+    for number, pressure in enumerate(pressures, start=1):
+        whose = "gas" if len(pressures) == 1 else f"gas, cylinder {number}"
+        for said in _peak_of(gas, pressure):
+            yield f"{whose}: {said}"
+
+
+def _peak_of(gas: Gas, pressure: PeriodicPressure) -> Iterator[str]:
+    angle, peak = pressure.peak
     if peak > _HIGHEST:
         yield (
-            f"gas: the pressure peaks at {peak / _BAR:.4g} bar, and engines fire below 300; check "
+            f"the pressure peaks at {peak / _BAR:.4g} bar, and engines fire below 300; check "
             "its unit, such as MPa for bar"
         )
     if gas.stroke == 4 and peak < _LOWEST_FOUR_STROKE:
         yield (
-            f"gas: the pressure of a four-stroke cycle peaks at {peak / _BAR:.3g} bar above "
+            f"the pressure of a four-stroke cycle peaks at {peak / _BAR:.3g} bar above "
             "ambient; even turned over it reaches several bar; check its unit"
         )
     fired = gas.period / 2.0 if gas.stroke == 4 else 0.0
-    around = np.linspace(-_FAR, _FAR, 361)
-    if peak > 0.0 and np.max(machine.pressure(fired + around)) < _NEARLY * peak:
+    around = np.add.outer(
+        np.arange(fired, pressure.period, gas.period), np.linspace(-_FAR, _FAR, 361)
+    )
+    if peak > 0.0 and np.max(pressure(around)) < _NEARLY * peak:
         zero = ', and zero = "firing_tdc" where they count from there' if gas.stroke == 4 else ""
         yield (
-            f"gas: the pressure peaks at a cycle angle of {math.degrees(angle):.4g} degrees, far "
+            f"the pressure peaks at a cycle angle of {math.degrees(angle):.4g} degrees, far "
             f"from the firing dead centre at {math.degrees(fired):g}; check the table's angles"
             f"{zero}"
         )
@@ -186,14 +198,15 @@ def _loads(machine: _Sized) -> Iterator[str]:
 
 
 def _gas_work(machine: _Sized) -> float:
-    """Work of one cylinder's gas over one period in the sense of +theta [J]."""
-    if machine.pressure is None:
-        return 0.0
-    scene, period = machine.scene, machine.pressure.period
-    angle = (np.arange(1440) + 0.5) * period / 1440
-    loop = close_loop(angle, scene.crank.radius, scene.rod.length, scene.piston.offset)
-    torque = -machine.pressure(angle) * (scene.piston.gas_area or 0.0) * loop.x_1
-    return float(np.mean(torque)) * period
+    """Work of the gas over one period of the engine in the sense of +theta [J]."""
+    scene, work = machine.scene, 0.0
+    for pressure in machine.pressure:
+        count = 1440 * round(pressure.period / scene.period)
+        angle = (np.arange(count) + 0.5) * pressure.period / count
+        loop = close_loop(angle, scene.crank.radius, scene.rod.length, scene.piston.offset)
+        torque = -pressure(angle) * (scene.piston.gas_area or 0.0) * loop.x_1
+        work += float(np.mean(torque)) * scene.period
+    return work
 
 
 _RULES: tuple[Callable[[_Sized], Iterator[str]], ...] = (

@@ -17,7 +17,7 @@ import numpy as np
 
 from crankmbs.mechanics.geometry import close_loop, dead_centres, top_position
 from crankmbs.numerics.arrays import Array
-from crankmbs.scene.parts import Gas, Indicator
+from crankmbs.scene.gas import Gas, Indicator
 from crankmbs.scene.scene import Scene
 
 __all__ = ["INDICATOR_RTOL", "indicator_pieces"]

@@ -90,7 +90,7 @@ def reduce(train: CrankTrain, theta: ArrayLike) -> Reduction:
     slope = np.zeros(theta.shape)
     gx, gy = gravity_vector(scene)
     torque = (crank.mass * crank.center_of_mass) * (gy * np.cos(theta) - gx * np.sin(theta))
-    for cylinder in scene.cylinders:
+    for k, cylinder in enumerate(scene.cylinders):
         loop = close_loop(theta + cylinder.phase, crank.radius, rod.length, piston.offset)
         g = rod_centre(loop, crank.radius, rod.center_of_mass)
         inertia += piston.mass * loop.x_1**2
@@ -103,6 +103,6 @@ def reduce(train: CrankTrain, theta: ArrayLike) -> Reduction:
             )
         gx, gy = gravity_vector(scene, cylinder.bank)
         if pressure is not None:
-            torque -= (piston.gas_area or 0.0) * pressure(theta + cylinder.phase) * loop.x_1
+            torque -= (piston.gas_area or 0.0) * pressure[k](theta + cylinder.phase) * loop.x_1
         torque += piston.mass * gx * loop.x_1 + rod.mass * (gx * g.x_1 + gy * g.y_1)
     return Reduction(inertia, slope, torque)

@@ -8,6 +8,7 @@ continued beyond its knots.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,15 +17,16 @@ from scipy.interpolate import PPoly
 
 from crankmbs.mechanics.indicator import INDICATOR_RTOL, indicator_pieces
 from crankmbs.numerics.arrays import Array
-from crankmbs.scene.parts import Gas
+from crankmbs.scene.cycles import cycles_in, mean_cycle
+from crankmbs.scene.gas import Gas
 from crankmbs.scene.pressure_rows import close, closing_row, interpolate, overshoot
 from crankmbs.scene.scene import Scene
-from crankmbs.scene.tables import Table
+from crankmbs.scene.tables import Columns, Table
 
 __all__ = [
     "KNOT",
     "PeriodicPressure",
-    "pressure_of",
+    "pressures_of",
     "remarks",
     "repeat",
 ]
@@ -37,7 +39,7 @@ _OVERSHOOT = 0.05  # of the range: a sine in rows 45 degrees apart is overshot b
 _WORTH = (0.5, 1 / 12, 0.0081, 1 / 720)  # max |B| / (m + 1)! of `PeriodicPressure.bends`
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class PeriodicPressure:
     """Piecewise cubic, periodic in the cycle angle.
 
@@ -115,58 +117,70 @@ class PeriodicPressure:
         return np.asarray(((a * x + b) * x + c) * x + d)
 
 
-def pressure_of(scene: Scene) -> PeriodicPressure | None:
-    """The pressure difference across the piston of a scene; None without gas.
+def pressures_of(scene: Scene) -> tuple[PeriodicPressure, ...] | None:
+    """The pressure difference across the piston of each cylinder of a scene; None without gas.
 
-    A table's rows are joined as `crankmbs.scene.pressure_rows.interpolate` says.
+    A table's rows are joined as `crankmbs.scene.pressure_rows.interpolate` says. Cylinders of one
+    table share one pressure; a sequence of cycles has them all for its period.
 
-    >>> pressure = pressure_of(load_scene("propeller"))
+    >>> pressure, = pressures_of(load_scene("propeller"))
     """
-    gas = scene.gas
+    gas, cylinders = scene.gas, scene.cylinders
     if gas is None:
         return None
     if gas.indicator is not None:
         knots, coefficients = indicator_pieces(scene)
         absolute = coefficients + np.array([[0.0], [0.0], [0.0], [gas.ambient or 0.0]])
-        return PeriodicPressure(knots, coefficients, INDICATOR_RTOL * absolute)
-    assert gas.pressure is not None
-    return _joined(gas, gas.pressure)
+        return (PeriodicPressure(knots, coefficients, INDICATOR_RTOL * absolute),) * len(cylinders)
+    if isinstance(gas.pressure, float):
+        value = np.array([[0.0], [0.0], [0.0], [gas.pressure - (gas.ambient or 0.0)]])
+        return (PeriodicPressure(np.array([0.0, gas.period]), value),) * len(cylinders)
+    if isinstance(gas.pressure, Table):
+        return (_joined(gas, gas.pressure, _shift(gas)),) * len(cylinders)
+    by_instant = isinstance(gas.pressure, Columns) and not gas.aligned
+    lags = [c.phase - cylinders[0].phase if by_instant else 0.0 for c in cylinders]
+    pairs = zip(gas.tables, lags, strict=True)
+    return tuple(_joined(gas, table, _shift(gas) + lag) for table, lag in pairs)
 
 
 def remarks(scene: Scene) -> tuple[str, ...]:
-    """What a reader of the pressure table should know of what was made of it, in sentences.
+    """What a reader of the pressure tables should know of what was made of them, in sentences.
 
     >>> remarks(load_scene("propeller"))
     ()
     """
     gas = scene.gas
-    if gas is None or gas.pressure is None:
+    if gas is None:
         return ()
-    table, said = gas.pressure, []
-    apart = closing_row(table, gas.period)
+    return tuple(said for table in dict.fromkeys(gas.tables) for said in _remarks(gas, table))
+
+
+def _remarks(gas: Gas, table: Table) -> Iterator[str]:
+    apart = closing_row(table, cycles_in(table, gas.period) * gas.period)
     if apart:
-        said.append(
+        yield (
             f"{table.source}: the closing row, {apart / 1e5:.3g} bar from the first one, is dropped"
         )
-    joined = _joined(gas, table)
+    joined = _joined(gas, table, 0.0)
     beyond, *between = overshoot(joined.knots, joined.coefficients)
     share = beyond / ((max(table.y) - min(table.y)) or 1.0)
     if gas.interpolation == "cubic" and share > _OVERSHOOT:
-        past = np.array(between) - _shift(gas) - table.x[0]
-        first, second = np.degrees(np.mod(past + KNOT, gas.period) - KNOT + table.x[0])
-        said.append(
+        past = np.array(between) - table.x[0]
+        first, second = np.degrees(np.mod(past + KNOT, joined.period) - KNOT + table.x[0])
+        yield (
             f"warning: {table.source}: between the rows at {first:.8g} and {second:.8g} degrees "
             f"the spline goes {100.0 * share:.3g} % of the table's range beyond both; the run is "
             'that of the spline, not of the machine; use interpolation = "pchip", or give two rows '
             "at one angle for a jump"
         )
-    return tuple(said)
 
 
-def _joined(gas: Gas, table: Table) -> PeriodicPressure:
-    """The table gauge and in cycle angle, its rows joined."""
-    angle, value = np.add(table.x, _shift(gas)), np.subtract(table.y, gas.ambient or 0.0)
-    rows = close(Table(angle.tolist(), value.tolist()), gas.period)
+def _joined(gas: Gas, table: Table, shift: float) -> PeriodicPressure:
+    """The table gauge and in cycle angle, which its angles lag by ``shift``, its rows joined."""
+    table = mean_cycle(table, gas.period) if gas.cycles == "mean" else table
+    angle, value = np.add(table.x, shift), np.subtract(table.y, gas.ambient or 0.0)
+    period = cycles_in(table, gas.period) * gas.period
+    rows = close(Table(angle.tolist(), value.tolist()), period)
     return PeriodicPressure(*interpolate(rows, gas.interpolation))
 
 

@@ -27,7 +27,6 @@ from crankmbs.mechanics.variables import VARIABLES
 from crankmbs.numerics import kernels
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.periodic import one_period
-from crankmbs.scene.parts import Cylinder
 from crankmbs.scene.scene import Scene
 
 __all__ = ["deviations", "reactions"]
@@ -148,10 +147,10 @@ def _found(
     scene = train.scene
     theta, omega, alpha = (np.asarray(q, dtype=np.float64) for q in (theta, omega, alpha))
     samples = _Powers(omega**2, alpha, np.ones(1))
-    once, which = one_period(theta, scene.period)
+    once, which = one_period(theta, train.period)
     by_parts = len(theta) > _OFTEN * len(once)
     once, motion = (once, _UNITS) if by_parts else (theta, samples)
-    cylinders = [_cylinder(train, once, motion, c) for c in scene.cylinders]
+    cylinders = [_cylinder(train, once, motion, k) for k in range(len(scene.cylinders))]
     columns = {name: [part] for name, part in _crank(scene, once, motion, cylinders).items()}
     for name in cylinders[0].variables:
         columns[name] = [c.variables[name] for c in cylinders]
@@ -179,9 +178,9 @@ def _cylinder(
     train: CrankTrain,
     theta: Array,
     motion: _Powers,
-    cylinder: Cylinder,
+    number: int,
 ) -> _Cylinder:
-    scene, pressure = train.scene, train.pressure
+    scene, cylinder = train.scene, train.scene.cylinders[number]
     crank, rod, piston = scene.crank, scene.rod, scene.piston
     area = piston.gas_area or 0.0
     r, l, a = crank.radius, rod.length, rod.center_of_mass
@@ -191,7 +190,7 @@ def _cylinder(
     loop = close_loop(phi, r, l, piston.offset)
     g = rod_centre(loop, r, a)
     sin_b, cos_b = loop.sin_beta, loop.cos_beta
-    gas = pressure(phi) if pressure is not None else np.zeros_like(phi)
+    gas = np.zeros_like(phi) if train.pressure is None else train.pressure[number](phi)
 
     x_tt = loop.x_2 * square + loop.x_1 * alpha
     beta_tt = loop.beta_2 * square + loop.beta_1 * alpha

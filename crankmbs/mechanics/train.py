@@ -1,12 +1,14 @@
-"""The crank train of a run: a scene with what its gas pressure became, made once."""
+"""The crank train of a run: a scene with what its gas pressures became, made once."""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from crankmbs.mechanics.pressure import KNOT, PeriodicPressure, pressure_of
+from crankmbs.mechanics.pressure import KNOT, PeriodicPressure, pressures_of
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 
@@ -17,16 +19,25 @@ __all__ = ["CrankTrain", "crank_angle_knots", "crank_train", "merged_knots"]
 class CrankTrain:
     """The machine of a scene; data alone, so that formulations that share it share no mechanics.
 
-    pressure : difference across every piston over its cycle angle; None without gas
+    pressure : difference across the piston of each cylinder over its cycle angle; None without gas
     """
 
     scene: Scene
-    pressure: PeriodicPressure | None
+    pressure: tuple[PeriodicPressure, ...] | None
 
     @property
     def off(self) -> CrankTrain:
-        """The same with a pressure as far from this one as the true pressure may be."""
-        return replace(self, pressure=self.pressure and self.pressure.off)
+        """The same with pressures as far from these as the true ones may be."""
+        if self.pressure is None:
+            return self
+        return replace(self, pressure=tuple(pressure.off for pressure in self.pressure))
+
+    @property
+    def period(self) -> float:
+        """Crank angle [rad] after which everything comes again: cycles of the engine."""
+        one = self.scene.period
+        cycles = (round(pressure.period / one) for pressure in self.pressure or ())
+        return math.lcm(*cycles) * one
 
 
 def crank_train(scene: Scene) -> CrankTrain:
@@ -35,7 +46,7 @@ def crank_train(scene: Scene) -> CrankTrain:
     >>> crank_train(load_scene("coasting")).pressure is None
     True
     """
-    return CrankTrain(scene, pressure_of(scene))
+    return CrankTrain(scene, pressures_of(scene))
 
 
 def crank_angle_knots(train: CrankTrain) -> Array:
@@ -45,17 +56,29 @@ def crank_angle_knots(train: CrankTrain) -> Array:
     -------
     shape (n,) [rad], increasing, cylinders merged; empty without gas
     """
-    pressure = train.pressure
-    return np.empty(0) if pressure is None else merged_knots(train.scene, pressure.knots[:-1])
+    return merged_knots(train, [pressure.knots[:-1] for pressure in train.pressure or ()])
 
 
-def merged_knots(scene: Scene, knots: Array) -> Array:
-    """Crank angles in [0, period) at which any cylinder passes one of these cycle angles [rad]."""
-    if len(knots) == 0:
-        return knots
-    angles = [np.mod(knots - c.phase, scene.period) for c in scene.cylinders]
-    merged = np.unique(np.concatenate(angles))
+def merged_knots(train: CrankTrain, knots: Sequence[Array]) -> Array:
+    """Crank angles in [0, period) at which a cylinder passes one of its cycle angles [rad], given
+    for each over the period of its pressure."""
+    period = train.period
+    angles = [
+        np.mod(_repeated(each, pressure.period, period) - c.phase, period)
+        for each, pressure, c in zip(
+            knots, train.pressure or (), train.scene.cylinders, strict=False
+        )
+    ]
+    merged = np.unique(np.concatenate([np.empty(0), *angles]))
+    if len(merged) == 0:
+        return merged
     merged = merged[np.append(True, np.diff(merged) > KNOT)]
-    if scene.period - merged[-1] + merged[0] <= KNOT:
+    if period - merged[-1] + merged[0] <= KNOT:
         merged = merged[:-1]
     return np.asarray(merged)
+
+
+def _repeated(knots: Array, own: float, period: float) -> Array:
+    """Knots of one period of their own, in as many as make the whole one."""
+    turns = np.arange(round(period / own))
+    return np.asarray((own * turns[:, None] + knots).ravel())

@@ -156,7 +156,7 @@ def _turned_by_rounding(samples: Samples) -> Samples:
 
 def _least_inertia(train: CrankTrain, theta: Array) -> float:
     """Of a free crank, which has inertia at every angle; a driven one may have none."""
-    angles, _ = one_period(theta, train.scene.period)
+    angles, _ = one_period(theta, train.period)
     return float(np.min(inertia_alone(train.scene, angles)))
 
 

@@ -105,7 +105,7 @@ def _panel_edges(
         low, high = min(a, b), max(a, b)
         count = math.ceil((high - low) / _PANEL)
         inside = np.concatenate(
-            [repeat(knots, train.scene.period, low, high), np.linspace(low, high, count + 1)[1:-1]]
+            [repeat(knots, train.period, low, high), np.linspace(low, high, count + 1)[1:-1]]
         )
         edges += [np.array([begin, end]), law.time_at(inside, begin, end)]
     merged = np.unique(np.concatenate(edges))

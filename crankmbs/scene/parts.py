@@ -1,4 +1,4 @@
-"""What the machine is made of: crank, rod, piston, cylinders, gas, gravity.
+"""What the machine is made of: crank, rod, piston, cylinders, gravity.
 
 Frozen dataclasses in SI units, each checking itself. Every quantity is a float in SI units, or a
 string with its unit (``"46 mm"``), which is converted on the way in.
@@ -10,16 +10,13 @@ import math
 from dataclasses import replace
 from typing import Annotated, Literal
 
-from annotated_types import Ge, Gt, Le, Len
+from annotated_types import Ge, Gt, Len
 from pydantic import Discriminator, Strict, Tag
 
 from crankmbs.errors import InputError, shown
-from crankmbs.scene.pressure_rows import check_rows
-from crankmbs.scene.schema import Float, from_file, part, si
-from crankmbs.scene.tables import Table
-from crankmbs.scene.units import DEGREE
+from crankmbs.scene.schema import Float, part, si
 
-__all__ = ["Crank", "Cylinder", "Gas", "Gravity", "Indicator", "Layout", "Piston", "Rod"]
+__all__ = ["Crank", "Cylinder", "Gravity", "Layout", "Piston", "Rod"]
 
 Length = Annotated[Float, Gt(0), si("length")]
 Distance = Annotated[Float, si("length")]
@@ -27,15 +24,6 @@ Mass = Annotated[Float, Ge(0), si("mass")]
 Inertia = Annotated[Float, Ge(0), si("inertia")]
 Area = Annotated[Float, Gt(0), si("area")]
 Angle = Annotated[Float, si("angle")]
-Pressure = Annotated[Float, Gt(0), si("pressure")]
-
-_PRESSURE_COLUMNS = {
-    "pressure_bar": 1e5,
-    "pressure_kPa": 1e3,
-    "pressure_Pa": 1.0,
-    "pressure_MPa": 1e6,
-    "pressure_kgf_cm2": 98066.5,
-}
 
 
 def _number_or_word(value: object) -> str:
@@ -184,103 +172,6 @@ class Layout:
                 "spacing: cylinders of different banks may share a throw; give each cylinder's "
                 "position instead"
             )
-
-
-@part
-class Indicator:
-    """An indicator diagram from polytropes over the cylinder's exact volume.
-
-    compression_ratio [1]; n_compression, n_expansion [1]; intake_pressure, exhaust_pressure,
-    peak_pressure [Pa], absolute; pre_expansion [1]: volume after combustion at constant pressure
-    over the volume before. A two-stroke cycle needs no exhaust_pressure: its cylinder is emptied
-    and filled at the bottom dead centre.
-    """
-
-    compression_ratio: Annotated[Float, Gt(1), Le(1e4)]
-    n_compression: Annotated[Float, Gt(0), Le(10)]
-    n_expansion: Annotated[Float, Gt(0), Le(10)]
-    intake_pressure: Pressure
-    exhaust_pressure: Pressure | None = None
-    peak_pressure: Pressure
-    pre_expansion: Annotated[Float, Ge(1)] = 1.0
-
-    def __post_init__(self) -> None:
-        if self.pre_expansion >= self.compression_ratio:
-            raise InputError(
-                f"pre_expansion must be below the compression_ratio {self.compression_ratio:.6g}, "
-                f"or nothing is left to expand; {self.pre_expansion:.6g} came"
-            )
-        reached = self.intake_pressure * self.compression_ratio**self.n_compression
-        if self.peak_pressure < reached * (1.0 - 1e-12):
-            raise InputError(
-                "peak_pressure must be at least what compression reaches, intake_pressure * "
-                f"compression_ratio^n_compression = {reached:.6g} Pa; {self.peak_pressure:.6g} came"
-            )
-
-
-@part
-class Gas:
-    """The gas in the cylinder: a periodic pressure table, or an indicator diagram.
-
-    pressure: table of crank angle [rad] and pressure [Pa]; absolute: whether the pressure is;
-    ambient [Pa]: crankcase side; stroke: 4 (period 720 degrees) or 2 (360); zero: the cycle angle
-    of the table's 0; interpolation between the rows, two of which at one angle are a jump; closing
-    [Pa]: a closing row so near the first is dropped, by default 1 % of the range.
-    """
-
-    pressure: (
-        Annotated[
-            Table,
-            from_file(
-                {"crank_angle_deg": DEGREE},
-                _PRESSURE_COLUMNS,
-                "crank angles [rad], pressures [Pa]",
-            ),
-        ]
-        | None
-    ) = None
-    indicator: Indicator | None = None
-    absolute: Annotated[bool, Strict()] = True
-    ambient: Pressure | None = None
-    stroke: Literal[2, 4] = 4
-    zero: Literal["gas_exchange_tdc", "firing_tdc"] = "gas_exchange_tdc"
-    interpolation: Literal["pchip", "linear", "cubic", "step"] = "pchip"
-    closing: Annotated[Float, Ge(0), si("pressure")] | None = None
-
-    def __post_init__(self) -> None:
-        if (self.pressure is None) == (self.indicator is None):
-            came = "neither" if self.indicator is None else "both"
-            raise InputError(f"give pressure or indicator, exactly one of the two; {came} came")
-        if self.absolute and self.ambient is None:
-            raise InputError(
-                "an absolute pressure needs ambient, the crankcase side; "
-                'give ambient = "1 bar", or absolute = false when the file is gauge'
-            )
-        if not self.absolute and self.ambient is not None:
-            raise InputError(
-                "a gauge pressure has its ambient subtracted already; remove ambient, or give "
-                "absolute = true"
-            )
-        if self.pressure is not None:
-            check_rows(self.pressure, self.period, self.absolute, self.closing)
-        if self.indicator is not None:
-            self._check_indicator(self.indicator)
-
-    @property
-    def period(self) -> float:
-        """Period of the pressure [rad]: 4 pi with stroke 4, 2 pi with stroke 2."""
-        return self.stroke * math.pi
-
-    def _check_indicator(self, indicator: Indicator) -> None:
-        if not self.absolute:
-            raise InputError("an indicator diagram is absolute; remove absolute = false")
-        if (self.zero, self.interpolation, self.closing) != ("gas_exchange_tdc", "pchip", None):
-            raise InputError(
-                "zero, interpolation and closing belong to a pressure file; remove them beside an "
-                "indicator"
-            )
-        if self.stroke == 4 and indicator.exhaust_pressure is None:
-            raise InputError("indicator: a four-stroke cycle needs its exhaust_pressure; none came")
 
 
 @part

@@ -15,13 +15,13 @@ from scipy.interpolate import CubicSpline, PchipInterpolator, PPoly
 
 from crankmbs.errors import InputError
 from crankmbs.numerics.arrays import Array
+from crankmbs.scene.cycles import SAME_ANGLE, check_whole, cycles_in
 from crankmbs.scene.tables import Table
 from crankmbs.scene.units import DEGREE
 
 __all__ = ["Period", "check_rows", "close", "closing_row", "interpolate", "overshoot"]
 
 
-_SAME_ANGLE = 1e-9  # rad: two angles of a table closer than this are one
 _CLOSING = 0.01  # of the range of the pressures: so far a measured cycle may miss its beginning
 _BAR = 1e5
 
@@ -39,8 +39,15 @@ class Period(NamedTuple):
     jumps: bool
 
 
-def check_rows(table: Table, period: float, absolute: bool, closing: float | None) -> None:
-    """Refuse what cannot be one period [rad] of a pressure.
+def check_rows(
+    table: Table,
+    period: float,
+    cycles: str | None,
+    *,
+    absolute: bool,
+    closing: float | None,
+) -> None:
+    """Refuse what cannot be one period [rad] of a pressure, or several where ``cycles`` allows it.
 
     closing [Pa] : how far a closing row may lie from the first; None: 1 % of the range
 
@@ -48,25 +55,23 @@ def check_rows(table: Table, period: float, absolute: bool, closing: float | Non
     ------
     InputError : the file, the rule, what came, and the way out
     """
-    where, angle, stroke = table.source, table.x, round(period / math.pi)
+    where, angle = table.source, table.x
     if len(angle) < 2:
         raise InputError(f"{where}: a pressure table needs at least two rows")
     _check_order(table)
+    count = cycles_in(table, period)
     span = angle[-1] - angle[0]
-    if span > period + _SAME_ANGLE:
-        from_python = "; a Table has its angles in radians" if where == Table.source else ""
-        raise InputError(
-            f"{where}: the rows span {span / DEGREE:g} degrees, more than the period of "
-            f"{period / DEGREE:g}; check stroke, {stroke} came{from_python}"
-        )
-    _check_closing(table, period, closing)
-    if stroke == 4 and abs(span - 0.5 * period) < _SAME_ANGLE and table.y[-1] == table.y[0]:
+    if count > 1:
+        _check_several(table, period, cycles)
+    _check_closing(table, count * period, closing)
+    stroke = round(period / math.pi)
+    if stroke == 4 and abs(span - 0.5 * period) < SAME_ANGLE and table.y[-1] == table.y[0]:
         raise InputError(
             f"{where}: the rows close after {span / DEGREE:g} degrees, as a two-stroke cycle "
             "does; give stroke = 2, or the other half of the four-stroke cycle"
         )
-    widest = max([*(b - a for a, b in pairwise(angle)), period - span])
-    if widest > period / 2.0 + _SAME_ANGLE:
+    widest = max([*(b - a for a, b in pairwise(angle)), count * period - span])
+    if widest > period / 2.0 + SAME_ANGLE:
         raise InputError(
             f"{where}: a gap of {widest / DEGREE:g} degrees without a row; the table must "
             f"span the cycle of {period / DEGREE:g} degrees with no gap above its half"
@@ -134,6 +139,19 @@ def overshoot(knots: Array, coefficients: Array) -> tuple[float, float, float]:
     return max(float(beyond[most]), 0.0), float(knots[k[most]]), float(knots[k[most] + 1])
 
 
+def _check_several(table: Table, period: float, cycles: str | None) -> None:
+    """Refuse a file of several periods that nobody asked for, or whose last one is not whole."""
+    if cycles is None:
+        span, stroke = table.x[-1] - table.x[0], round(period / math.pi)
+        from_python = "; a Table has its angles in radians" if table.source == Table.source else ""
+        raise InputError(
+            f"{table.source}: the rows span {span / DEGREE:g} degrees, more than the period of "
+            f"{period / DEGREE:g}; check stroke, {stroke} came, or for a file of several cycles "
+            f'give cycles = "mean" or "sequence"{from_python}'
+        )
+    check_whole(table, period)
+
+
 def _check_order(table: Table) -> None:
     where, x = table.source, table.x
     for k, (a, b) in enumerate(pairwise(x)):
@@ -147,7 +165,7 @@ def _check_order(table: Table) -> None:
                 f"{where}: rows {k} to {k + 2} all stand at {a / DEGREE:g} degrees; give two, a "
                 "jump from the first pressure to the second"
             )
-        if 0.0 < b - a <= _SAME_ANGLE:
+        if 0.0 < b - a <= SAME_ANGLE:
             raise InputError(
                 f"{where}: rows {k + 1} and {k + 2} lie {(b - a) / DEGREE:.2g} degrees apart, too "
                 "near to be told apart; give both the same angle for a jump, or drop one"
@@ -171,7 +189,7 @@ def _ends(table: Table, period: float) -> tuple[list[float], list[float]]:
     """Pressures of the one or two rows that open the period; of the up to two that close it."""
     x, y = table.x, table.y
     opens = [y[0], y[1]] if x[1] == x[0] else [y[0]]
-    return opens, [b for a, b in zip(x, y, strict=True) if a > x[0] + period - _SAME_ANGLE]
+    return opens, [b for a, b in zip(x, y, strict=True) if a > x[0] + period - SAME_ANGLE]
 
 
 def _open(angle: Array, value: Array, interpolation: str) -> Array:

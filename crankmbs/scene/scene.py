@@ -16,8 +16,10 @@ from pydantic import BeforeValidator, Strict, ValidationInfo
 
 from crankmbs.errors import InputError, shown
 from crankmbs.scene.drives import Motion, SpeedFile, Start, TimeTable, Torque
-from crankmbs.scene.parts import Crank, Cylinder, Gas, Gravity, Layout, Piston, Rod
+from crankmbs.scene.gas import Gas
+from crankmbs.scene.parts import Crank, Cylinder, Gravity, Layout, Piston, Rod
 from crankmbs.scene.schema import Float, dumped, part
+from crankmbs.scene.tables import Columns
 from crankmbs.scene.units import DEGREE, EXAMPLES, extent
 
 __all__ = ["Extent", "Run", "Scene"]
@@ -138,6 +140,15 @@ class Scene:
             raise InputError(
                 "piston.bore: with [gas] the piston needs its bore, or its area; neither came"
             )
+        pressure = None if self.gas is None else self.gas.pressure
+        if isinstance(pressure, Columns | tuple):
+            count, cylinders = len(self.gas.tables if self.gas else ()), len(self.cylinders)
+            given = "columns" if isinstance(pressure, Columns) else "files"
+            if count != cylinders:
+                raise InputError(
+                    f"gas.pressure: as many {given} as cylinders are needed, {cylinders}, or one "
+                    f"for all; {count} came"
+                )
 
     def _check_motion(self) -> None:
         if (self.motion is None) == (self.start is None):

@@ -20,7 +20,7 @@ from crankmbs.scene.sentences import sentence
 from crankmbs.scene.tables import Table, read_table
 from crankmbs.scene.units import EXAMPLES, check_size, quantity
 
-__all__ = ["SAVED", "Float", "dumped", "from_file", "part", "si"]
+__all__ = ["SAVED", "Float", "dumped", "folder_of", "from_file", "part", "si", "to_si"]
 
 T = TypeVar("T")
 _CONFIG = ConfigDict(
@@ -65,24 +65,35 @@ def si(dimension: str) -> BeforeValidator:
     """
 
     def convert(value: Any, info: ValidationInfo) -> float:
-        number = converted(value, info)
-        check_size(number, dimension, value)
-        return number
-
-    def converted(value: Any, info: ValidationInfo) -> float:
-        if isinstance(value, str):
-            return quantity(value, dimension)
-        if isinstance(value, bool) or not isinstance(value, Real):
-            rule = _WITH_UNIT if _of_file(info) else "a number in SI units, or text"
-            raise InputError(f"must be {rule} such as {EXAMPLES[dimension]}; {shown(value)} came")
-        if _of_file(info) and dimension in {"angle", "angular speed"}:
-            raise InputError(f"needs a unit, such as {EXAMPLES[dimension]}; {shown(value)} came")
-        try:
-            return float(value)
-        except OverflowError:
-            return math.inf
+        return to_si(value, dimension, info)
 
     return BeforeValidator(convert)
+
+
+def to_si(value: Any, dimension: str, info: ValidationInfo) -> float:
+    """The SI value of a quantity string, or of a bare number.
+
+    Raises
+    ------
+    InputError : neither, no unit where one is needed, or a size that overflows
+    """
+    number = _converted(value, dimension, info)
+    check_size(number, dimension, value)
+    return number
+
+
+def _converted(value: Any, dimension: str, info: ValidationInfo) -> float:
+    if isinstance(value, str):
+        return quantity(value, dimension)
+    if isinstance(value, bool) or not isinstance(value, Real):
+        rule = _WITH_UNIT if _of_file(info) else "a number in SI units, or text"
+        raise InputError(f"must be {rule} such as {EXAMPLES[dimension]}; {shown(value)} came")
+    if _of_file(info) and dimension in {"angle", "angular speed"}:
+        raise InputError(f"needs a unit, such as {EXAMPLES[dimension]}; {shown(value)} came")
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf
 
 
 def dumped(value: object, info: ValidationInfo) -> bool:
@@ -106,10 +117,14 @@ def from_file(
         if not isinstance(value, str | Path):
             table = f" or a Table({columns})" if info.context is None else ""
             raise InputError(f"must be the name of a CSV file{table}; {shown(value)} came")
-        folder = info.context["folder"] if info.context else Path()
-        return read_table(folder / value, x_units, y_units)
+        return read_table(folder_of(info) / value, x_units, y_units)
 
     return BeforeValidator(convert)
+
+
+def folder_of(info: ValidationInfo) -> Path:
+    """The folder to which file names are relative: that of the scene's file."""
+    return Path(info.context["folder"]) if info.context else Path()
 
 
 def _of_file(info: ValidationInfo) -> bool:

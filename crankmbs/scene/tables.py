@@ -1,16 +1,17 @@
-"""Tables of two columns: a frozen record, and its CSV reader."""
+"""Tables of two columns, or of one for each cylinder: frozen records, and their CSV reader."""
 
 from __future__ import annotations
 
 import csv
 import math
+import re
 import stat
 from dataclasses import dataclass
 from pathlib import Path
 
 from crankmbs.errors import InputError, shown
 
-__all__ = ["Table", "read_table"]
+__all__ = ["Columns", "Table", "read_columns", "read_table"]
 
 _MOST = 32_000_000  # bytes: a million rows
 _LARGEST = 1e15
@@ -57,6 +58,44 @@ class Table:
             )
 
 
+@dataclass(frozen=True)
+class Columns:
+    """Rows with one value for each cylinder; ``source`` names where they came from.
+
+    x : shape (n,), y : shape (cylinders, n), in SI units, kept as tuples
+
+    >>> Columns([0.0, 1.0], [[5.0, 6.0], [7.0, 8.0]]).tables[1].y
+    (7.0, 8.0)
+    """
+
+    x: tuple[float, ...]
+    y: tuple[tuple[float, ...], ...]
+    source: str = "columns"
+
+    def __post_init__(self) -> None:
+        try:
+            columns = tuple(self.y)
+        except TypeError:
+            columns = ()
+        if not columns:
+            raise InputError(
+                f"{self.source}: y must hold a sequence of numbers for each cylinder; "
+                f"{shown(self.y)} came"
+            )
+        object.__setattr__(self, "y", columns)
+        tables = self.tables
+        object.__setattr__(self, "x", tables[0].x)
+        object.__setattr__(self, "y", tuple(table.y for table in tables))
+
+    @property
+    def tables(self) -> tuple[Table, ...]:
+        """One table for each cylinder."""
+        return tuple(
+            Table(self.x, y, f"{self.source}, cylinder {number}")
+            for number, y in enumerate(self.y, start=1)
+        )
+
+
 def read_table(path: Path, x_units: dict[str, float], y_units: dict[str, float]) -> Table:
     """Read two columns of a CSV file into SI units.
 
@@ -69,6 +108,49 @@ def read_table(path: Path, x_units: dict[str, float], y_units: dict[str, float])
     ------
     InputError : file missing or unreadable, header wrong, a cell empty or no finite number
     """
+    rows = _rows(path)
+    header = rows[0][1]
+    x, y = _values(path, rows, [_column(path, header, x_units), _column(path, header, y_units)])
+    return Table(x, y, source=str(path))
+
+
+def read_columns(
+    path: Path, x_units: dict[str, float], y_units: dict[str, float]
+) -> Table | Columns:
+    """Read a CSV file as `read_table` does, or one with a numbered column for each cylinder.
+
+    y_units : accepted column name -> factor to SI; numbered, _1, _2, ... is put behind the name
+
+    Raises
+    ------
+    InputError : as `read_table` does, or numbers that do not go from 1 up
+    """
+    rows = _rows(path)
+    header = rows[0][1]
+    numbered = [
+        (int(match[2]), header.index(name), y_units[match[1]])
+        for name in header
+        if (match := _NUMBERED.fullmatch(name)) and match[1] in y_units
+    ]
+    if not numbered or any(name in y_units for name in header):
+        return read_table(path, x_units, y_units)
+    numbered.sort()
+    numbers = [number for number, _, _ in numbered]
+    if numbers != list(range(1, len(numbers) + 1)):
+        raise InputError(
+            f"file {path}: the columns of the cylinders must be numbered from 1 up, each once; "
+            f"{', '.join(map(str, numbers))} came"
+        )
+    y = [(column, factor) for _, column, factor in numbered]
+    x, *columns = _values(path, rows, [_column(path, header, x_units), *y])
+    return Columns(x, tuple(columns), source=str(path))
+
+
+_NUMBERED = re.compile(r"(.+)_([1-9][0-9]?)")
+
+
+def _rows(path: Path) -> list[tuple[int, list[str]]]:
+    """Line number and cells of the header and of every row."""
     rows = [
         (number, cells)
         for number, line in enumerate(_text(path).splitlines(), start=1)
@@ -77,20 +159,24 @@ def read_table(path: Path, x_units: dict[str, float], y_units: dict[str, float])
     ]
     if not rows:
         raise InputError(f"file {path} is empty: it needs a header and rows")
+    return rows
+
+
+def _values(
+    path: Path, rows: list[tuple[int, list[str]]], columns: list[tuple[int, float]]
+) -> list[tuple[float, ...]]:
+    """The values of some columns, given by their place and factor to SI."""
     header = rows[0][1]
-    i, x_factor = _column(path, header, x_units)
-    j, y_factor = _column(path, header, y_units)
-    x: list[float] = []
-    y: list[float] = []
+    values: list[list[float]] = [[] for _ in columns]
     for number, cells in rows[1:]:
         if len(cells) > len(header):
             raise InputError(
                 f"file {path}, line {number}: {len(cells)} cells under a header of {len(header)}; "
                 "commas separate the columns, the decimal sign is a point"
             )
-        x.append(x_factor * _number(path, number, header[i], cells[i : i + 1]))
-        y.append(y_factor * _number(path, number, header[j], cells[j : j + 1]))
-    return Table(tuple(x), tuple(y), source=str(path))
+        for kept, (i, factor) in zip(values, columns, strict=True):
+            kept.append(factor * _number(path, number, header[i], cells[i : i + 1]))
+    return [tuple(column) for column in values]
 
 
 def _text(path: Path) -> str:

@@ -10,7 +10,7 @@ from typing import Any
 
 from crankmbs.scene.drives import Ramp
 from crankmbs.scene.scene import Extent, Scene
-from crankmbs.scene.tables import Table
+from crankmbs.scene.tables import Columns, Table
 from crankmbs.scene.units import DEGREE, RPM
 
 __all__ = ["scene_files"]
@@ -24,7 +24,7 @@ _UNITS = {
     **dict.fromkeys(("radius", "length", "bore", "offset", "center_of_mass"), "m"),
     **dict.fromkeys(("position", "spacing"), "m"),
     **dict.fromkeys(("intake_pressure", "exhaust_pressure", "peak_pressure"), "Pa"),
-    **dict.fromkeys(("ambient", "closing"), "Pa"),
+    **dict.fromkeys(("ambient", "closing", "pressure"), "Pa"),
     "mass": "kg",
     "inertia": "kg m^2",
     "area": "m^2",
@@ -64,10 +64,15 @@ def scene_files(scene: Scene, stem: str) -> dict[str, str]:
         lines = ["", heading]
         for key, value in _values(part):
             table = getattr(value, "file", value)
-            if isinstance(table, Table):
+            if isinstance(table, Table | Columns):
                 file = f"{stem}_{table_use}{number}.csv"
                 tables[file] = _csv(table, *_COLUMNS[table_use])
                 value = {"file": file} if table is not value else file
+            elif isinstance(value, tuple) and isinstance(value[0], Table):
+                files = [f"{stem}_{table_use}{k}.csv" for k in range(1, len(value) + 1)]
+                rows = (_csv(each, *_COLUMNS[table_use]) for each in value)
+                tables.update(zip(files, rows, strict=True))
+                value = tuple(files)
             lines.append(f"{key} = {_written(key, value)}")
         return lines
 
@@ -143,12 +148,15 @@ def _divided(value: float, factor: float) -> float:
     return next((number for number in near if factor * number == value), ratio)
 
 
-def _csv(table: Table, x_name: str, x_factor: float, y_name: str, y_factor: float) -> str:
-    rows = (
-        f"{_digits(_divided(x, x_factor))},{_digits(_divided(y, y_factor))}"
-        for x, y in zip(table.x, table.y, strict=True)
-    )
-    return "\n".join([f"{x_name},{y_name}", *rows]) + "\n"
+def _csv(table: Table | Columns, x_name: str, x_factor: float, y_name: str, y_factor: float) -> str:
+    columns = [(x_name, table.x, x_factor)]
+    if isinstance(table, Table):
+        columns.append((y_name, table.y, y_factor))
+    else:
+        columns += [(f"{y_name}_{k}", y, y_factor) for k, y in enumerate(table.y, start=1)]
+    cells = ([_digits(_divided(v, factor)) for v in values] for _, values, factor in columns)
+    lines = [",".join(row) for row in zip(*cells, strict=True)]
+    return "\n".join([",".join(name for name, *_ in columns), *lines]) + "\n"
 
 
 def _quoted(text: str) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from crankmbs.mechanics.pressure import pressure_of
+from crankmbs.mechanics.pressure import pressures_of
 from validation.adapter import diagram_of
 from validation.case import Case
 from validation.judge import Outcome
@@ -22,8 +22,9 @@ def pieces(case: Case) -> Outcome:
     scene = case.theirs()
     assert scene.gas is not None
     diagram = diagram_of(scene)
-    ours = pressure_of(case.ours())
-    assert ours is not None
+    pressures = pressures_of(case.ours())
+    assert pressures is not None
+    ours = pressures[0]
     angle = np.linspace(0.0, scene.period, _SAMPLES)
     beside = [(angle - float(at)) % (2.0 * np.pi) for at in dead_centres(diagram)]
     smooth = [(x > _BESIDE) & (x < 2.0 * np.pi - _BESIDE) for x in beside]

@@ -9,7 +9,7 @@ from scipy.optimize import brentq
 
 from crankmbs import lecture
 from crankmbs.mechanics.inertia import reduce
-from crankmbs.mechanics.pressure import pressure_of
+from crankmbs.mechanics.pressure import pressures_of
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.scene.drives import Constant
 from crankmbs.scene.scene import Scene
@@ -159,8 +159,9 @@ def _speed(scene: Scene) -> float:
 
 
 def _gas_force(scene: Scene, angle: float) -> float:
-    pressure, area = pressure_of(scene), scene.piston.gas_area
-    assert pressure is not None
+    pressures, area = pressures_of(scene), scene.piston.gas_area
+    assert pressures is not None
+    pressure = pressures[0]
     assert area is not None
     force = lecture.gas_force(
         gas_pressure=float(pressure(angle)), ambient_pressure=0.0, piston_area=area

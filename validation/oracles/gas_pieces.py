@@ -16,7 +16,7 @@ class GasForces:
     """Cubic pieces of every cylinder on the common grid of their knots."""
 
     machine: Machine
-    pieces: Pieces
+    pieces: tuple[Pieces, ...]
     grid: Grid
     arithmetic: Arithmetic
 
@@ -24,21 +24,27 @@ class GasForces:
         """The force of each cylinder between knots index and index + 1, a cubic in theta."""
         inside = self.grid.inside(index)
         number = self.arithmetic.number
-        phases = self.arithmetic.array([phase for phase, _ in self.machine.cylinders])
-        row, beyond = self.pieces.locate(inside + phases)
-        # The knot of this piece in theta, free of the rounding that `inside` carries.
-        near = self.pieces.knots[row] - phases
-        turns = np.round(((inside - beyond - near) / self.pieces.period).astype(float))
-        origin = near + self.arithmetic.array(turns.tolist()) * self.pieces.period
-        return GasPiece(self.pieces.coefficients[row] * number(self.machine.piston_area), origin)
+        rows, origins = [], []
+        for pieces, (phase, _) in zip(self.pieces, self.machine.cylinders, strict=True):
+            angle = self.arithmetic.array([phase])
+            row, beyond = pieces.locate(inside + angle)
+            # The knot of this piece in theta, free of the rounding that `inside` carries.
+            near = pieces.knots[row] - angle
+            turns = np.round(((inside - beyond - near) / pieces.period).astype(float))
+            origins.append(near + self.arithmetic.array(turns.tolist()) * pieces.period)
+            rows.append(pieces.coefficients[row])
+        force = np.concatenate(rows) * number(self.machine.piston_area)
+        return GasPiece(force, np.concatenate(origins))
 
 
 def gas_forces(machine: Machine, arithmetic: Arithmetic) -> GasForces | None:
     """The gas forces of a machine; None without a pressure table."""
     if machine.pressure is None:
         return None
-    pieces = pressure_pieces(machine.pressure, arithmetic)
+    of_each = tuple(pressure_pieces(pressure, arithmetic) for pressure in machine.pressures)
     knots: list[Number] = []
-    for phase, _ in machine.cylinders:
-        knots.extend(pieces.knots - arithmetic.number(phase))
-    return GasForces(machine, pieces, merge(knots, arithmetic, pieces.period), arithmetic)
+    period = arithmetic.whole_turns(machine.period)
+    for pieces, (phase, _) in zip(of_each, machine.cylinders, strict=True):
+        for k in range(round(float(period / pieces.period))):
+            knots.extend(pieces.knots + k * pieces.period - arithmetic.number(phase))
+    return GasForces(machine, of_each, merge(knots, arithmetic, period), arithmetic)

@@ -1,5 +1,6 @@
 """What the oracles take: plain records of SI numbers, with nothing derived."""
 
+import math
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Literal, get_args
@@ -49,6 +50,9 @@ class PressurePieces:
     period: Number
 
 
+Pressure = PressureTable | PressurePieces
+
+
 @dataclass(frozen=True)
 class LoadTable:
     """Torque [N m] over time [s] or speed [rad/s]: linear, a repeated abscissa is a jump."""
@@ -81,13 +85,14 @@ class Loads:
 
 @dataclass(frozen=True)
 class Machine:
-    """Crank, rods and pistons; every cylinder has the same rod, piston, offset and pressure.
+    """Crank, rods and pistons; every cylinder has the same rod, piston and offset.
 
     crank_center_of_mass lies on the reference line, from the axis; crank_inertia is about the axis.
     rod_center_of_mass is measured from the crank pin, rod_inertia about it. cylinders holds
-    (phase, bank) [rad]; levers how far each stands beyond the middle of the crank [m], along X
-    turned into Y, empty where that is not known. gravity is (gx, gy) [m/s2] in the engine's frame.
-    The time of the loads' time tables is that of the run, which starts at 0.
+    (phase, bank) [rad], pressure one for all of them or one for each; levers how far each stands
+    beyond the middle of the crank [m], along X turned into Y, empty where that is not known.
+    gravity is (gx, gy) [m/s2] in the engine's frame. The time of the loads' time tables is that of
+    the run, which starts at 0.
     """
 
     crank_radius: Number
@@ -103,6 +108,23 @@ class Machine:
     offset: Number = 0.0
     cylinders: tuple[tuple[Number, Number], ...] = ((0.0, 0.0),)
     levers: tuple[Number, ...] = ()
-    pressure: PressureTable | PressurePieces | None = None
+    pressure: Pressure | tuple[Pressure, ...] | None = None
     gravity: tuple[Number, Number] = (0.0, 0.0)
     loads: Loads = Loads()
+
+    @property
+    def pressures(self) -> tuple[Pressure, ...]:
+        """The pressure of each cylinder; empty without any."""
+        if self.pressure is None:
+            return ()
+        one = self.pressure
+        return one if isinstance(one, tuple) else (one,) * len(self.cylinders)
+
+    @property
+    def period(self) -> Number:
+        """Crank angle [rad] after which all pressures come again; one turn without any."""
+        own = [pressure.period for pressure in self.pressures] or [2.0 * math.pi]
+        if all(period == own[0] for period in own):
+            return own[0]
+        turns = (round(float(period) / (2.0 * math.pi)) for period in own)
+        return 2.0 * math.pi * math.lcm(*turns)

@@ -78,9 +78,12 @@ class _Turning:
         """Angles from `start` over one period: knots, wanted offsets, and no panel too wide."""
         panels = int(np.ceil(period / WIDEST))
         inner = [LONG.array(offsets), period * (np.arange(1, panels + 1) / panels)]
-        if self.machine.pressure is not None:
-            knots = pressure_pieces(self.machine.pressure).knots
-            for phase, _ in self.machine.cylinders:
+        for pressure, (phase, _) in zip(
+            self.machine.pressures, self.machine.cylinders, strict=False
+        ):
+            pieces = pressure_pieces(pressure)
+            for k in range(round(float(period / pieces.period))):
+                knots = pieces.knots + k * pieces.period
                 inner.append((knots - LONG.number(phase) - start) % period)
         merged = np.unique(np.concatenate([period * np.zeros(1), *inner]))
         edges: Array = start + merged[merged <= period]
@@ -102,8 +105,7 @@ def many_turns(machine: Machine, theta0: Number, omega0: Number, angles: Array) 
         raise ValueError("the loads must be constant or quadratic, and the speed above 0")
     turning = _Turning(machine)
     start, wanted = LONG.number(theta0), LONG.array(angles)
-    pressure = machine.pressure
-    period = 2 * LONG.pi if pressure is None else LONG.whole_turns(pressure.period)
+    period = LONG.whole_turns(machine.period)
     first = LONG.array([theta0])
     energy = (turning.inertia(first) * LONG.number(omega0) ** 2 / 2)[0]
     whole = turning.stretch(turning.edges(start, wanted[:0], period))

@@ -107,6 +107,10 @@ def newton_euler(
 
 
 def _gas_pressure(machine: Machine, throws: Array, arithmetic: Arithmetic) -> Array:
-    if machine.pressure is None:
+    if not machine.pressures:
         return throws * 0
-    return evaluate_pressure(machine.pressure, throws, arithmetic)
+    columns = [
+        evaluate_pressure(pressure, throws[:, k], arithmetic)
+        for k, pressure in enumerate(machine.pressures)
+    ]
+    return np.stack(columns, axis=1)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from crankmbs.mechanics.pressure import pressure_of
+from crankmbs.mechanics.pressure import pressures_of
 from crankmbs.scene.drives import Constant, Quadratic, Viscous
 from crankmbs.scene.scene import Scene
 
@@ -97,7 +97,8 @@ def job_of(scene: Scene, times: Array) -> Job:
                     "the peers' scripts know constant, viscous and quadratic torques, not a "
                     f"{load.kind.replace('_', ' ')}"
                 )
-    pressure, gravity = pressure_of(scene), scene.gravity
+    pressures, gravity = pressures_of(scene), scene.gravity
+    pressure = None if pressures is None else pressures[0]
     knots = np.array([0.0, scene.period]) if pressure is None else pressure.knots
     force = np.zeros((4, 1)) if pressure is None else pressure.coefficients
     pull, towards = (0.0, 0.0) if gravity is None else (gravity.acceleration, gravity.angle)

@@ -16,7 +16,6 @@ from crankmbs.mechanics.inertia import reduce
 from crankmbs.mechanics.train import CrankTrain, crank_angle_knots
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.collocation import Rule, gauss
-from crankmbs.scene.scene import Scene
 from crankmbs.scene.units import DEGREE
 
 __all__ = ["Grid", "Strip", "grid_of", "largest_of_row"]
@@ -160,20 +159,21 @@ class Grid:
 def grid_of(train: CrankTrain, rule: Rule, widest: float = _WIDEST) -> Grid:
     """The coarsest grid of a crank train: edges at the pressure's knots and around folds that a rod
     just escapes, no cell wider than ``widest`` [rad]."""
-    scene, knots = train.scene, crank_angle_knots(train)
-    marks = np.unique(np.concatenate([[0.0], knots, _near_folds(scene), [scene.period]]))
+    knots = crank_angle_knots(train)
+    marks = np.unique(np.concatenate([[0.0], knots, _near_folds(train), [train.period]]))
     marks = marks[np.append(True, np.diff(marks) > _SLIVER)]
-    marks[-1] = scene.period
+    marks[-1] = train.period
     grid = Grid(train, marks, rule)
     return grid.split(np.ceil(np.diff(marks) / widest - 1e-9).astype(np.intp))
 
 
-def _near_folds(scene: Scene) -> Array:
+def _near_folds(train: CrankTrain) -> Array:
     """Crank angles [rad] around those where a rod is hardly longer than it must be, ever farther.
 
     The rod swings over within ``width`` of there, where its formulas have their singularity beside
     the real angles: in wider cells two rules err alike, if they see it at all.
     """
+    scene, period = train.scene, train.period
     radius, spare = scene.crank.radius, scene.rod.length - scene.crank.radius
     marks = [np.empty(0)]
     for fold, gap in ((0.5, spare + scene.piston.offset), (-0.5, spare - scene.piston.offset)):
@@ -181,9 +181,9 @@ def _near_folds(scene: Scene) -> Array:
         if 0.0 < width < _WIDEST:
             beside = width * 2.0 ** np.arange(math.ceil(math.log2(_WIDEST / width)))
             around = fold * math.pi + np.concatenate([-beside, [0.0], beside])
-            turns = 2.0 * math.pi * np.arange(round(scene.period / (2.0 * math.pi)))
+            turns = 2.0 * math.pi * np.arange(round(period / (2.0 * math.pi)))
             marks += [np.add.outer(turns - c.phase, around).ravel() for c in scene.cylinders]
-    return np.asarray(np.mod(np.concatenate(marks), scene.period))
+    return np.asarray(np.mod(np.concatenate(marks), period))
 
 
 def largest_of_row(table: Array) -> Array:

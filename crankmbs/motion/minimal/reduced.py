@@ -6,6 +6,7 @@ The pressure is given as the polynomials between two knots, which can be continu
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from functools import cached_property
 from typing import NamedTuple
 
@@ -41,18 +42,21 @@ class Reduced:
         crank, rod, piston = scene.crank, scene.rod, scene.piston
         knots = crank_angle_knots(train)
         if len(knots) == 0:  # no step of many turns: it would overlook a light rod near a fold
-            knots = np.arange(0.0, scene.period, 0.5)
+            knots = np.arange(0.0, train.period, 0.5)
         g = scene.gravity.acceleration if scene.gravity else 0.0
         pull = scene.gravity.angle if scene.gravity else 0.0
+        firsts = [each.knots[0] for each in pressure] if pressure else [0.0] * len(scene.cylinders)
         axes = [
-            (c.phase, g * math.cos(pull - c.bank), g * math.sin(pull - c.bank))
-            for c in scene.cylinders
+            (c.phase, g * math.cos(pull - c.bank), g * math.sin(pull - c.bank), first)
+            for c, first in zip(scene.cylinders, firsts, strict=True)
         ]
         bends = knots
         if pressure and missed > 0.0:
             lever = (piston.gas_area or 0.0) * crank.radius
-            bends = merged_knots(scene, pressure.bends(missed * self.torque_scale / lever))
-        first = float(pressure.knots[0]) if pressure else 0.0
+            least = missed * self.torque_scale / lever
+            bends = merged_knots(train, [each.bends(least) for each in pressure])
+        pressures = pressure or ()
+        ends = np.cumsum([0, *(len(each.knots) for each in pressures)])
         machine = Machine(
             radius=crank.radius,
             rod_length=rod.length,
@@ -68,10 +72,12 @@ class Reduced:
             gravity_y=g * math.sin(pull),
             cylinders=np.array(axes),
             knots=knots,
-            period=scene.period,
-            first=first,
-            starts=pressure.knots - first if pressure else np.empty(0),
-            coefficients=pressure.coefficients.copy() if pressure else np.empty((4, 0)),
+            period=train.period,
+            places=np.column_stack([ends[:-1], ends[1:]]),
+            starts=np.concatenate(
+                [np.empty(0), *(each.knots - each.knots[0] for each in pressures)]
+            ),
+            coefficients=_side_by_side([p.coefficients for p in pressures]),
             bends=bends,
         )
         self.machine = bare(machine)
@@ -91,10 +97,18 @@ class Reduced:
             for t in self.train.scene.torque
             if isinstance(t, Constant | TimeTable | SpeedTable)
         )
-        angles = 0.1 + np.linspace(0.0, self.train.scene.period, 721)  # no fold lies there
+        period = self.train.period
+        count = 720 * round(period / self.train.scene.period) + 1
+        angles = 0.1 + np.linspace(0.0, period, count)  # no fold lies there
         torque = reduce(self.train, angles).torque
         return load + float(np.max(np.abs(torque)))
 
     def __call__(self, theta: float, pieces: Array) -> tuple[float, float, float]:
         """J [kg m2], dJ/dtheta [kg m2/rad], torque of gas and gravity [N m]."""
         return stepper.reduced(theta, self.machine, pieces)
+
+
+def _side_by_side(coefficients: Sequence[Array]) -> Array:
+    """Cubics of every cylinder, shape (4, n); behind each cylinder's an empty column, as it has a
+    knot more than cubics."""
+    return np.hstack([np.empty((4, 0)), *(np.pad(each, ((0, 0), (0, 1))) for each in coefficients)])

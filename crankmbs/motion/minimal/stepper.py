@@ -63,12 +63,14 @@ def _beside(knots: Array, theta: float, period: float) -> tuple[float, float, fl
 @kernel
 def _fill(j: int, base: float, local: float, machine: Machine, pieces: Array) -> None:
     """Put the cubic of cylinder j at the crank angle base + local into ``pieces``, to its end."""
-    cylinders, _, _, first, starts, coefficients = machine[12:18]
-    within = (local + cylinders[j, 0] - first) % starts[-1]
+    cylinders, _, _, places, all_starts, coefficients = machine[12:18]
+    begin, end = places[j, 0], places[j, 1]
+    starts = all_starts[begin:end]
+    within = (local + cylinders[j, 0] - cylinders[j, 3]) % starts[-1]
     i = min(_passed(starts, within), len(starts) - 1) - 1
     pieces[j, 0] = base + local - (within - starts[i])
     for power in range(4):
-        pieces[j, 1 + power] = coefficients[power, i]
+        pieces[j, 1 + power] = coefficients[power, begin + i]
     pieces[j, 5] = starts[i + 1] - starts[i]
 
 

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from typing import NamedTuple, cast
 
+import numpy as np
+from numpy.typing import NDArray
+
 from crankmbs.numerics.arrays import Array
 
 __all__ = ["Machine", "System", "bare"]
@@ -14,10 +17,13 @@ class Machine(NamedTuple):
 
     radius, rod_length, center_of_mass, offset [m]; crank_inertia, rod_inertia [kg m2]; rod_mass,
     piston_mass [kg]; area [m2]; first_moment [kg m] of the crank; gravity_x, gravity_y [m/s2]
-    cylinders : shape (n, 3), phase [rad], gravity along and across the axis [m/s2]
+    cylinders : shape (n, 4), phase [rad], gravity along and across the axis [m/s2], and the first
+        knot of the pressure [rad]
     knots : shape (k,) [rad], crank angles in one period where a step must end
-    period, first [rad] : of the crank train; first knot of the pressure
-    starts, coefficients : knots of the pressure behind its first one, and its cubics; may be empty
+    period [rad] : of the crank train
+    places : shape (n, 2), where the knots of each cylinder's pressure begin and end in the next two
+    starts, coefficients : knots of the pressures behind the first of each, and their cubics; may be
+        empty
     """
 
     radius: float
@@ -35,7 +41,7 @@ class Machine(NamedTuple):
     cylinders: Array
     knots: Array
     period: float
-    first: float
+    places: NDArray[np.intp]
     starts: Array
     coefficients: Array
     bends: Array

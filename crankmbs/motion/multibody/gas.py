@@ -31,44 +31,41 @@ class GasForces:
     """The gas forces of a crank train; without gas all zero."""
 
     def __init__(self, train: CrankTrain) -> None:
-        scene, pressure = train.scene, train.pressure
+        scene = train.scene
         self.phases = np.array([cylinder.phase for cylinder in scene.cylinders])
-        self._pressure, self._period = pressure, scene.period
+        self._pressures, self._period = train.pressure or (), train.period
         self._area = scene.piston.gas_area or 0.0
         self._angles, self._rises = self._jumps()
 
     @property
     def jumps(self) -> bool:
         """Whether a force jumps anywhere."""
-        return self._pressure is not None and len(_knots(self._pressure)[0]) > 0
+        return any(len(_knots(pressure)[0]) > 0 for pressure in self._pressures)
 
     @property
     def order(self) -> int:
         """1 where forces jump within a stretch, 2 where they bend there, else 3."""
-        if self._pressure is None:
-            return 3
-        jumps, bends = _knots(self._pressure)
-        if len(jumps) > 0 and len(self._angles) == 0:
+        if self.jumps and len(self._angles) == 0:
             return 1
-        return 2 if len(bends) > 0 else 3
+        return 2 if any(len(_knots(pressure)[1]) > 0 for pressure in self._pressures) else 3
 
     def force(self, theta: Array) -> Array:
         """GasForces forces [N] towards the crank, shape (m, n), at crank angles of shape (m,)."""
-        angles = theta[:, None] + self.phases
-        if self._pressure is None:
-            return np.zeros_like(angles)
-        return np.asarray(self._area * self._pressure(angles))
+        forces = np.zeros((len(theta), len(self.phases)))
+        for k, pressure in enumerate(self._pressures):
+            forces[:, k] = self._area * pressure(theta + self.phases[k])
+        return forces
 
-    def scalar(self) -> Force:
-        """The force [N] over the cycle angle [rad], from number to number.
+    def scalar(self, k: int) -> Force:
+        """The force [N] of cylinder k over its cycle angle [rad], from number to number.
 
         A bisection and a cubic in plain Python take 0.7 us; a symbolic tree of branches in
         exudyn's generic object, the only other way, costs 9 us a step.
         """
-        assert self._pressure is not None
-        first, period = float(self._pressure.knots[0]) - NEAR, self._pressure.period
-        knots = (self._pressure.knots[:-1] - self._pressure.knots[0]).tolist()
-        pieces = (self._area * self._pressure.coefficients.T).tolist()
+        pressure = self._pressures[k]
+        first, period = float(pressure.knots[0]) - NEAR, pressure.period
+        knots = (pressure.knots[:-1] - pressure.knots[0]).tolist()
+        pieces = (self._area * pressure.coefficients.T).tolist()
 
         def force(angle: float) -> float:
             x = (angle - first) % period
@@ -93,16 +90,18 @@ class GasForces:
 
     def _jumps(self) -> tuple[Array, Array]:
         """Crank angles in a period at which a force jumps; what each cylinder's rises by there."""
-        none = np.empty(0), np.empty((0, len(self.phases)))
-        if self._pressure is None:
-            return none
-        found, _ = _knots(self._pressure)
-        if not 0 < len(found) * len(self.phases) <= _MOST_JUMPS:
-            return none
-        angles = np.mod(self._pressure.knots[found][:, None] - self.phases, self._period)
-        rise = _rises(self._pressure)[0][found]
-        rises = self._area * rise[:, None, None] * np.eye(len(self.phases))
-        angles, rises = angles.ravel(), rises.reshape(-1, len(self.phases))
+        places, changes = [np.empty(0)], [np.empty((0, len(self.phases)))]
+        for k, pressure in enumerate(self._pressures):
+            found, _ = _knots(pressure)
+            turns = pressure.period * np.arange(round(self._period / pressure.period))[:, None]
+            here = np.mod(turns + pressure.knots[found] - self.phases[k], self._period)
+            rise = np.zeros((len(turns), len(found), len(self.phases)))
+            rise[..., k] = self._area * _rises(pressure)[0][found]
+            places.append(here.ravel())
+            changes.append(rise.reshape(-1, len(self.phases)))
+        angles, rises = np.concatenate(places), np.concatenate(changes)
+        if not 0 < len(angles) <= _MOST_JUMPS:
+            return angles[:0], rises[:0]
         order = np.argsort(angles)
         angles, rises = angles[order], rises[order]
         apart = np.flatnonzero(np.diff(angles, prepend=-1.0) > NEAR)
@@ -129,7 +128,7 @@ class GasStretch:
 
     def functions(self) -> list[Force]:
         """The same cylinder by cylinder, from crank angle to force."""
-        return [self._function(k, self.gas.scalar()) for k in range(len(self.gas.phases))]
+        return [self._function(k, self.gas.scalar(k)) for k in range(len(self.gas.phases))]
 
     def _function(self, k: int, force: Force) -> Force:
         phase = float(self.gas.phases[k])

@@ -1,0 +1,203 @@
+"""The gas in the cylinders: pressure files, constants and indicator diagrams, as a user gives them.
+
+Frozen dataclasses in SI units, each checking itself.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from numbers import Real
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from annotated_types import Ge, Gt, Le
+from pydantic import BeforeValidator, Strict, ValidationInfo
+
+from crankmbs.errors import InputError, shown
+from crankmbs.scene.cycles import mean_cycle
+from crankmbs.scene.pressure_rows import check_rows
+from crankmbs.scene.schema import SAVED, Float, dumped, folder_of, part, si, to_si
+from crankmbs.scene.tables import Columns, Table, read_columns
+from crankmbs.scene.units import DEGREE
+
+__all__ = ["Gas", "Indicator"]
+
+Pressure = Annotated[Float, Gt(0), si("pressure")]
+
+_PRESSURE_COLUMNS = {
+    "pressure_bar": 1e5,
+    "pressure_kPa": 1e3,
+    "pressure_Pa": 1.0,
+    "pressure_MPa": 1e6,
+    "pressure_kgf_cm2": 98066.5,
+}
+
+
+@part
+class Indicator:
+    """An indicator diagram from polytropes over the cylinder's exact volume.
+
+    compression_ratio [1]; n_compression, n_expansion [1]; intake_pressure, exhaust_pressure,
+    peak_pressure [Pa], absolute; pre_expansion [1]: volume after combustion at constant pressure
+    over the volume before. A two-stroke cycle needs no exhaust_pressure: its cylinder is emptied
+    and filled at the bottom dead centre.
+    """
+
+    compression_ratio: Annotated[Float, Gt(1), Le(1e4)]
+    n_compression: Annotated[Float, Gt(0), Le(10)]
+    n_expansion: Annotated[Float, Gt(0), Le(10)]
+    intake_pressure: Pressure
+    exhaust_pressure: Pressure | None = None
+    peak_pressure: Pressure
+    pre_expansion: Annotated[Float, Ge(1)] = 1.0
+
+    def __post_init__(self) -> None:
+        if self.pre_expansion >= self.compression_ratio:
+            raise InputError(
+                f"pre_expansion must be below the compression_ratio {self.compression_ratio:.6g}, "
+                f"or nothing is left to expand; {self.pre_expansion:.6g} came"
+            )
+        reached = self.intake_pressure * self.compression_ratio**self.n_compression
+        if self.peak_pressure < reached * (1.0 - 1e-12):
+            raise InputError(
+                "peak_pressure must be at least what compression reaches, intake_pressure * "
+                f"compression_ratio^n_compression = {reached:.6g} Pa; {self.peak_pressure:.6g} came"
+            )
+
+
+_NUMBER = re.compile(r"[+-]?\.?[0-9]")
+_FILE_NAME = re.compile(r".*\.[^\W\d]\w*")  # which a quantity never is
+
+
+def _source(value: Any, info: ValidationInfo) -> float | Table | Columns | tuple[Table, ...]:
+    """A file, a list of files, or a quantity; from Python a Table, a list of them, or Columns."""
+    if isinstance(value, list | tuple):
+        if not value:
+            raise InputError("must name a file for each cylinder; an empty list came")
+        return tuple(_one_file(each, info) for each in value)
+    if isinstance(value, str) and _NUMBER.match(value) and not _FILE_NAME.fullmatch(value):
+        return to_si(value, "pressure", info)
+    if isinstance(value, Real) and not isinstance(value, bool):
+        return to_si(value, "pressure", info)
+    return _table(value, info)
+
+
+def _one_file(value: Any, info: ValidationInfo) -> Table:
+    table = _table(value, info)
+    if isinstance(table, Columns):
+        raise InputError(
+            f"{table.source}: a file of a list has one pressure column, of its own cylinder; give "
+            "this one without a list"
+        )
+    return table
+
+
+def _table(value: Any, info: ValidationInfo) -> Table | Columns:
+    if isinstance(value, Table | Columns):
+        return value
+    if dumped(value, info):
+        by_cylinder = any(isinstance(each, list | tuple) for each in value.get("y", ()))
+        return Columns(**value) if by_cylinder else Table(**value)
+    if info.context is SAVED:
+        raise InputError(f"must hold its rows in a saved scene; {shown(value)} came")
+    if not isinstance(value, str | Path):
+        tables = " or a Table(crank angles [rad], pressures [Pa])" if info.context is None else ""
+        raise InputError(
+            f'must be the name of a CSV file{tables}, a list of them, or a pressure such as "1 '
+            f'bar"; {shown(value)} came'
+        )
+    return read_columns(folder_of(info) / value, {"crank_angle_deg": DEGREE}, _PRESSURE_COLUMNS)
+
+
+PressureSource = Annotated[Float | Table | Columns | tuple[Table, ...], BeforeValidator(_source)]
+
+
+_NO_FILE = ("gas_exchange_tdc", "pchip", None, None)
+_OF_FILES = "zero, interpolation, closing and cycles belong to a pressure file; remove them"
+
+
+@part
+class Gas:
+    """The gas in the cylinders: pressures over the crank angle, or an indicator diagram.
+
+    pressure: a table of crank angle [rad] and pressure [Pa], one for each cylinder or for all, or
+    a constant [Pa]; absolute: whether the pressure is; ambient [Pa]: crankcase side; stroke: 4
+    (period 720 degrees) or 2 (360); zero: the cycle angle of the table's 0; aligned: whether each
+    of several columns runs over its own cylinder's cycle angle, else all over that of cylinder 1;
+    cycles: what is made of a file longer than a period, its mean cycle or the sequence of them;
+    interpolation between the rows, two of which at one angle are a jump; closing [Pa]: a closing
+    row so near the first is dropped, by default 1 % of the range.
+    """
+
+    pressure: PressureSource | None = None
+    indicator: Indicator | None = None
+    absolute: Annotated[bool, Strict()] = True
+    ambient: Pressure | None = None
+    stroke: Literal[2, 4] = 4
+    zero: Literal["gas_exchange_tdc", "firing_tdc"] = "gas_exchange_tdc"
+    interpolation: Literal["pchip", "linear", "cubic", "step"] = "pchip"
+    aligned: Annotated[bool, Strict()] = False
+    cycles: Literal["mean", "sequence"] | None = None
+    closing: Annotated[Float, Ge(0), si("pressure")] | None = None
+
+    def __post_init__(self) -> None:
+        if (self.pressure is None) == (self.indicator is None):
+            came = "neither" if self.indicator is None else "both"
+            raise InputError(f"give pressure or indicator, exactly one of the two; {came} came")
+        if self.absolute and self.ambient is None:
+            raise InputError(
+                "an absolute pressure needs ambient, the crankcase side; "
+                'give ambient = "1 bar", or absolute = false when the file is gauge'
+            )
+        if not self.absolute and self.ambient is not None:
+            raise InputError(
+                "a gauge pressure has its ambient subtracted already; remove ambient, or give "
+                "absolute = true"
+            )
+        self._check_files()
+        if self.indicator is not None:
+            self._check_indicator(self.indicator)
+
+    @property
+    def period(self) -> float:
+        """Period of the pressure [rad]: 4 pi with stroke 4, 2 pi with stroke 2."""
+        return self.stroke * math.pi
+
+    @property
+    def tables(self) -> tuple[Table, ...]:
+        """The tables of the pressure: of each cylinder, or one of all; none of a constant."""
+        pressure = self.pressure
+        if pressure is None or isinstance(pressure, float):
+            return ()
+        if isinstance(pressure, Columns):
+            return pressure.tables
+        return (pressure,) if isinstance(pressure, Table) else pressure
+
+    def _check_files(self) -> None:
+        for table in self.tables:
+            check_rows(
+                table, self.period, self.cycles, absolute=self.absolute, closing=self.closing
+            )
+            if self.cycles == "mean":
+                mean_cycle(table, self.period)
+        if self.aligned and not isinstance(self.pressure, Columns):
+            raise InputError(
+                "aligned belongs to a file with a pressure column for each cylinder; remove it"
+            )
+        if isinstance(self.pressure, float):
+            if (self.zero, self.interpolation, self.closing, self.cycles) != _NO_FILE:
+                raise InputError(f"{_OF_FILES} beside a constant")
+            if self.absolute and self.pressure < 0.0:
+                raise InputError(
+                    f"an absolute pressure cannot be negative; {self.pressure:.6g} Pa came; give "
+                    "absolute = false when it is gauge"
+                )
+
+    def _check_indicator(self, indicator: Indicator) -> None:
+        if not self.absolute:
+            raise InputError("an indicator diagram is absolute; remove absolute = false")
+        if (self.zero, self.interpolation, self.closing, self.cycles) != _NO_FILE:
+            raise InputError(f"{_OF_FILES} beside an indicator")
+        if self.stroke == 4 and indicator.exhaust_pressure is None:
+            raise InputError("indicator: a four-stroke cycle needs its exhaust_pressure; none came")
