@@ -22,7 +22,7 @@ from crankmbs.motion.multibody.samples import Sampled, aligned_variables
 from crankmbs.motion.multibody.start import angle_of, coordinates, quiet_start
 from crankmbs.motion.multibody.stepped import model_of, solve
 from crankmbs.motion.multibody.taylor import taylor
-from crankmbs.scene.drives import Constant, Quadratic, SpeedTable, TimeTable, Viscous
+from crankmbs.scene.loads import Constant, Quadratic, SpeedTable, TimeTable, Viscous
 from crankmbs.scene.parts import Cylinder, Layout
 from crankmbs.scene.read import load_scene
 from crankmbs.scene.scene import Run

@@ -13,18 +13,9 @@ from numpy.typing import NDArray
 from crankmbs.mechanics.pressure import pressure_of
 from crankmbs.motion.plan import plan_of
 from crankmbs.result import Result
-from crankmbs.scene.drives import (
-    Constant,
-    Oscillation,
-    Quadratic,
-    Ramp,
-    SpeedFile,
-    SpeedTable,
-    TimeTable,
-    Torque,
-    Viscous,
-)
 from crankmbs.scene.drives import Motion as Prescribed
+from crankmbs.scene.drives import Oscillation, Ramp, SpeedFile
+from crankmbs.scene.loads import Constant, Quadratic, SpeedTable, TimeTable, Torque, Viscous
 from crankmbs.scene.parts import Gas
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.tables import Table

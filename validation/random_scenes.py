@@ -12,7 +12,8 @@ from typing import Literal, TypeVar
 import numpy as np
 
 from crankmbs import Scene
-from crankmbs.scene.drives import Constant, Quadratic, SpeedTable, Start, TimeTable, Torque, Viscous
+from crankmbs.scene.drives import Start
+from crankmbs.scene.loads import Constant, Quadratic, SpeedTable, TimeTable, Torque, Viscous
 from crankmbs.scene.parts import Crank, Cylinder, Gas, Gravity, Indicator, Layout, Piston, Rod
 from crankmbs.scene.scene import Extent, Run
 from crankmbs.scene.tables import Table

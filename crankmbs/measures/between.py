@@ -15,6 +15,7 @@ from crankmbs.mechanics.reactions import reactions
 from crankmbs.mechanics.speed import speed_law
 from crankmbs.mechanics.torque import torque_at
 from crankmbs.mechanics.train import crank_train
+from crankmbs.mechanics.windows import span
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 from crankmbs.scene.scene import Scene
@@ -106,7 +107,8 @@ class _Free:
         late, ahead = (float(data[n].attrs["error_estimate"]) for n in ("time", "crank_angle"))
         self._unsure = 2.0 * (ahead + late * float(np.max(np.abs(self._omega))))  # angle [rad]
         self._scene, self._train = scene, crank_train(scene)
-        self._beside = self._outside - torque_at(scene.torque, self._time, self._omega)
+        self._spans = [span(load, self._time, self._omega) for load in scene.torque]
+        self._beside = self._outside - torque_at(scene.torque, self._time, self._omega, self._spans)
         # where the speed follows its loads faster than samples follow one another passes diverge
         rate = _steepness(scene, self._time, self._omega) / inertia_alone(scene, self._theta)
         self._stiff = np.maximum(rate[:-1], rate[1:]) * np.diff(self._time) > 1.0
@@ -158,7 +160,7 @@ class _Free:
         inertia, slope, given = reduce(self._train, angle)
         outside, beside = (np.interp(t, self._time, q) for q in (self._outside, self._beside))
         interval = np.searchsorted(self._time[1:-1], t, side="right")
-        torque = torque_at(self._scene.torque, t, speed) + beside
+        torque = torque_at(self._scene.torque, t, speed, self._spans) + beside
         torque = np.where(self._stiff[interval], outside, torque)
         return np.asarray((given + torque - 0.5 * slope * speed**2) / inertia)
 

@@ -14,6 +14,7 @@ from crankmbs.mechanics.torque import Branch, Course
 from crankmbs.motion.base import NOWHERE, Samples, State
 from crankmbs.motion.crank_angle import loops, readout
 from crankmbs.motion.crank_angle.grid import Grid, Strip, largest_of_row
+from crankmbs.motion.mode import decided
 from crankmbs.motion.plan import Plan
 from crankmbs.numerics import kernels
 from crankmbs.numerics.arrays import Array, Index
@@ -84,7 +85,9 @@ class Window:
         """The state where the window ends."""
         at = self.last()
         rows = (at.time, at.theta, at.omega, at.energy_residual)
-        return State(*(float(q[0]) for q in rows))
+        time, theta, omega, residual = (float(q[0]) for q in rows)
+        end = State(time, theta, omega, residual, self.begin.mode)
+        return decided(self.grid.train.scene, end)
 
     @cached_property
     def errors(self) -> tuple[Array, Array]:

@@ -16,7 +16,6 @@ from crankmbs.mechanics.train import CrankTrain, crank_angle_knots, merged_knots
 from crankmbs.motion.minimal import stepper
 from crankmbs.motion.minimal.system import Machine, bare
 from crankmbs.numerics.arrays import Array
-from crankmbs.scene.drives import Constant, SpeedTable, TimeTable
 
 __all__ = ["KnotPair", "Reduced"]
 
@@ -84,13 +83,10 @@ class Reduced:
 
     @cached_property
     def torque_scale(self) -> float:
-        """Largest torque of gas and gravity over one period, and of constant and tabled loads
+        """Largest torque of gas and gravity over one period, and of the loads at their knots
         [N m]."""
-        load = sum(
-            abs(t.torque) if isinstance(t, Constant) else max(map(abs, t.file.y))
-            for t in self.train.scene.torque
-            if isinstance(t, Constant | TimeTable | SpeedTable)
-        )
+        parts = (part for load in self.train.scene.torque for part in load.parts)
+        load = sum(part.largest for part in parts if part is not None)
         angles = 0.1 + np.linspace(0.0, self.train.scene.period, 721)  # no fold lies there
         torque = reduce(self.train, angles).torque
         return load + float(np.max(np.abs(torque)))

@@ -11,7 +11,6 @@ from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion.multibody.gas import GasForces
 from crankmbs.motion.plan import Plan, plan_of
 from crankmbs.motion.prescribed import monotone_stretches
-from crankmbs.scene.drives import TimeTable
 from crankmbs.scene.scene import Scene
 
 __all__ = ["Problem", "erratic_order", "jump_times", "kink_times", "problem_of"]
@@ -64,9 +63,9 @@ def jump_times(problem: Problem) -> list[float]:
     """Times [s] above 0 at which a load or the prescribed acceleration jumps."""
     times: set[float] = set()
     for load in problem.scene.torque:
-        if isinstance(load, TimeTable):
-            x, y = load.file.x, load.file.y
-            times |= {x[k] for k in range(1, len(x)) if x[k] == x[k - 1] and y[k] != y[k - 1]}
+        if load.parts.over_time is not None:
+            times |= set(load.parts.over_time.jumps)
+        times |= {end for end in (load.after, load.until) if end is not None}
     if problem.law is not None:
         for corner in problem.law.corners:
             before, after = problem.law.at_time(corner * np.array([1.0 - 1e-9, 1.0 + 1e-9]))[2]
@@ -97,6 +96,7 @@ def erratic_order(problem: Problem) -> int:
 
 
 def _row_times(problem: Problem) -> list[float]:
-    """Times [s] within the run of the rows of all loads over time."""
-    loads = (load for load in problem.scene.torque if isinstance(load, TimeTable))
-    return sorted({t for load in loads for t in load.file.x if 0.0 < t < problem.end})
+    """Times [s] within the run at which loads bend or jump."""
+    parts = (load.parts.over_time for load in problem.scene.torque)
+    bends = {t for part in parts if part is not None for t in part.bends}
+    return sorted(t for t in bends if 0.0 < t < problem.end)
