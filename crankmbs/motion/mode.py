@@ -14,13 +14,10 @@ nothing.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from crankmbs.mechanics.windows import Phases, first_phases, later_phases
 from crankmbs.scene.scene import Scene
-
-if TYPE_CHECKING:
-    from crankmbs.motion.base import State
 
 __all__ = ["Mode", "begun", "decided"]
 
@@ -44,10 +41,13 @@ def begun(scene: Scene) -> Mode:
     return Mode(first_phases(scene.torque, scene.start.speed))
 
 
-def decided(scene: Scene, end: State) -> State:
-    """The state where a window or stretch has ended, with the mode in which the next one begins."""
-    mode = end.mode
+def decided(scene: Scene, mode: Mode, time: float, omega: float) -> Mode:
+    """The mode after a window or stretch of this one has ended, at a time [s] and a speed [rad/s].
+
+    >>> scene = load_scene("propeller")
+    >>> decided(scene, begun(scene), 1.0, 300.0) == begun(scene)
+    True
+    """
     if not mode.loads:
-        return end
-    phases = later_phases(scene.torque, mode.loads, end.time, end.omega)
-    return end._replace(mode=mode._replace(loads=phases))
+        return mode
+    return mode._replace(loads=later_phases(scene.torque, mode.loads, time, omega))

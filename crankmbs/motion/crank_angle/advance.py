@@ -147,7 +147,7 @@ def _landed(way: _Way, window: Window, t_end: float) -> tuple[Window | None, Win
         if last is None:
             break
         last = last.cut(t_end, math.inf)
-        if np.array_equal(last.landed, window.landed, equal_nan=True):
+        if np.array_equal(last.landed[:3], window.landed[:3], equal_nan=True):
             return whole, replace(last, skipped=0 if whole else window.skipped)
     return None, window
 

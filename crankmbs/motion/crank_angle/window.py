@@ -86,8 +86,8 @@ class Window:
         at = self.last()
         rows = (at.time, at.theta, at.omega, at.energy_residual)
         time, theta, omega, residual = (float(q[0]) for q in rows)
-        end = State(time, theta, omega, residual, self.begin.mode)
-        return decided(self.grid.train.scene, end)
+        mode = decided(self.grid.train.scene, self.begin.mode, time, omega)
+        return State(time, theta, omega, residual, mode)
 
     @cached_property
     def errors(self) -> tuple[Array, Array]:

@@ -119,8 +119,9 @@ class Stretch:
         """The steps of a track, and the state after them."""
         theta, omega, work = track.y.tolist()
         gained = equation.kinetic(theta, omega) - equation.kinetic(begin.theta, begin.omega)
-        end = State(track.time, theta, omega, begin.residual + gained - work, begin.mode)
-        return cls(equation, track, begin, decided(equation.reduced.train.scene, end))
+        mode = decided(equation.reduced.train.scene, begin.mode, track.time, omega)
+        end = State(track.time, theta, omega, begin.residual + gained - work, mode)
+        return cls(equation, track, begin, end)
 
     @property
     def steps(self) -> int:
