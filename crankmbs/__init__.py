@@ -16,7 +16,7 @@ from crankmbs.errors import (
 from crankmbs.lecture.accumulated_torque import accumulated_torque
 from crankmbs.result import Cost, Error, Result
 from crankmbs.scene.drives import Motion, Oscillation, Ramp, SpeedFile, Start
-from crankmbs.scene.loads import Constant, Quadratic, SpeedTable, TimeTable, Viscous
+from crankmbs.scene.loads import AngleTable, Constant, Quadratic, SpeedTable, TimeTable, Viscous
 from crankmbs.scene.parts import Crank, Cylinder, Gas, Gravity, Indicator, Layout, Piston, Rod
 from crankmbs.scene.read import load_scene, shipped_scenes
 from crankmbs.scene.scene import Extent, Run, Scene
@@ -24,6 +24,7 @@ from crankmbs.scene.tables import Table
 from crankmbs.simulate import simulate
 
 __all__ = [
+    "AngleTable",
     "Budget",
     "Choice",
     "Comparison",

@@ -162,7 +162,7 @@ def _load(scene: Scene, load: Torque) -> str:
     assert scene.start is not None
     text = f"{load.name}, {load.words}"
     speed = scene.start.speed
-    torque = float(load(0.0, speed))
+    torque = float(load(0.0, scene.start.angle, speed))
     if torque * speed == 0.0:
         return text
     return f"{text}; {torque:+.6g} N m at the start, {'drives' if torque * speed > 0 else 'brakes'}"

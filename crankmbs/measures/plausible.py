@@ -175,7 +175,7 @@ def _loads(machine: _Sized) -> Iterator[str]:
     if start is None or start.speed == 0.0 or start.speed * _gas_work(machine) <= 0.0:
         return
     for number, load in enumerate(scene.torque, start=1):
-        torque = float(load(0.0, start.speed))
+        torque = float(load(0.0, start.angle, start.speed))
         if torque * start.speed > 0.0:
             yield (
                 f"torque[{number}]: the {load.name} of {torque:+.4g} N m at the "

@@ -22,10 +22,23 @@ from numpy.typing import ArrayLike
 from crankmbs.errors import InputError
 from crankmbs.mechanics.windows import Phases, acting, phase_ends
 from crankmbs.numerics.arrays import Array
+from crankmbs.numerics.cycle import Cycle, summed, tiled
 from crankmbs.numerics.piecewise import total
 from crankmbs.scene.loads import Torque
+from crankmbs.scene.scene import Scene
 
-__all__ = ["Branch", "Course", "Tables", "branch_at", "branch_of", "course_of", "torque_at"]
+__all__ = [
+    "Branch",
+    "Course",
+    "Tables",
+    "branch_at",
+    "branch_of",
+    "common_period",
+    "course_of",
+    "knots_over_angle",
+    "over_angle",
+    "torque_at",
+]
 
 Tables = tuple[Array, Array, Array, Array]  # times, in_time, speeds and in_speed of `Course`
 
@@ -141,7 +154,7 @@ def branch_of(
             load.check_time(t)
         except InputError as error:
             raise InputError(f"torque[{number}].{error}") from None
-        over_time, over_speed = load.parts
+        over_time, over_speed, _ = load.parts
         if over_time is not None:
             (value, slope, _), _, end = over_time.piece(t, after=True)
             c0, ct, t_end = c0 + value, ct + slope, min(t_end, end)
@@ -223,20 +236,49 @@ def _outside(ends: list[float], low: float, high: float) -> tuple[float, float]:
     return below, min((end for end in ends if end >= high), default=math.inf)
 
 
+def over_angle(scene: Scene, phases: Phases = ()) -> Cycle | None:
+    """What the loads that act give over the crank angle, over one `common_period`."""
+    parts = [load.parts.over_angle for _, load in acting(scene.torque, phases)]
+    return summed([part for part in parts if part is not None], common_period(scene))
+
+
+def common_period(scene: Scene) -> float:
+    """The least common multiple [rad] of the engine's period and those of the loads, all of one
+    revolution or two.
+
+    >>> round(common_period(load_scene("propeller")) / math.pi)
+    4
+    """
+    parts = [load.parts.over_angle for load in scene.torque]
+    return max([scene.period, *(part.period for part in parts if part is not None)])
+
+
+def knots_over_angle(scene: Scene) -> Array:
+    """Crank angles [rad] in one `common_period` at which loads bend or jump, acting or not."""
+    period = common_period(scene)
+    parts = [load.parts.over_angle for load in scene.torque]
+    knots = [np.mod(tiled(part, period), period) for part in parts if part is not None]
+    return np.unique(np.concatenate([np.empty(0), *knots]))
+
+
 def torque_at(
-    torques: tuple[Torque, ...], t: Array, omega: Array, spans: Sequence[tuple[float, float]] = ()
+    torques: tuple[Torque, ...],
+    t: Array,
+    theta: Array,
+    omega: Array,
+    spans: Sequence[tuple[float, float]] = (),
 ) -> Array:
-    """Torque of all loads [N m] at times [s] and speeds [rad/s] of one shape, on any stretches.
+    """Torque of all loads [N m] at times [s], crank angles [rad] and speeds [rad/s] of one shape.
 
     On a jump it is the value after it; a time table's ends are held.
 
     spans : from when to when [s] each load acts; all throughout where none are given
 
-    >>> torque_at((Viscous(coefficient=2.0),), np.zeros(2), np.array([1.0, -3.0]))
+    >>> torque_at((Viscous(coefficient=2.0),), np.zeros(2), np.zeros(2), np.array([1.0, -3.0]))
     array([-2.,  6.])
     """
     total = np.zeros_like(omega)
     for k, load in enumerate(torques):
-        torque = load(t, omega)
+        torque = load(t, theta, omega)
         total += np.where((t >= spans[k][0]) & (t < spans[k][1]), torque, 0.0) if spans else torque
     return total

@@ -1,8 +1,8 @@
 """Torques from outside on the free crank. One class is one load.
 
-A load says what a file writes of it (its fields), and what it is: a function of time plus one of
-the crank speed, each a polynomial between its knots. Whatever solves, draws or writes a scene asks
-the loads for these; nothing else knows their classes.
+A load says what a file writes of it (its fields), and what it is: functions of time, of the crank
+speed and of the crank angle, each a polynomial between its knots. Whatever solves, draws or writes
+a scene asks the loads for these; nothing else knows their classes.
 """
 
 from __future__ import annotations
@@ -18,13 +18,16 @@ from pydantic import PlainValidator, SerializeAsAny, TypeAdapter, ValidationErro
 
 from crankmbs.errors import InputError, shown
 from crankmbs.numerics.arrays import Array
+from crankmbs.numerics.cycle import Cycle
 from crankmbs.numerics.piecewise import Piecewise
+from crankmbs.scene.angle_rows import check_turns, cycle_of
 from crankmbs.scene.schema import Float, from_file, of_file, part, si
 from crankmbs.scene.sentences import PartError, did_you_mean
 from crankmbs.scene.tables import Columns, Table, check_abscissae
-from crankmbs.scene.units import RPM
+from crankmbs.scene.units import DEGREE, RPM
 
 __all__ = [
+    "AngleTable",
     "AnyTorque",
     "Constant",
     "Parts",
@@ -42,10 +45,12 @@ AngularSpeed = Annotated[Float, si("angular speed")]
 
 
 class Parts(NamedTuple):
-    """What a torque [N m] is the sum of: functions of time [s] and of the crank speed [rad/s]."""
+    """What a torque [N m] is the sum of: functions of time [s], of the crank speed [rad/s] and of
+    the crank angle [rad]."""
 
     over_time: Piecewise | None = None
     over_speed: Piecewise | None = None
+    over_angle: Cycle | None = None
 
 
 @part
@@ -124,26 +129,24 @@ class Torque:
         InputError : key, what came, and the way out
         """
 
-    def __call__(self, t: ArrayLike, omega: ArrayLike) -> Array:
-        """Torque [N m] at times [s] and speeds [rad/s] of one shape, on a jump that after it.
+    def __call__(self, t: ArrayLike, theta: ArrayLike, omega: ArrayLike) -> Array:
+        """Torque [N m] at times [s], crank angles [rad] and speeds [rad/s] of one shape; on a jump
+        that after it.
 
-        >>> Viscous(coefficient=2.0)(0.0, [1.0, -3.0])
+        >>> Viscous(coefficient=2.0)(0.0, 0.0, [1.0, -3.0])
         array([-2.,  6.])
         """
-        total = np.zeros(np.broadcast_shapes(np.shape(t), np.shape(omega)))
-        over_time, over_speed = self.parts
-        if over_time is not None:
-            total += over_time(t)
-        if over_speed is not None:
-            total += over_speed(omega)
+        total = np.zeros(np.broadcast_shapes(np.shape(t), np.shape(theta), np.shape(omega)))
+        for function, at in zip(self.parts, (t, omega, theta), strict=True):
+            total += 0.0 if function is None else function(at)
         return total
 
 
 def load(cls: T) -> T:
     """Make a part a load that a file names by its kind.
 
-    >>> sorted(Torque.kinds)[0]
-    'constant'
+    >>> Torque.kinds["viscous"].__name__
+    'Viscous'
     """
     Torque.kinds[cls.kind] = cls
     return cls
@@ -280,6 +283,38 @@ class SpeedTable(Torque):
 
     def _scaled(self, share: float, faster: float) -> dict[str, Any]:
         return {"file": self.file.scaled(share, faster)}
+
+
+_OVER_ANGLE = Columns("crank_angle_deg", DEGREE, "torque_Nm", 1.0)
+
+
+@load
+@part
+class AngleTable(Torque):
+    """Torque [N m] over the crank angle [rad], modulo 360 degrees where its rows span no more, else
+    720; linear, pchip or cubic. Two rows at one angle, or a closing row unlike the first, are a
+    jump, up to which and from which it is interpolated.
+    """
+
+    columns: ClassVar[Columns | None] = _OVER_ANGLE
+    kind: Literal["angle_table"] = "angle_table"
+    file: Annotated[Table, from_file(*_OVER_ANGLE.units, "crank angles [rad], torques [N m]")]
+    interpolation: Literal["linear", "pchip", "cubic"] = "linear"
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        check_turns(self.file)
+
+    @cached_property
+    def parts(self) -> Parts:
+        return Parts(over_angle=cycle_of(self.file, self.interpolation))
+
+    @property
+    def words(self) -> str:
+        return f"{_rows(self.file)}, {self.interpolation}"
+
+    def _scaled(self, share: float, faster: float) -> dict[str, Any]:
+        return {"file": self.file.scaled(share)}
 
 
 def _rows(table: Table) -> str:

@@ -46,6 +46,7 @@ _KEPT = 2  # whole periods at the end that are solved cell by cell when only the
 
 def is_fast(grid: Grid, state: State, branch: Branch, times: float) -> bool:
     """Whether the energy lasts for so many times the angle at which this formulation gives up."""
+    grid = grid.at(state.mode.loads)
     scale = grid.scale[grid.cell_at(state.theta, math.copysign(1.0, state.omega))]
     scale += abs(float(branch(state.time, state.omega)))
     inertia = float(inertia_alone(grid.train.scene, state.theta))
@@ -68,6 +69,7 @@ def advance(
     skipped = 0
     while True:
         mode = state.mode
+        grid = grid.at(mode.loads)
         bound = min(end, mode.high) if sense > 0.0 else max(end, mode.low)
         branch, energy = _enter(grid, state)
         if branch is None:
@@ -193,6 +195,7 @@ def _skip(way: _Way, branch: Branch) -> tuple[State, int]:
 def _enter(grid: Grid, state: State) -> tuple[Branch | None, float]:
     """The branch of the loads that the motion enters, and its kinetic energy [J]."""
     inertia, slope, torque = reduce(grid.train, state.theta)
+    torque = torque + grid.outside(np.asarray(state.theta))
     rest = float(torque - 0.5 * slope * state.omega**2)
     torques = grid.train.scene.torque
     branch = branch_at(torques, state.time, state.omega, rest, state.mode.loads)

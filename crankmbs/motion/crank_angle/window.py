@@ -249,6 +249,8 @@ class Window:
         """Samples in the cells k."""
         once, which = one_period(theta, float(self.grid.edges[-1]))
         inertia, slope, torque = reduce(self.grid.train, once)
+        over_angle = np.zeros_like(torque) + self.grid.outside(once)
+        torque = torque + over_angle
         of_angle = (inertia, slope, torque)  # bare: numba's cache must not name a class
         if kernels.are_compiled and isinstance(self.branch, Branch):
             omega, outside, alpha = np.empty((3, len(theta)))
@@ -260,6 +262,7 @@ class Window:
             outside = self.branch(t, omega)
             alpha = (torque + outside - 0.5 * slope * omega**2) / inertia
         residual = self.begin.residual - self.missed[k]
+        outside = outside + over_angle[which]
         return Samples(t, theta, omega, alpha, residual, {"external_torque": outside})
 
 

@@ -176,7 +176,8 @@ def _noted(windows: Generator[Window, None, Ending | None], worst: Array) -> Pie
 def _first(grid: Grid, state: State) -> Samples:
     """The sample at the start."""
     inertia, slope, torque = reduce(grid.train, state.theta)
-    rest = float(torque - 0.5 * slope * state.omega**2)
+    of_angle = float(grid.at(state.mode.loads).outside(np.asarray(state.theta)))
+    rest = float(torque - 0.5 * slope * state.omega**2) + of_angle
     torques, phases = grid.train.scene.torque, state.mode.loads
     branch = branch_at(torques, state.time, state.omega, rest, phases)
     held = branch is None and state.omega == 0.0
@@ -188,7 +189,7 @@ def _first(grid: Grid, state: State) -> Samples:
         omega=np.array([state.omega]),
         alpha=np.array([(rest + outside) / float(inertia)]),
         energy_residual=np.zeros(1),
-        own={"external_torque": np.array([outside])},
+        own={"external_torque": np.array([outside + of_angle])},
     )
 
 

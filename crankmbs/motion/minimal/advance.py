@@ -64,6 +64,7 @@ def advance(
     scale = reduced.torque_scale
     evaluations, most, h, room = 0, 0.0, math.inf, 1
     while evaluations < allowed:
+        reduced = reduced.at(state.mode.loads)
         equation = _enter(reduced, state, scale)
         if isinstance(equation, Ending):
             return equation

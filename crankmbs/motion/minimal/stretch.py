@@ -175,6 +175,8 @@ class Stretch:
         reduced = self.equation.reduced
         inertia, slope, torque = reduce(reduced.train, theta)
         outside = self.equation.branch(t, omega)
+        if reduced.over_angle is not None:
+            outside = outside + reduced.over_angle(theta)
         alpha = (torque + outside - 0.5 * slope * omega**2) / inertia
         start = self.equation.kinetic(self.begin.theta, self.begin.omega)
         residual = self.begin.residual + 0.5 * inertia * omega**2 - start - work

@@ -18,6 +18,8 @@ class Machine(NamedTuple):
     knots : shape (k,) [rad], crank angles in one period where a step must end
     period, first [rad] : of the crank train; first knot of the pressure
     starts, coefficients : knots of the pressure behind its first one, and its cubics; may be empty
+    bends [rad] : crank angles in one period where a long step must end
+    load_first, load_starts, load_coefficients : the same of the loads over the crank angle [N m]
     """
 
     radius: float
@@ -39,10 +41,13 @@ class Machine(NamedTuple):
     starts: Array
     coefficients: Array
     bends: Array
+    load_first: float
+    load_starts: Array
+    load_coefficients: Array
 
 
 System = tuple[Machine, Array, tuple[float, float, float, float]]
-"""The equation of motion between two knots: machine, pressure as `stepper.enter` fills it,
+"""The equation of motion between two knots: machine, its cubics as `stepper.enter` fills them,
 and the load's c0, ct, c1, c2 of `crankmbs.mechanics.torque`."""
 
 

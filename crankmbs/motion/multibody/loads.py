@@ -6,45 +6,44 @@ import math
 from bisect import bisect_left, bisect_right
 from collections.abc import Callable
 
+import numpy as np
+
+from crankmbs.numerics.cycle import NEAR, Cycle
 from crankmbs.numerics.piecewise import Piecewise
 from crankmbs.scene.loads import Torque
 
 __all__ = ["EVERYWHERE", "Load", "speeds_around", "torque_function"]
 
-Load = Callable[[float, float], float]
+Load = Callable[[float, float, float], float]
 Range = tuple[float, float]
 
 EVERYWHERE: Range = (-math.inf, math.inf)
 
 
 def torque_function(torques: tuple[Torque, ...], times: Range, speeds: Range) -> Load:
-    """Torque [N m] over time [s] and crank speed [rad/s], all loads together.
+    """Torque [N m] over time [s], crank angle [rad] and speed [rad/s], all loads together.
 
     times [s] : no load over time jumps between; continued smoothly before and beyond
     speeds [rad/s] : no load over speed bends or jumps between, and they are continued; or
         EVERYWHERE, for the loads as they are
     """
-    c0 = c1 = c2 = 0.0
-    over_time: list[Callable[[float], float]] = []
-    over_speed: list[Callable[[float], float]] = []
-    for load in torques:
-        in_time, in_speed = load.parts
-        if in_time is not None and in_time.is_constant and not in_time.knots:
-            c0 += in_time.pieces[0][0]
-        elif in_time is not None:
-            over_time.append(_between(in_time, *times))
-        if in_speed is not None and in_speed.knots:
-            over_speed.append(_between(in_speed, *speeds))
-        elif in_speed is not None:
-            a, b, c = in_speed.pieces[0]
-            c0, c1, c2 = c0 + a, c1 + b, c2 + c
+    parts = [load.parts for load in torques]
+    in_time = [part.over_time for part in parts if part.over_time is not None]
+    in_speed = [part.over_speed for part in parts if part.over_speed is not None]
+    over_time = [_between(part, *times) for part in in_time]
+    over_speed = [_between(part, *speeds) for part in in_speed if part.knots]
+    over_angle = [_periodic(part.over_angle) for part in parts if part.over_angle is not None]
+    smooth = np.sum([part.pieces[0] for part in in_speed if not part.knots] or [(0.0,) * 3], axis=0)
+    c0, c1, c2 = map(float, smooth)
 
-    def torque(time: float, omega: float) -> float:
+    def torque(time: float, theta: float, omega: float) -> float:
         value = c0 + (c1 + c2 * omega) * omega
         for function in over_time:
             value += function(time)
         for function in over_speed:
             value += function(omega)
+        for function in over_angle:
+            value += function(theta)
         return value
 
     return torque
@@ -60,6 +59,22 @@ def speeds_around(
     k = bisect_right(rows, omega) if sense > 0.0 else bisect_left(rows, omega)
     ends = [-math.inf, *rows, math.inf]
     return ends[k], ends[k + 1]
+
+
+def _periodic(part: Cycle) -> Callable[[float], float]:
+    """A cycle from number to number."""
+    first, period = float(part.knots[0]) - NEAR, part.period
+    knots = (part.knots[:-1] - part.knots[0]).tolist()
+    pieces = part.coefficients.T.tolist()
+
+    def value(angle: float) -> float:
+        x = (angle - first) % period
+        k = bisect_right(knots, x) - 1
+        a, b, c, d = pieces[k]
+        x -= knots[k] + NEAR
+        return float(((a * x + b) * x + c) * x + d)
+
+    return value
 
 
 def _between(part: Piecewise, begin: float, end: float) -> Callable[[float], float]:

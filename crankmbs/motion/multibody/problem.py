@@ -88,11 +88,14 @@ def erratic_order(problem: Problem) -> int:
     """Power of the step with which the erratic part of an error goes, at least; 3 at most.
 
     It is 1 where a load jumps within a step, at a place in it that changes with the step, and 2
-    where it bends; loads over speed are not counted. No load bends a prescribed motion.
+    where it bends, as loads over the angle do; loads over speed are not counted. No load bends a
+    prescribed motion.
     """
     if problem.law is not None:
         return 2 if set(problem.law.corners) - set(jump_times(problem)) else 3
-    return min(problem.gas.order, 2 if len(_row_times(problem)) > _MOST_KINKS else 3)
+    parts = (load.parts.over_angle for load in problem.scene.torque)
+    over_angle = min((part.order for part in parts if part is not None), default=3)
+    return min(problem.gas.order, over_angle, 2 if len(_row_times(problem)) > _MOST_KINKS else 3)
 
 
 def _row_times(problem: Problem) -> list[float]:

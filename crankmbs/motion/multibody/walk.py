@@ -142,9 +142,11 @@ class Walk:
             return None, Ending.DIVERGED
         torque = record.drive
         if problem.law is None:
-            rates = record.velocity[:, 2].tolist()
-            torque = np.array(list(map(model.torque, record.time.tolist(), rates)))
+            angles, rates = record.position[:, 2].tolist(), record.velocity[:, 2].tolist()
+            torque = np.array(list(map(model.torque, record.time.tolist(), angles, rates)))
+        over_angle = (load.parts.over_angle for load in self._acting)
         table = table_of(problem.scene, gas, torque, record, time, self._residual)
+        table = table.under(tuple(part for part in over_angle if part is not None))
         if watch.called_off:
             return table, Ending.CALLED_OFF
         return table, Ending.COMPLETE if record.complete else Ending.DIVERGED
@@ -197,11 +199,12 @@ class Walk:
 
     def _jumps(self, omega: float) -> bool:
         """Whether a load jumps at a speed."""
+        theta = self._state[0]
         now = self.time, self.time
         sides = (
             torque_function(self._acting, now, self._speeds_around(sense)) for sense in (-1.0, 1.0)
         )
-        below, above = (torque(self.time, omega) for torque in sides)
+        below, above = (torque(self.time, theta, omega) for torque in sides)
         return abs(above - below) > 1e-9 * max(abs(above), abs(below))
 
     def _land(self, table: StepTable, bounds: Bounds, bound: float | None) -> None:
