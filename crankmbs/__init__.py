@@ -15,19 +15,9 @@ from crankmbs.errors import (
 )
 from crankmbs.lecture.accumulated_torque import accumulated_torque
 from crankmbs.result import Cost, Error, Result
-from crankmbs.scene.drives import (
-    Constant,
-    Motion,
-    Oscillation,
-    Quadratic,
-    Ramp,
-    SpeedFile,
-    SpeedTable,
-    Start,
-    TimeTable,
-    Viscous,
-)
+from crankmbs.scene.drives import Motion, Oscillation, Ramp, SpeedFile, Start
 from crankmbs.scene.gas import Gas, Indicator
+from crankmbs.scene.loads import AngleTable, Constant, Quadratic, SpeedTable, TimeTable, Viscous
 from crankmbs.scene.parts import Crank, Cylinder, Gravity, Layout, Piston, Rod
 from crankmbs.scene.read import load_scene, shipped_scenes
 from crankmbs.scene.scene import Extent, Run, Scene
@@ -35,6 +25,7 @@ from crankmbs.scene.tables import Columns, Table
 from crankmbs.simulate import simulate
 
 __all__ = [
+    "AngleTable",
     "Budget",
     "Choice",
     "Columns",

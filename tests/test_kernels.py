@@ -33,7 +33,7 @@ from crankmbs.motion.crank_angle.grid import grid_of
 from crankmbs.motion.crank_angle.solvers import Begin, Cells, solve_affine, solve_newton
 from crankmbs.numerics import kernels
 from crankmbs.numerics.collocation import gauss
-from crankmbs.scene.drives import Torque
+from crankmbs.scene.loads import Torque
 
 LOADS: dict[str, tuple[Torque, ...]] = {
     "none": (),

@@ -9,7 +9,8 @@ import pytest
 from references import assert_within_stated
 
 from crankmbs.result import Result
-from crankmbs.scene.drives import Constant, Start, TimeTable, Viscous
+from crankmbs.scene.drives import Start
+from crankmbs.scene.loads import Constant, TimeTable, Viscous
 from crankmbs.scene.read import load_scene
 from crankmbs.scene.scene import Extent, Run, Scene
 from crankmbs.scene.tables import Table

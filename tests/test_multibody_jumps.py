@@ -13,8 +13,9 @@ import pytest
 from references import assert_within_stated
 
 from crankmbs.result import Result
-from crankmbs.scene.drives import Motion, SpeedFile, Start, TimeTable, Torque, Viscous
+from crankmbs.scene.drives import Motion, SpeedFile, Start
 from crankmbs.scene.gas import Gas
+from crankmbs.scene.loads import TimeTable, Torque, Viscous
 from crankmbs.scene.read import load_scene
 from crankmbs.scene.scene import Run, Scene
 from crankmbs.scene.tables import Table

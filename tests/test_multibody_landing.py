@@ -15,8 +15,9 @@ from crankmbs.motion.multibody.landing import LEAST_STEPS, Bounds, Watch
 from crankmbs.motion.multibody.problem import erratic_order, kink_times, problem_of
 from crankmbs.motion.multibody.stepped import Stepped, coarsest_step, model_of, solve
 from crankmbs.result import Result
-from crankmbs.scene.drives import Motion, SpeedFile, SpeedTable, Start, TimeTable, Torque
+from crankmbs.scene.drives import Motion, SpeedFile, Start
 from crankmbs.scene.gas import Gas
+from crankmbs.scene.loads import SpeedTable, TimeTable, Torque
 from crankmbs.scene.read import load_scene
 from crankmbs.scene.scene import Extent, Run, Scene
 from crankmbs.scene.tables import Table

@@ -22,7 +22,7 @@ from crankmbs.motion.multibody.samples import Sampled, aligned_variables
 from crankmbs.motion.multibody.start import angle_of, coordinates, quiet_start
 from crankmbs.motion.multibody.stepped import model_of, solve
 from crankmbs.motion.multibody.taylor import taylor
-from crankmbs.scene.drives import Constant, Quadratic, SpeedTable, TimeTable, Viscous
+from crankmbs.scene.loads import Constant, Quadratic, SpeedTable, TimeTable, Viscous
 from crankmbs.scene.parts import Cylinder, Layout
 from crankmbs.scene.read import load_scene
 from crankmbs.scene.scene import Run
@@ -47,7 +47,7 @@ def test_torque_is_the_sum_of_all_loads() -> None:
         times = (0.0, 1.0) if time < 1.0 else (1.0, 2.0)
         for speeds in (EVERYWHERE, speeds_around(loads, omega, 1.0)):
             torque = torque_function(loads, times, speeds)
-            assert torque(time, omega) == pytest.approx(expected, rel=1e-14)
+            assert torque(time, 0.0, omega) == pytest.approx(expected, rel=1e-14)
 
 
 def test_a_time_table_goes_on_straight_beyond_the_ends_of_a_stretch() -> None:
@@ -58,7 +58,7 @@ def test_a_time_table_goes_on_straight_beyond_the_ends_of_a_stretch() -> None:
         ((1.0, 2.0), 3.0, 6.0),
         ((1.0, 3.0), 3.0, 0.0),
     ):
-        assert torque_function((load,), times, EVERYWHERE)(time, 0.0) == torque
+        assert torque_function((load,), times, EVERYWHERE)(time, 0.0, 0.0) == torque
 
 
 def test_a_speed_table_goes_on_straight_beyond_the_rows_around_a_speed() -> None:
@@ -72,7 +72,7 @@ def test_a_speed_table_goes_on_straight_beyond_the_rows_around_a_speed() -> None
         (30.0, 1.0, (30.0, math.inf), -4.0),
     ):
         assert speeds_around(loads, omega, sense) == around
-        assert torque_function(loads, (0.0, 0.0), around)(0.0, 20.0) == pytest.approx(at_20)
+        assert torque_function(loads, (0.0, 0.0), around)(0.0, 0.0, 20.0) == pytest.approx(at_20)
 
 
 def test_gas_has_no_jump_on_a_stretch_and_is_the_pressure_within() -> None:

@@ -4,7 +4,7 @@ import pytest
 from scene_texts import DRIVEN, FREE, edited, refusal
 
 EXTENT = 'must be an angle or a time with its unit, such as "20 cycles", "10 rev" or "0.75 s"'
-KINDS = "constant, viscous, quadratic, time_table, speed_table"
+KINDS = "constant, viscous, quadratic, time_table, speed_table, angle_table"
 
 
 @pytest.mark.parametrize(

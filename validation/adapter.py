@@ -13,19 +13,10 @@ from numpy.typing import NDArray
 from crankmbs.mechanics.pressure import PeriodicPressure, pressures_of
 from crankmbs.motion.plan import plan_of
 from crankmbs.result import Result
-from crankmbs.scene.drives import (
-    Constant,
-    Oscillation,
-    Quadratic,
-    Ramp,
-    SpeedFile,
-    SpeedTable,
-    TimeTable,
-    Torque,
-    Viscous,
-)
 from crankmbs.scene.drives import Motion as Prescribed
+from crankmbs.scene.drives import Oscillation, Ramp, SpeedFile
 from crankmbs.scene.gas import Gas
+from crankmbs.scene.loads import Constant, Quadratic, SpeedTable, TimeTable, Torque, Viscous
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.tables import Columns, Table
 from validation.oracles.arithmetic import LONG, Arithmetic, Array

@@ -12,8 +12,9 @@ from typing import Literal, TypeVar
 import numpy as np
 
 from crankmbs import Scene
-from crankmbs.scene.drives import Constant, Quadratic, SpeedTable, Start, TimeTable, Torque, Viscous
+from crankmbs.scene.drives import Start
 from crankmbs.scene.gas import Gas, Indicator
+from crankmbs.scene.loads import Constant, Quadratic, SpeedTable, TimeTable, Torque, Viscous
 from crankmbs.scene.parts import Crank, Cylinder, Gravity, Layout, Piston, Rod
 from crankmbs.scene.scene import Extent, Run
 from crankmbs.scene.tables import Table

@@ -10,20 +10,10 @@ from crankmbs.choose import Choice
 from crankmbs.measures.plausible import warnings
 from crankmbs.mechanics.geometry import close_loop, dead_centres
 from crankmbs.mechanics.pressure import PeriodicPressure, pressures_of, remarks
-from crankmbs.mechanics.torque import torque_at
 from crankmbs.scene.cycles import cycles_in
-from crankmbs.scene.drives import (
-    Constant,
-    Oscillation,
-    Quadratic,
-    Ramp,
-    SpeedFile,
-    SpeedTable,
-    TimeTable,
-    Torque,
-    Viscous,
-)
+from crankmbs.scene.drives import Oscillation, Ramp, SpeedFile
 from crankmbs.scene.gas import Gas
+from crankmbs.scene.loads import Torque
 from crankmbs.scene.scene import Extent, Scene
 from crankmbs.scene.tables import Columns
 from crankmbs.scene.units import RPM
@@ -189,20 +179,9 @@ def _sense(speed: float) -> str:
 
 def _load(scene: Scene, load: Torque) -> str:
     assert scene.start is not None
-    match load:
-        case Constant():
-            text = f"constant, {load.torque:+.6g} N m"
-        case Viscous():
-            text = f"viscous, -c omega with c = {load.coefficient:.6g} N m s"
-        case Quadratic():
-            text = f"quadratic, -c omega |omega| with c = {load.coefficient:.6g} N m s^2"
-        case TimeTable(file=table) | SpeedTable(file=table):
-            text = (
-                f"{load.kind.replace('_', ' ')}, {min(table.y):+.6g} to {max(table.y):+.6g} N m "
-                f"in {len(table.x)} rows of {table.source}"
-            )
+    text = f"{load.name}, {load.words}"
     speed = scene.start.speed
-    torque = float(torque_at((load,), np.zeros(1), np.array([speed]))[0])
+    torque = float(load(0.0, scene.start.angle, speed))
     if torque * speed == 0.0:
         return text
     return f"{text}; {torque:+.6g} N m at the start, {'drives' if torque * speed > 0 else 'brakes'}"

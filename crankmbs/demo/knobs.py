@@ -7,7 +7,7 @@ import math
 from collections.abc import Mapping
 from typing import Any, Literal
 
-from crankmbs.scene.drives import Oscillation, Quadratic, SpeedTable, TimeTable, Torque, Viscous
+from crankmbs.scene.drives import Oscillation
 from crankmbs.scene.gas import Gas
 from crankmbs.scene.parts import Layout
 from crankmbs.scene.scene import Scene
@@ -113,7 +113,7 @@ def turned(scene: Scene, values: Values) -> Scene:
         parts["layout"] = Layout(firing_order=order)
         share *= len(order) / len(scene.cylinders)
     if share != 1.0 or faster != 1.0:
-        parts["torque"] = tuple(_loaded(load, share, faster) for load in scene.torque)
+        parts["torque"] = tuple(load.scaled(share, faster) for load in scene.torque)
     if scene.gas is not None and "pressure" in changed:
         parts["gas"] = _pressed(scene.gas, new["pressure"] / 100.0)
     return dataclasses.replace(scene, **parts) if parts else scene
@@ -161,22 +161,6 @@ def _sped(scene: Scene, speed: float, faster: float) -> dict[str, Any]:
     return {"motion": dataclasses.replace(scene.motion, speed=swing)}
 
 
-def _loaded(load: Torque, share: float, faster: float) -> Torque:
-    """A load times a share; the same torque as before at a speed so much higher."""
-    if isinstance(load, TimeTable):
-        return TimeTable(file=_scaled(load.file, share))
-    if isinstance(load, SpeedTable):
-        return SpeedTable(file=_scaled(load.file, share, faster))
-    if isinstance(load, Quadratic | Viscous):
-        power = 2 if isinstance(load, Quadratic) else 1
-        return dataclasses.replace(load, coefficient=load.coefficient * share / faster**power)
-    return dataclasses.replace(load, torque=load.torque * share)
-
-
-def _scaled(table: Table, y: float, x: float = 1.0) -> Table:
-    return Table(tuple(x * v for v in table.x), tuple(y * v for v in table.y), table.source)
-
-
 def _pressed(gas: Gas, factor: float) -> Gas:
     """The pressures of the table or of the diagram times the factor; ambient stays."""
     if gas.pressure is not None:
@@ -196,11 +180,11 @@ def _pressed_more(
     if isinstance(pressure, float):
         return factor * pressure
     if isinstance(pressure, Table):
-        return _scaled(pressure, factor)
+        return pressure.scaled(factor)
     if isinstance(pressure, Columns):
-        more = tuple(_scaled(table, factor).y for table in pressure.tables)
+        more = tuple(table.scaled(factor).y for table in pressure.tables)
         return Columns(pressure.x, more, pressure.source)
-    return tuple(_scaled(table, factor) for table in pressure)
+    return tuple(table.scaled(factor) for table in pressure)
 
 
 def _above(value: float) -> float:

@@ -15,6 +15,7 @@ from crankmbs.mechanics.reactions import reactions
 from crankmbs.mechanics.speed import speed_law
 from crankmbs.mechanics.torque import torque_at
 from crankmbs.mechanics.train import crank_train
+from crankmbs.mechanics.windows import span
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 from crankmbs.scene.scene import Scene
@@ -106,9 +107,14 @@ class _Free:
         late, ahead = (float(data[n].attrs["error_estimate"]) for n in ("time", "crank_angle"))
         self._unsure = 2.0 * (ahead + late * float(np.max(np.abs(self._omega))))  # angle [rad]
         self._scene, self._train = scene, crank_train(scene)
-        self._beside = self._outside - torque_at(scene.torque, self._time, self._omega)
+        self._spans = [span(load, self._time, self._omega) for load in scene.torque]
+        self._beside = self._outside - torque_at(
+            scene.torque, self._time, self._theta, self._omega, self._spans
+        )
         # where the speed follows its loads faster than samples follow one another passes diverge
-        rate = _steepness(scene, self._time, self._omega) / inertia_alone(scene, self._theta)
+        rate = _steepness(scene, self._time, self._theta, self._omega) / inertia_alone(
+            scene, self._theta
+        )
         self._stiff = np.maximum(rate[:-1], rate[1:]) * np.diff(self._time) > 1.0
 
     def motion(self, parts: int, passes: int) -> tuple[Array, Array, Array, Array] | None:
@@ -158,15 +164,15 @@ class _Free:
         inertia, slope, given = reduce(self._train, angle)
         outside, beside = (np.interp(t, self._time, q) for q in (self._outside, self._beside))
         interval = np.searchsorted(self._time[1:-1], t, side="right")
-        torque = torque_at(self._scene.torque, t, speed) + beside
+        torque = torque_at(self._scene.torque, t, angle, speed, self._spans) + beside
         torque = np.where(self._stiff[interval], outside, torque)
         return np.asarray((given + torque - 0.5 * slope * speed**2) / inertia)
 
 
-def _steepness(scene: Scene, t: Array, omega: Array) -> Array:
+def _steepness(scene: Scene, t: Array, theta: Array, omega: Array) -> Array:
     """How fast the torque of all loads changes with the speed [N m s]."""
     nudge = 1e-6 * float(np.max(np.abs(omega))) + 1e-12
-    above, below = (torque_at(scene.torque, t, omega + sign * nudge) for sign in (1.0, -1.0))
+    above, below = (torque_at(scene.torque, t, theta, omega + sign * nudge) for sign in (1.0, -1.0))
     return np.asarray(np.abs(above - below) / (2.0 * nudge))
 
 

@@ -14,7 +14,6 @@ import numpy as np
 
 from crankmbs.mechanics.geometry import close_loop, dead_centres, top_position
 from crankmbs.mechanics.pressure import PeriodicPressure, pressures_of
-from crankmbs.mechanics.torque import torque_at
 from crankmbs.scene.gas import Gas
 from crankmbs.scene.scene import Scene
 
@@ -188,10 +187,10 @@ def _loads(machine: _Sized) -> Iterator[str]:
     if start is None or start.speed == 0.0 or start.speed * _gas_work(machine) <= 0.0:
         return
     for number, load in enumerate(scene.torque, start=1):
-        torque = float(torque_at((load,), np.zeros(1), np.array([start.speed]))[0])
+        torque = float(load(0.0, start.angle, start.speed))
         if torque * start.speed > 0.0:
             yield (
-                f"torque[{number}]: the {load.kind.replace('_', ' ')} of {torque:+.4g} N m at the "
+                f"torque[{number}]: the {load.name} of {torque:+.4g} N m at the "
                 "start drives, as the gas does; a load that brakes has the sign opposite to the "
                 "speed's"
             )

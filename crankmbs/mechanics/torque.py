@@ -1,7 +1,7 @@
 """Torques from outside on the free crank: on every smooth stretch one small polynomial.
 
-Each load of a scene is linear or quadratic in the speed, or linear in time between the rows of a
-table. So on a stretch without a kink their sum is
+Each load is a sum of parabolas in the speed and straight lines in time, between knots of its own
+(`crankmbs.scene.loads.Parts`). So on a stretch without a kink their sum is
 
     T(t, omega) = c0 + ct t + c1 omega + c2 omega^2
 
@@ -20,11 +20,25 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from crankmbs.errors import InputError
+from crankmbs.mechanics.train import CrankTrain
+from crankmbs.mechanics.windows import Phases, acting, phase_ends
 from crankmbs.numerics.arrays import Array
-from crankmbs.scene.drives import Constant, Quadratic, SpeedTable, TimeTable, Torque, Viscous
-from crankmbs.scene.tables import Table
+from crankmbs.numerics.cycle import Cycle, summed, tiled
+from crankmbs.numerics.piecewise import total
+from crankmbs.scene.loads import Torque
+from crankmbs.scene.scene import Scene
 
-__all__ = ["Branch", "Course", "Tables", "branch_at", "branch_of", "course_of", "torque_at"]
+__all__ = [
+    "Branch",
+    "Course",
+    "Tables",
+    "branch_at",
+    "branch_of",
+    "course_of",
+    "knots_over_angle",
+    "over_angle",
+    "torque_at",
+]
 
 Tables = tuple[Array, Array, Array, Array]  # times, in_time, speeds and in_speed of `Course`
 
@@ -113,13 +127,16 @@ class Course:
         return np.asarray(linear[k] + 2.0 * square[k] * omega)
 
 
-def branch_of(torques: tuple[Torque, ...], t: float, omega: float, *, rising: bool) -> Branch:
+def branch_of(
+    torques: tuple[Torque, ...], t: float, omega: float, *, rising: bool, phases: Phases = ()
+) -> Branch:
     """The smooth stretch of all loads together that begins at (t, omega).
 
     Parameters
     ----------
-    t [s] : on a row of a time table the stretch after it counts
-    omega [rad/s] : on a row of a speed table, or at rest, the stretch above counts if ``rising``
+    t [s] : on a knot in time the stretch after it counts
+    omega [rad/s] : on a knot in the speed the stretch above counts if ``rising``
+    phases : of the loads' windows
 
     Raises
     ------
@@ -129,34 +146,28 @@ def branch_of(torques: tuple[Torque, ...], t: float, omega: float, *, rising: bo
     2.0
     """
     c0 = ct = c1 = c2 = 0.0
-    t_end, low, high = math.inf, -math.inf, math.inf
-    for number, load in enumerate(torques, start=1):
-        match load:
-            case Constant():
-                c0 += load.torque
-            case Viscous():
-                c1 -= load.coefficient
-            case Quadratic():
-                forward = omega > 0.0 or (omega == 0.0 and rising)
-                c2 -= load.coefficient if forward else -load.coefficient
-                low, high = (max(low, 0.0), high) if forward else (low, min(high, 0.0))
-            case TimeTable():
-                if t >= load.file.x[-1]:
-                    raise InputError(
-                        f"torque[{number}].file: {load.file.source}: the time table ends at "
-                        f"{load.file.x[-1]:g} s, before the run does; lengthen the table or "
-                        "shorten the run"
-                    )
-                value, slope, _, end = _piece(load.file, t, after=True)
-                c0, ct, t_end = c0 + value, ct + slope, min(t_end, end)
-            case SpeedTable():
-                value, slope, below, above = _piece(load.file, omega, after=rising)
-                c0, c1 = c0 + value, c1 + slope
-                low, high = max(low, below), min(high, above)
+    times, speeds = phase_ends(torques, phases)
+    t_end = min((end for end in times if end > t), default=math.inf)
+    low, high = _beside(speeds, omega, rising=rising)
+    for number, load in acting(torques, phases):
+        try:
+            load.check_time(t)
+        except InputError as error:
+            raise InputError(f"torque[{number}].{error}") from None
+        over_time, over_speed, _ = load.parts
+        if over_time is not None:
+            (value, slope, _), _, end = over_time.piece(t, after=True)
+            c0, ct, t_end = c0 + value, ct + slope, min(t_end, end)
+        if over_speed is not None:
+            (value, slope, square), below, above = over_speed.piece(omega, after=rising)
+            c0, c1, c2 = c0 + value, c1 + slope, c2 + square
+            low, high = max(low, below), min(high, above)
     return Branch(c0, ct, c1, c2, t_end, low, high)
 
 
-def branch_at(torques: tuple[Torque, ...], t: float, omega: float, rest: float) -> Branch | None:
+def branch_at(
+    torques: tuple[Torque, ...], t: float, omega: float, rest: float, phases: Phases = ()
+) -> Branch | None:
     """The branch that the motion enters at (t, omega).
 
     rest [N m] : torque of gas and gravity minus J_1 omega^2 / 2; with a load's torque added its
@@ -167,8 +178,8 @@ def branch_at(torques: tuple[Torque, ...], t: float, omega: float, rest: float) 
     Branch, or None where a jump of a speed table drives the speed back from both sides, so that
     no motion leaves this speed
     """
-    above = branch_of(torques, t, omega, rising=True)
-    below = branch_of(torques, t, omega, rising=False)
+    above = branch_of(torques, t, omega, rising=True, phases=phases)
+    below = branch_of(torques, t, omega, rising=False, phases=phases)
     push, pull = float(above(t, omega)), float(below(t, omega))
     if rest + push > 0.0:
         return above
@@ -178,84 +189,86 @@ def branch_at(torques: tuple[Torque, ...], t: float, omega: float, rest: float) 
     return None if jumps else above
 
 
-def course_of(torques: tuple[Torque, ...], branch: Branch, t: float) -> Branch | Course:
+def course_of(
+    torques: tuple[Torque, ...], branch: Branch, t: float, phases: Phases = ()
+) -> Branch | Course:
     """What continues a branch of these loads from a time [s] on, without a jump and in its sense of
     rotation; a branch where that has no kink."""
-    by_time = [load.file for load in torques if isinstance(load, TimeTable)]
-    by_speed = [load.file for load in torques if isinstance(load, SpeedTable)]
+    times, speeds = phase_ends(torques, phases)
+    parts = [load.parts for _, load in acting(torques, phases)]
+    by_time = [part.over_time for part in parts if part.over_time and part.over_time.knots]
+    by_speed = [part.over_speed for part in parts if part.over_speed and part.over_speed.bends]
     if not by_time and not by_speed:
         return branch
-    last = min((table.x[-1] for table in by_time), default=math.inf)
-    times, in_time, _, t_end = _continued(by_time, [t, last], t, branch.t_end)
-    low, high = branch.omega_low, branch.omega_high
-    speeds, in_speed, low, high = _continued(by_speed, [0.0], low, high)
-    if len(times) == len(speeds) == 0:
+    ends = [end for over_time in by_time for end in (*over_time.breaks, over_time.knots[-1])]
+    t_end = _outside([*times, *ends], branch.t_end, branch.t_end)[1]
+    stops = [end for over_speed in by_speed for end in over_speed.breaks]
+    low, high = _outside([0.0, *speeds, *stops], branch.omega_low, branch.omega_high)
+    rows_in_time, in_time = total([part.over_time for part in parts if part.over_time], t, t_end)
+    rows_in_speed, in_speed = total(
+        [part.over_speed for part in parts if part.over_speed], low, high
+    )
+    bent_in_time, bent = (np.diff(rows[:, 1]) != 0.0 for rows in (in_time, in_speed))
+    if not bent_in_time.any() and not bent.any():
         return replace(branch, t_end=t_end, omega_low=low, omega_high=high)
-    steady = tuple(load for load in torques if not isinstance(load, TimeTable | SpeedTable))
-    rest = branch_of(steady, 0.0, 0.0, rising=low >= 0.0)
-    in_time[:, 0] += rest.c0
-    in_speed = np.column_stack([in_speed, np.full(len(in_speed), branch.c2)])
-    in_speed[:, 1] += rest.c1
-    return Course(times, in_time, speeds, in_speed, t_end, low, high)
+    in_time, in_speed = in_time[np.append(True, bent_in_time)], in_speed[np.append(True, bent)]
+    return Course(
+        rows_in_time[bent_in_time],
+        in_time[:, :2].copy(),
+        rows_in_speed[bent],
+        in_speed,
+        t_end,
+        low,
+        high,
+    )
 
 
-def _continued(
-    tables: Sequence[Table], ends: list[float], low: float, high: float
-) -> tuple[Array, Array, float, float]:
-    """Kinks of a sum of tables around a piece, intercept and slope between them, and the bounds
-    that jumps and ``ends`` set."""
-    columns = [(np.array(table.x), np.array(table.y)) for table in tables]
-    jumps = np.concatenate([ends, *(x[1:][np.diff(x) == 0.0] for x, _ in columns)])
-    low = float(np.max(jumps[jumps <= low], initial=-math.inf))
-    high = float(np.min(jumps[jumps >= high], initial=math.inf))
-    rows = np.unique(np.concatenate([np.empty(0), *(x for x, _ in columns)]))
-    rows = rows[(rows > low) & (rows < high)]
-    known = rows if len(rows) else [bound for bound in (low, high) if math.isfinite(bound)] or [0.0]
-    edges = np.concatenate([[max(low, known[0] - 1.0)], rows, [min(high, known[-1] + 1.0)]])
-    pieces = np.zeros((len(rows) + 1, 2))
-    for x, y in columns:
-        k = np.searchsorted(x, 0.5 * (edges[1:] + edges[:-1]))
-        after = np.clip(k, 1, len(x) - 1)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            slope = (y[after] - y[after - 1]) / (x[after] - x[after - 1])
-        slope = np.where((k > 0) & (k < len(x)), slope, 0.0)
-        near = np.minimum(k, len(x) - 1)
-        pieces += np.column_stack([y[near] - slope * x[near], slope])
-    bent = np.diff(pieces[:, 1]) != 0.0
-    return rows[bent], pieces[np.append(True, bent)], low, high
+def _beside(speeds: tuple[float, ...], omega: float, *, rising: bool) -> tuple[float, float]:
+    """The speeds next to one; where it is one of them, on the side it rises or falls to."""
+    below = (end for end in speeds if end < omega or (end == omega and rising))
+    above = (end for end in speeds if end > omega or (end == omega and not rising))
+    return max(below, default=-math.inf), min(above, default=math.inf)
 
 
-def torque_at(torques: tuple[Torque, ...], t: Array, omega: Array) -> Array:
-    """Torque of all loads [N m] at times [s] and speeds [rad/s] of one shape, on any stretches.
+def _outside(ends: list[float], low: float, high: float) -> tuple[float, float]:
+    """The nearest of these ends outside a range."""
+    below = max((end for end in ends if end <= low), default=-math.inf)
+    return below, min((end for end in ends if end >= high), default=math.inf)
 
-    On a row where a table jumps it is one of the two values; a time table's ends are held.
 
-    >>> torque_at((Viscous(coefficient=2.0),), np.zeros(2), np.array([1.0, -3.0]))
+def over_angle(scene: Scene, phases: Phases = ()) -> Cycle | None:
+    """What the loads that act give over the crank angle."""
+    parts = [load.parts.over_angle for _, load in acting(scene.torque, phases)]
+    found = [part for part in parts if part is not None]
+    return summed(found, max((part.period for part in found), default=0.0))
+
+
+def knots_over_angle(train: CrankTrain) -> Array:
+    """Crank angles in [0, period) at which loads bend or jump, acting or not [rad]."""
+    period = train.period
+    parts = [load.parts.over_angle for load in train.scene.torque]
+    knots = [np.mod(tiled(part, period), period) for part in parts if part is not None]
+    return np.unique(np.concatenate([np.empty(0), *knots]))
+
+
+def torque_at(
+    torques: tuple[Torque, ...],
+    t: Array,
+    theta: Array,
+    omega: Array,
+    spans: Sequence[tuple[float, float]] = (),
+) -> Array:
+    """Torque of all loads [N m] at times [s], crank angles [rad] and speeds [rad/s] of one shape.
+
+    On a jump it is the value after it; a time table's ends are held.
+
+    spans : from when to when [s] each load acts; all throughout where none are given
+
+    >>> torque_at((Viscous(coefficient=2.0),), np.zeros(2), np.zeros(2), np.array([1.0, -3.0]))
     array([-2.,  6.])
     """
     total = np.zeros_like(omega)
-    for load in torques:
-        match load:
-            case Constant():
-                total += load.torque
-            case Viscous():
-                total -= load.coefficient * omega
-            case Quadratic():
-                total -= load.coefficient * omega * np.abs(omega)
-            case TimeTable():
-                total += np.interp(t, load.file.x, load.file.y)
-            case SpeedTable():
-                total += np.interp(omega, load.file.x, load.file.y)
+    for k, load in enumerate(torques):
+        torque = load(t, theta, omega)
+        total += np.where((t >= spans[k][0]) & (t < spans[k][1]), torque, 0.0) if spans else torque
     return total
-
-
-def _piece(table: Table, at: float, *, after: bool) -> tuple[float, float, float, float]:
-    """Intercept, slope and bounds of the linear piece at an abscissa; the ends are held."""
-    x, y = table.x, table.y
-    k = int(np.searchsorted(x, at, side="right" if after else "left"))
-    if k == 0:
-        return y[0], 0.0, -math.inf, x[0]
-    if k == len(x):
-        return y[-1], 0.0, x[-1], math.inf
-    slope = (y[k] - y[k - 1]) / (x[k] - x[k - 1])
-    return y[k] - slope * x[k], slope, x[k - 1], x[k]

@@ -34,10 +34,12 @@ class CrankTrain:
 
     @property
     def period(self) -> float:
-        """Crank angle [rad] after which everything comes again: cycles of the engine."""
-        one = self.scene.period
-        cycles = (round(pressure.period / one) for pressure in self.pressure or ())
-        return math.lcm(*cycles) * one
+        """Crank angle [rad] after which everything comes again: the least common multiple of the
+        periods of the engine, the pressures and the loads over the angle, whole revolutions all."""
+        loads = (load.parts.over_angle for load in self.scene.torque)
+        own = [each.period for each in (*(self.pressure or ()), *loads) if each is not None]
+        turns = (round(period / (2.0 * math.pi)) for period in (self.scene.period, *own))
+        return math.lcm(*turns) * 2.0 * math.pi
 
 
 def crank_train(scene: Scene) -> CrankTrain:

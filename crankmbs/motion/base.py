@@ -10,6 +10,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from crankmbs.motion.mode import Mode
 from crankmbs.motion.plan import Plan
 from crankmbs.numerics.arrays import Array
 
@@ -77,12 +78,14 @@ class Solution:
 
 
 class State(NamedTuple):
-    """Time [s], crank angle [rad], speed [rad/s] and energy residual so far [J]."""
+    """Time [s], crank angle [rad], speed [rad/s], energy residual so far [J], and what has been
+    decided on the way."""
 
     time: float
     theta: float
     omega: float
     residual: float
+    mode: Mode = Mode()
 
 
 NOWHERE = State(math.nan, math.nan, math.nan, math.nan)

@@ -1,32 +1,24 @@
-"""How the crank is moved: a prescribed speed, or a start and torques on the free crank."""
+"""How the crank is moved: a prescribed speed, or the state from which it is free."""
 
 from __future__ import annotations
 
-from itertools import pairwise
 from numbers import Real
-from typing import Annotated, Literal
+from typing import Annotated
 
 from annotated_types import Ge, Gt, Le
 from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationInfo
 
 from crankmbs.errors import InputError, shown
 from crankmbs.scene.schema import Float, from_file, part, si
-from crankmbs.scene.sentences import did_you_mean
-from crankmbs.scene.tables import Table
+from crankmbs.scene.tables import Table, check_abscissae
 from crankmbs.scene.units import RPM
 
 __all__ = [
-    "Constant",
     "Motion",
     "Oscillation",
-    "Quadratic",
     "Ramp",
     "SpeedFile",
-    "SpeedTable",
     "Start",
-    "TimeTable",
-    "Torque",
-    "Viscous",
 ]
 
 Angle = Annotated[Float, si("angle")]
@@ -71,7 +63,7 @@ class SpeedFile:
     ]
 
     def __post_init__(self) -> None:
-        _check_abscissae(self.file, "times", jumps=False)
+        check_abscissae(self.file, "times", jumps=False)
 
 
 _SPEED_KEYS = {
@@ -127,103 +119,3 @@ class Start:
 
     angle: Angle
     speed: AngularSpeed
-
-
-@part
-class Constant:
-    """A constant torque [N m]."""
-
-    kind: Literal["constant"] = "constant"
-    torque: Annotated[Float, si("torque")]
-
-
-@part
-class Viscous:
-    """The torque -c omega, c = coefficient [N m s]."""
-
-    kind: Literal["viscous"] = "viscous"
-    coefficient: Annotated[Float, Ge(0), si("viscous coefficient")]
-
-
-@part
-class Quadratic:
-    """The torque -c omega |omega|, c = coefficient [N m s2]: a propeller or a brake."""
-
-    kind: Literal["quadratic"] = "quadratic"
-    coefficient: Annotated[Float, Ge(0), si("quadratic coefficient")]
-
-
-@part
-class TimeTable:
-    """Torque [N m] over time [s], linear; two rows at one time are a jump. Covers the run."""
-
-    kind: Literal["time_table"] = "time_table"
-    file: Annotated[
-        Table, from_file({"time_s": 1.0}, {"torque_Nm": 1.0}, "times [s], torques [N m]")
-    ]
-
-    def __post_init__(self) -> None:
-        _check_abscissae(self.file, "times", jumps=True)
-
-
-@part
-class SpeedTable:
-    """Torque [N m] over speed [rad/s], linear, ends held; two rows at one speed are a jump."""
-
-    kind: Literal["speed_table"] = "speed_table"
-    file: Annotated[
-        Table, from_file({"speed_rpm": RPM}, {"torque_Nm": 1.0}, "speeds [rad/s], torques [N m]")
-    ]
-
-    def __post_init__(self) -> None:
-        _check_abscissae(self.file, "speeds", jumps=True)
-
-
-_TORQUE_KINDS = {
-    "constant": "Constant",
-    "viscous": "Viscous",
-    "quadratic": "Quadratic",
-    "time_table": "TimeTable",
-    "speed_table": "SpeedTable",
-}
-
-
-def _torque_class(value: object) -> str:
-    return _TORQUE_KINDS[value["kind"]] if isinstance(value, dict) else type(value).__name__
-
-
-def _check_kind(value: object, info: ValidationInfo) -> object:
-    if type(value).__name__ in _TORQUE_KINDS.values():
-        return value
-    if not isinstance(value, dict) and info.context is None:
-        raise InputError(f"must be one of {', '.join(_TORQUE_KINDS.values())}; {shown(value)} came")
-    if not isinstance(value, dict):
-        raise InputError(f"must be a table with its kind, [[torque]]; {shown(value)} came")
-    kind = value.get("kind")
-    if not isinstance(kind, str) or kind not in _TORQUE_KINDS:
-        came = f"{shown(kind)} came" if "kind" in value else "none came"
-        near = did_you_mean(kind, list(_TORQUE_KINDS)) if isinstance(kind, str) else ""
-        raise InputError(f"kind must be one of {', '.join(_TORQUE_KINDS)}; {came}{near}")
-    return value
-
-
-Torque = Annotated[
-    Annotated[Constant, Tag("Constant")]
-    | Annotated[Viscous, Tag("Viscous")]
-    | Annotated[Quadratic, Tag("Quadratic")]
-    | Annotated[TimeTable, Tag("TimeTable")]
-    | Annotated[SpeedTable, Tag("SpeedTable")],
-    Discriminator(_torque_class),
-    BeforeValidator(_check_kind),
-]
-
-
-def _check_abscissae(table: Table, what: str, *, jumps: bool) -> None:
-    x = table.x
-    if len(x) < 2:
-        raise InputError(f"{table.source}: the table needs at least two rows; {len(x)} came")
-    for k, (a, b) in enumerate(pairwise(x)):
-        third = k > 0 and x[k - 1] == a == b
-        if b < a or third or (b == a and not jumps):
-            rule = "not decrease (two equal ones are a jump)" if jumps else "strictly increase"
-            raise InputError(f"{table.source}: {what} must {rule}; row {k + 2} breaks this")

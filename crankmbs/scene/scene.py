@@ -15,11 +15,12 @@ from annotated_types import Ge, Le
 from pydantic import BeforeValidator, Strict, ValidationInfo
 
 from crankmbs.errors import InputError, shown
-from crankmbs.scene.drives import Motion, SpeedFile, Start, TimeTable, Torque
+from crankmbs.scene.drives import Motion, SpeedFile, Start
 from crankmbs.scene.gas import Gas
+from crankmbs.scene.loads import AnyTorque
 from crankmbs.scene.parts import Crank, Cylinder, Gravity, Layout, Piston, Rod
 from crankmbs.scene.schema import Float, dumped, part
-from crankmbs.scene.tables import Columns
+from crankmbs.scene.tables import Columns, Table
 from crankmbs.scene.units import DEGREE, EXAMPLES, extent
 
 __all__ = ["Extent", "Run", "Scene"]
@@ -94,7 +95,7 @@ class Scene:
     gravity: Gravity | None = None
     motion: Motion | None = None
     start: Start | None = None
-    torque: tuple[Torque, ...] = ()
+    torque: tuple[AnyTorque, ...] = ()
     title: Annotated[str, Strict()] = ""
     source: Annotated[str, Strict()] = ""
 
@@ -181,16 +182,19 @@ class Scene:
             )
 
     def _check_tables(self) -> None:
-        tables = [load.file for load in self.torque if isinstance(load, TimeTable)]
-        if self.motion is not None and isinstance(self.motion.speed, SpeedFile):
-            tables.append(self.motion.speed.file)
         end = self.run.until.value if self.run.until.unit == "s" else 0.0
-        for table in tables:
-            if table.x[0] > 0.0 or table.x[-1] < end:
-                raise InputError(
-                    f"{table.source}: the table must cover the run, 0 to {end:g} s; it goes from "
-                    f"{table.x[0]:g} to {table.x[-1]:g} s"
-                )
+        if self.motion is not None and isinstance(self.motion.speed, SpeedFile):
+            _check_cover(self.motion.speed.file, 0.0, end, "the run")
+        for load in self.torque:
+            if load.table_over_time is None:
+                continue
+            if load.until_speed is None and (load.after or 0.0) < end:
+                until = end if load.until is None else min(end, load.until)
+            else:
+                until = 0.0  # where it ends shows on the way
+            what = "its window" if load.has_window else "the run"
+            begin = load.after or 0.0
+            _check_cover(load.table_over_time, begin, max(begin, until), what)
 
     def _check_size(self) -> None:
         """Refuse what no memory holds and what double precision cannot tell apart."""
@@ -205,6 +209,14 @@ class Scene:
         every, in_time = self.run.every.resolve(self.period)
         if in_time == until_time:
             _check_count(until / every)
+
+
+def _check_cover(table: Table, begin: float, end: float, what: str) -> None:
+    if table.x[0] > begin or table.x[-1] < end:
+        raise InputError(
+            f"{table.source}: the table must cover {what}, {begin:g} to {end:g} s; it goes from "
+            f"{table.x[0]:g} to {table.x[-1]:g} s"
+        )
 
 
 def _check_count(samples: float) -> None:

@@ -20,7 +20,7 @@ from crankmbs.scene.sentences import sentence
 from crankmbs.scene.tables import Table, read_table
 from crankmbs.scene.units import EXAMPLES, check_size, quantity
 
-__all__ = ["SAVED", "Float", "dumped", "folder_of", "from_file", "part", "si", "to_si"]
+__all__ = ["SAVED", "Float", "dumped", "folder_of", "from_file", "of_file", "part", "si", "to_si"]
 
 T = TypeVar("T")
 _CONFIG = ConfigDict(
@@ -86,9 +86,9 @@ def _converted(value: Any, dimension: str, info: ValidationInfo) -> float:
     if isinstance(value, str):
         return quantity(value, dimension)
     if isinstance(value, bool) or not isinstance(value, Real):
-        rule = _WITH_UNIT if _of_file(info) else "a number in SI units, or text"
+        rule = _WITH_UNIT if of_file(info) else "a number in SI units, or text"
         raise InputError(f"must be {rule} such as {EXAMPLES[dimension]}; {shown(value)} came")
-    if _of_file(info) and dimension in {"angle", "angular speed"}:
+    if of_file(info) and dimension in {"angle", "angular speed"}:
         raise InputError(f"needs a unit, such as {EXAMPLES[dimension]}; {shown(value)} came")
     try:
         return float(value)
@@ -98,7 +98,7 @@ def _converted(value: Any, dimension: str, info: ValidationInfo) -> float:
 
 def dumped(value: object, info: ValidationInfo) -> bool:
     """Whether this is a dumped dataclass; a file writes it as a string."""
-    return isinstance(value, dict) and not _of_file(info)
+    return isinstance(value, dict) and not of_file(info)
 
 
 def from_file(
@@ -127,6 +127,6 @@ def folder_of(info: ValidationInfo) -> Path:
     return Path(info.context["folder"]) if info.context else Path()
 
 
-def _of_file(info: ValidationInfo) -> bool:
+def of_file(info: ValidationInfo) -> bool:
     """Whether this is read from a TOML file."""
     return info.context is not None and info.context is not SAVED

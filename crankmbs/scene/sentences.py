@@ -14,9 +14,9 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from crankmbs.errors import shown
+from crankmbs.errors import InputError, shown
 
-__all__ = ["did_you_mean", "sentence"]
+__all__ = ["PartError", "did_you_mean", "sentence"]
 
 _CLOSE = 0.7  # where the choices are listed anyway: "spline" is no misspelling of "linear", 0.67
 _BARE_KEY = re.compile(r"[\w-]{1,60}")
@@ -40,18 +40,35 @@ _IN_PYTHON = {
 }
 
 
+class PartError(InputError):
+    """A part below another one, of a class that its own keys tell, could not be built."""
+
+    def __init__(self, error: ValidationError, root: type[Any], came: Mapping[str, Any]) -> None:
+        super().__init__("a part could not be built")
+        self.problem = error, root, came
+
+
 def sentence(
-    error: ValidationError, root: type[Any], came: Mapping[str, Any], *, in_python: bool = False
+    error: ValidationError,
+    root: type[Any],
+    came: Mapping[str, Any],
+    *,
+    in_python: bool = False,
+    below: Sequence[int | str] = (),
 ) -> str:
     """Say the most telling problem of ``error``, met when ``root`` was built from ``came``.
 
     in_python : by a call; in the words of a call then, else in those of a file
+    below : where ``root`` stands
     """
     problem: Any = min(error.errors(), key=lambda each: _rank(each["type"]))
     kind, loc = problem["type"], _keys_and_tags(problem)
+    cause = problem.get("ctx", {}).get("error")
+    if isinstance(cause, PartError):
+        return sentence(*cause.problem, in_python=in_python, below=[*below, *loc])
     if in_python:
         loc = _by_name(root, loc)
-    where, word = _dotted(loc), "argument" if in_python else "key"
+    where, word = _dotted([*below, *loc]), "argument" if in_python else "key"
     if kind in _MISSING:
         how = _how_to_give(root, loc) if in_python else _how_to_add(root, loc)
         return f"{where}: this {word} is missing; {how}"
@@ -59,7 +76,7 @@ def sentence(
         names = _names_at(root, loc[:-1], in_python)
         return f"{where}: unknown {word}{_known(loc[-1], names, word)}"
     if kind == "value_error":
-        text = str(problem["ctx"]["error"])
+        text = str(cause)
         text = _as_a_call(text) if in_python else text
         return f"{where}: {text}" if where else text
     value = _value_at(came, loc)
@@ -212,6 +229,6 @@ def _parts_of_key(owner: type[Any], key: str) -> list[type[Any]]:
 
 def _parts_in(annotation: Any) -> Iterator[type[Any]]:
     if hasattr(annotation, "__pydantic_fields__"):
-        yield annotation
+        yield from getattr(annotation, "kinds", {"": annotation}).values()
     for argument in typing.get_args(annotation):
         yield from _parts_in(argument)

@@ -7,15 +7,31 @@ import math
 import re
 import stat
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
+from typing import NamedTuple
 
 from crankmbs.errors import InputError, shown
 
-__all__ = ["Columns", "Table", "read_columns", "read_table"]
+__all__ = ["Columns", "Header", "Table", "check_abscissae", "read_columns", "read_table"]
 
 _MOST = 32_000_000  # bytes: a million rows
 _LARGEST = 1e15
 _ENDLESS = (stat.S_ISCHR, stat.S_ISBLK, stat.S_ISFIFO, stat.S_ISSOCK)
+
+
+class Header(NamedTuple):
+    """Headings of a table's two columns, and the factors that bring them to SI."""
+
+    x_name: str
+    x_factor: float
+    y_name: str
+    y_factor: float
+
+    @property
+    def units(self) -> tuple[dict[str, float], dict[str, float]]:
+        """Heading -> factor, of either column."""
+        return {self.x_name: self.x_factor}, {self.y_name: self.y_factor}
 
 
 @dataclass(frozen=True)
@@ -56,6 +72,33 @@ class Table:
                 f"{self.source}: every value must be at most {_LARGEST:g} in size, in SI units, or "
                 f"calculating with it overflows; {largest:g} came"
             )
+
+    def scaled(self, y: float, x: float = 1.0) -> Table:
+        """The table times a factor, and its abscissae times another.
+
+        >>> Table([1.0], [5.0]).scaled(2.0).y
+        (10.0,)
+        """
+        return Table(tuple(x * v for v in self.x), tuple(y * v for v in self.y), self.source)
+
+
+def check_abscissae(table: Table, what: str, *, jumps: bool) -> None:
+    """Refuse a table of fewer than two rows, or whose rows do not follow one another.
+
+    what : name of its abscissae; jumps : whether two of them may be equal
+
+    Raises
+    ------
+    InputError : the file, the rule, what came
+    """
+    x = table.x
+    if len(x) < 2:
+        raise InputError(f"{table.source}: the table needs at least two rows; {len(x)} came")
+    for k, (a, b) in enumerate(pairwise(x)):
+        third = k > 0 and x[k - 1] == a == b
+        if b < a or third or (b == a and not jumps):
+            rule = "not decrease (two equal ones are a jump)" if jumps else "strictly increase"
+            raise InputError(f"{table.source}: {what} must {rule}; row {k + 2} breaks this")
 
 
 @dataclass(frozen=True)

@@ -10,14 +10,17 @@ from typing import Any
 
 from crankmbs.scene.drives import Ramp
 from crankmbs.scene.scene import Extent, Scene
-from crankmbs.scene.tables import Columns, Table
+from crankmbs.scene.tables import Columns, Header, Table
 from crankmbs.scene.units import DEGREE, RPM
 
 __all__ = ["scene_files"]
 
 _ANGULAR = {
     **dict.fromkeys(("angle", "phase", "bank"), (DEGREE, "deg", "rad")),
-    **dict.fromkeys(("speed", "mean", "amplitude", "from", "to"), (RPM, "rpm", "rad/s")),
+    **dict.fromkeys(
+        ("speed", "mean", "amplitude", "from", "to", "from_speed", "until_speed"),
+        (RPM, "rpm", "rad/s"),
+    ),
 }
 _WORDS = ("title", "source")
 _UNITS = {
@@ -30,15 +33,13 @@ _UNITS = {
     "area": "m^2",
     "acceleration": "m/s^2",
     "torque": "N m",
-    "over": "s",
+    **dict.fromkeys(("over", "after", "until"), "s"),
 }
-_COLUMNS = {
-    "pressure": ("crank_angle_deg", DEGREE, "pressure_Pa", 1.0),
-    "speed": ("time_s", 1.0, "speed_rpm", RPM),
-    "time_table": ("time_s", 1.0, "torque_Nm", 1.0),
-    "speed_table": ("speed_rpm", RPM, "torque_Nm", 1.0),
+_HEADERS = {
+    "pressure": Header("crank_angle_deg", DEGREE, "pressure_Pa", 1.0),
+    "speed": Header("time_s", 1.0, "speed_rpm", RPM),
 }
-"""Table by its use -> heading and factor to SI of its two columns."""
+"""Header of a table by its use; a load states its own."""
 
 
 def scene_files(scene: Scene, stem: str) -> dict[str, str]:
@@ -60,17 +61,19 @@ def scene_files(scene: Scene, stem: str) -> dict[str, str]:
     """
     tables: dict[str, str] = {}
 
-    def section(heading: str, part: Any, table_use: str, number: str = "") -> list[str]:
+    def section(heading: str, part: Any, use: str, header: Header | None) -> list[str]:
         lines = ["", heading]
         for key, value in _values(part):
             table = getattr(value, "file", value)
             if isinstance(table, Table | Columns):
-                file = f"{stem}_{table_use}{number}.csv"
-                tables[file] = _csv(table, *_COLUMNS[table_use])
+                assert header is not None
+                file = f"{stem}_{use}.csv"
+                tables[file] = _csv(table, header)
                 value = {"file": file} if table is not value else file
             elif isinstance(value, tuple) and isinstance(value[0], Table):
-                files = [f"{stem}_{table_use}{k}.csv" for k in range(1, len(value) + 1)]
-                rows = (_csv(each, *_COLUMNS[table_use]) for each in value)
+                assert header is not None
+                files = [f"{stem}_{use}{k}.csv" for k in range(1, len(value) + 1)]
+                rows = (_csv(each, header) for each in value)
                 tables.update(zip(files, rows, strict=True))
                 value = tuple(files)
             lines.append(f"{key} = {_written(key, value)}")
@@ -79,11 +82,12 @@ def scene_files(scene: Scene, stem: str) -> dict[str, str]:
     lines = [f"{key} = {_quoted(value)}" for key, value in _values(scene) if key in _WORDS]
     for key, part in _values(scene):
         if key not in _WORDS and key not in ("torque", "run"):
-            lines += section(f"[{key}]", part, "pressure" if key == "gas" else "speed")
+            use = "pressure" if key == "gas" else "speed"
+            lines += section(f"[{key}]", part, use, _HEADERS[use])
     for number, load in enumerate(scene.torque, start=1):
-        heading, *rest = section("[[torque]]", load, load.kind, str(number))[1:]
+        heading, *rest = section("[[torque]]", load, f"{load.kind}{number}", load.header)[1:]
         lines += ["", heading, f"kind = {_quoted(load.kind)}", *rest]
-    lines += section("[run]", scene.run, "")
+    lines += section("[run]", scene.run, "", None)
     if scene.run.every is None:
         lines.append('every = "none"')
     return {f"{stem}.toml": "\n".join(lines).lstrip("\n") + "\n", **tables}
@@ -148,7 +152,8 @@ def _divided(value: float, factor: float) -> float:
     return next((number for number in near if factor * number == value), ratio)
 
 
-def _csv(table: Table | Columns, x_name: str, x_factor: float, y_name: str, y_factor: float) -> str:
+def _csv(table: Table | Columns, header: Header) -> str:
+    x_name, x_factor, y_name, y_factor = header
     columns = [(x_name, table.x, x_factor)]
     if isinstance(table, Table):
         columns.append((y_name, table.y, y_factor))

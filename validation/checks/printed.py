@@ -11,7 +11,7 @@ from crankmbs import lecture
 from crankmbs.mechanics.inertia import reduce
 from crankmbs.mechanics.pressure import pressures_of
 from crankmbs.mechanics.train import CrankTrain
-from crankmbs.scene.drives import Constant
+from crankmbs.scene.loads import Constant
 from crankmbs.scene.scene import Scene
 from validation import reference
 from validation.case import Case

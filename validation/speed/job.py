@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crankmbs.mechanics.pressure import pressures_of
-from crankmbs.scene.drives import Constant, Quadratic, Viscous
+from crankmbs.scene.loads import Constant, Quadratic, Viscous
 from crankmbs.scene.scene import Scene
 
 __all__ = ["Job", "NotServed", "job_of"]

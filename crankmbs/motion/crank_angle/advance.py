@@ -46,6 +46,7 @@ _KEPT = 2  # whole periods at the end that are solved cell by cell when only the
 
 def is_fast(grid: Grid, state: State, branch: Branch, times: float) -> bool:
     """Whether the energy lasts for so many times the angle at which this formulation gives up."""
+    grid = grid.at(state.mode.loads)
     scale = grid.scale[grid.cell_at(state.theta, math.copysign(1.0, state.omega))]
     scale += abs(float(branch(state.time, state.omega)))
     inertia = float(inertia_alone(grid.train.scene, state.theta))
@@ -64,9 +65,12 @@ def advance(
     how the motion ends; None where it goes on over time, as the energy comes near zero
     """
     sense = math.copysign(1.0, state.omega)
-    bound = plan.angle_bounds[1 if sense > 0.0 else 0]
+    end = plan.angle_bounds[1 if sense > 0.0 else 0]
     skipped = 0
     while True:
+        mode = state.mode
+        grid = grid.at(mode.loads)
+        bound = min(end, mode.high) if sense > 0.0 else max(end, mode.low)
         branch, energy = _enter(grid, state)
         if branch is None:
             return Ending.HELD
@@ -80,13 +84,14 @@ def advance(
         if whole is not None:
             yield whole
         yield window
-        if window.end.time >= plan.time_bound or window.end.theta == bound:
+        if window.end.time >= plan.time_bound or window.end.theta == end:
             return Ending.COMPLETE
-        if window.end.theta == state.theta:
+        if window.end.theta == state.theta and window.end.mode == mode:
             return Ending.HELD
         state, skipped = window.end, 0
         t_end = min(branch.t_end, plan.time_bound)
-        if math.isfinite(plan.last) and state.time < t_end and branch.is_affine_in_energy:
+        goes_on = state.mode == mode and state.time < t_end
+        if math.isfinite(plan.last) and goes_on and branch.is_affine_in_energy:
             state, skipped = _skip(way._replace(state=state, t_end=t_end), branch)
 
 
@@ -106,7 +111,7 @@ class _Way(NamedTuple):
 def _stretch(way: _Way, branch: Branch) -> Window | None:
     """The next cells on the course that continues a branch; on the branch alone where its cells are
     affine, or where kinks are too strong to be found by solving again."""
-    course = course_of(way.grid.train.scene.torque, branch, way.state.time)
+    course = course_of(way.grid.train.scene.torque, branch, way.state.time, way.state.mode.loads)
     if isinstance(course, Branch):
         return _solve(way, course)
     window = _before_kink(way, branch, course) if branch.is_affine_in_energy else None
@@ -144,7 +149,7 @@ def _landed(way: _Way, window: Window, t_end: float) -> tuple[Window | None, Win
         if last is None:
             break
         last = last.cut(t_end, math.inf)
-        if np.array_equal(last.landed, window.landed, equal_nan=True):
+        if np.array_equal(last.landed[:3], window.landed[:3], equal_nan=True):
             return whole, replace(last, skipped=0 if whole else window.skipped)
     return None, window
 
@@ -159,7 +164,8 @@ def _skip(way: _Way, branch: Branch) -> tuple[State, int]:
         """The period that begins with this energy, if the motion passes it whole."""
         theta = state.theta + sense * turned
         omega = sense * math.sqrt(2.0 * energy / float(inertia_alone(grid.train.scene, theta)))
-        begin, end = State(time, theta, omega, state.residual), theta + sense * period
+        begin = state._replace(time=time, theta=theta, omega=omega)
+        end = theta + sense * period
         from_there = way._replace(state=begin, energy=energy, bound=end, t_end=math.inf)
         window = _solve(from_there, branch)
         if window is None or window.edges[-1] < (1.0 - 1e-9) * period:
@@ -189,8 +195,10 @@ def _skip(way: _Way, branch: Branch) -> tuple[State, int]:
 def _enter(grid: Grid, state: State) -> tuple[Branch | None, float]:
     """The branch of the loads that the motion enters, and its kinetic energy [J]."""
     inertia, slope, torque = reduce(grid.train, state.theta)
+    torque = torque + grid.outside(np.asarray(state.theta))
     rest = float(torque - 0.5 * slope * state.omega**2)
-    branch = branch_at(grid.train.scene.torque, state.time, state.omega, rest)
+    torques = grid.train.scene.torque
+    branch = branch_at(torques, state.time, state.omega, rest, state.mode.loads)
     return branch, 0.5 * float(inertia) * state.omega**2
 
 

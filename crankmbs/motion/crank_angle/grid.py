@@ -6,16 +6,19 @@ No knot of the pressure lies inside a cell, so everything in it is smooth.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from crankmbs.mechanics.inertia import reduce
+from crankmbs.mechanics.torque import knots_over_angle, over_angle
 from crankmbs.mechanics.train import CrankTrain, crank_angle_knots
+from crankmbs.mechanics.windows import Phases
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.collocation import Rule, gauss
+from crankmbs.numerics.cycle import Cycle
 from crankmbs.scene.units import DEGREE
 
 __all__ = ["Grid", "Strip", "grid_of", "largest_of_row"]
@@ -31,7 +34,8 @@ class Strip:
 
     cell : shape (m,), their numbers in the grid; width : shape (m,) [rad]
     turned : shape (m + 1,) [rad], angle from the beginning to every edge
-    inertia, torque : shape (m, s), J [kg m2] and the torque of gas and gravity [N m] at the nodes
+    inertia, torque : shape (m, s), J [kg m2] and the torque over the angle [N m], of gas, gravity
+        and loads, at the nodes
     """
 
     cell: NDArray[np.intp]
@@ -51,21 +55,46 @@ class Grid:
     """edges : shape (n + 1,) [rad], from 0 to one period; tables for one collocation rule.
 
     checks : whether it is there to check another grid, and nothing checks it
+    phases : of the loads' windows; known : the same grid in other phases
     """
 
     train: CrankTrain
     edges: Array
     rule: Rule
     checks: bool = False
+    phases: Phases = ()
+    known: dict[Phases, Grid] = field(default_factory=dict, compare=False, repr=False)
+
+    def at(self, phases: Phases) -> Grid:
+        """The grid in these phases of the loads."""
+        if phases == self.phases or not self._has_loads:
+            return self
+        if phases not in self.known:
+            self.known[phases] = replace(self, phases=phases)
+        return self.known[phases]
+
+    @cached_property
+    def _has_loads(self) -> bool:
+        """Whether loads depend on the angle."""
+        return any(load.parts.over_angle is not None for load in self.train.scene.torque)
+
+    @cached_property
+    def over_angle(self) -> Cycle | None:
+        """What loads that act give over the angle."""
+        return over_angle(self.train.scene, self.phases)
+
+    def outside(self, theta: Array) -> Array | float:
+        """Torque of loads over the angle [N m], at angles [rad]."""
+        return 0.0 if self.over_angle is None else self.over_angle(theta)
 
     @cached_property
     def tables(self) -> tuple[Array, Array]:
-        """J and torque of gas and gravity at the nodes of every cell, shape (n, s) each."""
+        """J and torque over the angle at the nodes of every cell, shape (n, s) each."""
         return self._tabulate(self.edges[:-1], np.diff(self.edges))
 
     @cached_property
     def scale(self) -> Array:
-        """Largest torque of gas and gravity in and around each cell, shape (n,) [N m]."""
+        """Largest torque over the angle in and around each cell, shape (n,) [N m]."""
         most = np.append(largest_of_row(np.abs(self.tables[1])), 0.0)
         middle = 0.5 * (self.edges[1:] + self.edges[:-1])
         around = np.add.outer(middle, [-_WIDEST, _WIDEST])
@@ -82,7 +111,7 @@ class Grid:
         """The same cells for a rule of two more stages, which checks this one, under a pressure
         that is off by as much as this one may be."""
         rule = gauss(len(self.rule.nodes) + 2)
-        return Grid(self.train.off, self.edges, rule, checks=True)
+        return Grid(self.train.off, self.edges, rule, checks=True, phases=self.phases)
 
     def split(self, parts: NDArray[np.intp]) -> Grid:
         """Every cell cut into equal parts, as many as ``parts``, shape (n,), says."""
@@ -153,14 +182,14 @@ class Grid:
     def _tabulate(self, start: Array, width: Array) -> tuple[Array, Array]:
         theta = start[:, None] + width[:, None] * self.rule.nodes
         found = reduce(self.train, theta)
-        return found.inertia, found.torque
+        return found.inertia, np.asarray(found.torque + self.outside(theta))
 
 
 def grid_of(train: CrankTrain, rule: Rule, widest: float = _WIDEST) -> Grid:
-    """The coarsest grid of a crank train: edges at the pressure's knots and around folds that a rod
-    just escapes, no cell wider than ``widest`` [rad]."""
-    knots = crank_angle_knots(train)
-    marks = np.unique(np.concatenate([[0.0], knots, _near_folds(train), [train.period]]))
+    """The coarsest grid of a crank train: edges at the knots of the pressure and of the loads, and
+    around folds that a rod just escapes, no cell wider than ``widest`` [rad]."""
+    knots = [crank_angle_knots(train), knots_over_angle(train), _near_folds(train)]
+    marks = np.unique(np.concatenate([[0.0], *knots, [train.period]]))
     marks = marks[np.append(True, np.diff(marks) > _SLIVER)]
     marks[-1] = train.period
     grid = Grid(train, marks, rule)

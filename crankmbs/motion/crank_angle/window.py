@@ -14,6 +14,7 @@ from crankmbs.mechanics.torque import Branch, Course
 from crankmbs.motion.base import NOWHERE, Samples, State
 from crankmbs.motion.crank_angle import loops, readout
 from crankmbs.motion.crank_angle.grid import Grid, Strip, largest_of_row
+from crankmbs.motion.mode import decided
 from crankmbs.motion.plan import Plan
 from crankmbs.numerics import kernels
 from crankmbs.numerics.arrays import Array, Index
@@ -84,7 +85,9 @@ class Window:
         """The state where the window ends."""
         at = self.last()
         rows = (at.time, at.theta, at.omega, at.energy_residual)
-        return State(*(float(q[0]) for q in rows))
+        time, theta, omega, residual = (float(q[0]) for q in rows)
+        mode = decided(self.grid.train.scene, self.begin.mode, time, omega)
+        return State(time, theta, omega, residual, mode)
 
     @cached_property
     def errors(self) -> tuple[Array, Array]:
@@ -246,6 +249,8 @@ class Window:
         """Samples in the cells k."""
         once, which = one_period(theta, float(self.grid.edges[-1]))
         inertia, slope, torque = reduce(self.grid.train, once)
+        over_angle = np.zeros_like(torque) + self.grid.outside(once)
+        torque = torque + over_angle
         of_angle = (inertia, slope, torque)  # bare: numba's cache must not name a class
         if kernels.are_compiled and isinstance(self.branch, Branch):
             omega, outside, alpha = np.empty((3, len(theta)))
@@ -257,6 +262,7 @@ class Window:
             outside = self.branch(t, omega)
             alpha = (torque + outside - 0.5 * slope * omega**2) / inertia
         residual = self.begin.residual - self.missed[k]
+        outside = outside + over_angle[which]
         return Samples(t, theta, omega, alpha, residual, {"external_torque": outside})
 
 

@@ -29,10 +29,10 @@ from crankmbs.motion.free.matching import match, stays
 from crankmbs.motion.free.passage import Passage, Pieces
 from crankmbs.motion.minimal import advance as minimal
 from crankmbs.motion.minimal.reduced import Reduced
+from crankmbs.motion.mode import begun
 from crankmbs.motion.plan import Plan, plan_of
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.collocation import gauss
-from crankmbs.scene.drives import TimeTable
 
 __all__ = ["run"]
 
@@ -115,8 +115,8 @@ def _travel(
     scene = grid.train.scene
     assert scene.start is not None
     plan = plan_of(scene)
-    state = State(0.0, scene.start.angle, scene.start.speed, 0.0)
-    steady = not any(isinstance(load, TimeTable) for load in scene.torque)
+    state = State(0.0, scene.start.angle, scene.start.speed, 0.0, begun(scene))
+    steady = all(load.is_steady for load in scene.torque)
     begin = first.begin if first else _first(grid, state)
     path = Passage(plan, begin, can_swing=steady, allowed=allowed)
     if first:  # it begins a rounding ahead: so the difference knows what the motion makes of one
@@ -176,18 +176,20 @@ def _noted(windows: Generator[Window, None, Ending | None], worst: Array) -> Pie
 def _first(grid: Grid, state: State) -> Samples:
     """The sample at the start."""
     inertia, slope, torque = reduce(grid.train, state.theta)
-    rest = float(torque - 0.5 * slope * state.omega**2)
-    torques = grid.train.scene.torque
-    branch = branch_at(torques, state.time, state.omega, rest)
-    branch = branch or branch_of(torques, state.time, state.omega, rising=True)
-    outside = float(branch(state.time, state.omega))
+    of_angle = float(grid.at(state.mode.loads).outside(np.asarray(state.theta)))
+    rest = float(torque - 0.5 * slope * state.omega**2) + of_angle
+    torques, phases = grid.train.scene.torque, state.mode.loads
+    branch = branch_at(torques, state.time, state.omega, rest, phases)
+    held = branch is None and state.omega == 0.0
+    branch = branch or branch_of(torques, state.time, state.omega, rising=True, phases=phases)
+    outside = -rest if held else float(branch(state.time, state.omega))
     return Samples(
         time=np.array([state.time]),
         theta=np.array([state.theta]),
         omega=np.array([state.omega]),
         alpha=np.array([(rest + outside) / float(inertia)]),
         energy_residual=np.zeros(1),
-        own={"external_torque": np.array([outside])},
+        own={"external_torque": np.array([outside + of_angle])},
     )
 
 

@@ -12,12 +12,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Generator
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.integrate import Radau
 
 from crankmbs.mechanics.torque import Branch, branch_at, branch_of
+from crankmbs.mechanics.windows import phase_ends
 from crankmbs.motion.base import State
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.minimal import stepper
@@ -62,9 +64,17 @@ def advance(
     scale = reduced.torque_scale
     evaluations, most, h, room = 0, 0.0, math.inf, 1
     while evaluations < allowed:
+        reduced = reduced.at(state.mode.loads)
         equation = _enter(reduced, state, scale)
         if isinstance(equation, Ending):
             return equation
+        if equation.holds:
+            rest = Stretch.at_rest(equation, state, min(equation.branch.t_end, plan.time_bound))
+            yield rest
+            state = rest.end
+            if state.time >= plan.time_bound:
+                return Ending.COMPLETE
+            continue
         inertia = reduced(state.theta, equation.between.pieces)[0]
         speed = max(abs(state.omega), math.sqrt(2.0 * scale / inertia), 1e-150)
         h = tolerance**0.125 / speed if math.isinf(h) else h
@@ -72,7 +82,9 @@ def advance(
         room = min(room, (allowed - evaluations) // 12 + 1)
         control = _Control(tolerance, speed, bound, h, most, room, parts)
         speeds = (0.0, equation.branch.omega_low, equation.branch.omega_high)
-        limits = np.array([*equation.between[:2], *plan.angle_bounds, *speeds])
+        low, high = plan.angle_bounds
+        angles = max(low, state.mode.low), min(high, state.mode.high)
+        limits = np.array([*equation.between[:2], *angles, *speeds])
         kernels.pay(room * _PLAIN_TIME)
         method = _radau if equation.is_stiff(state, inertia) else _dop853
         track = method(equation, state, control, limits)
@@ -93,18 +105,19 @@ def advance(
 
 
 def _enter(reduced: Reduced, state: State, scale: float) -> Equation | Ending:
-    """The piece that the motion enters, or why it enters none."""
-    torques = reduced.train.scene.torque
+    """The piece that the motion enters, or why it enters none; at rest against loads that hold it
+    it waits for those that are still to set in or to end."""
+    torques, phases = reduced.train.scene.torque, state.mode.loads
     if state.omega != 0.0:
         between = reduced.around(state.theta, math.copysign(1.0, state.omega))
         _, slope, torque = reduced(state.theta, between.pieces)
         rest = torque - 0.5 * slope * state.omega**2
-        branch = branch_at(torques, state.time, state.omega, rest)
+        branch = branch_at(torques, state.time, state.omega, rest, phases)
         return Ending.HELD if branch is None else Equation(reduced, between, branch)
     sides: list[Equation] = []
     resisted = False
     for sense in (1.0, -1.0):
-        branch = branch_of(torques, state.time, 0.0, rising=sense > 0.0)
+        branch = branch_of(torques, state.time, 0.0, rising=sense > 0.0, phases=phases)
         equation = Equation(reduced, reduced.around(state.theta, sense), branch)
         pull = equation.pull(state)
         if pull * sense > BALANCED * scale:
@@ -112,7 +125,8 @@ def _enter(reduced: Reduced, state: State, scale: float) -> Equation | Ending:
         resisted = resisted or pull * sense < -BALANCED * scale
         sides.append(equation)
     if resisted:
-        return Ending.HELD
+        waits = bool(phase_ends(torques, phases)[0])
+        return replace(sides[0], holds=True) if waits else Ending.HELD
     later = sides[1] if sides[0].branch.ct < 0.0 else sides[0]  # where a load that sets in drives
     return Ending.STUCK if later.is_balanced(state, scale) else later
 

@@ -13,11 +13,13 @@ from typing import NamedTuple
 import numpy as np
 
 from crankmbs.mechanics.inertia import reduce
+from crankmbs.mechanics.torque import knots_over_angle, over_angle
 from crankmbs.mechanics.train import CrankTrain, crank_angle_knots, merged_knots
+from crankmbs.mechanics.windows import Phases
 from crankmbs.motion.minimal import stepper
 from crankmbs.motion.minimal.system import Machine, bare
 from crankmbs.numerics.arrays import Array
-from crankmbs.scene.drives import Constant, SpeedTable, TimeTable
+from crankmbs.numerics.cycle import NEAR
 
 __all__ = ["KnotPair", "Reduced"]
 
@@ -35,12 +37,15 @@ class Reduced:
     """J, J_1 and the torque of gas and gravity at one crank angle, in plain floats.
 
     missed : of the largest torque, what a step across knots may miss of the gas
+    phases : of the loads' windows
     """
 
-    def __init__(self, train: CrankTrain, missed: float = 0.0) -> None:
+    def __init__(self, train: CrankTrain, missed: float = 0.0, phases: Phases = ()) -> None:
         self.train, scene, pressure = train, train.scene, train.pressure
+        self._missed, self._known = missed, {phases: self}
+        self.over_angle = load = over_angle(scene, phases)
         crank, rod, piston = scene.crank, scene.rod, scene.piston
-        knots = crank_angle_knots(train)
+        knots = self._with_loads(crank_angle_knots(train))
         if len(knots) == 0:  # no step of many turns: it would overlook a light rod near a fold
             knots = np.arange(0.0, train.period, 0.5)
         g = scene.gravity.acceleration if scene.gravity else 0.0
@@ -54,7 +59,7 @@ class Reduced:
         if pressure and missed > 0.0:
             lever = (piston.gas_area or 0.0) * crank.radius
             least = missed * self.torque_scale / lever
-            bends = merged_knots(train, [each.bends(least) for each in pressure])
+            bends = self._with_loads(merged_knots(train, [each.bends(least) for each in pressure]))
         pressures = pressure or ()
         ends = np.cumsum([0, *(len(each.knots) for each in pressures)])
         machine = Machine(
@@ -79,24 +84,46 @@ class Reduced:
             ),
             coefficients=_side_by_side([p.coefficients for p in pressures]),
             bends=bends,
+            load_first=float(load.knots[0]) if load else 0.0,
+            load_starts=load.knots - load.knots[0] if load else np.empty(0),
+            load_coefficients=load.coefficients.copy() if load else np.empty((4, 0)),
         )
         self.machine = bare(machine)
 
+    def at(self, phases: Phases) -> Reduced:
+        """The same in other phases of the loads."""
+        if phases not in self._known and not self._varies:
+            return self
+        if phases not in self._known:
+            self._known[phases] = Reduced(self.train, self._missed, phases)
+            self._known[phases]._known = self._known
+        return self._known[phases]
+
+    @cached_property
+    def _varies(self) -> bool:
+        """Whether a load depends on the angle."""
+        return any(load.parts.over_angle is not None for load in self.train.scene.torque)
+
+    def _with_loads(self, knots: Array) -> Array:
+        """Knots of the crank train, and those of the loads."""
+        own = knots_over_angle(self.train)
+        if len(own) == 0:
+            return knots
+        merged = np.unique(np.concatenate([knots, own]))
+        return np.asarray(merged[np.append(True, np.diff(merged) > NEAR)])
+
     def around(self, theta: float, sense: float) -> KnotPair:
         """The knots next to theta in the sense of rotation, and the polynomials between them."""
-        pieces = np.zeros((len(self.train.scene.cylinders), 6))
+        pieces = np.zeros((len(self.train.scene.cylinders) + (self.over_angle is not None), 6))
         low, high = stepper.enter(theta, sense, self.machine, pieces)
         return KnotPair(low, high, pieces)
 
     @cached_property
     def torque_scale(self) -> float:
-        """Largest torque of gas and gravity over one period, and of constant and tabled loads
+        """Largest torque of gas and gravity over one period, and of the loads at their knots
         [N m]."""
-        load = sum(
-            abs(t.torque) if isinstance(t, Constant) else max(map(abs, t.file.y))
-            for t in self.train.scene.torque
-            if isinstance(t, Constant | TimeTable | SpeedTable)
-        )
+        parts = (part for load in self.train.scene.torque for part in load.parts)
+        load = sum(part.largest for part in parts if part is not None)
         period = self.train.period
         count = 720 * round(period / self.train.scene.period) + 1
         angles = 0.1 + np.linspace(0.0, period, count)  # no fold lies there
@@ -104,7 +131,7 @@ class Reduced:
         return load + float(np.max(np.abs(torque)))
 
     def __call__(self, theta: float, pieces: Array) -> tuple[float, float, float]:
-        """J [kg m2], dJ/dtheta [kg m2/rad], torque of gas and gravity [N m]."""
+        """J [kg m2], dJ/dtheta [kg m2/rad], torque over the angle [N m]."""
         return stepper.reduced(theta, self.machine, pieces)
 
 

@@ -38,10 +38,11 @@ def enter(theta: float, sense: float, machine: Machine, pieces: Array) -> tuple[
 
     pieces : shape (cylinders, 6), of every cylinder's pressure between the two: the crank angle
         [rad] where its cubic begins, its coefficients [Pa], highest power first, and the width
-        after which `reduced` takes the next one; 0, where it is continued
+        after which `reduced` takes the next one; 0, where it is continued. With loads over the
+        crank angle one row more [N m]
     """
     base, low, high = _beside(machine[13], theta + sense * _PASSED, machine[14])
-    for j in range(len(pieces) if len(machine[16]) > 0 else 0):
+    for j in range(0 if len(machine[16]) > 0 else len(machine[12]), len(pieces)):
         _fill(j, base, 0.5 * (low + high), machine, pieces)
         pieces[j, 5] = 0.0
     return base + low, base + high
@@ -62,11 +63,16 @@ def _beside(knots: Array, theta: float, period: float) -> tuple[float, float, fl
 
 @kernel
 def _fill(j: int, base: float, local: float, machine: Machine, pieces: Array) -> None:
-    """Put the cubic of cylinder j at the crank angle base + local into ``pieces``, to its end."""
+    """Put the cubic of row j at the crank angle base + local into ``pieces``, to its end."""
     cylinders, _, _, places, all_starts, coefficients = machine[12:18]
-    begin, end = places[j, 0], places[j, 1]
-    starts = all_starts[begin:end]
-    within = (local + cylinders[j, 0] - cylinders[j, 3]) % starts[-1]
+    if j < len(cylinders):
+        begin, end = places[j, 0], places[j, 1]
+        starts = all_starts[begin:end]
+        within = (local + cylinders[j, 0] - cylinders[j, 3]) % starts[-1]
+    else:
+        begin = 0
+        first, starts, coefficients = machine[19:22]
+        within = (local - first) % starts[-1]
     i = min(_passed(starts, within), len(starts) - 1) - 1
     pieces[j, 0] = base + local - (within - starts[i])
     for power in range(4):
@@ -102,12 +108,12 @@ def _passed(knots: Array, value: float) -> int:
 
 @kernel
 def reduced(theta: float, machine: Machine, pieces: Array) -> tuple[float, float, float]:
-    """J [kg m2], dJ/dtheta [kg m2/rad], torque of gas and gravity [N m]."""
+    """J [kg m2], dJ/dtheta [kg m2/rad], torque of gas, gravity and loads over the angle [N m]."""
     r, l, a, e, i_crank, i_rod, m_rod, m_piston, area, unbalance, gx, gy, cylinders = machine[:13]
     spare, far = max(l - r - abs(e), 0.0), abs(e)
     inertia, slope = i_crank, 0.0
     torque = unbalance * (gy * math.cos(theta) - gx * math.sin(theta))
-    for j in range(len(pieces)):
+    for j in range(len(cylinders)):
         phi = theta + float(cylinders[j, 0])
         gx, gy = float(cylinders[j, 1]), float(cylinders[j, 2])
         sin_p, cos_p = math.sin(phi), math.cos(phi)
@@ -133,6 +139,12 @@ def reduced(theta: float, machine: Machine, pieces: Array) -> tuple[float, float
         cubic = (float(pieces[j, 1]) * d + float(pieces[j, 2])) * d + float(pieces[j, 3])
         gas = area * (cubic * d + float(pieces[j, 4]))
         torque += (m_piston * gx - gas) * x1 + m_rod * (gx * gx1 + gy * gy1)
+    for j in range(len(cylinders), len(pieces)):
+        if pieces[j, 5] > 0.0 and not 0.0 <= theta - pieces[j, 0] <= pieces[j, 5]:
+            _fill(j, 0.0, theta, machine, pieces)
+        d = theta - float(pieces[j, 0])
+        cubic = (float(pieces[j, 1]) * d + float(pieces[j, 2])) * d + float(pieces[j, 3])
+        torque += cubic * d + float(pieces[j, 4])
     return inertia, slope, torque
 
 

@@ -15,6 +15,7 @@ from crankmbs.motion.base import Samples, State
 from crankmbs.motion.minimal import stepper
 from crankmbs.motion.minimal.reduced import KnotPair, Reduced
 from crankmbs.motion.minimal.system import System
+from crankmbs.motion.mode import decided
 from crankmbs.motion.plan import Plan
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.roots import invert_monotone
@@ -27,11 +28,15 @@ BALANCED = 1e-13  # of the largest torque: what the rounding of an angle leaves 
 
 @dataclass(frozen=True)
 class Equation:
-    """The equation of motion on one piece: between two knots and on one branch of the loads."""
+    """The equation of motion on one piece: between two knots and on one branch of the loads.
+
+    holds : whether the crank is at rest and its loads hold it there
+    """
 
     reduced: Reduced
     between: KnotPair
     branch: Branch
+    holds: bool = False
 
     def __call__(self, t: float, y: Array) -> Array:
         """Slopes of (theta, omega, work) in time."""
@@ -109,13 +114,14 @@ class Stretch:
     begin: State
     end: State
 
-    @staticmethod
-    def of(equation: Equation, track: Track, begin: State) -> Stretch:
+    @classmethod
+    def of(cls, equation: Equation, track: Track, begin: State) -> Stretch:
         """The steps of a track, and the state after them."""
         theta, omega, work = track.y.tolist()
         gained = equation.kinetic(theta, omega) - equation.kinetic(begin.theta, begin.omega)
-        end = State(track.time, theta, omega, begin.residual + gained - work)
-        return Stretch(equation, track, begin, end)
+        mode = decided(equation.reduced.train.scene, begin.mode, track.time, omega)
+        end = State(track.time, theta, omega, begin.residual + gained - work, mode)
+        return cls(equation, track, begin, end)
 
     @property
     def steps(self) -> int:
@@ -153,6 +159,15 @@ class Stretch:
         at = self._samples(t, np.array([self.steps - 1]), theta)
         return replace(at, omega=np.array([self.end.omega]))
 
+    @staticmethod
+    def at_rest(equation: Equation, begin: State, until: float) -> Stretch:
+        """A crank that its loads hold at rest, up to a time [s]."""
+        y = np.array([begin.theta, 0.0, 0.0])
+        rows = np.zeros((1, 8, 3))
+        rows[0, 0] = y
+        times = np.array([begin.time]), np.array([until - begin.time])
+        return _Rest.of(equation, Track(*times, rows, until, y, math.inf, 0.0, 0), begin)
+
     def _samples(self, t: Array, k: NDArray[np.intp], theta: Array | None = None) -> Samples:
         reached, omega, work = self.track.at(t, k)
         theta = reached if theta is None else theta
@@ -160,7 +175,18 @@ class Stretch:
         reduced = self.equation.reduced
         inertia, slope, torque = reduce(reduced.train, theta)
         outside = self.equation.branch(t, omega)
+        if reduced.over_angle is not None:
+            outside = outside + reduced.over_angle(theta)
         alpha = (torque + outside - 0.5 * slope * omega**2) / inertia
         start = self.equation.kinetic(self.begin.theta, self.begin.omega)
         residual = self.begin.residual + 0.5 * inertia * omega**2 - start - work
         return Samples(t, theta, omega, alpha, residual, {"external_torque": outside})
+
+
+class _Rest(Stretch):
+    """A stretch at rest: the loads give what it takes."""
+
+    def _samples(self, t: Array, k: NDArray[np.intp], theta: Array | None = None) -> Samples:
+        at = super()._samples(t, k, theta)
+        held = np.asarray(-reduce(self.equation.reduced.train, at.theta).torque)
+        return replace(at, alpha=np.zeros_like(t), own={"external_torque": held})

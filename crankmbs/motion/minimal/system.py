@@ -24,6 +24,9 @@ class Machine(NamedTuple):
     places : shape (n, 2), where the knots of each cylinder's pressure begin and end in the next two
     starts, coefficients : knots of the pressures behind the first of each, and their cubics; may be
         empty
+    bends [rad] : crank angles in one period where a long step must end
+    load_first, load_starts, load_coefficients : of the loads over the crank angle [N m], the first
+        knot, the knots behind it, and the cubics
     """
 
     radius: float
@@ -45,10 +48,13 @@ class Machine(NamedTuple):
     starts: Array
     coefficients: Array
     bends: Array
+    load_first: float
+    load_starts: Array
+    load_coefficients: Array
 
 
 System = tuple[Machine, Array, tuple[float, float, float, float]]
-"""The equation of motion between two knots: machine, pressure as `stepper.enter` fills it,
+"""The equation of motion between two knots: machine, its cubics as `stepper.enter` fills them,
 and the load's c0, ct, c1, c2 of `crankmbs.mechanics.torque`."""
 
 

@@ -6,88 +6,86 @@ import math
 from bisect import bisect_left, bisect_right
 from collections.abc import Callable
 
-from crankmbs.scene.drives import Constant, Quadratic, SpeedTable, TimeTable, Torque, Viscous
-from crankmbs.scene.tables import Table
+import numpy as np
+
+from crankmbs.numerics.cycle import NEAR, Cycle
+from crankmbs.numerics.piecewise import Piecewise
+from crankmbs.scene.loads import Torque
 
 __all__ = ["EVERYWHERE", "Load", "speeds_around", "torque_function"]
 
-Load = Callable[[float, float], float]
+Load = Callable[[float, float, float], float]
 Range = tuple[float, float]
 
 EVERYWHERE: Range = (-math.inf, math.inf)
 
 
 def torque_function(torques: tuple[Torque, ...], times: Range, speeds: Range) -> Load:
-    """Torque [N m] over time [s] and crank speed [rad/s], all loads together.
+    """Torque [N m] over time [s], crank angle [rad] and speed [rad/s], all loads together.
 
-    times [s] : no load over time jumps between; continued linearly before and beyond
-    speeds [rad/s] : no load over speed bends or jumps between, and the lines are continued; or
-        EVERYWHERE, for the tables as they are
+    times [s] : no load over time jumps between; continued smoothly before and beyond
+    speeds [rad/s] : no load over speed bends or jumps between, and they are continued; or
+        EVERYWHERE, for the loads as they are
     """
-    c0 = c1 = c2 = 0.0
-    tables: list[Load] = []
-    for load in torques:
-        match load:
-            case Constant():
-                c0 += load.torque
-            case Viscous():
-                c1 += load.coefficient
-            case Quadratic():
-                c2 += load.coefficient
-            case TimeTable():
-                tables.append(_over_time(load.file, *times))
-            case SpeedTable() if speeds == EVERYWHERE:
-                tables.append(_over_speed(load.file))
-            case SpeedTable():
-                constant, slope = _line_between(load.file, *speeds)
-                c0 += constant
-                c1 -= slope
+    parts = [load.parts for load in torques]
+    in_time = [part.over_time for part in parts if part.over_time is not None]
+    in_speed = [part.over_speed for part in parts if part.over_speed is not None]
+    over_time = [_between(part, *times) for part in in_time]
+    over_speed = [_between(part, *speeds) for part in in_speed if part.knots]
+    over_angle = [_periodic(part.over_angle) for part in parts if part.over_angle is not None]
+    smooth = np.sum([part.pieces[0] for part in in_speed if not part.knots] or [(0.0,) * 3], axis=0)
+    c0, c1, c2 = map(float, smooth)
 
-    def torque(time: float, omega: float) -> float:
-        value = c0 - (c1 + c2 * abs(omega)) * omega
-        for table in tables:
-            value += table(time, omega)
+    def torque(time: float, theta: float, omega: float) -> float:
+        value = c0 + (c1 + c2 * omega) * omega
+        for function in over_time:
+            value += function(time)
+        for function in over_speed:
+            value += function(omega)
+        for function in over_angle:
+            value += function(theta)
         return value
 
     return torque
 
 
-def speeds_around(torques: tuple[Torque, ...], omega: float, sense: float) -> Range:
-    """The rows of all speed tables next to a speed [rad/s]; beside a row, on the side of sense."""
-    rows = sorted({x for load in torques if isinstance(load, SpeedTable) for x in load.file.x})
+def speeds_around(
+    torques: tuple[Torque, ...], omega: float, sense: float, stops: tuple[float, ...] = ()
+) -> Range:
+    """The speeds next to one [rad/s] where a load bends or jumps, and other stops; beside such a
+    speed, on the side of sense."""
+    parts = (load.parts.over_speed for load in torques)
+    rows = sorted({x for part in parts if part is not None for x in part.bends}.union(stops))
     k = bisect_right(rows, omega) if sense > 0.0 else bisect_left(rows, omega)
     ends = [-math.inf, *rows, math.inf]
     return ends[k], ends[k + 1]
 
 
-def _over_time(table: Table, begin: float, end: float) -> Load:
-    """The rows around ``begin`` and those up to ``end``; the outer pieces are continued."""
-    x, y = table.x, table.y
-    low = min(max(bisect_right(x, begin) - 1, 0), len(x) - 2)
-    high = max(bisect_left(x, end), low + 1)
-    x, y = x[low : high + 1], y[low : high + 1]
-    return lambda time, omega: _line(x, y, time)
+def _periodic(part: Cycle) -> Callable[[float], float]:
+    """A cycle from number to number."""
+    first, period = float(part.knots[0]) - NEAR, part.period
+    knots = (part.knots[:-1] - part.knots[0]).tolist()
+    pieces = part.coefficients.T.tolist()
+
+    def value(angle: float) -> float:
+        x = (angle - first) % period
+        k = bisect_right(knots, x) - 1
+        a, b, c, d = pieces[k]
+        x -= knots[k] + NEAR
+        return float(((a * x + b) * x + c) * x + d)
+
+    return value
 
 
-def _over_speed(table: Table) -> Load:
-    """The ends are held."""
-    x, y = table.x, table.y
-    return lambda time, omega: _line(x, y, min(max(omega, x[0]), x[-1]))
+def _between(part: Piecewise, begin: float, end: float) -> Callable[[float], float]:
+    """Its pieces from ``begin`` to ``end``; the outer ones are continued."""
+    knots, pieces = part.knots, part.pieces
+    low = bisect_right(knots, begin)
+    high = max(bisect_left(knots, end), low)
+    knots, pieces = knots[low:high], pieces[low : high + 1]
 
+    def value(x: float) -> float:
+        a, b, c = pieces[bisect_right(knots, x)]
+        return a + (b + c * x) * x
 
-def _line_between(table: Table, low: float, high: float) -> tuple[float, float]:
-    """Torque at rest [N m] and slope [N m s] of the table's line from speed low to high."""
-    x, y = table.x, table.y
-    k = bisect_right(x, low)
-    if k == 0 or high > x[-1]:
-        return y[0 if k == 0 else -1], 0.0
-    slope = (y[k] - y[k - 1]) / (x[k] - x[k - 1])
-    return y[k] - slope * x[k], slope
-
-
-def _line(x: tuple[float, ...], y: tuple[float, ...], at: float) -> float:
-    k = min(max(bisect_right(x, at), 1), len(x) - 1)
-    width = x[k] - x[k - 1]
-    if width == 0.0:  # the held end beyond a jump in the outermost rows
-        return y[k]
-    return y[k - 1] + (y[k] - y[k - 1]) * (at - x[k - 1]) / width
+    return value

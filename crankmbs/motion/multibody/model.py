@@ -53,14 +53,14 @@ class Model:
     """The system of a scene. Set its loads, then run it.
 
     gas : per cylinder the gas force [N] over the crank angle [rad]; empty without gas
-    torque : torque [N m] on a free crank over time [s] and speed [rad/s]
+    torque : torque [N m] on a free crank over time [s], crank angle [rad] and speed [rad/s]
     angle : crank angle [rad] of a prescribed motion over the number of the step
     stiff : whether Newton's method shall know how the loads change; 2.7 times as slow
     """
 
     def __init__(self, scene: Scene, reference: Start, *, gas: bool, free: bool) -> None:
         self.gas: Sequence[Callable[[float], float]] = ()
-        self.torque: Load = lambda time, omega: 0.0
+        self.torque: Load = lambda time, theta, omega: 0.0
         self.angle: Callable[[int], float] = lambda step: 0.0
         self.stiff = False
         self._settings = _settings()
@@ -74,7 +74,11 @@ class Model:
         if not free:
             assembly.drive(lambda time: self.angle(round(time / self._step)) - self._zero)
         elif scene.torque:
-            assembly.load(lambda time: self.torque(self._begin + time, self._v.item(2)))
+            assembly.load(
+                lambda time: self.torque(
+                    self._begin + time, self._zero + self._q.item(2), self._v.item(2)
+                )
+            )
         for k in range(len(scene.cylinders) if gas else 0):
             assembly.push(k, self._gas_force(k))
         self._system.Assemble()

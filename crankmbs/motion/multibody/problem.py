@@ -11,7 +11,6 @@ from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion.multibody.gas import GasForces
 from crankmbs.motion.plan import Plan, plan_of
 from crankmbs.motion.prescribed import monotone_stretches
-from crankmbs.scene.drives import TimeTable
 from crankmbs.scene.scene import Scene
 
 __all__ = ["Problem", "erratic_order", "jump_times", "kink_times", "problem_of"]
@@ -64,9 +63,9 @@ def jump_times(problem: Problem) -> list[float]:
     """Times [s] above 0 at which a load or the prescribed acceleration jumps."""
     times: set[float] = set()
     for load in problem.scene.torque:
-        if isinstance(load, TimeTable):
-            x, y = load.file.x, load.file.y
-            times |= {x[k] for k in range(1, len(x)) if x[k] == x[k - 1] and y[k] != y[k - 1]}
+        if load.parts.over_time is not None:
+            times |= set(load.parts.over_time.jumps)
+        times |= {end for end in (load.after, load.until) if end is not None}
     if problem.law is not None:
         for corner in problem.law.corners:
             before, after = problem.law.at_time(corner * np.array([1.0 - 1e-9, 1.0 + 1e-9]))[2]
@@ -89,14 +88,18 @@ def erratic_order(problem: Problem) -> int:
     """Power of the step with which the erratic part of an error goes, at least; 3 at most.
 
     It is 1 where a load jumps within a step, at a place in it that changes with the step, and 2
-    where it bends; loads over speed are not counted. No load bends a prescribed motion.
+    where it bends, as loads over the angle do; loads over speed are not counted. No load bends a
+    prescribed motion.
     """
     if problem.law is not None:
         return 2 if set(problem.law.corners) - set(jump_times(problem)) else 3
-    return min(problem.gas.order, 2 if len(_row_times(problem)) > _MOST_KINKS else 3)
+    parts = (load.parts.over_angle for load in problem.scene.torque)
+    over_angle = min((part.order for part in parts if part is not None), default=3)
+    return min(problem.gas.order, over_angle, 2 if len(_row_times(problem)) > _MOST_KINKS else 3)
 
 
 def _row_times(problem: Problem) -> list[float]:
-    """Times [s] within the run of the rows of all loads over time."""
-    loads = (load for load in problem.scene.torque if isinstance(load, TimeTable))
-    return sorted({t for load in loads for t in load.file.x if 0.0 < t < problem.end})
+    """Times [s] within the run at which loads bend or jump."""
+    parts = (load.parts.over_time for load in problem.scene.torque)
+    bends = {t for part in parts if part is not None for t in part.bends}
+    return sorted(t for t in bends if 0.0 < t < problem.end)

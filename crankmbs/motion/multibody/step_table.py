@@ -14,6 +14,7 @@ from crankmbs.motion.multibody.gas import GasStretch
 from crankmbs.motion.multibody.held import held_by
 from crankmbs.motion.multibody.model import Record
 from crankmbs.numerics.arrays import Array
+from crankmbs.numerics.cycle import Cycle
 from crankmbs.scene.scene import Scene
 
 __all__ = ["ROWS", "StepTable", "table_of"]
@@ -31,7 +32,8 @@ class StepTable(NamedTuple):
     after, until [s] : rows before are run-up and those beyond overrun, both no answer
     scene, gas : the machine, and its gas forces on the stretch
     names : of the variables, those of the cylinders last; n cylinders
-    columns : shape (m, k), the variables side by side, less what `held_by` the gas
+    columns : shape (m, k), the variables side by side, less what `held_by` the gas and less the
+        loads over the angle
     """
 
     begin: float
@@ -42,6 +44,7 @@ class StepTable(NamedTuple):
     gas: GasStretch
     names: tuple[str, ...]
     columns: Array
+    loads: tuple[Cycle, ...] = ()
 
     @property
     def times(self) -> Array:
@@ -52,8 +55,21 @@ class StepTable(NamedTuple):
         """All variables at times between: shape (m,), or (m, n) those of the cylinders."""
         named = self._named(self._interpolated(self.columns, time))
         theta = named["crank_angle"]
+        named["external_torque"] = named["external_torque"] + self._over_angle(theta)
         held = held_by(self.scene, self.gas.force(theta), theta)
         return named | {name: named[name] + force for name, force in held.items()}
+
+    def under(self, loads: tuple[Cycle, ...]) -> StepTable:
+        """The same with loads over the angle, whose kinks then do not bend what is interpolated."""
+        table, columns = self._replace(loads=loads), self.columns.copy()
+        columns[:, self.names.index("external_torque")] -= table._over_angle(
+            self.column("crank_angle")
+        )
+        return table._replace(columns=columns)
+
+    def _over_angle(self, theta: Array) -> Array:
+        """Torque of the loads over the angle [N m]."""
+        return sum((load(theta) for load in self.loads), np.zeros_like(theta))
 
     def one_at(self, name: str, time: Array) -> Array:
         """One variable of the crank at times between."""

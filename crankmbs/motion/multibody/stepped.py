@@ -19,13 +19,11 @@ from crankmbs.motion.multibody.model import Model
 from crankmbs.motion.multibody.problem import Problem, jump_times, kink_times
 from crankmbs.motion.multibody.start import coordinates
 from crankmbs.motion.multibody.step_table import StepTable
-from crankmbs.motion.multibody.walk import Walk, initial_acceleration
-from crankmbs.scene.drives import TimeTable
+from crankmbs.motion.multibody.walk import SAME, Walk, initial_acceleration
 
 __all__ = ["Stepped", "coarsest_step", "model_of", "solve"]
 
 _ENDLESS = 1_000_000_000
-_SAME = 1e-12  # relative: times nearer than this are one
 _STEPS_PER_TURN = 125  # of the coarsest run
 _STEPS = 125  # of the coarsest run, at least
 _STUCK = 1e-9  # rad/s2
@@ -64,11 +62,11 @@ def solve(
     walk = Walk(problem, model, go_on)
     jumps = jump_times(problem)
     cuts = sorted({*jumps, *kink_times(problem)})
-    ends = [*(t for t in cuts if t < problem.end * (1.0 - _SAME)), problem.end]
+    ends = [*(t for t in cuts if t < problem.end * (1.0 - SAME)), problem.end]
     bounds, ending = problem.plan.angle_bounds, Ending.COMPLETE
 
     def at_jump_in_time() -> bool:
-        return any(math.isclose(walk.time, t, rel_tol=_SAME) for t in jumps)
+        return any(math.isclose(walk.time, t, rel_tol=SAME) for t in jumps)
 
     while ending is Ending.COMPLETE and ends and walk.bound not in bounds:
         h, count = _steps(ends[0] - walk.time, step, halvings)
@@ -76,7 +74,7 @@ def solve(
         if anew and not walk.goes_up and walk.is_at_gas_jump(NEAR):
             walk.above(h)
         ending = walk.stretch(ends[0], h, count, bounds)
-        while ends and walk.time >= ends[0] * (1.0 - _SAME):
+        while ends and walk.time >= ends[0] * (1.0 - SAME):
             ends.pop(0)
         if ending is Ending.COMPLETE and ends and go_on is not None and not go_on():
             last = walk.tables[-1]  # half of it: an end at a jump has no certain side
@@ -104,7 +102,7 @@ def coarsest_step(problem: Problem, model: Model) -> tuple[float, bool]:
         speed = float(np.max(np.abs(speeds)))
     elif omega == 0.0:
         alpha = abs(initial_acceleration(problem, model))
-        loads_change = any(isinstance(load, TimeTable) for load in problem.scene.torque)
+        loads_change = not all(load.is_steady for load in problem.scene.torque)
         moves = alpha > _STUCK or loads_change
         speed = min(math.sqrt(4.0 * math.pi * alpha), alpha * problem.end)
     turn = 2.0 * math.pi / speed if speed > 0.0 else math.inf

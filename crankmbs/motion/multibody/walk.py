@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from crankmbs.mechanics.geometry import close_loop
+from crankmbs.mechanics.windows import acting, first_phases, later_phases, phase_ends
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.multibody.gas import GasStretch
 from crankmbs.motion.multibody.landing import (
@@ -29,8 +30,11 @@ from crankmbs.motion.multibody.problem import Problem
 from crankmbs.motion.multibody.run_up import run_free, run_prescribed
 from crankmbs.motion.multibody.start import coordinates
 from crankmbs.motion.multibody.step_table import StepTable, table_of
+from crankmbs.scene.loads import Torque
 
-__all__ = ["Walk", "initial_acceleration"]
+__all__ = ["SAME", "Walk", "initial_acceleration"]
+
+SAME = 1e-12  # relative: times nearer than this are one
 
 _OPEN = 1e-3  # of the rod's length: how far a piston may be off the closed loop
 _NOTHING = 1e-9  # of a step: a stretch so short has not begun
@@ -53,6 +57,8 @@ class Walk:
         self._problem, self._model, self._go_on = problem, model, go_on
         self._residual = 0.0
         self._sense = 0.0  # in which the speed passed a bend of the loads
+        free = problem.law is None
+        self._phases = first_phases(problem.scene.torque, problem.start[1]) if free else ()
         self._speeds_left = _MOST_SPEEDS
         self.steps = self.iterations = 0
 
@@ -136,9 +142,11 @@ class Walk:
             return None, Ending.DIVERGED
         torque = record.drive
         if problem.law is None:
-            rates = record.velocity[:, 2].tolist()
-            torque = np.array(list(map(model.torque, record.time.tolist(), rates)))
+            angles, rates = record.position[:, 2].tolist(), record.velocity[:, 2].tolist()
+            torque = np.array(list(map(model.torque, record.time.tolist(), angles, rates)))
+        over_angle = (load.parts.over_angle for load in self._acting)
         table = table_of(problem.scene, gas, torque, record, time, self._residual)
+        table = table.under(tuple(part for part in over_angle if part is not None))
         if watch.called_off:
             return table, Ending.CALLED_OFF
         return table, Ending.COMPLETE if record.complete else Ending.DIVERGED
@@ -152,10 +160,10 @@ class Walk:
         loads drives the speed back from both sides
         """
         omega, model, problem = self._state[1], self._model, self._problem
-        torques = problem.scene.torque
+        torques = self._acting
         senses = (self._sense,) if self._sense else (1.0, -1.0)
         for sense in senses:
-            speeds = EVERYWHERE if self.is_blind else speeds_around(torques, omega, sense)
+            speeds = self._speeds_around(sense)
             model.torque = torque_function(torques, (self.time, end), speeds)
             gas = self._gas_beside(omega or sense)
             beside = omega in speeds
@@ -178,17 +186,25 @@ class Walk:
         row = self._model.consistent(start, self.time)
         return float(row.acceleration[0, 2])
 
+    @property
+    def _acting(self) -> tuple[Torque, ...]:
+        """The loads whose windows are open."""
+        return tuple(load for _, load in acting(self._problem.scene.torque, self._phases))
+
+    def _speeds_around(self, sense: float) -> tuple[float, float]:
+        """The speeds next to that of here at which a load bends, jumps, sets in or ends; blind,
+        those at which one sets in or ends."""
+        stops = phase_ends(self._problem.scene.torque, self._phases)[1]
+        return speeds_around(() if self.is_blind else self._acting, self._state[1], sense, stops)
+
     def _jumps(self, omega: float) -> bool:
         """Whether a load jumps at a speed."""
+        theta = self._state[0]
+        now = self.time, self.time
         sides = (
-            torque_function(
-                self._problem.scene.torque,
-                (self.time, self.time),
-                speeds_around(self._problem.scene.torque, omega, sense),
-            )
-            for sense in (-1.0, 1.0)
+            torque_function(self._acting, now, self._speeds_around(sense)) for sense in (-1.0, 1.0)
         )
-        below, above = (torque(self.time, omega) for torque in sides)
+        below, above = (torque(self.time, theta, omega) for torque in sides)
         return abs(above - below) > 1e-9 * max(abs(above), abs(below))
 
     def _land(self, table: StepTable, bounds: Bounds, bound: float | None) -> None:
@@ -214,6 +230,8 @@ class Walk:
             theta if self.bound is None else self.bound,
             omega if speed is None else speed,
         )
+        torques, late = self._problem.scene.torque, self.time * (1.0 + SAME)
+        self._phases = later_phases(torques, self._phases, late, self._state[1])
 
 
 def initial_acceleration(problem: Problem, model: Model) -> float:

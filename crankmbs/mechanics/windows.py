@@ -1,0 +1,122 @@
+"""When a load acts: it sets in once a time and a speed have been met, and ends for good.
+
+A load waits until its `from_speed` has been met, then until the time `after`; it acts; and it is
+over at the time `until` or where, after it set in, `until_speed` is met. A speed is met when the
+crank's, with its sign, first equals it, from either side. So each load goes through its phases in
+one order, and within a phase nothing of this changes: a phase ends at a time or at a speed, on
+which the solvers land.
+"""
+
+from __future__ import annotations
+
+import math
+from enum import IntEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crankmbs.numerics.arrays import Array
+from crankmbs.scene.loads import Torque
+
+__all__ = ["Phase", "Phases", "acting", "first_phases", "later_phases", "phase_ends", "span"]
+
+
+class Phase(IntEnum):
+    """Of one load: its speed is not met; it waits for its time; it acts; it is over."""
+
+    WAITING = 0
+    DUE = 1
+    ACTING = 2
+    OVER = 3
+
+
+Phases = tuple[Phase, ...]
+"""One for each load; empty where no load has a window, and all act throughout."""
+
+
+def first_phases(torques: tuple[Torque, ...], omega: float) -> Phases:
+    """The phases at time 0.
+
+    >>> first_phases((Torque(kind="constant", after=1.0),), 5.0)
+    (<Phase.DUE: 1>,)
+    """
+    if not any(load.has_window for load in torques):
+        return ()
+    return later_phases(torques, (Phase.WAITING,) * len(torques), 0.0, omega)
+
+
+def later_phases(torques: tuple[Torque, ...], phases: Phases, t: float, omega: float) -> Phases:
+    """The phases after landing at a time [s] and a speed [rad/s], which must be met exactly."""
+    return tuple(
+        _later(load, phase, t, omega) for load, phase in zip(torques, phases, strict=False)
+    )
+
+
+def _later(load: Torque, phase: Phase, t: float, omega: float) -> Phase:
+    if load.until is not None and t >= load.until:
+        return Phase.OVER
+    if phase is Phase.ACTING and omega == load.until_speed:
+        return Phase.OVER
+    if phase is Phase.WAITING and load.from_speed in (None, omega):
+        phase = Phase.DUE
+    if phase is Phase.DUE and t >= (load.after or 0.0):
+        phase = Phase.ACTING
+    return phase
+
+
+def acting(torques: tuple[Torque, ...], phases: Phases) -> tuple[tuple[int, Torque], ...]:
+    """The loads that act, each with its number from 1."""
+    numbered = tuple(enumerate(torques, start=1))
+    return tuple(one for one in numbered if not phases or phases[one[0] - 1] is Phase.ACTING)
+
+
+def phase_ends(
+    torques: tuple[Torque, ...], phases: Phases
+) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Times [s] and speeds [rad/s] at which a phase may end."""
+    times: list[float] = []
+    speeds: list[float] = []
+    for load, phase in zip(torques, phases, strict=False):
+        if phase is Phase.WAITING and load.from_speed is not None:
+            speeds.append(load.from_speed)
+        if phase is Phase.DUE and load.after is not None:
+            times.append(load.after)
+        if phase is Phase.ACTING:
+            times += [] if load.until is None else [load.until]
+            speeds += [] if load.until_speed is None else [load.until_speed]
+    return tuple(times), tuple(speeds)
+
+
+def span(load: Torque, time: Array, omega: Array) -> tuple[float, float]:
+    """From when to when [s] a load acts in a motion given by its samples; where a speed is met
+    between two of them by the straight line.
+
+    time, omega : shape (n,) [s, rad/s]
+
+    >>> load = Torque(kind="constant", from_speed=2.0)
+    >>> span(load, np.array([0.0, 1.0]), np.array([1.0, 3.0]))
+    (0.5, inf)
+    """
+    begin = load.after or 0.0
+    if load.from_speed is not None:
+        begin = max(begin, _met(load.from_speed, time, omega, -math.inf))
+    end = math.inf if load.until is None else load.until
+    if load.until_speed is not None:
+        end = min(end, _met(load.until_speed, time, omega, begin))
+    return begin, end
+
+
+def _met(speed: float, time: Array, omega: Array, since: float) -> float:
+    """When a speed is first met after a time; infinite if never."""
+    if omega[0] == speed and time[0] > since:
+        return float(time[0])
+    beyond = omega - speed
+    passed: NDArray[np.intp] = np.flatnonzero(
+        (beyond[1:] * beyond[:-1] <= 0.0) & (beyond[:-1] != 0.0)
+    )
+    for k in passed:
+        share = beyond[k] / (beyond[k] - beyond[k + 1])
+        met = float(time[k] + share * (time[k + 1] - time[k]))
+        if met > since:
+            return met
+    return math.inf

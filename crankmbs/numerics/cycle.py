@@ -1,0 +1,89 @@
+"""Periodic functions of an angle that are a cubic between every two of their knots."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from crankmbs.numerics.arrays import Array
+
+__all__ = ["NEAR", "Cycle", "summed", "tiled"]
+
+NEAR = 1e-9  # rad: an angle this close below a knot counts as on it, or rounding decides the side
+_JUMP = 1e-9  # of the largest value or slope: less is rounding
+
+
+@dataclass(frozen=True, eq=False)
+class Cycle:
+    """Cubics, periodic.
+
+    knots : shape (n + 1,) [rad], increasing, the last one period above the first
+    coefficients : shape (4, n), by descending power of (angle - knots[i]) in rad
+    """
+
+    knots: Array
+    coefficients: Array
+
+    @property
+    def period(self) -> float:
+        """Period [rad]."""
+        return float(self.knots[-1] - self.knots[0])
+
+    def __call__(self, angle: ArrayLike) -> Array:
+        """Values at angles [rad] of any shape; on a jump that after it.
+
+        >>> Cycle(np.array([0.0, 1.0]), np.array([[0.0], [0.0], [2.0], [5.0]]))([0.5, 3.25])
+        array([6. , 5.5])
+        """
+        ahead = np.mod(np.asarray(angle, dtype=np.float64) - self.knots[0] + NEAR, self.period)
+        k = np.searchsorted(self.knots[1:-1] - self.knots[0], ahead, side="right")
+        x = ahead - NEAR - (self.knots[k] - self.knots[0])
+        a, b, c, d = self.coefficients[:, k]
+        return np.asarray(((a * x + b) * x + c) * x + d)
+
+    @cached_property
+    def largest(self) -> float:
+        """The largest value, without its sign, at the knots."""
+        return float(np.max(np.abs([self.coefficients[3], self._ends[0]])))
+
+    @cached_property
+    def order(self) -> int:
+        """1 where it jumps, 2 where it bends, else 3."""
+        value, slope = self.coefficients[3], self.coefficients[2]
+        jumps = np.abs(value - np.roll(self._ends[0], 1)) > _JUMP * np.max(np.abs(value))
+        bends = np.abs(slope - np.roll(self._ends[1], 1)) > _JUMP * np.max(np.abs(slope))
+        return 1 if jumps.any() else 2 if bends.any() else 3
+
+    @cached_property
+    def _ends(self) -> tuple[Array, Array]:
+        """Values and slopes where the pieces end."""
+        (a, b, c, d), x = self.coefficients, np.diff(self.knots)
+        return ((a * x + b) * x + c) * x + d, (3.0 * a * x + 2.0 * b) * x + c
+
+
+def summed(cycles: list[Cycle], period: float) -> Cycle | None:
+    """The sum over a common period [rad], from angle 0 on; None of none."""
+    if not cycles:
+        return None
+    inside = [np.mod(tiled(cycle, period), period) for cycle in cycles]
+    knots = np.unique(np.concatenate([[0.0], *inside]))
+    knots = knots[np.append(True, np.diff(knots) > NEAR) & (knots < period - NEAR)]
+    knots = np.append(knots, period)
+    total = np.zeros((4, len(knots) - 1))
+    for cycle in cycles:
+        middle = np.mod(0.5 * (knots[1:] + knots[:-1]) - cycle.knots[0], cycle.period)
+        k = np.searchsorted(cycle.knots[1:-1] - cycle.knots[0], middle, side="right")
+        x = middle - (cycle.knots[k] - cycle.knots[0]) - 0.5 * np.diff(knots)  # where it begins
+        a, b, c, d = cycle.coefficients[:, k]
+        slope, square = (3.0 * a * x + 2.0 * b) * x + c, 3.0 * a * x + b
+        total += np.array([a, square, slope, ((a * x + b) * x + c) * x + d])
+    return Cycle(knots, total)
+
+
+def tiled(cycle: Cycle, period: float) -> Array:
+    """The knots of a cycle repeated over a period of which its own is a part [rad]."""
+    turns = np.arange(round(period / cycle.period))[:, None]
+    return np.asarray((cycle.knots[:-1] + turns * cycle.period).ravel())
