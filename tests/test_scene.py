@@ -157,7 +157,8 @@ def test_every_part_survives_a_dump():
         ),
         (
             lambda: scene(torque=[Constant(torque=1.0), 3]),
-            "torque[2]: must be one of Constant, Viscous, Quadratic, TimeTable, SpeedTable, AngleTable; 3 came",
+            "torque[2]: must be one of Constant, Viscous, Quadratic, TimeTable, SpeedTable, "
+            "AngleTable; 3 came",
         ),
         (
             lambda: Gas(pressure=np.zeros((5, 2)), ambient=1e5),
@@ -176,8 +177,8 @@ def test_every_part_survives_a_dump():
         ),
         (
             lambda: scene(torque=[lambda t, omega: -omega]),
-            "torque[1]: must be one of Constant, Viscous, Quadratic, TimeTable, SpeedTable, AngleTable; "
-            "a function came",
+            "torque[1]: must be one of Constant, Viscous, Quadratic, TimeTable, SpeedTable, "
+            "AngleTable; a function came",
         ),
         (
             lambda: Motion(speed=lambda t: 300.0),
