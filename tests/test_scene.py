@@ -172,8 +172,8 @@ def test_every_part_survives_a_dump():
         ),
         (
             lambda: scene(torque=lambda t, omega: -omega),
-            "torque: must be a tuple or list of Constant, Viscous, Quadratic, TimeTable or "
-            "SpeedTable; a function came",
+            "torque: must be a tuple or list of Constant, Viscous, Quadratic, TimeTable, "
+            "SpeedTable or AngleTable; a function came",
         ),
         (
             lambda: scene(torque=[lambda t, omega: -omega]),
