@@ -24,14 +24,12 @@ from crankmbs.motion.minimal import stepper
 from crankmbs.motion.minimal.reduced import Reduced
 from crankmbs.motion.minimal.stretch import BALANCED, Equation, Stretch, Track
 from crankmbs.motion.plan import Plan
-from crankmbs.numerics import kernels
 from crankmbs.numerics.arrays import Array
 
 __all__ = ["Effort", "advance"]
 
 _MOST_STEPS = 512  # of one stretch
 _RADAU = 1e-13  # finest tolerance of a step, half of it where steps are halved; SciPy's is 2.3e-14
-_PLAIN_TIME = 5e-4  # s a step that is not compiled
 
 
 class Effort(NamedTuple):
@@ -73,7 +71,6 @@ def advance(
         control = _Control(tolerance, speed, bound, h, most, room, parts)
         speeds = (0.0, equation.branch.omega_low, equation.branch.omega_high)
         limits = np.array([*equation.between[:2], *plan.angle_bounds, *speeds])
-        kernels.pay(room * _PLAIN_TIME)
         method = _radau if equation.is_stiff(state, inertia) else _dop853
         track = method(equation, state, control, limits)
         if len(track.widths) == 0:

@@ -1,4 +1,4 @@
-"""Steps over time of one free rotation, compiled by numba where that pays
+"""Steps over time of one free rotation, compiled by numba
 (`crankmbs.numerics.kernels`).
 
 All that is evaluated step by step: the crank train reduced to one rotation, and the method of
