@@ -1,4 +1,4 @@
-"""The compiled loops against what they replace, to rounding; and when they are loaded."""
+"""The compiled loops against plain Python, to rounding; when they are loaded, and their cache."""
 
 import dataclasses
 import importlib
@@ -27,12 +27,15 @@ from crankmbs import (
     load_scene,
     simulate,
 )
+from crankmbs.mechanics import combined
 from crankmbs.mechanics.torque import branch_of
 from crankmbs.mechanics.train import CrankTrain
+from crankmbs.motion.crank_angle import loops, readout
 from crankmbs.motion.crank_angle.grid import grid_of
 from crankmbs.motion.crank_angle.solvers import Begin, Cells, solve_affine, solve_newton
-from crankmbs.numerics import kernels
+from crankmbs.motion.minimal import stepper
 from crankmbs.numerics.collocation import gauss
+from crankmbs.numerics.kernels import kernel
 from crankmbs.scene.loads import Torque
 
 LOADS: dict[str, tuple[Torque, ...]] = {
@@ -53,49 +56,49 @@ def scene_with(loads: tuple[Torque, ...], speed: float, every: str) -> Scene:
     )
 
 
+KERNELS = [
+    (module, name)
+    for module in (combined, loops, readout, stepper)
+    for name, function in vars(module).items()
+    if hasattr(function, "py_func")
+]
+
+
 def both_ways(
     scene: Scene, patch: pytest.MonkeyPatch, formulation: str = "crank_angle"
 ) -> tuple[Result, Result]:
-    """The scene run with nothing compiled, and with everything."""
-    patch.setattr(kernels, "are_compiled", False)
-    patch.setattr(kernels, "pay", lambda _: False)
-    for function in kernels._functions:
-        patch.setattr(sys.modules[function.__module__], function.__name__, function)
-    arrays = simulate(scene, formulation=formulation)
-    patch.undo()
-    import numba  # noqa: F401
-
-    assert kernels.pay(0.0)
-    return arrays, simulate(scene, formulation=formulation)
+    """The scene run with every loop in plain Python, which looks at its indices, and compiled."""
+    with patch.context() as plain:
+        for module, name in KERNELS:
+            plain.setattr(module, name, getattr(module, name).py_func)
+        interpreted = simulate(scene, formulation=formulation)
+    return interpreted, simulate(scene, formulation=formulation)
 
 
 @pytest.mark.parametrize("every", ["1 deg", "0.1 ms"])
 @pytest.mark.parametrize("speed", [330.0, -330.0])
 @pytest.mark.parametrize("loads", LOADS)
-def test_arrays_and_compiled_loops_agree(
+def test_plain_and_compiled_loops_agree(
     loads: str, speed: float, every: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    arrays, compiled = both_ways(scene_with(LOADS[loads], speed, every), monkeypatch)
-    assert arrays.status == compiled.status
-    assert arrays.message == compiled.message
+    plain, compiled = both_ways(scene_with(LOADS[loads], speed, every), monkeypatch)
+    assert plain.status == compiled.status
+    assert plain.message == compiled.message
     for name in ("time", "crank_angle", "crank_speed", "crank_acceleration", "side_force"):
-        a, b = np.asarray(arrays.data[name]), np.asarray(compiled.data[name])
+        a, b = np.asarray(plain.data[name]), np.asarray(compiled.data[name])
         assert a.shape == b.shape
         assert np.max(np.abs(a - b)) < 2e-12 * np.max(np.abs(a)), name
-    one, other = (r.error.estimated for r in (arrays, compiled))
+    one, other = (r.error.estimated for r in (plain, compiled))
     assert 0.5 < one / other < 2.0 or max(one, other) < 1e-11
 
 
-@pytest.mark.parametrize("compiled", [False, True])
 @pytest.mark.parametrize("solve", [solve_affine, solve_newton])
-def test_clock_and_energy_lose_nothing_over_many_cells(
-    solve: Callable[..., Cells], compiled: bool
-) -> None:
+def test_clock_and_energy_lose_nothing_over_many_cells(solve: Callable[..., Cells]) -> None:
     """What rounding takes is the same in every pass, and their difference would not show it."""
     grid = grid_of(CrankTrain(load_scene("coasting"), None), gauss(3))
     strip = grid.strip(0.0, 1.0, 4000, math.inf)
     branch = branch_of((Constant(torque=0.1),), 0.0, 1.0, rising=True)
-    cells = solve(grid, strip, branch, Begin(1.0, 50.0, 0.1, math.inf), compiled=compiled)
+    cells = solve(grid, strip, branch, Begin(1.0, 50.0, 0.1, math.inf))
     spent = strip.width * (cells.slowness @ grid.rule.weights)
     assert abs(cells.time[-1] - math.fsum([0.1, *spent])) <= 2.0 * math.ulp(cells.time[-1])
     gained = strip.width * (cells.torque @ grid.rule.weights)
@@ -120,36 +123,47 @@ def test_steps_over_time_are_the_same_compiled_and_plain(
 
 def test_what_is_compiled_names_no_class_of_ours() -> None:
     """numba's cache on disk cannot be read, and every run fails, once such a class has gone."""
-    import numba  # noqa: F401
-
-    assert kernels.pay(0.0)
     scene = scene_with(LOADS["quadratic"], 300.0, "10 deg")
     for formulation in ("crank_angle", "minimal"):
         assert simulate(scene, formulation=formulation).status == 0
-    names = [(sys.modules[f.__module__], f.__name__) for f in kernels._functions]
-    signatures = {name: getattr(module, name).signatures for module, name in names}
+    signatures = {name: getattr(module, name).signatures for module, name in KERNELS}
     assert signatures["travel"]
     assert signatures["affine"]
     assert set(re.findall(r"\b(\w+)\(", str(signatures))) <= {"Array", "Tuple", "UniTuple", "array"}
 
 
-SHORT = """
-import sys, crankmbs
-crankmbs.simulate(crankmbs.load_scene("propeller"))
-assert "numba" not in sys.modules
-"""
-LONG = """
-import sys, crankmbs
-from crankmbs.numerics import kernels
-assert not kernels.pay(0.4) and "numba" not in sys.modules
-assert kernels.pay(0.4) and kernels.are_compiled
-"""
-
-
-@pytest.mark.parametrize("code", [SHORT, LONG], ids=["a short run does not", "a long one does"])
-def test_numba_is_loaded_where_it_pays(code: str) -> None:
+def fresh(code: str) -> str:
+    """What a process of its own prints."""
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def test_numba_is_loaded_only_where_loops_run() -> None:
+    fresh(
+        "import sys, crankmbs\n"
+        "crankmbs.simulate(crankmbs.load_scene('yi_diesel'))\n"
+        "assert 'numba' not in sys.modules\n"
+    )
+
+
+@pytest.mark.parametrize("formulation", ["crank_angle", "minimal"])
+def test_a_result_does_not_depend_on_what_the_process_did_before(formulation: str) -> None:
+    """To the last bit of every variable and error."""
+    code = (
+        "import crankmbs\n"
+        "{before}\n"
+        "scene = crankmbs.load_scene('torque_driven')\n"
+        f"data = crankmbs.simulate(scene, formulation='{formulation}').data\n"
+        "for name, variable in data.variables.items():\n"
+        "    print(name, variable.values.tobytes().hex(), variable.attrs)\n"
+    )
+    others = (
+        "import numba\n"
+        "for name in ('yi_diesel_free', 'coasting', 'compressor'):\n"
+        "    crankmbs.simulate(crankmbs.load_scene(name))"
+    )
+    assert fresh(code.format(before="")) == fresh(code.format(before=others))
 
 
 def test_kernels_work_where_nothing_can_be_cached() -> None:
@@ -160,12 +174,9 @@ def test_kernels_work_where_nothing_can_be_cached() -> None:
         "    raise RuntimeError('cannot cache function: no locator available')\n"
         "FunctionCache.__init__ = cannot\n"
         "from crankmbs import load_scene, simulate\n"
-        "from crankmbs.numerics import kernels\n"
-        "assert kernels.pay(0.0)\n"
         "assert simulate(load_scene('coasting')).status == 0\n"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
+    fresh(code)
 
 
 @pytest.fixture
@@ -175,7 +186,7 @@ def doubled(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[], Any
     monkeypatch.syspath_prepend(tmp_path)
     monkeypatch.delitem(sys.modules, "one_kernel", raising=False)
     function = importlib.import_module("one_kernel").doubled
-    return lambda: kernels._compiled(function)
+    return lambda: kernel(function)
 
 
 DAMAGES = {

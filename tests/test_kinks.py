@@ -23,9 +23,7 @@ from crankmbs.motion.base import State
 from crankmbs.motion.crank_angle import advance as crank_angle
 from crankmbs.motion.crank_angle.grid import grid_of
 from crankmbs.motion.plan import plan_of
-from crankmbs.numerics import kernels
 from crankmbs.numerics.collocation import gauss
-from crankmbs.numerics.kernels import pay
 
 SPEED = Table((-9.0, 2.0, 5.0, 5.0, 7.0, 9.0), (3.0, 1.0, 4.0, 2.0, 2.5, -1.0))
 TIME = Table((0.0, 1.0, 1.0, 2.0, 3.0), (0.0, 4.0, 1.0, 2.0, 9.0))
@@ -85,10 +83,8 @@ def speed_at_end(rows, grid, allowed):
     return last.end.omega
 
 
-@pytest.mark.parametrize("compiled", [False, True])
 @pytest.mark.parametrize("rows", [150, 400, 1000])
-def test_what_little_kinks_miss_is_added(rows, compiled, monkeypatch):
-    monkeypatch.setattr(kernels, "pay", lambda _: compiled and pay(1.0))
+def test_what_little_kinks_miss_is_added(rows):
     grid = grid_of(crank_train(DIESEL), gauss(7)).finer
     cut = speed_at_end(rows, replace(grid, checks=False), 1e-13)
     missing = speed_at_end(rows, replace(grid, checks=False), 1e-7) / cut - 1.0

@@ -14,7 +14,6 @@ from crankmbs import simulate
 from crankmbs.mechanics import combined
 from crankmbs.motion.crank_angle import loops, readout
 from crankmbs.motion.minimal import stepper
-from crankmbs.numerics import kernels
 from validation import judge_scene, many
 from validation.__main__ import main
 from validation.random_scenes import random_scene
@@ -77,7 +76,6 @@ def test_the_long_run_says_what_it_skips(monkeypatch, capsys):
 
 def test_nothing_is_left_to_compile_while_patience_runs():
     judge_scene.judge_seed(0, [], 60.0)
-    assert kernels.are_compiled
     compiled = loops.affine, loops.newton, readout.read, readout.motion, combined.together
     for loop in (*compiled, stepper.travel):
         assert loop.signatures

@@ -10,7 +10,6 @@ from crankmbs import load_scene
 from crankmbs.mechanics.pressure import pressures_of
 from crankmbs.mechanics.reactions import deviations, reactions
 from crankmbs.mechanics.train import CrankTrain, crank_train
-from crankmbs.numerics import kernels
 from validation.adapter import reference_variables
 from validation.oracles.arithmetic import multiprecision
 from validation.random_scenes import random_scene
@@ -52,12 +51,9 @@ def test_every_variable_of_shipped_machines(name):
     assert max(worst.values()) < 1e-12, worst
 
 
-@pytest.mark.parametrize("compiled", [False, True])
-def test_angles_that_come_back(compiled, monkeypatch):
+def test_angles_that_come_back():
     """Every force from its parts of omega^2, alpha and 1 at one angle of the period."""
     scene = load_scene("v_twin")
-    assert kernels.pay(math.inf)
-    monkeypatch.setattr(kernels, "are_compiled", compiled)
     _, omega, alpha = motion(3, 24)
     theta = 0.3 + scene.period / 6 * np.arange(24)
     state = theta, omega, alpha
@@ -97,13 +93,10 @@ def test_cycles_after_one_another_are_as_each_alone():
             np.testing.assert_allclose(together[name][samples], values, rtol=0, atol=1e-12 * scale)
 
 
-@pytest.mark.parametrize("compiled", [False, True])
 @pytest.mark.parametrize("samples", [5, 24])
-def test_deviations_are_those_between_two_motions(compiled, samples, monkeypatch):
+def test_deviations_are_those_between_two_motions(samples):
     """Of angles that come back as of others, and without the variables of the second motion."""
     scene = load_scene("v_twin")
-    assert kernels.pay(math.inf)
-    monkeypatch.setattr(kernels, "are_compiled", compiled)
     pressure, theta = pressures_of(scene), 0.3 + scene.period / 6 * np.arange(samples)
     one, other = ((theta + 1e-3 * k, *motion(k, samples)[1:]) for k in (1, 2))
     first, second = (reactions(CrankTrain(scene, pressure), *state) for state in (one, other))

@@ -14,7 +14,6 @@ import numpy as np
 
 from crankmbs import Run, Viscous, load_scene
 from crankmbs.errors import InputError
-from crankmbs.numerics import kernels
 from crankmbs.result import Result
 from crankmbs.scene.scene import Extent, Scene
 from crankmbs.simulate import simulate
@@ -67,7 +66,6 @@ def judge_seed(seed: int, formulations: Sequence[str], patience: float) -> list[
 @cache
 def _compile() -> None:
     """Compile what runs call: numba must not be interrupted, and a scene not wait for it."""
-    kernels.pay(math.inf)
     run = Run(until=Extent(value=5.0, unit="cycle"), every=Extent(value=math.pi / 6, unit="rad"))
     short = replace(load_scene("coasting"), run=run)
     for torque in ((), (Viscous(coefficient=1e-3),)):

@@ -1,5 +1,5 @@
-"""Loops over samples, compiled by numba where that pays (`crankmbs.numerics.kernels`): what the
-samples make of tables over one period."""
+"""Loops over samples, compiled by numba (`crankmbs.numerics.kernels`): what the samples make of
+tables over one period."""
 
 from __future__ import annotations
 

@@ -19,12 +19,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from crankmbs.mechanics import combined
 from crankmbs.mechanics.geometry import close_loop, top_position
 from crankmbs.mechanics.inertia import gravity_vector, rod_centre
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.variables import VARIABLES
-from crankmbs.numerics import kernels
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.periodic import one_period
 from crankmbs.scene.scene import Scene
@@ -119,14 +117,18 @@ class _Found(NamedTuple):
 
     def put(self, name: str, values: Array, variable: Array) -> None:
         """A variable at the samples into its place."""
-        if kernels.are_compiled and self.which is not None and values.ndim > 1:
+        if self.which is not None and values.ndim > 1:
+            from crankmbs.mechanics import combined  # numba is loaded only where angles repeat
+
             combined.together(values, self.which, self.at.square, self.at.alpha, variable)
         else:
             variable[:] = self._all(name, values)
 
     def apart(self, name: str, values: Array, variable: Array) -> float:
         """Largest difference of a variable from this one at the samples."""
-        if kernels.are_compiled and self.which is not None and values.ndim > 1:
+        if self.which is not None and values.ndim > 1:
+            from crankmbs.mechanics import combined
+
             return combined.apart(values, self.which, self.at.square, self.at.alpha, variable)
         return float(np.max(np.abs(self._all(name, values) - variable), initial=0.0))
 

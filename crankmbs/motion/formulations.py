@@ -12,7 +12,6 @@ from typing import NamedTuple
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion import kinetostatic
 from crankmbs.motion.assemble import Assembled, assemble
-from crankmbs.motion.free import passes
 from crankmbs.scene.scene import Scene
 
 __all__ = ["FORMULATIONS", "Formulation", "serving"]
@@ -63,6 +62,12 @@ def _kinetostatic(train: CrankTrain, _rtol: float, _cost_cap: float) -> Assemble
     return assemble(train, kinetostatic.run(train))
 
 
+def _free(train: CrankTrain, rtol: float, cost_cap: float, *, by_angle: bool) -> Assembled:
+    from crankmbs.motion.free import passes  # numba is loaded only when it is used
+
+    return passes.run(train, rtol, cost_cap, by_angle=by_angle)
+
+
 def _multibody(train: CrankTrain, rtol: float, cost_cap: float) -> Assembled:
     from crankmbs.motion import multibody  # exudyn is imported only when it is used
 
@@ -71,8 +76,8 @@ def _multibody(train: CrankTrain, rtol: float, cost_cap: float) -> Assembled:
 
 FORMULATIONS = (
     Formulation("kinetostatic", _if_free, _kinetostatic, integrates=False),
-    Formulation("crank_angle", _if_prescribed, partial(passes.run, by_angle=True)),
-    Formulation("minimal", _if_prescribed, partial(passes.run, by_angle=False)),
+    Formulation("crank_angle", _if_prescribed, partial(_free, by_angle=True)),
+    Formulation("minimal", _if_prescribed, partial(_free, by_angle=False)),
     # second order: more than 1e-5 costs minutes, and is to be asked for
     Formulation("multibody", _never, _multibody, least_rtol=1e-5, dense=False),
 )

@@ -15,7 +15,6 @@ from crankmbs.motion.crank_angle import readout
 from crankmbs.motion.crank_angle.grid import Grid, grid_of
 from crankmbs.motion.crank_angle.solvers import Begin, solve_affine
 from crankmbs.motion.minimal.reduced import Reduced
-from crankmbs.numerics import kernels
 from crankmbs.numerics.collocation import gauss
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.units import DEGREE
@@ -67,7 +66,6 @@ def _grid(scene: Scene, widest: float) -> Grid:
 def _loop(scene: Scene, grid: Grid, reference: Reference) -> Callable[[], Answer]:
     """The loop over cells, and the state at the end read from the last one."""
     assert scene.start is not None
-    kernels.pay(math.inf)
     theta, omega = scene.start.angle, scene.start.speed
     sense = math.copysign(1.0, omega)
     branch = branch_of(scene.torque, 0.0, omega, rising=True)
@@ -81,7 +79,7 @@ def _loop(scene: Scene, grid: Grid, reference: Reference) -> Callable[[], Answer
     no_gas = np.zeros((len(scene.cylinders), 6))
 
     def run() -> Answer:
-        cells = solve_affine(grid, strip, branch, begin, compiled=True)
+        cells = solve_affine(grid, strip, branch, begin)
         solved = strip.turned, strip.width, cells.edges, cells.time, cells.torque, cells.slowness
         k, (x, t, kinetic) = np.empty(1, np.intp), np.empty((3, 1))
         readout.read(given, until_time, sense, grid.rule.to_legendre, solved, k, x, t, kinetic)

@@ -28,7 +28,6 @@ from crankmbs.motion.crank_angle.solvers import Begin, solve_affine, solve_newto
 from crankmbs.motion.crank_angle.window import Window
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.plan import Plan
-from crankmbs.numerics import kernels
 from crankmbs.scene.units import DEGREE
 
 __all__ = ["advance", "is_fast"]
@@ -36,8 +35,6 @@ __all__ = ["advance", "is_fast"]
 _SLOW = 0.5 * DEGREE  # where the energy would be gone within this angle, time must be the variable
 _BLOCK = 8192  # cells of one window
 _SPEED_BLOCK = 512  # where the loads' branch may end at a speed, and the rest is for nothing
-_REACH = 1.0  # rad: what arrays can hold of it in one Newton step after the other
-_AFFINE_TIME, _NEWTON_TIME = 4e-6, 1e-4  # s a cell with arrays
 _HAIR = 1e-6  # of a cell: as near its edge it is as exact as there
 _BEYOND = (_HAIR, 1e-4, 1e-2)  # of a cell: how far ahead a landing near a turn may really be
 _ROUNDS = 6  # of cutting cells at kinks
@@ -207,18 +204,13 @@ def _solve(way: _Way, loads: Branch | Course) -> Window | None:
     too much at kinks."""
     grid, state, _, sense, bound, t_end, allowed = way
     t_end = min(t_end, loads.t_end)
-    affine = isinstance(loads, Branch) and loads.is_affine_in_energy
     n, period = len(grid.edges) - 1, float(grid.edges[-1])
     ahead = 1.2 * (t_end - state.time) * abs(state.omega)
     cells = min(ahead, abs(bound - state.theta)) / period * n + 2.0
-    few = max(2.0, _REACH / period * n)
-    arrays = min(cells, _BLOCK) * _AFFINE_TIME if affine else min(cells, few) * _NEWTON_TIME
-    compiled = kernels.pay(arrays)
-    if affine or compiled:
-        ends = (loads.omega_low * sense, loads.omega_high * sense)
-        few = _SPEED_BLOCK if any(0.0 < end < math.inf for end in ends) else _BLOCK
-    strip = grid.strip(state.theta, sense, int(min(cells, few)), bound)
-    window = _solved(way, loads, strip, t_end, compiled=compiled)
+    ends = (loads.omega_low * sense, loads.omega_high * sense)
+    most = _SPEED_BLOCK if any(0.0 < end < math.inf for end in ends) else _BLOCK
+    strip = grid.strip(state.theta, sense, int(min(cells, most)), bound)
+    window = _solved(way, loads, strip, t_end)
     for _ in range(_ROUNDS):
         if window is None:
             return None
@@ -226,21 +218,19 @@ def _solve(way: _Way, loads: Branch | Course) -> Window | None:
         if len(missing) == 0:
             return window.with_more(gained) if gained.any() else window
         strip = grid.cut(strip, state.theta, sense, marks)
-        window = _solved(way, loads, strip, t_end, compiled=compiled)
+        window = _solved(way, loads, strip, t_end)
     return None
 
 
-def _solved(
-    way: _Way, loads: Branch | Course, strip: Strip, t_end: float, *, compiled: bool
-) -> Window | None:
+def _solved(way: _Way, loads: Branch | Course, strip: Strip, t_end: float) -> Window | None:
     """The cells of a strip, up to where they are too slow."""
     grid, state, energy, sense, *_ = way
     begin = Begin(sense, energy, state.time, t_end)
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
         if isinstance(loads, Branch) and loads.is_affine_in_energy:
-            cells = solve_affine(grid, strip, loads, begin, compiled=compiled)
+            cells = solve_affine(grid, strip, loads, begin)
         else:
-            cells = solve_newton(grid, strip, loads, begin, compiled=compiled)
+            cells = solve_newton(grid, strip, loads, begin)
         edges, time, torque, slowness = cells
         strip = strip.first(len(torque))
         outside = loads(time[1:], sense / slowness[:, -1])

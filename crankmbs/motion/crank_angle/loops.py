@@ -1,5 +1,4 @@
-"""Loops over cells of the crank angle, compiled by numba where that pays
-(`crankmbs.numerics.kernels`). Both ways give the same to rounding."""
+"""Loops over cells of the crank angle, compiled by numba (`crankmbs.numerics.kernels`)."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 """Solved cells of the crank angle read at angles or times: loops over samples, compiled by numba
-where that pays (`crankmbs.numerics.kernels`)."""
+(`crankmbs.numerics.kernels`)."""
 
 from __future__ import annotations
 

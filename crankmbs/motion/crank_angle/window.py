@@ -16,10 +16,9 @@ from crankmbs.motion.crank_angle import loops, readout
 from crankmbs.motion.crank_angle.grid import Grid, Strip, largest_of_row
 from crankmbs.motion.mode import decided
 from crankmbs.motion.plan import Plan
-from crankmbs.numerics import kernels
 from crankmbs.numerics.arrays import Array, Index
 from crankmbs.numerics.periodic import one_period
-from crankmbs.numerics.roots import first_above, invert_monotone
+from crankmbs.numerics.roots import first_above
 
 __all__ = ["Window"]
 
@@ -224,26 +223,12 @@ class Window:
 
     def _read(self, given: Array, *, in_time: bool) -> tuple[Index, Array, Array, Array]:
         """Cell, position in it, time and energy at increasing times, or angles turned."""
-        if kernels.are_compiled:
-            k, (x, t, energy) = np.empty(len(given), np.intp), np.empty((3, len(given)))
-            at_edges, at_nodes = (self.energy, self.time), (self.torque, self.slowness)
-            solved = self.edges, self.strip.width, *at_edges, *at_nodes
-            to_legendre = self.grid.rule.to_legendre
-            readout.read(given, in_time, self.sense, to_legendre, solved, k, x, t, energy)
-            return k, x, t, energy
-        passed = self.time if in_time else self.edges
-        k = np.clip(np.searchsorted(passed, given, side="left") - 1, 0, len(self.torque) - 1)
-        if not in_time:
-            x = (given - self.edges[k]) / self.strip.width[k]
-            return k, x, self._time(k, x), self._energy(k, x)
-        slowness, width = self.slowness[k], self.strip.width[k]
-
-        def elapsed(x: Array) -> tuple[Array, Array]:
-            spent, slope = self.grid.rule.between(slowness, x)
-            return self.time[k] + width * spent, width * slope
-
-        x = invert_monotone(elapsed, given, np.zeros_like(given), np.ones_like(given))
-        return k, x, given, self._energy(k, x)
+        k, (x, t, energy) = np.empty(len(given), np.intp), np.empty((3, len(given)))
+        at_edges, at_nodes = (self.energy, self.time), (self.torque, self.slowness)
+        solved = self.edges, self.strip.width, *at_edges, *at_nodes
+        to_legendre = self.grid.rule.to_legendre
+        readout.read(given, in_time, self.sense, to_legendre, solved, k, x, t, energy)
+        return k, x, t, energy
 
     def _samples(self, k: Index, theta: Array, t: Array, energy: Array) -> Samples:
         """Samples in the cells k."""
@@ -252,7 +237,7 @@ class Window:
         over_angle = np.zeros_like(torque) + self.grid.outside(once)
         torque = torque + over_angle
         of_angle = (inertia, slope, torque)  # bare: numba's cache must not name a class
-        if kernels.are_compiled and isinstance(self.branch, Branch):
+        if isinstance(self.branch, Branch):
             omega, outside, alpha = np.empty((3, len(theta)))
             loads = self.branch.coefficients
             readout.motion(which, of_angle, self.sense, loads, t, energy, omega, outside, alpha)

@@ -26,14 +26,12 @@ from crankmbs.motion.minimal import stepper
 from crankmbs.motion.minimal.reduced import Reduced
 from crankmbs.motion.minimal.stretch import BALANCED, Equation, Stretch, Track
 from crankmbs.motion.plan import Plan
-from crankmbs.numerics import kernels
 from crankmbs.numerics.arrays import Array
 
 __all__ = ["Effort", "advance"]
 
 _MOST_STEPS = 4096  # of one stretch
 _RADAU = 1e-13  # finest tolerance of a step, half of it where steps are halved; SciPy's is 2.3e-14
-_PLAIN_TIME = 5e-4  # s a step that is not compiled
 
 
 class Effort(NamedTuple):
@@ -85,7 +83,6 @@ def advance(
         low, high = plan.angle_bounds
         angles = max(low, state.mode.low), min(high, state.mode.high)
         limits = np.array([*equation.between[:2], *angles, *speeds])
-        kernels.pay(room * _PLAIN_TIME)
         method = _radau if equation.is_stiff(state, inertia) else _dop853
         track = method(equation, state, control, limits)
         if len(track.widths) == 0:

@@ -1,9 +1,8 @@
-"""Steps over time of one free rotation, compiled by numba where that pays
-(`crankmbs.numerics.kernels`).
+"""Steps over time of one free rotation, compiled by numba (`crankmbs.numerics.kernels`).
 
 All that is evaluated step by step: the crank train reduced to one rotation, and the methods of
 Dormand and Prince of order 8 and 5; in scalars, so that they and `mechanics.inertia` check each
-other, and in one file, as numba's cache sees no change of a function in another.
+other. Kernels of one file call none of another, so that they stand together here, over 300 lines.
 """
 
 from __future__ import annotations
