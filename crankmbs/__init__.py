@@ -5,7 +5,7 @@
 """
 
 from crankmbs.choose import Choice, choose
-from crankmbs.compare import Budget, Comparison, budget, compare
+from crankmbs.compare import AtAngle, Budget, Comparison, Reading, at_angle, budget, compare
 from crankmbs.errors import (
     CrankmbsError,
     FormulationError,
@@ -14,6 +14,7 @@ from crankmbs.errors import (
     SceneError,
 )
 from crankmbs.lecture.accumulated_torque import accumulated_torque
+from crankmbs.measures import EngineOrders, Orders, engine_orders, orders
 from crankmbs.result import Cost, Error, Result
 from crankmbs.scene.drives import (
     Constant,
@@ -34,6 +35,7 @@ from crankmbs.scene.tables import Table
 from crankmbs.simulate import simulate
 
 __all__ = [
+    "AtAngle",
     "Budget",
     "Choice",
     "Comparison",
@@ -42,6 +44,7 @@ __all__ = [
     "Crank",
     "CrankmbsError",
     "Cylinder",
+    "EngineOrders",
     "Error",
     "Extent",
     "FormulationError",
@@ -51,11 +54,13 @@ __all__ = [
     "InputError",
     "Layout",
     "Motion",
+    "Orders",
     "Oscillation",
     "OutputError",
     "Piston",
     "Quadratic",
     "Ramp",
+    "Reading",
     "Result",
     "Rod",
     "Run",
@@ -68,10 +73,13 @@ __all__ = [
     "TimeTable",
     "Viscous",
     "accumulated_torque",
+    "at_angle",
     "budget",
     "choose",
     "compare",
+    "engine_orders",
     "load_scene",
+    "orders",
     "shipped_scenes",
     "simulate",
 ]

@@ -91,7 +91,7 @@ def assemble(train: CrankTrain, solution: Solution) -> Assembled:
     if len(better.time) <= _FEW:
         turned = replace(answer, theta=rounded.theta)
         chain[:0] = [turned, replace(turned, omega=rounded.omega)]
-    errors = {name: _ROUNDING * peak for name, peak in peaks.items()}
+    errors = {name: _ROUNDING * size for name, size in _sizes(peaks).items()}
     before, missed = variables, 0.0
     for samples in chain:
         motion = (samples.theta, samples.omega, samples.alpha)
@@ -121,6 +121,15 @@ def assemble(train: CrankTrain, solution: Solution) -> Assembled:
     # in the true motion the energy gained is the work done
     errors["energy_residual"] = peaks["energy_residual"] + _ROUNDING * peaks["kinetic_energy"]
     return Assembled(solution, variables, peaks, errors)
+
+
+def _sizes(peaks: dict[str, float]) -> dict[str, float]:
+    """What of each variable is rounded: its peak; of sums that may cancel the largest of a unit."""
+    largest: dict[str, float] = {}
+    for name, peak in peaks.items():
+        unit = VARIABLES[name].units
+        largest[unit] = max(largest.get(unit, 0.0), peak)
+    return {n: largest[VARIABLES[n].units] if n in SUMS else p for n, p in peaks.items()}
 
 
 def _speed_change(samples: Samples, ahead: float) -> Array:

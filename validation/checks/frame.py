@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from crankmbs.measures import engine_orders
+from crankmbs.mechanics.harmonics import closed_orders
 from crankmbs.mechanics.reactions import reactions
 from crankmbs.mechanics.train import crank_train
 from crankmbs.mechanics.variables import SUMS
@@ -14,7 +16,7 @@ from validation.judge import Outcome
 from validation.oracles.momentum import FrameLoads, frame_by_momentum
 from validation.runs import run
 
-__all__ = ["by_bodies", "by_momentum"]
+__all__ = ["by_bodies", "by_momentum", "closed_form_orders"]
 
 _VECTORS = {"force": FrameLoads._fields[:2], "moment": FrameLoads._fields[2:3]}
 _VECTORS["rocking moment"] = FrameLoads._fields[3:]
@@ -56,4 +58,21 @@ def _worst(ours: dict[str, Array], exact: dict[str, Array]) -> Outcome:
         errors[kind] = apart / scale
     return Outcome(
         max(errors.values()), ", ".join(f"{kind} {error:.1e}" for kind, error in errors.items())
+    )
+
+
+def closed_form_orders(case: Case) -> Outcome:
+    """Of a simulated run by quadrature, against the series of the machine at its speed."""
+    found, closed = engine_orders(run(case.ours())), closed_orders(case.theirs())
+    assert closed is not None
+    errors = {}
+    names = ("torque", "frame_force_x", "frame_force_y")
+    for row, name in zip(found.rows[1:], names, strict=True):
+        split = row.orders
+        expected = np.zeros(len(split.order), dtype=np.complex128)
+        expected[split.order % 1.0 == 0.0] = getattr(closed, name) * found.speed.value**2
+        apart = np.abs(split.amplitude * np.exp(1j * split.phase) - expected)
+        errors[row.quantity] = float(np.max(apart) / np.max(np.abs(expected)))
+    return Outcome(
+        max(errors.values()), ", ".join(f"{name} {error:.1e}" for name, error in errors.items())
     )
