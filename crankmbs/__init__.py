@@ -6,6 +6,7 @@
 
 from crankmbs.choose import Choice, choose
 from crankmbs.compare import AtAngle, Budget, Comparison, Reading, at_angle, budget, compare
+from crankmbs.design import Balance, balance
 from crankmbs.errors import (
     CrankmbsError,
     FormulationError,
@@ -36,6 +37,7 @@ from crankmbs.simulate import simulate
 
 __all__ = [
     "AtAngle",
+    "Balance",
     "Budget",
     "Choice",
     "Comparison",
@@ -74,6 +76,7 @@ __all__ = [
     "Viscous",
     "accumulated_torque",
     "at_angle",
+    "balance",
     "budget",
     "choose",
     "compare",

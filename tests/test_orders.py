@@ -1,6 +1,7 @@
 """Orders of torque and frame force: against closed forms that mpmath integrates."""
 
 import math
+import sys
 from dataclasses import replace
 
 import mpmath
@@ -115,6 +116,6 @@ def test_errors_of_a_free_crank_cover_coarser_samples():
 
 def test_samples_too_far_apart_do_not_tell_orders(monkeypatch):
     result = simulate(replace(BANKED, run=Run(until="1 cycle", every="5 deg")))
-    monkeypatch.setattr("crankmbs.measures.orders.refined", lambda *_: ())
+    monkeypatch.setattr(sys.modules["crankmbs.measures.orders"], "refined", lambda *_: ())
     with pytest.raises(InputError, match=r"narrower run\.every"):
         orders(result, "crank_torque")

@@ -13,6 +13,7 @@ from typer.core import TyperGroup
 
 from crankmbs.choose import choose
 from crankmbs.cli.animate import animate_scene
+from crankmbs.cli.balance import balance_scene
 from crankmbs.cli.check import describe
 from crankmbs.cli.demo import demonstrate, write_page
 from crankmbs.cli.ending import ending
@@ -141,6 +142,23 @@ def validate(
         figures=not no_figures,
     )
     if not complete:
+        raise typer.Exit(3)
+
+
+@app.command()
+def balance(
+    scene: _Scene,
+    share: Annotated[
+        str, typer.Option(help="Share of the reciprocating mass that is balanced.")
+    ] = "50%",
+    cost_cap: _CostCap = 10.0,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder of the results; default results/NAME.")
+    ] = None,
+    no_figures: Annotated[bool, typer.Option("--no-figures", help="Draw no figures.")] = False,
+) -> None:
+    """Find counterweights; show what is left of first and second order, before and after."""
+    if not balance_scene(scene, share, out=out, figures=not no_figures, cost_cap=cost_cap):
         raise typer.Exit(3)
 
 

@@ -11,6 +11,8 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 from crankmbs.compare.confirm import Difference
+from crankmbs.design import Balance
+from crankmbs.figures.balance import balance_figure
 from crankmbs.figures.compare import budget_figure, comparison_figure, save_validation
 from crankmbs.figures.difference import difference_figure
 from crankmbs.figures.orders import orders_figure
@@ -27,6 +29,7 @@ from crankmbs.result import Result
 from crankmbs.storage.files import together, write_in_one_move
 
 __all__ = [
+    "balance_figure",
     "budget_figure",
     "comparison_figure",
     "crank_pin_figure",
@@ -37,6 +40,7 @@ __all__ = [
     "orders_figure",
     "piston_motion_figure",
     "piston_pin_figure",
+    "save_balance_figure",
     "save_differences",
     "save_figures",
     "save_orders_figure",
@@ -88,6 +92,16 @@ def save_orders_figure(result: Result, found: EngineOrders, folder: Path) -> Pat
     OutputError : the folder cannot be made or written
     """
     return _save(orders_figure(result, found), folder / "orders.png")
+
+
+def save_balance_figure(found: Balance, folder: Path) -> Path:
+    """Draw the force on the frame before and after balancing into balance.png.
+
+    Raises
+    ------
+    OutputError : the folder cannot be made or written
+    """
+    return _save(balance_figure(found), folder / "balance.png")
 
 
 def _save(figure: Figure, file: Path) -> Path:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from crankmbs.design import balance
 from crankmbs.measures import engine_orders
 from crankmbs.mechanics.harmonics import closed_orders
 from crankmbs.mechanics.reactions import reactions
@@ -16,7 +17,7 @@ from validation.judge import Outcome
 from validation.oracles.momentum import FrameLoads, frame_by_momentum
 from validation.runs import run
 
-__all__ = ["by_bodies", "by_momentum", "closed_form_orders"]
+__all__ = ["by_bodies", "by_momentum", "closed_form_orders", "one_cylinder_balanced"]
 
 _VECTORS = {"force": FrameLoads._fields[:2], "moment": FrameLoads._fields[2:3]}
 _VECTORS["rocking moment"] = FrameLoads._fields[3:]
@@ -76,3 +77,17 @@ def closed_form_orders(case: Case) -> Outcome:
     return Outcome(
         max(errors.values()), ", ".join(f"{name} {error:.1e}" for name, error in errors.items())
     )
+
+
+def one_cylinder_balanced(case: Case) -> Outcome:
+    """Without offset cos(beta) has even orders alone, so the first is that of r cos(phi)."""
+    theirs = case.theirs()
+    rod, speed = theirs.rod, run(theirs).data["crank_speed"].values[0]
+    moving = theirs.piston.mass + rod.mass * rod.center_of_mass / rod.length
+    unit = moving * theirs.crank.radius * speed**2
+    worst = 0.0
+    for share in (0.0, 0.3, 0.5, 1.0):
+        found = balance(case.ours(), share).remaining[:2]
+        for one, part in zip(found, (1.0 - share, share), strict=True):
+            worst = max(worst, abs(one.after.value / unit - part))
+    return Outcome(worst, f"m_A r omega^2 = {unit:.6g} N")
