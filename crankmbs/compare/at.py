@@ -66,7 +66,7 @@ def at_angle(result: Result, angle: float | str, *, cost_cap: float = 10.0) -> A
 
     >>> found = at_angle(simulate(load_scene("yi_diesel")), "60 deg")
     >>> print(round(math.degrees(found.crank_angle)))
-    780
+    60
     """
     wanted = quantity(angle, "angle") if isinstance(angle, str) else float(angle)
     if not math.isfinite(wanted):
