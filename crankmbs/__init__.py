@@ -5,7 +5,8 @@
 """
 
 from crankmbs.choose import Choice, choose
-from crankmbs.compare import Budget, Comparison, budget, compare
+from crankmbs.compare import AtAngle, Budget, Comparison, Reading, at_angle, budget, compare
+from crankmbs.design import Balance, balance
 from crankmbs.errors import (
     CrankmbsError,
     FormulationError,
@@ -14,6 +15,7 @@ from crankmbs.errors import (
     SceneError,
 )
 from crankmbs.lecture.accumulated_torque import accumulated_torque
+from crankmbs.measures import EngineOrders, Orders, engine_orders, orders
 from crankmbs.result import Cost, Error, Result
 from crankmbs.scene.drives import Motion, Oscillation, Ramp, SpeedFile, Start
 from crankmbs.scene.gas import Gas, Indicator
@@ -26,6 +28,8 @@ from crankmbs.simulate import simulate
 
 __all__ = [
     "AngleTable",
+    "AtAngle",
+    "Balance",
     "Budget",
     "Choice",
     "Columns",
@@ -35,6 +39,7 @@ __all__ = [
     "Crank",
     "CrankmbsError",
     "Cylinder",
+    "EngineOrders",
     "Error",
     "Extent",
     "FormulationError",
@@ -44,11 +49,13 @@ __all__ = [
     "InputError",
     "Layout",
     "Motion",
+    "Orders",
     "Oscillation",
     "OutputError",
     "Piston",
     "Quadratic",
     "Ramp",
+    "Reading",
     "Result",
     "Rod",
     "Run",
@@ -61,10 +68,14 @@ __all__ = [
     "TimeTable",
     "Viscous",
     "accumulated_torque",
+    "at_angle",
+    "balance",
     "budget",
     "choose",
     "compare",
+    "engine_orders",
     "load_scene",
+    "orders",
     "shipped_scenes",
     "simulate",
 ]

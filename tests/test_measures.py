@@ -224,7 +224,7 @@ def test_orders_of_a_cylinder_count_from_its_own_cycle_angle():
 def test_orders_of_uneven_samples_agree_with_those_of_even_ones(constant):
     uneven = simulate(scene(until="2 cycles", every="1e-4 s"))
     here, there = orders(constant, "side_force"), orders(uneven, "side_force")
-    assert here.amplitude == pytest.approx(there.amplitude, rel=0.0, abs=2e-3 * 5e3)
+    assert here.amplitude == pytest.approx(there.amplitude, rel=0.0, abs=1e-12 * 5e3)
 
 
 @pytest.mark.parametrize(
@@ -232,8 +232,8 @@ def test_orders_of_uneven_samples_agree_with_those_of_even_ones(constant):
     [
         ("1 rev", "crank_speed", 12.0, "whole cycle"),
         ("1 cycle", "crank_sped", 12.0, "no variable"),
-        ("1 cycle", "crank_speed", 180.0, "samples per revolution"),
-        ("1 cycle", "crank_speed", 0.2, "samples per revolution"),
+        ("1 cycle", "crank_speed", 180.0, "from 0.5 to 100"),
+        ("1 cycle", "crank_speed", 0.2, "from 0.5 to 100"),
     ],
 )
 def test_orders_that_cannot_be_are_refused(until, name, highest, message):

@@ -13,11 +13,12 @@ from typer.core import TyperGroup
 
 from crankmbs.choose import choose
 from crankmbs.cli.animate import animate_scene
+from crankmbs.cli.balance import balance_scene
 from crankmbs.cli.check import describe
 from crankmbs.cli.demo import demonstrate, write_page
 from crankmbs.cli.ending import ending
 from crankmbs.cli.lesson import list_lessons, make_lesson
-from crankmbs.cli.run import run_scene
+from crankmbs.cli.run import Wanted, run_scene
 from crankmbs.cli.validate import validate_scene
 from crankmbs.cli.work_precision import measure_scene
 from crankmbs.errors import InputError, OutputError
@@ -93,14 +94,20 @@ def run(
         bool,
         typer.Option("--confirm", help="Run the multibody model too and show the difference."),
     ] = False,
+    orders: Annotated[
+        bool, typer.Option("--orders", help="Show the orders of torque and frame force.")
+    ] = False,
+    at: Annotated[
+        list[str] | None,
+        typer.Option(help='Every quantity at a crank angle, "60 deg"; may be given often.'),
+    ] = None,
     cost_cap: _CostCap = 10.0,
 ) -> None:
     """Run a scene: print its measures, write data and figures."""
     options = {"formulation": formulation, "rtol": rtol, "until": until, "every": every}
     given = {name: value for name, value in options.items() if value is not None}
-    complete = run_scene(
-        scene, given, out=out, figures=not no_figures, confirm=confirm, cost_cap=cost_cap
-    )
+    wanted = Wanted(not no_figures, confirm, orders, tuple(at or ()))
+    complete = run_scene(scene, given, out=out, wanted=wanted, cost_cap=cost_cap)
     if not complete:
         raise typer.Exit(3)
 
@@ -135,6 +142,23 @@ def validate(
         figures=not no_figures,
     )
     if not complete:
+        raise typer.Exit(3)
+
+
+@app.command()
+def balance(
+    scene: _Scene,
+    share: Annotated[
+        str, typer.Option(help="Share of the reciprocating mass that is balanced.")
+    ] = "50%",
+    cost_cap: _CostCap = 10.0,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder of the results; default results/NAME.")
+    ] = None,
+    no_figures: Annotated[bool, typer.Option("--no-figures", help="Draw no figures.")] = False,
+) -> None:
+    """Find counterweights; show what is left of first and second order, before and after."""
+    if not balance_scene(scene, share, out=out, figures=not no_figures, cost_cap=cost_cap):
         raise typer.Exit(3)
 
 

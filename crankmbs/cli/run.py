@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -11,18 +12,37 @@ import typer
 
 from crankmbs.choose import choose
 from crankmbs.cli.folder import writable, wrote
+from crankmbs.cli.orders import orders_report, reading_report, save_orders
 from crankmbs.cli.progress import progress
 from crankmbs.cli.report import comparison, report
+from crankmbs.compare import AtAngle, at_angle
 from crankmbs.compare.confirm import Difference, differences
 from crankmbs.errors import InputError
-from crankmbs.measures import measure
+from crankmbs.measures import EngineOrders, engine_orders, measure
 from crankmbs.result import Result
 from crankmbs.scene.read import load_scene, scene_path
 from crankmbs.scene.scene import Scene
+from crankmbs.scene.units import quantity
 from crankmbs.simulate import simulate
 from crankmbs.storage.files import together
 
-__all__ = ["override", "run_scene"]
+__all__ = ["Wanted", "override", "run_scene"]
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What a run shall show beside its measures.
+
+    confirm : run the multibody model too, print and draw the difference
+    orders : print, write and draw the orders of torque and frame force
+    at : crank angles with their unit, at which every quantity is printed
+    """
+
+    figures: bool = True
+    confirm: bool = False
+    orders: bool = False
+    at: tuple[str, ...] = ()
+
 
 _LENGTH = ("until", "every")  # the options that a scene may refuse though [run] takes them
 
@@ -32,8 +52,7 @@ def run_scene(
     options: Mapping[str, Any],
     *,
     out: Path | None,
-    figures: bool,
-    confirm: bool,
+    wanted: Wanted,
     cost_cap: float,
 ) -> bool:
     """Run a scene, write its results, print its report; return whether it reached its end.
@@ -42,7 +61,6 @@ def run_scene(
     ----------
     options : those of [run] that the command line overrides
     out : folder of the results; None: results/NAME
-    confirm : run the multibody model too, print and draw the difference
     cost_cap : as `simulate` takes it [s]
 
     Raises
@@ -52,7 +70,8 @@ def run_scene(
     path = scene_path(name)
     scene = override(load_scene(path), options)
     choice = choose(scene, scene.run.formulation)
-    if confirm and choice.formulation == "multibody":
+    angles = [_angle(text) for text in wanted.at]
+    if wanted.confirm and choice.formulation == "multibody":
         raise InputError(
             "--confirm compares a run with multibody, and this run is multibody itself; "
             "leave out --confirm or choose another formulation"
@@ -61,31 +80,66 @@ def run_scene(
 
     result = _simulate(scene, cost_cap, rtol=options.get("rtol"))
     said = [report(path.stem, result, measure(result))]
-    complete, rows = result.status == 0, None
-    if confirm:
+    complete, made = result.status == 0, _Made(result)
+    if wanted.confirm:
         check = _simulate(scene, cost_cap, formulation="multibody")
-        complete, rows = complete and check.status == 0, differences(result, check)
-        said.append(comparison(result, check, rows))
-    written = _save(result, rows, folder, figures=figures)
+        made.differences = differences(result, check)
+        complete = complete and check.status == 0
+        said.append(comparison(result, check, made.differences))
+    if wanted.orders:
+        made.orders = engine_orders(result)
+        said.append(orders_report(made.orders))
+    found = (_look_up(result, angle, cost_cap) for angle in angles)
+    said += [reading_report(one, scene.period) for one in found]
+    written = _save(made, folder, figures=wanted.figures)
     typer.echo("\n".join([*said, "", wrote(folder, written)]))  # a screen may fail: files first
     return complete
 
 
-def _save(
-    result: Result, rows: tuple[Difference, ...] | None, folder: Path, *, figures: bool
-) -> list[str]:
+@dataclass
+class _Made:
+    """What a run gave, to be written."""
+
+    result: Result
+    differences: tuple[Difference, ...] | None = None
+    orders: EngineOrders | None = None
+
+
+def _save(made: _Made, folder: Path, *, figures: bool) -> list[str]:
     """Write data and figures, which appear together; return their names."""
     written = ["result.nc", "motion.csv"]
     with together(folder) as part:
-        result.save(part)
+        made.result.save(part)
+        if made.orders is not None:
+            written.append(save_orders(made.orders, part).name)
         if figures:
-            from crankmbs.figures import save_differences, save_figures  # matplotlib only here
-
             with progress("figures"):
-                written += [file.name for file in save_figures(result, part)]
-                if rows is not None:
-                    written.append(save_differences(result, rows, part).name)
+                written += _draw(made, part)
     return written
+
+
+def _draw(made: _Made, folder: Path) -> list[str]:
+    from crankmbs import figures  # matplotlib only here
+
+    files = figures.save_figures(made.result, folder)
+    if made.orders is not None:
+        files.append(figures.save_orders_figure(made.result, made.orders, folder))
+    if made.differences is not None:
+        files.append(figures.save_differences(made.result, made.differences, folder))
+    return [file.name for file in files]
+
+
+def _angle(text: str) -> float:
+    """A crank angle of the option --at [rad]."""
+    try:
+        return quantity(text, "angle")
+    except InputError as error:
+        raise InputError(f"--at: {error}") from None
+
+
+def _look_up(result: Result, angle: float, cost_cap: float) -> AtAngle:
+    with progress("looking up"):
+        return at_angle(result, angle, cost_cap=cost_cap)
 
 
 def override(scene: Scene, options: Mapping[str, Any]) -> Scene:

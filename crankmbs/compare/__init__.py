@@ -5,6 +5,7 @@ The formulas themselves belong in lecture and mechanics, what a run amounts to i
 """
 
 from crankmbs.compare.against import CLOSED_FORM, Comparison, Deviation, compare
+from crankmbs.compare.at import AtAngle, Reading, at_angle
 from crankmbs.compare.causes import CAUSES, Budget, Cause, Split, budget
 from crankmbs.compare.excerpt import Excerpt, LeftOut, check_cylinder
 from crankmbs.compare.files import save_budget, save_budget_peaks, save_comparison
@@ -17,6 +18,7 @@ __all__ = [
     "CLOSED_FORM",
     "LECTURES",
     "QUANTITIES",
+    "AtAngle",
     "Budget",
     "Cause",
     "Comparison",
@@ -24,8 +26,10 @@ __all__ = [
     "Excerpt",
     "LeftOut",
     "Quantity",
+    "Reading",
     "Size",
     "Split",
+    "at_angle",
     "budget",
     "check_cylinder",
     "compare",

@@ -11,8 +11,11 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 from crankmbs.compare.confirm import Difference
+from crankmbs.design import Balance
+from crankmbs.figures.balance import balance_figure
 from crankmbs.figures.compare import budget_figure, comparison_figure, save_validation
 from crankmbs.figures.difference import difference_figure
+from crankmbs.figures.orders import orders_figure
 from crankmbs.figures.polar import crank_pin_figure, main_bearing_figure, piston_pin_figure
 from crankmbs.figures.strips import (
     forces_figure,
@@ -21,10 +24,12 @@ from crankmbs.figures.strips import (
     torque_figure,
 )
 from crankmbs.figures.view import View, last_view
+from crankmbs.measures import EngineOrders
 from crankmbs.result import Result
 from crankmbs.storage.files import together, write_in_one_move
 
 __all__ = [
+    "balance_figure",
     "budget_figure",
     "comparison_figure",
     "crank_pin_figure",
@@ -32,10 +37,13 @@ __all__ = [
     "forces_figure",
     "last_view",
     "main_bearing_figure",
+    "orders_figure",
     "piston_motion_figure",
     "piston_pin_figure",
+    "save_balance_figure",
     "save_differences",
     "save_figures",
+    "save_orders_figure",
     "save_validation",
     "speed_figure",
     "torque_figure",
@@ -74,6 +82,26 @@ def save_differences(result: Result, differences: tuple[Difference, ...], folder
     OutputError : the folder cannot be made or written
     """
     return _save(difference_figure(result, differences), folder / "difference.png")
+
+
+def save_orders_figure(result: Result, found: EngineOrders, folder: Path) -> Path:
+    """Draw the orders of a run into orders.png.
+
+    Raises
+    ------
+    OutputError : the folder cannot be made or written
+    """
+    return _save(orders_figure(result, found), folder / "orders.png")
+
+
+def save_balance_figure(found: Balance, folder: Path) -> Path:
+    """Draw the force on the frame before and after balancing into balance.png.
+
+    Raises
+    ------
+    OutputError : the folder cannot be made or written
+    """
+    return _save(balance_figure(found), folder / "balance.png")
 
 
 def _save(figure: Figure, file: Path) -> Path:

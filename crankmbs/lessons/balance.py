@@ -11,7 +11,7 @@ from crankmbs import lecture
 from crankmbs.lessons.balance_figures import force_figure, polar_figure, torque_figure
 from crankmbs.lessons.parts import Formula, Lesson, Question, Slider, Step, exact, simulated
 from crankmbs.lessons.runs import changed
-from crankmbs.lessons.shaking import FRAME, amplitude, reciprocating, shaking, twin
+from crankmbs.lessons.shaking import FRAME, amplitude, reciprocating, twin
 from crankmbs.result import Result
 from crankmbs.scene.parts import Layout
 from crankmbs.scene.read import load_scene
@@ -30,9 +30,9 @@ def lesson() -> Lesson:
     """Run the lesson's scene and its variants and put the page together."""
     scene = load_scene("grega_lecture")
     inline = [dataclasses.replace(scene, layout=Layout(firing_order=order)) for order in _FIRING]
-    shaken = [shaking(reciprocating(engine)) for engine in inline]
+    shaken = [simulate(reciprocating(engine)) for engine in inline]
     driven = [simulate(engine) for engine in inline]
-    twins = [shaking(twin(scene, angle)) for angle in _BANKS]
+    twins = [simulate(twin(scene, angle)) for angle in _BANKS]
     most_force = 1.1e-3 * _largest(shaken, FRAME[0])
     most_torque = 1.1 * _largest(driven, "external_torque")
     most_shake = 1.1e-3 * _largest(twins, *FRAME)
@@ -130,7 +130,7 @@ def _counterweight(scene: Scene) -> Question:
     pair = twin(scene, _BANKS[_RIGHT_ANGLE])
     mass, r = pair.piston.mass, scene.crank.radius
     weight = {"mass": mass, "center_of_mass": -r}
-    before, after = shaking(pair), shaking(changed(pair, crank=weight))
+    before, after = simulate(pair), simulate(changed(pair, crank=weight))
     omega = float(before.data["crank_speed"].values[0])
     ratio = float(lecture.rod_ratio(crank_radius=r, rod_length=scene.rod.length))
     numbers = (

@@ -13,12 +13,10 @@ from crankmbs.measures import Estimate, orders
 from crankmbs.result import Result
 from crankmbs.scene.parts import Cylinder, Layout
 from crankmbs.scene.scene import Scene
-from crankmbs.simulate import simulate
 
-__all__ = ["FRAME", "amplitude", "reciprocating", "shaking", "twin"]
+__all__ = ["FRAME", "amplitude", "reciprocating", "twin"]
 
 FRAME = ("frame_force_x", "frame_force_y")
-"""The variables that `shaking` adds to the data of a run."""
 
 
 def reciprocating(scene: Scene) -> Scene:
@@ -35,28 +33,11 @@ def twin(scene: Scene, angle: float) -> Scene:
     return dataclasses.replace(reciprocating(scene), layout=Layout(cylinders=pair))
 
 
-def shaking(scene: Scene) -> Result:
-    """Run the scene; its data get the force on the frame, of main bearings and cylinder walls."""
-    result = simulate(scene)
-    data, bank = result.data, np.array([cylinder.bank for cylinder in scene.cylinders])
-    wall = data["side_force"]
-    walls = (-wall.values * np.sin(bank)).sum(axis=1), (wall.values * np.cos(bank)).sum(axis=1)
-    forces = {}
-    for name, axis, on_pistons in zip(FRAME, "xy", walls, strict=True):
-        bearing = data[f"main_bearing_force_{axis}"]
-        error = bearing.attrs["error_estimate"] + len(bank) * wall.attrs["error_estimate"]
-        about = {"units": "N", "error_estimate": error}
-        forces[name] = ("time", -(bearing.values + on_pistons), about)
-    return dataclasses.replace(result, data=data.assign(forces))
-
-
 def amplitude(result: Result, name: str, order: float) -> Estimate:
-    """Amplitude of one order of a variable; the error of the variable adds at most twice to it."""
+    """Amplitude of one order of a variable."""
     split = orders(result, name)
     at = int(np.argmin(np.abs(split.order - order)))
-    return Estimate(
-        float(split.amplitude[at]), 2.0 * float(result.data[name].attrs["error_estimate"])
-    )
+    return Estimate(float(split.amplitude[at]), split.error)
 
 
 def _moving_mass(scene: Scene) -> float:

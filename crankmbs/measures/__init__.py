@@ -4,17 +4,21 @@ which numbers of a scene no machine has.
 Differences from formulas or other runs belong in compare.
 """
 
+from crankmbs.measures.engine_orders import EngineOrder, EngineOrders, engine_orders
 from crankmbs.measures.joints import Estimate, JointForce
 from crankmbs.measures.orders import Orders, orders
 from crankmbs.measures.span import Span, last_span
 from crankmbs.measures.summary import Measures, fluctuation, mean_speed, measure
 
 __all__ = [
+    "EngineOrder",
+    "EngineOrders",
     "Estimate",
     "JointForce",
     "Measures",
     "Orders",
     "Span",
+    "engine_orders",
     "fluctuation",
     "last_span",
     "mean_speed",

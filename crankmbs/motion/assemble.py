@@ -13,7 +13,7 @@ from crankmbs.mechanics.inertia import inertia_alone
 from crankmbs.mechanics.peaks import peak, relative_error
 from crankmbs.mechanics.reactions import deviations, reactions
 from crankmbs.mechanics.train import CrankTrain
-from crankmbs.mechanics.variables import VARIABLES
+from crankmbs.mechanics.variables import SUMS, VARIABLES
 from crankmbs.motion.base import Samples, Solution
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.periodic import one_period
@@ -75,7 +75,7 @@ def assemble(train: CrankTrain, solution: Solution) -> Assembled:
     late = better.time - answer.time
     ahead = better.theta - answer.theta - answer.omega * late
     passes = _Passes(train.off, answer, _turned_by_rounding(better), variables)
-    errors = {name: _ROUNDING * size for name, size in peaks.items()}
+    errors = {name: _ROUNDING * size for name, size in _sizes(peaks).items()}
     differences = list(passes.differences())
     missed = differences[-1][1]
     for apart, _ in differences:
@@ -195,6 +195,15 @@ def dataset(assembled: Assembled) -> xr.Dataset:
 def _variables(train: CrankTrain, samples: Samples) -> dict[str, Array]:
     found = reactions(train, samples.theta, samples.omega, samples.alpha)
     return {**_motion(samples), **found, **samples.own}
+
+
+def _sizes(peaks: dict[str, float]) -> dict[str, float]:
+    """What of each variable is rounded: its peak; of sums that may cancel the largest of a unit."""
+    largest: dict[str, float] = {}
+    for name, size in peaks.items():
+        unit = VARIABLES[name].units
+        largest[unit] = max(largest.get(unit, 0.0), size)
+    return {n: largest[VARIABLES[n].units] if n in SUMS else p for n, p in peaks.items()}
 
 
 def _motion(samples: Samples) -> dict[str, Array]:

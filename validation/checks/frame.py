@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from crankmbs.design import balance
+from crankmbs.measures import engine_orders
+from crankmbs.mechanics.harmonics import closed_orders
 from crankmbs.mechanics.reactions import reactions
 from crankmbs.mechanics.train import crank_train
 from crankmbs.mechanics.variables import SUMS
@@ -14,7 +17,7 @@ from validation.judge import Outcome
 from validation.oracles.momentum import FrameLoads, frame_by_momentum
 from validation.runs import run
 
-__all__ = ["by_bodies", "by_momentum"]
+__all__ = ["by_bodies", "by_momentum", "closed_form_orders", "one_cylinder_balanced"]
 
 _VECTORS = {"force": FrameLoads._fields[:2], "moment": FrameLoads._fields[2:3]}
 _VECTORS["rocking moment"] = FrameLoads._fields[3:]
@@ -57,3 +60,34 @@ def _worst(ours: dict[str, Array], exact: dict[str, Array]) -> Outcome:
     return Outcome(
         max(errors.values()), ", ".join(f"{kind} {error:.1e}" for kind, error in errors.items())
     )
+
+
+def closed_form_orders(case: Case) -> Outcome:
+    """Of a simulated run by quadrature, against the series of the machine at its speed."""
+    found, closed = engine_orders(run(case.ours())), closed_orders(case.theirs())
+    assert closed is not None
+    errors = {}
+    names = ("torque", "frame_force_x", "frame_force_y")
+    for row, name in zip(found.rows[1:], names, strict=True):
+        split = row.orders
+        expected = np.zeros(len(split.order), dtype=np.complex128)
+        expected[split.order % 1.0 == 0.0] = getattr(closed, name) * found.speed.value**2
+        apart = np.abs(split.amplitude * np.exp(1j * split.phase) - expected)
+        errors[row.quantity] = float(np.max(apart) / np.max(np.abs(expected)))
+    return Outcome(
+        max(errors.values()), ", ".join(f"{name} {error:.1e}" for name, error in errors.items())
+    )
+
+
+def one_cylinder_balanced(case: Case) -> Outcome:
+    """Without offset cos(beta) has even orders alone, so the first is that of r cos(phi)."""
+    theirs = case.theirs()
+    rod, speed = theirs.rod, run(theirs).data["crank_speed"].values[0]
+    moving = theirs.piston.mass + rod.mass * rod.center_of_mass / rod.length
+    unit = moving * theirs.crank.radius * speed**2
+    worst = 0.0
+    for share in (0.0, 0.3, 0.5, 1.0):
+        found = balance(case.ours(), share).remaining[:2]
+        for one, part in zip(found, (1.0 - share, share), strict=True):
+            worst = max(worst, abs(one.after.value / unit - part))
+    return Outcome(worst, f"m_A r omega^2 = {unit:.6g} N")

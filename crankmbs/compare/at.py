@@ -1,0 +1,157 @@
+"""Every quantity of a run at one crank angle, with its error and the lectures' name for it."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from crankmbs.compare.quantities import QUANTITIES, observed
+from crankmbs.errors import InputError
+from crankmbs.lecture import two_mass_rod
+from crankmbs.measures.span import last_span
+from crankmbs.result import Result
+from crankmbs.scene.scene import Extent, Scene
+from crankmbs.scene.units import quantity
+from crankmbs.simulate import simulate
+
+__all__ = ["AtAngle", "Reading", "at_angle"]
+
+_SAME = 1e-9  # rad
+_LECTURED = ("net force", "side thrust", "rod force", "tangential force", "radial force", "torque")
+_OF_MOTION = {"piston displacement": "s", "piston velocity": "v", "piston acceleration": "a"}
+
+
+@dataclass(frozen=True)
+class Reading:
+    """One number: value and error estimate [units]; cylinder : its number, None of the engine;
+    symbol : what the lectures call it, empty where they have no name."""
+
+    quantity: str
+    symbol: str
+    units: str
+    cylinder: int | None
+    value: float
+    error: float
+
+
+@dataclass(frozen=True)
+class AtAngle:
+    """A run at one crank angle [rad], unwrapped, and the time [s] at which it is passed."""
+
+    crank_angle: float
+    time: float
+    readings: tuple[Reading, ...]
+
+
+def at_angle(result: Result, angle: float | str, *, cost_cap: float = 10.0) -> AtAngle:
+    """Every quantity of a run where the last whole cycle passes a crank angle.
+
+    The run is repeated up to that angle, by the formulation that made it, so that every number is
+    the formulation's own, no interpolation; its error is that of the repeated run. The lectures'
+    F_v, N, F_oj, F_T, F_R and M_k follow as in `crankmbs.compare.quantities.observed`, with the
+    lectures' signs; their errors sum those of what they are made of.
+
+    Parameters
+    ----------
+    angle : [rad], or with its unit, such as "60 deg"; modulo the engine's period
+    cost_cap : as `simulate` takes it [s]
+
+    Raises
+    ------
+    InputError : no angle; no whole cycle in the run, a reversal that passes the angle twice
+
+    >>> found = at_angle(simulate(load_scene("yi_diesel")), "60 deg")
+    >>> print(round(math.degrees(found.crank_angle)))
+    60
+    """
+    wanted = quantity(angle, "angle") if isinstance(angle, str) else float(angle)
+    if not math.isfinite(wanted):
+        raise InputError(f"the crank angle must be finite; {angle!r} came")
+    window = last_span(result)
+    if window.kind != "last cycle":
+        raise InputError("a crank angle is looked up in the last whole cycle; let the run last one")
+    there = _in_window(result, wanted)
+    scene = result.scene
+    until = Extent(value=abs(there - _begin(scene)), unit="rad")
+    run = dataclasses.replace(scene.run, until=until, every=None)
+    again = simulate(
+        dataclasses.replace(scene, run=run),
+        formulation=result.formulation,
+        rtol=result.error.asked,
+        cost_cap=cost_cap,
+    )
+    time = float(again.data["time"].values[-1])
+    reached = abs(float(again.data["crank_angle"].values[-1]) - there) <= _SAME
+    late = float(again.data["time"].attrs["error_estimate"]) + 1e-9 * window.duration
+    if not reached or time < window.begin - late:
+        raise InputError(
+            f"the crank passes {math.degrees(there):.6g} degrees before the last cycle, too: it "
+            "reverses; look in the samples"
+        )
+    return AtAngle(there, time, (*_variables(again), *_lectured(again)))
+
+
+def _in_window(result: Result, angle: float) -> float:
+    """The crank angle of the last cycle that is this one modulo the period; its end counts, its
+    beginning does not."""
+    period = result.scene.period
+    end = float(result.data["crank_angle"].values[-1])
+    sense = math.copysign(1.0, last_span(result).angle)
+    short = sense * (end - angle) % period
+    if period - short <= _SAME:
+        short = 0.0
+    return end - sense * short
+
+
+def _begin(scene: Scene) -> float:
+    part = scene.start or scene.motion
+    assert part is not None
+    return part.angle
+
+
+def _variables(result: Result) -> Iterator[Reading]:
+    """The last sample of every variable."""
+    symbols = {name.replace(" ", "_"): symbol for name, symbol in _OF_MOTION.items()}
+    for name, variable in result.data.data_vars.items():
+        units, error = variable.attrs["units"], variable.attrs["error_estimate"]
+        for k, value in enumerate(np.atleast_1d(variable.values[-1]), start=1):
+            cylinder = k if "cylinder" in variable.dims else None
+            symbol = symbols.get(str(name), "")
+            yield Reading(str(name), symbol, units, cylinder, float(value), error)
+
+
+def _lectured(result: Result) -> Iterator[Reading]:
+    """The lectures' forces and torque at the last sample."""
+    last = result.data.isel(time=slice(-1, None))
+    variables = {str(name): variable.values for name, variable in last.variables.items()}
+    motion = (variables[name] for name in ("crank_angle", "crank_speed", "crank_acceleration"))
+    found = observed(result.scene, variables, *motion)
+    for name in _LECTURED:
+        units, symbol, _ = QUANTITIES[name]
+        error, plain = _error(result, name), symbol.replace("{", "").replace("}", "")
+        for k, value in enumerate(found[name][0], start=1):
+            yield Reading(name, plain, units, k, float(value), error)
+
+
+def _error(result: Result, name: str) -> float:
+    """Of a lecture's quantity: those of the crank pin force and of what turns with it."""
+
+    def stated(variable: str) -> float:
+        return float(result.data[variable].attrs["error_estimate"])
+
+    if name == "side thrust":
+        return stated("side_force")
+    if name == "torque":
+        return stated("crank_torque")
+    rod = result.scene.rod
+    masses = two_mass_rod(
+        rod_mass=rod.mass, rod_length=rod.length, center_of_mass=rod.center_of_mass
+    )
+    speed = abs(float(result.data["crank_speed"].values[-1]))
+    rate = 2.0 * speed * stated("crank_speed") + stated("crank_acceleration")
+    turning = abs(float(masses.crank_pin)) * result.scene.crank.radius * rate
+    return stated("crank_pin_force_x") + stated("crank_pin_force_y") + turning

@@ -1,0 +1,176 @@
+"""Counterweights for a share of the reciprocating mass, and what the frame still feels."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from crankmbs.errors import InputError
+from crankmbs.lecture import two_mass_rod
+from crankmbs.measures import Estimate, Orders
+from crankmbs.measures.joints import stated
+from crankmbs.measures.orders import Harmonics
+from crankmbs.numerics.arrays import Array
+from crankmbs.result import Result
+from crankmbs.scene.scene import Scene
+from crankmbs.simulate import simulate
+
+__all__ = ["Balance", "Remaining", "balance"]
+
+_ORDERS = (1.0, 2.0)
+_VECTORS = {"frame force": "frame_force", "rocking moment": "rocking_moment"}
+
+
+@dataclass(frozen=True)
+class Remaining:
+    """One order of a vector on the frame [units], before and after.
+
+    direction : "x" or "y", amplitudes along the engine's axes; "largest", the length of the vector
+        where it is longest in a turn of its order
+    """
+
+    quantity: str
+    direction: str
+    order: float
+    units: str
+    before: Estimate
+    after: Estimate
+
+
+@dataclass(frozen=True)
+class Balance:
+    """Counterweights, mass times radius [kg m], and what remains.
+
+    share : of the reciprocating mass
+    per_throw : opposite every cylinder's throw, for its rod's mass at the crank pin and the share
+    of_crank : opposite the crank's own centre of mass; negative: as much less of what it has
+    remaining : orders 1 and 2 of the force and, where cylinders have places, rocking moment
+    result : the run they are taken from
+    before, after : shape (n, 2) [N], force on the frame along X and Y at the samples of ``result``
+    """
+
+    share: float
+    per_throw: float
+    of_crank: float
+    remaining: tuple[Remaining, ...]
+    result: Result
+    before: Array
+    after: Array
+
+
+def balance(scene: Scene, share: float = 0.5, *, cost_cap: float = 10.0) -> Balance:
+    """Balance a machine's rotating mass and a share of its reciprocating mass.
+
+    per_throw = r (m_B + share m_A),  m_A = m_piston + m_rod a / l,  m_B = m_rod (l - a) / l
+
+    opposite every throw, in its plane, and m c opposite the crank's own centre of mass. What the
+    frame feels before is `frame_force` and `rocking_moment` of a run over its last whole cycle;
+    after, with what the counterweights add to it in the same motion: their own inertia is not in
+    it, which at a prescribed speed is exact.
+
+    Parameters
+    ----------
+    share : 0 to 1
+    cost_cap : as `simulate` takes it [s]
+
+    Raises
+    ------
+    InputError : the share; what `crankmbs.orders` refuses of the run
+
+    >>> found = balance(load_scene("yi_diesel"), 0.5)
+    >>> print(found.remaining[0].after.value < found.remaining[0].before.value)
+    True
+    """
+    if not 0.0 <= share <= 1.0:
+        raise InputError(f"share must be from 0 to 1 of the reciprocating mass; {share!r} came")
+    rod = scene.rod
+    masses = two_mass_rod(
+        rod_mass=rod.mass, rod_length=rod.length, center_of_mass=rod.center_of_mass
+    )
+    reciprocating = scene.piston.mass + float(masses.piston_pin)
+    per_throw = scene.crank.radius * (float(masses.crank_pin) + share * reciprocating)
+    weights = _Weights(scene, per_throw, scene.crank.mass * scene.crank.center_of_mass)
+    result = simulate(scene, cost_cap=cost_cap)
+    data = {str(name): variable.values for name, variable in result.data.variables.items()}
+    before, after = (
+        np.stack([data["frame_force_x"], data["frame_force_y"]], axis=1) + added
+        for added in (0.0, weights.on_frame(data)["frame_force"])
+    )
+    remaining = tuple(_remaining(result, weights))
+    return Balance(share, per_throw, weights.of_crank, remaining, result, before, after)
+
+
+@dataclass(frozen=True)
+class _Weights:
+    """Counterweights opposite every throw and opposite the crank's centre of mass [kg m]."""
+
+    scene: Scene
+    per_throw: float
+    of_crank: float
+
+    def on_frame(self, variables: Mapping[str, Array]) -> dict[str, Array]:
+        """Their -m a and, where cylinders have places, its moment, shape (n, 2)."""
+        names = ("crank_angle", "crank_speed", "crank_acceleration")
+        theta, omega, alpha = (variables[name] for name in names)
+        force, rocking = np.zeros((len(theta), 2)), np.zeros((len(theta), 2))
+        levers = self.scene.levers or (0.0,) * len(self.scene.cylinders)
+        throws = [
+            (self.per_throw, c.phase + c.bank, lever)
+            for c, lever in zip(self.scene.cylinders, levers, strict=True)
+        ]
+        for moment, angle, lever in [*throws, (self.of_crank, 0.0, 0.0)]:
+            cosine, sine = np.cos(theta + angle), np.sin(theta + angle)
+            x = -moment * (cosine * omega**2 + sine * alpha)
+            y = -moment * (sine * omega**2 - cosine * alpha)
+            force += np.stack([x, y], axis=1)
+            rocking += lever * np.stack([-y, x], axis=1)
+        return {"frame_force": force, "rocking_moment": rocking}
+
+    def error(self, result: Result, vector: str) -> float:
+        """What the stated errors of the motion leave of one component [N] or [N m]."""
+        fastest = float(np.max(np.abs(result.data["crank_speed"].values)))
+        rate = 2.0 * fastest * stated(result, "crank_speed") + stated(result, "crank_acceleration")
+        if vector == "rocking_moment":
+            return self.per_throw * sum(map(abs, self.scene.levers or ())) * rate
+        return (self.per_throw * len(self.scene.cylinders) + abs(self.of_crank)) * rate
+
+
+def _remaining(result: Result, weights: _Weights) -> Iterator[Remaining]:
+    harmonics = Harmonics(result, max(_ORDERS))
+    for quantity, vector in _VECTORS.items():
+        names = [f"{vector}_{axis}" for axis in "xy"]
+        if names[0] not in result.data:
+            continue
+        units = str(result.data[names[0]].attrs["units"])
+        error = stated(result, names[0]) + stated(result, names[1]) + weights.error(result, vector)
+        before = [harmonics.of(name) for name in names]
+        after = [harmonics.split(_balanced(weights, vector, k), error) for k in range(2)]
+        for order in _ORDERS:
+            k = int(np.flatnonzero(harmonics.order == order)[0])
+            for axis, old, new in zip("xy", before, after, strict=True):
+                yield Remaining(quantity, axis, order, units, _one(old, k), _one(new, k))
+            longest = _largest(before, k), _largest(after, k)
+            yield Remaining(quantity, "largest", order, units, *longest)
+
+
+def _balanced(weights: _Weights, vector: str, axis: int) -> Callable[[Mapping[str, Array]], Array]:
+    """One component of a vector on the frame, with what the counterweights add."""
+
+    def component(variables: Mapping[str, Array]) -> Array:
+        added = weights.on_frame(variables)[vector][:, axis]
+        return np.asarray(variables[f"{vector}_{'xy'[axis]}"] + added)
+
+    return component
+
+
+def _one(split: Orders, k: int) -> Estimate:
+    return Estimate(float(split.amplitude[k]), split.error)
+
+
+def _largest(parts: list[Orders], k: int) -> Estimate:
+    """The longer half axis of the ellipse that one order's vector runs along."""
+    along, across = (o.amplitude[k] * np.exp(1j * o.phase[k]) for o in parts)
+    length = 0.5 * (abs(along + 1j * across) + abs(along - 1j * across))
+    return Estimate(float(length), sum(o.error for o in parts))

@@ -1,0 +1,108 @@
+"""Every quantity at one crank angle: the formulation's own, with the lectures' names."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from command_line import crankmbs_, refused
+
+from crankmbs import (
+    Motion,
+    Oscillation,
+    Run,
+    at_angle,
+    lecture,
+    load_scene,
+    simulate,
+)
+from crankmbs.errors import InputError
+
+DIESEL = load_scene("yi_diesel")
+
+
+def by_name(found, cylinder=None):
+    return {r.quantity: r for r in found.readings if r.cylinder == cylinder}
+
+
+@pytest.mark.parametrize("formulation", ["crank_angle", "minimal"])
+def test_it_is_the_sample_that_lies_there(formulation):
+    """At an angle that the samples have, to their errors."""
+    scene = replace(load_scene("yi_diesel_free"), run=Run(until="1.5 cycles", every="1 deg"))
+    result = simulate(scene, formulation=formulation)
+    found = at_angle(result, "-660 deg")
+    assert found.crank_angle == pytest.approx(math.radians(780.0), abs=1e-12)
+    k = int(np.argmin(np.abs(result.data["crank_angle"].values - found.crank_angle)))
+    assert found.time == pytest.approx(result.data["time"].values[k], rel=1e-9)
+    for reading in found.readings:
+        if reading.quantity in result.data:
+            at = result.data[reading.quantity]
+            value = at.values[k] if reading.cylinder is None else at.values[k, reading.cylinder - 1]
+            allowed = 2.0 * (reading.error + at.attrs["error_estimate"])
+            assert abs(reading.value - value) <= allowed, reading
+
+
+def test_an_angle_between_the_samples_is_exact():
+    law = Oscillation(mean=300.0, amplitude=30.0, order=2.0, phase=0.4)
+    run = Run(until="2 cycles", every="45 deg")
+    scene = replace(DIESEL, motion=Motion(speed=law, angle=0.2), run=run)
+    found = at_angle(simulate(scene), 1.2345)
+    theta = 1.2345 + scene.period  # the cycle is from 2.2 to 4.2 times 2 pi
+    assert found.crank_angle == pytest.approx(theta, abs=1e-12)
+    speed = by_name(found)["crank_speed"]
+    assert speed.value == pytest.approx(300.0 + 30.0 * math.cos(2.0 * theta + 0.4), rel=1e-13)
+    assert speed.units == "rad/s"
+
+
+@pytest.mark.parametrize("angle", ["0 deg", "720 deg", -4.0 * math.pi, 1e-11])
+def test_the_end_of_the_cycle_counts_and_not_its_beginning(angle):
+    result = simulate(replace(DIESEL, run=Run(until="2 cycles", every="30 deg")))
+    assert at_angle(result, angle).crank_angle == pytest.approx(8.0 * math.pi, abs=1e-9)
+
+
+def test_the_lectures_forces_of_a_two_mass_rod_are_the_lectures():
+    """F_v = gas and inertia of m_A, N = F_v tan(beta), F_T and F_R: exact for that rod."""
+    rod = replace(DIESEL.rod, inertia="two-mass")
+    found = at_angle(simulate(replace(DIESEL, rod=rod, gravity=None)), "400 deg")
+    one = by_name(found, 1)
+    masses = lecture.two_mass_rod(
+        rod_mass=rod.mass, rod_length=rod.length, center_of_mass=rod.center_of_mass
+    )
+    swung = DIESEL.piston.mass + masses.piston_pin
+    net = one["gas_force"].value - swung * one["piston_acceleration"].value
+    beta, phi = one["rod_angle"].value, math.radians(400.0)
+    expected = {
+        "net force": (net, "F_v"),
+        "side thrust": (net * math.tan(beta), "N"),
+        "rod force": (net / math.cos(beta), "F_oj"),
+        "tangential force": (net * math.sin(phi + beta) / math.cos(beta), "F_T"),
+        "radial force": (net * math.cos(phi + beta) / math.cos(beta), "F_R"),
+        "torque": (net * math.sin(phi + beta) / math.cos(beta) * DIESEL.crank.radius, "M_k"),
+    }
+    for name, (value, symbol) in expected.items():
+        assert one[name].value == pytest.approx(value, rel=1e-11), name
+        assert one[name].symbol == symbol
+        assert 0.0 < one[name].error < 1e-6 * abs(value)
+
+
+def test_what_cannot_be_looked_up_is_refused():
+    short = simulate(replace(DIESEL, run=Run(until="1 rev")))
+    with pytest.raises(InputError, match="last whole cycle"):
+        at_angle(short, 0.0)
+    result = simulate(DIESEL)
+    for angle, said in ((math.nan, "finite"), ("60 mm", "angle"), ("60", "unit")):
+        with pytest.raises(InputError, match=said):
+            at_angle(result, angle)
+
+
+def test_on_the_command_line(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    options = ("--no-figures", "--orders", "--at", "60 deg", "--at", "1 rad")
+    done = crankmbs_("run", "yi_diesel", *options)
+    assert done.exit_code == 0
+    for text in ("at 60 deg of the", "at 57.2957795 deg", "F_oj", "deg/s^2", "orders over"):
+        assert text in done.stdout
+    written = tmp_path / "results" / "yi_diesel" / "orders.csv"
+    rows = np.genfromtxt(written, delimiter=",", skip_header=1)
+    assert rows.shape == (24, 19)
+    assert "--at: " in refused("run", "yi_diesel", "--at", "60 mm")

@@ -1,0 +1,125 @@
+"""Counterweights: closed forms of textbooks, at constant speed."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from command_line import crankmbs_, refused
+
+from crankmbs import (
+    Crank,
+    Cylinder,
+    Layout,
+    Motion,
+    Piston,
+    Rod,
+    Run,
+    Scene,
+    balance,
+    load_scene,
+    simulate,
+)
+from crankmbs.errors import InputError
+
+SPEED = 200.0
+RECIPROCATING = 0.5 + 0.8 * 0.05 / 0.2
+ROTATING = 0.8 * 0.15 / 0.2
+
+
+def engine(layout=None, **crank):
+    return Scene(
+        crank=Crank(radius=0.05, **crank),
+        rod=Rod(length=0.2, mass=0.8, center_of_mass=0.05, inertia=0.004),
+        piston=Piston(mass=0.5),
+        layout=layout or Layout(cylinders=(Cylinder(),)),
+        motion=Motion(speed=SPEED),
+        run=Run(until="1 cycle", every="5 deg"),
+    )
+
+
+def left(found, quantity, order):
+    """Before and after along x, along y and the longest."""
+    rows = [r for r in found.remaining if (r.quantity, r.order) == (quantity, order)]
+    assert [row.direction for row in rows] == ["x", "y", "largest"]
+    return [row.before.value for row in rows], [row.after.value for row in rows]
+
+
+@pytest.mark.parametrize("share", [0.0, 0.3, 0.5, 1.0])
+def test_one_cylinder_moves_its_first_order_across(share):
+    """m_A r omega^2 (1 - share) is left along the cylinder and share comes across it."""
+    found = balance(engine(), share)
+    unit = 0.05 * SPEED**2
+    before, after = left(found, "frame force", 1.0)
+    both = (RECIPROCATING + ROTATING) * unit
+    assert before == pytest.approx([both, ROTATING * unit, both], rel=1e-12)
+    expected = [(1.0 - share) * RECIPROCATING * unit, share * RECIPROCATING * unit]
+    assert after == pytest.approx([*expected, max(expected)], rel=1e-12, abs=1e-9)
+    second = left(found, "frame force", 2.0)
+    assert second[1] == pytest.approx(second[0], rel=1e-12, abs=1e-9)
+    assert found.per_throw == pytest.approx(0.05 * (ROTATING + share * RECIPROCATING), rel=1e-14)
+
+
+def test_a_90_degree_twin_on_one_pin_has_no_first_order_left():
+    pair = (
+        Cylinder(phase=math.pi / 4, bank=-math.pi / 4),
+        Cylinder(phase=-math.pi / 4, bank=math.pi / 4),
+    )
+    before, after = left(balance(engine(Layout(cylinders=pair)), 0.5), "frame force", 1.0)
+    assert min(before) > 1e3
+    assert max(after) < 1e-9
+
+
+def test_the_crank_s_own_mass_is_balanced_beside():
+    found = balance(engine(mass=3.0, center_of_mass=-0.01), 1.0)
+    plain = balance(engine(), 1.0)
+    assert found.of_crank == pytest.approx(-0.03)
+    after = left(found, "frame force", 1.0)[1]
+    assert after == pytest.approx(left(plain, "frame force", 1.0)[1], abs=1e-9)
+
+
+def test_rocking_of_three_in_line_and_its_counterweights():
+    """Forces cancel; the first order of the moment is sqrt(3) spacing m r omega^2 for each mass."""
+    found = balance(engine(Layout(firing_order=(1, 3, 2), spacing=0.1)), 0.5)
+    unit = math.sqrt(3.0) * 0.1 * 0.05 * SPEED**2
+    before, after = left(found, "rocking moment", 1.0)
+    assert before[:2] == pytest.approx(
+        [ROTATING * unit, (ROTATING + RECIPROCATING) * unit], rel=1e-11
+    )
+    assert after[:2] == pytest.approx([0.5 * RECIPROCATING * unit] * 2, rel=1e-11)
+    assert max(left(found, "frame force", 1.0)[1]) < 1e-9
+
+
+def test_a_crank_that_has_the_counterweight_is_what_is_left():
+    """Of one cylinder the counterweight can be put on the crank itself, and the scene run again."""
+    scene = replace(load_scene("yi_diesel"), gravity=None)
+    plain = replace(scene, crank=replace(scene.crank, mass=0.0, center_of_mass=0.0))
+    found = balance(plain, 0.4)
+    crank = replace(plain.crank, inertia=1.0, mass=10.0, center_of_mass=-found.per_throw / 10.0)
+    data = simulate(replace(plain, crank=crank)).data
+    again = np.stack([data["frame_force_x"].values, data["frame_force_y"].values], axis=1)
+    np.testing.assert_allclose(found.after, again, rtol=0, atol=1e-12 * np.abs(again).max())
+
+
+def test_of_a_free_crank_errors_are_stated():
+    found = balance(load_scene("v_twin"), 0.5)
+    for row in found.remaining:
+        assert 0.0 < row.before.error < 1e-5 * found.remaining[0].before.value
+        assert row.after.error >= row.before.error * 0.5
+
+
+@pytest.mark.parametrize("share", [-0.1, 1.5, math.nan])
+def test_a_share_that_cannot_be(share):
+    with pytest.raises(InputError, match="share must be from 0 to 1"):
+        balance(engine(), share)
+
+
+def test_on_the_command_line(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    done = crankmbs_("balance", "yi_diesel", "--share", "40 %", "--out", "here")
+    assert done.exit_code == 0
+    assert "40 % of the reciprocating mass" in done.stdout
+    assert {file.name for file in (tmp_path / "here").iterdir()} == {"balance.csv", "balance.png"}
+    lines = (tmp_path / "here" / "balance.csv").read_text().splitlines()
+    assert len(lines) == 7
+    assert "--share: " in refused("balance", "yi_diesel", "--share", "150%")
