@@ -80,7 +80,7 @@ def run(
     ] = None,
     rtol: Annotated[float | None, typer.Option(help="Relative global error asked for.")] = None,
     until: Annotated[
-        str | None, typer.Option(help='End of the run: "20 cycles", "10 rev" or "0.75 s".')
+        str | None, typer.Option(help='End: "20 cycles", "10 rev", "0.75 s" or "settled".')
     ] = None,
     every: Annotated[
         str | None, typer.Option(help='Output spacing: "1 deg", "0.1 ms" or "none".')
@@ -113,7 +113,7 @@ def validate(
     ] = "multibody",
     rtol: Annotated[float | None, typer.Option(help="Relative global error asked for.")] = None,
     until: Annotated[
-        str | None, typer.Option(help='End of the run: "20 cycles", "10 rev" or "0.75 s".')
+        str | None, typer.Option(help='End: "20 cycles", "10 rev", "0.75 s" or "settled".')
     ] = None,
     cost_cap: _CostCap = 10.0,
     cylinder: Annotated[int, typer.Option(help="Number of the cylinder compared.")] = 1,

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from crankmbs.motion.plan import Plan
 from crankmbs.numerics.arrays import Array
 
-__all__ = ["NOWHERE", "Piece", "Samples", "Solution", "State"]
+__all__ = ["NOWHERE", "Decay", "Piece", "Samples", "Solution", "State"]
 
 
 @dataclass(frozen=True)
@@ -55,6 +55,15 @@ class Samples:
 
 
 @dataclass(frozen=True)
+class Decay:
+    """The factor by which a disturbance of a periodic motion is smaller after each period, and an
+    estimate of its error."""
+
+    factor: float
+    error: float
+
+
+@dataclass(frozen=True)
 class Solution:
     """What a run returns.
 
@@ -64,6 +73,7 @@ class Solution:
     status, message : 0 reached the end; 1 a physical end; -1 a numerical one; and a sentence
     evaluations, steps : what it cost
     reasons : sentences about what the run had to do, beside the choice of the formulation
+    decay : of a settled motion
     """
 
     samples: Samples
@@ -74,6 +84,7 @@ class Solution:
     better: Samples | None = None
     errors: Mapping[str, float] = field(default_factory=dict)
     reasons: tuple[str, ...] = ()
+    decay: Decay | None = None
 
 
 class State(NamedTuple):

@@ -12,7 +12,7 @@ from typing import NamedTuple
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion import kinetostatic
 from crankmbs.motion.assemble import Assembled, assemble
-from crankmbs.motion.free import passes
+from crankmbs.motion.free import settled
 from crankmbs.scene.scene import Scene
 
 __all__ = ["FORMULATIONS", "Formulation", "serving"]
@@ -55,8 +55,8 @@ def _if_prescribed(scene: Scene) -> str:
     return "the speed is prescribed" if scene.motion is not None else ""
 
 
-def _never(_: Scene) -> str:
-    return ""
+def _if_settled(scene: Scene) -> str:
+    return "it follows a run and solves for no periodic motion" if scene.settles else ""
 
 
 def _kinetostatic(train: CrankTrain, _rtol: float, _cost_cap: float) -> Assembled:
@@ -71,8 +71,8 @@ def _multibody(train: CrankTrain, rtol: float, cost_cap: float) -> Assembled:
 
 FORMULATIONS = (
     Formulation("kinetostatic", _if_free, _kinetostatic, integrates=False),
-    Formulation("crank_angle", _if_prescribed, partial(passes.run, by_angle=True)),
-    Formulation("minimal", _if_prescribed, partial(passes.run, by_angle=False)),
+    Formulation("crank_angle", _if_prescribed, partial(settled.run, by_angle=True)),
+    Formulation("minimal", _if_prescribed, partial(settled.run, by_angle=False)),
     # second order: more than 1e-5 costs minutes, and is to be asked for
-    Formulation("multibody", _never, _multibody, least_rtol=1e-5, dense=False),
+    Formulation("multibody", _if_settled, _multibody, least_rtol=1e-5, dense=False),
 )
