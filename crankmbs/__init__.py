@@ -6,6 +6,7 @@
 
 from crankmbs.choose import Choice, choose
 from crankmbs.compare import Budget, Comparison, budget, compare
+from crankmbs.design.flywheel import Flywheel, flywheel
 from crankmbs.errors import (
     CrankmbsError,
     FormulationError,
@@ -14,6 +15,7 @@ from crankmbs.errors import (
     SceneError,
 )
 from crankmbs.lecture.accumulated_torque import accumulated_torque
+from crankmbs.motion.base import Decay
 from crankmbs.result import Cost, Error, Result
 from crankmbs.scene.drives import (
     Constant,
@@ -42,8 +44,10 @@ __all__ = [
     "Crank",
     "CrankmbsError",
     "Cylinder",
+    "Decay",
     "Error",
     "Extent",
+    "Flywheel",
     "FormulationError",
     "Gas",
     "Gravity",
@@ -71,6 +75,7 @@ __all__ = [
     "budget",
     "choose",
     "compare",
+    "flywheel",
     "load_scene",
     "shipped_scenes",
     "simulate",

@@ -16,6 +16,7 @@ from crankmbs.cli.animate import animate_scene
 from crankmbs.cli.check import describe
 from crankmbs.cli.demo import demonstrate, write_page
 from crankmbs.cli.ending import ending
+from crankmbs.cli.flywheel import size_flywheel
 from crankmbs.cli.lesson import list_lessons, make_lesson
 from crankmbs.cli.run import run_scene
 from crankmbs.cli.validate import validate_scene
@@ -135,6 +136,18 @@ def validate(
         figures=not no_figures,
     )
     if not complete:
+        raise typer.Exit(3)
+
+
+@app.command()
+def flywheel(
+    scene: _Scene,
+    fluctuation: Annotated[
+        str, typer.Option(help='Wanted (max - min)/mean of the speed, as "1 %" or 0.01.')
+    ] = "1 %",
+) -> None:
+    """Find the crank inertia that gives a fluctuation of speed on the settled cycle."""
+    if not size_flywheel(scene, fluctuation):
         raise typer.Exit(3)
 
 

@@ -13,7 +13,7 @@ from crankmbs.choose import choose
 from crankmbs.cli.folder import writable, wrote
 from crankmbs.cli.progress import progress
 from crankmbs.cli.report import comparison, report
-from crankmbs.compare.confirm import Difference, differences
+from crankmbs.compare.confirm import Difference, differences, followed
 from crankmbs.errors import InputError
 from crankmbs.measures import measure
 from crankmbs.result import Result
@@ -63,7 +63,7 @@ def run_scene(
     said = [report(path.stem, result, measure(result))]
     complete, rows = result.status == 0, None
     if confirm:
-        check = _simulate(scene, cost_cap, formulation="multibody")
+        check = _simulate(followed(result), cost_cap, formulation="multibody")
         complete, rows = complete and check.status == 0, differences(result, check)
         said.append(comparison(result, check, rows))
     written = _save(result, rows, folder, figures=figures)

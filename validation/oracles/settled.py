@@ -17,9 +17,11 @@ from validation.oracles.machine import Loads, Machine
 from validation.oracles.many_turns import NODES, Turning, antiderivatives
 
 NARROWEST = 1e-9  # of a panel [rad]
+BEYOND = 0.1  # of the range of speeds at a panel's nodes: its ends and turns lie within
 SAME = 1e-12  # rad: edges so near are one
+CLOSE = 1e-15  # of the energy: the secant's next step is its square
 PICARD, SECANT = 200, 60
-NUDGE = 1e-6  # of the energy, for the factor
+NUDGE = 1e-6  # of the energy, for a difference
 
 
 class Settled(NamedTuple):
@@ -32,7 +34,7 @@ class Settled(NamedTuple):
 
 class _Panels(NamedTuple):
     """Panels in the order in which they are passed: edges, and at the nodes of each inertia and
-    torque of gas and gravity, shape (panels, NODES)."""
+    torque of gas, gravity and constant loads, shape (panels, NODES)."""
 
     edges: Array
     inertia: Array
@@ -64,7 +66,7 @@ def settled_motion(
     wanted = LONG.array(offsets)
     wanted = np.where(abs(wanted - period) < 1e-9, period, wanted)
     start = LONG.number(theta0)
-    panels = _panels(turning, start, sense, period, wanted)
+    panels = _panels(turning, start, sense, period, wanted[:0])
     inertia = turning.inertia(LONG.array([theta0]))[0]
     load, speeds = _load(machine.loads), _speeds(machine.loads)
 
@@ -74,6 +76,7 @@ def settled_motion(
     energy = _fixed_point(after, inertia * LONG.number(omega0) ** 2 / 2)
     nudge = NUDGE * energy
     factor = float((after(energy + nudge) - after(energy - nudge)) / (2 * nudge))
+    panels = _panels(turning, start, sense, period, wanted)
     energies, times = _energies(turning, panels, load, speeds, energy)
     at = np.searchsorted(sense * (panels.edges - start), wanted - SAME)
     theta, energies, times = panels.edges[at], energies[at], times[at]
@@ -84,18 +87,14 @@ def settled_motion(
 
 
 def _fixed_point(after: Callable[[Number], Number], energy: Number) -> Number:
-    other = after(energy)
-    gain, gain_there = other - energy, after(other) - other
+    other = energy * (1 + LONG.number(NUDGE))
+    gain, gain_there = after(energy) - energy, after(other) - other
     for _ in range(SECANT):
-        if gain_there == gain:
-            break
         new = other - gain_there * (other - energy) / (gain_there - gain)
         energy, gain, other = other, gain_there, new if new > 0 else other / 2
-        if abs(other - energy) <= 8 * LONG.epsilon * other:
+        if abs(other - energy) <= CLOSE * other:
             return other
         gain_there = after(other) - other
-        if abs(gain_there) <= 4 * LONG.epsilon * other:
-            return other
     raise ArithmeticError("no periodic motion found")
 
 
@@ -138,12 +137,9 @@ def _energies(
             if (abs(inside - before) <= 8 * LONG.epsilon * inside).all():
                 break
         after, spent = energy + half * (_RULE.weights @ torque), half * (_RULE.weights / omega)
-        ends = np.sqrt(2 * np.array([energy, after]) / inertia[[0, -1]]) * np.sign(half)
-        reached = np.concatenate([omega, ends])
-        if (
-            2 * abs(half) > NARROWEST
-            and ((speeds > reached.min()) & (speeds < reached.max())).any()
-        ):
+        margin = BEYOND * (omega.max() - omega.min())
+        near = (speeds > omega.min() - margin) & (speeds < omega.max() + margin)
+        if 2 * abs(half) > NARROWEST and near.any():
             begin, end = panels.edges[k : k + 2]
             halves = _tabulated(turning, np.array([begin, (begin + end) / 2, end]))
             found, passed = _energies(turning, halves, load, speeds, energy)
@@ -156,13 +152,12 @@ def _energies(
 
 
 def _load(loads: Loads) -> Callable[[Array], Array]:
-    constant, viscous, quadratic = (
-        LONG.number(c) for c in (loads.constant, loads.viscous, loads.quadratic)
-    )
+    """What loads give at speeds, but for the constant one, which is in the push."""
+    viscous, quadratic = LONG.number(loads.viscous), LONG.number(loads.quadratic)
     tables = [(LONG.array(t.abscissae), LONG.array(t.torques)) for t in loads.speed_tables]
 
     def torque(omega: Array) -> Array:
-        total = constant - viscous * omega - quadratic * omega * abs(omega)
+        total = -viscous * omega - quadratic * omega * abs(omega)
         for x, y in tables:
             k = np.clip(np.searchsorted(x, omega), 1, len(x) - 1)
             share = (np.clip(omega, x[0], x[-1]) - x[k - 1]) / (x[k] - x[k - 1])

@@ -102,18 +102,21 @@ def run(
     *,
     by_angle: bool,
     begin: Begin = begin_at_start,
+    local: float | None = None,
 ) -> Assembled:
     """Solve a free motion to a relative global error, twice: the second pass is of higher order.
 
     by_angle : the crank angle is the variable wherever it can be; else time throughout
     cost_cap [s] : for which time is evaluated in either pass before it gives up, on a slow machine
     begin : where either pass begins, by its grid and what it may err locally
+    local : what a step may err in the first attempt; None takes rtol
     """
     way = Way(begin, plan_of(train.scene), evaluations(cost_cap))
     grid = first_grid(train, rtol)
     best: Assembled | None = None
-    local, least, rounded = rtol, math.inf, False
+    least, rounded = math.inf, False
     finest = _FINEST if by_angle else 100.0 * _FINEST_STEP
+    local = rtol if local is None else max(local, finest)
     for left in reversed(range(_PASSES)):
         answer = travel(grid, way, local, by_angle=by_angle)
         parts = _parts(grid, answer.local, local)
@@ -162,7 +165,7 @@ def travel(
     fast: list[tuple[float, float]] = []
     slow: list[float] = []
 
-    kinks = max(min(_KINKS * local, _MOST_MISSED[first is not None]), _FINEST_STEP)
+    kinks = max(min(_KINKS * local, _MOST_MISSED[grid.checks]), _FINEST_STEP)
     vain = 0  # hand-overs to the crank angle that did not carry the motion through a period
 
     def is_fast(at: State, branch: Branch) -> bool:
@@ -176,7 +179,7 @@ def travel(
     while ending is None:
         at = path.state or state
         if over_time:
-            effort = minimal.Effort(tolerance, 2 if first else 1, path.left)
+            effort = minimal.Effort(tolerance, 2 if grid.checks else 1, path.left)
             slow.append(at.time)
             pieces = minimal.advance(reduced(), at, plan, effort, is_fast)
             ending = path.follow(pieces, over_time=True)

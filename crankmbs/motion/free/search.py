@@ -30,8 +30,8 @@ _STILL = (Ending.REST, Ending.SWING, Ending.STUCK, Ending.UNMOVED)
 
 
 class Limit(NamedTuple):
-    """Energy [J] and sense where a settled period begins; 1 - factor; the ratio of its greatest and
-    least energy; whether its map is affine."""
+    """Energy [J] and sense where a settled period begins; 1 - factor; its greatest energy over
+    the one there; whether its map is affine."""
 
     energy: float
     sense: float
@@ -92,7 +92,7 @@ class _Search:
         if not (limit > 0.0 and section.turns(self._grid, one, limit, sense)):
             return None
         inside = one.gain * limit + one.shift
-        return Limit(limit, sense, -one.growth, float(inside.max() / inside.min()), affine=True)
+        return Limit(limit, sense, -one.growth, float(inside.max()) / limit, affine=True)
 
     def _walk(self, state: State, first: Shot) -> Limit | State:
         """From a state and its period to the nearest fixed point in the direction in which the

@@ -53,8 +53,8 @@ class Shot(NamedTuple):
 
 
 class Slope(NamedTuple):
-    """Factor by which a small difference of energies grows in a period, its error, and the ratio of
-    greatest and least energy."""
+    """Factor by which a small difference of energies grows in a period, its error, and the greatest
+    energy over this one."""
 
     factor: float
     error: float
@@ -81,7 +81,8 @@ class Section:
         self.scene, self.start = scene, scene.start
         self.inertia = float(inertia_alone(scene, scene.start.angle))
         angles = np.linspace(0.0, scene.settled_period, _ANGLES)
-        self.least_inertia = float(inertia_alone(scene, angles).min())
+        inertia = inertia_alone(scene, angles)
+        self.least_inertia, self.most_inertia = float(inertia.min()), float(inertia.max())
         every = scene.settled_period / _SAMPLES
         tables = [np.abs(load.file.x) for load in scene.torque if isinstance(load, SpeedTable)]
         rows = np.concatenate([np.empty(0), *tables])
@@ -130,7 +131,8 @@ class Section:
         factor = (high.energy - low.energy) / width
         wide = 0.5 * (higher.energy - lower.energy) / width
         error = abs(wide - factor) + _NOISE / _STEP
-        return Slope(factor, error, (high.fast / low.slow) ** 2)
+        most = max(high.fast**2 * self.most_inertia, 2.0 * energy)
+        return Slope(factor, error, 0.5 * most / energy)
 
     def slopes(self, slow: float, fast: float, sense: float) -> tuple[float, float]:
         """Least and greatest slope dT/domega [N m s] of the loads between two speeds [rad/s]; that

@@ -24,7 +24,7 @@ from crankmbs.motion.free.section import MOST_SHOTS, LostError, Section
 __all__ = ["run"]
 
 _EPS = float(np.finfo(float).eps)
-_ROUNDING = 16 * _EPS  # of the energy, that a period rounds
+_ROUNDING = 4 * _EPS  # of the energy, that a period rounds
 _POLISHES = 8
 
 
@@ -37,8 +37,11 @@ def run(train: CrankTrain, rtol: float, cost_cap: float, *, by_angle: bool) -> A
         return passes.run(train, rtol, cost_cap, by_angle=by_angle)
     section = Section(train, passes.evaluations(cost_cap), by_angle=by_angle)
     try:
-        settling = _Settling(section, search(section, passes.first_grid(train, rtol)))
-        found = passes.run(train, rtol, cost_cap, by_angle=by_angle, begin=settling.begin)
+        limit = search(section, passes.first_grid(train, rtol))
+        settling, local = _Settling(section, limit), rtol * min(limit.damping, 1.0)
+        found = passes.run(
+            train, rtol, cost_cap, by_angle=by_angle, begin=settling.begin, local=local
+        )
         decay = settling.decay()
     except LostError as lost:
         found = passes.run(train, rtol, cost_cap, by_angle=by_angle)
