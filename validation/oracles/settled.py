@@ -16,7 +16,7 @@ from validation.oracles.free_motion import Motion
 from validation.oracles.machine import Loads, Machine
 from validation.oracles.many_turns import NODES, Turning, antiderivatives
 
-NARROWEST = 1e-9  # of a panel [rad]
+NARROWEST = 1e-6  # of a panel [rad]: of a kink it misses 1e-14
 BEYOND = 0.1  # of the range of speeds at a panel's nodes: its ends and turns lie within
 SAME = 1e-12  # rad: edges so near are one
 CLOSE = 1e-15  # of the energy: the secant's next step is its square
