@@ -114,8 +114,9 @@ def excess(even: Result) -> tuple[float, float]:
     True
     """
     angle = even.data["crank_angle"].values
-    work = cumulative_simpson(even.data["crank_torque"].values.sum(axis=1), x=angle, initial=0.0)
-    surplus = work - work[-1] * (angle - angle[0]) / (angle[-1] - angle[0])
+    turned = np.abs(angle - angle[0])
+    work = cumulative_simpson(even.data["crank_torque"].values.sum(axis=1), x=turned, initial=0.0)
+    surplus = work - work[-1] * turned / turned[-1]
     return float(np.ptp(surplus)), 2.0 * float(even.data["kinetic_energy"].values.mean())
 
 
