@@ -6,7 +6,7 @@
 
 from crankmbs.choose import Choice, choose
 from crankmbs.compare import AtAngle, Budget, Comparison, Reading, at_angle, budget, compare
-from crankmbs.design import Balance, balance
+from crankmbs.design import Balance, Flywheel, balance, flywheel
 from crankmbs.errors import (
     CrankmbsError,
     FormulationError,
@@ -16,6 +16,7 @@ from crankmbs.errors import (
 )
 from crankmbs.lecture.accumulated_torque import accumulated_torque
 from crankmbs.measures import EngineOrders, Orders, engine_orders, orders
+from crankmbs.motion.base import Decay
 from crankmbs.result import Cost, Error, Result
 from crankmbs.scene.drives import Motion, Oscillation, Ramp, SpeedFile, Start
 from crankmbs.scene.gas import Gas, Indicator
@@ -39,9 +40,11 @@ __all__ = [
     "Crank",
     "CrankmbsError",
     "Cylinder",
+    "Decay",
     "EngineOrders",
     "Error",
     "Extent",
+    "Flywheel",
     "FormulationError",
     "Gas",
     "Gravity",
@@ -74,6 +77,7 @@ __all__ = [
     "choose",
     "compare",
     "engine_orders",
+    "flywheel",
     "load_scene",
     "orders",
     "shipped_scenes",

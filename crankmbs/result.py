@@ -12,6 +12,7 @@ from pydantic import TypeAdapter
 
 from crankmbs.errors import OutputError, shown
 from crankmbs.mechanics.variables import VARIABLES, variables_of
+from crankmbs.motion.base import Decay
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.schema import SAVED
 from crankmbs.scene.units import RPM
@@ -55,6 +56,7 @@ class Result:
     formulation, reasons : which served the scene, and why
     status : 0 reached the end; 1 a physical end before it; -1 a numerical one
     message : the sentence that goes with the status
+    decay : of a settled motion: the largest factor by which a disturbance changes in a period
     """
 
     scene: Scene
@@ -65,6 +67,7 @@ class Result:
     message: str
     cost: Cost
     error: Error
+    decay: Decay | None = None
 
     def __str__(self) -> str:
         time, angle = self.data["time"].values, self.data["crank_angle"].values
@@ -155,6 +158,7 @@ class _About:
     message: str
     cost: Cost
     error: Error
+    decay: Decay | None = None
 
 
 def _check_labels(data: xr.Dataset, scene: Scene) -> None:

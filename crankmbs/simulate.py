@@ -65,4 +65,5 @@ def simulate(
         message=solution.message,
         cost=Cost(clock.perf_counter() - begin, solution.evaluations, solution.steps),
         error=Error(asked, assembled.relative_error),
+        decay=solution.decay,
     )

@@ -154,7 +154,7 @@ class _Draw:
     def _run(self, turns: float, duration: float, torque: tuple[Torque, ...]) -> Run:
         """A run of so many turns at the first speed; tables over time must not end before it."""
         timed = any(isinstance(load, TimeTable) for load in torque)
-        until = {
+        until: dict[Extent | Literal["settled"], int] = {
             Extent(value=duration, unit="s"): 3,
             Extent(value=turns * 2 * math.pi, unit="rad"): 0 if timed else 1,
         }

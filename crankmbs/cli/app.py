@@ -17,6 +17,7 @@ from crankmbs.cli.balance import balance_scene
 from crankmbs.cli.check import describe
 from crankmbs.cli.demo import demonstrate, write_page
 from crankmbs.cli.ending import ending
+from crankmbs.cli.flywheel import size_flywheel
 from crankmbs.cli.lesson import list_lessons, make_lesson
 from crankmbs.cli.run import Wanted, run_scene
 from crankmbs.cli.validate import validate_scene
@@ -81,7 +82,7 @@ def run(
     ] = None,
     rtol: Annotated[float | None, typer.Option(help="Relative global error asked for.")] = None,
     until: Annotated[
-        str | None, typer.Option(help='End of the run: "20 cycles", "10 rev" or "0.75 s".')
+        str | None, typer.Option(help='End: "20 cycles", "10 rev", "0.75 s" or "settled".')
     ] = None,
     every: Annotated[
         str | None, typer.Option(help='Output spacing: "1 deg", "0.1 ms" or "none".')
@@ -120,7 +121,7 @@ def validate(
     ] = "multibody",
     rtol: Annotated[float | None, typer.Option(help="Relative global error asked for.")] = None,
     until: Annotated[
-        str | None, typer.Option(help='End of the run: "20 cycles", "10 rev" or "0.75 s".')
+        str | None, typer.Option(help='End: "20 cycles", "10 rev", "0.75 s" or "settled".')
     ] = None,
     cost_cap: _CostCap = 10.0,
     cylinder: Annotated[int, typer.Option(help="Number of the cylinder compared.")] = 1,
@@ -159,6 +160,18 @@ def balance(
 ) -> None:
     """Find counterweights; show what is left of first and second order, before and after."""
     if not balance_scene(scene, share, out=out, figures=not no_figures, cost_cap=cost_cap):
+        raise typer.Exit(3)
+
+
+@app.command()
+def flywheel(
+    scene: _Scene,
+    fluctuation: Annotated[
+        str, typer.Option(help='Wanted (max - min)/mean of the speed, as "1 %" or 0.01.')
+    ] = "1 %",
+) -> None:
+    """Find the crank inertia that gives a fluctuation of speed on the settled cycle."""
+    if not size_flywheel(scene, fluctuation):
         raise typer.Exit(3)
 
 

@@ -14,7 +14,7 @@ from crankmbs.scene.cycles import cycles_in
 from crankmbs.scene.drives import Oscillation, Ramp, SpeedFile
 from crankmbs.scene.gas import Gas
 from crankmbs.scene.loads import Torque
-from crankmbs.scene.scene import Extent, Scene
+from crankmbs.scene.scene import SETTLED, Extent, Scene
 from crankmbs.scene.tables import Columns
 from crankmbs.scene.units import RPM
 
@@ -190,7 +190,8 @@ def _load(scene: Scene, load: Torque) -> str:
 def _run(scene: Scene) -> str:
     run = scene.run
     every = "the last cycle only" if run.every is None else f"every {_extent(run.every)}"
-    return f"until {_extent(run.until)}, {every}, rtol {run.rtol:g}"
+    until = run.until if run.until == SETTLED else _extent(run.until)
+    return f"until {until}, {every}, rtol {run.rtol:g}"
 
 
 def _extent(extent: Extent) -> str:

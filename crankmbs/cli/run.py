@@ -16,7 +16,7 @@ from crankmbs.cli.orders import orders_report, reading_report, save_orders
 from crankmbs.cli.progress import progress
 from crankmbs.cli.report import comparison, report
 from crankmbs.compare import AtAngle, at_angle
-from crankmbs.compare.confirm import Difference, differences
+from crankmbs.compare.confirm import Difference, differences, followed
 from crankmbs.errors import InputError
 from crankmbs.measures import EngineOrders, engine_orders, measure
 from crankmbs.result import Result
@@ -82,7 +82,7 @@ def run_scene(
     said = [report(path.stem, result, measure(result))]
     complete, made = result.status == 0, _Made(result)
     if wanted.confirm:
-        check = _simulate(scene, cost_cap, formulation="multibody")
+        check = _simulate(followed(result), cost_cap, formulation="multibody")
         made.differences = differences(result, check)
         complete = complete and check.status == 0
         said.append(comparison(result, check, made.differences))

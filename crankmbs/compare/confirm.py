@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,8 +11,10 @@ from crankmbs.errors import InputError
 from crankmbs.motion.plan import Plan, plan_of
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
+from crankmbs.scene.drives import Start
+from crankmbs.scene.scene import Extent, Scene
 
-__all__ = ["Difference", "differences"]
+__all__ = ["Difference", "differences", "followed"]
 
 
 _SAME = 1e-6  # of the sample spacing: so near each other two samples are one
@@ -63,6 +65,21 @@ class Difference:
         if allowed == 0.0:
             return 0.0 if largest == 0.0 else math.inf
         return largest / allowed
+
+
+def followed(result: Result) -> Scene:
+    """The scene of a run that shows the same motion: a settled one as the run of one period from
+    its first sample, which formulations follow that solve for none.
+
+    >>> followed(simulate(load_scene("coasting"))).run.until.unit
+    's'
+    """
+    scene = result.scene
+    if not scene.settles or result.status != 0:
+        return scene
+    angle, speed = (float(result.data[name].values[0]) for name in ("crank_angle", "crank_speed"))
+    run = replace(scene.run, until=Extent(value=scene.settled_period, unit="rad"))
+    return replace(scene, start=Start(angle=angle, speed=speed), run=run)
 
 
 def differences(result: Result, check: Result) -> tuple[Difference, ...]:

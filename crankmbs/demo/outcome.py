@@ -57,7 +57,7 @@ def prepared(scene: Scene) -> Scene:
     crank angles shown are the same at every speed.
     """
     run = dataclasses.replace(scene.run, every=None)
-    if run.until.unit == "s":
+    if scene.end[1]:
         angle = simulate(scene).data["crank_angle"].values
         cycles = max(1, int(abs(angle[-1] - angle[0]) / scene.period + 1e-9))
         run = dataclasses.replace(run, until=Extent(value=float(cycles), unit="cycle"))

@@ -1,8 +1,9 @@
-"""What a machine should have, found from its runs: counterweights for a share of its moving mass.
+"""What to build so that a run gives what is wanted: counterweights, and a flywheel.
 
 What a given machine does belongs in measures; how it differs from others in compare.
 """
 
 from crankmbs.design.balance import Balance, Remaining, balance
+from crankmbs.design.flywheel import Flywheel, flywheel
 
-__all__ = ["Balance", "Remaining", "balance"]
+__all__ = ["Balance", "Flywheel", "Remaining", "balance", "flywheel"]

@@ -10,9 +10,10 @@ from scipy.optimize import brentq
 
 from crankmbs import lecture
 from crankmbs.compare import budget
+from crankmbs.design.flywheel import excess
 from crankmbs.figures.style import STYLE, crank_axis, legend, line_of, panels
 from crankmbs.figures.view import last_view
-from crankmbs.lessons.flywheel import estimate, excess, held, with_inertia
+from crankmbs.lessons.flywheel import estimate, held, with_inertia
 from crankmbs.lessons.parts import Formula, Lesson, Question, Slider, Step, exact, simulated
 from crankmbs.measures import Estimate, measure
 from crankmbs.measures.peak import rise

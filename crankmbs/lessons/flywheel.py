@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 
-import numpy as np
-from scipy.integrate import cumulative_simpson
-
+from crankmbs.design.flywheel import excess
 from crankmbs.lessons.runs import changed
 from crankmbs.measures import measure
 from crankmbs.result import Result
@@ -14,7 +12,7 @@ from crankmbs.scene.drives import Motion
 from crankmbs.scene.scene import Extent, Scene
 from crankmbs.simulate import simulate
 
-__all__ = ["estimate", "excess", "held", "with_inertia"]
+__all__ = ["estimate", "held", "with_inertia"]
 
 
 def with_inertia(scene: Scene, inertia: float) -> Scene:
@@ -29,14 +27,6 @@ def held(result: Result) -> Result:
     return simulate(
         dataclasses.replace(result.scene, start=None, torque=(), motion=motion, run=run)
     )
-
-
-def excess(even: Result) -> tuple[float, float]:
-    """(W [J], J omega^2 [J]) of the textbook formula, from a run at constant speed."""
-    angle = even.data["crank_angle"].values
-    work = cumulative_simpson(even.data["crank_torque"].values.sum(axis=1), x=angle, initial=0.0)
-    surplus = work - work[-1] * (angle - angle[0]) / (angle[-1] - angle[0])
-    return float(np.ptp(surplus)), 2.0 * float(even.data["kinetic_energy"].values.mean())
 
 
 def estimate(result: Result) -> float:

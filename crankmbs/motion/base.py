@@ -14,7 +14,7 @@ from crankmbs.motion.mode import Mode
 from crankmbs.motion.plan import Plan
 from crankmbs.numerics.arrays import Array
 
-__all__ = ["NOWHERE", "Piece", "Samples", "Solution", "State"]
+__all__ = ["NOWHERE", "Decay", "Piece", "Samples", "Solution", "State"]
 
 
 @dataclass(frozen=True)
@@ -56,6 +56,15 @@ class Samples:
 
 
 @dataclass(frozen=True)
+class Decay:
+    """The factor by which a disturbance of a periodic motion is smaller after each period, and an
+    estimate of its error."""
+
+    factor: float
+    error: float
+
+
+@dataclass(frozen=True)
 class Solution:
     """What a run returns.
 
@@ -65,6 +74,7 @@ class Solution:
     status, message : 0 reached the end; 1 a physical end; -1 a numerical one; and a sentence
     evaluations, steps : what it cost
     reasons : sentences about what the run had to do, beside the choice of the formulation
+    decay : of a settled motion
     """
 
     samples: Samples
@@ -75,6 +85,7 @@ class Solution:
     better: Samples | None = None
     errors: Mapping[str, float] = field(default_factory=dict)
     reasons: tuple[str, ...] = ()
+    decay: Decay | None = None
 
 
 class State(NamedTuple):

@@ -35,6 +35,22 @@ class Ending(Enum):
         1,
         "the rod folds onto the crank at {angle:.6g} degrees, where the motion is not determined",
     )
+    STALLS = (
+        1,
+        "does not settle: what the crank gets in a period is less than what its loads take at any "
+        "lower speed, and it comes to a stop",
+    )
+    RUNS_AWAY = (
+        1,
+        "does not settle: what the crank gets in a period is more than what its loads take at any "
+        "higher speed, and its speed grows without bound",
+    )
+    BALANCED = (
+        1,
+        "does not settle: gas and loads balance one another at any speed, so that the motion from "
+        "the start repeats itself",
+    )
+    WANDERS = -1, "no periodic motion found within {shots} periods"
     COSTLY = (
         -1,
         "stopped at {angle:.6g} degrees: to follow the motion over time beyond it takes more than "

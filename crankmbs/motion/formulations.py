@@ -54,8 +54,8 @@ def _if_prescribed(scene: Scene) -> str:
     return "the speed is prescribed" if scene.motion is not None else ""
 
 
-def _never(_: Scene) -> str:
-    return ""
+def _if_settled(scene: Scene) -> str:
+    return "it follows a run and solves for no periodic motion" if scene.settles else ""
 
 
 def _kinetostatic(train: CrankTrain, _rtol: float, _cost_cap: float) -> Assembled:
@@ -63,9 +63,9 @@ def _kinetostatic(train: CrankTrain, _rtol: float, _cost_cap: float) -> Assemble
 
 
 def _free(train: CrankTrain, rtol: float, cost_cap: float, *, by_angle: bool) -> Assembled:
-    from crankmbs.motion.free import passes  # numba is loaded only when it is used
+    from crankmbs.motion.free import settled  # numba is loaded only when it is used
 
-    return passes.run(train, rtol, cost_cap, by_angle=by_angle)
+    return settled.run(train, rtol, cost_cap, by_angle=by_angle)
 
 
 def _multibody(train: CrankTrain, rtol: float, cost_cap: float) -> Assembled:
@@ -79,5 +79,5 @@ FORMULATIONS = (
     Formulation("crank_angle", _if_prescribed, partial(_free, by_angle=True)),
     Formulation("minimal", _if_prescribed, partial(_free, by_angle=False)),
     # second order: more than 1e-5 costs minutes, and is to be asked for
-    Formulation("multibody", _never, _multibody, least_rtol=1e-5, dense=False),
+    Formulation("multibody", _if_settled, _multibody, least_rtol=1e-5, dense=False),
 )

@@ -95,7 +95,7 @@ def plan_of(scene: Scene) -> Plan:
     """
     start = scene.motion.angle if scene.motion is not None else 0.0
     start = scene.start.angle if scene.start is not None else start
-    until, until_time = scene.run.until.resolve(scene.period)
+    until, until_time = scene.end
     folds = _folds(scene, start)
     if scene.run.every is None:
         last = scene.period + _LESS * DEGREE

@@ -15,15 +15,19 @@ from annotated_types import Ge, Le
 from pydantic import BeforeValidator, Strict, ValidationInfo
 
 from crankmbs.errors import InputError, shown
+from crankmbs.scene.cycles import cycles_in
 from crankmbs.scene.drives import Motion, SpeedFile, Start
 from crankmbs.scene.gas import Gas
-from crankmbs.scene.loads import AnyTorque
+from crankmbs.scene.loads import AnyTorque, Torque
 from crankmbs.scene.parts import Crank, Cylinder, Gravity, Layout, Piston, Rod
 from crankmbs.scene.schema import Float, dumped, part
+from crankmbs.scene.sentences import did_you_mean
 from crankmbs.scene.tables import Columns, Table
 from crankmbs.scene.units import DEGREE, EXAMPLES, extent
 
-__all__ = ["Extent", "Run", "Scene"]
+__all__ = ["SETTLED", "Extent", "Run", "Scene"]
+
+SETTLED: Literal["settled"] = "settled"
 
 _FARTHEST = 1e9  # rad: its last digit is 1e-7
 _MOST_SAMPLES = 2e7  # the memory of a machine may hold less: `crankmbs.motion.memory`
@@ -64,16 +68,32 @@ def _extent(value: object, info: ValidationInfo) -> object:
     return Extent(value=number, unit=unit)  # type: ignore[arg-type]
 
 
+def _end(value: object, info: ValidationInfo) -> object:
+    if not isinstance(value, str):
+        return _extent(value, info)
+    try:
+        return value if value == SETTLED else _extent(value, info)
+    except InputError as error:
+        raise InputError(f"{error}{did_you_mean(value, [SETTLED])}") from None
+
+
+def _passing(load: Torque) -> str:
+    """What in a load happens once or depends on time, so that nothing settles under it, if any."""
+    if load.has_window:
+        return f"a {load.kind} with a window acts once"
+    return "" if load.is_steady else f"a {load.kind} depends on time"
+
+
 def _spacing(value: object, info: ValidationInfo) -> object:
     return None if value is None or value == "none" else _extent(value, info)
 
 
 @part
 class Run:
-    """until: where the run ends; every: output spacing, or "none"; rtol; formulation by name, which
-    `crankmbs.choose` knows."""
+    """until: where the run ends, or "settled": the periodic motion that it comes to; every: output
+    spacing, or "none"; rtol; formulation by name, which `crankmbs.choose` knows."""
 
-    until: Annotated[Extent, BeforeValidator(_extent)]
+    until: Annotated[Extent | Literal["settled"], BeforeValidator(_end)]
     every: Annotated[Extent | None, BeforeValidator(_spacing)] = Extent(value=DEGREE, unit="rad")
     rtol: Annotated[Float, Ge(1e-13), Le(1e-2)] = 1e-8
     formulation: Annotated[str, Strict()] = "auto"
@@ -102,6 +122,7 @@ class Scene:
     def __post_init__(self) -> None:
         self._check_loop()
         self._check_motion()
+        self._check_settled()
         self._check_tables()
         self._check_size()
 
@@ -109,6 +130,36 @@ class Scene:
     def period(self) -> float:
         """The engine's period [rad]; without gas 4 pi."""
         return 4.0 * math.pi if self.gas is None else self.gas.period
+
+    @property
+    def settles(self) -> bool:
+        """Whether the motion asked for is the one that the run comes to."""
+        return self.run.until == SETTLED
+
+    @property
+    def settled_period(self) -> float:
+        """The angle [rad] after which a settled motion repeats itself: the least common multiple
+        of the periods of the engine, of a sequence of cycles and of loads over the angle."""
+        loads = (load.parts.over_angle for load in self.torque)
+        own = [self.period, *(part.period for part in loads if part is not None)]
+        if self.gas is not None and self.gas.cycles == "sequence":
+            one = self.gas.period
+            own += [cycles_in(table, one) * one for table in self.gas.tables]
+        turns = (round(period / (2.0 * math.pi)) for period in own)
+        return math.lcm(*turns) * 2.0 * math.pi
+
+    @property
+    def end(self) -> tuple[float, bool]:
+        """Where the run ends, and whether that is a time: [s], else |theta - start| [rad].
+
+        A settled motion is shown over one of its periods.
+
+        >>> load_scene("coasting").end
+        (0.5, True)
+        """
+        if self.run.until == SETTLED:
+            return self.settled_period, False
+        return self.run.until.resolve(self.period)
 
     @cached_property
     def cylinders(self) -> tuple[Cylinder, ...]:
@@ -163,7 +214,7 @@ class Scene:
                 "torque: with [motion] the drive is an answer, not a load; remove [[torque]], or "
                 "free the crank with [start]"
             )
-        if self.motion is not None and self.motion.speed == 0.0 and self.run.until.unit != "s":
+        if self.motion is not None and self.motion.speed == 0.0 and not self.end[1]:
             raise InputError(
                 "motion.speed: at speed 0 no angle is ever reached; until must be a time"
             )
@@ -181,24 +232,41 @@ class Scene:
                 "the dead centres; 0 came"
             )
 
+    def _check_settled(self) -> None:
+        if not self.settles:
+            return
+        if self.motion is not None:
+            raise InputError(
+                'run.until: "settled" is the periodic motion that a free crank comes to; with '
+                '[motion] give an end such as "2 cycles", or free the crank with [start]'
+            )
+        for number, load in enumerate(self.torque, start=1):
+            if _passing(load):
+                raise InputError(
+                    f'run.until: "settled" needs loads that act alike in every cycle, and '
+                    f"torque[{number}], {_passing(load)}; give an end such as "
+                    f"{EXAMPLES['extent']}, or another load"
+                )
+
     def _check_tables(self) -> None:
-        end = self.run.until.value if self.run.until.unit == "s" else 0.0
+        until, until_time = self.end
+        end = until if until_time else 0.0
         if self.motion is not None and isinstance(self.motion.speed, SpeedFile):
             _check_cover(self.motion.speed.file, 0.0, end, "the run")
         for load in self.torque:
             if load.table_over_time is None:
                 continue
             if load.until_speed is None and (load.after or 0.0) < end:
-                until = end if load.until is None else min(end, load.until)
+                last = end if load.until is None else min(end, load.until)
             else:
-                until = 0.0  # where it ends shows on the way
+                last = 0.0  # where it ends shows on the way
             what = "its window" if load.has_window else "the run"
             begin = load.after or 0.0
-            _check_cover(load.table_over_time, begin, max(begin, until), what)
+            _check_cover(load.table_over_time, begin, max(begin, last), what)
 
     def _check_size(self) -> None:
         """Refuse what no memory holds and what double precision cannot tell apart."""
-        until, until_time = self.run.until.resolve(self.period)
+        until, until_time = self.end
         if not until_time and until > _FARTHEST:
             raise InputError(
                 f"run.until: beyond {_FARTHEST / (2 * math.pi):.2g} rev an angle has too few "

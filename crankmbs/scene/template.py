@@ -63,7 +63,7 @@ coefficient = "2.4e-4 N m s^2"  # takes what the gas gives at 3000 rpm
 #speed = "3000 rpm"             # or {{ mean = ..., amplitude = ..., order = ... }}
 
 [run]
-until = "20 cycles"             # or "10 rev", "0.75 s"
+until = "20 cycles"             # or "10 rev", "0.75 s", "settled"
 #every = "0.5 deg"              # output spacing; default 1 deg
 """
 

@@ -7,7 +7,7 @@ from functools import partial
 
 from crankmbs.errors import CrankmbsError
 from crankmbs.motion.formulations import Formulation, serving
-from crankmbs.scene.scene import Scene
+from crankmbs.scene.scene import Extent, Scene
 from crankmbs.simulate import simulate
 from crankmbs.work_precision.contender import Answer, Contender, ContenderFailed
 from crankmbs.work_precision.reference import Reference
@@ -44,7 +44,9 @@ def formulations_of(scene: Scene, reference: Reference) -> tuple[Contender, ...]
 
 
 def _run(scene: Scene, name: str, end_only: bool, status: int, rtol: float) -> Answer:
-    run = replace(scene.run, every=scene.run.until) if end_only else scene.run
+    until, until_time = scene.end
+    whole = Extent(value=until, unit="s" if until_time else "rad")
+    run = replace(scene.run, every=whole) if end_only else scene.run
     try:
         result = simulate(replace(scene, run=run), formulation=name, rtol=rtol)
     except CrankmbsError as error:

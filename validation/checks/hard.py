@@ -85,6 +85,7 @@ def flat_memory(case: Case) -> Outcome:
     """Peak memory of the run over that of a run a tenth as long (every = "none")."""
     scene, name = case.ours(), case.word("formulation")
     until, long = scene.run.until, case.number("length")
+    assert isinstance(until, Extent)
     peaks = []
     for length in (0.1 * until.value, long * until.value):
         shorter = replace(scene.run, until=Extent(value=length, unit=until.unit))

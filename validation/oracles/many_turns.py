@@ -46,13 +46,15 @@ class _Stretch(NamedTuple):
 
 
 @dataclass(frozen=True)
-class _Turning:
+class Turning:
+    """What of a machine depends on the crank angle."""
+
     machine: Machine
 
     def stretch(self, edges: Array) -> _Stretch:
         """Panels between increasing angles [rad], none of them across a knot."""
         nodes, weights = (LONG.array(x) for x in legendre.leggauss(NODES))
-        inside = LONG.array(_antiderivatives().ravel()).reshape(NODES, NODES)
+        inside = LONG.array(antiderivatives().ravel()).reshape(NODES, NODES)
         half = np.diff(edges)[:, None] / 2
         theta = edges[:-1, None] + half * (1 + nodes)
         inertia = self.inertia(theta.ravel()).reshape(theta.shape)
@@ -103,7 +105,7 @@ def many_turns(machine: Machine, theta0: Number, omega0: Number, angles: Array) 
     loads = machine.loads
     if loads.viscous or loads.time_tables or loads.speed_tables or not omega0 > 0:
         raise ValueError("the loads must be constant or quadratic, and the speed above 0")
-    turning = _Turning(machine)
+    turning = Turning(machine)
     start, wanted = LONG.number(theta0), LONG.array(angles)
     period = LONG.whole_turns(machine.period)
     first = LONG.array([theta0])
@@ -150,7 +152,7 @@ def _running(panels: Array, inside: Array, weights: Array) -> tuple[Array, Array
     return ends[:-1, None] + panels @ inside.T, ends
 
 
-def _antiderivatives() -> Array:
+def antiderivatives() -> Array:
     """Row i times the values at the nodes is the integral from -1 to node i."""
     nodes, _ = legendre.leggauss(NODES)
     values = legendre.legvander(nodes, NODES)

@@ -69,7 +69,7 @@ def _loop(scene: Scene, grid: Grid, reference: Reference) -> Callable[[], Answer
     theta, omega = scene.start.angle, scene.start.speed
     sense = math.copysign(1.0, omega)
     branch = branch_of(scene.torque, 0.0, omega, rising=True)
-    until, until_time = scene.run.until.resolve(scene.period)
+    until, until_time = scene.end
     far = float(reference.trace.end().theta[0]) + sense * float(np.max(np.diff(grid.edges)))
     count = int(abs(far - theta) / float(grid.edges[-1]) * len(grid.edges)) + 2
     strip = grid.strip(theta, sense, count, far)

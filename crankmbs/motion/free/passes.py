@@ -7,7 +7,7 @@ rest and reversal. This is where the one hands over to the other.
 from __future__ import annotations
 
 import math
-from collections.abc import Generator
+from collections.abc import Callable, Generator
 from dataclasses import replace
 from functools import cache, partial
 from typing import NamedTuple
@@ -34,7 +34,9 @@ from crankmbs.motion.plan import Plan, plan_of
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.collocation import gauss
 
-__all__ = ["run"]
+__all__ = ["Begin", "Pass", "Way", "begin_at_start", "run", "travel"]
+
+Begin = Callable[[Grid, float], State]
 
 _PASSES = 12
 _VAIN = 8  # after as many vain hand-overs the crank must turn through a period before the next
@@ -51,7 +53,15 @@ _RESTING = {Ending.REST, Ending.SWING, Ending.COMPLETE}
 _BROKEN = (Ending.COSTLY, Ending.FAILED)
 
 
-class _Pass(NamedTuple):
+class Way(NamedTuple):
+    """What a pass follows: from where, sampled how, and the evaluations over time it may take."""
+
+    begin: Begin
+    plan: Plan
+    allowed: int
+
+
+class Pass(NamedTuple):
     """One pass over the whole motion.
 
     begin : the one sample at the start
@@ -68,26 +78,53 @@ class _Pass(NamedTuple):
     slow: list[float]
 
 
-def run(train: CrankTrain, rtol: float, cost_cap: float, *, by_angle: bool) -> Assembled:
+def begin_at_start(grid: Grid, _: float) -> State:
+    """The state in which the scene starts."""
+    start = grid.train.scene.start
+    assert start is not None
+    return State(0.0, start.angle, start.speed, 0.0, begun(grid.train.scene))
+
+
+def first_grid(train: CrankTrain, rtol: float) -> Grid:
+    """The coarsest grid, of the order that a tolerance asks for."""
+    return grid_of(train, gauss(min(3 + round(-math.log10(rtol) / 3.0), 7)))
+
+
+def evaluations(cost_cap: float) -> int:
+    """Evaluations over time that a cost cap [s] stands for."""
+    return int(min(cost_cap * _EVALUATIONS, 1e18))
+
+
+def run(
+    train: CrankTrain,
+    rtol: float,
+    cost_cap: float,
+    *,
+    by_angle: bool,
+    begin: Begin = begin_at_start,
+    local: float | None = None,
+) -> Assembled:
     """Solve a free motion to a relative global error, twice: the second pass is of higher order.
 
     by_angle : the crank angle is the variable wherever it can be; else time throughout
     cost_cap [s] : for which time is evaluated in either pass before it gives up, on a slow machine
+    begin : where either pass begins, by its grid and what it may err locally
+    local : what a step may err in the first attempt; None takes rtol
     """
-    allowed = int(min(cost_cap * _EVALUATIONS, 1e18))
-    stages = min(3 + round(-math.log10(rtol) / 3.0), 7)
-    grid = grid_of(train, gauss(stages))
+    way = Way(begin, plan_of(train.scene), evaluations(cost_cap))
+    grid = first_grid(train, rtol)
     best: Assembled | None = None
-    local, least, rounded = rtol, math.inf, False
+    least, rounded = math.inf, False
     finest = _FINEST if by_angle else 100.0 * _FINEST_STEP
+    local = rtol if local is None else max(local, finest)
     for left in reversed(range(_PASSES)):
-        answer = _travel(grid, local, allowed, by_angle=by_angle)
+        answer = travel(grid, way, local, by_angle=by_angle)
         parts = _parts(grid, answer.local, local)
         if left and parts.max() > 1 and len(grid.edges) < _MOST_CELLS:
             grid = grid.split(parts)
             continue
-        better = _travel(grid.finer, 1e-2 * local, allowed, by_angle=by_angle, first=answer)
-        solution = _solution(answer, better, plan_of(train.scene), allowed)
+        better = travel(grid.finer, way, 1e-2 * local, by_angle=by_angle, first=answer)
+        solution = _solution(answer, better, way.plan, way.allowed)
         assembled = assemble(train, solution)
         near = local <= 10.0 * finest
         estimate = assembled.relative_error * (2.0 if near else 1.0)
@@ -107,18 +144,17 @@ def run(train: CrankTrain, rtol: float, cost_cap: float, *, by_angle: bool) -> A
     return best
 
 
-def _travel(
-    grid: Grid, local: float, allowed: int, *, by_angle: bool, first: _Pass | None = None
-) -> _Pass:
+def travel(
+    grid: Grid, way: Way, local: float, *, by_angle: bool, first: Pass | None = None
+) -> Pass:
     """One pass from start to end, handing over between the formulations near rest; a second one
-    betters the ``first``. Over time it takes no more than the evaluations ``allowed``."""
-    scene = grid.train.scene
-    assert scene.start is not None
-    plan = plan_of(scene)
-    state = State(0.0, scene.start.angle, scene.start.speed, 0.0, begun(scene))
+    betters the ``first``."""
+    scene, plan = grid.train.scene, way.plan
+    state = way.begin(grid, local)
     steady = all(load.is_steady for load in scene.torque)
-    begin = first.begin if first else _first(grid, state)
-    path = Passage(plan, begin, can_swing=steady, allowed=allowed)
+    same = first is not None and first.begin.omega[0] == state.omega
+    begin = first.begin if first and same else _first(grid, state)
+    path = Passage(plan, begin, can_swing=steady, allowed=way.allowed)
     if first:  # it begins a rounding ahead: so the difference knows what the motion makes of one
         ahead = math.copysign(ANGLE_ROUNDING * state.theta, state.omega or float(begin.alpha[0]))
         state = state._replace(theta=state.theta + ahead)
@@ -129,7 +165,7 @@ def _travel(
     fast: list[tuple[float, float]] = []
     slow: list[float] = []
 
-    kinks = max(min(_KINKS * local, _MOST_MISSED[first is not None]), _FINEST_STEP)
+    kinks = max(min(_KINKS * local, _MOST_MISSED[grid.checks]), _FINEST_STEP)
     vain = 0  # hand-overs to the crank angle that did not carry the motion through a period
 
     def is_fast(at: State, branch: Branch) -> bool:
@@ -143,7 +179,7 @@ def _travel(
     while ending is None:
         at = path.state or state
         if over_time:
-            effort = minimal.Effort(tolerance, 2 if first else 1, path.left)
+            effort = minimal.Effort(tolerance, 2 if grid.checks else 1, path.left)
             slow.append(at.time)
             pieces = minimal.advance(reduced(), at, plan, effort, is_fast)
             ending = path.follow(pieces, over_time=True)
@@ -157,7 +193,7 @@ def _travel(
         over_time = not over_time
     if ending is Ending.COMPLETE and plan.folds_at((path.state or state).theta):
         ending = Ending.FOLD
-    return _Pass(begin, path.samples(), ending, path, worst, fast, slow if by_angle else [])
+    return Pass(begin, path.samples(), ending, path, worst, fast, slow if by_angle else [])
 
 
 def _noted(windows: Generator[Window, None, Ending | None], worst: Array) -> Pieces:
@@ -203,7 +239,7 @@ def _parts(grid: Grid, worst: Array, local: float) -> NDArray[np.intp]:
     return np.asarray(np.clip(np.nan_to_num(parts, nan=2.0), 1, 4), dtype=np.intp)
 
 
-def _solution(answer: _Pass, better: _Pass, plan: Plan, allowed: int) -> Solution:
+def _solution(answer: Pass, better: Pass, plan: Plan, allowed: int) -> Solution:
     path, endings = answer.path, {answer.ending, better.ending}
     ends = _RESTING if plan.until_time else _RESTING - {Ending.COMPLETE}
     both, in_time, reversals = (answer.samples, better.samples), plan.in_time, path.reversals

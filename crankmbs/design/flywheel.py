@@ -1,0 +1,269 @@
+"""The inertia of the crank that gives a wanted fluctuation of speed, on the settled cycle."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from numbers import Real
+from typing import NamedTuple
+
+import numpy as np
+from scipy.integrate import cumulative_simpson
+from scipy.optimize import brentq
+
+from crankmbs.errors import InputError, shown
+from crankmbs.measures import Estimate, Measures, measure
+from crankmbs.mechanics.inertia import inertia_alone
+from crankmbs.mechanics.torque import branch_of
+from crankmbs.mechanics.train import crank_train
+from crankmbs.motion.crank_angle.grid import grid_of
+from crankmbs.motion.crank_angle.periods import period_of
+from crankmbs.numerics.collocation import gauss
+from crankmbs.result import Result
+from crankmbs.scene.drives import Motion, Oscillation, Start
+from crankmbs.scene.loads import Constant
+from crankmbs.scene.scene import SETTLED, Extent, Run, Scene
+from crankmbs.simulate import simulate
+
+__all__ = ["Flywheel", "excess", "flywheel"]
+
+_CLOSE = 1e-7  # of the fluctuation: as near the target is on it
+_MOST = 40  # runs
+_WIDE = 1e4  # times the lecture's inertia: the search goes no farther
+_NARROW = 1e-6  # of the lecture's inertia: a crank so light is none
+_STAGES = 10
+
+
+@dataclass(frozen=True)
+class Flywheel:
+    """What a fluctuation of speed takes.
+
+    inertia [kg m2] : of the crank and all that turns with it, as ``crank.inertia``; its error is
+        what the fluctuation's is worth
+    added [kg m2] : of that beyond the scene's own
+    fluctuation, mean_speed [1, rad/s] : of the settled cycle with it
+    work [J] : W, greatest excess of work in a cycle at that constant speed
+    lecture [kg m2] : crank inertia by the lecture's J = W / (fluctuation omega^2), the mean of rods
+        and pistons taken off
+    result : the settled cycle with the inertia, or the last one tried
+    status, message : 0 found; 1 or -1 out of reach; and a sentence
+    """
+
+    inertia: Estimate
+    added: float
+    fluctuation: Estimate
+    mean_speed: Estimate
+    work: float
+    lecture: float
+    result: Result
+    status: int
+    message: str
+
+    @property
+    def lecture_error(self) -> float:
+        """Relative error of the lecture's inertia."""
+        return self.lecture / self.inertia.value - 1.0
+
+
+def flywheel(scene: Scene, fluctuation: float = 0.01) -> Flywheel:
+    """Find the crank inertia with which the settled speed fluctuates by so much.
+
+    The coefficient of fluctuation is (max - min) / mean speed over the settled cycle of the very
+    scene (`crankmbs.measures.measure`), met within 1e-7 of itself. Under loads the mean speed is
+    the one they settle at; a scene without a load is balanced with a constant one, and takes the
+    motion whose mean speed is start.speed or motion.speed.
+
+    Parameters
+    ----------
+    fluctuation : [1], above 0 and below 2
+
+    Returns
+    -------
+    Flywheel : status 0; 1 or -1 with a sentence where no inertia gives it
+
+    Raises
+    ------
+    InputError : no scene, no such fluctuation, a load under which nothing settles, a prescribed
+        speed without a mean
+
+    >>> found = flywheel(load_scene("yi_diesel_free"), 0.01)
+    >>> print(round(found.inertia.value, 3))
+    0.44
+    """
+    if not isinstance(scene, Scene):
+        raise InputError(f"scene must be a Scene, such as load_scene reads; {shown(scene)} came")
+    if (
+        isinstance(fluctuation, bool)
+        or not isinstance(fluctuation, Real)
+        or not 0.0 < fluctuation < 2.0
+    ):
+        raise InputError(
+            "fluctuation must be a number above 0 and below 2, such as 0.01 for 1 %; "
+            f"{shown(fluctuation)} came"
+        )
+    freed = _freed(scene)
+    search = _Search(freed, float(fluctuation), simulate if freed.torque else _balanced)
+    return search.found(scene.crank.moment_of_inertia)
+
+
+def excess(even: Result) -> tuple[float, float]:
+    """(W [J], J omega^2 [J]) of the lecture's formula, from a run of whole cycles at constant
+    speed: the range of the work that the rods do beyond its mean, twice the mean kinetic energy.
+
+    >>> excess(simulate(load_scene("yi_diesel")))[0] > 0.0
+    True
+    """
+    angle = even.data["crank_angle"].values
+    turned = np.abs(angle - angle[0])
+    work = cumulative_simpson(even.data["crank_torque"].values.sum(axis=1), x=turned, initial=0.0)
+    surplus = work - work[-1] * turned / turned[-1]
+    return float(np.ptp(surplus)), 2.0 * float(even.data["kinetic_energy"].values.mean())
+
+
+def _freed(scene: Scene) -> Scene:
+    """The scene with a free crank, for one settled cycle at 1 degree."""
+    run = Run(until=SETTLED, rtol=scene.run.rtol)
+    if scene.motion is None:
+        return replace(scene, run=run)
+    start = Start(angle=scene.motion.angle, speed=_mean(scene.motion))
+    crank = replace(scene.crank, inertia=scene.crank.moment_of_inertia or 1.0)  # any will do
+    return replace(scene, crank=crank, motion=None, start=start, run=run)
+
+
+def _mean(motion: Motion) -> float:
+    speed = motion.speed
+    mean = speed.mean if isinstance(speed, Oscillation) else speed
+    if not isinstance(mean, float) or mean == 0.0:
+        raise InputError(
+            "motion.speed: a flywheel needs one mean speed that is not 0, such as "
+            f'"3200 rpm"; {type(speed).__name__ if mean != 0.0 else "0"} came'
+        )
+    return mean
+
+
+def _balanced(scene: Scene) -> Result:
+    """The periodic motion under the constant load that balances gas and gravity.
+
+    Over the angle E = E_0 + (E - E_0)(theta), the same at every speed: E_0 is the one with which a
+    period takes as long as at the wanted mean speed.
+    """
+    assert scene.start is not None
+    start, period = scene.start, scene.settled_period
+    sense = math.copysign(1.0, start.speed)
+    grid = grid_of(crank_train(scene), gauss(_STAGES))
+    mean = float(np.diff(grid.edges) @ (grid.tables[1] @ grid.rule.weights)) / period
+    load = Constant(torque=-mean)
+    strip = grid.strip(start.angle, sense, len(grid.edges) + 1, start.angle + sense * period)
+    one = period_of(grid, strip, branch_of((load,), 0.0, 0.0, rising=True), sense)
+    inertia = float(grid.tables[0].max())
+    least, wanted = -float(one.shift.min()), period / abs(start.speed)
+
+    def late(above: float) -> float:
+        return float((1.0 / np.sqrt(least + above + one.shift)) @ one.weight) - wanted
+
+    most = 0.5 * inertia * start.speed**2 + float(np.ptp(one.shift))
+    above = float(brentq(late, 1e-12 * most, 2.0 * most, xtol=1e-300, rtol=1e-15))
+    at_start = 2.0 * (least + above) / float(inertia_alone(scene, start.angle))
+    moved = Start(angle=start.angle, speed=sense * math.sqrt(at_start))
+    run = replace(scene.run, until=Extent(value=period, unit="rad"))
+    return simulate(replace(scene, start=moved, torque=(load,), run=run))
+
+
+class _Trial(NamedTuple):
+    """A settled cycle with a crank inertia [kg m2]; its measures, None where it does not settle."""
+
+    inertia: float
+    result: Result
+    measures: Measures | None
+
+
+class _Search:
+    """The inertia with which a machine's settled speed fluctuates as wanted."""
+
+    def __init__(self, scene: Scene, wanted: float, settle: Callable[[Scene], Result]) -> None:
+        self._scene, self._wanted, self._settle = scene, wanted, settle
+
+    def found(self, own: float) -> Flywheel:
+        """What is found, beside the scene's own inertia [kg m2]."""
+        assert self._scene.start is not None
+        _, whole, rest = self._lecture(self._scene.start.speed)
+        floor = max(self._scene.crank.mass * self._scene.crank.center_of_mass**2, _NARROW * whole)
+        low, high = floor, _WIDE * whole
+        trial, before = self._tried(max(whole - rest, floor)), None
+        for _ in range(_MOST):
+            if trial.measures is None:
+                low, step = trial.inertia, math.inf
+            else:
+                found = trial.measures.fluctuation
+                off = found.value / self._wanted - 1.0
+                if abs(off) <= max(_CLOSE, found.error / found.value):
+                    return self._answer(trial, own, rest, off)
+                low, high = (trial.inertia, high) if off > 0.0 else (low, trial.inertia)
+                step = self._step(trial, before, rest)
+            if high <= floor or low >= _WIDE * whole:
+                break
+            after = trial.inertia + step
+            inside = low < after < high
+            near_floor = high < 4.0 * floor or after <= floor
+            other = after if inside else floor if near_floor else math.sqrt(low * high)
+            before, trial = trial if trial.measures else before, self._tried(other)
+        return self._answer(trial, own, rest, math.nan)
+
+    def _tried(self, inertia: float) -> _Trial:
+        crank = replace(self._scene.crank, inertia=inertia)
+        result = self._settle(replace(self._scene, crank=crank))
+        return _Trial(inertia, result, measure(result) if result.status == 0 else None)
+
+    def _step(self, trial: _Trial, before: _Trial | None, rest: float) -> float:
+        """To the inertia with the wanted fluctuation: 1 / fluctuation is nearly linear in it."""
+        assert trial.measures is not None
+        found = trial.measures.fluctuation.value
+        missing = 1.0 / self._wanted - 1.0 / found
+        if before is None or before.measures is None:
+            return missing * found * (trial.inertia + rest)
+        rise = 1.0 / found - 1.0 / before.measures.fluctuation.value
+        apart = trial.inertia - before.inertia
+        return missing * apart / rise if rise * apart > 0.0 else math.inf
+
+    def _lecture(self, speed: float) -> tuple[float, float, float]:
+        """W [J] at a constant speed [rad/s]; the inertia that the lecture finds, and the mean one
+        of rods and pistons in it [kg m2]."""
+        scene, inertia = self._scene, self._scene.crank.moment_of_inertia
+        assert scene.start is not None
+        run = replace(scene.run, until=Extent(value=scene.settled_period, unit="rad"))
+        motion = Motion(speed=speed, angle=scene.start.angle)
+        even = simulate(replace(scene, start=None, torque=(), motion=motion, run=run))
+        work, doubled = excess(even)
+        return work, work / (self._wanted * speed**2), doubled / speed**2 - inertia
+
+    def _answer(self, trial: _Trial, own: float, rest: float, off: float) -> Flywheel:
+        """The answer from the last trial; ``off`` its relative error, NaN where it is none."""
+        inertia, result, measures = trial
+        none = Estimate(math.nan, math.nan)
+        found = measures.fluctuation if measures else none
+        mean = measures.mean_speed if measures else none
+        error = (abs(off) + found.error / found.value) * (inertia + rest)
+        assert self._scene.start is not None
+        work, whole, rest = self._lecture(mean.value if measures else self._scene.start.speed)
+        status, said = 0, f"the speed fluctuates by {100.0 * self._wanted:.6g} % of its mean"
+        if math.isnan(off):
+            status = result.status or 1
+            said = (
+                f"out of reach: with {inertia:.4g} kg m^2 {result.message}"
+                if measures is None
+                else f"out of reach: even with {inertia:.4g} kg m^2, near the least that the crank "
+                f"can have, the speed fluctuates by {100.0 * found.value:.4g} % of its mean only"
+            )
+            inertia = math.nan
+        return Flywheel(
+            inertia=Estimate(inertia, error),
+            added=inertia - own,
+            fluctuation=found,
+            mean_speed=mean,
+            work=work,
+            lecture=whole - rest,
+            result=result,
+            status=status,
+            message=said,
+        )

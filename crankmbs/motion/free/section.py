@@ -1,0 +1,167 @@
+"""A free motion seen once a period, where it passes the angle of its start.
+
+There its kinetic energy and its sense are all of its state. In the crank angle the energy obeys one
+scalar equation, whose solutions do not cross: the energy after a period rises with the energy
+before it. So what a run comes to is the first fixed point in the direction in which its first
+period changes the energy, and no faster way to it may pass one by.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from crankmbs.mechanics.inertia import inertia_alone
+from crankmbs.mechanics.torque import branch_of, torque_at
+from crankmbs.mechanics.train import CrankTrain
+from crankmbs.motion.base import State
+from crankmbs.motion.crank_angle.grid import Grid
+from crankmbs.motion.crank_angle.periods import Period, period_of
+from crankmbs.motion.ending import Ending
+from crankmbs.motion.free.passes import Way, travel
+from crankmbs.motion.plan import plan_of
+
+__all__ = ["MOST_SHOTS", "LostError", "Section", "Shot", "Slope"]
+
+MOST_SHOTS = 400  # periods that are tried before the search is given up
+
+_SAMPLES = 36  # of a period, to see its least and its greatest speed
+_ANGLES = 721  # at which the inertia is looked at
+_SPEEDS = 65  # at which the slope of the loads is looked at, beside those of the rows of tables
+_BESIDE = 1e-7  # of a row: on either side of it
+_FLAT = 1e-6  # of the steepest slope: rounding
+_STEP = 1e-3  # of the energy: differences that tell the factor
+_FINE = 1e-13  # tolerance of a period for a difference
+_NOISE = 1e-11  # relative, of such a period
+_CLEAR = 0.05  # rad: an energy that the largest torque does not take within it is clear of rest
+
+
+class Shot(NamedTuple):
+    """A period: how it ends, COMPLETE where the crank has turned through it; energy [J] and sense
+    after it; least and greatest speed [rad/s], forwards or backwards; its duration [s]."""
+
+    ending: Ending
+    energy: float
+    sense: float
+    slow: float
+    fast: float
+    time: float
+
+
+class Slope(NamedTuple):
+    """Factor by which a small difference of energies grows in a period, its error, and the greatest
+    energy over this one."""
+
+    factor: float
+    error: float
+    swing: float
+
+
+class LostError(Exception):
+    """The run does not settle, for a reason."""
+
+    def __init__(self, ending: Ending) -> None:
+        super().__init__(ending)
+        self.ending = ending
+
+
+class Section:
+    """Periods of a crank train from the angle of its start.
+
+    by_angle : the crank angle is the variable wherever it can be; allowed : evaluations over time
+    """
+
+    def __init__(self, train: CrankTrain, allowed: int, *, by_angle: bool) -> None:
+        scene = train.scene
+        assert scene.start is not None
+        self.scene, self.start = scene, scene.start
+        self.inertia = float(inertia_alone(scene, scene.start.angle))
+        angles = np.linspace(0.0, scene.settled_period, _ANGLES)
+        inertia = inertia_alone(scene, angles)
+        self.least_inertia, self.most_inertia = float(inertia.min()), float(inertia.max())
+        every = scene.settled_period / _SAMPLES
+        over_speed = [load.parts.over_speed for load in scene.torque]
+        tables = [np.abs(part.knots) for part in over_speed if part is not None]
+        rows = np.concatenate([np.empty(0), *tables])
+        self._rows = np.concatenate([rows * (1.0 - _BESIDE), rows * (1.0 + _BESIDE)])
+        self._plan = replace(plan_of(scene), every=every, in_time=False, last=math.inf)
+        self._allowed, self._by_angle, self._shots = allowed, by_angle, 0
+
+    def state(self, energy: float, sense: float) -> State:
+        """The state that begins a period with this energy [J]."""
+        omega = sense * math.sqrt(2.0 * energy / self.inertia)
+        return State(0.0, self.start.angle, omega, 0.0)
+
+    def energy(self, state: State) -> float:
+        """Kinetic energy [J] of a state at the angle of the start."""
+        return 0.5 * self.inertia * state.omega**2
+
+    def shot(self, grid: Grid, local: float, state: State) -> Shot:
+        """The period that begins in a state, by steps of this tolerance.
+
+        Raises
+        ------
+        LostError : there have been too many
+        """
+        self._shots += 1
+        if self._shots > MOST_SHOTS:
+            raise LostError(Ending.WANDERS)
+        way = Way(lambda *_: state, self._plan, self._allowed)
+        found = travel(grid, way, local, by_angle=self._by_angle)
+        omega, speed = float(found.samples.omega[-1]), np.abs(found.samples.omega)
+        return Shot(
+            found.ending,
+            0.5 * self.inertia * omega**2,
+            math.copysign(1.0, omega),
+            float(speed.min()),
+            float(speed.max()),
+            float(found.samples.time[-1]),
+        )
+
+    def slope(self, grid: Grid, energy: float, sense: float) -> Slope:
+        """How a difference of energies changes in a period, by differences of two widths."""
+        high, low, higher, lower = (
+            self.shot(grid, _FINE, self.state(energy * (1.0 + n * _STEP), sense))
+            for n in (1, -1, 2, -2)
+        )
+        width = 2.0 * _STEP * energy
+        factor = (high.energy - low.energy) / width
+        wide = 0.5 * (higher.energy - lower.energy) / width
+        error = abs(wide - factor) + _NOISE / _STEP
+        most = max(high.fast**2 * self.most_inertia, 2.0 * energy)
+        return Slope(factor, error, 0.5 * most / energy)
+
+    def slopes(self, slow: float, fast: float, sense: float) -> tuple[float, float]:
+        """Least and greatest slope dT/domega [N m s] of the loads between two speeds [rad/s]; that
+        of a jump is steep."""
+        fast = max(fast, slow * (1.0 + 1e-6))
+        inside = self._rows[(self._rows > slow) & (self._rows < fast)]
+        speeds = np.geomspace(max(slow, 1e-6 * fast), fast, _SPEEDS)
+        omega = sense * np.unique(np.concatenate([speeds, inside]))
+        still = np.zeros_like(omega)
+        torque = torque_at(self.scene.torque, still, still, omega)
+        slope = np.diff(torque) / np.diff(omega)
+        least, most = float(slope.min()), float(slope.max())
+        return least, most if most > _FLAT * abs(least) else min(most, 0.0)
+
+    def closed_form(self, grid: Grid, sense: float) -> Period | None:
+        """The affine map of a period, where loads are such that there is one at every speed."""
+        branch = branch_of(self.scene.torque, 0.0, 0.0, rising=sense > 0.0)
+        bounds = (branch.omega_low, branch.omega_high)
+        if not branch.is_affine_in_energy or any(0.0 < sense * b < math.inf for b in bounds):
+            return None
+        if not self._by_angle or any(map(math.isfinite, self._plan.folds)):
+            return None
+        period, theta = self.scene.settled_period, self.start.angle
+        count = round(period / float(grid.edges[-1]) * (len(grid.edges) - 1)) + 2
+        strip = grid.strip(theta, sense, count, theta + sense * period)
+        return period_of(grid, strip, branch, sense)
+
+    def turns(self, grid: Grid, one: Period, energy: float, sense: float) -> bool:
+        """Whether the period that begins with this energy [J] stays clear of rest."""
+        branch = branch_of(self.scene.torque, 0.0, 0.0, rising=sense > 0.0)
+        torque = float(grid.scale.max()) + abs(branch.c0)
+        return bool(np.min(one.gain * energy + one.shift) > _CLEAR * torque)

@@ -1,0 +1,113 @@
+"""What a free run settles to: the periodic motion that it comes to from its start, if any.
+
+The fixed point of the energy over a period is sought once, coarsely, from the start on; then found
+again on the grid of either pass. So its error, and what 1 / (1 - factor) makes of it, is in the
+difference of the passes like any other.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from crankmbs.mechanics.train import CrankTrain
+from crankmbs.motion.assemble import Assembled
+from crankmbs.motion.base import Decay, State
+from crankmbs.motion.crank_angle.grid import Grid
+from crankmbs.motion.ending import Ending
+from crankmbs.motion.free import passes
+from crankmbs.motion.free.search import Limit, search
+from crankmbs.motion.free.section import MOST_SHOTS, LostError, Section
+
+__all__ = ["run"]
+
+_EPS = float(np.finfo(float).eps)
+_ROUNDING = 4 * _EPS  # of the energy, that a period rounds
+_POLISHES = 8
+
+
+def run(train: CrankTrain, rtol: float, cost_cap: float, *, by_angle: bool) -> Assembled:
+    """Solve a free motion, or the periodic motion that it settles to where that is asked for.
+
+    Parameters are those of `crankmbs.motion.free.passes.run`.
+    """
+    if not train.scene.settles:
+        return passes.run(train, rtol, cost_cap, by_angle=by_angle)
+    section = Section(train, passes.evaluations(cost_cap), by_angle=by_angle)
+    try:
+        limit = search(section, passes.first_grid(train, rtol))
+        settling, local = _Settling(section, limit), rtol * min(limit.damping, 1.0)
+        found = passes.run(
+            train, rtol, cost_cap, by_angle=by_angle, begin=settling.begin, local=local
+        )
+        decay = settling.decay()
+    except LostError as lost:
+        found = passes.run(train, rtol, cost_cap, by_angle=by_angle)
+        return found if found.solution.status != 0 else _said(found, lost.ending)
+    return found if found.solution.status != 0 else _settled(found, decay)
+
+
+def _said(found: Assembled, ending: Ending) -> Assembled:
+    """The period from the start, with the reason why nothing settles."""
+    samples = found.solution.samples
+    at = float(samples.theta[-1]), float(samples.omega[-1])
+    status, message = ending.said(*at, shots=MOST_SHOTS)
+    return found._replace(solution=replace(found.solution, status=status, message=message))
+
+
+def _settled(found: Assembled, decay: Decay) -> Assembled:
+    """The settled period, with what it leaves of a disturbance."""
+    _, mark, short = found.solution.message.partition(";")
+    message = f"settled: a period leaves {decay.factor:.4g} of a disturbance{mark}{short}"
+    return found._replace(solution=replace(found.solution, message=message, decay=decay))
+
+
+class _Settling:
+    """A limit on the grids of the passes."""
+
+    def __init__(self, section: Section, limit: Limit) -> None:
+        self._section, self._limit = section, limit
+        self._seen: list[tuple[Grid, float]] = []  # grids and energies of the passes
+
+    def begin(self, grid: Grid, local: float) -> State:
+        """Where the settled period begins on a grid, by periods with this tolerance; on one that
+        checks another away from where it does there, by what rounding may make of it."""
+        section, limit = self._section, self._limit
+        one = section.closed_form(grid, limit.sense) if limit.affine else None
+        energy = self._polished(grid, local) if one is None else -one.rise / one.growth
+        if grid.checks and self._seen:
+            more = _ROUNDING * limit.swing / limit.damping * energy
+            energy += math.copysign(more, energy - self._seen[-1][1])
+        self._seen.append((grid, energy))
+        return section.state(energy, limit.sense)
+
+    def decay(self) -> Decay:
+        """The factor by which a disturbance changes in a period, and its error: what it differs by
+        between the grids of both passes besides."""
+        (factor, _), (other, error) = (self._factor(*seen) for seen in self._seen[-2:])
+        return Decay(other, error + abs(other - factor))
+
+    def _factor(self, grid: Grid, energy: float) -> tuple[float, float]:
+        section, limit = self._section, self._limit
+        one = section.closed_form(grid, limit.sense) if limit.affine else None
+        if one is not None:
+            return 1.0 + one.growth, _ROUNDING
+        return section.slope(grid, energy, limit.sense)[:2]
+
+    def _polished(self, grid: Grid, local: float) -> float:
+        """The fixed point on a grid, from the one before."""
+        section, limit, before = self._section, self._limit, math.inf
+        energy = self._seen[-1][1] if self._seen else limit.energy
+        for _ in range(_POLISHES):
+            shot = section.shot(grid, local, section.state(energy, limit.sense))
+            if shot.ending is not Ending.COMPLETE:
+                raise LostError(shot.ending)
+            step = (shot.energy - energy) / limit.damping
+            if abs(step) > 0.5 * before:
+                break  # nothing but what the periods err
+            energy, before = energy + step, abs(step)
+            if before <= _EPS * energy:
+                break
+        return energy

@@ -1,0 +1,111 @@
+"""The flywheel for a fluctuation: met on the settled cycle, or the sentence why not."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from command_line import crankmbs_, refused
+
+from crankmbs import (
+    InputError,
+    Motion,
+    Oscillation,
+    Quadratic,
+    Ramp,
+    Run,
+    Start,
+    flywheel,
+    load_scene,
+    simulate,
+)
+from crankmbs.measures import measure
+
+DIESEL, ONE = load_scene("yi_diesel_free"), load_scene("yi_diesel")
+
+
+@pytest.mark.parametrize("wanted", [0.002, 0.01, 0.08])
+def test_the_settled_cycle_with_it_fluctuates_as_wanted(wanted):
+    found = flywheel(DIESEL, wanted)
+    assert found.status == 0
+    crank = replace(DIESEL.crank, inertia=found.inertia.value)
+    result = simulate(replace(DIESEL, crank=crank, run=Run(until="settled", every="0.25 deg")))
+    speed = result.data.crank_speed.values
+    mean = 4.0 * np.pi / float(result.data.time[-1])
+    assert np.ptp(speed) / mean == pytest.approx(wanted, rel=1e-5)
+    assert found.added == found.inertia.value - 0.15
+    assert abs(found.lecture_error) < 0.01
+    assert found.lecture == pytest.approx(found.inertia.value, rel=0.01)
+
+
+def test_its_error_is_honest():
+    rough, fine = (flywheel(replace(DIESEL, run=Run(until="1 s", rtol=r))) for r in (1e-5, 1e-11))
+    apart = abs(rough.inertia.value - fine.inertia.value)
+    assert apart <= 2.0 * (rough.inertia.error + fine.inertia.error)
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        ONE,
+        replace(ONE, motion=Motion(speed=Oscillation(mean="3200 rpm", amplitude=5.0, order=2))),
+        replace(DIESEL, torque=(), start=Start(angle=1.0, speed="-3200 rpm")),
+    ],
+    ids=["motion", "oscillation", "free"],
+)
+def test_without_a_load_the_mean_is_the_one_given(scene):
+    found = flywheel(scene, 0.01)
+    assert found.status == 0
+    (balance,) = found.result.scene.torque
+    assert balance.torque != 0.0
+    assert abs(found.mean_speed.value) == pytest.approx(3200.0 * np.pi / 30.0, rel=1e-9)
+    gain = measure(found.result).speed_gain
+    assert abs(gain.value) <= gain.error
+
+
+def test_what_no_inertia_gives_is_said():
+    light = flywheel(DIESEL, 1.5)
+    assert light.status == 1
+    assert "near the least that the crank can have" in light.message
+    assert np.isnan(light.inertia.value)
+    away = flywheel(replace(DIESEL, torque=(Quadratic(coefficient=0.0),)), 0.01)
+    assert away.status == 1
+    assert "speed grows without bound" in away.message
+
+
+@pytest.mark.parametrize("wanted", [0.0, 2.0, -1.0, True, "1 %", float("nan")])
+def test_a_fluctuation_that_cannot_be_is_refused(wanted):
+    with pytest.raises(InputError, match="fluctuation must be a number above 0 and below 2"):
+        flywheel(DIESEL, wanted)
+
+
+def test_a_scene_that_cannot_be_is_refused():
+    with pytest.raises(InputError, match="scene must be a Scene"):
+        flywheel("yi_diesel_free", 0.01)
+    ramp = Motion(speed=Ramp(start=0.0, to=9.0, over=1.0))
+    with pytest.raises(InputError, match="needs one mean speed that is not 0"):
+        flywheel(replace(ONE, motion=ramp), 0.01)
+
+
+def test_the_command():
+    shown = crankmbs_("flywheel", "yi_diesel_free", "--fluctuation", "1 %")
+    assert shown.exit_code == 0, shown.output
+    assert "inertia of crank and flywheel [kg m^2]                      0.439724" in shown.output
+    assert "which is off by [%]                                           0.0859" in shown.output
+    balanced = crankmbs_("flywheel", "yi_diesel")
+    assert "a constant -21.8274 N m balances gas and gravity" in balanced.output
+    far = crankmbs_("flywheel", "yi_diesel_free", "--fluctuation", "150 %")
+    assert far.exit_code == 3
+    assert "out of reach" in far.output
+    for wanted in ("much", "-1 %", "300 %"):
+        said = refused("flywheel", "yi_diesel_free", "--fluctuation", wanted)
+        assert said.startswith("--fluctuation: must be a share of the mean speed")
+
+
+def test_a_settled_run_is_confirmed(tmp_path):
+    shown = crankmbs_(
+        "run", "propeller", "--until", "settled", "--confirm", "--every", "10 deg",
+        "--no-figures", "--out", str(tmp_path),
+    )  # fmt: skip
+    assert shown.exit_code == 0, shown.output
+    assert "settled: a period leaves 0.9042 of a disturbance" in shown.output
+    assert "every difference lies within the sum of both stated errors" in shown.output
