@@ -34,7 +34,7 @@ from crankmbs.motion.plan import Plan, plan_of
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.collocation import gauss
 
-__all__ = ["Begin", "Pass", "Way", "begin_at_start", "run", "travel"]
+__all__ = ["Begin", "Lead", "Pass", "Way", "begin_at_start", "run", "travel"]
 
 Begin = Callable[[Grid, float], State]
 
@@ -51,6 +51,15 @@ _FINEST_STEP = 1e-15  # the same over time
 # what a pass may say that has not seen yet, or by its errors never, that the crank is at rest
 _RESTING = {Ending.REST, Ending.SWING, Ending.COMPLETE}
 _BROKEN = (Ending.COSTLY, Ending.FAILED)
+
+
+class Lead(NamedTuple):
+    """How a solution sets out: the first grid, what a step on it may err, and where either pass
+    begins, by its grid and what it may err locally."""
+
+    grid: Grid
+    local: float
+    begin: Begin
 
 
 class Way(NamedTuple):
@@ -101,22 +110,20 @@ def run(
     cost_cap: float,
     *,
     by_angle: bool,
-    begin: Begin = begin_at_start,
-    local: float | None = None,
+    lead: Lead | None = None,
 ) -> Assembled:
     """Solve a free motion to a relative global error, twice: the second pass is of higher order.
 
     by_angle : the crank angle is the variable wherever it can be; else time throughout
     cost_cap [s] : for which time is evaluated in either pass before it gives up, on a slow machine
-    begin : where either pass begins, by its grid and what it may err locally
-    local : what a step may err in the first attempt; None takes rtol
+    lead : of a motion that does not begin at the start
     """
+    grid, local, begin = lead or Lead(first_grid(train, rtol), rtol, begin_at_start)
     way = Way(begin, plan_of(train.scene), evaluations(cost_cap))
-    grid = first_grid(train, rtol)
     best: Assembled | None = None
     least, rounded = math.inf, False
     finest = _FINEST if by_angle else 100.0 * _FINEST_STEP
-    local = rtol if local is None else max(local, finest)
+    local = max(local, finest)
     for left in reversed(range(_PASSES)):
         answer = travel(grid, way, local, by_angle=by_angle)
         parts = _parts(grid, answer.local, local)

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -23,6 +24,7 @@ from crankmbs.motion.crank_angle.periods import Period, period_of
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.free.passes import Way, travel
 from crankmbs.motion.plan import plan_of
+from crankmbs.numerics.arrays import Array
 
 __all__ = ["MOST_SHOTS", "LostError", "Section", "Shot", "Slope"]
 
@@ -79,9 +81,6 @@ class Section:
         assert scene.start is not None
         self.scene, self.start = scene, scene.start
         self.inertia = float(inertia_alone(scene, scene.start.angle))
-        angles = np.linspace(0.0, scene.settled_period, _ANGLES)
-        inertia = inertia_alone(scene, angles)
-        self.least_inertia, self.most_inertia = float(inertia.min()), float(inertia.max())
         every = scene.settled_period / _SAMPLES
         over_speed = [load.parts.over_speed for load in scene.torque]
         tables = [np.abs(part.knots) for part in over_speed if part is not None]
@@ -89,6 +88,21 @@ class Section:
         self._rows = np.concatenate([rows * (1.0 - _BESIDE), rows * (1.0 + _BESIDE)])
         self._plan = replace(plan_of(scene), every=every, in_time=False, last=math.inf)
         self._allowed, self._by_angle, self._shots = allowed, by_angle, 0
+
+    @cached_property
+    def _inertias(self) -> Array:
+        angles = np.linspace(0.0, self.scene.settled_period, _ANGLES)
+        return np.asarray(inertia_alone(self.scene, angles))
+
+    @property
+    def least_inertia(self) -> float:
+        """The smallest J [kg m2] of a period."""
+        return float(self._inertias.min())
+
+    @property
+    def most_inertia(self) -> float:
+        """The largest J [kg m2] of a period."""
+        return float(self._inertias.max())
 
     def state(self, energy: float, sense: float) -> State:
         """The state that begins a period with this energy [J]."""

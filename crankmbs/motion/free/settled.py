@@ -16,6 +16,7 @@ from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion.assemble import Assembled
 from crankmbs.motion.base import Decay, State
 from crankmbs.motion.crank_angle.grid import Grid
+from crankmbs.motion.crank_angle.periods import Period
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.free import passes
 from crankmbs.motion.free.search import Limit, search
@@ -37,11 +38,11 @@ def run(train: CrankTrain, rtol: float, cost_cap: float, *, by_angle: bool) -> A
         return passes.run(train, rtol, cost_cap, by_angle=by_angle)
     section = Section(train, passes.evaluations(cost_cap), by_angle=by_angle)
     try:
-        limit = search(section, passes.first_grid(train, rtol))
-        settling, local = _Settling(section, limit), rtol * min(limit.damping, 1.0)
-        found = passes.run(
-            train, rtol, cost_cap, by_angle=by_angle, begin=settling.begin, local=local
-        )
+        grid = passes.first_grid(train, rtol)
+        limit = search(section, grid)
+        settling = _Settling(section, limit)
+        lead = passes.Lead(grid, rtol * min(limit.damping, 1.0), settling.begin)
+        found = passes.run(train, rtol, cost_cap, by_angle=by_angle, lead=lead)
         decay = settling.decay()
     except LostError as lost:
         found = passes.run(train, rtol, cost_cap, by_angle=by_angle)
@@ -69,7 +70,8 @@ class _Settling:
 
     def __init__(self, section: Section, limit: Limit) -> None:
         self._section, self._limit = section, limit
-        self._seen: list[tuple[Grid, float]] = []  # grids and energies of the passes
+        # grids, energies and closed forms of the passes
+        self._seen: list[tuple[Grid, float, Period | None]] = []
 
     def begin(self, grid: Grid, local: float) -> State:
         """Where the settled period begins on a grid, by periods with this tolerance; on one that
@@ -80,7 +82,7 @@ class _Settling:
         if grid.checks and self._seen:
             more = _ROUNDING * limit.swing / limit.damping * energy
             energy += math.copysign(more, energy - self._seen[-1][1])
-        self._seen.append((grid, energy))
+        self._seen.append((grid, energy, one))
         return section.state(energy, limit.sense)
 
     def decay(self) -> Decay:
@@ -89,12 +91,10 @@ class _Settling:
         (factor, _), (other, error) = (self._factor(*seen) for seen in self._seen[-2:])
         return Decay(other, error + abs(other - factor))
 
-    def _factor(self, grid: Grid, energy: float) -> tuple[float, float]:
-        section, limit = self._section, self._limit
-        one = section.closed_form(grid, limit.sense) if limit.affine else None
+    def _factor(self, grid: Grid, energy: float, one: Period | None) -> tuple[float, float]:
         if one is not None:
             return 1.0 + one.growth, _ROUNDING
-        return section.slope(grid, energy, limit.sense)[:2]
+        return self._section.slope(grid, energy, self._limit.sense)[:2]
 
     def _polished(self, grid: Grid, local: float) -> float:
         """The fixed point on a grid, from the one before."""
