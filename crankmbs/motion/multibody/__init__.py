@@ -17,8 +17,9 @@ over jumps as they are, with the last change stated, the relative error under th
     a load that jumps with the speed     3.0e-6       2.7e-2
     a prescribed speed with corners      1.0e-5       4.2e-2
 
-Backwards over a step the true error is then up to five times the stated one, as two runs err on
-the same side; and a speed held by a jump is not seen as held. The other scenes change little.
+From jump to jump the true error is then up to five times the stated one, backwards from one twice,
+as two runs err on the same side; and a speed held by a jump is not seen as held. The other scenes
+change little.
 """
 
 from __future__ import annotations
