@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 
 from crankmbs.figures.style import COLOURS, STYLE, footer, legend, panels
 from crankmbs.measures import EngineOrders
+from crankmbs.mechanics.peaks import negligible
 from crankmbs.result import Result
 
 __all__ = ["orders_figure"]
@@ -17,9 +18,13 @@ _WIDTH = 0.18
 
 @rc_context(STYLE)
 def orders_figure(result: Result, found: EngineOrders) -> Figure:
-    """One panel a quantity: amplitudes of the run, and of inertia at constant speed."""
-    figure, axes = panels(len(found.rows), 1, 10.0, 2.6 * len(found.rows))
-    for ax, row in zip(axes, found.rows, strict=True):
+    """One panel a quantity that is more than rounding: amplitudes of the run, and of inertia at
+    constant speed."""
+    largest = {row.quantity: float(np.max(row.orders.amplitude)) for row in found.rows}
+    zero = negligible(largest, {row.quantity: row.units for row in found.rows})
+    rows = [row for row in found.rows if row.quantity not in zero]
+    figure, axes = panels(len(rows), 1, 10.0, 2.6 * len(rows))
+    for ax, row in zip(axes, rows, strict=True):
         order = row.orders.order
         ax.bar(order - 0.5 * _WIDTH, row.orders.amplitude, _WIDTH, color=COLOURS[0], label="run")
         if row.closed is not None:
@@ -31,5 +36,6 @@ def orders_figure(result: Result, found: EngineOrders) -> Figure:
     axes[-1].set_xlabel("order [1/revolution]")
     legend(figure, axes[-1])
     figure.align_ylabels(axes)
-    footer(figure, result, "orders over the last cycle")
+    nothing = f"; {', '.join(sorted(zero))}: none" if zero else ""
+    footer(figure, result, f"orders over the last cycle{nothing}")
     return figure
