@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from crankmbs.mechanics.variables import SUMS
 from crankmbs.result import Result
 from crankmbs.scene.drives import Motion, Oscillation, Ramp, Start
 from crankmbs.scene.parts import Cylinder, Gravity, Layout
@@ -120,7 +121,8 @@ def test_every_error_is_honest_and_no_idle_caution(name: str, results: dict[str,
     for variable, (true, stated, peak) in errors.items():
         rounded = 1e-13  # the oracle rounds, too
         assert true <= 2.0 * stated + rounded, variable
-        if name != "swings back":  # where the next term of the error happens to be small, too
+        calm = variable not in SUMS and name != "swings back"  # the next term may be small, too
+        if calm:
             assert stated <= 100.0 * true or true <= 1e-12 * peak + rounded, variable
 
 

@@ -50,7 +50,7 @@ def free(monkeypatch):
 
 
 REVOLUTION = dataclasses.replace(load_scene("coasting"), run=Run(until="1 rev", rtol=1e-4))
-OF_ONE = 10 * 8 * 365 * 22  # bytes: at most ten times what is stored, of 22 variables
+OF_ONE = 10 * 8 * 365 * 29  # bytes: at most ten times what is stored, of 29 variables
 
 
 def test_a_run_that_fits_into_memory_runs_and_a_longer_one_does_not(free):
@@ -60,17 +60,17 @@ def test_a_run_that_fits_into_memory_runs_and_a_longer_one_does_not(free):
     with pytest.raises(InputError) as caught:
         simulate(longer)
     assert str(caught.value) == (
-        "run.every: 720 samples of 22 numbers each came, which take up to 0.00127 GB, and "
-        '0.000642 GB are free; give a wider spacing, or every = "none" to keep the last cycle alone'
+        "run.every: 720 samples of 29 numbers each came, which take up to 0.00167 GB, and "
+        '0.000847 GB are free; give a wider spacing, or every = "none" to keep the last cycle alone'
     )
 
 
 def test_every_cylinder_takes_its_memory(free):
     four = dataclasses.replace(REVOLUTION, layout=Layout(firing_order=(1, 3, 4, 2)))
-    free(3 * OF_ONE)  # 61 numbers: 2.8 times as many
+    free(3 * OF_ONE)  # 80 numbers: 2.8 times as many
     assert simulate(four).status == 0
     free(2 * OF_ONE)
-    with pytest.raises(InputError, match="360 samples of 61 numbers each came"):
+    with pytest.raises(InputError, match="360 samples of 80 numbers each came"):
         simulate(four)
 
 
@@ -78,7 +78,7 @@ def test_every_cylinder_takes_its_memory(free):
 def test_samples_whose_number_is_not_known_before_are_counted(free, formulation):
     scene = dataclasses.replace(REVOLUTION, run=Run(until="0.5 s", rtol=1e-4))
     free(OF_ONE)
-    with pytest.raises(InputError, match=r"run\.every: \S+ samples of 22 numbers each came"):
+    with pytest.raises(InputError, match=r"run\.every: \S+ samples of 29 numbers each came"):
         simulate(scene, formulation=formulation)
     last = dataclasses.replace(scene, run=Run(until="0.5 s", every="none", rtol=1e-4))
     free(20 * OF_ONE)  # a piece of the motion is sampled whole
@@ -89,5 +89,5 @@ def test_too_little_memory_is_said_before_the_run_and_leaves_nothing(free, tmp_p
     monkeypatch.chdir(tmp_path)
     free(1)
     message = refused("run", "coasting", "--until", "1 rev")
-    assert message.startswith("run.every: 360 samples of 22 numbers each came")
+    assert message.startswith("run.every: 360 samples of 29 numbers each came")
     assert names(".") == set()

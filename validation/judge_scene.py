@@ -94,6 +94,8 @@ def _judge(scene: Scene, formulation: str, paths: list[Path]) -> tuple[float | N
     floors = {name: _FLOOR * scale for name, scale in scales(peaks).items()}
     rounded = _ROUNDED * float(np.max(motion.omega**2))
     floors["crank_acceleration"] = max(floors["crank_acceleration"], rounded)
+    turned = scene.crank.moment_of_inertia * rounded
+    floors["frame_moment"] = max(floors["frame_moment"], turned)
     worst, said = 0.0, "every error is zero"
     for name, error in true.items():
         stated = float(result.data[name].attrs["error_estimate"])

@@ -76,10 +76,12 @@ def _source(value: Any, info: ValidationInfo) -> float | Table | Columns | tuple
         if not value:
             raise InputError("must name a file for each cylinder; an empty list came")
         return tuple(_one_file(each, info) for each in value)
-    if isinstance(value, str) and _NUMBER.match(value) and not _FILE_NAME.fullmatch(value):
-        return to_si(value, "pressure", info)
-    if isinstance(value, Real) and not isinstance(value, bool):
-        return to_si(value, "pressure", info)
+    text = isinstance(value, str) and _NUMBER.match(value) and not _FILE_NAME.fullmatch(value)
+    if text or (isinstance(value, Real) and not isinstance(value, bool)):
+        pressure = to_si(value, "pressure", info)
+        if not math.isfinite(pressure):
+            raise InputError(f"must be a finite number; {shown(value)} came")
+        return pressure
     return _table(value, info)
 
 

@@ -11,24 +11,21 @@ from scipy.interpolate import CubicHermiteSpline
 from crankmbs.design.flywheel import flywheel
 from crankmbs.result import Result
 from crankmbs.scene.scene import Scene
-from crankmbs.simulate import simulate
 from validation.adapter import machine_of
-from validation.case import Case, shifted
+from validation.case import Case
 from validation.checks.honest import scales, true_errors
 from validation.judge import Outcome
 from validation.oracles.free_motion import Motion
 from validation.oracles.many_turns import many_turns
 from validation.oracles.settled import settled_motion
-from validation.random_settled import random_settled
 from validation.runs import run
 
-__all__ = ["fluctuation", "long_run", "random_scenes", "stated_errors", "stated_ratio"]
+__all__ = ["fluctuation", "long_run", "stated_errors", "stated_ratio"]
 
 _LEFT = 1e-14  # of a disturbance, after so many cycles
 _FLOOR = 2e-11  # of the peak of what has the same unit: there no statement is asked for
 _FACTOR = 1e-11  # the oracle's own error of the factor
 _RANDOM = 2.0  # the true error may be this many times the stated one
-_UNSETTLED = 0.1  # of the random scenes: a table's held ends may be overrun, a crank stall
 _FINE = math.radians(0.5)
 
 
@@ -55,27 +52,6 @@ def stated_errors(case: Case) -> Outcome:
     result = run(case.ours(), case.word("formulation"))
     ratio, what = stated_ratio(result, case.theirs())
     return Outcome(ratio / _RANDOM, what)
-
-
-def random_scenes(case: Case) -> Outcome:
-    """The worst true over stated error of so many random scenes, in each formulation."""
-    first, count = int(case.number("first")), int(case.number("count"))
-    worst, what, unsettled, judged = 0.0, "", 0, 0
-    for seed in range(first, first + count):
-        scene = random_settled(seed)
-        ours = shifted(scene, "crank.inertia", lambda value: value * case.number("inertia"))
-        for formulation in case.parameters["formulations"]:
-            result = simulate(ours, formulation=formulation)
-            if result.status != 0:
-                unsettled += 1
-                continue
-            judged += 1
-            ratio, said = stated_ratio(result, scene)
-            if ratio > worst:
-                worst, what = ratio, f"seed {seed}, {formulation}: {said}"
-    if unsettled > _UNSETTLED * (judged + unsettled):
-        worst = math.inf
-    return Outcome(worst, f"{what}; {judged} judged, {unsettled} do not settle")
 
 
 def fluctuation(case: Case) -> Outcome:
