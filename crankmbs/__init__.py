@@ -19,12 +19,14 @@ from crankmbs.measures import EngineOrders, Orders, engine_orders, orders
 from crankmbs.motion.base import Decay
 from crankmbs.result import Cost, Error, Result
 from crankmbs.scene.drives import Motion, Oscillation, Ramp, SpeedFile, Start
-from crankmbs.scene.gas import Gas, Indicator
+from crankmbs.scene.fuel import Fuel, Governor, Misfire
+from crankmbs.scene.gas import Gas, Indicator, Polytrope
 from crankmbs.scene.loads import AngleTable, Constant, Quadratic, SpeedTable, TimeTable, Viscous
 from crankmbs.scene.parts import Crank, Cylinder, Gravity, Layout, Piston, Rod
+from crankmbs.scene.python_load import Load
 from crankmbs.scene.read import load_scene, shipped_scenes
 from crankmbs.scene.scene import Extent, Run, Scene
-from crankmbs.scene.tables import Columns, Table
+from crankmbs.scene.tables import CylinderTable, Table
 from crankmbs.simulate import simulate
 
 __all__ = [
@@ -33,29 +35,34 @@ __all__ = [
     "Balance",
     "Budget",
     "Choice",
-    "Columns",
     "Comparison",
     "Constant",
     "Cost",
     "Crank",
     "CrankmbsError",
     "Cylinder",
+    "CylinderTable",
     "Decay",
     "EngineOrders",
     "Error",
     "Extent",
     "Flywheel",
     "FormulationError",
+    "Fuel",
     "Gas",
+    "Governor",
     "Gravity",
     "Indicator",
     "InputError",
     "Layout",
+    "Load",
+    "Misfire",
     "Motion",
     "Orders",
     "Oscillation",
     "OutputError",
     "Piston",
+    "Polytrope",
     "Quadratic",
     "Ramp",
     "Reading",

@@ -167,7 +167,11 @@ def _check_labels(data: xr.Dataset, scene: Scene) -> None:
         raise ValueError("not the samples of this scene")
     for name, about in variables_of(scene).items():
         attrs = data[name].attrs
-        if attrs["units"] != about.units or not isinstance(attrs["error_estimate"], float):
+        if (
+            data[name].dims != about.dims
+            or attrs["units"] != about.units
+            or not isinstance(attrs["error_estimate"], float)
+        ):
             raise ValueError(f"{name}: no unit or no error")
 
 

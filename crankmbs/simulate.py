@@ -9,6 +9,8 @@ from crankmbs.errors import InputError, shown
 from crankmbs.mechanics.pressure import remarks
 from crankmbs.mechanics.train import crank_train
 from crankmbs.motion.assemble import dataset
+from crankmbs.motion.base import Solution
+from crankmbs.numerics.function import Function
 from crankmbs.result import Cost, Error, Result
 from crankmbs.scene.scene import Scene
 
@@ -50,6 +52,7 @@ def simulate(
         raise InputError(f"rtol must be from 1e-13 to 1e-2; {rtol!r} came")
     if not cost_cap > 0.0:
         raise InputError(f"cost_cap must be a time above 0 s; {cost_cap!r} came")
+    functions = _functions(scene)
     begin = clock.perf_counter()
     choice = choose(scene, formulation or scene.run.formulation)
     one = chosen(choice)
@@ -62,8 +65,30 @@ def simulate(
         formulation=choice.formulation,
         reasons=choice.reasons + remarks(scene) + solution.reasons,
         status=solution.status,
-        message=solution.message,
+        message=_why(solution, functions),
         cost=Cost(clock.perf_counter() - begin, solution.evaluations, solution.steps),
         error=Error(asked, assembled.relative_error),
         decay=solution.decay,
     )
+
+
+def _functions(scene: Scene) -> list[tuple[int, Function]]:
+    """The functions among the loads, each with its number, none of which has failed yet."""
+    found = []
+    for number, load in enumerate(scene.torque, start=1):
+        try:
+            load.check_runs()
+        except InputError as error:
+            raise InputError(f"torque[{number}]: {error}") from None
+        if load.parts.function is not None:
+            load.parts.function.failure = ""
+            found.append((number, load.parts.function))
+    return found
+
+
+def _why(solution: Solution, functions: list[tuple[int, Function]]) -> str:
+    """How a run ended; where it broke off after a function had failed, what that did."""
+    failed = [f"torque[{number}]: {one.failure}" for number, one in functions if one.failure]
+    if solution.status >= 0 or not failed:
+        return solution.message
+    return f"{solution.message}; {failed[0]}"

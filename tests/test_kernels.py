@@ -36,7 +36,7 @@ from crankmbs.motion.crank_angle.solvers import Begin, Cells, solve_affine, solv
 from crankmbs.motion.minimal import stepper
 from crankmbs.numerics.collocation import gauss
 from crankmbs.numerics.kernels import kernel
-from crankmbs.scene.loads import Torque
+from crankmbs.scene.torque import Torque
 
 LOADS: dict[str, tuple[Torque, ...]] = {
     "none": (),
@@ -98,7 +98,7 @@ def test_clock_and_energy_lose_nothing_over_many_cells(solve: Callable[..., Cell
     grid = grid_of(CrankTrain(load_scene("coasting"), None), gauss(3))
     strip = grid.strip(0.0, 1.0, 4000, math.inf)
     branch = branch_of((Constant(torque=0.1),), 0.0, 1.0, rising=True)
-    cells = solve(grid, strip, branch, Begin(1.0, 50.0, 0.1, math.inf))
+    cells = solve(grid, strip, branch, Begin(1.0, 50.0, 0.1, math.inf, 0.0))
     spent = strip.width * (cells.slowness @ grid.rule.weights)
     assert abs(cells.time[-1] - math.fsum([0.1, *spent])) <= 2.0 * math.ulp(cells.time[-1])
     gained = strip.width * (cells.torque @ grid.rule.weights)

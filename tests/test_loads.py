@@ -9,10 +9,9 @@ import pytest
 
 from crankmbs import Result, SceneError, simulate
 from crankmbs.numerics.piecewise import Piecewise
-from crankmbs.scene import loads
-from crankmbs.scene.loads import Parts, Torque
 from crankmbs.scene.read import parse_scene
 from crankmbs.scene.schema import Float, part
+from crankmbs.scene.torque import Parts, Torque, load
 from crankmbs.scene.write import scene_files
 
 TOY = """
@@ -41,7 +40,7 @@ def clutch(monkeypatch):
     """A load of no kind that there is: it pulls the crank towards a speed, up to a torque."""
     monkeypatch.setattr(Torque, "kinds", dict(Torque.kinds))
 
-    @loads.load
+    @load
     @part
     class SpringClutch(Torque):
         """Towards the speed ``slip`` [rad/s], by at most ``most`` [N m]."""

@@ -15,10 +15,11 @@ from references import assert_within_stated
 from crankmbs.result import Result
 from crankmbs.scene.drives import Motion, SpeedFile, Start
 from crankmbs.scene.gas import Gas
-from crankmbs.scene.loads import TimeTable, Torque, Viscous
+from crankmbs.scene.loads import TimeTable, Viscous
 from crankmbs.scene.read import load_scene
 from crankmbs.scene.scene import Run, Scene
 from crankmbs.scene.tables import Table
+from crankmbs.scene.torque import Torque
 from crankmbs.simulate import simulate
 
 COASTING = load_scene("coasting")

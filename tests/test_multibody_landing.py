@@ -17,10 +17,11 @@ from crankmbs.motion.multibody.stepped import Stepped, coarsest_step, model_of, 
 from crankmbs.result import Result
 from crankmbs.scene.drives import Motion, SpeedFile, Start
 from crankmbs.scene.gas import Gas
-from crankmbs.scene.loads import SpeedTable, TimeTable, Torque
+from crankmbs.scene.loads import SpeedTable, TimeTable
 from crankmbs.scene.read import load_scene
 from crankmbs.scene.scene import Extent, Run, Scene
 from crankmbs.scene.tables import Table
+from crankmbs.scene.torque import Torque
 from crankmbs.simulate import simulate
 
 COASTING = replace(

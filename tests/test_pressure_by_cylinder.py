@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scene_texts import FREE, edited, refusal
 
-from crankmbs import Columns, Extent, Gas, InputError, Result, Table, load_scene, simulate
+from crankmbs import CylinderTable, Extent, Gas, InputError, Result, Table, load_scene, simulate
 from crankmbs.measures import measure
 from crankmbs.mechanics.pressure import pressures_of, remarks
 from crankmbs.mechanics.train import crank_train
@@ -36,9 +36,11 @@ def with_gas(**changes):
 
 BY_CYLINDER = {
     "a table each": {"pressure": [ONE, STRONG, ONE, STRONG]},
-    "columns at one instant": {"pressure": Columns(ANGLES, [ONE.y, STRONG.y, ONE.y, RISE + 2e5])},
+    "columns at one instant": {
+        "pressure": CylinderTable(ANGLES, [ONE.y, STRONG.y, ONE.y, RISE + 2e5])
+    },
     "columns aligned": {
-        "pressure": Columns(ANGLES, [ONE.y, STRONG.y, ONE.y, RISE + 2e5]),
+        "pressure": CylinderTable(ANGLES, [ONE.y, STRONG.y, ONE.y, RISE + 2e5]),
         "aligned": True,
     },
     "a sequence": {"pressure": CYCLES, "cycles": "sequence"},
@@ -61,7 +63,7 @@ def test_each_cylinder_has_the_pressure_of_the_oracle(name):
 
 
 def test_columns_of_one_instant_stand_at_cylinder_ones_angle():
-    scene = with_gas(pressure=Columns(ANGLES, [ONE.y, STRONG.y, RISE + 2e5, ONE.y]))
+    scene = with_gas(pressure=CylinderTable(ANGLES, [ONE.y, STRONG.y, RISE + 2e5, ONE.y]))
     first, _, third, _ = pressures_of(scene)
     one, _, other, _ = scene.cylinders
     theta = ANGLES[20] - one.phase

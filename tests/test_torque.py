@@ -80,12 +80,12 @@ def test_which_loads_are_affine_in_the_energy(loads, affine):
     ("rest", "low", "high"), [(7.0, 10.0, 30.0), (-5.0, -5.0, 10.0), (0.0, None, None)]
 )
 def test_a_jump_is_left_upwards_downwards_or_never(rest, low, high):
-    branch = branch_at(ALL[4:], 0.0, 10.0, rest)
+    branch = branch_at(ALL[4:], (0.0, 0.0, 10.0), rest)
     assert (branch and branch.omega_low, branch and branch.omega_high) == (low, high)
 
 
 def test_a_kink_holds_nothing():
-    assert branch_at(ALL[4:], 0.0, -5.0, -7.0) is not None
+    assert branch_at(ALL[4:], (0.0, 0.0, -5.0), -7.0) is not None
 
 
 def test_a_table_that_ends_before_the_run():

@@ -196,3 +196,9 @@ def test_windows_are_written(tmp_path):
 
 def test_existing_scenes_have_no_mode():
     assert first_phases(load_scene("propeller").torque, 300.0) == ()
+
+
+def test_a_reader_is_told():
+    load = Constant(torque=1.0, after=0.5, until_speed=10 * math.pi)
+    assert load.window_words == ", after 0.5 s, until 300 rpm"
+    assert Constant(torque=1.0).window_words == ""

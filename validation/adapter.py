@@ -16,9 +16,10 @@ from crankmbs.result import Result
 from crankmbs.scene.drives import Motion as Prescribed
 from crankmbs.scene.drives import Oscillation, Ramp, SpeedFile
 from crankmbs.scene.gas import Gas
-from crankmbs.scene.loads import Constant, Quadratic, SpeedTable, TimeTable, Torque, Viscous
+from crankmbs.scene.loads import Constant, Quadratic, SpeedTable, TimeTable, Viscous
 from crankmbs.scene.scene import Scene
-from crankmbs.scene.tables import Columns, Table
+from crankmbs.scene.tables import CylinderTable, Table
+from crankmbs.scene.torque import Torque
 from validation.oracles.arithmetic import LONG, Arithmetic, Array
 from validation.oracles.energy import kinetic_energy
 from validation.oracles.frame import frame_loads
@@ -223,7 +224,7 @@ def _pressure(scene: Scene) -> Pressure | tuple[Pressure, ...] | None:
     if gas.pressure is None:
         return _pieces((pressures_of(scene) or ())[0])
     first = cylinders[0].phase
-    instants = isinstance(gas.pressure, Columns) and not gas.aligned
+    instants = isinstance(gas.pressure, CylinderTable) and not gas.aligned
     lags = [cylinder.phase - first if instants else 0.0 for cylinder in cylinders]
     return tuple(
         _table(gas, Table(tuple(angle + lag for angle in rows.x), rows.y))

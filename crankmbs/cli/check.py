@@ -13,9 +13,9 @@ from crankmbs.mechanics.pressure import PeriodicPressure, pressures_of, remarks
 from crankmbs.scene.cycles import cycles_in
 from crankmbs.scene.drives import Oscillation, Ramp, SpeedFile
 from crankmbs.scene.gas import Gas
-from crankmbs.scene.loads import Torque
 from crankmbs.scene.scene import SETTLED, Extent, Scene
-from crankmbs.scene.tables import Columns
+from crankmbs.scene.tables import CylinderTable
+from crankmbs.scene.torque import Torque
 from crankmbs.scene.units import RPM
 
 __all__ = ["describe"]
@@ -118,7 +118,7 @@ def _gas(scene: Scene) -> str:
 
 
 def _tables(gas: Gas) -> str:
-    if isinstance(gas.pressure, Columns):
+    if isinstance(gas.pressure, CylinderTable):
         over = "its own cycle angle" if gas.aligned else "that of cylinder 1"
         text = (
             f"{len(gas.pressure.x)} rows of {gas.pressure.source}, {len(gas.pressure.y)} columns, "
@@ -179,7 +179,7 @@ def _sense(speed: float) -> str:
 
 def _load(scene: Scene, load: Torque) -> str:
     assert scene.start is not None
-    text = f"{load.name}, {load.words}"
+    text = f"{load.name}, {load.words}{load.window_words}"
     speed = scene.start.speed
     torque = float(load(0.0, scene.start.angle, speed))
     if torque * speed == 0.0:

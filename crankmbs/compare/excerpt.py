@@ -134,9 +134,14 @@ def excerpt_of(result: Result, cylinder: int) -> Excerpt:
 
     Raises
     ------
-    InputError : no such cylinder, or no sample but at a fold
+    InputError : no such cylinder, a scene with fuel, or no sample but at a fold
     """
     check_cylinder(result.scene, cylinder)
+    if result.scene.fuel is not None:
+        raise InputError(
+            "fuel: the formulas of the lectures know one pressure for all firings; remove [fuel] "
+            "to compare with them"
+        )
     window = last_span(result)
     folded = np.min(np.cos(result.data["rod_angle"].values), axis=1) < _FOLD
     samples = np.flatnonzero(~folded[window.inside :]) + window.inside

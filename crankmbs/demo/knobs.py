@@ -8,10 +8,10 @@ from collections.abc import Mapping
 from typing import Any, Literal
 
 from crankmbs.scene.drives import Oscillation
-from crankmbs.scene.gas import Gas
+from crankmbs.scene.gas import Gas, Polytrope, PressureGiven
 from crankmbs.scene.parts import Layout
 from crankmbs.scene.scene import Scene
-from crankmbs.scene.tables import Columns, Table
+from crankmbs.scene.tables import CylinderTable, Table
 from crankmbs.scene.units import RPM
 
 __all__ = ["AS_GIVEN", "FIRING_ORDERS", "Knob", "Values", "knobs_of", "turned"]
@@ -166,7 +166,10 @@ def _pressed(gas: Gas, factor: float) -> Gas:
     if gas.pressure is not None:
         closing = None if gas.closing is None else factor * gas.closing
         pressed = _pressed_more(gas.pressure, factor)
-        return dataclasses.replace(gas, pressure=pressed, closing=closing)
+        motored = gas.motored
+        if motored is not None and not isinstance(motored, Polytrope):
+            motored = _pressed_more(motored, factor)
+        return dataclasses.replace(gas, pressure=pressed, closing=closing, motored=motored)
     assert gas.indicator is not None
     names = ("intake_pressure", "exhaust_pressure", "peak_pressure")
     old = {name: getattr(gas.indicator, name) for name in names}
@@ -174,16 +177,14 @@ def _pressed(gas: Gas, factor: float) -> Gas:
     return dataclasses.replace(gas, indicator=dataclasses.replace(gas.indicator, **new))
 
 
-def _pressed_more(
-    pressure: float | Table | Columns | tuple[Table, ...], factor: float
-) -> float | Table | Columns | tuple[Table, ...]:
+def _pressed_more(pressure: PressureGiven, factor: float) -> PressureGiven:
     if isinstance(pressure, float):
         return factor * pressure
     if isinstance(pressure, Table):
         return pressure.scaled(factor)
-    if isinstance(pressure, Columns):
+    if isinstance(pressure, CylinderTable):
         more = tuple(table.scaled(factor).y for table in pressure.tables)
-        return Columns(pressure.x, more, pressure.source)
+        return CylinderTable(pressure.x, more, pressure.source)
     return tuple(table.scaled(factor) for table in pressure)
 
 

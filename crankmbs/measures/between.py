@@ -52,7 +52,8 @@ class Between:
         """Every variable but the energy residual at times of shape (n,) [s]."""
         scene = self.result.scene
         theta, omega, alpha = self.state(time)
-        found = reactions(crank_train(scene), theta, omega, alpha)
+        fuel = _fuel_at(self.result.data, time)
+        found = reactions(crank_train(scene), theta, omega, alpha, fuel)
         return found | {"crank_angle": theta, "crank_speed": omega, "crank_acceleration": alpha}
 
 
@@ -106,7 +107,7 @@ class _Free:
         self._theta, self._omega = (data[name].values for name in _MOTION[:2])
         late, ahead = (float(data[n].attrs["error_estimate"]) for n in ("time", "crank_angle"))
         self._unsure = 2.0 * (ahead + late * float(np.max(np.abs(self._omega))))  # angle [rad]
-        self._scene, self._train = scene, crank_train(scene)
+        self._scene, self._train, self._data = scene, crank_train(scene), data
         self._spans = [span(load, self._time, self._omega) for load in scene.torque]
         self._beside = self._outside - torque_at(
             scene.torque, self._time, self._theta, self._omega, self._spans
@@ -161,12 +162,23 @@ class _Free:
         return state
 
     def _acceleration(self, t: Array, angle: Array, speed: Array) -> Array:
-        inertia, slope, given = reduce(self._train, angle)
+        inertia, slope, given = reduce(self._train, angle, _fuel_at(self._data, t))
         outside, beside = (np.interp(t, self._time, q) for q in (self._outside, self._beside))
         interval = np.searchsorted(self._time[1:-1], t, side="right")
         torque = torque_at(self._scene.torque, t, angle, speed, self._spans) + beside
         torque = np.where(self._stiff[interval], outside, torque)
         return np.asarray((given + torque - 0.5 * slope * speed**2) / inertia)
+
+
+def _fuel_at(data: xr.Dataset, t: Array) -> Array | None:
+    """The shares of the combustion at times of any shape, those of the sample that follows; None
+    without fuel. A decision between two samples so comes early by less than their distance, where
+    the combustion has not begun."""
+    if "fuel" not in data:
+        return None
+    last = data.sizes["time"] - 1
+    which = np.minimum(np.searchsorted(data["time"].values, t, side="left"), last)
+    return np.asarray(data["fuel"].values[which])
 
 
 def _steepness(scene: Scene, t: Array, theta: Array, omega: Array) -> Array:
@@ -203,7 +215,9 @@ def _sampled(
     at the samples of ``data`` its error grows by as much, relatively, as the result states."""
     import xarray as xr
 
-    found = reactions(crank_train(result.scene), theta, omega, alpha)
+    fuel = _fuel_at(data, time)
+    found = reactions(crank_train(result.scene), theta, omega, alpha, fuel)
+    found |= {} if fuel is None else {"fuel": fuel}
     found |= {"time": time, "crank_angle": theta, "crank_speed": omega, "crank_acceleration": alpha}
 
     def stated(name: str) -> dict[str, object]:

@@ -20,7 +20,7 @@ from crankmbs.numerics.arrays import Array
 from crankmbs.scene.gas import Gas, Indicator
 from crankmbs.scene.scene import Scene
 
-__all__ = ["INDICATOR_RTOL", "indicator_pieces"]
+__all__ = ["INDICATOR_RTOL", "fit", "indicator_pieces", "relative_volume"]
 
 Stroke = tuple[float, float, Callable[[Array], Array]]
 
@@ -31,7 +31,7 @@ _BETWEEN = np.array([0.1, 0.5, 0.9])  # where a cubic through the support errs m
 _TO_POWERS = np.linalg.inv(np.vander(_SUPPORT, 4))
 
 
-def indicator_pieces(scene: Scene) -> tuple[Array, Array]:
+def indicator_pieces(scene: Scene, *, fires: bool = True) -> tuple[Array, Array]:
     """The diagram of ``scene.gas.indicator`` as a periodic piecewise cubic, gauge.
 
     From the true gas-exchange top dead centre: intake; compression p V^n = const; at the firing
@@ -45,6 +45,7 @@ def indicator_pieces(scene: Scene) -> tuple[Array, Array]:
     Parameters
     ----------
     scene : with ``gas.indicator``
+    fires : else the compression's polytrope is run back down to the bottom dead centre
 
     Returns
     -------
@@ -58,14 +59,14 @@ def indicator_pieces(scene: Scene) -> tuple[Array, Array]:
     assert gas is not None
     assert gas.indicator is not None
     assert gas.ambient is not None
-    parts = [_fit(*stroke) for stroke in _strokes(scene, gas, gas.indicator)]
+    parts = [fit(*stroke) for stroke in _strokes(scene, gas, gas.indicator, fires)]
     knots = np.concatenate([*(left for left, _ in parts), [parts[0][0][0] + gas.period]])
     coefficients = np.concatenate([cubic for _, cubic in parts], axis=1)
     coefficients[-1] -= gas.ambient
     return knots, coefficients
 
 
-def _strokes(scene: Scene, gas: Gas, indicator: Indicator) -> list[Stroke]:
+def _strokes(scene: Scene, gas: Gas, indicator: Indicator, fires: bool) -> list[Stroke]:
     """(begin, end, absolute pressure) of each smooth part of the cycle."""
     shape = (scene.crank.radius, scene.rod.length, scene.piston.offset)
     top, bottom = dead_centres(*shape)
@@ -74,8 +75,7 @@ def _strokes(scene: Scene, gas: Gas, indicator: Indicator) -> list[Stroke]:
     x_top, x_bottom = top_position(*shape), float(close_loop(bottom, *shape).x)
 
     def volume(angle: Array) -> Array:
-        """V / V_clearance."""
-        return 1.0 + (ratio - 1.0) * (x_top - close_loop(angle, *shape).x) / (x_top - x_bottom)
+        return relative_volume(scene, ratio, angle)
 
     def held(pressure: float) -> Callable[[Array], Array]:
         return lambda angle: np.full_like(angle, pressure)
@@ -89,11 +89,11 @@ def _strokes(scene: Scene, gas: Gas, indicator: Indicator) -> list[Stroke]:
 
     fired = burnt = turn + top
     closed: list[Stroke] = [(bottom, fired, compression)]
-    if indicator.pre_expansion > 1.0:
+    if fires and indicator.pre_expansion > 1.0:
         x_burnt = x_top - (indicator.pre_expansion - 1.0) / (ratio - 1.0) * (x_top - x_bottom)
         burnt = turn + _downstroke_angle(x_burnt, *shape)
         closed.append((fired, burnt, held(indicator.peak_pressure)))
-    closed.append((burnt, turn + bottom, expansion))
+    closed.append((burnt, turn + bottom, expansion if fires else compression))
     if gas.stroke == 2:
         return closed
     assert indicator.exhaust_pressure is not None
@@ -102,6 +102,15 @@ def _strokes(scene: Scene, gas: Gas, indicator: Indicator) -> list[Stroke]:
         *closed,
         (turn + bottom, turn + fired, held(indicator.exhaust_pressure)),
     ]
+
+
+def relative_volume(scene: Scene, ratio: float, angle: Array) -> Array:
+    """V / V_clearance at cycle angles [rad], for a compression ratio."""
+    shape = (scene.crank.radius, scene.rod.length, scene.piston.offset)
+    x_top = top_position(*shape)
+    x_bottom = float(close_loop(dead_centres(*shape)[1], *shape).x)
+    share = (x_top - close_loop(angle, *shape).x) / (x_top - x_bottom)
+    return np.asarray(1.0 + (ratio - 1.0) * share)
 
 
 def _downstroke_angle(x: float, radius: float, rod_length: float, offset: float) -> float:
@@ -116,7 +125,7 @@ def _downstroke_angle(x: float, radius: float, rod_length: float, offset: float)
     return math.atan2(offset, x) + lead
 
 
-def _fit(begin: float, end: float, pressure: Callable[[Array], Array]) -> tuple[Array, Array]:
+def fit(begin: float, end: float, pressure: Callable[[Array], Array]) -> tuple[Array, Array]:
     """(left knots, cubics) of one stroke: pieces are halved until each is good enough.
 
     Quarter turns are knots from the start: a rod no longer than radius + offset folds there.

@@ -21,7 +21,15 @@ from crankmbs.mechanics.train import CrankTrain
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 
-__all__ = ["Reduction", "RodCentre", "gravity_vector", "inertia_alone", "reduce", "rod_centre"]
+__all__ = [
+    "Reduction",
+    "RodCentre",
+    "fired_torque",
+    "gravity_vector",
+    "inertia_alone",
+    "reduce",
+    "rod_centre",
+]
 
 
 @dataclass(frozen=True)
@@ -78,8 +86,11 @@ def inertia_alone(scene: Scene, theta: ArrayLike) -> Array:
     return reduce(CrankTrain(scene, None), theta).inertia
 
 
-def reduce(train: CrankTrain, theta: ArrayLike) -> Reduction:
+def reduce(train: CrankTrain, theta: ArrayLike, shares: ArrayLike | None = None) -> Reduction:
     """Reduce the crank train to one rotation at crank angles, shape (...) [rad].
+
+    shares : shape (cylinders,) or (..., cylinders), of the combustion of each cylinder; None leaves
+        it out
 
     >>> inertia, slope, torque = reduce(crank_train(load_scene("torque_driven")), 0.0)
     """
@@ -105,4 +116,24 @@ def reduce(train: CrankTrain, theta: ArrayLike) -> Reduction:
         if pressure is not None:
             torque -= (piston.gas_area or 0.0) * pressure[k](theta + cylinder.phase) * loop.x_1
         torque += piston.mass * gx * loop.x_1 + rod.mass * (gx * g.x_1 + gy * g.y_1)
+    if shares is not None and train.combustion is not None:
+        torque += np.sum(fired_torque(train, theta) * np.asarray(shares), axis=-1)
     return Reduction(inertia, slope, torque)
+
+
+def fired_torque(train: CrankTrain, theta: ArrayLike) -> Array:
+    """What the combustion of each cylinder, of share 1, adds to the torque [N m] at crank angles,
+    shape (...) [rad]; shape (..., cylinders).
+
+    >>> fired_torque(crank_train(load_scene("v_twin")), [1.0]).shape
+    (1, 0)
+    """
+    scene, theta = train.scene, np.asarray(theta, dtype=np.float64)
+    area, shape = scene.piston.gas_area or 0.0, (scene.crank.radius, scene.rod.length)
+    found = np.empty((*theta.shape, len(train.combustion or ())))
+    for k, (more, cylinder) in enumerate(
+        zip(train.combustion or (), scene.cylinders, strict=False)
+    ):
+        phi = theta + cylinder.phase
+        found[..., k] = -area * more(phi) * close_loop(phi, *shape, scene.piston.offset).x_1
+    return found

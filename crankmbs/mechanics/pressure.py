@@ -15,17 +15,19 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import PPoly
 
-from crankmbs.mechanics.indicator import INDICATOR_RTOL, indicator_pieces
+from crankmbs.mechanics.indicator import INDICATOR_RTOL, fit, indicator_pieces, relative_volume
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.cycles import cycles_in, mean_cycle
-from crankmbs.scene.gas import Gas
+from crankmbs.scene.gas import Gas, Polytrope, PressureGiven, tables_of
 from crankmbs.scene.pressure_rows import close, closing_row, interpolate, overshoot
 from crankmbs.scene.scene import Scene
-from crankmbs.scene.tables import Columns, Table
+from crankmbs.scene.tables import CylinderTable, Table
 
 __all__ = [
     "KNOT",
     "PeriodicPressure",
+    "combustion_of",
+    "motored_of",
     "pressures_of",
     "remarks",
     "repeat",
@@ -100,6 +102,15 @@ class PeriodicPressure:
         worth = np.array(_WORTH) @ (jumps * wide)
         return np.asarray(self.knots[:-1][worth > least])
 
+    def on(self, knots: Array) -> PeriodicPressure:
+        """The same between knots of another set [rad], in each of which lies one piece."""
+        middle = 0.5 * (knots[:-1] + knots[1:])
+        within = np.mod(middle - self.knots[0], self.period)
+        index = np.searchsorted(self.knots[1:-1] - self.knots[0], within, side="right")
+        behind = within - (self.knots[index] - self.knots[0]) - (middle - knots[:-1])
+        parts = [self.coefficients] if self.missed is None else [self.coefficients, self.missed]
+        return PeriodicPressure(knots, *(_moved(part[:, index], behind) for part in parts))
+
     def __call__(self, cycle_angle: ArrayLike) -> Array:
         """Pressure difference across the piston [Pa]; at a step the value after it.
 
@@ -117,6 +128,33 @@ class PeriodicPressure:
         return np.asarray(((a * x + b) * x + c) * x + d)
 
 
+def _moved(cubics: Array, x: Array) -> Array:
+    """Cubics by descending power in the angle behind a point farther on by x."""
+    a, b, c, d = cubics
+    return np.array(
+        [a, b + 3.0 * a * x, c + (2.0 * b + 3.0 * a * x) * x, d + (c + (b + a * x) * x) * x]
+    )
+
+
+def combustion_of(
+    fired: PeriodicPressure, motored: PeriodicPressure
+) -> tuple[PeriodicPressure, PeriodicPressure]:
+    """The pressure without combustion, and what combustion adds to it, on the same knots."""
+    one = 2.0 * math.pi
+    period = math.lcm(*(round(each.period / one) for each in (fired, motored))) * one
+    first = float(fired.knots[0])
+    inner = [repeat(p.knots[:-1], p.period, first, first + period) for p in (fired, motored)]
+    knots = np.unique(np.concatenate([[first], *inner]))
+    knots = knots[np.append(True, np.diff(knots) > KNOT)]
+    knots = np.append(knots[knots < first + period - KNOT], first + period)
+    without, whole = motored.on(knots), fired.on(knots)
+    missed = None
+    if without.missed is not None and whole.missed is not None:
+        missed = whole.missed - without.missed
+    more = PeriodicPressure(knots, whole.coefficients - without.coefficients, missed)
+    return without, more
+
+
 def pressures_of(scene: Scene) -> tuple[PeriodicPressure, ...] | None:
     """The pressure difference across the piston of each cylinder of a scene; None without gas.
 
@@ -129,18 +167,74 @@ def pressures_of(scene: Scene) -> tuple[PeriodicPressure, ...] | None:
     if gas is None:
         return None
     if gas.indicator is not None:
-        knots, coefficients = indicator_pieces(scene)
-        absolute = coefficients + np.array([[0.0], [0.0], [0.0], [gas.ambient or 0.0]])
-        return (PeriodicPressure(knots, coefficients, INDICATOR_RTOL * absolute),) * len(cylinders)
-    if isinstance(gas.pressure, float):
-        value = np.array([[0.0], [0.0], [0.0], [gas.pressure - (gas.ambient or 0.0)]])
+        return (_of_indicator(scene, gas, fires=True),) * len(cylinders)
+    assert gas.pressure is not None
+    return _given(scene, gas, gas.pressure)
+
+
+def motored_of(scene: Scene) -> tuple[PeriodicPressure, ...]:
+    """The same without combustion, of a scene with gas and ``gas.motored`` or an indicator.
+
+    >>> len(motored_of(load_scene("v_twin")))
+    2
+    """
+    gas, fired = scene.gas, pressures_of(scene)
+    assert gas is not None
+    assert fired is not None
+    if gas.indicator is not None:
+        return (_of_indicator(scene, gas, fires=False),) * len(fired)
+    assert gas.motored is not None
+    if not isinstance(gas.motored, Polytrope):
+        return _given(scene, gas, gas.motored)
+    once = {each: _continued(scene, gas, gas.motored, each) for each in dict.fromkeys(fired)}
+    return tuple(once[each] for each in fired)
+
+
+def _of_indicator(scene: Scene, gas: Gas, *, fires: bool) -> PeriodicPressure:
+    knots, coefficients = indicator_pieces(scene, fires=fires)
+    absolute = coefficients + np.array([[0.0], [0.0], [0.0], [gas.ambient or 0.0]])
+    return PeriodicPressure(knots, coefficients, INDICATOR_RTOL * absolute)
+
+
+def _given(scene: Scene, gas: Gas, source: PressureGiven) -> tuple[PeriodicPressure, ...]:
+    """The pressure of each cylinder from what a file, several or a constant say."""
+    cylinders = scene.cylinders
+    if isinstance(source, float):
+        value = np.array([[0.0], [0.0], [0.0], [source - (gas.ambient or 0.0)]])
         return (PeriodicPressure(np.array([0.0, gas.period]), value),) * len(cylinders)
-    if isinstance(gas.pressure, Table):
-        return (_joined(gas, gas.pressure, _shift(gas)),) * len(cylinders)
-    by_instant = isinstance(gas.pressure, Columns) and not gas.aligned
+    if isinstance(source, Table):
+        return (_joined(gas, source, _shift(gas)),) * len(cylinders)
+    by_instant = isinstance(source, CylinderTable) and not gas.aligned
     lags = [c.phase - cylinders[0].phase if by_instant else 0.0 for c in cylinders]
-    pairs = zip(gas.tables, lags, strict=True)
+    pairs = zip(tables_of(source), lags, strict=True)
     return tuple(_joined(gas, table, _shift(gas) + lag) for table, lag in pairs)
+
+
+def _continued(
+    scene: Scene, gas: Gas, polytrope: Polytrope, fired: PeriodicPressure
+) -> PeriodicPressure:
+    """A fired pressure, from ``closes`` to the bottom dead centre a polytrope in its place, in
+    every cycle."""
+    ambient, ratio = gas.ambient or 0.0, polytrope.compression_ratio
+    begin, end = 2.0 * math.pi + polytrope.closes, 3.0 * math.pi
+    whole = np.arange(begin, begin + fired.period - 1e-6, gas.period)
+    knots, columns = [], []
+    for at in whole:
+        pressed = float(fired(at)) + ambient
+        size = float(relative_volume(scene, ratio, np.array(at)))
+
+        def pressure(angle: Array, pressed: float = pressed, size: float = size) -> Array:
+            volume = relative_volume(scene, ratio, angle)
+            return np.asarray(pressed * (size / volume) ** polytrope.polytrope)
+
+        left, cubics = fit(at, at + end - begin, pressure)
+        cubics[-1] -= ambient
+        inner = repeat(fired.knots[:-1], fired.period, at + end - begin, at + gas.period)
+        rest = np.concatenate([[at + end - begin], inner, [at + gas.period]])
+        knots += [left, rest[:-1]]
+        columns += [cubics, fired.on(rest).coefficients]
+    coefficients = np.concatenate(columns, axis=1)
+    return PeriodicPressure(np.append(np.concatenate(knots), begin + fired.period), coefficients)
 
 
 def remarks(scene: Scene) -> tuple[str, ...]:
@@ -152,7 +246,11 @@ def remarks(scene: Scene) -> tuple[str, ...]:
     gas = scene.gas
     if gas is None:
         return ()
-    return tuple(said for table in dict.fromkeys(gas.tables) for said in _remarks(gas, table))
+    return tuple(
+        said
+        for table in dict.fromkeys(gas.tables + tables_of(gas.motored))
+        for said in _remarks(gas, table)
+    )
 
 
 def _remarks(gas: Gas, table: Table) -> Iterator[str]:

@@ -6,8 +6,9 @@ balance the wall, the rod's balance the crank pin, and the crank's balance the m
 the torque from outside. Gas pushes the piston towards the crank, -X. The frame, on mounts, feels
 m (g - a) of every moving part and, about the crank axis, the walls and the gas on the heads.
 
-Every balance is linear in omega^2, alpha and 1. So where the angles of the samples repeat it is
-made for these three alone, once for every angle of a period, and put together for each sample.
+Every balance is linear in omega^2, alpha, 1 and the shares of the combustion. So where the angles
+of the samples repeat it is made for these alone, once for every angle of a period, and put together
+for each sample.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from crankmbs.mechanics.fired import fired_parts
 from crankmbs.mechanics.geometry import close_loop, top_position
 from crankmbs.mechanics.inertia import gravity_vector, rod_centre
 from crankmbs.mechanics.train import CrankTrain
@@ -48,12 +50,14 @@ def reactions(
     theta: ArrayLike,
     omega: ArrayLike,
     alpha: ArrayLike,
+    fuel: Array | None = None,
 ) -> dict[str, Array]:
     """Motion of every part and force in every joint.
 
     Parameters
     ----------
     theta, omega, alpha : shape (n,) [rad, rad/s, rad/s2]; any motion, prescribed or free
+    fuel : shape (n, cylinders), shares of the combustion; None leaves it out
 
     Returns
     -------
@@ -64,15 +68,16 @@ def reactions(
     >>> float(reactions(train, [0.0], [10.0], [0.0])["rod_angle"][0, 0])
     0.0
     """
-    found = _found(train, theta, omega, alpha)
+    found = _found(train, theta, omega, alpha, fuel)
     rows = {name: len(columns) for name, columns in found.columns.items()}
     # one piece of memory, so large that the system is not asked for every run's anew
     room = np.empty((sum(rows.values()), len(found.omega)))
     ends = zip(rows.items(), accumulate(rows.values()), strict=True)
     variables = {name: room[end - count : end] for (name, count), end in ends}
     for name, variable in variables.items():
-        for row, values in zip(variable, found.columns[name], strict=True):
+        for k, (row, values) in enumerate(zip(variable, found.columns[name], strict=True)):
             found.put(name, values, row)
+            found.add_fired(name, k, row)
     return {n: v.T if VARIABLES[n].per_cylinder else v[0] for n, v in variables.items()}
 
 
@@ -82,6 +87,7 @@ def deviations(
     omega: Array,
     alpha: Array,
     variables: Mapping[str, Array],
+    fuel: Array | None = None,
 ) -> dict[str, float]:
     """Largest absolute difference of each variable, as `reactions` gives them for another motion,
     from those of this motion, which are not kept.
@@ -93,11 +99,12 @@ def deviations(
     >>> max(deviations(train, *motion, reactions(train, *motion)).values())
     0.0
     """
-    found = _found(train, theta, omega, alpha)
+    found = _found(train, theta, omega, alpha, fuel)
     largest = {}
     for name, columns in found.columns.items():
         rows = np.atleast_2d(variables[name].T)
-        apart = [found.apart(name, *pair) for pair in zip(columns, rows, strict=True)]
+        pairs = enumerate(zip(columns, rows, strict=True))
+        apart = [found.apart(name, k, *pair) for k, pair in pairs]
         largest[name] = float(np.max(apart))
     return largest
 
@@ -108,12 +115,17 @@ class _Found(NamedTuple):
     columns : for the crank or for each cylinder, shape (n,) what depends on the angle alone, for
         velocities per speed; shape (3, n) what belongs to omega^2, alpha and 1
     which : shape (samples,), which of the n angles a sample is at; None where n are the samples
+    fired : of the variables that feel the combustion, for the crank or for each cylinder: what a
+        share of 1 of each cylinder adds, shape (n,) by the cylinder's number
+    fuel : shape (samples, cylinders), the shares
     """
 
     columns: dict[str, list[Array]]
     which: NDArray[np.intp] | None
     at: _Powers
     omega: Array
+    fired: dict[str, list[dict[int, Array]]]
+    fuel: Array | None
 
     def put(self, name: str, values: Array, variable: Array) -> None:
         """A variable at the samples into its place."""
@@ -124,8 +136,19 @@ class _Found(NamedTuple):
         else:
             variable[:] = self._all(name, values)
 
-    def apart(self, name: str, values: Array, variable: Array) -> float:
+    def add_fired(self, name: str, row: int, variable: Array) -> None:
+        """Add to a variable, in its place, what the firings do."""
+        if self.fuel is None or name not in self.fired:
+            return
+        for k, more in self.fired[name][row].items():
+            variable += self.fuel[:, k] * (more if self.which is None else more[self.which])
+
+    def apart(self, name: str, row: int, values: Array, variable: Array) -> float:
         """Largest difference of a variable from this one at the samples."""
+        if self.fuel is not None and name in self.fired:
+            own = self._all(name, values) + np.zeros(len(self.omega))
+            self.add_fired(name, row, own)
+            return float(np.max(np.abs(own - variable), initial=0.0))
         if self.which is not None and values.ndim > 1:
             from crankmbs.mechanics import combined
 
@@ -145,6 +168,7 @@ def _found(
     theta: ArrayLike,
     omega: ArrayLike,
     alpha: ArrayLike,
+    fuel: Array | None,
 ) -> _Found:
     scene = train.scene
     theta, omega, alpha = (np.asarray(q, dtype=np.float64) for q in (theta, omega, alpha))
@@ -160,7 +184,8 @@ def _found(
     columns["journal_torque"] = list(accumulate(torque))
     pairs = zip(columns["journal_torque"], torque, strict=True)
     columns["pin_torque"] = [journal - 0.5 * own for journal, own in pairs]
-    return _Found(columns, which if by_parts else None, samples, omega)
+    fired = {} if fuel is None else fired_parts(train, once)
+    return _Found(columns, which if by_parts else None, samples, omega, fired, fuel)
 
 
 class _Cylinder(NamedTuple):

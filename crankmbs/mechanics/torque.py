@@ -24,9 +24,10 @@ from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.windows import Phases, acting, phase_ends
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.cycle import Cycle, summed, tiled
+from crankmbs.numerics.function import Function
 from crankmbs.numerics.piecewise import total
-from crankmbs.scene.loads import Torque
 from crankmbs.scene.scene import Scene
+from crankmbs.scene.torque import Torque
 
 __all__ = [
     "Branch",
@@ -46,7 +47,7 @@ Tables = tuple[Array, Array, Array, Array]  # times, in_time, speeds and in_spee
 @dataclass(frozen=True)
 class Branch:
     """T = c0 + ct t + c1 omega + c2 omega^2 [N m] up to ``t_end`` [s], from ``omega_low`` to
-    ``omega_high`` [rad/s]."""
+    ``omega_high`` [rad/s]; with ``functions`` of time, angle and speed to be added."""
 
     c0: float
     ct: float
@@ -55,9 +56,10 @@ class Branch:
     t_end: float
     omega_low: float
     omega_high: float
+    functions: tuple[Function, ...] = ()
 
     def __call__(self, t: ArrayLike, omega: ArrayLike) -> Array:
-        """Torque [N m] at times [s] and speeds [rad/s]."""
+        """Torque [N m] at times [s] and speeds [rad/s]; without that of the functions."""
         omega = np.asarray(omega, dtype=np.float64)
         return np.asarray(self.c0 + self.ct * np.asarray(t) + (self.c1 + self.c2 * omega) * omega)
 
@@ -79,7 +81,7 @@ class Branch:
     @property
     def is_affine_in_energy(self) -> bool:
         """Whether the torque is c0 + c2 omega^2: then dE/dtheta is linear in E."""
-        return self.ct == 0.0 and self.c1 == 0.0
+        return self.ct == 0.0 and self.c1 == 0.0 and not self.functions
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,6 +101,8 @@ class Course:
     t_end: float
     omega_low: float
     omega_high: float
+
+    functions: tuple[Function, ...] = ()
 
     is_affine_in_energy = False
 
@@ -146,6 +150,7 @@ def branch_of(
     2.0
     """
     c0 = ct = c1 = c2 = 0.0
+    functions: list[Function] = []
     times, speeds = phase_ends(torques, phases)
     t_end = min((end for end in times if end > t), default=math.inf)
     low, high = _beside(speeds, omega, rising=rising)
@@ -154,7 +159,7 @@ def branch_of(
             load.check_time(t)
         except InputError as error:
             raise InputError(f"torque[{number}].{error}") from None
-        over_time, over_speed, _ = load.parts
+        over_time, over_speed, _, function = load.parts
         if over_time is not None:
             (value, slope, _), _, end = over_time.piece(t, after=True)
             c0, ct, t_end = c0 + value, ct + slope, min(t_end, end)
@@ -162,13 +167,21 @@ def branch_of(
             (value, slope, square), below, above = over_speed.piece(omega, after=rising)
             c0, c1, c2 = c0 + value, c1 + slope, c2 + square
             low, high = max(low, below), min(high, above)
-    return Branch(c0, ct, c1, c2, t_end, low, high)
+        if function is not None:
+            functions.append(function)
+            t_end = min([t_end, *(kink for kink in function.times if kink > t)])
+            below, above = _beside(tuple(function.speeds), omega, rising=rising)
+            low, high = max(below, low), min(above, high)
+    return Branch(c0, ct, c1, c2, t_end, low, high, tuple(functions))
 
 
 def branch_at(
-    torques: tuple[Torque, ...], t: float, omega: float, rest: float, phases: Phases = ()
+    torques: tuple[Torque, ...],
+    state: tuple[float, float, float],
+    rest: float,
+    phases: Phases = (),
 ) -> Branch | None:
-    """The branch that the motion enters at (t, omega).
+    """The branch that the motion enters at a state: time, crank angle and speed.
 
     rest [N m] : torque of gas and gravity minus J_1 omega^2 / 2; with a load's torque added its
         sign is that of the acceleration
@@ -178,9 +191,12 @@ def branch_at(
     Branch, or None where a jump of a speed table drives the speed back from both sides, so that
     no motion leaves this speed
     """
+    t, _, omega = state
     above = branch_of(torques, t, omega, rising=True, phases=phases)
     below = branch_of(torques, t, omega, rising=False, phases=phases)
     push, pull = float(above(t, omega)), float(below(t, omega))
+    for function in above.functions:
+        push, pull = push + function.beside(*state, 1.0), pull + function.beside(*state, -1.0)
     if rest + push > 0.0:
         return above
     if rest + pull < 0.0:
@@ -201,26 +217,21 @@ def course_of(
     if not by_time and not by_speed:
         return branch
     ends = [end for over_time in by_time for end in (*over_time.breaks, over_time.knots[-1])]
+    ends += [kink for function in branch.functions for kink in function.times]
     t_end = _outside([*times, *ends], branch.t_end, branch.t_end)[1]
     stops = [end for over_speed in by_speed for end in over_speed.breaks]
+    stops += [kink for function in branch.functions for kink in function.speeds]
     low, high = _outside([0.0, *speeds, *stops], branch.omega_low, branch.omega_high)
     rows_in_time, in_time = total([part.over_time for part in parts if part.over_time], t, t_end)
-    rows_in_speed, in_speed = total(
-        [part.over_speed for part in parts if part.over_speed], low, high
-    )
+    over_speed = [part.over_speed for part in parts if part.over_speed]
+    rows_in_speed, in_speed = total(over_speed, low, high)
     bent_in_time, bent = (np.diff(rows[:, 1]) != 0.0 for rows in (in_time, in_speed))
     if not bent_in_time.any() and not bent.any():
         return replace(branch, t_end=t_end, omega_low=low, omega_high=high)
     in_time, in_speed = in_time[np.append(True, bent_in_time)], in_speed[np.append(True, bent)]
-    return Course(
-        rows_in_time[bent_in_time],
-        in_time[:, :2].copy(),
-        rows_in_speed[bent],
-        in_speed,
-        t_end,
-        low,
-        high,
-    )
+    in_time = in_time[:, :2].copy()
+    tables: Tables = rows_in_time[bent_in_time], in_time, rows_in_speed[bent], in_speed
+    return Course(*tables, t_end, low, high, branch.functions)
 
 
 def _beside(speeds: tuple[float, ...], omega: float, *, rising: bool) -> tuple[float, float]:
@@ -246,8 +257,10 @@ def over_angle(scene: Scene, phases: Phases = ()) -> Cycle | None:
 def knots_over_angle(train: CrankTrain) -> Array:
     """Crank angles in [0, period) at which loads bend or jump, acting or not [rad]."""
     period = train.period
-    parts = [load.parts.over_angle for load in train.scene.torque]
-    knots = [np.mod(tiled(part, period), period) for part in parts if part is not None]
+    parts = [load.parts for load in train.scene.torque]
+    cycles = [part.over_angle for part in parts if part.over_angle is not None]
+    knots = [np.mod(tiled(cycle, period), period) for cycle in cycles]
+    knots += [np.mod(part.function.angles, period) for part in parts if part.function is not None]
     return np.unique(np.concatenate([np.empty(0), *knots]))
 
 

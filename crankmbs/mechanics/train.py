@@ -8,7 +8,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from crankmbs.mechanics.pressure import KNOT, PeriodicPressure, pressures_of
+from crankmbs.mechanics.firing import FuelLaw
+from crankmbs.mechanics.pressure import (
+    KNOT,
+    PeriodicPressure,
+    combustion_of,
+    motored_of,
+    pressures_of,
+)
+from crankmbs.mechanics.speed import speed_law
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 
@@ -20,17 +28,24 @@ class CrankTrain:
     """The machine of a scene; data alone, so that formulations that share it share no mechanics.
 
     pressure : difference across the piston of each cylinder over its cycle angle; None without gas
+    combustion : what a firing of share 1 adds to it, on the same knots, where `pressure` is that
+        without combustion; None without fuel
+    law : the decisions on the shares; None without fuel
     """
 
     scene: Scene
     pressure: tuple[PeriodicPressure, ...] | None
+    combustion: tuple[PeriodicPressure, ...] | None = None
+    law: FuelLaw | None = None
 
     @property
     def off(self) -> CrankTrain:
         """The same with pressures as far from these as the true ones may be."""
         if self.pressure is None:
             return self
-        return replace(self, pressure=tuple(pressure.off for pressure in self.pressure))
+        pressure = tuple(each.off for each in self.pressure)
+        more = self.combustion and tuple(each.off for each in self.combustion)
+        return replace(self, pressure=pressure, combustion=more)
 
     @property
     def period(self) -> float:
@@ -48,7 +63,23 @@ def crank_train(scene: Scene) -> CrankTrain:
     >>> crank_train(load_scene("coasting")).pressure is None
     True
     """
-    return CrankTrain(scene, pressures_of(scene))
+    fired = pressures_of(scene)
+    if scene.fuel is None or fired is None:
+        return CrankTrain(scene, fired)
+    motored = motored_of(scene)
+    once = {pair: combustion_of(*pair) for pair in dict.fromkeys(zip(fired, motored, strict=True))}
+    both = [once[pair] for pair in zip(fired, motored, strict=True)]
+    without, more = (tuple(parts) for parts in zip(*both, strict=True))
+    start = scene.start
+    begun = (start.angle, start.speed) if start else _beginning(scene)
+    return CrankTrain(scene, without, more, FuelLaw(scene, scene.fuel, begun))
+
+
+def _beginning(scene: Scene) -> tuple[float, float]:
+    """Crank angle [rad] and speed [rad/s] at the start of a prescribed motion."""
+    assert scene.motion is not None
+    theta, omega, _ = speed_law(scene.motion).at_time(0.0)
+    return float(theta), float(omega)
 
 
 def crank_angle_knots(train: CrankTrain) -> Array:

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from crankmbs.scene.scene import Scene
 
-__all__ = ["SUMS", "VARIABLES", "Variable", "variables_of"]
+__all__ = ["SUMS", "VARIABLES", "WITH_FUEL", "Variable", "variables_of"]
 
 
 class Variable(NamedTuple):
@@ -62,12 +62,17 @@ SUMS = frozenset({"journal_torque", "pin_torque"}) | {
 """Sums in which the cylinders may cancel to nothing: no error relative to their own peak is asked
 of them, for that of what they sum up is."""
 
+WITH_FUEL = VARIABLES | {
+    "fuel": Variable("1", "share of the combustion of the firing that acts", True),
+}
+
 
 def variables_of(scene: Scene) -> dict[str, Variable]:
-    """The variables that a result of a scene has: rocking moments where the cylinders have places.
+    """The variables that a result of a scene has: rocking moments where the cylinders have places,
+    the shares of the combustion where there is fuel.
 
     >>> "rocking_moment_x" in variables_of(load_scene("propeller"))
     False
     """
-    placed = scene.levers is not None
-    return {n: v for n, v in VARIABLES.items() if placed or not n.startswith("rocking_")}
+    placed, every = scene.levers is not None, WITH_FUEL if scene.fuel else VARIABLES
+    return {n: v for n, v in every.items() if placed or not n.startswith("rocking_")}

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crankmbs.numerics.arrays import Array
-from crankmbs.scene.loads import Torque
+from crankmbs.scene.torque import Torque
 
 __all__ = ["Phase", "Phases", "acting", "first_phases", "later_phases", "phase_ends", "span"]
 

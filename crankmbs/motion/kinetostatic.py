@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -36,16 +37,52 @@ def run(train: CrankTrain) -> Solution:
     plan = plan_of(scene)
     law = speed_law(scene.motion)
     stretches, reached = monotone_stretches(plan, law)
+    firings = _firings(train, law, stretches)
     stretches = _kept(plan, law, stretches)
     time, theta = _sample(plan, law, stretches, reached)
     _, omega, alpha = law.at_time(time)
-    edges = _panel_edges(train, law, stretches, time)
-    residual = _energy_residual(train, law, time, edges)
-    samples = Samples(time, theta, omega, alpha, residual)
+    edges = _panel_edges(train, law, stretches, time, firings)
+    residual = _energy_residual(train, law, time, edges, firings)
+    own = {} if firings is None else {"fuel": firings.at(time)}
+    samples = Samples(time, theta, omega, alpha, residual, own)
     ending = Ending.COMPLETE if reached else Ending.LAW_RESTS
     if plan.folds_at(float(theta[-1])):
         ending = Ending.FOLD
     return Solution(samples, *ending.said(float(theta[-1])), len(time), 0)
+
+
+class _Firings(NamedTuple):
+    """Times [s] of the decisions on the fuel, shape (n,), and the shares of the cylinders before
+    the first and after each, shape (n + 1, cylinders)."""
+
+    times: Array
+    shares: Array
+
+    def at(self, t: Array) -> Array:
+        """The shares at times of shape (m,); at a decision those before it."""
+        return np.asarray(self.shares[np.searchsorted(self.times, t, side="left")])
+
+
+def _firings(
+    train: CrankTrain, law: SpeedLaw, stretches: list[tuple[float, float]]
+) -> _Firings | None:
+    """The decisions on the way; None without fuel."""
+    if train.law is None:
+        return None
+    firing, times = train.law.first, []
+    shares = [firing.shares]
+    for begin, end in stretches:
+        turned, bound = (float(q) for q in law.at_time([begin, end])[0])
+        while True:
+            low, high = train.law.next(firing)
+            angle = high if bound > turned else low
+            if not min(turned, bound) <= angle <= max(turned, bound):
+                break
+            t = float(law.time_at(np.array([angle]), begin, end)[0])
+            firing = train.law.decided(firing, t, angle, float(law.at_time(t)[1]))
+            times.append(t)
+            shares.append(firing.shares)
+    return _Firings(np.array(times), np.array(shares))
 
 
 def _kept(
@@ -96,10 +133,12 @@ def _panel_edges(
     law: SpeedLaw,
     stretches: list[tuple[float, float]],
     time: Array,
+    firings: _Firings | None,
 ) -> Array:
-    """Times between which the power is smooth and short: samples, knots, corners, panels."""
+    """Times between which the power is smooth and short: samples, knots, corners, decisions on the
+    fuel, panels."""
     knots = crank_angle_knots(train)
-    edges = [time, np.array(law.corners)]
+    edges = [time, np.array(law.corners), np.empty(0) if firings is None else firings.times]
     for begin, end in stretches:
         a, b = (float(q) for q in law.at_time([begin, end])[0])
         low, high = min(a, b), max(a, b)
@@ -112,7 +151,9 @@ def _panel_edges(
     return np.asarray(merged[(merged >= time[0]) & (merged <= time[-1])])
 
 
-def _energy_residual(train: CrankTrain, law: SpeedLaw, time: Array, edges: Array) -> Array:
+def _energy_residual(
+    train: CrankTrain, law: SpeedLaw, time: Array, edges: Array, firings: _Firings | None
+) -> Array:
     """Kinetic energy gained since the first sample minus the work of gas, gravity and drive.
 
     The work is the integral of power over time by Gauss quadrature between the edges.
@@ -121,7 +162,8 @@ def _energy_residual(train: CrankTrain, law: SpeedLaw, time: Array, edges: Array
     half = 0.5 * np.diff(edges)[:, None]
     t = edges[:-1, None] + half * (1.0 + nodes)
     theta, omega, alpha = law.at_time(t.ravel())
-    all_of = reactions(train, theta, omega, alpha)
+    fuel = None if firings is None else firings.at(t.ravel())
+    all_of = reactions(train, theta, omega, alpha, fuel)
     gas = (all_of["gas_force"] * all_of["piston_velocity"]).sum(axis=1)
     weight = reduce(replace(train, pressure=None), theta).torque * omega
     power = (all_of["external_torque"] * omega + gas + weight).reshape(t.shape)

@@ -16,38 +16,57 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from crankmbs.mechanics.firing import Firing, FuelLaw
+from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.windows import Phases, first_phases, later_phases
-from crankmbs.scene.scene import Scene
 
 __all__ = ["Mode", "begun", "decided"]
 
 
 class Mode(NamedTuple):
     """loads : phase of each load's window; low, high [rad] : the crank angles, backwards and
-    forwards, at which the next decision falls."""
+    forwards, at which the next decision falls; firing : what has been decided of the fuel."""
 
     loads: Phases = ()
     low: float = -math.inf
     high: float = math.inf
+    firing: Firing | None = None
+
+    @property
+    def shares(self) -> tuple[float, ...]:
+        """The share of the combustion of each cylinder's firing; empty without fuel."""
+        return self.firing.shares if self.firing else ()
 
 
-def begun(scene: Scene) -> Mode:
+def begun(train: CrankTrain) -> Mode:
     """The mode at the start of a free crank.
 
-    >>> begun(load_scene("propeller")).loads
+    >>> begun(crank_train(load_scene("propeller"))).loads
     ()
     """
+    scene, law = train.scene, train.law
     assert scene.start is not None
-    return Mode(first_phases(scene.torque, scene.start.speed))
+    mode = Mode(first_phases(scene.torque, scene.start.speed))
+    return _fired(mode, law, law.first) if law else mode
 
 
-def decided(scene: Scene, mode: Mode, time: float, omega: float) -> Mode:
-    """The mode after a window or stretch of this one has ended, at a time [s] and a speed [rad/s].
+def decided(train: CrankTrain, mode: Mode, time: float, theta: float, omega: float) -> Mode:
+    """The mode after a window or stretch of this one has ended, at a time [s], a crank angle [rad]
+    and a speed [rad/s].
 
-    >>> scene = load_scene("propeller")
-    >>> decided(scene, begun(scene), 1.0, 300.0) == begun(scene)
+    >>> train = crank_train(load_scene("propeller"))
+    >>> decided(train, begun(train), 1.0, 300.0, 300.0) == begun(train)
     True
     """
-    if not mode.loads:
-        return mode
-    return mode._replace(loads=later_phases(scene.torque, mode.loads, time, omega))
+    if mode.loads:
+        phases = later_phases(train.scene.torque, mode.loads, time, omega)
+        mode = mode._replace(loads=phases)
+    law, firing = train.law, mode.firing
+    if law and firing and theta in (mode.low, mode.high):
+        return _fired(mode, law, law.decided(firing, time, theta, omega))
+    return mode
+
+
+def _fired(mode: Mode, law: FuelLaw, firing: Firing) -> Mode:
+    low, high = law.next(firing)
+    return mode._replace(low=low, high=high, firing=firing)

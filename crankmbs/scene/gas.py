@@ -18,10 +18,10 @@ from crankmbs.errors import InputError, shown
 from crankmbs.scene.cycles import mean_cycle
 from crankmbs.scene.pressure_rows import check_rows
 from crankmbs.scene.schema import SAVED, Float, dumped, folder_of, part, si, to_si
-from crankmbs.scene.tables import Columns, Table, read_columns
+from crankmbs.scene.tables import CylinderTable, Table, read_columns
 from crankmbs.scene.units import DEGREE
 
-__all__ = ["Gas", "Indicator"]
+__all__ = ["Gas", "Indicator", "Polytrope", "PressureGiven", "tables_of"]
 
 Pressure = Annotated[Float, Gt(0), si("pressure")]
 
@@ -66,12 +66,13 @@ class Indicator:
             )
 
 
+PressureGiven = float | Table | CylinderTable | tuple[Table, ...]
 _NUMBER = re.compile(r"[+-]?\.?[0-9]")
 _FILE_NAME = re.compile(r".*\.[^\W\d]\w*")  # which a quantity never is
 
 
-def _source(value: Any, info: ValidationInfo) -> float | Table | Columns | tuple[Table, ...]:
-    """A file, a list of files, or a quantity; from Python a Table, a list of them, or Columns."""
+def _source(value: Any, info: ValidationInfo) -> PressureGiven:
+    """A file, a list of files, or a quantity; from Python tables."""
     if isinstance(value, list | tuple):
         if not value:
             raise InputError("must name a file for each cylinder; an empty list came")
@@ -87,7 +88,7 @@ def _source(value: Any, info: ValidationInfo) -> float | Table | Columns | tuple
 
 def _one_file(value: Any, info: ValidationInfo) -> Table:
     table = _table(value, info)
-    if isinstance(table, Columns):
+    if isinstance(table, CylinderTable):
         raise InputError(
             f"{table.source}: a file of a list has one pressure column, of its own cylinder; give "
             "this one without a list"
@@ -95,12 +96,12 @@ def _one_file(value: Any, info: ValidationInfo) -> Table:
     return table
 
 
-def _table(value: Any, info: ValidationInfo) -> Table | Columns:
-    if isinstance(value, Table | Columns):
+def _table(value: Any, info: ValidationInfo) -> Table | CylinderTable:
+    if isinstance(value, Table | CylinderTable):
         return value
     if dumped(value, info):
         by_cylinder = any(isinstance(each, list | tuple) for each in value.get("y", ()))
-        return Columns(**value) if by_cylinder else Table(**value)
+        return CylinderTable(**value) if by_cylinder else Table(**value)
     if info.context is SAVED:
         raise InputError(f"must hold its rows in a saved scene; {shown(value)} came")
     if not isinstance(value, str | Path):
@@ -112,11 +113,52 @@ def _table(value: Any, info: ValidationInfo) -> Table | Columns:
     return read_columns(folder_of(info) / value, {"crank_angle_deg": DEGREE}, _PRESSURE_COLUMNS)
 
 
-PressureSource = Annotated[Float | Table | Columns | tuple[Table, ...], BeforeValidator(_source)]
+@part
+class Polytrope:
+    """The pressure without combustion from a polytrope p V^n, continued from the pressure file.
+
+    polytrope: its exponent n [1]; closes [rad]: where it takes over, from the firing dead centre,
+    so that what comes before holds no combustion; compression_ratio [1]. It ends at the bottom
+    dead centre behind, where the file goes on.
+    """
+
+    polytrope: Annotated[Float, Gt(0), Le(10)]
+    closes: Annotated[Float, Ge(-math.pi), Le(0), si("angle")]
+    compression_ratio: Annotated[Float, Gt(1), Le(1e4)]
+
+
+def _motored(value: Any, info: ValidationInfo) -> Any:
+    """As `_source` takes it, or a Polytrope."""
+    if isinstance(value, Polytrope):
+        return value
+    if isinstance(value, dict) and "y" not in value:
+        return Polytrope(**value)
+    return _source(value, info)
+
+
+PressureSource = Annotated[
+    Float | Table | CylinderTable | tuple[Table, ...], BeforeValidator(_source)
+]
+
+
+def tables_of(
+    source: PressureGiven | Polytrope | None,
+) -> tuple[Table, ...]:
+    """The tables of a pressure: of each cylinder, or one of all; none where no rows came."""
+    if isinstance(source, CylinderTable):
+        return source.tables
+    if isinstance(source, Table):
+        return (source,)
+    return source if isinstance(source, tuple) else ()
 
 
 _NO_FILE = ("gas_exchange_tdc", "pchip", None, None)
 _OF_FILES = "zero, interpolation, closing and cycles belong to a pressure file; remove them"
+
+
+MotoredSource = Annotated[
+    Float | Table | CylinderTable | tuple[Table, ...] | Polytrope, BeforeValidator(_motored)
+]
 
 
 @part
@@ -129,7 +171,8 @@ class Gas:
     of several columns runs over its own cylinder's cycle angle, else all over that of cylinder 1;
     cycles: what is made of a file longer than a period, its mean cycle or the sequence of them;
     interpolation between the rows, two of which at one angle are a jump; closing [Pa]: a closing
-    row so near the first is dropped, by default 1 % of the range.
+    row so near the first is dropped, by default 1 % of the range; motored: the pressure without
+    combustion, given alike or as a Polytrope, of which a firing takes its share (`Fuel`).
     """
 
     pressure: PressureSource | None = None
@@ -142,6 +185,7 @@ class Gas:
     aligned: Annotated[bool, Strict()] = False
     cycles: Literal["mean", "sequence"] | None = None
     closing: Annotated[Float, Ge(0), si("pressure")] | None = None
+    motored: MotoredSource | None = None
 
     def __post_init__(self) -> None:
         if (self.pressure is None) == (self.indicator is None):
@@ -169,21 +213,27 @@ class Gas:
     @property
     def tables(self) -> tuple[Table, ...]:
         """The tables of the pressure: of each cylinder, or one of all; none of a constant."""
-        pressure = self.pressure
-        if pressure is None or isinstance(pressure, float):
-            return ()
-        if isinstance(pressure, Columns):
-            return pressure.tables
-        return (pressure,) if isinstance(pressure, Table) else pressure
+        return tables_of(self.pressure)
 
     def _check_files(self) -> None:
-        for table in self.tables:
-            check_rows(
-                table, self.period, self.cycles, absolute=self.absolute, closing=self.closing
-            )
+        absolute, closing = self.absolute, self.closing
+        for table in self.tables + tables_of(self.motored):
+            check_rows(table, self.period, self.cycles, absolute=absolute, closing=closing)
             if self.cycles == "mean":
                 mean_cycle(table, self.period)
-        if self.aligned and not isinstance(self.pressure, Columns):
+        if self.motored is not None and self.indicator is not None:
+            raise InputError(
+                "motored belongs to a pressure file; beside an indicator its compression both ways "
+                "is the pressure without combustion; remove it"
+            )
+        if isinstance(self.motored, Polytrope) and not self.absolute:
+            raise InputError(
+                "motored: a polytrope needs absolute pressures; give the file absolute with "
+                "ambient, or a motored file"
+            )
+        if isinstance(self.motored, Polytrope) and not self.tables:
+            raise InputError("motored: a polytrope continues a pressure file; none came")
+        if self.aligned and not isinstance(self.pressure, CylinderTable):
             raise InputError(
                 "aligned belongs to a file with a pressure column for each cylinder; remove it"
             )

@@ -17,12 +17,13 @@ from pydantic import BeforeValidator, Strict, ValidationInfo
 from crankmbs.errors import InputError, shown
 from crankmbs.scene.cycles import cycles_in
 from crankmbs.scene.drives import Motion, SpeedFile, Start
-from crankmbs.scene.gas import Gas
-from crankmbs.scene.loads import AnyTorque, Torque
+from crankmbs.scene.fuel import Fuel
+from crankmbs.scene.gas import Gas, tables_of
 from crankmbs.scene.parts import Crank, Cylinder, Gravity, Layout, Piston, Rod
 from crankmbs.scene.schema import Float, dumped, part
 from crankmbs.scene.sentences import did_you_mean
-from crankmbs.scene.tables import Columns, Table
+from crankmbs.scene.tables import CylinderTable, Table
+from crankmbs.scene.torque import AnyTorque, Torque
 from crankmbs.scene.units import DEGREE, EXAMPLES, extent
 
 __all__ = ["SETTLED", "Extent", "Run", "Scene"]
@@ -84,6 +85,19 @@ def _passing(load: Torque) -> str:
     return "" if load.is_steady else f"a {load.kind} depends on time"
 
 
+def _uneven(fuel: Fuel) -> str:
+    """What in the fuel makes firings that differ, or may."""
+    if fuel.governor is not None:
+        return "a governor decides each share anew; its settled cycle is not found yet"
+    if fuel.scatter > 0.0:
+        return "scatter makes every share another"
+    if fuel.after > 0.0 or (fuel.until, fuel.from_speed, fuel.until_speed) != (None, None, None):
+        return "a window acts once"
+    if any(not misfire.cycles.startswith("every") for misfire in fuel.misfire or ()):
+        return "a listed misfire happens once"
+    return "the shares are counted from the start; their settled cycle is not found yet"
+
+
 def _spacing(value: object, info: ValidationInfo) -> object:
     return None if value is None or value == "none" else _extent(value, info)
 
@@ -112,6 +126,7 @@ class Scene:
     run: Run
     layout: Layout = Layout(cylinders=(Cylinder(),))
     gas: Gas | None = None
+    fuel: Fuel | None = None
     gravity: Gravity | None = None
     motion: Motion | None = None
     start: Start | None = None
@@ -121,6 +136,7 @@ class Scene:
 
     def __post_init__(self) -> None:
         self._check_loop()
+        self._check_gas()
         self._check_motion()
         self._check_settled()
         self._check_tables()
@@ -192,14 +208,38 @@ class Scene:
             raise InputError(
                 "piston.bore: with [gas] the piston needs its bore, or its area; neither came"
             )
-        pressure = None if self.gas is None else self.gas.pressure
-        if isinstance(pressure, Columns | tuple):
-            count, cylinders = len(self.gas.tables if self.gas else ()), len(self.cylinders)
-            given = "columns" if isinstance(pressure, Columns) else "files"
-            if count != cylinders:
+
+    def _check_gas(self) -> None:
+        """Refuse as many pressures as there are not cylinders, and fuel that cannot burn."""
+        gas, cylinders = self.gas, len(self.cylinders)
+        for key, source in (("pressure", gas and gas.pressure), ("motored", gas and gas.motored)):
+            if isinstance(source, CylinderTable | tuple):
+                count = len(tables_of(source))
+                given = "columns" if isinstance(source, CylinderTable) else "files"
+                if count != cylinders:
+                    raise InputError(
+                        f"gas.{key}: as many {given} as cylinders are needed, {cylinders}, or one "
+                        f"for all; {count} came"
+                    )
+        if self.fuel is None:
+            return
+        if gas is None:
+            raise InputError("fuel: without [gas] nothing burns; add [gas], or remove [fuel]")
+        if gas.indicator is None and gas.motored is None:
+            raise InputError(
+                "gas.motored: with [fuel] the pressure without combustion is needed, of which a "
+                'firing takes its share; give motored = "motored.csv", or an indicator'
+            )
+        if self.motion is not None and self.fuel.governor is not None:
+            raise InputError(
+                "fuel.governor: with [motion] the speed is prescribed, and there is nothing to "
+                "govern; remove the governor, or free the crank with [start]"
+            )
+        for number, misfire in enumerate(self.fuel.misfire or (), start=1):
+            if misfire.cylinder > cylinders:
                 raise InputError(
-                    f"gas.pressure: as many {given} as cylinders are needed, {cylinders}, or one "
-                    f"for all; {count} came"
+                    f"fuel.misfire[{number}].cylinder: must be from 1 to {cylinders}; "
+                    f"{misfire.cylinder} came"
                 )
 
     def _check_motion(self) -> None:
@@ -239,6 +279,11 @@ class Scene:
             raise InputError(
                 'run.until: "settled" is the periodic motion that a free crank comes to; with '
                 '[motion] give an end such as "2 cycles", or free the crank with [start]'
+            )
+        if self.fuel is not None:
+            raise InputError(
+                f'run.until: "settled" needs firings that are alike in every cycle, and in [fuel], '
+                f"{_uneven(self.fuel)}; give an end such as {EXAMPLES['extent']}, or remove [fuel]"
             )
         for number, load in enumerate(self.torque, start=1):
             if _passing(load):

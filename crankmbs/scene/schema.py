@@ -40,8 +40,10 @@ def part(cls: type[T]) -> type[T]:
     validate = made.__init__
 
     def __init__(self: Any, *unnamed: Any, **values: Any) -> None:
-        if unnamed:
+        taken: tuple[str, ...] = getattr(made, "positional", ())
+        if len(unnamed) > len(taken):
             raise InputError(_by_name(made, len(unnamed)))
+        values |= dict(zip(taken, unnamed, strict=False))
         try:
             validate(self, **values)
         except ValidationError as error:

@@ -13,7 +13,14 @@ from typing import NamedTuple
 
 from crankmbs.errors import InputError, shown
 
-__all__ = ["Columns", "Header", "Table", "check_abscissae", "read_columns", "read_table"]
+__all__ = [
+    "CylinderTable",
+    "Header",
+    "Table",
+    "check_abscissae",
+    "read_columns",
+    "read_table",
+]
 
 _MOST = 32_000_000  # bytes: a million rows
 _LARGEST = 1e15
@@ -102,18 +109,18 @@ def check_abscissae(table: Table, what: str, *, jumps: bool) -> None:
 
 
 @dataclass(frozen=True)
-class Columns:
+class CylinderTable:
     """Rows with one value for each cylinder; ``source`` names where they came from.
 
     x : shape (n,), y : shape (cylinders, n), in SI units, kept as tuples
 
-    >>> Columns([0.0, 1.0], [[5.0, 6.0], [7.0, 8.0]]).tables[1].y
+    >>> CylinderTable([0.0, 1.0], [[5.0, 6.0], [7.0, 8.0]]).tables[1].y
     (7.0, 8.0)
     """
 
     x: tuple[float, ...]
     y: tuple[tuple[float, ...], ...]
-    source: str = "columns"
+    source: str = "table"
 
     def __post_init__(self) -> None:
         try:
@@ -159,7 +166,7 @@ def read_table(path: Path, x_units: dict[str, float], y_units: dict[str, float])
 
 def read_columns(
     path: Path, x_units: dict[str, float], y_units: dict[str, float]
-) -> Table | Columns:
+) -> Table | CylinderTable:
     """Read a CSV file as `read_table` does, or one with a numbered column for each cylinder.
 
     y_units : accepted column name -> factor to SI; numbered, _1, _2, ... is put behind the name
@@ -186,7 +193,7 @@ def read_columns(
         )
     y = [(column, factor) for _, column, factor in numbered]
     x, *columns = _values(path, rows, [_column(path, header, x_units), *y])
-    return Columns(x, tuple(columns), source=str(path))
+    return CylinderTable(x, tuple(columns), source=str(path))
 
 
 _NUMBERED = re.compile(r"(.+)_([1-9][0-9]?)")

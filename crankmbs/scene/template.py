@@ -57,7 +57,7 @@ peak_pressure = "58 bar"
 angle = "0 deg"
 speed = "3000 rpm"
 [[torque]]                      # ... and any number of torques act on it; positive drives
-kind = "quadratic"              # -c omega |omega|; constant, viscous, time_table, speed_table
+kind = "quadratic"              # -c omega |omega|; or constant, viscous, a table
 coefficient = "2.4e-4 N m s^2"  # takes what the gas gives at 3000 rpm
 #[motion]                       # in place of [start] and [[torque]]
 #speed = "3000 rpm"             # or {{ mean = ..., amplitude = ..., order = ... }}

@@ -29,9 +29,11 @@ _SI = {
     "acceleration": "m/s^2",
     "area": "m^2",
     "inertia": "kg m^2",
+    "integral gain": "1/rad",
     "length": "m",
     "mass": "kg",
     "pressure": "Pa",
+    "proportional gain": "s/rad",
     "quadratic coefficient": "N m s^2",
     "time": "s",
     "torque": "N m",
@@ -40,6 +42,10 @@ _SI = {
 _ANGLE = {"rad": 1.0, "deg": DEGREE, "rev": 2.0 * math.pi}
 _SMALLEST, _LARGEST = 1e-50, 1e15  # in SI units: products of several neither vanish nor overflow
 _ANGULAR_SPEED = {"rpm": RPM, "rad/s": 1.0, "deg/s": DEGREE}
+_GAINS = {
+    "proportional gain": {"s/rad": 1.0, "s/deg": 1.0 / DEGREE, "1/rpm": 1.0 / RPM},
+    "integral gain": {"1/rad": 1.0, "1/deg": 1.0 / DEGREE, "1/rev": 0.5 / math.pi},
+}
 _CYCLE = {"cycle", "cycles"}
 
 EXAMPLES = {
@@ -49,9 +55,11 @@ EXAMPLES = {
     "area": '"57.08 cm^2"',
     "extent": '"20 cycles", "10 rev" or "0.75 s"',
     "inertia": '"0.15 kg m^2"',
+    "integral gain": '"0.02 1/rad"',
     "length": '"46 mm"',
     "mass": '"1.14 kg"',
     "pressure": '"1 bar"',
+    "proportional gain": '"0.004 s/rad"',
     "quadratic coefficient": '"7.8e-4 N m s^2"',
     "time": '"0.75 s"',
     "torque": '"87 N m"',
@@ -79,6 +87,8 @@ def quantity(text: str, dimension: str) -> float:
         factor = _ANGLE.get(unit)
     elif dimension == "angular speed":
         factor = _ANGULAR_SPEED.get(unit)
+    elif dimension in _GAINS:
+        factor = _GAINS[dimension].get(unit)
     else:
         factor = _factor(unit, _SI[dimension])
     if factor is None:
@@ -142,7 +152,8 @@ def _hint(text: str) -> str:
 
 
 def _units_for(dimension: str) -> str:
-    listed = {"angle": _ANGLE, "angular speed": _ANGULAR_SPEED}.get(dimension)
+    lists = {"angle": _ANGLE, "angular speed": _ANGULAR_SPEED, **_GAINS}
+    listed = lists.get(dimension)
     if listed is None:
         return f"a unit such as in {EXAMPLES[dimension]}"
     *most, last = listed

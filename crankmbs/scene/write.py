@@ -8,9 +8,11 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
+from crankmbs.errors import InputError
 from crankmbs.scene.drives import Ramp
 from crankmbs.scene.scene import Extent, Scene
-from crankmbs.scene.tables import Columns, Header, Table
+from crankmbs.scene.tables import CylinderTable, Header, Table
+from crankmbs.scene.torque import Torque
 from crankmbs.scene.units import DEGREE, RPM
 
 __all__ = ["scene_files"]
@@ -56,6 +58,10 @@ def scene_files(scene: Scene, stem: str) -> dict[str, str]:
     -------
     dict : file name -> text; first STEM.toml, then the tables that it names
 
+    Raises
+    ------
+    InputError : a load is a function of Python
+
     >>> list(scene_files(load_scene("propeller"), "mine"))
     ['mine.toml', 'mine_pressure.csv']
     """
@@ -65,14 +71,15 @@ def scene_files(scene: Scene, stem: str) -> dict[str, str]:
         lines = ["", heading]
         for key, value in _values(part):
             table = getattr(value, "file", value)
-            if isinstance(table, Table | Columns):
+            name = f"{stem}_{use if key != 'motored' else key}"
+            if isinstance(table, Table | CylinderTable):
                 assert header is not None
-                file = f"{stem}_{use}.csv"
+                file = f"{name}.csv"
                 tables[file] = _csv(table, header)
                 value = {"file": file} if table is not value else file
             elif isinstance(value, tuple) and isinstance(value[0], Table):
                 assert header is not None
-                files = [f"{stem}_{use}{k}.csv" for k in range(1, len(value) + 1)]
+                files = [f"{name}{k}.csv" for k in range(1, len(value) + 1)]
                 rows = (_csv(each, header) for each in value)
                 tables.update(zip(files, rows, strict=True))
                 value = tuple(files)
@@ -85,6 +92,11 @@ def scene_files(scene: Scene, stem: str) -> dict[str, str]:
             use = "pressure" if key == "gas" else "speed"
             lines += section(f"[{key}]", part, use, _HEADERS[use])
     for number, load in enumerate(scene.torque, start=1):
+        if load.kind not in Torque.kinds:
+            raise InputError(
+                f"torque[{number}]: a load that is a function of Python, {load.words}, cannot be "
+                "written to a scene file; leave it out, or give it as a table"
+            )
         heading, *rest = section("[[torque]]", load, f"{load.kind}{number}", load.header)[1:]
         lines += ["", heading, f"kind = {_quoted(load.kind)}", *rest]
     lines += section("[run]", scene.run, "", None)
@@ -152,16 +164,16 @@ def _divided(value: float, factor: float) -> float:
     return next((number for number in near if factor * number == value), ratio)
 
 
-def _csv(table: Table | Columns, header: Header) -> str:
+def _csv(table: Table | CylinderTable, header: Header) -> str:
     x_name, x_factor, y_name, y_factor = header
-    columns = [(x_name, table.x, x_factor)]
+    of_each = [(x_name, table.x, x_factor)]
     if isinstance(table, Table):
-        columns.append((y_name, table.y, y_factor))
+        of_each.append((y_name, table.y, y_factor))
     else:
-        columns += [(f"{y_name}_{k}", y, y_factor) for k, y in enumerate(table.y, start=1)]
-    cells = ([_digits(_divided(v, factor)) for v in values] for _, values, factor in columns)
+        of_each += [(f"{y_name}_{k}", y, y_factor) for k, y in enumerate(table.y, start=1)]
+    cells = ([_digits(_divided(v, factor)) for v in values] for _, values, factor in of_each)
     lines = [",".join(row) for row in zip(*cells, strict=True)]
-    return "\n".join([",".join(name for name, *_ in columns), *lines]) + "\n"
+    return "\n".join([",".join(name for name, *_ in of_each), *lines]) + "\n"
 
 
 def _quoted(text: str) -> str:

@@ -74,7 +74,7 @@ def _loop(scene: Scene, grid: Grid, reference: Reference) -> Callable[[], Answer
     count = int(abs(far - theta) / float(grid.edges[-1]) * len(grid.edges)) + 2
     strip = grid.strip(theta, sense, count, far)
     energy = 0.5 * float(inertia_alone(scene, theta)) * omega**2
-    begin = Begin(sense, energy, 0.0, until if until_time else math.inf)
+    begin = Begin(sense, energy, 0.0, until if until_time else math.inf, theta)
     reduced, given = Reduced(CrankTrain(scene, None)), np.array([until])
     no_gas = np.zeros((len(scene.cylinders), 6))
 

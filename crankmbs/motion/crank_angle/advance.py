@@ -21,12 +21,14 @@ import numpy as np
 from crankmbs.mechanics.inertia import inertia_alone, reduce
 from crankmbs.mechanics.torque import Branch, Course, branch_at, course_of
 from crankmbs.motion.base import State
+from crankmbs.motion.crank_angle.firings import solve, solve_fired
 from crankmbs.motion.crank_angle.grid import Grid, Strip, largest_of_row
 from crankmbs.motion.crank_angle.kinks import what_misses
 from crankmbs.motion.crank_angle.periods import period_of
-from crankmbs.motion.crank_angle.solvers import Begin, solve_affine, solve_newton
+from crankmbs.motion.crank_angle.solvers import Begin
 from crankmbs.motion.crank_angle.window import Window
 from crankmbs.motion.ending import Ending
+from crankmbs.motion.mode import Mode
 from crankmbs.motion.plan import Plan
 from crankmbs.scene.units import DEGREE
 
@@ -35,6 +37,7 @@ __all__ = ["advance", "is_fast"]
 _SLOW = 0.5 * DEGREE  # where the energy would be gone within this angle, time must be the variable
 _BLOCK = 8192  # cells of one window
 _SPEED_BLOCK = 512  # where the loads' branch may end at a speed, and the rest is for nothing
+_REACH = 1.0  # rad: what Newton's method can hold of loads that are functions, on all cells at once
 _HAIR = 1e-6  # of a cell: as near its edge it is as exact as there
 _BEYOND = (_HAIR, 1e-4, 1e-2)  # of a cell: how far ahead a landing near a turn may really be
 _ROUNDS = 6  # of cutting cells at kinks
@@ -45,7 +48,9 @@ def is_fast(grid: Grid, state: State, branch: Branch, times: float) -> bool:
     """Whether the energy lasts for so many times the angle at which this formulation gives up."""
     grid = grid.at(state.mode.loads)
     scale = grid.scale[grid.cell_at(state.theta, math.copysign(1.0, state.omega))]
-    scale += abs(float(branch(state.time, state.omega)))
+    outside = float(branch(state.time, state.omega))
+    outside += sum(f.number(state.time, state.theta, state.omega) for f in branch.functions)
+    scale += abs(outside)
     inertia = float(inertia_alone(grid.train.scene, state.theta))
     return bool(0.5 * inertia * state.omega**2 > times * _SLOW * scale)
 
@@ -68,6 +73,7 @@ def advance(
         mode = state.mode
         grid = grid.at(mode.loads)
         bound = min(end, mode.high) if sense > 0.0 else max(end, mode.low)
+        bound = bound if grid.train.law is None else end  # decisions are edges within a window
         branch, energy = _enter(grid, state)
         if branch is None:
             return Ending.HELD
@@ -87,7 +93,7 @@ def advance(
             return Ending.HELD
         state, skipped = window.end, 0
         t_end = min(branch.t_end, plan.time_bound)
-        goes_on = state.mode == mode and state.time < t_end
+        goes_on = state.mode == mode and state.time < t_end and grid.train.law is None
         if math.isfinite(plan.last) and goes_on and branch.is_affine_in_energy:
             state, skipped = _skip(way._replace(state=state, t_end=t_end), branch)
 
@@ -191,11 +197,11 @@ def _skip(way: _Way, branch: Branch) -> tuple[State, int]:
 
 def _enter(grid: Grid, state: State) -> tuple[Branch | None, float]:
     """The branch of the loads that the motion enters, and its kinetic energy [J]."""
-    inertia, slope, torque = reduce(grid.train, state.theta)
+    inertia, slope, torque = reduce(grid.train, state.theta, state.mode.shares)
     torque = torque + grid.outside(np.asarray(state.theta))
     rest = float(torque - 0.5 * slope * state.omega**2)
     torques = grid.train.scene.torque
-    branch = branch_at(torques, state.time, state.omega, rest, state.mode.loads)
+    branch = branch_at(torques, state[:3], rest, state.mode.loads)
     return branch, 0.5 * float(inertia) * state.omega**2
 
 
@@ -207,8 +213,11 @@ def _solve(way: _Way, loads: Branch | Course) -> Window | None:
     n, period = len(grid.edges) - 1, float(grid.edges[-1])
     ahead = 1.2 * (t_end - state.time) * abs(state.omega)
     cells = min(ahead, abs(bound - state.theta)) / period * n + 2.0
-    ends = (loads.omega_low * sense, loads.omega_high * sense)
-    most = _SPEED_BLOCK if any(0.0 < end < math.inf for end in ends) else _BLOCK
+    if loads.functions:
+        most = max(2, int(_REACH / period * n))
+    else:
+        ends = (loads.omega_low * sense, loads.omega_high * sense)
+        most = _SPEED_BLOCK if any(0.0 < end < math.inf for end in ends) else _BLOCK
     strip = grid.strip(state.theta, sense, int(min(cells, most)), bound)
     window = _solved(way, loads, strip, t_end)
     for _ in range(_ROUNDS):
@@ -225,15 +234,19 @@ def _solve(way: _Way, loads: Branch | Course) -> Window | None:
 def _solved(way: _Way, loads: Branch | Course, strip: Strip, t_end: float) -> Window | None:
     """The cells of a strip, up to where they are too slow."""
     grid, state, energy, sense, *_ = way
-    begin = Begin(sense, energy, state.time, t_end)
+    begin = Begin(sense, energy, state.time, t_end, state.theta)
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-        if isinstance(loads, Branch) and loads.is_affine_in_energy:
-            cells = solve_affine(grid, strip, loads, begin)
+        modes: tuple[tuple[int, Mode], ...] = ()
+        if grid.train.law is None:
+            cells = solve(grid, strip, loads, begin)
         else:
-            cells = solve_newton(grid, strip, loads, begin)
+            cells, strip, modes = solve_fired(grid, strip, loads, begin, state)
         edges, time, torque, slowness = cells
         strip = strip.first(len(torque))
         outside = loads(time[1:], sense / slowness[:, -1])
+        for function in loads.functions:
+            at_ends = strip.angles(state.theta, sense, grid.rule)[:, -1]
+            outside = outside + function(time[1:], at_ends, sense / slowness[:, -1])
         scale = grid.scale[strip.cell] + np.abs(outside)
         least = 0.5 * grid.least[strip.cell] / largest_of_row(slowness) ** 2
         good = np.minimum(least, np.minimum(edges[1:], edges[:-1])) > _SLOW * scale  # not of a NaN
@@ -252,4 +265,5 @@ def _solved(way: _Way, loads: Branch | Course, strip: Strip, t_end: float) -> Wi
         torque[:m],
         slowness[:m],
         (m - 1, 1.0),
+        modes=tuple(one for one in modes if one[0] < m),
     )

@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from crankmbs.mechanics.inertia import reduce
+from crankmbs.mechanics.inertia import fired_torque, reduce
 from crankmbs.mechanics.torque import knots_over_angle, over_angle
 from crankmbs.mechanics.train import CrankTrain, crank_angle_knots
 from crankmbs.mechanics.windows import Phases
@@ -36,6 +36,8 @@ class Strip:
     turned : shape (m + 1,) [rad], angle from the beginning to every edge
     inertia, torque : shape (m, s), J [kg m2] and the torque over the angle [N m], of gas, gravity
         and loads, at the nodes
+    combustion : shape (m, s, cylinders) [N m], what firings of share 1 add to the torque; no
+        cylinders without fuel
     """
 
     cell: NDArray[np.intp]
@@ -43,11 +45,30 @@ class Strip:
     turned: Array
     inertia: Array
     torque: Array
+    combustion: Array
+
+    def angles(self, theta: float, sense: float, rule: Rule) -> Array:
+        """Crank angles [rad] of the nodes of a rule, shape (m, s), where it begins at one."""
+        ahead = self.turned[:-1, None] + self.width[:, None] * rule.nodes
+        return np.asarray(theta + sense * ahead)
 
     def first(self, m: int) -> Strip:
         """The first m cells."""
-        of_cells = (self.inertia[:m], self.torque[:m])
-        return Strip(self.cell[:m], self.width[:m], self.turned[: m + 1], *of_cells)
+        return self.part(0, m)
+
+    def part(self, low: int, high: int) -> Strip:
+        """The cells from one number to another; edges are still counted from the beginning."""
+        of_cells = (self.inertia[low:high], self.torque[low:high], self.combustion[low:high])
+        turned = self.turned[low : high + 1]
+        return Strip(self.cell[low:high], self.width[low:high], turned, *of_cells)
+
+    def fired(self, shares: Array) -> Strip:
+        """The torque with these shares of the combustion, of each cell or of all, shape
+        (..., cylinders)."""
+        if self.combustion.shape[-1] == 0:
+            return self
+        more = (self.combustion @ shares[..., None])[..., 0]
+        return replace(self, torque=self.torque + more)
 
 
 @dataclass(frozen=True)
@@ -88,14 +109,18 @@ class Grid:
         return 0.0 if self.over_angle is None else self.over_angle(theta)
 
     @cached_property
-    def tables(self) -> tuple[Array, Array]:
-        """J and torque over the angle at the nodes of every cell, shape (n, s) each."""
+    def tables(self) -> tuple[Array, Array, Array]:
+        """J and torque over the angle at the nodes of every cell, shape (n, s) each; what the
+        combustion of each cylinder adds, shape (n, s, cylinders)."""
         return self._tabulate(self.edges[:-1], np.diff(self.edges))
 
     @cached_property
     def scale(self) -> Array:
         """Largest torque over the angle in and around each cell, shape (n,) [N m]."""
-        most = np.append(largest_of_row(np.abs(self.tables[1])), 0.0)
+        _, torque, combustion = self.tables
+        share = self.train.law.most if self.train.law else 0.0
+        torque = np.abs(torque) + share * np.abs(combustion).sum(axis=-1)
+        most = np.append(largest_of_row(torque), 0.0)
         middle = 0.5 * (self.edges[1:] + self.edges[:-1])
         around = np.add.outer(middle, [-_WIDEST, _WIDEST])
         from_to = np.searchsorted(middle, around.ravel())
@@ -168,32 +193,45 @@ class Grid:
         self, theta: float, sense: float, cell: NDArray[np.intp], width: Array, turned: Array
     ) -> Strip:
         """The strip of these cells; what is a part of a cell is tabulated anew."""
-        inertia, torque = (table.take(cell, axis=0) for table in self.tables)
+        inertia, torque, combustion = (table.take(cell, axis=0) for table in self.tables)
         if sense < 0.0:
             inertia, torque = inertia[:, ::-1].copy(), torque[:, ::-1].copy()
+            combustion = combustion[:, ::-1].copy()
         parts = np.flatnonzero(width != np.diff(self.edges)[cell])
         if len(parts):
             period = float(self.edges[-1])
             local = theta - math.floor((theta + sense * _SLIVER) / period) * period
             start = local + sense * turned[parts]
-            inertia[parts], torque[parts] = self._tabulate(start, sense * width[parts])
-        return Strip(cell, width, turned, inertia, torque)
+            anew = self._tabulate(start, sense * width[parts])
+            inertia[parts], torque[parts], combustion[parts] = anew
+        return Strip(cell, width, turned, inertia, torque, combustion)
 
-    def _tabulate(self, start: Array, width: Array) -> tuple[Array, Array]:
+    def _tabulate(self, start: Array, width: Array) -> tuple[Array, Array, Array]:
         theta = start[:, None] + width[:, None] * self.rule.nodes
         found = reduce(self.train, theta)
-        return found.inertia, np.asarray(found.torque + self.outside(theta))
+        torque = np.asarray(found.torque + self.outside(theta))
+        return found.inertia, torque, fired_torque(self.train, theta)
 
 
 def grid_of(train: CrankTrain, rule: Rule, widest: float = _WIDEST) -> Grid:
-    """The coarsest grid of a crank train: edges at the knots of the pressure and of the loads, and
-    around folds that a rod just escapes, no cell wider than ``widest`` [rad]."""
+    """The coarsest grid of a crank train: edges at the knots of the pressure and of the loads, at
+    the decisions on the fuel, and around folds that a rod just escapes, no cell wider than
+    ``widest`` [rad]."""
     knots = [crank_angle_knots(train), knots_over_angle(train), _near_folds(train)]
-    marks = np.unique(np.concatenate([[0.0], *knots, [train.period]]))
+    marks = np.unique(np.concatenate([[0.0], *knots, _decisions(train), [train.period]]))
     marks = marks[np.append(True, np.diff(marks) > _SLIVER)]
     marks[-1] = train.period
     grid = Grid(train, marks, rule)
-    return grid.split(np.ceil(np.diff(marks) / widest - 1e-9).astype(np.intp))
+    return grid.split(np.maximum(np.ceil(np.diff(marks) / widest - 1e-9), 1).astype(np.intp))
+
+
+def _decisions(train: CrankTrain) -> Array:
+    """Crank angles [rad] in one period at which the fuel is decided."""
+    if train.law is None:
+        return np.empty(0)
+    own = train.scene.period
+    turns = own * np.arange(round(train.period / own))
+    return np.asarray(np.add.outer(turns, train.law.angles).ravel())
 
 
 def _near_folds(train: CrankTrain) -> Array:

@@ -16,13 +16,14 @@ __all__ = ["Begin", "Cells", "solve_affine", "solve_newton"]
 
 
 class Begin(NamedTuple):
-    """Sense of rotation, kinetic energy [J] and time [s] where the cells begin; they end
-    after the cell that passes ``t_end``."""
+    """Sense of rotation, kinetic energy [J], time [s] and crank angle [rad] where the cells begin;
+    they end after the cell that passes ``t_end``."""
 
     sense: float
     energy: float
     time: float
     t_end: float
+    angle: float
 
 
 class Cells(NamedTuple):
@@ -55,7 +56,7 @@ def solve_affine(grid: Grid, strip: Strip, branch: Branch, begin: Begin) -> Cell
     inertia, push = strip.inertia[which], strip.torque[which] + branch.c0
     rate, signed = 2.0 * branch.c2 / inertia, begin.sense * strip.width[which]
     cells, rule = Cells.empty(strip), (grid.rule.matrix, grid.rule.weights)
-    loads, ends = (signed, push, rate, inertia), begin[1:]
+    loads, ends = (signed, push, rate, inertia), begin[1:4]
     maps = (*np.empty((2, *push.shape)), *np.empty((2, len(push))))
     room = np.empty((push.shape[1], push.shape[1] + 2))
     return cells.first(loops.affine(again, loads, maps, room, rule, ends, strip.width, *cells))
@@ -63,7 +64,7 @@ def solve_affine(grid: Grid, strip: Strip, branch: Branch, begin: Begin) -> Cell
 
 def solve_newton(grid: Grid, strip: Strip, loads: Branch | Course, begin: Begin) -> Cells:
     """Newton's method, cell after cell."""
-    sense, start, t0, t_end = begin
+    sense, start, t0, t_end, _ = begin
     cells = Cells.empty(strip)
     bounds = (t_end, loads.omega_low, loads.omega_high)
     tables = (strip.width, strip.inertia, strip.torque)

@@ -9,12 +9,12 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from crankmbs.mechanics.inertia import inertia_alone, reduce
+from crankmbs.mechanics.inertia import fired_torque, inertia_alone, reduce
 from crankmbs.mechanics.torque import Branch, Course
 from crankmbs.motion.base import NOWHERE, Samples, State
 from crankmbs.motion.crank_angle import loops, readout
 from crankmbs.motion.crank_angle.grid import Grid, Strip, largest_of_row
-from crankmbs.motion.mode import decided
+from crankmbs.motion.mode import Mode, decided
 from crankmbs.motion.plan import Plan
 from crankmbs.numerics.arrays import Array, Index
 from crankmbs.numerics.periodic import one_period
@@ -30,7 +30,8 @@ class Window:
     edges : shape (m + 1,) [rad], angle turned since the beginning, u >= 0; energy and time at
     them; torque : shape (m, s), Q at the nodes [N m]; slowness : shape (m, s), dt/du [s/rad];
     stop : cell and position in it, 0 to 1, where the window ends; landed : what is exact there;
-    skipped : cells of whole periods passed before it and not kept.
+    skipped : cells of whole periods passed before it and not kept;
+    modes : with fuel, from which cell on which mode holds.
     """
 
     grid: Grid
@@ -46,6 +47,7 @@ class Window:
     stop: tuple[int, float]
     landed: State = NOWHERE
     skipped: int = 0
+    modes: tuple[tuple[int, Mode], ...] = ()
 
     def sample(self, plan: Plan) -> Samples:
         """The samples of the plan after the beginning, up to the end and with it."""
@@ -85,7 +87,8 @@ class Window:
         at = self.last()
         rows = (at.time, at.theta, at.omega, at.energy_residual)
         time, theta, omega, residual = (float(q[0]) for q in rows)
-        mode = decided(self.grid.train.scene, self.begin.mode, time, omega)
+        last = self.modes[-1][1] if self.modes else self.begin.mode
+        mode = decided(self.grid.train, last, time, theta, omega)
         return State(time, theta, omega, residual, mode)
 
     @cached_property
@@ -93,7 +96,7 @@ class Window:
         """Errors of the energy [J] and the time [s] gained in each cell, shape (m, s + 3) each:
         what a finer Gauss rule along the solution gives, at its nodes and at the cell's end."""
         rule, finer = self.grid.rule, self.grid.finer.rule
-        strip = self.grid.finer.same(self.strip, self.begin.theta, self.sense)
+        strip = self.grid.finer.same(self.strip, self.begin.theta, self.sense).fired(self.shares)
         inside = rule.integrals(finer.nodes).T
         to_nodes = np.vstack([finer.matrix, finer.weights]).T
         own = np.column_stack([inside, rule.weights])
@@ -103,6 +106,9 @@ class Window:
         with np.errstate(divide="ignore"):
             slowness = np.sqrt(0.5 * strip.inertia / np.maximum(energy, 0.0))
             torque = strip.torque + self.branch(t, self.sense / slowness)
+            theta = strip.angles(self.begin.theta, self.sense, finer)
+            for function in self.branch.functions:
+                torque = torque + function(t, theta, self.sense / slowness)
         gained = self.sense * width * (torque @ to_nodes - self.torque @ own)
         return gained, width * (slowness @ to_nodes - self.slowness @ own)
 
@@ -151,7 +157,16 @@ class Window:
             slowness=self.slowness[:m],
             stop=(m - 1, 1.0),
             landed=NOWHERE,
+            modes=tuple(one for one in self.modes if one[0] < m),
         )
+
+    @cached_property
+    def shares(self) -> Array:
+        """Shares of the combustion in each cell, shape (m, cylinders); without fuel (m, 0)."""
+        shares = np.empty((len(self.torque), len(self.modes[0][1].shares) if self.modes else 0))
+        for k, mode in self.modes:
+            shares[k:] = mode.shares
+        return shares
 
     def rate(self, which: NDArray[np.bool_]) -> Array:
         """dQ/dE [1/rad] at the nodes of some cells."""
@@ -236,8 +251,14 @@ class Window:
         inertia, slope, torque = reduce(self.grid.train, once)
         over_angle = np.zeros_like(torque) + self.grid.outside(once)
         torque = torque + over_angle
+        fuel = {}
+        if self.modes:
+            fuel = {"fuel": self.shares[k]}
+            more = fired_torque(self.grid.train, once)[which] * fuel["fuel"]
+            inertia, slope, torque = inertia[which], slope[which], torque[which] + more.sum(axis=1)
+            over_angle, which = over_angle[which], np.arange(len(theta))
         of_angle = (inertia, slope, torque)  # bare: numba's cache must not name a class
-        if isinstance(self.branch, Branch):
+        if isinstance(self.branch, Branch) and not self.branch.functions:
             omega, outside, alpha = np.empty((3, len(theta)))
             loads = self.branch.coefficients
             readout.motion(which, of_angle, self.sense, loads, t, energy, omega, outside, alpha)
@@ -245,10 +266,12 @@ class Window:
             inertia, slope, torque = (part[which] for part in of_angle)
             omega = self.sense * np.sqrt(2.0 * np.maximum(energy, 0.0) / inertia)
             outside = self.branch(t, omega)
+            for function in self.branch.functions:
+                outside = outside + function(t, theta, omega)
             alpha = (torque + outside - 0.5 * slope * omega**2) / inertia
         residual = self.begin.residual - self.missed[k]
         outside = outside + over_angle[which]
-        return Samples(t, theta, omega, alpha, residual, {"external_torque": outside})
+        return Samples(t, theta, omega, alpha, residual, {"external_torque": outside, **fuel})
 
 
 def _exact(landed: float, computed: Array) -> Array:

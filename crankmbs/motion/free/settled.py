@@ -36,7 +36,7 @@ def run(train: CrankTrain, rtol: float, cost_cap: float, *, by_angle: bool) -> A
     """
     if not train.scene.settles:
         return passes.run(train, rtol, cost_cap, by_angle=by_angle)
-    section = Section(train, passes.evaluations(cost_cap), by_angle=by_angle)
+    section = Section(train, passes.evaluations(train, cost_cap), by_angle=by_angle)
     try:
         grid = passes.first_grid(train, rtol)
         limit = search(section, grid)

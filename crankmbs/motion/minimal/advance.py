@@ -16,7 +16,7 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.integrate import Radau
+from scipy.integrate import DOP853, Radau
 
 from crankmbs.mechanics.torque import Branch, branch_at, branch_of
 from crankmbs.mechanics.windows import phase_ends
@@ -83,8 +83,7 @@ def advance(
         low, high = plan.angle_bounds
         angles = max(low, state.mode.low), min(high, state.mode.high)
         limits = np.array([*equation.between[:2], *angles, *speeds])
-        method = _radau if equation.is_stiff(state, inertia) else _dop853
-        track = method(equation, state, control, limits)
+        track = _track(equation, state, control, limits, stiff=equation.is_stiff(state, inertia))
         if len(track.widths) == 0:
             return Ending.FAILED
         stretch = Stretch.of(equation, track, state)
@@ -106,16 +105,16 @@ def _enter(reduced: Reduced, state: State, scale: float) -> Equation | Ending:
     it waits for those that are still to set in or to end."""
     torques, phases = reduced.train.scene.torque, state.mode.loads
     if state.omega != 0.0:
-        between = reduced.around(state.theta, math.copysign(1.0, state.omega))
+        between = reduced.around(state.theta, math.copysign(1.0, state.omega), state.mode.shares)
         _, slope, torque = reduced(state.theta, between.pieces)
         rest = torque - 0.5 * slope * state.omega**2
-        branch = branch_at(torques, state.time, state.omega, rest, phases)
+        branch = branch_at(torques, state[:3], rest, phases)
         return Ending.HELD if branch is None else Equation(reduced, between, branch)
     sides: list[Equation] = []
     resisted = False
     for sense in (1.0, -1.0):
         branch = branch_of(torques, state.time, 0.0, rising=sense > 0.0, phases=phases)
-        equation = Equation(reduced, reduced.around(state.theta, sense), branch)
+        equation = Equation(reduced, reduced.around(state.theta, sense, state.mode.shares), branch)
         pull = equation.pull(state)
         if pull * sense > BALANCED * scale:
             return equation
@@ -141,6 +140,17 @@ class _Control(NamedTuple):
     parts: int
 
 
+def _track(
+    equation: Equation, begin: State, control: _Control, limits: Array, *, stiff: bool
+) -> Track:
+    """The next steps, by the method that serves them."""
+    if stiff:
+        return _by_scipy(Radau, equation, begin, control, limits)
+    if equation.branch.functions:  # of which the compiled stepper knows nothing
+        return _by_scipy(DOP853, equation, begin, control, limits)
+    return _dop853(equation, begin, control, limits)
+
+
 def _dop853(equation: Equation, begin: State, control: _Control, limits: Array) -> Track:
     """Steps of order 8."""
     begins, widths = np.empty((2, control.room + 1))
@@ -154,16 +164,24 @@ def _dop853(equation: Equation, begin: State, control: _Control, limits: Array) 
     return Track(begins[:n], widths[:n], rows[:n], t, y, h, most, evaluations)
 
 
-def _radau(equation: Equation, begin: State, control: _Control, limits: Array) -> Track:
-    """Steps of SciPy's Radau, up to the end of the piece."""
+def _by_scipy(
+    method: type[Radau | DOP853],
+    equation: Equation,
+    begin: State,
+    control: _Control,
+    limits: Array,
+) -> Track:
+    """Steps of a method of SciPy's, up to the end of the piece."""
     parts = control.parts
     tolerance = max(control.tolerance, _RADAU / parts)
     atol = np.array([tolerance, tolerance * control.speed, math.inf])
     options: dict[str, Any] = {"rtol": tolerance, "atol": atol}
 
-    def start(t: float, y: Array, bound: float, first: float, longest: float) -> Radau:
+    function: Any = equation
+
+    def start(t: float, y: Array, bound: float, first: float, longest: float) -> Radau | DOP853:
         first = min(first, longest, bound - t)
-        return Radau(equation, t, y, bound, first_step=first, max_step=longest, **options)
+        return method(function, t, y, bound, first_step=first, max_step=longest, **options)
 
     track: list[tuple[float, float, Array]] = []
     most, evaluations, y = control.most, 0, np.array([begin.theta, begin.omega, 0.0])
@@ -188,7 +206,8 @@ def _radau(equation: Equation, begin: State, control: _Control, limits: Array) -
         kinetic = equation.kinetic(state.theta, state.omega)
         most = max(most, kinetic)
         inertia = equation.reduced(state.theta, equation.between.pieces)[0]
-        if kinetic <= control.tolerance**2 * most or not equation.is_stiff(state, inertia):
+        stiff = equation.is_stiff(state, inertia)
+        if kinetic <= control.tolerance**2 * most or stiff != (method is Radau):
             break
     y = np.array(y)
     if i >= 0:
@@ -199,11 +218,15 @@ def _radau(equation: Equation, begin: State, control: _Control, limits: Array) -
     return Track(*arrays, t, y, h, most, evaluations + solver.nfev)
 
 
-def _interpolant(solver: Radau) -> tuple[float, float, Array]:
-    """Beginning and length of the last step, and its cubic as the `stepper` takes it."""
-    dense = solver.dense_output()
+def _interpolant(solver: Radau | DOP853) -> tuple[float, float, Array]:
+    """Beginning and length of the last step, and its polynomial as the `stepper` takes it: SciPy's
+    own of order 7, of Radau the cubic."""
+    dense: Any = solver.dense_output()
     begin, width, row = float(dense.t_min), float(dense.t_max - dense.t_min), np.zeros((8, 3))
     old = np.asarray(solver.y_old)
+    if isinstance(solver, DOP853):
+        row[0], row[1:] = old, dense.F
+        return begin, width, row
     rise = solver.y - old
     near, far = (4.5 * (dense(begin + x * width) - old - x * rise) for x in (1 / 3, 2 / 3))
     row[:4] = old, rise, 2.0 * near - far, 3.0 * (far - near)

@@ -56,7 +56,7 @@ class Reduced:
             for c, first in zip(scene.cylinders, firsts, strict=True)
         ]
         bends = knots
-        if pressure and missed > 0.0:
+        if pressure and missed > 0.0 and train.combustion is None:
             lever = (piston.gas_area or 0.0) * crank.radius
             least = missed * self.torque_scale / lever
             bends = self._with_loads(merged_knots(train, [each.bends(least) for each in pressure]))
@@ -84,6 +84,7 @@ class Reduced:
             ),
             coefficients=_side_by_side([p.coefficients for p in pressures]),
             bends=bends,
+            combustion=_side_by_side([p.coefficients for p in train.combustion or ()]),
             load_first=float(load.knots[0]) if load else 0.0,
             load_starts=load.knots - load.knots[0] if load else np.empty(0),
             load_coefficients=load.coefficients.copy() if load else np.empty((4, 0)),
@@ -112,9 +113,12 @@ class Reduced:
         merged = np.unique(np.concatenate([knots, own]))
         return np.asarray(merged[np.append(True, np.diff(merged) > NEAR)])
 
-    def around(self, theta: float, sense: float) -> KnotPair:
-        """The knots next to theta in the sense of rotation, and the polynomials between them."""
-        pieces = np.zeros((len(self.train.scene.cylinders) + (self.over_angle is not None), 6))
+    def around(self, theta: float, sense: float, shares: Sequence[float] = ()) -> KnotPair:
+        """The knots next to theta in the sense of rotation, and the polynomials between them, with
+        these shares of the combustion."""
+        count = len(self.train.scene.cylinders)
+        pieces = np.zeros((count + (self.over_angle is not None), 7))
+        pieces[:count, 6] = shares or 0.0
         low, high = stepper.enter(theta, sense, self.machine, pieces)
         return KnotPair(low, high, pieces)
 
@@ -122,12 +126,18 @@ class Reduced:
     def torque_scale(self) -> float:
         """Largest torque of gas and gravity over one period, and of the loads at their knots
         [N m]."""
-        parts = (part for load in self.train.scene.torque for part in load.parts)
+        parts = (part for load in self.train.scene.torque for part in load.parts[:3])
         load = sum(part.largest for part in parts if part is not None)
+        start = self.train.scene.start
+        for given in self.train.scene.torque:
+            if given.parts.function is not None and start is not None:
+                load += abs(given.parts.function.number(0.0, start.angle, start.speed))
         period = self.train.period
         count = 720 * round(period / self.train.scene.period) + 1
         angles = 0.1 + np.linspace(0.0, period, count)  # no fold lies there
-        torque = reduce(self.train, angles).torque
+        share = self.train.law.most if self.train.law else 0.0
+        shares = np.full(len(self.train.scene.cylinders), share)
+        torque = reduce(self.train, angles, shares).torque
         return load + float(np.max(np.abs(torque)))
 
     def __call__(self, theta: float, pieces: Array) -> tuple[float, float, float]:

@@ -36,10 +36,10 @@ _HARD = 1e3 / math.radians(5.0)  # 1/rad: damped a thousand times while the cran
 def enter(theta: float, sense: float, machine: Machine, pieces: Array) -> tuple[float, float]:
     """The knots next to theta in the sense of rotation; fills ``pieces``.
 
-    pieces : shape (cylinders, 6), of every cylinder's pressure between the two: the crank angle
+    pieces : shape (cylinders, 7), of every cylinder's pressure between the two: the crank angle
         [rad] where its cubic begins, its coefficients [Pa], highest power first, and the width
-        after which `reduced` takes the next one; 0, where it is continued. With loads over the
-        crank angle one row more [N m]
+        after which `reduced` takes the next one; 0, where it is continued; last, given, the share
+        of the combustion. With loads over the crank angle one row more [N m]
     """
     base, low, high = _beside(machine[13], theta + sense * _PASSED, machine[14])
     for j in range(0 if len(machine[16]) > 0 else len(machine[12]), len(pieces)):
@@ -65,18 +65,21 @@ def _beside(knots: Array, theta: float, period: float) -> tuple[float, float, fl
 def _fill(j: int, base: float, local: float, machine: Machine, pieces: Array) -> None:
     """Put the cubic of row j at the crank angle base + local into ``pieces``, to its end."""
     cylinders, _, _, places, all_starts, coefficients = machine[12:18]
+    combustion, fires = machine[19], j < len(cylinders) and machine[19].shape[1] > 0
     if j < len(cylinders):
         begin, end = places[j, 0], places[j, 1]
         starts = all_starts[begin:end]
         within = (local + cylinders[j, 0] - cylinders[j, 3]) % starts[-1]
     else:
         begin = 0
-        first, starts, coefficients = machine[19:22]
+        first, starts, coefficients = machine[20:23]
         within = (local - first) % starts[-1]
     i = min(_passed(starts, within), len(starts) - 1) - 1
     pieces[j, 0] = base + local - (within - starts[i])
     for power in range(4):
         pieces[j, 1 + power] = coefficients[power, begin + i]
+        if fires:
+            pieces[j, 1 + power] += pieces[j, 6] * combustion[power, begin + i]
     pieces[j, 5] = starts[i + 1] - starts[i]
 
 

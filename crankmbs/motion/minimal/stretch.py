@@ -43,6 +43,11 @@ class Equation:
         out = np.empty(3)
         with np.errstate(all="ignore"):
             stepper.slopes(t, y, self.system, out)
+        theta, omega, _ = y.tolist()
+        if self.branch.functions and math.isfinite(out[1]):
+            torque = self._of_functions(t, theta, omega)
+            out[1] += torque / self.reduced(theta, self.between.pieces)[0]
+            out[2] += torque * omega
         return out
 
     @property
@@ -55,6 +60,9 @@ class Equation:
         b = self.branch
         return b.c0 + b.ct * t + (b.c1 + b.c2 * omega) * omega
 
+    def _of_functions(self, t: float, theta: float, omega: float) -> float:
+        return sum(function.number(t, theta, omega) for function in self.branch.functions)
+
     def is_stiff(self, state: State, inertia: float) -> bool:
         """Whether the loads damp the speed a thousand times while the crank turns 5 degrees, and
         what they had to damp is gone: while it still dies away small steps are needed anyway."""
@@ -65,12 +73,14 @@ class Equation:
     def is_balanced(self, state: State, scale: float) -> bool:
         """Whether no torque acts on a crank at rest here, now or later."""
         changes = self.branch.ct != 0.0 or math.isfinite(self.branch.t_end)
+        changes |= bool(self.branch.functions)
         return not changes and abs(self.pull(state._replace(omega=0.0))) <= BALANCED * scale
 
     def pull(self, state: State) -> float:
         """Torque of gas, gravity and loads at a state [N m]."""
         torque = self.reduced(state.theta, self.between.pieces)[2]
-        return torque + self.outside(state.time, state.omega)
+        at = state.time, state.theta, state.omega
+        return torque + self.outside(state.time, state.omega) + self._of_functions(*at)
 
     def kinetic(self, theta: float, omega: float) -> float:
         """Kinetic energy [J]."""
@@ -119,7 +129,7 @@ class Stretch:
         """The steps of a track, and the state after them."""
         theta, omega, work = track.y.tolist()
         gained = equation.kinetic(theta, omega) - equation.kinetic(begin.theta, begin.omega)
-        mode = decided(equation.reduced.train.scene, begin.mode, track.time, omega)
+        mode = decided(equation.reduced.train, begin.mode, track.time, theta, omega)
         end = State(track.time, theta, omega, begin.residual + gained - work, mode)
         return cls(equation, track, begin, end)
 
@@ -173,14 +183,18 @@ class Stretch:
         theta = reached if theta is None else theta
         # on a step of the pressure the value after it counts, here as in the joint forces
         reduced = self.equation.reduced
-        inertia, slope, torque = reduce(reduced.train, theta)
+        shares = self.begin.mode.shares
+        inertia, slope, torque = reduce(reduced.train, theta, shares)
         outside = self.equation.branch(t, omega)
         if reduced.over_angle is not None:
             outside = outside + reduced.over_angle(theta)
+        for function in self.equation.branch.functions:
+            outside = outside + function(t, theta, omega)
         alpha = (torque + outside - 0.5 * slope * omega**2) / inertia
+        fuel = {"fuel": np.tile(shares, (len(t), 1))} if shares else {}
         start = self.equation.kinetic(self.begin.theta, self.begin.omega)
         residual = self.begin.residual + 0.5 * inertia * omega**2 - start - work
-        return Samples(t, theta, omega, alpha, residual, {"external_torque": outside})
+        return Samples(t, theta, omega, alpha, residual, {"external_torque": outside, **fuel})
 
 
 class _Rest(Stretch):
@@ -188,5 +202,6 @@ class _Rest(Stretch):
 
     def _samples(self, t: Array, k: NDArray[np.intp], theta: Array | None = None) -> Samples:
         at = super()._samples(t, k, theta)
-        held = np.asarray(-reduce(self.equation.reduced.train, at.theta).torque)
-        return replace(at, alpha=np.zeros_like(t), own={"external_torque": held})
+        reduced = self.equation.reduced
+        held = np.asarray(-reduce(reduced.train, at.theta, self.begin.mode.shares).torque)
+        return replace(at, alpha=np.zeros_like(t), own={**at.own, "external_torque": held})

@@ -25,6 +25,7 @@ class Machine(NamedTuple):
     starts, coefficients : knots of the pressures behind the first of each, and their cubics; may be
         empty
     bends [rad] : crank angles in one period where a long step must end
+    combustion : what a share of 1 adds to the cubics; no columns without fuel
     load_first, load_starts, load_coefficients : of the loads over the crank angle [N m], the first
         knot, the knots behind it, and the cubics
     """
@@ -48,6 +49,7 @@ class Machine(NamedTuple):
     starts: Array
     coefficients: Array
     bends: Array
+    combustion: Array
     load_first: float
     load_starts: Array
     load_coefficients: Array

@@ -28,8 +28,9 @@ def errors_beside_jumps(
     reach = 2.0 * errors["crank_angle"]
     if not np.isfinite(reach):
         return errors
+    fired = [problem.gas.law.most] * len(problem.gas.phases) if problem.gas.law else []
     for side in (-reach, reach):
-        change = problem.gas.force(theta + side) - problem.gas.force(theta)
+        change = problem.gas.force(theta + side, fired) - problem.gas.force(theta, fired)
         changes = held_by(problem.scene, change, theta)
         changes["gas_force"] = change
         changes["gas_pressure"] = change / (problem.scene.piston.gas_area or 1.0)

@@ -8,12 +8,13 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_right
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from crankmbs.mechanics.firing import Firing
 from crankmbs.mechanics.pressure import PeriodicPressure
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.numerics.arrays import Array
@@ -34,29 +35,36 @@ class GasForces:
         scene = train.scene
         self.phases = np.array([cylinder.phase for cylinder in scene.cylinders])
         self._pressures, self._period = train.pressure or (), train.period
+        self._combustion, self.law = train.combustion or (), train.law
         self._area = scene.piston.gas_area or 0.0
-        self._angles, self._rises = self._jumps()
+        self._angles, self._rises, self._fired = self._jumps()
 
     @property
     def jumps(self) -> bool:
         """Whether a force jumps anywhere."""
-        return any(len(_knots(pressure)[0]) > 0 for pressure in self._pressures)
+        return any(len(_knots(each)[0]) > 0 for each in (*self._pressures, *self._combustion))
 
     @property
     def order(self) -> int:
         """1 where forces jump within a stretch, 2 where they bend there, else 3."""
         if self.jumps and len(self._angles) == 0:
             return 1
-        return 2 if any(len(_knots(pressure)[1]) > 0 for pressure in self._pressures) else 3
+        bend = any(len(_knots(each)[1]) > 0 for each in (*self._pressures, *self._combustion))
+        return 2 if bend else 3
 
-    def force(self, theta: Array) -> Array:
-        """GasForces forces [N] towards the crank, shape (m, n), at crank angles of shape (m,)."""
+    def force(self, theta: Array, shares: Sequence[float] = ()) -> Array:
+        """GasForces forces [N] towards the crank, shape (m, n), at crank angles of shape (m,).
+
+        shares : of the combustion of each cylinder; none leave it out
+        """
         forces = np.zeros((len(theta), len(self.phases)))
         for k, pressure in enumerate(self._pressures):
             forces[:, k] = self._area * pressure(theta + self.phases[k])
+        for k, share in enumerate(shares):
+            forces[:, k] += share * self._area * self._combustion[k](theta + self.phases[k])
         return forces
 
-    def scalar(self, k: int) -> Force:
+    def scalar(self, k: int, shares: Sequence[float] = ()) -> Force:
         """The force [N] of cylinder k over its cycle angle [rad], from number to number.
 
         A bisection and a cubic in plain Python take 0.7 us; a symbolic tree of branches in
@@ -65,7 +73,10 @@ class GasForces:
         pressure = self._pressures[k]
         first, period = float(pressure.knots[0]) - NEAR, pressure.period
         knots = (pressure.knots[:-1] - pressure.knots[0]).tolist()
-        pieces = (self._area * pressure.coefficients.T).tolist()
+        cubics = pressure.coefficients
+        if shares:
+            cubics = cubics + shares[k] * self._combustion[k].coefficients
+        pieces = (self._area * cubics.T).tolist()
 
         def force(angle: float) -> float:
             x = (angle - first) % period
@@ -76,36 +87,58 @@ class GasForces:
 
         return force
 
-    def stretch(self, theta: float, sense: float) -> GasStretch:
-        """The stretch that a motion of this sense (its sign) enters at a crank angle [rad]."""
+    def stretch(self, theta: float, sense: float, firing: Firing | None = None) -> GasStretch:
+        """The stretch that a motion of this sense (its sign) enters at a crank angle [rad].
+
+        firing : with fuel, what has been decided; the stretch ends where the next decision falls
+        """
+        shares = firing.shares if firing else ()
+        low, high, rises = self._between_jumps(theta, sense, shares)
+        if firing and self.law:
+            before, after = self.law.next(firing)
+            rises = rises * np.array([[low >= before], [high <= after]])
+            low, high = max(low, before), min(high, after)
+        return GasStretch(self, low, high, rises, shares)
+
+    def _between_jumps(
+        self, theta: float, sense: float, shares: Sequence[float]
+    ) -> tuple[float, float, Array]:
+        """The jumps beside a crank angle, and what the forces rise by at either, shape (2, n)."""
         if len(self._angles) == 0:
-            return GasStretch(self, -math.inf, math.inf, np.zeros((2, len(self.phases))))
+            return -math.inf, math.inf, np.zeros((2, len(self.phases)))
         at = theta + math.copysign(NEAR, sense)
         turns = np.floor(at / self._period) + np.array([-1.0, 0.0, 1.0])
         angles = (self._angles + self._period * turns[:, None]).ravel()
         k = int(np.searchsorted(angles, at, side="right"))
         ends = np.array([k - 1, k])
         low, high = angles[ends]
-        return GasStretch(self, float(low), float(high), self._rises[ends % len(self._angles)])
+        beside = ends % len(self._angles)
+        rises = self._rises[beside] + (self._fired[beside] * np.array(shares) if shares else 0.0)
+        return float(low), float(high), rises
 
-    def _jumps(self) -> tuple[Array, Array]:
-        """Crank angles in a period at which a force jumps; what each cylinder's rises by there."""
-        places, changes = [np.empty(0)], [np.empty((0, len(self.phases)))]
+    def _jumps(self) -> tuple[Array, Array, Array]:
+        """Crank angles in a period at which a force jumps; what each cylinder's rises by there
+        without combustion, and with a share of 1 more."""
+        none = np.empty((0, len(self.phases)))
+        places, changes = [np.empty(0)], [np.empty((2, 0, len(self.phases)))]
         for k, pressure in enumerate(self._pressures):
-            found, _ = _knots(pressure)
+            both = [pressure, *self._combustion[k : k + 1]]
+            found = np.unique(np.concatenate([_knots(each)[0] for each in both]))
             turns = pressure.period * np.arange(round(self._period / pressure.period))[:, None]
             here = np.mod(turns + pressure.knots[found] - self.phases[k], self._period)
-            rise = np.zeros((len(turns), len(found), len(self.phases)))
-            rise[..., k] = self._area * _rises(pressure)[0][found]
+            rise = np.zeros((2, len(turns), len(found), len(self.phases)))
+            for row, each in zip(rise, both, strict=False):
+                row[..., k] = self._area * _rises(each)[0][found]
             places.append(here.ravel())
-            changes.append(rise.reshape(-1, len(self.phases)))
-        angles, rises = np.concatenate(places), np.concatenate(changes)
+            changes.append(rise.reshape(2, -1, len(self.phases)))
+        angles, rises = np.concatenate(places), np.concatenate(changes, axis=1)
         if not 0 < len(angles) <= _MOST_JUMPS:
-            return angles[:0], rises[:0]
+            return np.empty(0), none, none
         order = np.argsort(angles)
-        angles, rises = angles[order], rises[order]
+        angles, rises = angles[order], rises[:, order]
         apart = np.flatnonzero(np.diff(angles, prepend=-1.0) > NEAR)
-        return angles[apart], np.add.reduceat(rises, apart, axis=0)
+        rises, fired = np.add.reduceat(rises, apart, axis=1)
+        return angles[apart], rises, fired
 
 
 @dataclass(frozen=True)
@@ -113,22 +146,25 @@ class GasStretch:
     """GasForces forces between the crank angles ``low`` and ``high`` [rad], and smoothly beyond.
 
     rises : shape (2, n) [N], what each cylinder's force rises by at low and at high
+    shares : of the combustion of each cylinder; none without fuel
     """
 
     gas: GasForces
     low: float
     high: float
     rises: Array
+    shares: tuple[float, ...] = ()
 
     def force(self, theta: Array) -> Array:
         """GasForces forces [N] towards the crank, shape (m, n), at crank angles of shape (m,)."""
         below, above = theta < self.low - NEAR, theta >= self.high - NEAR
         lifted = below[:, None] * self.rises[0] - above[:, None] * self.rises[1]
-        return np.asarray(self.gas.force(theta) + lifted)
+        return np.asarray(self.gas.force(theta, self.shares) + lifted)
 
     def functions(self) -> list[Force]:
         """The same cylinder by cylinder, from crank angle to force."""
-        return [self._function(k, self.gas.scalar(k)) for k in range(len(self.gas.phases))]
+        forces = (self.gas.scalar(k, self.shares) for k in range(len(self.gas.phases)))
+        return [self._function(k, force) for k, force in enumerate(forces)]
 
     def _function(self, k: int, force: Force) -> Force:
         phase = float(self.gas.phases[k])

@@ -16,6 +16,7 @@ __all__ = ["Halvings"]
 
 _SHARE = 1.0 / 3.0  # of the cost cap, for the coarsest run: the next costs twice as much
 _RETRIES = 4
+_GAINS = 1.01  # less by a halving is none: the cost would be astronomic, and overflows
 _AT_REST = 1e-6  # of the fastest speed
 _HELD = "a jump of the loads drives the speed back from both sides"
 _NO_STEP = "exudyn's Newton iteration does not converge"
@@ -98,7 +99,7 @@ class Halvings:
         if math.isinf(worst):
             return "; its error is unknown"
         said = f"; relative error {worst:.1e} reached, {rtol:.0e} asked for: "
-        if not gain > 1.0:
+        if not gain > _GAINS:
             return said + "a finer step brings no more"
         order = min(math.log2(gain), 4.0)
         cost = self._spent() + 2.0 * self._cost * (worst / rtol) ** (1.0 / order)

@@ -10,7 +10,7 @@ import numpy as np
 
 from crankmbs.numerics.cycle import NEAR, Cycle
 from crankmbs.numerics.piecewise import Piecewise
-from crankmbs.scene.loads import Torque
+from crankmbs.scene.torque import Torque
 
 __all__ = ["EVERYWHERE", "Load", "speeds_around", "torque_function"]
 
@@ -33,6 +33,7 @@ def torque_function(torques: tuple[Torque, ...], times: Range, speeds: Range) ->
     over_time = [_between(part, *times) for part in in_time]
     over_speed = [_between(part, *speeds) for part in in_speed if part.knots]
     over_angle = [_periodic(part.over_angle) for part in parts if part.over_angle is not None]
+    functions = [part.function for part in parts if part.function is not None]
     smooth = np.sum([part.pieces[0] for part in in_speed if not part.knots] or [(0.0,) * 3], axis=0)
     c0, c1, c2 = map(float, smooth)
 
@@ -44,6 +45,8 @@ def torque_function(torques: tuple[Torque, ...], times: Range, speeds: Range) ->
             value += function(omega)
         for function in over_angle:
             value += function(theta)
+        for given in functions:
+            value += given.number(time, theta, omega)
         return value
 
     return torque
@@ -54,8 +57,10 @@ def speeds_around(
 ) -> Range:
     """The speeds next to one [rad/s] where a load bends or jumps, and other stops; beside such a
     speed, on the side of sense."""
-    parts = (load.parts.over_speed for load in torques)
-    rows = sorted({x for part in parts if part is not None for x in part.bends}.union(stops))
+    parts = [load.parts for load in torques]
+    bends = {x for part in parts if part.over_speed is not None for x in part.over_speed.bends}
+    kinks = {x for part in parts if part.function is not None for x in part.function.speeds}
+    rows = sorted(bends | kinks | set(stops))
     k = bisect_right(rows, omega) if sense > 0.0 else bisect_left(rows, omega)
     ends = [-math.inf, *rows, math.inf]
     return ends[k], ends[k + 1]

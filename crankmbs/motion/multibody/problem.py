@@ -63,6 +63,7 @@ def jump_times(problem: Problem) -> list[float]:
     """Times [s] above 0 at which a load or the prescribed acceleration jumps."""
     times: set[float] = set()
     for load in problem.scene.torque:
+        times |= set(load.parts.function.times if load.parts.function else ())
         if load.parts.over_time is not None:
             times |= set(load.parts.over_time.jumps)
         times |= {end for end in (load.after, load.until) if end is not None}
@@ -95,6 +96,8 @@ def erratic_order(problem: Problem) -> int:
         return 2 if set(problem.law.corners) - set(jump_times(problem)) else 3
     parts = (load.parts.over_angle for load in problem.scene.torque)
     over_angle = min((part.order for part in parts if part is not None), default=3)
+    if any(load.parts.function is not None for load in problem.scene.torque):
+        return 1  # nobody says whether it jumps
     return min(problem.gas.order, over_angle, 2 if len(_row_times(problem)) > _MOST_KINKS else 3)
 
 

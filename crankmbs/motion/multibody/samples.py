@@ -241,6 +241,15 @@ def _times_of(table: StepTable, theta: Array, begin: float, end: float) -> Array
     return np.asarray(time)
 
 
+def _fuel(path: Stepped, k: int, theta: Array) -> Array:
+    """The shares of the combustion at samples of stretch k; at a decision those before it."""
+    gas, before = path.tables[k].gas, path.tables[max(k - 1, 0)].gas
+    fuel = np.tile(gas.shares, (len(theta), 1))
+    if len(theta) > 0 and np.isclose(theta[0], [before.low, before.high], 0.0, _NEAR).any():
+        fuel[0] = before.shares
+    return fuel
+
+
 def _variables_at(
     problem: Problem, path: Stepped, samples: _Samples, *, by_angle: bool = False
 ) -> dict[str, Array]:
@@ -254,6 +263,8 @@ def _variables_at(
             part["crank_speed"], part["crank_acceleration"] = problem.law.at_time(time)[1:]
         if by_angle:
             part["crank_angle"] = theta
+        if table.gas.shares:
+            part["fuel"] = _fuel(path, k, part["crank_angle"])
         part["gas_force"] = table.gas.force(part["crank_angle"])
         part["gas_pressure"] = part["gas_force"] / (problem.scene.piston.gas_area or 1.0)
         parts.append(part)

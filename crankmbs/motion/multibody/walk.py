@@ -30,7 +30,7 @@ from crankmbs.motion.multibody.problem import Problem
 from crankmbs.motion.multibody.run_up import run_free, run_prescribed
 from crankmbs.motion.multibody.start import coordinates
 from crankmbs.motion.multibody.step_table import StepTable, table_of
-from crankmbs.scene.loads import Torque
+from crankmbs.scene.torque import Torque
 
 __all__ = ["SAME", "Walk", "initial_acceleration"]
 
@@ -58,6 +58,8 @@ class Walk:
         self._residual = 0.0
         self._sense = 0.0  # in which the speed passed a bend of the loads
         free = problem.law is None
+        law = problem.gas.law
+        self._firing = law.first if law else None
         self._phases = first_phases(problem.scene.torque, problem.start[1]) if free else ()
         self._speeds_left = _MOST_SPEEDS
         self.steps = self.iterations = 0
@@ -175,7 +177,7 @@ class Walk:
 
     def _gas_beside(self, sense: float) -> GasStretch:
         """Give the model the gas that a motion of this sense enters here."""
-        gas = self._problem.gas.stretch(self._state[0], sense)
+        gas = self._problem.gas.stretch(self._state[0], sense, self._firing)
         has_gas = self._problem.scene.gas is not None
         self._model.gas = gas.functions() if has_gas else ()
         return gas
@@ -230,8 +232,15 @@ class Walk:
             theta if self.bound is None else self.bound,
             omega if speed is None else speed,
         )
+        self._decide()
         torques, late = self._problem.scene.torque, self.time * (1.0 + SAME)
         self._phases = later_phases(torques, self._phases, late, self._state[1])
+
+    def _decide(self) -> None:
+        """The decision on the fuel, where the last stretch has ended at its angle."""
+        law, firing = self._problem.gas.law, self._firing
+        if law and firing and self.bound in law.next(firing):
+            self._firing = law.decided(firing, self.time, *self._state)
 
 
 def initial_acceleration(problem: Problem, model: Model) -> float:

@@ -1,0 +1,115 @@
+"""A function of time, crank angle and speed that someone wrote in Python, safe to call."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Callable
+from functools import cached_property
+from typing import Any, cast
+
+import numpy as np
+
+from crankmbs.numerics.arrays import Array
+
+__all__ = ["Function", "named"]
+
+_BESIDE = 1e-9  # of a speed: so near beside a jump
+_NUDGE = 1e-6  # of the speed: of a difference quotient that Newton's method takes for a slope
+
+
+def named(function: object) -> str:
+    """The name of a function, as a reader knows it.
+
+    >>> named(math.sin)
+    'sin'
+    """
+    return str(getattr(function, "__name__", type(function).__name__))
+
+
+class Function:
+    """Where it raises or gives no finite number it is NaN, and `failure` says so.
+
+    function : (t, theta, omega) -> a number, pure
+    times, angles, speeds : where it bends or jumps, [s], [rad] and [rad/s]
+    """
+
+    def __init__(
+        self,
+        function: Callable[[float, float, float], float],
+        times: tuple[float, ...] = (),
+        angles: tuple[float, ...] = (),
+        speeds: tuple[float, ...] = (),
+    ) -> None:
+        self.times, self.angles, self.speeds = sorted(times), sorted(angles), sorted(speeds)
+        self.failure = ""
+        self._function = function
+
+    def number(self, t: float, theta: float, omega: float) -> float:
+        """Its value at one time [s], angle [rad] and speed [rad/s]; NaN where it has none."""
+        if not math.isfinite(t + theta + omega):  # a trial far off: it asks for nothing
+            return math.nan
+        try:
+            value, why = float(self._function(t, theta, omega)), ""
+        except Exception as error:  # whatever the function of a user may raise
+            value, why = math.nan, f"raises {type(error).__name__}: {error}"
+        if not math.isfinite(value):
+            state = f"t = {t:.6g} s, theta = {theta:.6g} rad, omega = {omega:.6g} rad/s"
+            self.failure = f"{named(self._function)} {why or f'gives {value:g}'} at {state}"
+            return math.nan
+        return value
+
+    def __call__(self, t: Array, theta: Array, omega: Array) -> Array:
+        """Its values at times [s], angles [rad] and speeds [rad/s] of one shape.
+
+        >>> Function(lambda t, theta, omega: t + omega)(np.ones(2), np.ones(2), np.ones(2))
+        array([2., 2.])
+        """
+        at = np.broadcast_arrays(t, theta, omega)
+        flat = [np.ascontiguousarray(one, dtype=np.float64).ravel() for one in at]
+        values = self._quick(flat)
+        if values is None:
+            rows = zip(*(one.tolist() for one in flat), strict=True)
+            values = np.array([self.number(*row) for row in rows])
+        return np.asarray(values.reshape(at[0].shape))
+
+    def beside(self, t: float, theta: float, omega: float, side: float) -> float:
+        """Its value, and at a speed where it may jump that of the side (a sign) of this speed."""
+        at_kink = omega in self.speeds
+        return self.number(t, theta, omega + side * _BESIDE * max(abs(omega), 1.0) * at_kink)
+
+    def slope(self, t: Array, theta: Array, omega: Array) -> Array:
+        """About its derivative in the speed."""
+        nudge = _NUDGE * np.abs(omega)
+        return np.asarray((self(t, theta, omega + nudge) - self(t, theta, omega)) / nudge)
+
+    def _quick(self, at: list[Array]) -> Array | None:
+        """Its values by the compiled function, if there is one and all are finite."""
+        if self._loop is None:
+            return None
+        values = np.empty(len(at[0]))
+        try:
+            self._loop(*at, values)
+        except Exception:  # again without the compiler, which tells where it was
+            return None
+        return values if np.isfinite(values).all() else None
+
+    @cached_property
+    def _loop(self) -> Callable[..., None] | None:
+        """A compiled loop over all its values; None where numba does not know what it does."""
+        from numba import njit
+
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            try:
+                one: Any = njit(self._function)
+
+                def loop(t: Array, theta: Array, omega: Array, out: Array) -> None:
+                    for i in range(len(out)):
+                        out[i] = one(t[i], theta[i], omega[i])
+
+                compiled: Any = njit(loop)
+                compiled(*np.ones((3, 0)), np.empty(0))
+            except Exception:  # of whatever kind: then it runs as it is
+                return None
+        return cast(Callable[..., None], compiled)
