@@ -27,7 +27,6 @@ _MANY, _FAR = 4.0, 0.5  # knots apart; rad: longer steps roam across knots, none
 NEAR = 0.01  # of a step: a landing is as close to its limit
 _BISECTIONS, _SCAN = 60, 16
 _OWN = 16  # the first stage of order 5 that is not of order 8
-_OFTEN = 16  # steps of order 5, and one of order 8 tells how long such a one may be
 _LONGER = 1.2  # a step of order 5 is tried again, that was too long before
 _HARD = 1e3 / math.radians(5.0)  # 1/rad: damped a thousand times while the crank turns 5 degrees
 
@@ -319,7 +318,7 @@ def _short(
     the time at the knot, NaN where y and k[0] are left as they were; the largest error of a step
     over what is allowed; evaluations
     """
-    (tolerance, speed, inertia, parts), (k, begins, widths, rows) = asked, room
+    (tolerance, speed, _, parts), (k, begins, widths, rows) = asked, room
     begin, slope, new = y.copy(), k[0].copy(), np.empty(3)
     which, worst, evaluations = _reach(y, slope, limits)[1], 0.0, 0
     for j in range(parts):
@@ -335,12 +334,11 @@ def _short(
             if lands:
                 break
         wrong = 0.0
-        for q in range(3):
+        for q in range(2):
             total = float(E4[0]) * float(k[0, q])
             for i in range(_OWN, 22):
                 total += float(E4[i]) * float(k[i, q])
-            scale = 1.0 if q == 0 else fastest if q == 1 else inertia * fastest * fastest
-            wrong += (width * total / (tolerance * scale)) ** 2
+            wrong += (width * total / (tolerance * (1.0 if q == 0 else fastest))) ** 2
         worst = max(worst, math.sqrt(0.5 * wrong))
         for q in range(3):
             rise, first, last = new[q] - y[q], width * k[0, q], width * k[21, q]
@@ -383,9 +381,8 @@ def travel(
     """
     (tolerance, speed, t_bound, parts), (t, h, most), (begins, widths, rows) = control, start, steps
     k, new, (machine, pieces, load) = np.empty((22, 3)), np.empty(3), system
-    n, evaluations, roams, short, since = 0, 1, False, math.inf, 0
+    n, evaluations, roams, short = 0, 1, False, math.inf
     slopes(t, y, system, k[0])
-    inertia = reduced(float(y[0]), machine, pieces)[0]
     while n + parts <= len(widths):
         least, refused = 2e-15 * t, False
         h = max(h, least)
@@ -394,16 +391,17 @@ def travel(
             h = min(h, _FAR / abs(y[1])) if roams else h
         ahead, i = _reach(y, k[0], limits)
         late = math.nan
-        if since < _OFTEN and ahead <= min(h, short) and t + ahead < t_bound:
+        if ahead <= min(h, short) and t + ahead < t_bound:
             room = (k, begins[n:], widths[n:], rows[n:])
-            asked = (tolerance * ahead / h, speed, inertia, parts)  # in a long step there are many
+            asked = (tolerance * ahead / h, speed, t_bound, parts)  # in a long step there are many
             late, error, more = _short(t, y, system, asked, limits, room)
             short = ahead / parts * (0.9 * error**-0.25 if error > 0.0 else 10.0)
             evaluations += more
         else:
-            short, since = _LONGER * short, 0
+            short = _LONGER * short
         if late > t:
-            n, t, width, since = n + parts, late, ahead, since + 1
+            n, t, width = n + parts, late, ahead
+            h = max(h, min(_LONGER * h, 2.0 * _MANY * ahead))
         else:
             while True:
                 width = min(h, t_bound - t)
