@@ -55,9 +55,14 @@ def test_two_runs_into_one_folder_do_not_mix(step, tmp_path, monkeypatch):
 def test_files_are_moved_while_no_other_run_moves_its_own(tmp_path, monkeypatch):
     plain = Path.replace
     others: list[threading.Thread] = []
+    moved = []
 
     def late(file, target):
         plain(file, target)
+        if threading.current_thread() is threading.main_thread():
+            moved.append(target)
+        if len(moved) == 2 and threading.current_thread() is threading.main_thread():
+            assert_one_run(tmp_path, FIRST)  # the other one waits until this is done
         if not others:
             others.append(threading.Thread(target=SECOND.save, args=(tmp_path,)))
             others[0].start()
@@ -65,8 +70,8 @@ def test_files_are_moved_while_no_other_run_moves_its_own(tmp_path, monkeypatch)
 
     monkeypatch.setattr(Path, "replace", late)
     FIRST.save(tmp_path)
-    assert_one_run(tmp_path, FIRST)
     others[0].join()
+    assert len(moved) == 2
     assert_one_run(tmp_path, SECOND)
     assert names(tmp_path) == {"result.nc", "motion.csv"}
 
