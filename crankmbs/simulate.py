@@ -76,10 +76,8 @@ def _functions(scene: Scene) -> list[tuple[int, Function]]:
     """The functions among the loads, each with its number, none of which has failed yet."""
     found = []
     for number, load in enumerate(scene.torque, start=1):
-        try:
-            load.check_runs()
-        except InputError as error:
-            raise InputError(f"torque[{number}]: {error}") from None
+        if load.lacks:
+            raise InputError(f"torque[{number}]: {load.lacks}")
         if load.parts.function is not None:
             load.parts.function.failure = ""
             found.append((number, load.parts.function))
