@@ -1,4 +1,4 @@
-"""GasForces forces over the crank angle, smooth between the angles at which one of them jumps.
+"""Gas forces over the crank angle, smooth between the angles at which one of them jumps.
 
 A step of the pressure would ring in the solver. So a run is cut where a cylinder's pressure jumps,
 and on a stretch between two jumps the forces go on without them.
@@ -7,7 +7,6 @@ and on a stretch between two jumps the forces go on without them.
 from __future__ import annotations
 
 import math
-from bisect import bisect_right
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -18,12 +17,12 @@ from crankmbs.mechanics.firing import Firing
 from crankmbs.mechanics.pressure import PeriodicPressure
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.numerics.arrays import Array
+from crankmbs.numerics.cycle import NEAR, Cycle
 
-__all__ = ["NEAR", "GasForces", "GasStretch"]
+__all__ = ["GasForces", "GasStretch"]
 
 Force = Callable[[float], float]
 
-NEAR = 1e-9  # rad: a knot so close ahead is reached, as in PeriodicPressure
 _JUMP = 1e-9  # of the highest pressure or slope: less is rounding
 _MOST_JUMPS = 60  # in a period; a table of more steps is run over as it is
 
@@ -53,7 +52,7 @@ class GasForces:
         return 2 if bend else 3
 
     def force(self, theta: Array, shares: Sequence[float] = ()) -> Array:
-        """GasForces forces [N] towards the crank, shape (m, n), at crank angles of shape (m,).
+        """Gas forces [N] towards the crank, shape (m, n), at crank angles of shape (m,).
 
         shares : of the combustion of each cylinder; none leave it out
         """
@@ -71,21 +70,10 @@ class GasForces:
         exudyn's generic object, the only other way, costs 9 us a step.
         """
         pressure = self._pressures[k]
-        first, period = float(pressure.knots[0]) - NEAR, pressure.period
-        knots = (pressure.knots[:-1] - pressure.knots[0]).tolist()
         cubics = pressure.coefficients
         if shares:
             cubics = cubics + shares[k] * self._combustion[k].coefficients
-        pieces = (self._area * cubics.T).tolist()
-
-        def force(angle: float) -> float:
-            x = (angle - first) % period
-            k = bisect_right(knots, x) - 1
-            a, b, c, d = pieces[k]
-            x -= knots[k] + NEAR
-            return float(((a * x + b) * x + c) * x + d)
-
-        return force
+        return Cycle(pressure.knots, self._area * cubics).by_number()
 
     def stretch(self, theta: float, sense: float, firing: Firing | None = None) -> GasStretch:
         """The stretch that a motion of this sense (its sign) enters at a crank angle [rad].
@@ -143,7 +131,7 @@ class GasForces:
 
 @dataclass(frozen=True)
 class GasStretch:
-    """GasForces forces between the crank angles ``low`` and ``high`` [rad], and smoothly beyond.
+    """Gas forces between the crank angles ``low`` and ``high`` [rad], and smoothly beyond.
 
     rises : shape (2, n) [N], what each cylinder's force rises by at low and at high
     shares : of the combustion of each cylinder; none without fuel
@@ -156,7 +144,7 @@ class GasStretch:
     shares: tuple[float, ...] = ()
 
     def force(self, theta: Array) -> Array:
-        """GasForces forces [N] towards the crank, shape (m, n), at crank angles of shape (m,)."""
+        """Gas forces [N] towards the crank, shape (m, n), at crank angles of shape (m,)."""
         below, above = theta < self.low - NEAR, theta >= self.high - NEAR
         lifted = below[:, None] * self.rises[0] - above[:, None] * self.rises[1]
         return np.asarray(self.gas.force(theta, self.shares) + lifted)

@@ -9,11 +9,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from crankmbs.motion.multibody.gas import NEAR
 from crankmbs.motion.multibody.problem import Problem
 from crankmbs.motion.multibody.step_table import StepTable
 from crankmbs.motion.multibody.stepped import Stepped
 from crankmbs.numerics.arrays import Array
+from crankmbs.numerics.cycle import NEAR
 from crankmbs.numerics.roots import invert_monotone
 
 __all__ = ["Sampled", "aligned_variables", "reached", "slowed"]

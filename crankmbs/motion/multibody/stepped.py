@@ -13,13 +13,13 @@ from typing import NamedTuple
 import numpy as np
 
 from crankmbs.motion.ending import Ending
-from crankmbs.motion.multibody.gas import NEAR
 from crankmbs.motion.multibody.landing import LEAST_STEPS, PASSED
 from crankmbs.motion.multibody.model import Model
 from crankmbs.motion.multibody.problem import Problem, jump_times, kink_times
 from crankmbs.motion.multibody.start import coordinates
 from crankmbs.motion.multibody.step_table import StepTable
 from crankmbs.motion.multibody.walk import SAME, Walk, initial_acceleration
+from crankmbs.numerics.cycle import NEAR
 
 __all__ = ["Stepped", "coarsest_step", "model_of", "solve"]
 
