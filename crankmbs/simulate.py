@@ -7,6 +7,7 @@ import time as clock
 from crankmbs.choose import choose, chosen
 from crankmbs.errors import InputError, shown
 from crankmbs.mechanics.pressure import remarks
+from crankmbs.mechanics.speed import speed_remarks
 from crankmbs.mechanics.train import crank_train
 from crankmbs.motion.assemble import dataset
 from crankmbs.motion.base import Solution
@@ -63,7 +64,7 @@ def simulate(
         scene=scene,
         data=dataset(assembled),
         formulation=choice.formulation,
-        reasons=choice.reasons + remarks(scene) + solution.reasons,
+        reasons=choice.reasons + remarks(scene) + speed_remarks(scene) + solution.reasons,
         status=solution.status,
         message=_why(solution, functions),
         cost=Cost(clock.perf_counter() - begin, solution.evaluations, solution.steps),

@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from crankmbs.mechanics.inertia import inertia_alone, reduce
 from crankmbs.mechanics.pressure import repeat
@@ -26,7 +27,8 @@ _PANEL = 5.0 * DEGREE  # widest panel of the work integral; Gauss with 4 points 
 
 
 def run(train: CrankTrain) -> Solution:
-    """Sample the prescribed motion. Exact but for rounding; there is nothing to integrate.
+    """Sample the prescribed motion. Exact but for rounding; there is nothing to integrate but the
+    time, where the speed is known over the angle.
 
     Raises
     ------
@@ -48,7 +50,20 @@ def run(train: CrankTrain) -> Solution:
     ending = Ending.COMPLETE if reached else Ending.LAW_RESTS
     if plan.folds_at(float(theta[-1])):
         ending = Ending.FOLD
-    return Solution(samples, *ending.said(float(theta[-1])), len(time), 0)
+    by_angle = np.full(len(time), not plan.in_time)
+    by_angle[-1] = reached and not plan.until_time
+    better = None if law.off is law else _by(law.off, samples, by_angle)
+    return Solution(samples, *ending.said(float(theta[-1])), len(time), 0, better)
+
+
+def _by(law: SpeedLaw, samples: Samples, by_angle: NDArray[np.bool_]) -> Samples:
+    """The samples by another law, at the same crank angles where these are chosen, else at the
+    same times."""
+    passed = law.time_at(samples.theta, 0.0, math.inf)
+    time = np.where(by_angle, passed, samples.time)
+    theta, omega, alpha = law.at_time(time)
+    theta = np.where(by_angle, samples.theta, theta)
+    return replace(samples, time=time, theta=theta, omega=omega, alpha=alpha)
 
 
 class _Firings(NamedTuple):
@@ -138,7 +153,8 @@ def _panel_edges(
     """Times between which the power is smooth and short: samples, knots, corners, decisions on the
     fuel, panels."""
     knots = crank_angle_knots(train)
-    edges = [time, np.array(law.corners), np.empty(0) if firings is None else firings.times]
+    corners = law.corners(float(time[0]), float(time[-1]))
+    edges = [time, corners, np.empty(0) if firings is None else firings.times]
     for begin, end in stretches:
         a, b = (float(q) for q in law.at_time([begin, end])[0])
         low, high = min(a, b), max(a, b)
