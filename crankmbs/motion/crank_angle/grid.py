@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from crankmbs.mechanics.inertia import fired_torque, reduce
+from crankmbs.mechanics.inertia import fired_torque, inertia_alone, reduce
 from crankmbs.mechanics.torque import knots_over_angle, over_angle
 from crankmbs.mechanics.train import CrankTrain, crank_angle_knots
 from crankmbs.mechanics.windows import Phases
@@ -62,14 +62,6 @@ class Strip:
         turned = self.turned[low : high + 1]
         return Strip(self.cell[low:high], self.width[low:high], turned, *of_cells)
 
-    def fired(self, shares: Array) -> Strip:
-        """The torque with these shares of the combustion, of each cell or of all, shape
-        (..., cylinders)."""
-        if self.combustion.shape[-1] == 0:
-            return self
-        more = (self.combustion @ shares[..., None])[..., 0]
-        return replace(self, torque=self.torque + more)
-
 
 @dataclass(frozen=True)
 class Grid:
@@ -103,6 +95,12 @@ class Grid:
     def over_angle(self) -> Cycle | None:
         """What loads that act give over the angle."""
         return over_angle(self.train.scene, self.phases)
+
+    @cached_property
+    def at_decisions(self) -> Array:
+        """J [kg m2] at the crank angles of one period at which the fuel is decided."""
+        law = self.train.law
+        return inertia_alone(self.train.scene, np.array(law.angles if law else ()))
 
     def outside(self, theta: Array) -> Array | float:
         """Torque of loads over the angle [N m], at angles [rad]."""

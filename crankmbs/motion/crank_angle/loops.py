@@ -13,7 +13,7 @@ Coefficients = tuple[float, float, float, float]  # c0, ct, c1, c2 of `crankmbs.
 _SETTLED, _GOOD = 1e-14, 1e-11  # relative change of the energy in Newton's last step
 
 
-__all__ = ["affine", "carried", "newton"]
+__all__ = ["affine", "fire", "fired", "newton"]
 
 Loads = tuple[Array, Array, Array, Array]  # the tables of a course of `crankmbs.mechanics.torque`
 _MOST_NEWTON = 20
@@ -209,11 +209,93 @@ def _solve(
 
 
 @kernel
-def carried(growth: Array, gained: Array, more: Array) -> None:
-    """Energy more at every edge, filled, of which cells grow by a part and gain a further one."""
-    more[0] = 0.0
-    for k in range(len(gained)):
-        more[k + 1] = more[k] + (growth[k] * more[k] + gained[k])
+def fired(
+    affinely: bool,
+    loads: Loads,
+    bounds: tuple[float, float, float],
+    start: tuple[float, float, float],
+    rule: tuple[Array, Array],
+    cells: tuple[Array, Array, Array, Array],
+    decisions: tuple[Index, Array, Array, Array],
+    law: tuple[float, ...],
+    decided: tuple[Array, Array],
+    solved: tuple[Array, Array, Array, Array],
+) -> tuple[int, int]:
+    """Solve cells as `affine` or `newton` do, from decision to decision on the fuel; count both.
+
+    cells : width, and inertia, torque and combustion at the nodes; the torque gets what is fired
+    decisions : the cell before which each falls, one more than those; crank angle and inertia
+    there; what is left of the cylinders' shares, NaN where they do not decide
+    law : as `crankmbs.mechanics.firing.FuelLaw.numbers` gives it
+    decided : time, angle, integral, speed where the fuel set in or NaN, and 1 where it is over; and
+    the shares; of the last decision and, filled, of the next ones
+    solved : edges, time, torque and slowness, filled
+    """
+    (width, inertia, rest, combustion), (edges, time, torque, slowness) = cells, solved
+    (at, theta, there, parts), (kept, shares) = decisions, decided
+    t_end, sense, n, k = bounds[0], start[2], 0, 0
+    edges[0], time[0] = start[0], start[1]
+    while k < len(width):
+        if at[n] <= k:
+            omega = sense * math.sqrt(2.0 * edges[k] / there[n])
+            share = _decide(law, (time[k], theta[n], omega), kept[n], kept[n + 1])
+            for i in range(shares.shape[1]):
+                decides = parts[n, i] == parts[n, i]
+                shares[n + 1, i] = share * parts[n, i] if decides else shares[n, i]
+            n += 1
+            continue
+        m = min(at[n], len(width))
+        push, h, inside, stretch = rest[k:m], width[k:m], inertia[k:m], edges[k : m + 1]
+        fire(push, combustion[k:m], shares[n])
+        out = stretch, time[k : m + 1], torque[k:m], slowness[k:m]
+        if affinely:
+            s, begin = len(rule[1]), (edges[k], time[k], t_end)
+            of_loads = (sense * h, push + loads[1][0, 0], 2.0 * loads[3][0, 2] / inside, inside)
+            maps = (np.empty((m - k, s)), np.empty((m - k, s)), np.empty(m - k), np.empty(m - k))
+            found = affine(
+                np.arange(m - k), of_loads, maps, np.empty((s, s + 2)), rule, begin, h, *out
+            )
+        else:
+            now = (edges[k], time[k], sense)
+            found = newton(loads, bounds, now, rule, (h, inside, push), *out)
+        k += found
+        if k < m or not edges[k] > 0.0 or time[k] >= t_end:
+            break
+    return k, n
+
+
+@kernel
+def fire(torque: Array, combustion: Array, shares: Array) -> None:
+    """Add to the torque at the nodes that of the combustion of each cylinder with these shares."""
+    for k in range(len(torque)):
+        for j in range(torque.shape[1]):
+            more = 0.0
+            for i in range(len(shares)):
+                more += combustion[k, j, i] * shares[i]
+            torque[k, j] += more
+
+
+@kernel
+def _decide(
+    law: tuple[float, ...], now: tuple[float, float, float], before: Array, after: Array
+) -> float:
+    """The share decided at a time, crank angle and speed, as by `crankmbs.mechanics.firing`."""
+    speed, kp, ki, least, most, since, until, from_speed, until_speed, at_start = law
+    (time, theta, omega), (last, turned, integral, set_in, over) = now, before
+    spent = time - last
+    error = speed - ((theta - turned) / spent if spent > 0.0 else omega)
+    more = integral + ki * error * spent
+    wanted = kp * error + more
+    share = min(max(wanted, least), most)
+    if (wanted > most and error > 0.0) or (wanted < least and error < 0.0):
+        more = integral
+    if time >= until or (set_in - until_speed) * (omega - until_speed) <= 0.0:
+        over = 1.0
+    met = from_speed != from_speed or (at_start - from_speed) * (omega - from_speed) <= 0.0
+    if set_in != set_in and met and time >= since:
+        set_in = omega
+    after[0], after[1], after[2], after[3], after[4] = time, theta, more, set_in, over
+    return share if set_in == set_in and over == 0.0 else 0.0
 
 
 @kernel

@@ -96,7 +96,11 @@ class Window:
         """Errors of the energy [J] and the time [s] gained in each cell, shape (m, s + 3) each:
         what a finer Gauss rule along the solution gives, at its nodes and at the cell's end."""
         rule, finer = self.grid.rule, self.grid.finer.rule
-        strip = self.grid.finer.same(self.strip, self.begin.theta, self.sense).fired(self.shares)
+        strip = self.grid.finer.same(self.strip, self.begin.theta, self.sense)
+        torque = strip.torque.copy()
+        ends = [*(k for k, _ in self.modes[1:]), len(torque)]
+        for (k, mode), end in zip(self.modes, ends, strict=False):
+            loops.fire(torque[k:end], strip.combustion[k:end], np.array(mode.shares))
         inside = rule.integrals(finer.nodes).T
         to_nodes = np.vstack([finer.matrix, finer.weights]).T
         own = np.column_stack([inside, rule.weights])
@@ -105,7 +109,7 @@ class Window:
         t = self.time[:-1, None] + width * (self.slowness @ inside)
         with np.errstate(divide="ignore"):
             slowness = np.sqrt(0.5 * strip.inertia / np.maximum(energy, 0.0))
-            torque = strip.torque + self.branch(t, self.sense / slowness)
+            torque += self.branch(t, self.sense / slowness)
             theta = strip.angles(self.begin.theta, self.sense, finer)
             for function in self.branch.functions:
                 torque = torque + function(t, theta, self.sense / slowness)
@@ -163,10 +167,11 @@ class Window:
     @cached_property
     def shares(self) -> Array:
         """Shares of the combustion in each cell, shape (m, cylinders); without fuel (m, 0)."""
-        shares = np.empty((len(self.torque), len(self.modes[0][1].shares) if self.modes else 0))
-        for k, mode in self.modes:
-            shares[k:] = mode.shares
-        return shares
+        if not self.modes:
+            return np.empty((len(self.torque), 0))
+        begins = [k for k, _ in self.modes]
+        cells = np.diff([*begins, len(self.torque)])
+        return np.repeat(np.array([mode.shares for _, mode in self.modes]), cells, axis=0)
 
     def rate(self, which: NDArray[np.bool_]) -> Array:
         """dQ/dE [1/rad] at the nodes of some cells."""
@@ -179,7 +184,7 @@ class Window:
         width, weights = self.sense * self.strip.width, self.grid.rule.weights
         rate = self.rate(np.ones(len(width), dtype=np.bool_))
         more = np.empty_like(self.energy)
-        loops.carried(width * (rate @ weights), gained, more)
+        readout.carried(width * (rate @ weights), gained, more)
         before = more[:-1, None]
         torque = self.torque + rate * before + (gained / width)[:, None]
         faster = self.slowness * (self.slowness**2 / self.strip.inertia * before)
