@@ -35,6 +35,8 @@ _UNITS = {
     "area": "m^2",
     "acceleration": "m/s^2",
     "torque": "N m",
+    "ring_force": "N",
+    "viscous": "N s/m",
     **dict.fromkeys(("over", "after", "until"), "s"),
 }
 _HEADERS = {
