@@ -36,7 +36,7 @@ class Fired(NamedTuple):
 
 def solve(grid: Grid, strip: Strip, loads: Branch | Course, begin: Begin) -> Cells:
     """The cells of a strip, by the method that the loads allow."""
-    if isinstance(loads, Branch) and loads.is_affine_in_energy:
+    if isinstance(loads, Branch) and loads.is_affine_in_energy and not strip.drags:
         return solve_affine(grid, strip, loads, begin)
     if loads.functions:
         return solve_functions(grid, strip, loads, begin)

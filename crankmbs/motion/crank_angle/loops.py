@@ -89,7 +89,7 @@ def newton(
     bounds: tuple[float, float, float],
     start: tuple[float, float, float],
     rule: tuple[Array, Array],
-    cells: tuple[Array, Array, Array],
+    cells: tuple[Array, Array, Array, Array],
     edges: Array,
     time: Array,
     torque: Array,
@@ -98,7 +98,8 @@ def newton(
     """Solve cells by Newton's method, to the end of the loads' course; fill what follows ``cells``.
 
     loads : their tables; bounds : their end in time, lowest and highest speed; start : energy, time
-    and sense; rule : matrix and weights; cells : width, and inertia and torque at the nodes
+    and sense; rule : matrix and weights; cells : width, and inertia, torque and, if there is any,
+    drag at the nodes
 
     Returns
     -------
@@ -107,7 +108,7 @@ def newton(
     t_end, low, high = bounds
     begin, t, sense = start
     matrix, weights = rule
-    width, inertia, rest = cells
+    width, inertia, rest, drag = cells
     energy, room = np.empty(len(weights)), np.empty((len(weights) + 1, len(weights)))
     steps = np.empty(matrix.shape)
     row = np.zeros(2, np.intp)
@@ -120,7 +121,11 @@ def newton(
             for i in range(len(weights)):
                 steps[j, i] = width[k] * matrix[j, i]
                 energy[j] += sense * steps[j, i] * (rest[k, i] + load)
-        at, of_angle, out = (begin, t, sense), (inertia[k], rest[k]), (torque[k], slowness[k])
+        at, of_angle, out = (
+            (begin, t, sense),
+            (inertia[k], rest[k], drag[k]),
+            (torque[k], slowness[k]),
+        )
         if not _solve(energy, room, at, loads, row, steps, of_angle, out):
             return k
         inside, work, spent = True, 0.0, 0.0
@@ -148,16 +153,18 @@ def _solve(
     loads: Loads,
     row: Index,
     steps: Array,
-    of_angle: tuple[Array, Array],
+    of_angle: tuple[Array, Array, Array],
     out: tuple[Array, Array],
 ) -> bool:
     """Newton's method in one cell, from the guess in ``energy``; whether it converges. Where the
     loads hardly change with the speed it takes them as constant in each step.
 
-    row : numbers of the last rows of the loads, kept from cell to cell; of_angle : inertia and
-    torque at the nodes; out : torque and slowness, filled
+    row : numbers of the last rows of the loads, kept from cell to cell; of_angle : inertia,
+    torque and drag at the nodes; out : torque and slowness, filled
     """
-    (times, in_time, speeds, in_speed), (inertia, rest), (torque, slowness) = loads, of_angle, out
+    (times, in_time, speeds, in_speed), (torque, slowness) = loads, out
+    inertia, rest, drag = of_angle
+    drags = len(drag) > 0
     begin, t, sense = start
     stages = len(energy)
     new, system = room[0].reshape(stages, 1), room[1:]
@@ -177,9 +184,13 @@ def _solve(
                 stiffness += abs(steps[stages - 1, j] * in_time[f, 1] * (at - t) / energy[j])
             g = _row(speeds, omega, g)
             slope = in_speed[g, 1] + 2.0 * in_speed[g, 2] * omega
+            if drags:
+                slope -= drag[j]
             stiffness += abs(steps[stages - 1, j] * slope / (inertia[j] * omega))
             torque[j] = rest[j] + in_time[f, 0] + in_time[f, 1] * at
             torque[j] += in_speed[g, 0] + (in_speed[g, 1] + in_speed[g, 2] * omega) * omega
+            if drags:
+                torque[j] -= drag[j] * omega
         row[0], row[1] = f, g
         if n > 0:
             left = change * max(stiffness, last, change / before) if weak else change
@@ -193,6 +204,8 @@ def _solve(
                 omega = sense / slowness[j]
                 g = _row(speeds, omega, g)
                 rate = sense * (in_speed[g, 1] + 2.0 * in_speed[g, 2] * omega)
+                if drags:
+                    rate -= sense * drag[j]
                 rate /= inertia[j] * omega
                 push -= rate * energy[j]
             for i in range(stages):
