@@ -9,6 +9,8 @@ import pytest
 from scipy.integrate import quad
 
 from crankmbs import InputError, load_scene, simulate
+from crankmbs.compare import budget
+from crankmbs.measures import measure
 from crankmbs.mechanics.friction import friction_forces, friction_torque, sign_changes
 from crankmbs.mechanics.geometry import close_loop, dead_centres
 from crankmbs.mechanics.reactions import reactions
@@ -237,3 +239,40 @@ def test_the_settled_cycle_is_that_of_a_long_run(friction):
     long = simulate(dataclasses.replace(scene, run=run))
     speed = settled.data.crank_speed.values[-1]
     assert long.data.crank_speed.values[-1] == pytest.approx(speed, rel=1e-9)
+
+
+def test_the_budget_names_friction_and_adds_up():
+    scene = dataclasses.replace(load_scene("yi_diesel"), friction=ALL)
+    for split in budget(simulate(scene)).splits:
+        total = sum(cause.curve for cause in split.causes)
+        assert np.max(np.abs(total - split.total.curve)) <= 1e-14 * split.peak
+        assert split.share(split.cause("solver")) == 0.0
+    thrust = budget(simulate(scene)).split("side thrust")
+    assert thrust.share(thrust.cause("friction")) > 3.0
+
+
+@pytest.mark.parametrize("name", ["yi_diesel", "compressor", "yi_diesel_free"])
+def test_what_gas_and_drive_give_friction_and_load_take(name):
+    scene = dataclasses.replace(load_scene(name), friction=ALL)
+    if scene.motion is None:
+        scene = dataclasses.replace(scene, run=Run(until="settled"))
+    found = measure(simulate(scene))
+    assert found.friction_power is not None
+    assert found.mechanical_efficiency is not None
+    outside = found.external_torque.value * found.mean_speed.value
+    given = found.indicated_power.value + outside - found.friction_power.value
+    assert abs(given) < 1e-6 * abs(found.indicated_power.value)
+    efficiency = found.mechanical_efficiency.value
+    taken, paid = sorted((abs(found.indicated_power.value), abs(outside)))
+    assert efficiency == pytest.approx(taken / paid, rel=1e-6)
+    assert found.friction_power.error < 1e-4 * found.friction_power.value
+
+
+def test_measures_know_a_crank_that_waits():
+    rows = Table([0.0, 2.0], [-0.5, 6.5])
+    run = Run(until="0.9 s", every=Extent(value=1e-2, unit="s"))
+    scene = flywheel(Friction(ring_force=45.0), 0.0, torque=(TimeTable(file=rows),))
+    result = simulate(dataclasses.replace(scene, run=run))
+    lost = measure(result).friction_power
+    way = abs(float(result.data.piston_position[-1, 0] - result.data.piston_position[0, 0]))
+    assert lost.value == pytest.approx(45.0 * way / 0.9, rel=1e-4)
