@@ -38,6 +38,7 @@ def describe(path: str, scene: Scene, choice: Choice) -> str:
         ("gas", _gas(scene)),
         *(("pressure", _pressure(scene, pressure)) for pressure in pressures),
         *(("", remark) for remark in remarks(scene)),
+        ("friction", _friction(scene)),
         ("motion", _motion(scene)),
         *(("", said) for said in speed_remarks(scene)),
         *((f"torque[{k}]", _load(scene, load)) for k, load in enumerate(scene.torque, start=1)),
@@ -144,6 +145,18 @@ def _pressure(scene: Scene, pressure: PeriodicPressure) -> str:
         f"{given}; at most {peak / 1e5:.6g} bar across the piston, at a cycle angle of "
         f"{math.degrees(angle):.6g} deg"
     )
+
+
+def _friction(scene: Scene) -> str:
+    friction = scene.friction
+    if friction is None:
+        return ""
+    parts = [
+        f"{friction.ring_force:.6g} N" * (friction.ring_force > 0.0),
+        f"{100.0 * friction.ring_pressure:.6g} % of |gas force|" * (friction.ring_pressure > 0.0),
+        f"{friction.viscous:.6g} N s/m times the velocity" * (friction.viscous > 0.0),
+    ]
+    return f"{' and '.join(part for part in parts if part) or 'none'}, against each sliding piston"
 
 
 def _motion(scene: Scene) -> str:

@@ -19,7 +19,7 @@ from crankmbs.scene.cycles import SAME_ANGLE, cycles_in
 from crankmbs.scene.drives import Motion, SpeedFile, Start
 from crankmbs.scene.fuel import Fuel
 from crankmbs.scene.gas import Gas, tables_of
-from crankmbs.scene.parts import Crank, Cylinder, Gravity, Layout, Piston, Rod
+from crankmbs.scene.parts import Crank, Cylinder, Friction, Gravity, Layout, Piston, Rod
 from crankmbs.scene.schema import Float, dumped, part
 from crankmbs.scene.sentences import did_you_mean
 from crankmbs.scene.speed_rows import repeats
@@ -129,6 +129,7 @@ class Scene:
     gas: Gas | None = None
     fuel: Fuel | None = None
     gravity: Gravity | None = None
+    friction: Friction | None = None
     motion: Motion | None = None
     start: Start | None = None
     torque: tuple[AnyTorque, ...] = ()
@@ -138,6 +139,7 @@ class Scene:
     def __post_init__(self) -> None:
         self._check_loop()
         self._check_gas()
+        self._check_friction()
         self._check_motion()
         self._check_settled()
         self._check_tables()
@@ -242,6 +244,13 @@ class Scene:
                     f"fuel.misfire[{number}].cylinder: must be from 1 to {cylinders}; "
                     f"{misfire.cylinder} came"
                 )
+
+    def _check_friction(self) -> None:
+        if self.gas is None and self.friction is not None and self.friction.ring_pressure > 0.0:
+            raise InputError(
+                "friction.ring_pressure: without [gas] there is no gas force to press the rings; "
+                f"leave it out, or add [gas]; {self.friction.ring_pressure:g} came"
+            )
 
     def _check_motion(self) -> None:
         if (self.motion is None) == (self.start is None):

@@ -35,6 +35,8 @@ _UNITS = {
     "area": "m^2",
     "acceleration": "m/s^2",
     "torque": "N m",
+    "ring_force": "N",
+    "viscous": "N s/m",
     **dict.fromkeys(("over", "after", "until"), "s"),
 }
 _PRESSURE = Header("crank_angle_deg", DEGREE, "pressure_Pa", 1.0)  # speeds and loads have their own

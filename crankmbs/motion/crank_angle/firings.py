@@ -38,7 +38,7 @@ class Fired(NamedTuple):
 
 def solve(grid: Grid, strip: Strip, loads: Branch | Course, begin: Begin) -> Cells:
     """The cells of a strip, by the method that the loads allow."""
-    if isinstance(loads, Branch) and loads.is_affine_in_energy:
+    if isinstance(loads, Branch) and loads.is_affine_in_energy and not strip.drags:
         return solve_affine(grid, strip, loads, begin)
     if loads.functions:
         return solve_functions(grid, strip, loads, begin)
@@ -66,12 +66,13 @@ def solve_fired(
     cells, torque = Cells.empty(strip), strip.torque.copy()
     start, gauss = (begin.energy, begin.time, sense), (grid.rule.matrix, grid.rule.weights)
     solved, decided_ = loops.fired(
-        isinstance(loads, Branch) and loads.is_affine_in_energy,
+        isinstance(loads, Branch) and loads.is_affine_in_energy and not strip.drags,
         loads.tables,
         (begin.t_end, loads.omega_low, loads.omega_high),
         start,
         gauss,
-        (strip.width, strip.inertia, torque, strip.combustion),
+        (strip.width, strip.inertia, torque, strip.drag),
+        strip.of_gas,
         (at, angles, grid.at_decisions[slots], parts),
         law.numbers,
         (kept, shares),
@@ -115,7 +116,7 @@ def fired_by_stretch(
 def fired(strip: Strip, shares: Array) -> Strip:
     """A strip with the torque of these shares of the combustion, shape (cylinders,)."""
     torque = strip.torque.copy()
-    loops.fire(torque, strip.combustion, shares)
+    loops.fire(torque, *strip.of_gas, shares)
     return replace(strip, torque=torque)
 
 

@@ -89,7 +89,7 @@ def newton(
     bounds: tuple[float, float, float],
     start: tuple[float, float, float],
     rule: tuple[Array, Array],
-    cells: tuple[Array, Array, Array],
+    cells: tuple[Array, Array, Array, Array],
     edges: Array,
     time: Array,
     torque: Array,
@@ -98,7 +98,8 @@ def newton(
     """Solve cells by Newton's method, to the end of the loads' course; fill what follows ``cells``.
 
     loads : their tables; bounds : their end in time, lowest and highest speed; start : energy, time
-    and sense; rule : matrix and weights; cells : width, and inertia and torque at the nodes
+    and sense; rule : matrix and weights; cells : width, and inertia, torque and, if there is any,
+    drag at the nodes
 
     Returns
     -------
@@ -107,7 +108,7 @@ def newton(
     t_end, low, high = bounds
     begin, t, sense = start
     matrix, weights = rule
-    width, inertia, rest = cells
+    width, inertia, rest, drag = cells
     energy, room = np.empty(len(weights)), np.empty((len(weights) + 1, len(weights)))
     steps = np.empty(matrix.shape)
     row = np.zeros(2, np.intp)
@@ -120,7 +121,11 @@ def newton(
             for i in range(len(weights)):
                 steps[j, i] = width[k] * matrix[j, i]
                 energy[j] += sense * steps[j, i] * (rest[k, i] + load)
-        at, of_angle, out = (begin, t, sense), (inertia[k], rest[k]), (torque[k], slowness[k])
+        at, of_angle, out = (
+            (begin, t, sense),
+            (inertia[k], rest[k], drag[k]),
+            (torque[k], slowness[k]),
+        )
         if not _solve(energy, room, at, loads, row, steps, of_angle, out):
             return k
         inside, work, spent = True, 0.0, 0.0
@@ -148,16 +153,18 @@ def _solve(
     loads: Loads,
     row: Index,
     steps: Array,
-    of_angle: tuple[Array, Array],
+    of_angle: tuple[Array, Array, Array],
     out: tuple[Array, Array],
 ) -> bool:
     """Newton's method in one cell, from the guess in ``energy``; whether it converges. Where the
     loads hardly change with the speed it takes them as constant in each step.
 
-    row : numbers of the last rows of the loads, kept from cell to cell; of_angle : inertia and
-    torque at the nodes; out : torque and slowness, filled
+    row : numbers of the last rows of the loads, kept from cell to cell; of_angle : inertia,
+    torque and drag at the nodes; out : torque and slowness, filled
     """
-    (times, in_time, speeds, in_speed), (inertia, rest), (torque, slowness) = loads, of_angle, out
+    (times, in_time, speeds, in_speed), (torque, slowness) = loads, out
+    inertia, rest, drag = of_angle
+    drags = len(drag) > 0
     begin, t, sense = start
     stages = len(energy)
     new, system = room[0].reshape(stages, 1), room[1:]
@@ -177,9 +184,13 @@ def _solve(
                 stiffness += abs(steps[stages - 1, j] * in_time[f, 1] * (at - t) / energy[j])
             g = _row(speeds, omega, g)
             slope = in_speed[g, 1] + 2.0 * in_speed[g, 2] * omega
+            if drags:
+                slope -= drag[j]
             stiffness += abs(steps[stages - 1, j] * slope / (inertia[j] * omega))
             torque[j] = rest[j] + in_time[f, 0] + in_time[f, 1] * at
             torque[j] += in_speed[g, 0] + (in_speed[g, 1] + in_speed[g, 2] * omega) * omega
+            if drags:
+                torque[j] -= drag[j] * omega
         row[0], row[1] = f, g
         if n > 0:
             left = change * max(stiffness, last, change / before) if weak else change
@@ -193,6 +204,8 @@ def _solve(
                 omega = sense / slowness[j]
                 g = _row(speeds, omega, g)
                 rate = sense * (in_speed[g, 1] + 2.0 * in_speed[g, 2] * omega)
+                if drags:
+                    rate -= sense * drag[j]
                 rate /= inertia[j] * omega
                 push -= rate * energy[j]
             for i in range(stages):
@@ -216,6 +229,7 @@ def fired(
     start: tuple[float, float, float],
     rule: tuple[Array, Array],
     cells: tuple[Array, Array, Array, Array],
+    of_gas: tuple[Array, Array, float],
     decisions: tuple[Index, Array, Array, Array],
     law: tuple[float, ...],
     decided: tuple[Array, Array],
@@ -223,7 +237,8 @@ def fired(
 ) -> tuple[int, int]:
     """Solve cells as `affine` or `newton` do, from decision to decision on the fuel; count both.
 
-    cells : width, and inertia, torque and combustion at the nodes; the torque gets what is fired
+    cells : width, and inertia, torque and, if there is any, drag at the nodes; the torque gets what
+    is fired; of_gas : as `fire` takes it
     decisions : the cell before which each falls, one more than those; crank angle and inertia
     there; what is left of the cylinders' shares, NaN where they do not decide
     law : as `crankmbs.mechanics.firing.FuelLaw.numbers` gives it
@@ -231,7 +246,8 @@ def fired(
     the shares; of the last decision and, filled, of the next ones
     solved : edges, time, torque and slowness, filled
     """
-    (width, inertia, rest, combustion), (edges, time, torque, slowness) = cells, solved
+    (width, inertia, rest, drag), (edges, time, torque, slowness) = cells, solved
+    combustion, rubbed, against = of_gas
     (at, theta, there, parts), (kept, shares) = decisions, decided
     t_end, sense, n, k = bounds[0], start[2], 0, 0
     edges[0], time[0] = start[0], start[1]
@@ -246,7 +262,7 @@ def fired(
             continue
         m = min(at[n], len(width))
         push, h, inside, stretch = rest[k:m], width[k:m], inertia[k:m], edges[k : m + 1]
-        fire(push, combustion[k:m], shares[n])
+        fire(push, combustion[k:m], rubbed[k:m], against, shares[n])
         out = stretch, time[k : m + 1], torque[k:m], slowness[k:m]
         if affinely:
             s, begin = len(rule[1]), (edges[k], time[k], t_end)
@@ -257,7 +273,7 @@ def fired(
             )
         else:
             now = (edges[k], time[k], sense)
-            found = newton(loads, bounds, now, rule, (h, inside, push), *out)
+            found = newton(loads, bounds, now, rule, (h, inside, push, drag[k:m]), *out)
         k += found
         if k < m or not edges[k] > 0.0 or time[k] >= t_end:
             break
@@ -265,13 +281,21 @@ def fired(
 
 
 @kernel
-def fire(torque: Array, combustion: Array, shares: Array) -> None:
-    """Add to the torque at the nodes that of the combustion of each cylinder with these shares."""
+def fire(
+    torque: Array, combustion: Array, rubbed: Array, against: float, shares: Array
+) -> None:
+    """Add to the torque at the nodes that of the combustion of each cylinder with these shares,
+    and of the rings that the gas presses, where it does.
+
+    combustion, rubbed, against : of `crankmbs.motion.crank_angle.grid.Strip`
+    """
     for k in range(len(torque)):
         for j in range(torque.shape[1]):
             more = 0.0
             for i in range(len(shares)):
                 more += combustion[k, j, i] * shares[i]
+            for i in range(rubbed.shape[2]):
+                more -= against * abs(rubbed[k, j, i] + combustion[k, j, i] * shares[i])
             torque[k, j] += more
 
 

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from crankmbs.mechanics.friction import friction_forces, friction_torque
 from crankmbs.mechanics.inertia import fired_torque, inertia_alone, reduce
 from crankmbs.mechanics.torque import Branch, Course
 from crankmbs.motion.base import NOWHERE, Samples, State
@@ -100,7 +101,7 @@ class Window:
         torque = strip.torque.copy()
         ends = [*(k for k, _ in self.modes[1:]), len(torque)]
         for (k, mode), end in zip(self.modes, ends, strict=False):
-            loops.fire(torque[k:end], strip.combustion[k:end], np.array(mode.shares))
+            loops.fire(torque[k:end], *strip.part(k, end).of_gas, np.array(mode.shares))
         inside = rule.integrals(finer.nodes).T
         to_nodes = np.vstack([finer.matrix, finer.weights]).T
         own = np.column_stack([inside, rule.weights])
@@ -110,6 +111,8 @@ class Window:
         with np.errstate(divide="ignore"):
             slowness = np.sqrt(0.5 * strip.inertia / np.maximum(energy, 0.0))
             torque += self.branch(t, self.sense / slowness)
+            if strip.drags:
+                torque -= strip.drag * self.sense / slowness
             theta = strip.angles(self.begin.theta, self.sense, finer)
             for function in self.branch.functions:
                 torque = torque + function(t, theta, self.sense / slowness)
@@ -176,7 +179,10 @@ class Window:
     def rate(self, which: NDArray[np.bool_]) -> Array:
         """dQ/dE [1/rad] at the nodes of some cells."""
         omega = self.sense / self.slowness[which]
-        return self.branch.slope(omega) / (self.strip.inertia[which] * omega)
+        slope = self.branch.slope(omega)
+        if self.strip.drags:
+            slope = slope - self.strip.drag[which]
+        return slope / (self.strip.inertia[which] * omega)
 
     def with_more(self, gained: Array) -> Window:
         """With so much more energy [J] gained in each cell, little enough for what follows from it
@@ -256,14 +262,15 @@ class Window:
         inertia, slope, torque = reduce(self.grid.train, once)
         over_angle = np.zeros_like(torque) + self.grid.outside(once)
         torque = torque + over_angle
-        fuel = {}
+        own = {}
         if self.modes:
-            fuel = {"fuel": self.shares[k]}
-            more = fired_torque(self.grid.train, once)[which] * fuel["fuel"]
+            own = {"fuel": self.shares[k]}
+            more = fired_torque(self.grid.train, once)[which] * own["fuel"]
             inertia, slope, torque = inertia[which], slope[which], torque[which] + more.sum(axis=1)
             over_angle, which = over_angle[which], np.arange(len(theta))
         of_angle = (inertia, slope, torque)  # bare: numba's cache must not name a class
-        if isinstance(self.branch, Branch) and not self.branch.functions:
+        rubs = self.grid.train.scene.friction is not None
+        if isinstance(self.branch, Branch) and not self.branch.functions and not rubs:
             omega, outside, alpha = np.empty((3, len(theta)))
             loads = self.branch.coefficients
             readout.motion(which, of_angle, self.sense, loads, t, energy, omega, outside, alpha)
@@ -273,10 +280,16 @@ class Window:
             outside = self.branch(t, omega)
             for function in self.branch.functions:
                 outside = outside + function(t, theta, omega)
+            if rubs:
+                given = own.get("fuel")
+                torque = torque + friction_torque(self.grid.train, theta, omega, self.sense, given)
+                slides = np.full_like(omega, self.sense)
+                forces = friction_forces(self.grid.train, theta, omega, given, slides)
+                own["friction_force"] = forces
             alpha = (torque + outside - 0.5 * slope * omega**2) / inertia
         residual = self.begin.residual - self.missed[k]
         outside = outside + over_angle[which]
-        return Samples(t, theta, omega, alpha, residual, {"external_torque": outside, **fuel})
+        return Samples(t, theta, omega, alpha, residual, {"external_torque": outside, **own})
 
 
 def _exact(landed: float, computed: Array) -> Array:
