@@ -281,9 +281,7 @@ def fired(
 
 
 @kernel
-def fire(
-    torque: Array, combustion: Array, rubbed: Array, against: float, shares: Array
-) -> None:
+def fire(torque: Array, combustion: Array, rubbed: Array, against: float, shares: Array) -> None:
     """Add to the torque at the nodes that of the combustion of each cylinder with these shares,
     and of the rings that the gas presses, where it does.
 
