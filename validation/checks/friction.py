@@ -21,12 +21,21 @@ from validation.oracles.rubbing import Rings, rubbed_motion
 from validation.random_friction import random_friction
 from validation.runs import run
 
-__all__ = ["closes", "mean_pressure", "random_errors", "true_over_stated"]
+__all__ = ["closes", "confirmed", "mean_pressure", "random_errors", "true_over_stated"]
 
 Floats = NDArray[np.float64]
 
 _TOO_SMALL = 2.0  # the true error may be this many times the stated one
 _FLOOR = 1e-10  # of the peak, what the oracle itself errs
+_CONFIRMED = (
+    "friction_force",
+    "main_bearing_force_x",
+    "crank_pin_force_x",
+    "piston_pin_force_y",
+    "side_force",
+    "crank_torque",
+    "external_torque",
+)
 _BESIDE = 1e-6  # rad: so near an angle where friction or gas jump either value is right
 
 
@@ -74,6 +83,17 @@ def true_over_stated(result: Result, scene: Scene) -> tuple[float, str]:
         ratios[name] = float(np.max(apart, initial=0.0)) / max(stated, floor)
     worst = max(ratios, key=lambda name: ratios[name])
     return ratios[worst], worst
+
+
+def confirmed(case: Case) -> Outcome:
+    """Forces of a multibody run against those of the closed form, each over its own peak."""
+    ours, theirs = run(case.ours(), "multibody").data, run(case.theirs(), "kinetostatic").data
+    errors = {
+        name: float(abs(ours[name] - theirs[name].values).max() / abs(theirs[name]).max())
+        for name in _CONFIRMED
+    }
+    worst = max(errors, key=lambda name: errors[name])
+    return Outcome(errors[worst], f"{worst} {errors[worst]:.1e}")
 
 
 def closes(case: Case) -> Outcome:

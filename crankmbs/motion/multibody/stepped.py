@@ -48,7 +48,7 @@ class Stepped(NamedTuple):
 def model_of(problem: Problem) -> Model:
     """exudyn's system for a problem."""
     reference = coordinates(problem.scene, problem.start[0], 0.0)
-    gas = problem.scene.gas is not None
+    gas = problem.scene.gas is not None or problem.scene.friction is not None
     return Model(problem.scene, reference, gas=gas, free=problem.law is None)
 
 
@@ -80,7 +80,9 @@ def solve(
             last = walk.tables[-1]  # half of it: an end at a jump has no certain side
             walk.tables[-1] = last._replace(until=0.5 * (last.after + last.until))
             return _path(walk, Ending.CALLED_OFF)
-    if walk.time > 0.0 and (walk.is_at_gas_jump(PASSED) or at_jump_in_time()):
+    if walk.time > 0.0 and (
+        walk.is_at_gas_jump(PASSED) or walk.is_at_dead_centre(PASSED) or at_jump_in_time()
+    ):
         walk.above(h)  # what comes after the jump is asked for at the end, too
     return _path(walk, ending)
 
