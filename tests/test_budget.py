@@ -63,10 +63,6 @@ def test_the_causes_add_up_to_the_lecture_minus_the_run(name):
     ]
     expected = list(CAUSES) if load_scene(name).friction else WITHOUT_FRICTION
     for split in found.splits:
-<<<<<<< HEAD
-=======
-        expected = list(CAUSES) if load_scene(name).friction else WITHOUT_FRICTION
->>>>>>> friction
         assert [cause.name for cause in split.causes] == expected
         total = sum(cause.curve for cause in split.causes)
         error = split.lecture - split.simulated

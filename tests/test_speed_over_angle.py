@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scene_texts import DRIVEN, edited, refusal
 from scipy.integrate import quad
-from scipy.interpolate import CubicSpline, PchipInterpolator
+from scipy.interpolate import CubicSpline, PchipInterpolator, PPoly
 
 from crankmbs import (
     InputError,
@@ -49,7 +49,7 @@ def driven(speed, until="1 cycle", every="10 deg", begin=0.7):
 def test_time_is_the_integral_of_one_over_the_speed(kind, sense):
     law = speed_law(Motion(speed=measured(speed=sense * CYCLE, kind=kind), angle=0.7))
 
-    curve = CubicSpline(EVEN, CYCLE, bc_type="periodic")
+    curve: PPoly = CubicSpline(EVEN, CYCLE, bc_type="periodic")
     if kind == "pchip":
         wide = np.concatenate([EVEN - EVEN[-1], EVEN[1:], EVEN[1:] + EVEN[-1]])
         curve = PchipInterpolator(wide, np.concatenate([CYCLE, CYCLE[1:], CYCLE[1:]]))

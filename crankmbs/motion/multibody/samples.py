@@ -9,11 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-<<<<<<< HEAD
-=======
-from crankmbs.motion.multibody.gas import NEAR
 from crankmbs.motion.multibody.held import held_by
->>>>>>> friction
 from crankmbs.motion.multibody.problem import Problem
 from crankmbs.motion.multibody.step_table import StepTable
 from crankmbs.motion.multibody.stepped import Stepped
