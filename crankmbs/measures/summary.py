@@ -19,7 +19,7 @@ from crankmbs.measures.joints import (
     stated,
 )
 from crankmbs.measures.peak import rise
-from crankmbs.measures.span import Span, integral, last_span, same_span
+from crankmbs.measures.span import Span, integral, measured_span, same_span
 from crankmbs.mechanics.geometry import close_loop, dead_centres
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
@@ -36,8 +36,8 @@ class Measures:
     crank_torque [N m] : moment of all rods on the crank, external_torque [N m] : from outside;
         both means are work per angle turned, so that torque times mean speed is power
     indicated_power [W] : work of the gas on all pistons per time; None without gas
-    imep [Pa] : work of the gas in one cycle over the displaced volume, per cylinder; None without
-        gas or without a whole cycle
+    imep [Pa] : work of the gas in a cycle, the mean of several, over the displaced volume, per
+        cylinder; None without gas or without a whole cycle
     friction_power [W] : what the friction of all pistons takes per time; None without friction
     mechanical_efficiency : where the gas drives, the share of the indicated power that friction
         leaves; where it is driven, indicated power over that with the friction's; None without
@@ -60,7 +60,8 @@ class Measures:
 
 
 def measure(result: Result) -> Measures:
-    """Sum up a run over its last whole cycle (or revolution, or the run).
+    """Sum up a run over its last whole cycle (or revolution, or the run); a settled motion over
+    its period.
 
     A value is that of the motion between the samples (`crankmbs.measures.between.refined`). Its
     error sums the stated errors of the variables in it, the quadrature's (the spline through all
@@ -72,7 +73,7 @@ def measure(result: Result) -> Measures:
     >>> measure(simulate(load_scene("propeller"))).window.kind
     'last cycle'
     """
-    window = last_span(result)
+    window = measured_span(result)
     closure = _energy_closure(result)
     motions = refined(result, window.first)
     if not motions:
@@ -185,11 +186,12 @@ def _indicated(result: Result, window: Span) -> tuple[Estimate | None, tuple[Est
         return None, None
     work, error = _work(result, window, "gas_force")
     mean = Estimate(float(work.sum()) / window.duration, float(error.sum()) / window.duration)
-    if window.kind != "last cycle":
+    if window.kind not in ("last cycle", "settled period"):
         return mean, None
+    cycles = abs(window.angle) / scene.period
     r, l, e = scene.crank.radius, scene.rod.length, scene.piston.offset
     top, bottom = close_loop(dead_centres(r, l, e), r, l, e).x
-    volume = area * float(top - bottom)
+    volume = cycles * area * float(top - bottom)
     return mean, tuple(
         Estimate(float(w) / volume, float(d) / volume) for w, d in zip(work, error, strict=True)
     )

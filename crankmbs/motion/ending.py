@@ -51,6 +51,16 @@ class Ending(Enum):
         "does not settle: gas and loads balance one another at any speed, so that the motion from "
         "the start repeats itself",
     )
+    HUNTS = (
+        1,
+        "does not settle: the governor hunts, as what is off its steady motion grows by "
+        "{factor:.4g} in a period; lower its gains",
+    )
+    SWINGS = (
+        1,
+        "does not settle: the governor hunts, from its least share to its greatest and back; lower "
+        "its gains",
+    )
     WANDERS = -1, "no periodic motion found within {shots} periods"
     COSTLY = (
         -1,

@@ -47,6 +47,13 @@ class Misfire:
         first = int(match[2])
         return cycle % first == 0 if match[1] else first <= cycle <= int(match[3] or first)
 
+    @property
+    def every(self) -> int | None:
+        """n of "every n", else None."""
+        match = _CYCLES.fullmatch(self.cycles)
+        assert match is not None
+        return int(match[2]) if match[1] else None
+
 
 @part
 class Governor:

@@ -87,16 +87,14 @@ def _passing(load: Torque) -> str:
 
 
 def _uneven(fuel: Fuel) -> str:
-    """What in the fuel makes firings that differ, or may."""
-    if fuel.governor is not None:
-        return "a governor decides each share anew; its settled cycle is not found yet"
+    """What in the fuel happens once or at random, so that nothing settles with it, if any."""
     if fuel.scatter > 0.0:
         return "scatter makes every share another"
     if fuel.after > 0.0 or (fuel.until, fuel.from_speed, fuel.until_speed) != (None, None, None):
         return "a window acts once"
-    if any(not misfire.cycles.startswith("every") for misfire in fuel.misfire or ()):
+    if any(misfire.every is None for misfire in fuel.misfire or ()):
         return "a listed misfire happens once"
-    return "the shares are counted from the start; their settled cycle is not found yet"
+    return ""
 
 
 def _spacing(value: object, info: ValidationInfo) -> object:
@@ -158,12 +156,15 @@ class Scene:
     @property
     def settled_period(self) -> float:
         """The angle [rad] after which a settled motion repeats itself: the least common multiple
-        of the periods of the engine, of a sequence of cycles and of loads over the angle."""
+        of the periods of the engine, of a sequence of cycles, of misfires "every n" and of loads
+        over the angle."""
         loads = (load.parts.over_angle for load in self.torque)
         own = [self.period, *(part.period for part in loads if part is not None)]
         if self.gas is not None and self.gas.cycles == "sequence":
             one = self.gas.period
             own += [cycles_in(table, one) * one for table in self.gas.tables]
+        misfires = (self.fuel.misfire if self.fuel else None) or ()
+        own += [self.period * one.every for one in misfires if one.every]
         turns = (round(period / (2.0 * math.pi)) for period in own)
         return math.lcm(*turns) * 2.0 * math.pi
 
@@ -290,7 +291,7 @@ class Scene:
                 'run.until: "settled" is the periodic motion that a free crank comes to; with '
                 '[motion] give an end such as "2 cycles", or free the crank with [start]'
             )
-        if self.fuel is not None:
+        if self.fuel is not None and _uneven(self.fuel):
             raise InputError(
                 f'run.until: "settled" needs firings that are alike in every cycle, and in [fuel], '
                 f"{_uneven(self.fuel)}; give an end such as {EXAMPLES['extent']}, or remove [fuel]"

@@ -64,11 +64,11 @@ class Slope(NamedTuple):
 
 
 class LostError(Exception):
-    """The run does not settle, for a reason."""
+    """The run does not settle, for a reason; factor by which a period changes a disturbance."""
 
-    def __init__(self, ending: Ending) -> None:
+    def __init__(self, ending: Ending, factor: float = math.nan) -> None:
         super().__init__(ending)
-        self.ending = ending
+        self.ending, self.factor = ending, factor
 
 
 class Section:
