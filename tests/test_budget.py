@@ -218,7 +218,7 @@ def test_a_quantity_that_was_left_out_is_named():
 def test_the_file_says_what_the_budget_says(yi, tmp_path):
     with save_budget_peaks(yi, tmp_path).open(newline="") as stream:
         lines = list(csv.DictReader(stream))
-    assert len(lines) == len(QUANTITIES) * (len(CAUSES) + 1)
+    assert len(lines) == len(QUANTITIES) * (len(WITHOUT_FRICTION) + 1)
     (line,) = (
         line
         for line in lines
@@ -240,8 +240,11 @@ def curves(swinging, tmp_path_factory):
 @pytest.mark.parametrize("quantity", QUANTITIES)
 def test_the_causes_in_the_file_add_up(curves, quantity, swinging):
     here = curves["quantity"] == quantity
-    part = {name: curves[name][here].astype(float) for name in (*CAUSES, "run", "lecture", "total")}
-    added = sum(part[name] for name in CAUSES)
+    part = {
+        name: curves[name][here].astype(float)
+        for name in (*WITHOUT_FRICTION, "run", "lecture", "total")
+    }
+    added = sum(part[name] for name in WITHOUT_FRICTION)
     peak = np.max(np.abs(part["run"]))
     assert np.max(np.abs(added - part["total"])) <= 1e-13 * peak
     assert np.max(np.abs(part["lecture"] - part["run"] - part["total"])) <= 1e-13 * peak
