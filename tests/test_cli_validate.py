@@ -35,6 +35,8 @@ speed = "100 rpm"
 until = "1 rev"
 """
 
+WITHOUT_FRICTION = [name for name in CAUSES if name != "friction"]
+
 
 def validate(*arguments):
     return CliRunner().invoke(app, ["validate", *map(str, arguments)])

@@ -233,7 +233,7 @@ class _Walk:
         last = y
         if met > t:
             last = solve_ivp(slopes, (t, met), y, **options).y[:, -1]
-        if len((found.t_events or [[]])[0]):
+        if found.t_events is not None and len(found.t_events[0]):
             return np.array([bound, last[1]]), met
         return np.array([last[0], 0.0]), met
 
