@@ -191,9 +191,10 @@ def _indicated(result: Result, window: Span) -> tuple[Estimate | None, tuple[Est
     cycles = abs(window.angle) / scene.period
     r, l, e = scene.crank.radius, scene.rod.length, scene.piston.offset
     top, bottom = close_loop(dead_centres(r, l, e), r, l, e).x
-    volume = cycles * area * float(top - bottom)
+    volume = area * float(top - bottom)
     return mean, tuple(
-        Estimate(float(w) / volume, float(d) / volume) for w, d in zip(work, error, strict=True)
+        Estimate(float(w) / (cycles * volume), float(d) / (cycles * volume))
+        for w, d in zip(work, error, strict=True)
     )
 
 

@@ -31,6 +31,7 @@ from crankmbs.motion.minimal import advance as minimal
 from crankmbs.motion.minimal.reduced import Reduced
 from crankmbs.motion.mode import begun
 from crankmbs.motion.plan import Plan, plan_of
+from crankmbs.motion.remarks import left_open
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.collocation import gauss
 from crankmbs.scene.scene import Scene
@@ -141,11 +142,11 @@ def run(
             grid = grid.split(parts)
             continue
         better = travel(grid.finer, way, 1e-2 * local, by_angle=by_angle, first=answer)
-        solution = _solution(answer, better, way.plan, way.allowed)
+        solution = _solution(train.scene, answer, better, way)
         assembled = assemble(train, solution)
         if functions:
             staggered = travel(_staggered(grid), way, 0.1 * local, by_angle=by_angle, first=answer)
-            again = assemble(train, _solution(answer, staggered, way.plan, way.allowed))
+            again = assemble(train, _solution(train.scene, answer, staggered, way))
             assembled = _stated_twice(assembled, again)
         near = local <= 10.0 * finest
         estimate = assembled.relative_error * (2.0 if near else 1.0)
@@ -262,8 +263,8 @@ def _parts(grid: Grid, worst: Array, local: float) -> NDArray[np.intp]:
     return np.asarray(np.clip(np.nan_to_num(parts, nan=2.0), 1, 4), dtype=np.intp)
 
 
-def _solution(answer: Pass, better: Pass, plan: Plan, allowed: int) -> Solution:
-    path, endings = answer.path, {answer.ending, better.ending}
+def _solution(scene: Scene, answer: Pass, better: Pass, way: Way) -> Solution:
+    plan, path, endings = way.plan, answer.path, {answer.ending, better.ending}
     ends = _RESTING if plan.until_time else _RESTING - {Ending.COMPLETE}
     both, in_time, reversals = (answer.samples, better.samples), plan.in_time, path.reversals
     still = endings <= ends and stays(*both)
@@ -280,7 +281,9 @@ def _solution(answer: Pass, better: Pass, plan: Plan, allowed: int) -> Solution:
     elif (len(endings) > 1 and not at_rest) or parted:
         ending = Ending.PARTED
     last = float(samples.theta[-1]), float(samples.omega[-1])
-    status, text = ending.said(*last, reversals=path.reversals, allowed=allowed)
+    status, text = ending.said(*last, reversals=path.reversals, allowed=way.allowed)
+    if status >= 0 and path.state is not None:
+        text = "; ".join([text, *left_open(scene, path.state.mode, samples.own.get("fuel"))])
     reasons: tuple[str, ...] = ()
     if answer.slow:
         times = ", ".join(f"{t:.4g}" for t in answer.slow[:5])
