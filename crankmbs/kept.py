@@ -106,6 +106,7 @@ def _has(scene: Scene, name: str) -> bool:
         "gas_work": scene.gas is not None,
         "imep": scene.gas is not None,
         "fuel": scene.fuel is not None,
+        "friction_work": scene.friction is not None,
         "load_work": bool(scene.torque),
         "drive_work": scene.motion is not None,
     }.get(name, True)

@@ -29,6 +29,7 @@ from crankmbs import (
 from crankmbs.mechanics.pressure import pressures_of
 from crankmbs.motion import cycles as kept
 from crankmbs.motion.free import recount
+from crankmbs.scene.parts import Friction
 
 PERIOD = 4.0 * math.pi
 LOADS = (
@@ -46,7 +47,7 @@ def until(scene, value, unit, **run):
 def unbalanced(cycles):
     """Kinetic energy gained less all works [J], largest of all cycles; and the largest term."""
     left, largest = cycles["kinetic_energy_gained"].values.copy(), 0.0
-    for name in ("gas_work", "load_work", "drive_work"):
+    for name in ("gas_work", "load_work", "drive_work", "friction_work"):
         if name in cycles:
             work = cycles[name].values
             left -= work.reshape(len(left), -1).sum(axis=1)
@@ -60,6 +61,12 @@ SCENES = {
         replace(FOUR, start=replace(FOUR.start, angle=0.123456)), 2.2, "cycle"
     ),
     "fuel and loads": fuelled(FUELS["all at once"], cycles=2.3, torque=LOADS),
+    "friction": fuelled(
+        FUELS["scatter"],
+        cycles=2.2,
+        torque=LOADS[1:],
+        friction=Friction(ring_force=40.0, ring_pressure=0.02, viscous=30.0),
+    ),
     "backwards": fuelled(
         FUELS["scatter"], cycles=2.0, torque=LOADS[1:], start=replace(FOUR.start, speed=-300.0)
     ),

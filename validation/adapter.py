@@ -36,7 +36,14 @@ from validation.oracles.machine import (
 )
 from validation.oracles.newton_euler import newton_euler
 from validation.oracles.path import Path
-from validation.oracles.prescribed import oscillating_motion, pchip, polynomial_motion
+from validation.oracles.prescribed import (
+    motion_over_angle,
+    oscillating_motion,
+    pchip,
+    polynomial_motion,
+    spline,
+)
+from validation.oracles.pressure import pressure_pieces
 
 __all__ = [
     "at_jumps",
@@ -197,11 +204,28 @@ def _prescribed(result: Result, motion: Prescribed) -> Motion:
             breaks: tuple[float, ...] = (0.0, speed.over)
             rise = (LONG.number(speed.to) - speed.start) / LONG.number(speed.over)
             pieces = [LONG.array([speed.start, rise]), LONG.array([speed.to])]
+        case SpeedFile(kind="angle_table"):
+            return _over_angle(angles, speed)
         case SpeedFile():
-            breaks, pieces = speed.file.x[:-1], pchip(speed.file.x, speed.file.y)
+            between = spline if speed.interpolation == "cubic" else pchip
+            breaks, pieces = speed.file.x[:-1], between(speed.file.x, speed.file.y)
         case _:
             breaks, pieces = (0.0,), [LONG.array([speed])]
     return polynomial_motion(result.data["time"].values, breaks, pieces, motion.angle)
+
+
+def _over_angle(angles: NDArray[np.float64], speed: SpeedFile) -> Motion:
+    """Rows that span whole turns and close within 1 % of their range repeat, the last one left
+    out."""
+    x, y = speed.file.x, speed.file.y
+    turns = round((x[-1] - x[0]) / (2.0 * math.pi))
+    whole = turns in (1, 2) and abs(x[-1] - x[0] - 2.0 * math.pi * turns) < _SAME_ANGLE
+    if whole and abs(y[-1] - y[0]) <= 0.01 * (max(y) - min(y)):
+        period = 2.0 * math.pi * turns
+        cycle = pressure_pieces(PressureTable(x[:-1], y[:-1], period, speed.interpolation))
+        return motion_over_angle(angles, cycle.knots, list(cycle.coefficients), period)
+    between = spline if speed.interpolation == "cubic" else pchip
+    return motion_over_angle(angles, x[:-1], between(x, y))
 
 
 def _first(motion: Motion) -> Motion:

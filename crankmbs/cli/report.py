@@ -155,6 +155,10 @@ def _values(measures: Measures) -> list[list[str]]:
     ]
     if measures.indicated_power is not None:
         rows.append(_value("indicated power [kW]", measures.indicated_power, 1e-3))
+    if measures.friction_power is not None:
+        rows.append(_value("power of the pistons' friction [kW]", measures.friction_power, 1e-3))
+    if measures.mechanical_efficiency is not None:
+        rows.append(_value("mechanical efficiency [1]", measures.mechanical_efficiency))
     pressures = measures.imep or ()
     for number, imep in enumerate(pressures, start=1):
         whose = f", cylinder {number}" if len(pressures) > 1 else ""

@@ -103,6 +103,12 @@ def flywheel(scene: Scene, fluctuation: float = 0.01) -> Flywheel:
             f"{shown(fluctuation)} came"
         )
     freed = _freed(scene)
+    if freed.friction is not None and freed.friction.viscous > 0.0 and not freed.torque:
+        raise InputError(
+            "friction.viscous: a scene without a load is balanced with a constant one, and what "
+            "viscous friction takes depends on the motion; give a load, or leave it out; "
+            f"{freed.friction.viscous:g} N s/m came"
+        )
     search = _Search(freed, float(fluctuation), simulate if freed.torque else _balanced)
     return search.found(scene.crank.moment_of_inertia)
 
@@ -143,7 +149,7 @@ def _mean(motion: Motion) -> float:
 
 
 def _balanced(scene: Scene) -> Result:
-    """The periodic motion under the constant load that balances gas and gravity.
+    """The periodic motion under the constant load that balances gas, gravity and rings.
 
     Over the angle E = E_0 + (E - E_0)(theta), the same at every speed: E_0 is the one with which a
     period takes as long as at the wanted mean speed.
@@ -153,6 +159,9 @@ def _balanced(scene: Scene) -> Result:
     sense = math.copysign(1.0, start.speed)
     grid = grid_of(crank_train(scene), gauss(_STAGES))
     mean = float(np.diff(grid.edges) @ (grid.tables[1] @ grid.rule.weights)) / period
+    if scene.friction is not None:
+        rings = grid.tables.friction @ grid.rule.weights
+        mean -= sense * float(np.diff(grid.edges) @ rings) / period
     load = Constant(torque=-mean)
     strip = grid.strip(start.angle, sense, len(grid.edges) + 1, start.angle + sense * period)
     one = period_of(grid, strip, branch_of((load,), 0.0, 0.0, rising=True), sense)

@@ -16,6 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from crankmbs.mechanics.geometry import close_loop
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.windows import acting
 from crankmbs.motion.account import Rows, beside
@@ -23,6 +24,7 @@ from crankmbs.motion.base import Points, Samples, Solved
 from crankmbs.motion.gas_work import GasWork
 from crankmbs.motion.plan import Chosen
 from crankmbs.numerics.arrays import Array
+from crankmbs.scene.parts import Friction
 
 __all__ = ["MOST_CYCLES", "Cycles", "cycles_of"]
 
@@ -73,7 +75,10 @@ class Cycles:
         self._rule = 0.5 * (1.0 + nodes), 0.5 * weights
         self._open: _Open | None = None
         self._sense, self._reached = 0.0, start
-        self._works, self._speeds = np.zeros(len(train.scene.torque) + 1), np.empty(0)
+        scene = train.scene
+        self._columns = len(scene.torque) + 1
+        self._columns += len(scene.cylinders) if scene.friction else 0
+        self._works, self._speeds = np.zeros(self._columns), np.empty(0)
         self._gas = GasWork(train, start, _POINTS[finer])
         self._passed = 0
         self.done: deque[_Done] = deque(maxlen=MOST_CYCLES)
@@ -158,7 +163,7 @@ class Cycles:
         segment = np.searchsorted(marks, 0.5 * (edges[1:] + edges[:-1]))
         of_whole = Points(*(values[panel[whole]] for values in nodes.points))
         of_parts = self._between(piece, edges[:-1][~whole], edges[1:][~whole])
-        works = np.zeros((len(marks) + 1, len(self._train.scene.torque) + 1))
+        works = np.zeros((len(marks) + 1, len(self._works)))
         for rows, points in ((whole, of_whole), (~whole, of_parts)):
             np.add.at(works, segment[rows], self._works_of(piece, points))
         time = np.concatenate([nodes.edges, of_whole.time.ravel(), of_parts.time.ravel()])
@@ -190,9 +195,11 @@ class Cycles:
         if scene.fuel is not None:
             found["fuel"] = self._gas.shares(sense, before, after)
         if scene.torque:
-            found["load_work"] = works[:, :-1]
+            found["load_work"] = works[:, : len(scene.torque)]
         if scene.motion is not None:
-            found["drive_work"] = works[:, -1]
+            found["drive_work"] = works[:, len(scene.torque)]
+        if scene.friction is not None:
+            found["friction_work"] = works[:, len(scene.torque) + 1 :]
         return Rows(found, {}, self.left_out + len(self.done) - count)
 
     def _between(self, piece: Solved, begin: Array, end: Array) -> Points:
@@ -205,15 +212,41 @@ class Cycles:
         return Points(time, theta, omega, width * weights * omega)
 
     def _works_of(self, piece: Solved, points: Points) -> Array:
-        """Work [J] in each panel, shape (n, columns): of every load, then of the drive."""
+        """Work [J] in each panel, shape (n, columns): of every load, of the drive, of the friction
+        of every piston."""
         t, theta, omega, turned = points
         scene = self._train.scene
-        works = np.zeros((len(t), len(scene.torque) + 1))
+        works = np.zeros((len(t), self._columns))
         for number, load in acting(scene.torque, piece.begin.mode.loads):
             works[:, number - 1] = (load(t, theta, omega) * turned).sum(axis=1)
         if scene.motion is not None:
             drive = piece.sample(Chosen(t.ravel(), in_time=True)).own["external_torque"]
-            works[:, -1] = (drive.reshape(t.shape) * turned).sum(axis=1)
+            works[:, len(scene.torque)] = (drive.reshape(t.shape) * turned).sum(axis=1)
+        if scene.friction is not None:
+            works[:, len(scene.torque) + 1 :] = self._rubbed(piece, points, scene.friction)
+        return works
+
+    def _rubbed(self, piece: Solved, points: Points, friction: Friction) -> Array:
+        """Work of the friction of every piston [J], shape (n, cylinders)."""
+        t, theta, omega, turned = points
+        train, scene = self._train, self._train.scene
+        shape = scene.crank.radius, scene.rod.length, scene.piston.offset
+        modes = [piece.begin.mode, *(state.mode for state in piece.decisions)]
+        which = np.searchsorted([state.time for state in piece.decisions], t)
+        works = np.zeros((len(t), len(scene.cylinders)))
+        for k, cylinder in enumerate(scene.cylinders):
+            phi = theta + cylinder.phase
+            rise, pressure = close_loop(phi, *shape).x_1, np.zeros_like(phi)
+            if train.pressure is not None:
+                pressure = train.pressure[k](phi)
+            if train.combustion is not None and modes[0].shares:
+                share = np.array([mode.shares[k] for mode in modes])[which]
+                pressure = pressure + share * train.combustion[k](phi)
+            force = friction.ring_force + friction.ring_pressure * np.abs(
+                (scene.piston.gas_area or 0.0) * pressure
+            )
+            against = force * np.abs(rise * turned) + friction.viscous * rise**2 * omega * turned
+            works[:, k] = -against.sum(axis=1)
         return works
 
 

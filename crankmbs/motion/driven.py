@@ -61,7 +61,7 @@ class Driven:
         train, law = self.way.train, self.way.law
         knots = repeat(crank_angle_knots(train), train.period, low, high)
         angles = np.concatenate([np.linspace(low, high, count + 1)[1:-1], knots])
-        corners = [t for t in law.corners if begin.time < t < end.time]
+        corners = law.corners(begin.time, end.time)
         edges = np.unique([begin.time, *self._times(angles), *corners, end.time])
         width = np.diff(edges)[:, None]
         places, weights = np.polynomial.legendre.leggauss(self.way.points)

@@ -9,7 +9,9 @@ from functools import partial
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
+from crankmbs.mechanics.friction import friction_knots, sign_changes
 from crankmbs.mechanics.inertia import inertia_alone, reduce
 from crankmbs.mechanics.pressure import repeat
 from crankmbs.mechanics.reactions import reactions
@@ -32,7 +34,8 @@ _PANEL = 5.0 * DEGREE  # widest panel of the work integral; Gauss with 4 points 
 
 
 def run(train: CrankTrain) -> Solution:
-    """Sample the prescribed motion. Exact but for rounding; there is nothing to integrate.
+    """Sample the prescribed motion. Exact but for rounding; there is nothing to integrate but the
+    time, where the speed is known over the angle.
 
     Raises
     ------
@@ -55,7 +58,10 @@ def run(train: CrankTrain) -> Solution:
     ending = Ending.COMPLETE if reached else Ending.LAW_RESTS
     if plan.folds_at(float(theta[-1])):
         ending = Ending.FOLD
-    return Solution(samples, *ending.said(float(theta[-1])), len(time), 0, keep=keep)
+    by_angle = np.full(len(time), not plan.in_time)
+    by_angle[-1] = reached and not plan.until_time
+    better = None if law.off is law else _by(law.off, samples, by_angle)
+    return Solution(samples, *ending.said(float(theta[-1])), len(time), 0, better, keep=keep)
 
 
 def _account(
@@ -82,6 +88,16 @@ def _moving(train: CrankTrain, law: SpeedLaw, time: Array, fuel: Array | None) -
         "external_torque": inertia * alpha + 0.5 * slope * omega**2 - torque,
     }
     return Samples(time, theta, omega, alpha, np.zeros_like(time), own)
+
+
+def _by(law: SpeedLaw, samples: Samples, by_angle: NDArray[np.bool_]) -> Samples:
+    """The samples by another law, at the same crank angles where these are chosen, else at the
+    same times."""
+    passed = law.time_at(samples.theta, 0.0, math.inf)
+    time = np.where(by_angle, passed, samples.time)
+    theta, omega, alpha = law.at_time(time)
+    theta = np.where(by_angle, samples.theta, theta)
+    return replace(samples, time=time, theta=theta, omega=omega, alpha=alpha)
 
 
 class _Firings(NamedTuple):
@@ -156,8 +172,9 @@ def _panel_edges(
 ) -> Array:
     """Times between which the power is smooth and short: samples, knots, corners, decisions on the
     fuel, panels."""
-    knots = crank_angle_knots(train)
-    edges = [time, np.array(law.corners), np.empty(0) if firings is None else firings.times]
+    knots = np.concatenate([crank_angle_knots(train), friction_knots(train)])
+    corners = law.corners(float(time[0]), float(time[-1]))
+    edges = [time, corners, np.empty(0) if firings is None else firings.times]
     for begin, end in stretches:
         a, b = (float(q) for q in law.at_time([begin, end])[0])
         low, high = min(a, b), max(a, b)
@@ -165,15 +182,33 @@ def _panel_edges(
         inside = np.concatenate(
             [repeat(knots, train.period, low, high), np.linspace(low, high, count + 1)[1:-1]]
         )
+        if firings is not None:
+            inside = np.append(inside, _sign_changes(train, law, (begin, end), firings))
         edges += [np.array([begin, end]), law.time_at(inside, begin, end)]
     merged = np.unique(np.concatenate(edges))
     return np.asarray(merged[(merged >= time[0]) & (merged <= time[-1])])
 
 
+def _sign_changes(
+    train: CrankTrain, law: SpeedLaw, stretch: tuple[float, float], firings: _Firings
+) -> Array:
+    """Crank angles [rad] in a stretch of time at which a gas force, with the shares that act there,
+    changes its sign under rings that feel it."""
+    begin, end = stretch
+    inside = firings.times[(firings.times > begin) & (firings.times < end)]
+    times = np.concatenate([[begin], inside, [end]])
+    angles, found = law.at_time(times)[0], [np.empty(0)]
+    for k, shares in enumerate(firings.at(0.5 * (times[:-1] + times[1:]))):
+        low, high = sorted(angles[k : k + 2].tolist())
+        found.append(repeat(sign_changes(train, tuple(shares.tolist())), train.period, low, high))
+    return np.concatenate(found)
+
+
 def _energy_residual(
     train: CrankTrain, law: SpeedLaw, time: Array, edges: Array, firings: _Firings | None
 ) -> Array:
-    """Kinetic energy gained since the first sample minus the work of gas, gravity and drive.
+    """Kinetic energy gained since the first sample minus the work of gas, gravity, friction and
+    drive.
 
     The work is the integral of power over time by Gauss quadrature between the edges.
     """
@@ -183,7 +218,8 @@ def _energy_residual(
     theta, omega, alpha = law.at_time(t.ravel())
     fuel = None if firings is None else firings.at(t.ravel())
     all_of = reactions(train, theta, omega, alpha, fuel)
-    gas = (all_of["gas_force"] * all_of["piston_velocity"]).sum(axis=1)
+    along = all_of["gas_force"] + all_of.get("friction_force", 0.0)
+    gas = (along * all_of["piston_velocity"]).sum(axis=1)
     weight = reduce(replace(train, pressure=None), theta).torque * omega
     power = (all_of["external_torque"] * omega + gas + weight).reshape(t.shape)
     work = np.concatenate([[0.0], np.cumsum((half * power) @ weights)])

@@ -39,6 +39,7 @@ CYCLES = {
     "gas_work": Variable("J", "work of the gas on the piston", True),
     "imep": Variable("Pa", "work of the gas over the displaced volume", True),
     "fuel": Variable("1", "share of the firing whose dead centre it holds", True),
+    "friction_work": Variable("J", "work of the friction on the piston", True),
     "load_work": Variable("J", "work of the load"),
     "drive_work": Variable("J", "work of the drive"),
 }

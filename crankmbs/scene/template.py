@@ -53,6 +53,11 @@ peak_pressure = "58 bar"
 #acceleration = "9.81 m/s^2"
 #angle = "90 deg"               # where it pulls, from X; default 180 deg, an upright engine
 
+#[friction]                     # of each piston on its wall
+#ring_force = "40 N"
+#ring_pressure = 0.02           # of |gas force|
+#viscous = "30 N s/m"
+
 [start]                         # the crank is free ...
 angle = "0 deg"
 speed = "3000 rpm"

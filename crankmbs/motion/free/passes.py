@@ -15,8 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crankmbs.mechanics.inertia import reduce
-from crankmbs.mechanics.torque import Branch, branch_at, branch_of
+from crankmbs.mechanics.torque import Branch
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.variables import VARIABLES
 from crankmbs.motion.assemble import ANGLE_ROUNDING, Assembled, assemble
@@ -25,6 +24,7 @@ from crankmbs.motion.crank_angle import advance as crank_angle
 from crankmbs.motion.crank_angle.grid import Grid, grid_of
 from crankmbs.motion.crank_angle.window import Window
 from crankmbs.motion.ending import Ending
+from crankmbs.motion.free.first import first_sample
 from crankmbs.motion.free.matching import match, stays
 from crankmbs.motion.free.passage import Passage, Pieces, Watch
 from crankmbs.motion.free.recount import Leg, recount
@@ -34,6 +34,7 @@ from crankmbs.motion.mode import begun
 from crankmbs.motion.plan import Plan, plan_of
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.collocation import gauss
+from crankmbs.scene.scene import Scene
 
 __all__ = ["Begin", "Lead", "Pass", "Trail", "Way", "begin_at_start", "run", "travel"]
 
@@ -209,8 +210,9 @@ def travel(
     scene, plan = grid.train.scene, way.plan
     state = begun_in = way.begin(grid, local)
     steady = all(load.is_steady for load in scene.torque) and grid.train.law is None
+    steady = steady and not _sticks(scene)
     same = first is not None and first.begin.omega[0] == state.omega
-    begin = first.begin if first and same else _first(grid, state)
+    begin = first.begin if first and same else first_sample(grid, state)
     kept = plan if way.watch is None else replace(plan, last=0.0)
     path = Passage(kept, begin, can_swing=steady, allowed=way.allowed, watch=way.watch)
     if first:  # it begins a rounding ahead: so the difference knows what the motion makes of one
@@ -255,6 +257,12 @@ def travel(
     return Pass(trail, path.samples(), ending, path, worst, slow if by_angle else [])
 
 
+def _sticks(scene: Scene) -> bool:
+    """Whether friction brings a swing to rest."""
+    friction = scene.friction
+    return friction is not None and friction.ring_force + friction.ring_pressure > 0.0
+
+
 def _noted(windows: Generator[Window, None, Ending | None], worst: Array) -> Pieces:
     """The windows as they come; their cells' largest errors so far go into ``worst``."""
     while True:
@@ -266,30 +274,6 @@ def _noted(windows: Generator[Window, None, Ending | None], worst: Array) -> Pie
         for row, error in zip(worst, window.relative_errors, strict=True):
             np.maximum.at(row, window.strip.cell, error)
         yield window
-
-
-def _first(grid: Grid, state: State) -> Samples:
-    """The sample at the start."""
-    shares = state.mode.shares
-    inertia, slope, torque = reduce(grid.train, state.theta, shares)
-    of_angle = float(grid.at(state.mode.loads).outside(np.asarray(state.theta)))
-    rest = float(torque - 0.5 * slope * state.omega**2) + of_angle
-    torques, phases = grid.train.scene.torque, state.mode.loads
-    branch = branch_at(torques, state[:3], rest, phases)
-    held = branch is None and state.omega == 0.0
-    branch = branch or branch_of(torques, state.time, state.omega, rising=True, phases=phases)
-    outside = float(branch(state.time, state.omega))
-    outside += sum(f.number(state.time, state.theta, state.omega) for f in branch.functions)
-    outside = -rest if held else outside
-    fuel = {"fuel": np.array([shares])} if shares else {}
-    return Samples(
-        time=np.array([state.time]),
-        theta=np.array([state.theta]),
-        omega=np.array([state.omega]),
-        alpha=np.array([(rest + outside) / float(inertia)]),
-        energy_residual=np.zeros(1),
-        own={"external_torque": np.array([outside + of_angle])} | fuel,
-    )
 
 
 def _parts(grid: Grid, worst: Array, local: float) -> NDArray[np.intp]:

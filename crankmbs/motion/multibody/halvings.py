@@ -20,6 +20,7 @@ _GAINS = 1.01  # less by a halving is none: the cost would be astronomic, and ov
 _AT_REST = 1e-6  # of the fastest speed
 _HELD = "a jump of the loads drives the speed back from both sides"
 _NO_STEP = "exudyn's Newton iteration does not converge"
+_STILL = 1e-9  # rad/s: a speed that a stretch has landed on
 _UNTOUCHED = 0.98  # of the time to where the solver fails: before it goes wrong
 
 
@@ -137,8 +138,10 @@ class Halvings:
 
     def _end(self, path: Stepped) -> tuple[int, str]:
         _, theta, omega = reached(path)
-        ending = path.ending
-        if ending is not Ending.HELD and self.problem.rests:
+        ending, scene = path.ending, self.problem.scene
+        if ending is Ending.HELD and scene.friction and abs(omega) < _STILL:
+            ending = Ending.STICKS
+        elif ending is not Ending.HELD and self.problem.rests:
             ending = Ending.LAW_RESTS
         elif ending is not Ending.HELD and self.problem.plan.folds_at(theta):
             ending = Ending.FOLD
