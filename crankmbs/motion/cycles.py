@@ -176,8 +176,9 @@ class Cycles:
         done = list(self.done)[len(self.done) - count :]
         columns = {name: np.array([getattr(one, name) for one in done]) for name in _Done._fields}
         scene, sense = self._train.scene, columns["sense"]
-        before, after = (columns[name].reshape(count, -1) for name in ("before", "after"))
-        works = columns["works"].reshape(count, -1)
+        fired = len(scene.cylinders) if scene.fuel else 0  # given, as there may be no cycle
+        before, after = (columns[name].reshape(count, fired) for name in ("before", "after"))
+        works = columns["works"].reshape(count, self._columns)
         place = columns["place"].astype(np.int64)
         found = {
             "number": columns["number"].astype(np.float64),
