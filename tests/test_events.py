@@ -142,13 +142,13 @@ def test_a_prescribed_speed_decides_at_the_same_angles_as_a_free_crank():
 
 def test_a_prescribed_speed_turns_back_and_comes_to_rest():
     scene = load_scene("coasting")
-    ramp = Motion(speed=Ramp(start=4.0, end=-4.0, over=2.0), angle=0.0)
+    ramp = Motion(speed=Ramp(start=4.0, to=-4.0, over=2.0), angle=0.0)
     run = replace(scene.run, until=Extent(value=2.0, unit="s"))
     scene = replace(scene, start=None, torque=(), motion=ramp, run=run)
     events = simulate(scene).events
     assert kinds(events) == ["reversal"]
     assert float(events["time"][0]) == pytest.approx(1.0)
-    still = Motion(speed=Ramp(start=4.0, end=0.0, over=2.0), angle=0.0)
+    still = Motion(speed=Ramp(start=4.0, to=0.0, over=2.0), angle=0.0)
     result = simulate(
         replace(scene, motion=still, run=replace(run, until=Extent(value=50.0, unit="rad")))
     )
