@@ -70,6 +70,7 @@ def simulate(
         cost=Cost(clock.perf_counter() - begin, solution.evaluations, solution.steps),
         error=Error(asked, assembled.relative_error),
         decay=solution.decay,
+        keep=solution.keep,
     )
 
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import replace
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -15,8 +17,11 @@ from crankmbs.mechanics.pressure import repeat
 from crankmbs.mechanics.reactions import reactions
 from crankmbs.mechanics.speed import SpeedLaw, speed_law
 from crankmbs.mechanics.train import CrankTrain, crank_angle_knots
+from crankmbs.motion.account import Account
 from crankmbs.motion.base import Samples, Solution
+from crankmbs.motion.driven import Driven, Way, driven, driven_observer
 from crankmbs.motion.ending import Ending
+from crankmbs.motion.observer import account_of
 from crankmbs.motion.plan import Plan, plan_of
 from crankmbs.motion.prescribed import monotone_stretches
 from crankmbs.numerics.arrays import Array
@@ -24,6 +29,7 @@ from crankmbs.scene.units import DEGREE
 
 __all__ = ["run"]
 
+_POINTS = (8, 10)  # of Gauss in a panel, in either look at what happens on the way
 _PANEL = 5.0 * DEGREE  # widest panel of the work integral; Gauss with 4 points errs below 1e-12
 
 
@@ -40,7 +46,8 @@ def run(train: CrankTrain) -> Solution:
     plan = plan_of(scene)
     law = speed_law(scene.motion)
     stretches, reached = monotone_stretches(plan, law)
-    firings = _firings(train, law, stretches)
+    firings = None if train.law is None else _firings(driven(_way(train, law), stretches))
+    keep = partial(_account, train, law, tuple(stretches), rests=not reached)
     stretches = _kept(plan, law, stretches)
     time, theta = _sample(plan, law, stretches, reached)
     _, omega, alpha = law.at_time(time)
@@ -54,7 +61,33 @@ def run(train: CrankTrain) -> Solution:
     by_angle = np.full(len(time), not plan.in_time)
     by_angle[-1] = reached and not plan.until_time
     better = None if law.off is law else _by(law.off, samples, by_angle)
-    return Solution(samples, *ending.said(float(theta[-1])), len(time), 0, better)
+    return Solution(samples, *ending.said(float(theta[-1])), len(time), 0, better, keep=keep)
+
+
+def _account(
+    train: CrankTrain, law: SpeedLaw, stretches: tuple[tuple[float, float], ...], *, rests: bool
+) -> Account:
+    """What happens on the way, seen twice: it errs by no more than quadrature and pressures do."""
+    seen = []
+    for one, finer in ((train, False), (train.off, True)):
+        pieces = driven(_way(one, law, finer=finer), stretches)
+        seen.append(driven_observer(one, pieces, finer=finer, rests=rests))
+    return account_of(seen, 1.0)
+
+
+def _way(train: CrankTrain, law: SpeedLaw, *, finer: bool = False) -> Way:
+    return Way(train, law, partial(_moving, train, law), _POINTS[finer])
+
+
+def _moving(train: CrankTrain, law: SpeedLaw, time: Array, fuel: Array | None) -> Samples:
+    """The motion at times of shape (n,), with its energy and the torque that it needs."""
+    theta, omega, alpha = law.at_time(time)
+    inertia, slope, torque = reduce(train, theta, fuel)
+    own = {
+        "kinetic_energy": 0.5 * inertia * omega**2,
+        "external_torque": inertia * alpha + 0.5 * slope * omega**2 - torque,
+    }
+    return Samples(time, theta, omega, alpha, np.zeros_like(time), own)
 
 
 def _by(law: SpeedLaw, samples: Samples, by_angle: NDArray[np.bool_]) -> Samples:
@@ -79,26 +112,12 @@ class _Firings(NamedTuple):
         return np.asarray(self.shares[np.searchsorted(self.times, t, side="left")])
 
 
-def _firings(
-    train: CrankTrain, law: SpeedLaw, stretches: list[tuple[float, float]]
-) -> _Firings | None:
-    """The decisions on the way; None without fuel."""
-    if train.law is None:
-        return None
-    firing, times = train.law.first, []
-    shares = [firing.shares]
-    for begin, end in stretches:
-        turned, bound = (float(q) for q in law.at_time([begin, end])[0])
-        while True:
-            low, high = train.law.next(firing)
-            angle = high if bound > turned else low
-            if not min(turned, bound) <= angle <= max(turned, bound):
-                break
-            t = float(law.time_at(np.array([angle]), begin, end)[0])
-            firing = train.law.decided(firing, t, angle, float(law.at_time(t)[1]))
-            times.append(t)
-            shares.append(firing.shares)
-    return _Firings(np.array(times), np.array(shares))
+def _firings(pieces: Iterable[Driven]) -> _Firings:
+    """The decisions on the way."""
+    pieces = list(pieces)
+    states = [state for piece in pieces for state in piece.decisions]
+    shares = [pieces[0].begin.mode.shares, *(state.mode.shares for state in states)]
+    return _Firings(np.array([state.time for state in states]), np.array(shares))
 
 
 def _kept(

@@ -43,7 +43,7 @@ _REACH = 1.0  # rad: what Newton's method can hold of loads that are functions, 
 _HAIR = 1e-6  # of a cell: as near its edge it is as exact as there
 _BEYOND = (_HAIR, 1e-4, 1e-2)  # of a cell: how far ahead a landing near a turn may really be
 _ROUNDS = 6  # of cutting cells at kinks
-_KEPT = 2  # whole periods at the end that are solved cell by cell when only the last is kept
+_KEPT = 2  # whole periods at the end that are solved cell by cell, at least, when not all are kept
 
 
 def is_fast(grid: Grid, state: State, branch: Branch, times: float) -> bool:
@@ -97,7 +97,7 @@ def advance(
         t_end = min(branch.t_end, plan.time_bound)
         goes_on = state.mode == mode and state.time < t_end and grid.train.law is None
         if math.isfinite(plan.last) and goes_on and branch.is_affine_in_energy and not grid.drags:
-            state, skipped = _skip(way._replace(state=state, t_end=t_end), branch)
+            state, skipped = _skip(way._replace(state=state, t_end=t_end), branch, plan.last)
 
 
 class _Way(NamedTuple):
@@ -160,7 +160,7 @@ def _landed(way: _Way, window: Window, t_end: float) -> tuple[Window | None, Win
     return None, window
 
 
-def _skip(way: _Way, branch: Branch) -> tuple[State, int]:
+def _skip(way: _Way, branch: Branch, last: float) -> tuple[State, int]:
     """Pass whole periods at once, all but the last ones; return the state after them and the
     number of cells passed."""
     grid, state, _, sense, bound, t_end, _ = way
@@ -180,12 +180,13 @@ def _skip(way: _Way, branch: Branch) -> tuple[State, int]:
 
     start = _enter(grid, state)[1]
     first = at(state.time, 0.0, start)
-    most = min(abs(bound - state.theta) / period, 1e15) // 1.0 - _KEPT
+    kept = max(_KEPT, math.ceil(last / period))
+    most = min(abs(bound - state.theta) / period, 1e15) // 1.0 - kept
     if first is None:
         return state, 0
     one = period_of(grid, first.strip, branch, sense)
     while most >= 1.0:
-        run = one.run(start, state.time, most, t_end, _KEPT)
+        run = one.run(start, state.time, most, t_end, kept)
         if run.periods == 0:
             break
         far = at(run.time, run.periods * period, run.energy)

@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 from crankmbs.mechanics.friction import friction_forces, friction_torque
 from crankmbs.mechanics.inertia import fired_torque, inertia_alone, reduce
 from crankmbs.mechanics.torque import Branch, Course
-from crankmbs.motion.base import NOWHERE, Samples, State
+from crankmbs.motion.base import NOWHERE, Nodes, Points, Samples, State
 from crankmbs.motion.crank_angle import loops, readout
 from crankmbs.motion.crank_angle.grid import Grid, Strip, largest_of_row
 from crankmbs.motion.mode import Mode, decided
-from crankmbs.motion.plan import Plan
+from crankmbs.motion.plan import Wanted
 from crankmbs.numerics.arrays import Array, Index
 from crankmbs.numerics.periodic import one_period
 from crankmbs.numerics.roots import first_above
@@ -50,7 +50,18 @@ class Window:
     skipped: int = 0
     modes: tuple[tuple[int, Mode], ...] = ()
 
-    def sample(self, plan: Plan) -> Samples:
+    def nodes(self) -> Nodes:
+        """The whole cells, and the nodes of the collocation."""
+        m, rule = self.stop[0] + (self.stop[1] == 1.0), self.grid.rule
+        strip = self.strip.first(m)
+        width, slowness = strip.width[:, None], self.slowness[:m]
+        time = self.time[:m, None] + width * (slowness @ rule.matrix.T)
+        theta = strip.angles(self.begin.theta, self.sense, rule)
+        turned = self.sense * width * rule.weights
+        speeds = self.speeds_at(np.arange(m + 1))
+        return Nodes(self.time[: m + 1], speeds, Points(time, theta, self.sense / slowness, turned))
+
+    def sample(self, plan: Wanted) -> Samples:
         """The samples of the plan after the beginning, up to the end and with it."""
         if plan.in_time:
             k, x, t, energy = self._read(plan.between(self.begin.time, self.end.time), in_time=True)
@@ -91,6 +102,18 @@ class Window:
         last = self.modes[-1][1] if self.modes else self.begin.mode
         mode = decided(self.grid.train, last, time, theta, omega)
         return State(time, theta, omega, residual, mode)
+
+    @property
+    def decisions(self) -> tuple[State, ...]:
+        """The states inside at which the fuel is decided, each with the mode after."""
+        if len(self.modes) < 2:
+            return ()
+        k = np.array([cell for cell, _ in self.modes[1:]])
+        speeds, times = self.speeds_at(k).tolist(), self.time[k].tolist()
+        before = (mode.high if self.sense > 0.0 else mode.low for _, mode in self.modes)
+        after = (mode for _, mode in self.modes[1:])
+        found = zip(times, before, speeds, after, strict=False)
+        return tuple(State(t, angle, speed, math.nan, mode) for t, angle, speed, mode in found)
 
     @cached_property
     def errors(self) -> tuple[Array, Array]:

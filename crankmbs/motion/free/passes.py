@@ -26,7 +26,8 @@ from crankmbs.motion.crank_angle.window import Window
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.free.first import first_sample
 from crankmbs.motion.free.matching import match, stays
-from crankmbs.motion.free.passage import Passage, Pieces
+from crankmbs.motion.free.passage import Passage, Pieces, Watch
+from crankmbs.motion.free.recount import Leg, recount
 from crankmbs.motion.minimal import advance as minimal
 from crankmbs.motion.minimal.reduced import Reduced
 from crankmbs.motion.mode import begun
@@ -36,7 +37,7 @@ from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.collocation import gauss
 from crankmbs.scene.scene import Scene
 
-__all__ = ["Begin", "Lead", "Pass", "Way", "begin_at_start", "run", "travel"]
+__all__ = ["Begin", "Lead", "Pass", "Trail", "Way", "begin_at_start", "run", "travel"]
 
 Begin = Callable[[Grid, float], State]
 
@@ -68,27 +69,38 @@ class Lead(NamedTuple):
 
 
 class Way(NamedTuple):
-    """What a pass follows: from where, sampled how, and the evaluations over time it may take."""
+    """What a pass follows: from where, sampled how, and the evaluations over time it may take.
+
+    watch : is shown every piece, of which then only the last is kept
+    """
 
     begin: Begin
     plan: Plan
     allowed: int
+    watch: Watch | None = None
+
+
+class Trail(NamedTuple):
+    """Where a pass begins, the one sample there, and the spans of time [s] that the crank angle
+    carries."""
+
+    state: State
+    begin: Samples
+    fast: tuple[tuple[float, float], ...]
 
 
 class Pass(NamedTuple):
     """One pass over the whole motion.
 
-    begin : the one sample at the start
     local : shape (2, cells), errors at ends and inside
-    fast, slow : spans of time [s] that the crank angle carried, and where time took over
+    slow : times [s] where time took over
     """
 
-    begin: Samples
+    trail: Trail
     samples: Samples
     ending: Ending
     path: Passage
     local: Array
-    fast: list[tuple[float, float]]
     slow: list[float]
 
 
@@ -141,24 +153,34 @@ def run(
         if left and parts.max() > 1 and len(grid.edges) < _MOST_CELLS:
             grid = grid.split(parts)
             continue
-        better = travel(grid.finer, way, 1e-2 * local, by_angle=by_angle, first=answer)
+        trail = answer.trail
+        better = travel(grid.finer, way, 1e-2 * local, by_angle=by_angle, first=trail)
+        legs = [Leg(grid, local, trail.state)]
+        legs.append(Leg(grid.finer, 1e-2 * local, better.trail.state, trail))
         solution = _solution(train.scene, answer, better, way)
         assembled = assemble(train, solution)
         if functions:
-            staggered = travel(_staggered(grid), way, 0.1 * local, by_angle=by_angle, first=answer)
+            other = _staggered(grid)
+            staggered = travel(other, way, 0.1 * local, by_angle=by_angle, first=trail)
+            legs.append(Leg(other, 0.1 * local, staggered.trail.state, trail))
             again = assemble(train, _solution(train.scene, answer, staggered, way))
             assembled = _stated_twice(assembled, again)
         near = local <= 10.0 * finest
         estimate = assembled.relative_error * (2.0 if near else 1.0)
         if estimate <= least:
             best, least, rounded = assembled, estimate, near
+            followed = tuple(legs)
         if estimate <= rtol or local <= finest or answer.ending in _BROKEN:
             break
         local = max(local * max(1e-3, 0.1 * rtol / estimate), finest)
     assert best is not None
+    share = 2.0 if functions else 1.0
     if rounded or least > rtol:
         # what is left is rounding, in both passes alike, and their difference too small an estimate
         best = best._replace(errors={name: 2.0 * error for name, error in best.errors.items()})
+        share *= 2.0
+    keep = partial(recount, partial(travel, by_angle=by_angle), way, followed, share)
+    best = best._replace(solution=replace(best.solution, keep=keep))
     if best.relative_error > rtol and best.solution.status >= 0:
         text = f"asked for {rtol:.0e}, reached {best.relative_error:.0e}"
         solution = replace(best.solution, message=f"{best.solution.message}; {text}")
@@ -182,17 +204,18 @@ def _stated_twice(by_order: Assembled, by_place: Assembled) -> Assembled:
 
 
 def travel(
-    grid: Grid, way: Way, local: float, *, by_angle: bool, first: Pass | None = None
+    grid: Grid, way: Way, local: float, *, by_angle: bool, first: Trail | None = None
 ) -> Pass:
     """One pass from start to end, handing over between the formulations near rest; a second one
     betters the ``first``."""
     scene, plan = grid.train.scene, way.plan
-    state = way.begin(grid, local)
+    state = begun_in = way.begin(grid, local)
     steady = all(load.is_steady for load in scene.torque) and grid.train.law is None
     steady = steady and not _sticks(scene)
     same = first is not None and first.begin.omega[0] == state.omega
     begin = first.begin if first and same else first_sample(grid, state)
-    path = Passage(plan, begin, can_swing=steady, allowed=way.allowed)
+    kept = plan if way.watch is None else replace(plan, last=0.0)
+    path = Passage(kept, begin, can_swing=steady, allowed=way.allowed, watch=way.watch)
     if first:  # it begins a rounding ahead: so the difference knows what the motion makes of one
         ahead = math.copysign(ANGLE_ROUNDING * state.theta, state.omega or float(begin.alpha[0]))
         state = state._replace(theta=state.theta + ahead)
@@ -231,7 +254,8 @@ def travel(
         over_time = not over_time
     if ending is Ending.COMPLETE and plan.folds_at((path.state or state).theta):
         ending = Ending.FOLD
-    return Pass(begin, path.samples(), ending, path, worst, fast, slow if by_angle else [])
+    trail = Trail(begun_in, begin, tuple(fast))
+    return Pass(trail, path.samples(), ending, path, worst, slow if by_angle else [])
 
 
 def _sticks(scene: Scene) -> bool:

@@ -12,17 +12,20 @@ from numpy.typing import NDArray
 from crankmbs.mechanics.friction import friction_forces, friction_torque, held_share
 from crankmbs.mechanics.inertia import reduce
 from crankmbs.mechanics.torque import Branch
-from crankmbs.motion.base import Samples, State
+from crankmbs.motion.base import Nodes, Points, Samples, State
 from crankmbs.motion.minimal import stepper
 from crankmbs.motion.minimal.reduced import KnotPair, Reduced
 from crankmbs.motion.minimal.system import System
 from crankmbs.motion.mode import decided
-from crankmbs.motion.plan import Plan
+from crankmbs.motion.plan import Wanted
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.roots import invert_monotone
 from crankmbs.scene.units import DEGREE
 
 __all__ = ["BALANCED", "Equation", "Stretch", "Track"]
+
+_GAUSS = np.polynomial.legendre.leggauss(8)  # what a step's polynomials give is of degree 15
+_PLACES, _WEIGHTS = 0.5 * (1.0 + _GAUSS[0]), 0.5 * _GAUSS[1]
 
 BALANCED = 1e-13  # of the largest torque: what the rounding of an angle leaves at a dead centre
 
@@ -138,6 +141,11 @@ class Stretch:
         return cls(equation, track, begin, end)
 
     @property
+    def decisions(self) -> tuple[State, ...]:
+        """None inside: a decision ends a stretch."""
+        return ()
+
+    @property
     def steps(self) -> int:
         """Accepted steps."""
         return len(self.track.widths)
@@ -147,7 +155,18 @@ class Stretch:
         """Evaluations of the equation of motion."""
         return self.track.evaluations
 
-    def sample(self, plan: Plan) -> Samples:
+    def nodes(self) -> Nodes:
+        """The steps, and Gauss points in them."""
+        track = self.track
+        edges = np.append(track.begins, self.end.time)
+        width = np.diff(edges)[:, None]  # that of a step which was cut at a knot differs
+        time = track.begins[:, None] + width * _PLACES
+        steps = np.repeat(np.arange(self.steps), len(_PLACES))
+        theta, omega, _ = track.at(time.ravel(), steps).reshape(3, *time.shape)
+        speeds = np.append(track.rows[:, 0, 1], self.end.omega)
+        return Nodes(edges, speeds, Points(time, theta, omega, width * _WEIGHTS * omega))
+
+    def sample(self, plan: Wanted) -> Samples:
         """The samples of the plan after the beginning, up to the end and with it."""
         track = self.track
         if plan.in_time:

@@ -17,7 +17,7 @@ from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.cycle import NEAR
 from crankmbs.numerics.roots import invert_monotone
 
-__all__ = ["Sampled", "aligned_variables", "reached", "slowed"]
+__all__ = ["Sampled", "aligned_variables", "monotone", "reached", "slowed", "times_of"]
 
 _BEYOND = 2.0  # steps that the variables are continued past the end of a run
 _AT_END = 1e-3  # of a step: so near the end of a stretch a sample is at it
@@ -133,14 +133,14 @@ def _samples(problem: Problem, path: Stepped) -> _Samples:
     times, angles, stretches = [np.zeros(1)], [np.array([problem.start[0]])], [np.zeros(1, int)]
     moved = False  # what comes first then is the start, which is there
     for k, table in enumerate(path.tables):
-        for begin, until in _monotone(table):
+        for begin, until in monotone(table):
             theta_begin, theta_until = table.one_at("crank_angle", np.array([begin, until]))
             if plan.in_time:
                 t = _grid(0.0, plan.every, begin, until)
                 theta = table.one_at("crank_angle", t)
             else:
                 theta = _grid(plan.start, plan.every, theta_begin, theta_until)
-                t = _times_of(table, theta, begin, until)
+                t = times_of(table, theta, begin, until)
             new = slice(0 if moved else 1, None)
             moved |= until > 0.0 and (
                 plan.in_time or abs(theta_until - plan.start) > _NEAR * plan.every
@@ -183,7 +183,7 @@ def _same_angles(path: Stepped, own: _Samples, finest: _Samples) -> _Samples | N
     for k, table in enumerate([*path.tables[:-1], beyond]):
         low, high = sense * table.one_at("crank_angle", np.array([table.after, table.until]))
         here = (sense * theta >= low - _NEAR) & (sense * theta < high - _NEAR)
-        times.append(_times_of(table, theta[here], table.after, table.until))
+        times.append(times_of(table, theta[here], table.after, table.until))
         stretches.append(np.full(np.count_nonzero(here), k))
     time = np.concatenate(times)
     if len(time) != len(theta):
@@ -203,7 +203,7 @@ def _grid(origin: float, every: float, begin: float, end: float) -> Array:
     return np.asarray(origin + sign * every * np.arange(first, last))
 
 
-def _monotone(table: StepTable) -> list[tuple[float, float]]:
+def monotone(table: StepTable) -> list[tuple[float, float]]:
     """Times between which the crank does not reverse."""
     times, speed = table.times, table.column("crank_speed")
     moving = (times > table.after) & (times < table.until)
@@ -220,7 +220,7 @@ def _monotone(table: StepTable) -> list[tuple[float, float]]:
     return list(itertools.pairwise([table.after, *turns, table.until]))
 
 
-def _times_of(table: StepTable, theta: Array, begin: float, end: float) -> Array:
+def times_of(table: StepTable, theta: Array, begin: float, end: float) -> Array:
     """Times at which the crank comes to the angles, where it does not reverse."""
     times = table.times
     between, ends = (times > begin) & (times < end), np.array([begin, end])

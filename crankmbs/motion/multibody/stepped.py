@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from crankmbs.motion.base import State
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.multibody.landing import LEAST_STEPS, PASSED
 from crankmbs.motion.multibody.model import Model
@@ -33,12 +34,14 @@ class Stepped(NamedTuple):
     """A run at one step size.
 
     tables : the stretches, one after the other
+    landings : the state at the start and at the end of each stretch that has some length
     ending : COMPLETE, CALLED_OFF, HELD, or DIVERGED where the solver gave up
     blind : whether it ran over bends or jumps of the loads over speed
     steps, iterations : what it cost
     """
 
     tables: tuple[StepTable, ...]
+    landings: tuple[State, ...]
     ending: Ending
     blind: bool
     steps: int
@@ -88,7 +91,8 @@ def solve(
 
 
 def _path(walk: Walk, ending: Ending) -> Stepped:
-    return Stepped(tuple(walk.tables), ending, walk.is_blind, walk.steps, walk.iterations)
+    made = tuple(walk.tables), tuple(walk.landings)
+    return Stepped(*made, ending, walk.is_blind, walk.steps, walk.iterations)
 
 
 def coarsest_step(problem: Problem, model: Model) -> tuple[float, bool]:

@@ -15,7 +15,9 @@ import numpy as np
 
 from crankmbs.mechanics.geometry import close_loop
 from crankmbs.mechanics.windows import acting, first_phases, later_phases, phase_ends
+from crankmbs.motion.base import State
 from crankmbs.motion.ending import Ending
+from crankmbs.motion.mode import Mode
 from crankmbs.motion.multibody.gas import GasStretch
 from crankmbs.motion.multibody.landing import (
     LEAST_STEPS,
@@ -48,6 +50,7 @@ class Walk:
     tables : one per stretch
     time [s] : where the last one ended
     bound [rad] : the crank angle that ended it, if one did
+    landings : the state at the start and where each stretch of some length ended
     steps, iterations : what they cost
     """
 
@@ -63,6 +66,7 @@ class Walk:
         self._firing = law.first if law else None
         self._phases = first_phases(problem.scene.torque, problem.start[1]) if free else ()
         self._speeds_left = _MOST_SPEEDS
+        self.landings = [self._landing()]
         self.steps = self.iterations = 0
 
     @property
@@ -260,6 +264,10 @@ class Walk:
         self._decide()
         torques, late = self._problem.scene.torque, self.time * (1.0 + SAME)
         self._phases = later_phases(torques, self._phases, late, self._state[1])
+        self.landings.append(self._landing())
+
+    def _landing(self) -> State:
+        return State(self.time, *self._state, 0.0, Mode(self._phases, firing=self._firing))
 
     def _decide(self) -> None:
         """The decision on the fuel, where the last stretch has ended at its angle."""
