@@ -42,7 +42,7 @@ def cycles_figure(result: Result) -> Figure:
     at = np.interp(result.events["time"].values, begins, number, np.nan, number[-1])
     mark_events(axes[0], result, np.asarray(at))
     axes[-1].set_xlabel("cycle")
-    legend(figure, axes[0])
+    legend(figure, *(axes if result.data.sizes["cylinder"] > 1 else axes[:1]))
     figure.align_ylabels(axes)
     footer(figure, result, "cycle by cycle")
     return figure
@@ -58,9 +58,9 @@ def mark_events(ax: Axes, result: Result, at: Array) -> None:
     shown = np.flatnonzero((kinds != "fuel") & (at >= low) & (at <= high))[:_MOST_MARKS]
     for place, k in enumerate(shown.tolist()):
         ax.axvline(at[k], color="0.35", linewidth=0.9, linestyle=":", zorder=1)
-        number = f" {loads[k]}" if loads[k] else ""
+        words = str(kinds[k]).replace("load", f"load {loads[k]}")
         ax.annotate(
-            f"{kinds[k]}{number}",
+            words,
             (at[k], 1.0),
             xycoords=("data", "axes fraction"),
             xytext=(2, -12 * (1 + place % 4)),
