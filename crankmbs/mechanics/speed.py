@@ -18,7 +18,7 @@ from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.roots import invert_monotone
 from crankmbs.scene.drives import Motion, Oscillation, Ramp, SpeedFile
 
-__all__ = ["SpeedLaw", "speed_law"]
+__all__ = ["SpeedLaw", "speed_law", "speed_pieces"]
 
 
 class SpeedLaw(Protocol):
@@ -48,16 +48,24 @@ def speed_law(motion: Motion) -> SpeedLaw:
     speed = motion.speed
     if isinstance(speed, Oscillation):
         return _OscillatingLaw(speed, motion.angle)
+    return _PolynomialLaw(speed_pieces(speed), motion.angle)
+
+
+def speed_pieces(speed: float | Ramp | SpeedFile) -> PPoly:
+    """The speed [rad/s] over time [s] as polynomials, the last of which may be endless.
+
+    >>> speed_pieces(3.0).x
+    array([ 0., inf])
+    """
     if isinstance(speed, Ramp):
         rate = (speed.to - speed.start) / speed.over
-        pieces = PPoly(
+        return PPoly(
             np.array([[rate, 0.0], [speed.start, speed.to]]),
             np.array([0.0, speed.over, math.inf]),
         )
-        return _PolynomialLaw(pieces, motion.angle)
     if isinstance(speed, SpeedFile):
-        return _PolynomialLaw(PchipInterpolator(speed.file.x, speed.file.y), motion.angle)
-    return _PolynomialLaw(PPoly(np.array([[speed]]), np.array([0.0, math.inf])), motion.angle)
+        return PchipInterpolator(speed.file.x, speed.file.y)
+    return PPoly(np.array([[speed]]), np.array([0.0, math.inf]))
 
 
 class _PolynomialLaw:
