@@ -14,6 +14,7 @@ const NONE = 1e-11; // of the energy: nothing but rounding
 const SHOTS = 400;
 const CLOSE = 1e-3; // of the energy: from so near Newton's method takes over from the run itself
 const MOST = 8; // times: how far one step of Newton's method may go
+const FARTHEST = 1e6; // of the energy: with no fixed point below it is taken to grow without bound
 const SPEEDS = 65; // at which the slope of the loads is looked at
 
 /** The settled motion from a start { angle, speed }, over one period of the grid.
@@ -31,7 +32,7 @@ export function settle(train, grid, start, warm) {
   const bounded = branch && [branch.low, branch.high].some((limit) =>
     sense * limit > 0 && Number.isFinite(limit));
   if (branch && isAffine(branch) && !bounded) return section.inClosedForm(branch, start);
-  return section.byNewton(warm ?? section.energyAt(start.speed));
+  return section.byNewton(warm ?? section.energyAt(start.speed), start.speed);
 }
 
 /** One period of a motion, from an edge of the grid on. */
@@ -176,7 +177,7 @@ class Section {
     return energy;
   }
 
-  byNewton(begin) {
+  byNewton(begin, speed) {
     const follows = this.mayBeSeveral();
     let energy = begin;
     let [before, close] = [Infinity, !follows];
@@ -185,7 +186,10 @@ class Section {
       if (shot.ending !== "complete") return this.found(energy, false, shot.ending);
       const gained = shot.energy - energy;
       const damping = 1 - shot.factor;
-      if (Math.abs(gained) <= NONE * energy && damping <= NONE) return this.found(energy, true);
+      if (energy > FARTHEST * begin) return this.found(energy, false, "runs_away");
+      if (Math.abs(gained) <= NONE * energy && damping <= NONE) {
+        return this.found(this.withMeanByShots(energy, speed), true);
+      }
       if (follows && Math.abs(gained) <= CLOSE * damping * energy) close = true;
       const step = close ? (damping > NONE ? gained / damping : gained * Infinity) : gained;
       const next = Math.min(Math.max(energy + step, energy / MOST), energy * MOST);
@@ -194,9 +198,20 @@ class Section {
         return this.found(energy, false);
       }
       [before, energy] = [moved, next];
-      if (!(energy < 1e12 * begin)) return this.found(energy, false, "runs_away");
     }
     return this.found(energy, false, "wanders");
+  }
+
+  /** The same where loads bend somewhere: a period lasts about as the inverse root of the energy. */
+  withMeanByShots(begin, speed) {
+    const wanted = this.period / Math.abs(speed);
+    let energy = begin;
+    for (let n = 0; n < 60; n++) {
+      const longer = this.shot(energy).time / wanted;
+      energy *= longer * longer;
+      if (Math.abs(longer - 1) <= 2e-15) break;
+    }
+    return energy;
   }
 
   /** Whether a load rises with the speed anywhere, so that the map may give back several energies:
