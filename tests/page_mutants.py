@@ -287,24 +287,20 @@ MUTANTS = {
     ],
     "settled": [
         (
-            "const limit = -map.rise / map.growth;",
-            "const limit = 1.1 * map.rise;",
+            "period.sweep(-rise / growth)",
+            "period.sweep(-1.1 * rise / growth)",
         ),
         (
-            "rise += cell.growth * rise + cell.rise;",
-            "rise += cell.rise;",
+            "const step = (motion.time - wanted) / motion.slope;",
+            "const step = 0;",
         ),
         (
-            "of.rate.push((2 * branch.c2) / inertia);",
-            "of.rate.push(branch.c2 / inertia);",
+            'bracket[gained > 0 ? "low" : "high"] = energy;',
+            'bracket[gained > 0 ? "high" : "low"] = energy / 100;',
         ),
         (
-            "slope -= (0.5 * weight * map.gain[i])",
-            "slope -= (0.5e6 * weight * map.gain[i])",
-        ),
-        (
-            "tables.torque[i] + over + branch.c0",
-            "tables.torque[i] + over + branch.c0 + 1",
+            "const step = damping > NONE ? gained / damping : gained * Infinity;",
+            "const step = 0;",
         ),
     ],
     "speed": [
@@ -479,6 +475,36 @@ MUTANTS = {
         (
             "return [-inwards * cos - forwards * sin,",
             "return [-inwards * cos,",
+        ),
+    ],
+    "affine": [
+        (
+            "this.rate[to] = (2 * branch.c2) / this.inertia[to];",
+            "this.rate[to] = branch.c2 / this.inertia[to];",
+        ),
+        (
+            "this.push[to] = torque[i] + branch.c0;",
+            "this.push[to] = 1.01 * torque[i] + branch.c0;",
+        ),
+        (
+            "this.rise[c] += width * weights[j] * (push[at] + rate[at] * shift[at]);",
+            "this.rise[c] += width * weights[j] * push[at];",
+        ),
+        (
+            "growth += own + growth * own;",
+            "growth += 0.5 * own;",
+        ),
+        (
+            "own * ((1 + growth) / (1 + after[c]))",
+            "own",
+        ),
+        (
+            "torque[k] = push[k] + rate[k] * kinetic;",
+            "torque[k] = push[k];",
+        ),
+        (
+            "at.add(this.growth[c] * at.value + this.rise[c]);",
+            "at.add(this.rise[c]);",
         ),
     ],
 }

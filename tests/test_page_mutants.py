@@ -14,17 +14,29 @@ from crankmbs.page.export import encoded, rules
 from crankmbs.page.script import FOLDER
 
 _VISIBLE = 2e-9  # relative: twice what the engine may differ by from Python
+# in a worker, as a mutant may never come to an end
 _TAKE = """([script, rules]) => {
-  window.tried = (0, eval)(script);
-  window.own = tried.engineOf(JSON.parse(rules));
+  const source = `const tried = ${script};
+    const own = tried.engineOf(${rules});
+    onmessage = ({ data: [name, text] }) => {
+      try {
+        postMessage(tried[name](own, tried.decoded(JSON.parse(text))));
+      } catch (error) {
+        postMessage({ broken: String(error) });
+      }
+    };`;
+  window.worker?.terminate();
+  window.worker = new Worker(URL.createObjectURL(new Blob([source])));
 }"""
-_RUN = """([name, text]) => {
-  try {
-    return tried[name](own, tried.decoded(JSON.parse(text)));
-  } catch (error) {
-    return { broken: String(error) };
-  }
-}"""
+_RUN = """(task) => new Promise((resolve) => {
+  const timer = setTimeout(() => resolve({ broken: "no end" }), 60_000);
+  worker.onerror = ({ message }) => resolve({ broken: message });
+  worker.onmessage = ({ data }) => {
+    clearTimeout(timer);
+    resolve(data);
+  };
+  worker.postMessage(task);
+})"""
 
 
 @pytest.fixture(scope="module")

@@ -51,9 +51,9 @@ export class Engine {
     for (let round = 0; ; round++) {
       const motion = this.pass(scene, train, this.grid(train, edges, stages, this.tables), warm);
       if (tolerance === null || round >= ROUNDS || edges.length > MOST_CELLS) return motion;
-      if (motion.travel === null) return motion;
+      if (motion.ending !== "complete") return motion;
       const finer = this.grid(train, edges, stages + 2, this.finer);
-      const parts = partsOf(train, motion.grid, finer, motion.travel.path, tolerance);
+      const parts = partsOf(train, motion.grid, finer, motion.path, tolerance);
       if (parts.every((each) => each === 1)) return motion;
       edges = split(edges, parts);
     }
@@ -101,44 +101,41 @@ const only = ({ pressure, combustion }) => ({ pressure, combustion });
 /** A free motion from its start to its end. */
 class Free {
   constructor(train, grid, travel) {
-    Object.assign(this, { train, grid, travel, ending: travel.ending });
+    Object.assign(this, { train, grid, path: travel.path, ending: travel.ending });
     this.from = travel.path.cells.length ? travel.path.cells[0].from : travel.theta;
     this.to = travel.theta;
   }
 
   /** The sample at a crank angle [rad] between `from` and `to`. */
   at(theta) {
-    return this.travel.path.at(this.train, theta);
+    return this.path.at(this.train, theta);
   }
 
   /** Crank angles from one to another between which all is smooth. */
   smoothBetween(from, to) {
-    return inside(this.travel.path.cells.map((cell) => cell.from), from, to);
+    return inside(this.path.cells.map((cell) => cell.from), from, to);
   }
 }
 
 /** A settled motion, over a period from its start. */
 class Settled {
   constructor(train, grid, start, found) {
-    Object.assign(this, { train, grid, travel: found.travel, ending: found.ending });
-    this.factor = found.factor;
-    this.balanced = found.balanced;
-    if (found.travel === null || found.ending !== "complete") return;
-    this.base = found.theta;
-    this.sense = found.travel.sense;
-    this.period = found.period;
-    this.duration = found.travel.time;
+    const { ending, motion, factor, balanced, theta, sense, period } = found;
+    Object.assign(this, { train, grid, ending, factor, balanced, sense, period });
+    if (ending !== "complete") return;
+    this.path = motion.path;
+    this.base = theta;
+    this.duration = motion.time;
     this.from = start.angle;
-    this.to = start.angle + this.sense * this.period;
+    this.to = start.angle + sense * period;
     this.late = 0;
     this.late = this.at(start.angle).time;
   }
 
   /** The sample at any crank angle [rad]; time counts from the start's angle. */
   at(theta) {
-    const { train, period, sense, base, travel } = this;
+    const { train, period, sense, base, path } = this;
     const turns = Math.floor((sense * (theta - base)) / period);
-    const { path } = travel;
     const within = theta - sense * turns * period;
     const found = readCell(train, path.rule, path.cellAt(within), within);
     return { ...found, theta, time: found.time + turns * this.duration - this.late };
@@ -147,7 +144,7 @@ class Settled {
   /** Crank angles from one to another between which all is smooth. */
   smoothBetween(from, to) {
     const { period, sense, base } = this;
-    const own = this.travel.path.cells.map((cell) => cell.from);
+    const own = this.path.cells.map((cell) => cell.from);
     const turn = (theta) => Math.floor((sense * (theta - base)) / period);
     const [first, last] = [turn(from), turn(to)];
     const turns = Array.from({ length: last - first + 1 }, (_, k) => sense * period * (first + k));
@@ -165,7 +162,7 @@ function inside(angles, from, to) {
 /** A prescribed motion: nothing has to be integrated. */
 class Prescribed {
   constructor(train, motion, edges, run) {
-    Object.assign(this, { train, edges, travel: null, ending: "complete" });
+    Object.assign(this, { train, edges, ending: "complete" });
     this.law = speedLaw(motion);
     const [, omega] = this.law.at(0);
     this.sense = omega < 0 ? -1 : 1;

@@ -5,11 +5,13 @@
  * back what came, with its derivative multiplied up along the period. With a = 1 and nothing gained
  * every speed is periodic: that with the start's mean is kept.
  */
-import { Sum, countUpTo, eliminate } from "./arrays.js";
+import { AffinePeriod } from "./affine.js";
+import { countUpTo } from "./arrays.js";
 import { branchAt, firstPhases, isAffine, torqueOverAngle } from "./loads.js";
 import { Travel } from "./motion.js";
 import { reduceAt } from "./tables.js";
 
+const SLOW = Math.PI / 360; // rad: where the energy would be gone within this angle, it is refused
 const NONE = 1e-11; // of the energy: nothing but rounding
 const SHOTS = 400;
 const CLOSE = 1e-3; // of the energy: from so near Newton's method takes over from the run itself
@@ -21,9 +23,9 @@ const SPEEDS = 65; // at which the slope of the loads is looked at
  *
  * warm [J] : an energy to begin with, such as that of a motion close by; null: the start's
  *
- * { ending, travel, theta, factor, balanced } : ending "complete", "slow", "held", "runs_away",
- * "decays" or "wanders"; travel over the period from theta on; factor : what a period leaves of a
- * disturbance; balanced : whether every speed would do
+ * { ending, motion, theta, period, sense, factor, balanced } : ending "complete", "slow", "held",
+ * "runs_away", "decays" or "wanders"; motion : { path, time } of the period from theta on; factor :
+ * what a period leaves of a disturbance; balanced : whether every speed would do
  */
 export function settle(train, grid, start, warm) {
   const sense = start.speed < 0 ? -1 : 1;
@@ -67,139 +69,78 @@ class Section {
     return new Travel(this.train, this.grid, begin, stop);
   }
 
-  found(energy, balanced, ending = "complete") {
-    if (ending !== "complete") return { ending, travel: null, theta: this.theta, balanced };
-    const travel = this.shot(energy);
-    const { theta, period } = this;
-    return { ending: travel.ending, travel, theta, period, factor: travel.factor, balanced };
+  /** What is found: the motion over a period, or none where it ends otherwise. */
+  found(ending, motion = null, about = {}) {
+    const { theta, period, sense } = this;
+    return { ending, motion, theta, period, sense, factor: undefined, balanced: false, ...about };
   }
 
   inClosedForm(branch, start) {
-    const map = this.map(branch);
+    const period = new AffinePeriod(this, branch);
+    const { growth, rise } = period.whole;
     const energy = this.energyAt(start.speed);
-    const gained = map.growth * energy + map.rise;
-    if (map.growth < -NONE) {
-      const limit = -map.rise / map.growth;
-      return this.found(limit, false, limit > 0 ? "complete" : "decays");
+    const gained = growth * energy + rise;
+    const balanced = growth >= -NONE;
+    if (balanced && Math.abs(gained) > NONE * period.sweep(energy).most) {
+      return this.found(gained > 0 ? "runs_away" : "decays");
     }
-    const swing = Math.max(...map.shift.map((shift, i) => map.gain[i] * energy + shift));
-    if (Math.abs(gained) > NONE * swing) {
-      return this.found(energy, false, gained > 0 ? "runs_away" : "decays");
-    }
-    const kept = this.withMean(map, start.speed);
-    return this.found(kept, true, kept > 0 ? "complete" : "slow");
+    if (!balanced && !(rise > 0)) return this.found("decays");
+    const motion = balanced ? this.withMean(period, start.speed) : period.sweep(-rise / growth);
+    const slow = !(motion.least > SLOW * this.largest(branch));
+    return this.found(slow ? "slow" : "complete", motion, { factor: 1 + growth, balanced });
   }
 
-  /** The affine map over a period: E becomes E + (growth E + rise), at the nodes gain E + shift. */
-  map(branch) {
-    const { grid, sense } = this;
-    const { rule, edges } = grid;
-    const s = rule.nodes.length;
-    const n = edges.length - 1;
-    const cells = Array.from({ length: n }, (_, j) => (this.first + n + sense * j) % n);
-    if (sense < 0) cells.forEach((_, j) => (cells[j] = (this.first + 2 * n - 1 - j) % n));
-    const one = { gain: [], shift: [], weight: [] };
-    let growth = 0;
-    let rise = 0;
-    const steps = cells.map((number) => {
-      const cell = this.affine(number, branch);
-      for (let j = 0; j < s; j++) {
-        one.gain.push(cell.gain[j] * (1 + growth));
-        one.shift.push(cell.gain[j] * rise + cell.shift[j]);
-        one.weight.push(cell.weight[j]);
-      }
-      rise += cell.growth * rise + cell.rise;
-      growth += cell.growth + growth * cell.growth;
-      return { rise: cell.rise, growth };
-    });
-    // the cells' rises nearly cancel in a steady motion: each times what the rest makes of it
-    const total = new Sum();
-    for (const step of steps) total.add(step.rise * ((1 + growth) / (1 + step.growth)));
-    return { ...one, growth, rise: total.value };
+  /** The largest torque over the angle with that of a branch at rest [N m]. */
+  largest(branch) {
+    return this.grid.tables.torque.reduce((most, each) => Math.max(most, Math.abs(each)), 0) +
+      Math.abs(branch.c0);
   }
 
-  /** Of the energy at a cell's begin: gain and shift at its nodes, growth and rise at its end. */
-  affine(number, branch) {
-    const { train, grid, sense, phases } = this;
-    const { rule, edges, tables } = grid;
-    const s = rule.nodes.length;
-    const width = edges[number + 1] - edges[number];
-    const system = new Float64Array(s * s);
-    const right = new Float64Array(2 * s);
-    const of = { push: [], rate: [], inertia: [] };
-    for (let j = 0; j < s; j++) {
-      const i = number * s + (sense > 0 ? j : s - 1 - j);
-      const inertia = train.crank.inertia + tables.inertia[i];
-      const over = torqueOverAngle(train.loads, phases, tables.angles[i]);
-      of.inertia.push(inertia);
-      of.push.push(tables.torque[i] + over + branch.c0);
-      of.rate.push((2 * branch.c2) / inertia);
-    }
-    for (let j = 0; j < s; j++) {
-      right[2 * j] = 1;
-      for (let i = 0; i < s; i++) {
-        const step = sense * width * rule.matrix[j * s + i];
-        right[2 * j + 1] += step * of.push[i];
-        system[j * s + i] = (i === j ? 1 : 0) - step * of.rate[i];
-      }
-    }
-    eliminate(system, right, s, 2);
-    const cell = { gain: [], shift: [], weight: [], growth: 0, rise: 0 };
-    for (let j = 0; j < s; j++) {
-      const [gain, shift] = [right[2 * j], right[2 * j + 1]];
-      const step = sense * width * rule.weights[j];
-      cell.gain.push(gain);
-      cell.shift.push(shift);
-      cell.weight.push(width * rule.weights[j] * Math.sqrt(0.5 * of.inertia[j]));
-      cell.growth += step * of.rate[j] * gain;
-      cell.rise += step * (of.push[j] + of.rate[j] * shift);
-    }
-    return cell;
-  }
-
-  /** The energy with which a period lasts as long as at a mean speed [rad/s]. */
-  withMean(map, speed) {
+  /** The motion of which a period lasts as long as at a mean speed [rad/s], by Newton's method. */
+  withMean(period, speed) {
     const wanted = this.period / Math.abs(speed);
-    const least = Math.max(...map.shift.map((shift, i) => -shift / map.gain[i]));
-    let energy = Math.max(this.energyAt(speed), least + 0.5 * this.energyAt(speed));
+    let energy = this.energyAt(speed);
+    let motion = period.sweep(energy);
     for (let n = 0; n < 60; n++) {
-      let [time, slope] = [0, 0];
-      map.weight.forEach((weight, i) => {
-        const kinetic = map.gain[i] * energy + map.shift[i];
-        time += weight / Math.sqrt(kinetic);
-        slope -= (0.5 * weight * map.gain[i]) / (kinetic * Math.sqrt(kinetic));
-      });
-      const next = energy - (time - wanted) / slope;
-      const inside = next > least ? next : 0.5 * (energy + least);
-      if (Math.abs(inside - energy) <= 4e-16 * energy) return inside;
-      energy = inside;
+      const step = (motion.time - wanted) / motion.slope;
+      if (!(Math.abs(step) > 4e-16 * energy)) break;
+      energy = Math.max(energy - step, 0.5 * energy);
+      motion = period.sweep(energy);
     }
-    return energy;
+    return motion;
   }
 
   byNewton(begin, speed) {
-    const follows = this.mayBeSeveral();
+    const several = this.mayBeSeveral();
     let energy = begin;
-    let [before, close] = [Infinity, !follows];
+    let before = { gained: Infinity, moved: Infinity };
+    const bracket = { low: 0, high: Infinity };
     for (let n = 0; n < SHOTS; n++) {
       const shot = this.shot(energy);
-      if (shot.ending !== "complete") return this.found(energy, false, shot.ending);
+      if (shot.ending !== "complete") return this.found(shot.ending);
       const gained = shot.energy - energy;
       const damping = 1 - shot.factor;
-      if (energy > FARTHEST * begin) return this.found(energy, false, "runs_away");
-      if (Math.abs(gained) <= NONE * energy && damping <= NONE) {
-        return this.found(this.withMeanByShots(energy, speed), true);
+      if (energy > FARTHEST * begin) return this.found("runs_away");
+      if (Math.abs(gained) <= NONE * Math.min(energy, begin) && damping <= NONE) {
+        return this.shown(this.withMeanByShots(energy, speed), true);
       }
-      if (follows && Math.abs(gained) <= CLOSE * damping * energy) close = true;
-      const step = close ? (damping > NONE ? gained / damping : gained * Infinity) : gained;
-      const next = Math.min(Math.max(energy + step, energy / MOST), energy * MOST);
+      bracket[gained > 0 ? "low" : "high"] = energy;
+      const follows = several && Math.abs(gained) > CLOSE * damping * energy;
+      const next = follows ? shot.energy : nextIn(bracket, energy, gained, damping, before.gained);
       const moved = Math.abs(next - energy);
-      if (moved <= 4e-16 * energy || (moved <= 1e-12 * energy && moved >= 0.5 * before)) {
-        return this.found(energy, false);
+      if (moved <= 4e-16 * energy || (moved <= 1e-12 * energy && moved >= 0.5 * before.moved)) {
+        return this.shown(energy, false);
       }
-      [before, energy] = [moved, next];
+      before = { gained, moved };
+      energy = next;
     }
-    return this.found(energy, false, "wanders");
+    return this.found("wanders");
+  }
+
+  /** The period that begins with an energy [J], solved cell by cell. */
+  shown(energy, balanced) {
+    const shot = this.shot(energy);
+    return this.found(shot.ending, shot, { factor: shot.factor, balanced });
   }
 
   /** The same where loads bend somewhere: a period lasts about as the inverse root of the energy. */
@@ -219,6 +160,17 @@ class Section {
   mayBeSeveral() {
     return this.train.loads.some(({ over_speed: load }) => load !== null && rises(load));
   }
+}
+
+/** The energy to try next: Newton's step, no farther than MOST times; the middle of the bracket where
+ * that leaves it, or where kinks let the steps gain little. */
+function nextIn({ low, high }, energy, gained, damping, before) {
+  const step = damping > NONE ? gained / damping : gained * Infinity;
+  const next = Math.min(Math.max(energy + step, energy / MOST), energy * MOST);
+  const slow = Math.abs(gained) > 0.5 * Math.abs(before) && Math.abs(step) > 1e-9 * energy;
+  const closed = low > 0 && high < Infinity;
+  const inside = next >= low && next <= high && !(closed && slow);
+  return inside || !closed ? next : 0.5 * (low + high);
 }
 
 function rises({ knots, pieces }) {
