@@ -63,6 +63,12 @@ def backwards():
     return replace(scene, start=Start(angle=0.3, speed=-100.0), torque=loads)
 
 
+def short_rod():
+    """So short that cells of 6 degrees must be cut."""
+    scene = running("coasting", Extent(value=1.0, unit="cycle"))
+    return replace(scene, rod=replace(scene.rod, length=0.0475))
+
+
 def settling():
     """Under a table of the speed, whose rows the speed passes in every cycle."""
     scene = running("propeller", "settled", **MACHINE)
@@ -89,6 +95,7 @@ GUARDS = {
     "measured speed": driven(MEASURED_SPEED),
     "settling": settling(),
     "backwards": backwards(),
+    "short rod": short_rod(),
     "affine": running("v_twin", "settled"),
     "started": started(),
 }

@@ -95,14 +95,14 @@ MUTANTS = {
             "return ((near + both)",
         ),
         (
-            "const cut = angle.findIndex(",
-            "const cut = -1 && angle.findIndex(",
+            "if (cut < 0) return rows;",
+            "return rows;",
         ),
     ],
     "gas": [
         (
             "const down = within <= centres.bottom;",
-            "const down = within <= Math.PI;",
+            "const down = within <= 3;",
         ),
         (
             "Math.sin(half) ** 2) / (topPosition(shape) + at.x)",
@@ -253,15 +253,23 @@ MUTANTS = {
             "const after = ((2 * j) * z * legendre",
         ),
     ],
-    "motion": [
+    "path": [
         (
             "(given + outside - 0.5 * of.slope * omega * omega) / of.inertia;\n  return",
             "(given + outside) / of.inertia;\n  return",
         ),
+    ],
+    "cell": [
         (
             "(branch.c1 + 2 * branch.c2 * omega) / (inertia[j] * omega);",
             "1e9;",
         ),
+        (
+            "grown += width * rule.weights[j] * rate[j] * right[j];",
+            "grown += 0;",
+        ),
+    ],
+    "motion": [
         (
             "this.factor *= this.accelerated(speed) / before;",
             "this.factor *= 2;",
@@ -274,15 +282,11 @@ MUTANTS = {
             "this.energy = 0.5 * inertia * omega * omega;",
             "this.energy *= 1.01;",
         ),
-        (
-            "grown += width * rule.weights[j] * rate[j] * right[j];",
-            "grown += 0;",
-        ),
     ],
     "refine": [
         (
             "return { atEnd: errors[s], inside: Math.max(...errors) };",
-            "return { atEnd: 1e9, inside: 0 };",
+            "return { atEnd: 0, inside: 0 };",
         ),
     ],
     "settled": [

@@ -15,6 +15,7 @@ from crankmbs.mechanics.carried import carried_over
 from crankmbs.mechanics.train import crank_train
 from crankmbs.page import exported, joined, refusals
 from crankmbs.page.export import encoded
+from crankmbs.page.script import FOLDER
 from crankmbs.scene.fuel import Fuel, Governor, Misfire
 from crankmbs.scene.gas import Polytrope
 from crankmbs.scene.loads import Constant
@@ -260,6 +261,14 @@ def test_a_script_holds_no_markup_and_modules_that_cannot_be_joined_are_named(
     monkeypatch.setattr("crankmbs.page.script.FOLDER", tmp_path)
     with pytest.raises(ValueError, match=r"odd\.js"):
         joined("odd")
+
+
+def test_the_modules_are_held_to_the_length_of_the_others():
+    for path in FOLDER.glob("*.js"):
+        lines = path.read_text(encoding="utf-8").splitlines()
+        assert len(lines) <= 300, path.name
+        assert max(map(len, lines)) <= 100, path.name
+        assert lines[0].startswith("/** "), path.name
 
 
 def test_a_firing_order_and_the_mean_speed_are_passed_on(page):

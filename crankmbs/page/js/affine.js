@@ -5,8 +5,8 @@
  * and once its fixed point is known the motion is one sweep without any solving.
  */
 import { Sum, eliminate } from "./arrays.js";
-import { Path } from "./motion.js";
 import { torqueOverAngle } from "./loads.js";
+import { Path } from "./path.js";
 
 /** The maps of the cells of a period, in the order in which they are passed.
  *

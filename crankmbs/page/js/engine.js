@@ -8,8 +8,8 @@ import { knotsOver } from "./cubics.js";
 import { Firing, decisionAngles } from "./fuel.js";
 import { Loop } from "./geometry.js";
 import { pressuresOf } from "./gas.js";
-import { firstPhases, isSteady } from "./loads.js";
-import { Travel, readCell } from "./motion.js";
+import { Travel } from "./motion.js";
+import { readCell } from "./path.js";
 import { partsOf } from "./refine.js";
 import { settle } from "./settled.js";
 import { speedLaw } from "./speed.js";
@@ -39,7 +39,8 @@ export class Engine {
     const shape = this.shape(crank.radius, rod.length, piston.offset);
     const loop = this.loop(shape);
     const machine = { shape, loop, crank, rod, piston, cylinders, levers, gravity };
-    return { ...machine, loads, fuel, period, ...only(this.pressures(scene.gas, shape)) };
+    const { pressure, combustion } = this.pressures(scene.gas, shape);
+    return { ...machine, loads, fuel, period, pressure, combustion };
   }
 
   /** The motion of a scene; its cells are cut until they err by no more than a tolerance, relative,
@@ -95,8 +96,6 @@ function marksOf(knots, decisions, own, period) {
   const decided = decisions.flatMap((angle) => turns.map((turn) => angle + turn));
   return [decided, ...knots.map((each) => knotsOver({ knots: each }, 0, period))];
 }
-
-const only = ({ pressure, combustion }) => ({ pressure, combustion });
 
 /** A free motion from its start to its end. */
 class Free {
@@ -205,9 +204,4 @@ class Prescribed {
     }
     return inside(angles, from, to);
   }
-}
-
-/** Whether loads are such that a motion under them can settle. */
-export function settles(scene) {
-  return scene.loads.every(isSteady) && firstPhases(scene.loads, 0).length === scene.loads.length;
 }

@@ -73,7 +73,8 @@ export function carriedAngle(phi, from, to) {
 }
 
 /** Swept fraction of the stroke at a cycle angle and what is left of it, both exact where small:
- * x_top^2 - x^2 = 4 r l sin^2(psi / 2), x^2 - x_bottom^2 = 4 r l cos^2(psi / 2), psi = phi + beta. */
+ * x_top^2 - x^2 = 4 r l sin^2(psi / 2), x^2 - x_bottom^2 = 4 r l cos^2(psi / 2), with psi =
+ * phi + beta. */
 function sweptFrom(phi, shape) {
   const { radius, length } = shape;
   const at = new Loop(shape).at(phi);
@@ -96,8 +97,8 @@ function leadAt(x, above, below, { radius, length, offset }) {
   return 2 * Math.atan2(Math.sqrt(Math.max(over, 0)), Math.sqrt(Math.max(under, 0)));
 }
 
-/** An indicator diagram: compression p V^n, a rise at the firing dead centre, combustion at constant
- * pressure, expansion p V^n, and with four strokes intake and exhaust. */
+/** An indicator diagram: compression p V^n, a rise at the firing dead centre, combustion at
+ * constant pressure, expansion p V^n, and with four strokes intake and exhaust. */
 function diagram(gas, source, shape) {
   const parts = strokesOf(gas, source, shape).map((stroke) => fitted(...stroke));
   const lefts = parts.flatMap((part) => part.lefts);
@@ -163,7 +164,7 @@ function fitted(begin, end, pressure) {
   while (open.length) {
     const [left, right] = open.pop();
     const cubic = throughSupport(left, right - left, pressure);
-    if (follows(cubic, left, right - left, pressure)) {
+    if (right - left < KNOT || follows(cubic, left, right - left, pressure)) {
       lefts.push(left);
       cubics.push(cubic.map((each, k) => each / (right - left) ** (3 - k)));
     } else {

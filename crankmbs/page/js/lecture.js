@@ -68,7 +68,7 @@ export const LECTURES = {
   "S1 (motion and forces truncated)": { motion: truncatedMotion, forces: truncatedForces },
 };
 
-/** The compared quantities by a lecture's formulas: those of every cylinder, and the main bearing's.
+/** The compared quantities by a lecture's formulas: of every cylinder, and of the main bearing.
  *
  * sample : { theta, omega, alpha, shares }, with the mean speed and alpha 0 what a lecture would
  * reckon with

@@ -76,7 +76,9 @@ function branchBeside(loads, phases, t, omega, rising) {
 /** End the branch at the times and speeds at which a load's phase may end. */
 function boundByPhase(branch, load, phase, t, omega, rising) {
   const times = phase === DUE ? [load.after] : phase === ACTING ? [load.until] : [];
-  for (const time of times) if (time !== null && time > t) branch.tEnd = Math.min(branch.tEnd, time);
+  for (const time of times) {
+    if (time !== null && time > t) branch.tEnd = Math.min(branch.tEnd, time);
+  }
   const speed = { [WAITING]: load.from_speed, [ACTING]: load.until_speed }[phase] ?? null;
   if (speed === null) return;
   if (speed > omega || (speed === omega && !rising)) branch.high = Math.min(branch.high, speed);
@@ -103,11 +105,4 @@ function addOverSpeed(branch, { knots, pieces }, omega, rising) {
 /** Whether the torque is c0 + c2 omega^2: then dE/dtheta is linear in E. */
 export function isAffine(branch) {
   return branch.ct === 0 && branch.c1 === 0;
-}
-
-/** Whether a load is the same at every time. */
-export function isSteady(load) {
-  const window = [load.after, load.until, load.from_speed, load.until_speed];
-  const varies = load.over_time && (load.over_time.knots.length > 0 || load.over_time.pieces[1]);
-  return !varies && window.every((end) => end === null);
 }

@@ -13,7 +13,7 @@ const CANDIDATES = 6;
 const GOLDEN = 0.5 * (Math.sqrt(5) - 1);
 const CLOSENESS = 45; // steps of the golden section: to 4e-10 of a panel
 
-/** Where the forces of a joint stand, by name: `main bearing` on the crank, the others by cylinder. */
+/** The size of the force in each joint of a cylinder, by its name. */
 const JOINTS = {
   "crank pin": (v) => Math.hypot(v.crank_pin_force_x, v.crank_pin_force_y),
   "piston pin": (v) => Math.hypot(v.piston_pin_force_x, v.piston_pin_force_y),
@@ -82,8 +82,8 @@ function placesOf({ cylinders }) {
   return [...places, { size: (v) => v.crank_speed }, { size: (v) => -v.crank_speed }];
 }
 
-/** The sizes of all places, the power of the rods and from outside, and that of the gas by cylinder,
- * at a sample. */
+/** The sizes of all places, the power of the rods and from outside, and that of the gas by
+ * cylinder, at a sample. */
 function rowOf(train, places, sample) {
   const v = reactionsAt(train, sample);
   const rods = v.cylinders.reduce((sum, each) => sum + each.crank_torque, 0);

@@ -5,65 +5,16 @@
  * that are the knots of pressures and loads over the angle. Where a load bends or jumps in time or
  * speed the motion lands on the kink and goes on from there in a new cell.
  */
-import { countUpTo, eliminate } from "./arrays.js";
-import { branchAt, firstPhases, laterPhases, torqueOf, torqueOverAngle } from "./loads.js";
+import { countUpTo } from "./arrays.js";
+import { Stepper } from "./cell.js";
 import { Firing } from "./fuel.js";
-import { integralTo } from "./rule.js";
-import { reduceAt } from "./tables.js";
+import { branchAt, firstPhases, laterPhases, torqueOf, torqueOverAngle } from "./loads.js";
+import { Path } from "./path.js";
+import { burnt, reduceAt } from "./tables.js";
 
-const SLOW = Math.PI / 360; // rad: where the energy would be gone within this angle, it is refused
 const SLIVER = 1e-12; // rad
-const SETTLED = 1e-15; // relative change of the energy in Newton's last step
-const GOOD = 1e-11;
-const NEWTON = 30;
 const LANDINGS = 12;
 const GRAZES = 16; // places in a cell at which a speed is looked at that comes near a kink
-
-/** Solved cells, each from `from` over `width` [rad, signed] on one branch of the loads. */
-export class Path {
-  constructor(rule) {
-    this.rule = rule;
-    this.cells = [];
-    this.starts = [];
-  }
-
-  add(cell) {
-    this.cells.push(cell);
-    this.starts.push(cell.sense * cell.from);
-  }
-
-  /** The cell in which a crank angle lies; one on an edge is in that before it. */
-  cellAt(theta) {
-    const { sense } = this.cells[0];
-    let k = countUpTo(this.starts, sense * theta) - 1;
-    if (k > 0 && this.starts[k] === sense * theta) k--;
-    return this.cells[Math.max(k, 0)];
-  }
-
-  /** Time [s], speed, acceleration [rad/s, rad/s2], torque from outside [N m] and shares of the
-   * combustion at a crank angle [rad]. */
-  at(train, theta) {
-    return readCell(train, this.rule, this.cellAt(theta), theta);
-  }
-}
-
-/** What `Path.at` gives, in a cell. */
-export function readCell(train, rule, cell, theta) {
-  const { from, width, sense, energy, time, torque, slowness, branch, phases, shares } = cell;
-  const x = (theta - from) / width;
-  const t = time + Math.abs(width) * integralTo(rule, slowness, 0, x);
-  const kinetic = energy + width * integralTo(rule, torque, 0, x);
-  const of = reduceAt(train, theta);
-  const omega = sense * Math.sqrt((2 * Math.max(kinetic, 0)) / of.inertia);
-  const outside = torqueOf(branch, t, omega) + torqueOverAngle(train.loads, phases, theta);
-  const given = of.torque + burnt(of.combustion, shares);
-  const alpha = (given + outside - 0.5 * of.slope * omega * omega) / of.inertia;
-  return { time: t, theta, omega, alpha, external_torque: outside, shares };
-}
-
-function burnt(combustion, shares) {
-  return combustion.reduce((sum, each, k) => sum + shares[k] * each, 0);
-}
 
 /** A motion on its way from a state, cell by cell.
  *
@@ -128,7 +79,8 @@ export class Travel {
     const last = this.sense * (this.stop.theta - edge) <= SLIVER;
     const target = last ? this.stop.theta : edge;
     if (!last && this.sense * (target - this.theta) <= SLIVER) return;
-    const whole = target === edge && Math.abs(Math.abs(target - this.theta) - (high - low)) < SLIVER;
+    const short = high - low - Math.abs(target - this.theta);
+    const whole = target === edge && Math.abs(short) < SLIVER;
     if (whole) this.stepper.load(this, this.grid, k, this.sense);
     this.pass(target, whole ? k : -1);
     while (this.ending === null && this.theta !== target) this.pass(target, -1);
@@ -143,7 +95,7 @@ export class Travel {
     this.firing.pass(this.time, this.theta, omega, this.sense);
   }
 
-  /** To an angle, or to the first kink on the way there; number of the cell if it is a whole one. */
+  /** To an angle, or the first kink on the way; number : of the cell, if it is a whole one. */
   pass(target, number) {
     const { stepper } = this;
     if (number < 0) stepper.tabulate(this, target);
@@ -286,158 +238,3 @@ function firstAbove(f, places, near) {
   }
   return null;
 }
-
-/** Gauss collocation in one cell: Newton's method on the energies at its nodes. */
-class Stepper {
-  constructor(rule) {
-    const s = rule.nodes.length;
-    this.rule = rule;
-    this.places = [0, ...rule.nodes, 1];
-    for (const name of ["inertia", "given", "energy", "torque", "slowness", "rate"]) {
-      this[name] = new Float64Array(s);
-    }
-    this.right = new Float64Array(s);
-    this.system = new Float64Array(s * s);
-    this.work = this.spent = 0;
-  }
-
-  /** Inertia and torque over the angle at the nodes of a whole cell, from the tables. */
-  load({ train, phases, firing }, { tables }, number, sense) {
-    const s = this.given.length;
-    const { shares } = firing;
-    for (let j = 0; j < s; j++) {
-      const i = number * s + (sense > 0 ? j : s - 1 - j);
-      this.inertia[j] = train.crank.inertia + tables.inertia[i];
-      let given = tables.torque[i] + torqueOverAngle(train.loads, phases, tables.angles[i]);
-      for (let c = 0; c < shares.length; c++) given += shares[c] * tables.combustion[c][i];
-      this.given[j] = given;
-    }
-  }
-
-  /** The same from where a motion is to an angle. */
-  tabulate({ train, phases, firing, theta }, target) {
-    this.rule.nodes.forEach((node, j) => {
-      const angle = theta + (target - theta) * node;
-      const of = reduceAt(train, angle);
-      this.inertia[j] = of.inertia;
-      this.given[j] = of.torque + burnt(of.combustion, firing.shares);
-      this.given[j] += torqueOverAngle(train.loads, phases, angle);
-    });
-  }
-
-  /** Solve the cell of a signed width from a motion's state on; whether that converges. */
-  solve({ energy: begin, time, sense, branch }, width) {
-    const { rule, given, inertia, energy, slowness, torque } = this;
-    const s = given.length;
-    const first = sense * Math.sqrt((2 * begin) / inertia[0]);
-    const load = torqueOf(branch, time, first);
-    for (let j = 0; j < s; j++) {
-      energy[j] = begin;
-      for (let i = 0; i < s; i++) energy[j] += width * rule.matrix[j * s + i] * (given[i] + load);
-    }
-    let change = Infinity;
-    for (let n = 0; n < NEWTON; n++) {
-      const before = change;
-      this.evaluate(branch, time, sense, width);
-      change = this.correct(begin, width);
-      if (!(change < Infinity)) return false;
-      if (change <= SETTLED || (change < GOOD && change > 0.5 * before)) break;
-    }
-    if (!(change < GOOD)) return false;
-    this.evaluate(branch, time, sense, width);
-    this.work = this.spent = 0;
-    for (let j = 0; j < s; j++) {
-      this.work += rule.weights[j] * torque[j];
-      this.spent += rule.weights[j] * slowness[j];
-    }
-    return begin + width * this.work > 0;
-  }
-
-  /** Slowness, torque and its rate of change with the energy, at the energies of the nodes. */
-  evaluate(branch, time, sense, width) {
-    const { rule, given, inertia, energy, slowness, torque, rate } = this;
-    const s = given.length;
-    for (let j = 0; j < s; j++) {
-      slowness[j] = energy[j] > 0 ? Math.sqrt((0.5 * inertia[j]) / energy[j]) : NaN;
-    }
-    for (let j = 0; j < s; j++) {
-      const omega = sense / slowness[j];
-      let t = time;
-      if (branch.ct !== 0) {
-        for (let i = 0; i < s; i++) t += Math.abs(width) * rule.matrix[j * s + i] * slowness[i];
-      }
-      torque[j] = given[j] + torqueOf(branch, t, omega);
-      rate[j] = (branch.c1 + 2 * branch.c2 * omega) / (inertia[j] * omega);
-    }
-  }
-
-  /** One step of Newton's method; the relative change of the energies. */
-  correct(begin, width) {
-    const { rule, energy, torque, rate, right, system } = this;
-    const s = energy.length;
-    for (let j = 0; j < s; j++) {
-      right[j] = begin;
-      for (let i = 0; i < s; i++) {
-        const step = width * rule.matrix[j * s + i];
-        right[j] += step * (torque[i] - rate[i] * energy[i]);
-        system[j * s + i] = (i === j ? 1 : 0) - step * rate[i];
-      }
-    }
-    eliminate(system, right, s, 1);
-    let change = 0;
-    for (let j = 0; j < s; j++) {
-      change += Math.abs(right[j] / energy[j] - 1);
-      energy[j] = right[j];
-    }
-    return change;
-  }
-
-  /** By what part a small difference of the energy grows in the solved cell. */
-  growth(width) {
-    const { rule, rate, right, system } = this;
-    const s = rate.length;
-    for (let j = 0; j < s; j++) {
-      right[j] = 1;
-      for (let i = 0; i < s; i++) {
-        system[j * s + i] = (i === j ? 1 : 0) - width * rule.matrix[j * s + i] * rate[i];
-      }
-    }
-    eliminate(system, right, s, 1);
-    let grown = 0;
-    for (let j = 0; j < s; j++) grown += width * rule.weights[j] * rate[j] * right[j];
-    return grown;
-  }
-
-  /** Whether the energy would be gone within half a degree. */
-  isSlow() {
-    return this.energy.some((each, j) => {
-      const load = Math.abs(this.torque[j] - this.given[j]);
-      return each <= SLOW * (Math.abs(this.given[j]) + load);
-    });
-  }
-
-  /** Whether the speed may reach a limit in the cell, as its spread at the nodes tells. */
-  mayLeave(limit, sense) {
-    let low = Infinity;
-    let high = -Infinity;
-    for (const slowness of this.slowness) {
-      low = Math.min(low, sense / slowness);
-      high = Math.max(high, sense / slowness);
-    }
-    const spread = 2 * (high - low);
-    return limit >= low - spread && limit <= high + spread;
-  }
-
-  workTo(x) {
-    return integralTo(this.rule, this.torque, 0, x);
-  }
-
-  spentTo(x) {
-    return integralTo(this.rule, this.slowness, 0, x);
-  }
-
-  nodes() {
-    return { torque: this.torque.slice(), slowness: this.slowness.slice() };
-  }
-}
-

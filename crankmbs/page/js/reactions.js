@@ -1,8 +1,8 @@
 /** Every joint force from crank angle, speed and acceleration, exact (Newton and Euler).
  *
  * Body by body from the piston down, in each cylinder's frame: the piston's X balance gives the rod
- * on the piston along the axis, the rod's moment about the crank pin gives it across, the piston's Y
- * balance the wall, the rod's balance the crank pin, the crank's the main bearing and the torque
+ * on the piston along the axis, the rod's moment about the crank pin gives it across, the piston's
+ * Y balance the wall, the rod's balance the crank pin, the crank's the main bearing and the torque
  * from outside. Names, signs and frames are those of a result.
  */
 import { valueAt } from "./cubics.js";
@@ -58,6 +58,7 @@ function cylinderAt(train, { theta, omega, alpha, shares }, number) {
   const throwY = rod.mass * feltY + pinY;
   const side = -pinY - piston.mass * gy;
   const inertia = piston.mass * at.x1 ** 2 + rod.mass * (g.x1 ** 2 + g.y1 ** 2);
+  const shaking = [-rod.mass * feltX - piston.mass * felt, piston.mass * gy - rod.mass * feltY];
   const variables = {
     rod_angle: at.beta,
     rod_angular_speed: at.beta1 * omega,
@@ -79,7 +80,7 @@ function cylinderAt(train, { theta, omega, alpha, shares }, number) {
   return {
     variables,
     pull: turned(bank, throwX, throwY),
-    shake: turned(bank, -rod.mass * feltX - piston.mass * felt, piston.mass * gy - rod.mass * feltY),
+    shake: turned(bank, ...shaking),
     moment: -at.x * side - e * gas,
     kinetic: 0.5 * (inertia + rod.inertia * at.beta1 ** 2) * square,
   };

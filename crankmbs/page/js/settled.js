@@ -143,7 +143,7 @@ class Section {
     return this.found(shot.ending, shot, { factor: shot.factor, balanced });
   }
 
-  /** The same where loads bend somewhere: a period lasts about as the inverse root of the energy. */
+  /** The same where loads bend: a period lasts about as the inverse root of the energy. */
   withMeanByShots(begin, speed) {
     const wanted = this.period / Math.abs(speed);
     let energy = begin;
@@ -162,8 +162,8 @@ class Section {
   }
 }
 
-/** The energy to try next: Newton's step, no farther than MOST times; the middle of the bracket where
- * that leaves it, or where kinks let the steps gain little. */
+/** The energy to try next: Newton's step, no farther than MOST times; the middle of the bracket
+ * where that leaves it, or where kinks let the steps gain little. */
 function nextIn({ low, high }, energy, gained, damping, before) {
   const step = damping > NONE ? gained / damping : gained * Infinity;
   const next = Math.min(Math.max(energy + step, energy / MOST), energy * MOST);

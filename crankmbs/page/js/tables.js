@@ -48,6 +48,11 @@ export function reduceAt(train, theta) {
   return found;
 }
 
+/** What the combustion adds with these shares [N m]. */
+export function burnt(combustion, shares) {
+  return combustion.reduce((sum, each, k) => sum + shares[k] * each, 0);
+}
+
 /** First and second derivatives of the rod's centre of mass in the cycle angle [m]. */
 export function rodCentre(at, a) {
   const { radius: r, sinPhi, cosPhi, sinBeta, cosBeta, beta1, beta2 } = at;
@@ -59,13 +64,14 @@ export function rodCentre(at, a) {
   };
 }
 
-/** The edges of the cells of one period [rad]: at the knots of pressures and of loads over the angle,
- * at decisions on the fuel and around folds, no cell wider than 6 degrees.
+/** The edges of the cells of one period [rad]: at the knots of pressures and of loads over the
+ * angle, at decisions on the fuel and around folds, no cell wider than 6 degrees.
  *
  * marks : knots [rad], of cycles over the crank angle and decisions
  */
 export function edgesOf(shape, cylinders, pressure, marks, period) {
-  const found = [0, period, ...marks.flatMap((each) => [...each]), ...nearFolds(shape, cylinders, period)];
+  const found = [0, period, ...nearFolds(shape, cylinders, period)];
+  for (const each of marks) found.push(...each);
   pressure.forEach((cycle, k) => found.push(...knotsOver(cycle, cylinders[k].phase, period)));
   const edges = distinct(found, SLIVER);
   edges[edges.length - 1] = period;
@@ -170,7 +176,7 @@ function gasTorque({ each }, cylinders, pressure, area, angles) {
   });
 }
 
-/** Torque of the weights on the crank; masses : first moment of the crank [kg m], rod and piston. */
+/** Torque of the weights on the crank; given the crank's first moment [kg m], rod and piston. */
 function weightTorque({ each }, [first, rod, piston], cylinders, gravity, angles) {
   const [gx, gy] = gravityVector(gravity, 0);
   const torque = angles.map((theta) => first * (gy * Math.cos(theta) - gx * Math.sin(theta)));
