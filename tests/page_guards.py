@@ -39,8 +39,8 @@ def started():
     angle = np.linspace(0.0, 6.0, 9)
     bent = Table((250.0, 325.0, 330.0, 330.0, 400.0), (60.0, 40.0, 20.0, 35.0, -90.0))
     loads = (
-        Quadratic(coefficient=2e-4, after=0.02, until_speed=331.0),
-        Viscous(coefficient=0.05, from_speed=333.0),
+        Quadratic(coefficient=2e-4, after=0.02, until_speed=345.0),
+        Viscous(coefficient=0.05, from_speed=342.0),
         TimeTable(file=Table((0.0, 0.03, 0.03, 0.05, 1.0), (0.0, 40.0, -30.0, 10.0, 0.0))),
         SpeedTable(file=bent, until=0.1),
         AngleTable(

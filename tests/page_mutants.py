@@ -235,8 +235,8 @@ MUTANTS = {
             "return every ? cycle % first === 1",
         ),
         (
-            "wrapped(Math.PI - c.phase, period)",
-            "wrapped(-c.phase, period)",
+            "const turns = (theta + phase - Math.PI) / this.period;",
+            "const turns = (theta + phase) / this.period;",
         ),
         (
             "if (until !== null && time >= until) this.isOver = true;",
@@ -244,7 +244,7 @@ MUTANTS = {
         ),
         (
             "const begun = (this.start.angle + phase - 2 * Math.PI)",
-            "const begun = (0",
+            "const begun = (this.start.angle + phase)",
         ),
     ],
     "rule": [
