@@ -27,6 +27,9 @@ MACHINE = {
 }
 
 
+POLYTROPE = Polytrope(polytrope=1.32, closes=math.radians(-20.0), compression_ratio=18.0)
+
+
 def running(name, until, **changes):
     scene = load_scene(name)
     run = replace(scene.run, until=until, every=EVERY)
@@ -49,10 +52,9 @@ def started():
         ),
         Constant(torque=-40.0, after=0.04, until=0.09),
     )
-    polytrope = Polytrope(polytrope=1.32, closes=math.radians(-20.0), compression_ratio=18.0)
     lists = (Misfire(cylinder=2, cycles="2"), Misfire(cylinder=1, cycles="every 2"))
     crank = replace(scene.crank, mass=6.0, center_of_mass=0.01)
-    gas = replace(scene.gas, motored=polytrope)
+    gas = replace(scene.gas, motored=POLYTROPE)
     fuel = Fuel(misfire=lists, until=0.1)
     return replace(scene, crank=crank, torque=loads, gas=gas, fuel=fuel)
 
@@ -85,13 +87,18 @@ def driven(speed):
     return replace(scene, motion=Motion(speed=speed, angle=0.2))
 
 
+def misfiring(scene):
+    fuel = Fuel(misfire=(Misfire(cylinder=2, cycles="1"),), after=0.01)
+    return replace(scene, gas=replace(scene.gas, motored=POLYTROPE), fuel=fuel)
+
+
 SWING = Oscillation(mean=300.0, amplitude=60.0, order=1.5, phase=0.4)
 RISE = Ramp(start=250.0, to=330.0, over=0.02)
 MEASURED_SPEED = SpeedFile(file=Table((0.0, 0.02, 0.05, 0.2), (280.0, 300.0, 260.0, 300.0)))
 
 GUARDS = {
     "swinging": driven(SWING),
-    "rising": driven(RISE),
+    "rising": misfiring(driven(RISE)),
     "measured speed": driven(MEASURED_SPEED),
     "settling": settling(),
     "backwards": backwards(),
