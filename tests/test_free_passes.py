@@ -17,7 +17,7 @@ from crankmbs import (
     load_scene,
     simulate,
 )
-from crankmbs.motion.free import passes
+from crankmbs.motion.free import passes, travel
 
 COASTING, PROPELLER = load_scene("coasting"), load_scene("propeller")
 BOTH = pytest.mark.parametrize("formulation", ["crank_angle", "minimal"])
@@ -139,13 +139,13 @@ def test_tighter_costs_more(load):
 
 def test_a_swing_is_left_to_time(monkeypatch):
     """Eight hand-overs that did not last a period are enough: from then on it must turn one."""
-    pieces, advance = [], passes.crank_angle.advance
+    pieces, advance = [], travel.crank_angle.advance
 
     def counted(*args):
         pieces.append(args)
         return advance(*args)
 
-    monkeypatch.setattr(passes.crank_angle, "advance", counted)
+    monkeypatch.setattr(travel.crank_angle, "advance", counted)
     swing = replace(COASTING, start=at_rest(1.0), run=Run(until="20 s", every="0.1 s", rtol=1e-7))
     result = simulate(swing, formulation="crank_angle")
     assert result.status == 0

@@ -164,14 +164,13 @@ class _Free:
         return state
 
     def _acceleration(self, t: Array, angle: Array, speed: Array) -> Array:
-        inertia, slope, given = reduce(self._train, angle, _fuel_at(self._data, t))
+        shares = _fuel_at(self._data, t)
+        inertia, slope, given = reduce(self._train, angle, shares)
         outside, beside = (np.interp(t, self._time, q) for q in (self._outside, self._beside))
         interval = np.searchsorted(self._time[1:-1], t, side="right")
         torque = torque_at(self._scene.torque, t, angle, speed, self._spans) + beside
         torque = np.where(self._stiff[interval], outside, torque)
-        if self._scene.friction is not None:
-            shares = _fuel_at(self._data, t)
-            given = given + friction_torque(self._train, angle, speed, np.sign(speed), shares)
+        given = given + friction_torque(self._train, angle, speed, np.sign(speed), shares)
         alpha = (given + torque - 0.5 * slope * speed**2) / inertia
         return np.where(self._rests[interval], 0.0, alpha)
 

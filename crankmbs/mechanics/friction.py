@@ -94,13 +94,15 @@ def friction_torque(
     shares: ArrayLike | None = None,
 ) -> Array:
     """Torque of the friction on the crank [N m], at crank angles, speeds and senses of rotation of
-    one shape (...) [rad, rad/s, a sign].
+    one shape (...) [rad, rad/s, a sign]; 0 where nothing rubs.
 
     shares : shape (cylinders,) or (..., cylinders), of the combustion; None leaves it out
 
     >>> float(friction_torque(crank_train(load_scene("coasting")), 1.0, 2.0, 1.0))
-    -0.0
+    0.0
     """
+    if train.scene.friction is None:
+        return np.zeros(np.shape(theta))
     found, more = rubbing(train, theta), 0.0
     if shares is not None and train.combustion is not None:
         more = fired_torque(train, theta) * np.asarray(shares)

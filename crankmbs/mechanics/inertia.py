@@ -76,6 +76,15 @@ class Reduction(NamedTuple):
     slope: Array
     torque: Array
 
+    def rest(self, omega: ArrayLike) -> Array:
+        """Torque that is left to turn the crank where nothing acts from outside [N m], at speeds
+        [rad/s].
+
+        >>> float(reduce(crank_train(load_scene("torque_driven")), 0.0).rest(0.0))
+        0.0
+        """
+        return np.asarray(self.torque - 0.5 * self.slope * np.asarray(omega) ** 2)
+
 
 def inertia_alone(scene: Scene, theta: ArrayLike) -> Array:
     """J at crank angles, shape (...) [rad]; shape (...) [kg m2], exact.

@@ -201,15 +201,12 @@ def _skip(way: _Way, branch: Branch, last: float) -> tuple[State, int]:
 
 def _enter(grid: Grid, state: State) -> tuple[Branch | None, float]:
     """The branch of the loads that the motion enters, and its kinetic energy [J]."""
-    inertia, slope, torque = reduce(grid.train, state.theta, state.mode.shares)
-    torque = torque + grid.outside(np.asarray(state.theta))
-    if grid.train.scene.friction is not None:
-        sense, shares = math.copysign(1.0, state.omega), state.mode.shares or None
-        torque = torque + friction_torque(grid.train, state.theta, state.omega, sense, shares)
-    rest = float(torque - 0.5 * slope * state.omega**2)
-    torques = grid.train.scene.torque
-    branch = branch_at(torques, state[:3], rest, state.mode.loads)
-    return branch, 0.5 * float(inertia) * state.omega**2
+    train, (time, theta, omega, _, mode) = grid.train, state
+    reduction = reduce(train, theta, mode.shares)
+    rest = reduction.rest(omega) + grid.outside(np.asarray(theta))
+    rest += friction_torque(train, theta, omega, math.copysign(1.0, omega), mode.shares or None)
+    branch = branch_at(train.scene.torque, (time, theta, omega), float(rest), mode.loads)
+    return branch, 0.5 * float(reduction.inertia) * omega**2
 
 
 def _solve(way: _Way, loads: Branch | Course) -> Window | None:

@@ -76,7 +76,7 @@ def solve_fired(
         (at, angles, grid.at_decisions[slots], parts),
         law.numbers,
         (kept, shares),
-        (cells.edges, cells.time, cells.torque, cells.slowness),
+        cells.bare,
     )
     modes = _modes(mode, sense, angles, kept[: decided_ + 1], shares)
     of_cells = tuple(zip([0, *at[:decided_].tolist()], modes, strict=True))

@@ -9,46 +9,40 @@ import numpy as np
 from crankmbs.numerics.arrays import Array, Index
 from crankmbs.numerics.kernels import kernel
 
-Coefficients = tuple[float, float, float, float]  # c0, ct, c1, c2 of `crankmbs.mechanics.torque`
 _SETTLED, _GOOD = 1e-14, 1e-11  # relative change of the energy in Newton's last step
 
 
 __all__ = ["affine", "fire", "fired", "newton"]
 
 Loads = tuple[Array, Array, Array, Array]  # the tables of a course of `crankmbs.mechanics.torque`
-_MOST_NEWTON = 20
-_WEAK = (
-    0.01  # of the energy, by the slopes of a cell's loads: without them a step gains two digits,
-)
-_FAST = 0.1  # and if it gains less than one, at kinks, with them
+Solved = tuple[Array, Array, Array, Array]  # edges, time, torque and slowness of cells, filled
+_MOST_NEWTON = 20  # steps; a cell that converges takes 3 to 6 (test_kinks)
+# of the energy, by the slopes of a cell's loads: without them a step gains two digits, and if it
+# gains less than one, at kinks, with them
+_WEAK, _FAST = 0.01, 0.1
 
 
 @kernel
 def affine(
-    which: Index,
+    cells: tuple[Index, Array],
     loads: tuple[Array, Array, Array, Array],
-    maps: tuple[Array, Array, Array, Array],
-    room: Array,
     rule: tuple[Array, Array],
     ends: tuple[float, float, float],
-    width: Array,
-    edges: Array,
-    time: Array,
-    torque: Array,
-    slowness: Array,
+    solved: Solved,
 ) -> int:
-    """Solve cells by affine maps, up to the end in time; fill what follows ``width``, count them.
+    """Solve cells by affine maps, up to the end in time; count them.
 
-    which : row of the loads for every cell; loads : signed width, and push, rate and inertia at the
-    nodes, as `crankmbs.numerics.collocation.Rule.maps` takes them; maps : filled with what it
-    gives; room : shape (s, s + 2); rule : matrix and weights; ends : energy and time at the start,
-    last time
+    cells : row of the loads for every one, and its width; loads : signed width, and push, rate and
+    inertia at the nodes, as `crankmbs.numerics.collocation.Rule.maps` takes them; rule : matrix and
+    weights; ends : energy and time at the start, last time
     """
-    signed, push, rate, inertia = loads
+    (which, width), (signed, push, rate, inertia) = cells, loads
     (matrix, weights), (energy, t, t_end) = rule, ends
-    gain, shift, growth, rise = maps
+    edges, time, torque, slowness = solved
     s = len(weights)
-    system, both = room[:, :s], room[:, s:]
+    gain, shift = np.empty(push.shape), np.empty(push.shape)
+    growth, rise = np.empty(len(signed)), np.empty(len(signed))
+    system, both = np.empty((s, s)), np.empty((s, 2))
     for c in range(len(signed)):
         h, growth[c], rise[c] = signed[c], 0.0, 0.0
         for j in range(len(weights)):
@@ -90,12 +84,9 @@ def newton(
     start: tuple[float, float, float],
     rule: tuple[Array, Array],
     cells: tuple[Array, Array, Array, Array],
-    edges: Array,
-    time: Array,
-    torque: Array,
-    slowness: Array,
+    solved: Solved,
 ) -> int:
-    """Solve cells by Newton's method, to the end of the loads' course; fill what follows ``cells``.
+    """Solve cells by Newton's method, to the end of the loads' course.
 
     loads : their tables; bounds : their end in time, lowest and highest speed; start : energy, time
     and sense; rule : matrix and weights; cells : width, and inertia, torque and, if there is any,
@@ -109,6 +100,7 @@ def newton(
     begin, t, sense = start
     matrix, weights = rule
     width, inertia, rest, drag = cells
+    edges, time, torque, slowness = solved
     energy, room = np.empty(len(weights)), np.empty((len(weights) + 1, len(weights)))
     steps = np.empty(matrix.shape)
     row = np.zeros(2, np.intp)
@@ -233,7 +225,7 @@ def fired(
     decisions: tuple[Index, Array, Array, Array],
     law: tuple[float, ...],
     decided: tuple[Array, Array],
-    solved: tuple[Array, Array, Array, Array],
+    solved: Solved,
 ) -> tuple[int, int]:
     """Solve cells as `affine` or `newton` do, from decision to decision on the fuel; count both.
 
@@ -244,7 +236,6 @@ def fired(
     law : as `crankmbs.mechanics.firing.FuelLaw.numbers` gives it
     decided : time, angle, integral, speed where the fuel set in or NaN, and 1 where it is over; and
     the shares; of the last decision and, filled, of the next ones
-    solved : edges, time, torque and slowness, filled
     """
     (width, inertia, rest, drag), (edges, time, torque, slowness) = cells, solved
     combustion, rubbed, against = of_gas
@@ -265,15 +256,12 @@ def fired(
         fire(push, combustion[k:m], rubbed[k:m], against, shares[n])
         out = stretch, time[k : m + 1], torque[k:m], slowness[k:m]
         if affinely:
-            s, begin = len(rule[1]), (edges[k], time[k], t_end)
+            begin = (edges[k], time[k], t_end)
             of_loads = (sense * h, push + loads[1][0, 0], 2.0 * loads[3][0, 2] / inside, inside)
-            maps = (np.empty((m - k, s)), np.empty((m - k, s)), np.empty(m - k), np.empty(m - k))
-            found = affine(
-                np.arange(m - k), of_loads, maps, np.empty((s, s + 2)), rule, begin, h, *out
-            )
+            found = affine((np.arange(m - k), h), of_loads, rule, begin, out)
         else:
             now = (edges[k], time[k], sense)
-            found = newton(loads, bounds, now, rule, (h, inside, push, drag[k:m]), *out)
+            found = newton(loads, bounds, now, rule, (h, inside, push, drag[k:m]), out)
         k += found
         if k < m or not edges[k] > 0.0 or time[k] >= t_end:
             break

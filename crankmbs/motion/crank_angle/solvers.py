@@ -34,6 +34,11 @@ class Cells(NamedTuple):
     torque: Array
     slowness: Array
 
+    @property
+    def bare(self) -> tuple[Array, Array, Array, Array]:
+        """As a loop takes them."""
+        return self.edges, self.time, self.torque, self.slowness
+
     @staticmethod
     def empty(strip: Strip) -> Cells:
         """Room for the answer of a loop."""
@@ -60,9 +65,7 @@ def solve_affine(grid: Grid, strip: Strip, branch: Branch, begin: Begin) -> Cell
     rate, signed = 2.0 * branch.c2 / inertia, begin.sense * strip.width[which]
     cells, rule = Cells.empty(strip), (grid.rule.matrix, grid.rule.weights)
     loads, ends = (signed, push, rate, inertia), begin[1:4]
-    maps = (*np.empty((2, *push.shape)), *np.empty((2, len(push))))
-    room = np.empty((push.shape[1], push.shape[1] + 2))
-    return cells.first(loops.affine(again, loads, maps, room, rule, ends, strip.width, *cells))
+    return cells.first(loops.affine((again, strip.width), loads, rule, ends, cells.bare))
 
 
 def solve_newton(grid: Grid, strip: Strip, loads: Branch | Course, begin: Begin) -> Cells:
@@ -72,4 +75,4 @@ def solve_newton(grid: Grid, strip: Strip, loads: Branch | Course, begin: Begin)
     bounds = (t_end, loads.omega_low, loads.omega_high)
     tables = (strip.width, strip.inertia, strip.torque, strip.drag)
     at, gauss = (start, t0, sense), (grid.rule.matrix, grid.rule.weights)
-    return cells.first(loops.newton(loads.tables, bounds, at, gauss, tables, *cells))
+    return cells.first(loops.newton(loads.tables, bounds, at, gauss, tables, cells.bare))

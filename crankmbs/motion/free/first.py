@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 
@@ -19,12 +20,13 @@ def first_sample(grid: Grid, state: State) -> Samples:
     """The sample at a state. A crank at rest has the acceleration with which it sets out, and the
     friction that resists it; where friction holds it, none, and the friction that it takes."""
     train, shares, (time, theta, omega, *_) = grid.train, state.mode.shares, state
-    inertia, slope, torque = reduce(train, theta, shares)
+    reduction = reduce(train, theta, shares)
     of_angle = float(grid.at(state.mode.loads).outside(np.asarray(theta)))
-    rest = float(torque - 0.5 * slope * omega**2) + of_angle
+    rest = float(reduction.rest(omega)) + of_angle
     torques, phases = train.scene.torque, state.mode.loads
+    rub = partial(friction_torque, train, theta, omega, shares=shares or None)
     sliding = math.copysign(1.0, omega) if omega else 0.0
-    rubbed = _friction(grid, state, sliding)
+    rubbed = float(rub(sliding))
     branch = branch_at(torques, state[:3], rest + rubbed, phases)
     held = branch is None and omega == 0.0
     branch = branch or branch_of(torques, time, omega, rising=True, phases=phases)
@@ -36,22 +38,14 @@ def first_sample(grid: Grid, state: State) -> Samples:
         if omega == 0.0:
             share = float(held_share(train, theta, rest + outside, shares))
             sliding = min(max(share, -1.0), 1.0)
-            rubbed = -(rest + outside) if abs(share) <= 1.0 else _friction(grid, state, sliding)
+            rubbed = -(rest + outside) if abs(share) <= 1.0 else float(rub(sliding))
         motion = np.array([theta]), np.array([omega]), own.get("fuel")
         own["friction_force"] = friction_forces(train, *motion, np.array([sliding]))
     return Samples(
         time=np.array([time]),
         theta=np.array([theta]),
         omega=np.array([omega]),
-        alpha=np.array([(rest + outside + rubbed) / float(inertia)]),
+        alpha=np.array([(rest + outside + rubbed) / float(reduction.inertia)]),
         energy_residual=np.zeros(1),
         own={"external_torque": np.array([outside + of_angle]), **own},
     )
-
-
-def _friction(grid: Grid, state: State, sense: float) -> float:
-    """Torque of the friction on the crank [N m] that slides in a sense."""
-    if grid.train.scene.friction is None:
-        return 0.0
-    shares = state.mode.shares or None
-    return float(friction_torque(grid.train, state.theta, state.omega, sense, shares))

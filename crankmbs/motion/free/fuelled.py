@@ -19,8 +19,8 @@ from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion.base import Decay, State
 from crankmbs.motion.crank_angle.grid import Grid
 from crankmbs.motion.ending import Ending
-from crankmbs.motion.free.passes import Way, travel
 from crankmbs.motion.free.section import LostError
+from crankmbs.motion.free.travel import Way, travel
 from crankmbs.motion.mode import Mode, begun, decided
 from crankmbs.motion.plan import plan_of
 from crankmbs.numerics.arrays import Array

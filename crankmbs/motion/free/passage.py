@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Callable, Generator
+from typing import TypeVar
 
 import numpy as np
 
@@ -12,12 +13,12 @@ from crankmbs.motion.base import Piece, Samples, State
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.plan import Plan
 
-__all__ = ["Passage", "Pieces", "Watch"]
+__all__ = ["Passage", "Watch"]
 
 _VAIN = 20  # as many reversals that reach no farther, and the end is not coming
 _SAMPLE = 200  # evaluations as costly as a sample of a swing
 
-Pieces = Generator[Piece, None, Ending | None]
+AnyPiece = TypeVar("AnyPiece", bound=Piece)
 Watch = Callable[[Piece], None]
 
 
@@ -39,14 +40,25 @@ class Passage:
         self._tail: deque[Piece] = deque()
         self.reversals = self.steps = self.evaluations = 0
 
-    def follow(self, pieces: Pieces, *, over_time: bool) -> Ending | None:
-        """Add every piece; return how the motion ends, None where it goes on otherwise."""
+    def follow(
+        self,
+        pieces: Generator[AnyPiece, None, Ending | None],
+        *,
+        over_time: bool,
+        note: Callable[[AnyPiece], None] | None = None,
+    ) -> Ending | None:
+        """Add every piece; return how the motion ends, None where it goes on otherwise.
+
+        note : is shown every piece before
+        """
         while True:
             try:
                 piece = next(pieces)
             except StopIteration as stop:
                 ending: Ending | None = stop.value
                 return ending
+            if note is not None:
+                note(piece)
             count = self._count
             self._add(piece)
             self.left -= piece.evaluations if over_time else 0

@@ -1,59 +1,46 @@
-"""A free motion from start to end, and its error: solved twice, refined until what is asked is met.
-
-The crank angle carries the motion wherever the crank turns fast enough; time carries it across
-rest and reversal. This is where the one hands over to the other.
-"""
+"""A free motion and its error: passed through twice, refined until what is asked is met."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Generator
 from dataclasses import replace
-from functools import cache, partial
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crankmbs.mechanics.torque import Branch
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.variables import VARIABLES
-from crankmbs.motion.assemble import ANGLE_ROUNDING, Assembled, assemble
-from crankmbs.motion.base import Samples, Solution, State
-from crankmbs.motion.crank_angle import advance as crank_angle
+from crankmbs.motion.assemble import Assembled, assemble
+from crankmbs.motion.base import Solution
 from crankmbs.motion.crank_angle.grid import Grid, grid_of
-from crankmbs.motion.crank_angle.window import Window
 from crankmbs.motion.ending import Ending
-from crankmbs.motion.free.first import first_sample
 from crankmbs.motion.free.matching import match, stays
-from crankmbs.motion.free.passage import Passage, Pieces, Watch
 from crankmbs.motion.free.recount import Leg, recount
-from crankmbs.motion.minimal import advance as minimal
-from crankmbs.motion.minimal.reduced import Reduced
-from crankmbs.motion.mode import begun
-from crankmbs.motion.plan import Plan, plan_of
+from crankmbs.motion.free.travel import (
+    FINEST_STEP,
+    Begin,
+    Pass,
+    Way,
+    begin_at_start,
+    travel,
+)
+from crankmbs.motion.plan import plan_of
 from crankmbs.motion.remarks import left_open
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.collocation import gauss
 from crankmbs.scene.scene import Scene
 
-__all__ = ["Begin", "Lead", "Pass", "Trail", "Way", "begin_at_start", "run", "travel"]
-
-Begin = Callable[[Grid, float], State]
+__all__ = ["Lead", "evaluations", "first_grid", "run"]
 
 _PASSES = 12
-_VAIN = 8  # after as many vain hand-overs the crank must turn through a period before the next
-_FAST = (2.0, 8.0)  # as many times as fast as need be either pass takes over: the better one later
-# what either pass may miss at kinks of the loads: of the local tolerance, and at most
-_KINKS, _MOST_MISSED = 0.2, (math.inf, 1e-11)
-_ROAMING = 3.0  # of a step's tolerance: what it may miss of the largest torque across knots
 _EVALUATIONS = 2_000_000  # over time, for which a second of the cost cap stands: as measured
 _OF_FUNCTIONS = 30_000  # the same where loads are functions of Python
 _PLACES = np.array([0.225, 0.725])  # of new edges in a cell: an old edge is then at 0.55 of a new
 # cell, where no Gauss rule of few nodes takes a jump to be
 _MOST_CELLS = 20_000
 _FINEST = 3e-14  # what rounding leaves of a cell
-_FINEST_STEP = 1e-15  # the same over time
 # what a pass may say that has not seen yet, or by its errors never, that the crank is at rest
 _RESTING = {Ending.REST, Ending.SWING, Ending.COMPLETE}
 _BROKEN = (Ending.COSTLY, Ending.FAILED)
@@ -66,49 +53,6 @@ class Lead(NamedTuple):
     grid: Grid
     local: float
     begin: Begin
-
-
-class Way(NamedTuple):
-    """What a pass follows: from where, sampled how, and the evaluations over time it may take.
-
-    watch : is shown every piece, of which then only the last is kept
-    """
-
-    begin: Begin
-    plan: Plan
-    allowed: int
-    watch: Watch | None = None
-
-
-class Trail(NamedTuple):
-    """Where a pass begins, the one sample there, and the spans of time [s] that the crank angle
-    carries."""
-
-    state: State
-    begin: Samples
-    fast: tuple[tuple[float, float], ...]
-
-
-class Pass(NamedTuple):
-    """One pass over the whole motion.
-
-    local : shape (2, cells), errors at ends and inside
-    slow : times [s] where time took over
-    """
-
-    trail: Trail
-    samples: Samples
-    ending: Ending
-    path: Passage
-    local: Array
-    slow: list[float]
-
-
-def begin_at_start(grid: Grid, _: float) -> State:
-    """The state in which the scene starts."""
-    start = grid.train.scene.start
-    assert start is not None
-    return State(0.0, start.angle, start.speed, 0.0, begun(grid.train))
 
 
 def first_grid(train: CrankTrain, rtol: float) -> Grid:
@@ -145,7 +89,7 @@ def run(
     functions = _has_functions(train)
     best: Assembled | None = None
     least, rounded = math.inf, False
-    finest = _FINEST if by_angle else 100.0 * _FINEST_STEP
+    finest = _FINEST if by_angle else 100.0 * FINEST_STEP
     local = max(local, finest)
     for left in reversed(range(_PASSES)):
         answer = travel(grid, way, local, by_angle=by_angle)
@@ -201,80 +145,6 @@ def _stated_twice(by_order: Assembled, by_place: Assembled) -> Assembled:
     larger = {name: max(e, by_place.errors[name]) for name, e in by_order.errors.items()}
     answer = by_place if by_place.solution.status < by_order.solution.status else by_order
     return answer._replace(errors={name: 2.0 * error for name, error in larger.items()})
-
-
-def travel(
-    grid: Grid, way: Way, local: float, *, by_angle: bool, first: Trail | None = None
-) -> Pass:
-    """One pass from start to end, handing over between the formulations near rest; a second one
-    betters the ``first``."""
-    scene, plan = grid.train.scene, way.plan
-    state = begun_in = way.begin(grid, local)
-    steady = all(load.is_steady for load in scene.torque) and grid.train.law is None
-    steady = steady and not _sticks(scene)
-    same = first is not None and first.begin.omega[0] == state.omega
-    begin = first.begin if first and same else first_sample(grid, state)
-    kept = plan if way.watch is None else replace(plan, last=0.0)
-    path = Passage(kept, begin, can_swing=steady, allowed=way.allowed, watch=way.watch)
-    if first:  # it begins a rounding ahead: so the difference knows what the motion makes of one
-        ahead = math.copysign(ANGLE_ROUNDING * state.theta, state.omega or float(begin.alpha[0]))
-        state = state._replace(theta=state.theta + ahead)
-    tolerance = max(0.01 * local, _FINEST_STEP)
-    roaming = partial(Reduced, grid.train, _ROAMING * tolerance)
-    reduced = cache(roaming)  # where the crank angle serves only near rest is it needed
-    worst = np.zeros((2, len(grid.edges) - 1))
-    fast: list[tuple[float, float]] = []
-    slow: list[float] = []
-
-    kinks = max(min(_KINKS * local, _MOST_MISSED[grid.checks]), _FINEST_STEP)
-    vain = 0  # hand-overs to the crank angle that did not carry the motion through a period
-
-    def is_fast(at: State, branch: Branch) -> bool:
-        swings = abs(at.theta - path.turned_back) < min(vain / _VAIN, 1.0) * scene.period
-        # the grid is as fine as it must be where the first pass used it, and only there
-        usable = first is None or any(since <= at.time < end for since, end in first.fast)
-        may = by_angle and at.omega != 0.0 and not swings and usable
-        return may and crank_angle.is_fast(grid, at, branch, _FAST[first is not None])
-
-    ending, over_time = None, not by_angle or state.omega == 0.0
-    while ending is None:
-        at = path.state or state
-        if over_time:
-            effort = minimal.Effort(tolerance, 2 if grid.checks else 1, path.left)
-            slow.append(at.time)
-            pieces = minimal.advance(reduced(), at, plan, effort, is_fast)
-            ending = path.follow(pieces, over_time=True)
-        else:
-            windows = crank_angle.advance(grid, at, plan, kinks)
-            noted = _noted(windows, worst) if first is None else windows
-            ending = path.follow(noted, over_time=False)
-            now = path.state or state
-            fast.append((at.time, now.time))
-            vain += bool(slow) and abs(now.theta - at.theta) < scene.period
-        over_time = not over_time
-    if ending is Ending.COMPLETE and plan.folds_at((path.state or state).theta):
-        ending = Ending.FOLD
-    trail = Trail(begun_in, begin, tuple(fast))
-    return Pass(trail, path.samples(), ending, path, worst, slow if by_angle else [])
-
-
-def _sticks(scene: Scene) -> bool:
-    """Whether friction brings a swing to rest."""
-    friction = scene.friction
-    return friction is not None and friction.ring_force + friction.ring_pressure > 0.0
-
-
-def _noted(windows: Generator[Window, None, Ending | None], worst: Array) -> Pieces:
-    """The windows as they come; their cells' largest errors so far go into ``worst``."""
-    while True:
-        try:
-            window = next(windows)
-        except StopIteration as stop:
-            ending: Ending | None = stop.value
-            return ending
-        for row, error in zip(worst, window.relative_errors, strict=True):
-            np.maximum.at(row, window.strip.cell, error)
-        yield window
 
 
 def _parts(grid: Grid, worst: Array, local: float) -> NDArray[np.intp]:

@@ -17,7 +17,7 @@ from crankmbs.motion.observer import Observer, account_of
 from crankmbs.numerics.arrays import Array
 
 if TYPE_CHECKING:
-    from crankmbs.motion.free.passes import Pass, Trail, Way
+    from crankmbs.motion.free.travel import Pass, Trail, Way
 
 __all__ = ["Leg", "recount"]
 

@@ -23,7 +23,7 @@ from crankmbs.motion.base import State
 from crankmbs.motion.crank_angle.grid import Grid
 from crankmbs.motion.crank_angle.periods import Period, period_of
 from crankmbs.motion.ending import Ending
-from crankmbs.motion.free.passes import Way, travel
+from crankmbs.motion.free.travel import Way, travel
 from crankmbs.motion.plan import plan_of
 from crankmbs.numerics.arrays import Array
 

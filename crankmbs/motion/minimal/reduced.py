@@ -19,7 +19,7 @@ from crankmbs.mechanics.torque import knots_over_angle, over_angle
 from crankmbs.mechanics.train import CrankTrain, crank_angle_knots, merged_knots
 from crankmbs.mechanics.windows import Phases
 from crankmbs.motion.minimal import stepper
-from crankmbs.motion.minimal.system import Machine, bare
+from crankmbs.motion.minimal.system import Gas, Knots, Machine, Masses, OverAngle, Rubbing, bare
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.cycle import NEAR
 from crankmbs.scene.parts import Friction
@@ -68,34 +68,32 @@ class Reduced:
         pressures = pressure or ()
         ends = np.cumsum([0, *(len(each.knots) for each in pressures)])
         machine = Machine(
-            radius=crank.radius,
-            rod_length=rod.length,
-            center_of_mass=rod.center_of_mass,
-            offset=piston.offset,
-            crank_inertia=crank.moment_of_inertia,
-            rod_inertia=rod.moment_of_inertia,
-            rod_mass=rod.mass,
-            piston_mass=piston.mass,
-            area=piston.gas_area or 0.0,
-            first_moment=crank.mass * crank.center_of_mass,
-            gravity_x=g * math.cos(pull),
-            gravity_y=g * math.sin(pull),
-            cylinders=np.array(axes),
-            knots=knots,
-            period=train.period,
-            places=np.column_stack([ends[:-1], ends[1:]]),
-            starts=np.concatenate(
-                [np.empty(0), *(each.knots - each.knots[0] for each in pressures)]
+            lengths=(crank.radius, rod.length, rod.center_of_mass, piston.offset),
+            masses=Masses(
+                crank_inertia=crank.moment_of_inertia,
+                rod_inertia=rod.moment_of_inertia,
+                rod=rod.mass,
+                piston=piston.mass,
+                first_moment=crank.mass * crank.center_of_mass,
             ),
-            coefficients=_side_by_side([p.coefficients for p in pressures]),
-            bends=bends,
-            combustion=_side_by_side([p.coefficients for p in train.combustion or ()]),
-            load_first=float(load.knots[0]) if load else 0.0,
-            load_starts=load.knots - load.knots[0] if load else np.empty(0),
-            load_coefficients=load.coefficients.copy() if load else np.empty((4, 0)),
-            ring_force=friction.ring_force,
-            ring_pressure=friction.ring_pressure,
-            viscous=friction.viscous,
+            gravity=(g * math.cos(pull), g * math.sin(pull)),
+            cylinders=np.array(axes),
+            knots=Knots(knots, bends, train.period),
+            gas=Gas(
+                area=piston.gas_area or 0.0,
+                places=np.column_stack([ends[:-1], ends[1:]]),
+                starts=np.concatenate(
+                    [np.empty(0), *(each.knots - each.knots[0] for each in pressures)]
+                ),
+                coefficients=_side_by_side([p.coefficients for p in pressures]),
+                combustion=_side_by_side([p.coefficients for p in train.combustion or ()]),
+            ),
+            over_angle=OverAngle(
+                first=float(load.knots[0]) if load else 0.0,
+                starts=load.knots - load.knots[0] if load else np.empty(0),
+                coefficients=load.coefficients.copy() if load else np.empty((4, 0)),
+            ),
+            friction=Rubbing(friction.ring_force, friction.ring_pressure, friction.viscous),
         )
         self.machine = bare(machine)
 
@@ -120,10 +118,10 @@ class Reduced:
             return self
         if self._last is None or self._last[0] != shares:
             again, machine = copy(self), Machine(*self.machine)
-            knots = np.append(machine.knots, sign_changes(self.train, shares))
-            knots = np.unique(knots)
+            every, _, period = machine.knots
+            knots = np.unique(np.append(every, sign_changes(self.train, shares)))
             knots = knots[np.append(True, np.diff(knots) > NEAR)]
-            again.machine = bare(machine._replace(knots=knots, bends=knots))
+            again.machine = bare(machine._replace(knots=Knots(knots, knots, period)))
             self._last = shares, again
         return self._last[1]
 
@@ -159,11 +157,9 @@ class Reduced:
         angles = 0.1 + np.linspace(0.0, period, count)  # no fold lies there
         share = self.train.law.most if self.train.law else 0.0
         shares = np.full(len(self.train.scene.cylinders), share)
-        torque = reduce(self.train, angles, shares).torque
-        most = np.abs(torque)
-        if self.train.scene.friction is not None:
-            most = most - friction_torque(self.train, angles, 0.0, 1.0, shares)
-        return load + float(np.max(most))
+        most = np.abs(reduce(self.train, angles, shares).torque)
+        rubbed = friction_torque(self.train, angles, 0.0, 1.0, shares)
+        return load + float(np.max(most - rubbed))
 
     def __call__(self, theta: float, pieces: Array) -> tuple[float, float, float]:
         """J [kg m2], dJ/dtheta [kg m2/rad], torque over the angle [N m]."""

@@ -41,12 +41,13 @@ def enter(theta: float, sense: float, machine: Machine, pieces: Array) -> tuple[
         combustion; and the signs that friction keeps there, of the sense of rotation times that of
         dx/dtheta, and of the gas force. With loads over the crank angle one row more [N m]
     """
-    base, low, high = _beside(machine[13], theta + sense * _PASSED, machine[14])
-    for j in range(0 if len(machine[16]) > 0 else len(machine[12]), len(pieces)):
+    _, _, _, cylinders, (knots, _, period), gas, _, friction = machine
+    base, low, high = _beside(knots, theta + sense * _PASSED, period)
+    for j in range(0 if len(gas[2]) > 0 else len(cylinders), len(pieces)):
         _fill(j, base, 0.5 * (low + high), machine, pieces)
         pieces[j, 5] = 0.0
-    if machine[23] > 0.0 or machine[24] > 0.0:
-        for j in range(len(machine[12])):
+    if friction[0] > 0.0 or friction[1] > 0.0:
+        for j in range(len(cylinders)):
             _rub(j, base + 0.5 * (low + high), sense, machine, pieces)
     return base + low, base + high
 
@@ -54,7 +55,8 @@ def enter(theta: float, sense: float, machine: Machine, pieces: Array) -> tuple[
 @kernel
 def _rub(j: int, theta: float, sense: float, machine: Machine, pieces: Array) -> None:
     """Put the signs that friction keeps, as they are at an angle, into row j of ``pieces``."""
-    r, l, e, phi = machine[0], machine[1], machine[3], theta + float(machine[12][j, 0])
+    (r, l, _, e), _, _, cylinders, _, _, _, _ = machine
+    phi = theta + float(cylinders[j, 0])
     sin_b = (r * math.sin(phi) - e) / l
     rise = -math.sin(phi) * math.sqrt(1.0 - sin_b * sin_b) - math.cos(phi) * sin_b
     pieces[j, 7] = math.copysign(sense, sense * rise)
@@ -79,15 +81,16 @@ def _beside(knots: Array, theta: float, period: float) -> tuple[float, float, fl
 @kernel
 def _fill(j: int, base: float, local: float, machine: Machine, pieces: Array) -> None:
     """Put the cubic of row j at the crank angle base + local into ``pieces``, to its end."""
-    cylinders, _, _, places, all_starts, coefficients = machine[12:18]
-    combustion, fires = machine[19], j < len(cylinders) and machine[19].shape[1] > 0
+    _, _, _, cylinders, _, gas, over_angle, _ = machine
+    _, places, all_starts, coefficients, combustion = gas
+    fires = j < len(cylinders) and combustion.shape[1] > 0
     if j < len(cylinders):
         begin, end = places[j, 0], places[j, 1]
         starts = all_starts[begin:end]
         within = (local + cylinders[j, 0] - cylinders[j, 3]) % starts[-1]
     else:
         begin = 0
-        first, starts, coefficients = machine[20:23]
+        first, starts, coefficients = over_angle
         within = (local - first) % starts[-1]
     i = min(_passed(starts, within), len(starts) - 1) - 1
     pieces[j, 0] = base + local - (within - starts[i])
@@ -109,7 +112,8 @@ def _roam(y: Array, h: float, machine: Machine, pieces: Array, limits: Array, ro
         return False
     for j in range(len(pieces)):
         _fill(j, 0.0, theta, machine, pieces)
-    base, low, high = _beside(machine[18], theta + sense * _PASSED, machine[14])
+    _, bends, period = machine[4]
+    base, low, high = _beside(bends, theta + sense * _PASSED, period)
     limits[0], limits[1] = base + low, base + high
     return True
 
@@ -128,9 +132,10 @@ def _passed(knots: Array, value: float) -> int:
 def reduced(theta: float, machine: Machine, pieces: Array) -> tuple[float, float, float, float]:
     """J [kg m2], dJ/dtheta [kg m2/rad], torque of gas, gravity, loads over the angle and friction
     without the viscous [N m], of which the last is the torque per speed [N m s/rad]."""
-    r, l, a, e, i_crank, i_rod, m_rod, m_piston, area, unbalance, gx, gy, cylinders = machine[:13]
+    (r, l, a, e), masses, (gx, gy), cylinders, _, (area, _, _, _, _), _, friction = machine
+    i_crank, i_rod, m_rod, m_piston, unbalance = masses
     spare, far = max(l - r - abs(e), 0.0), abs(e)
-    (ring_force, pressed, viscous), drag = machine[23:26], 0.0
+    (ring_force, pressed, viscous), drag = friction, 0.0
     inertia, slope = i_crank, 0.0
     torque = unbalance * (gy * math.cos(theta) - gx * math.sin(theta))
     for j in range(len(cylinders)):
@@ -407,12 +412,13 @@ def travel(
     """
     (tolerance, speed, t_bound, parts), (t, h, most), (begins, widths, rows) = control, start, steps
     k, new, (machine, pieces, load) = np.empty((22, 3)), np.empty(3), system
+    _, _, _, _, (knots, bends, _), _, _, _ = machine
     n, evaluations, roams, short = 0, 1, False, math.inf
     slopes(t, y, system, k[0])
     while n + parts <= len(widths):
         least, refused = 2e-15 * t, False
         h = max(h, least)
-        if len(machine[18]) < len(machine[13]):
+        if len(bends) < len(knots):
             roams = _roam(y, h, machine, pieces, limits, roams)
             h = min(h, _FAR / abs(y[1])) if roams else h
         ahead, i = _reach(y, k[0], limits)
