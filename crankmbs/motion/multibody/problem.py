@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -11,6 +12,7 @@ from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion.multibody.gas import GasForces
 from crankmbs.motion.plan import Plan, plan_of
 from crankmbs.motion.prescribed import monotone_stretches
+from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 
 __all__ = ["Problem", "erratic_order", "jump_times", "kink_times", "problem_of"]
@@ -68,7 +70,7 @@ def jump_times(problem: Problem) -> list[float]:
             times |= set(load.parts.over_time.jumps)
         times |= {end for end in (load.after, load.until) if end is not None}
     if problem.law is not None:
-        corners = problem.law.corners(0.0, problem.end)
+        corners = _corners(problem.law, problem.end)
         beside = corners * np.array([[1.0 - 1e-9], [1.0 + 1e-9]])
         before, after = problem.law.at_time(beside)[2]
         between = 0.5 * (corners[1:] + corners[:-1])  # at a corner it may be 0
@@ -96,13 +98,18 @@ def erratic_order(problem: Problem) -> int:
     prescribed motion.
     """
     if problem.law is not None:
-        corners = problem.law.corners(0.0, problem.end).tolist()
+        corners = _corners(problem.law, problem.end).tolist()
         return 2 if set(corners) - set(jump_times(problem)) else 3
     parts = (load.parts.over_angle for load in problem.scene.torque)
     over_angle = min((part.order for part in parts if part is not None), default=3)
     if any(load.parts.function is not None for load in problem.scene.torque):
         return 1  # nobody says whether it jumps
     return min(problem.gas.order, over_angle, 2 if len(_row_times(problem)) > _MOST_KINKS else 3)
+
+
+def _corners(law: SpeedLaw, end: float) -> Array:
+    """Times [s] of the corners up to an end, and at it: there too the right-hand limit counts."""
+    return law.corners(0.0, math.nextafter(end, math.inf))
 
 
 def _row_times(problem: Problem) -> list[float]:
