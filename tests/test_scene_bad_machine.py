@@ -3,7 +3,10 @@
 import pytest
 from scene_texts import FREE, edited, refusal
 
-KEYS = "crank, rod, piston, run, layout, gas, fuel, gravity, friction, motion, start, torque, title, source"
+KEYS = (
+    "crank, rod, piston, run, layout, gas, fuel, gravity, friction, motion, start, torque, title, "
+    "source"
+)
 
 
 @pytest.mark.parametrize(
