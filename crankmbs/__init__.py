@@ -25,7 +25,8 @@ from crankmbs.scene.loads import AngleTable, Constant, Quadratic, SpeedTable, Ti
 from crankmbs.scene.parts import Crank, Cylinder, Gravity, Layout, Piston, Rod
 from crankmbs.scene.python_load import Load
 from crankmbs.scene.read import load_scene, shipped_scenes
-from crankmbs.scene.scene import Extent, Run, Scene
+from crankmbs.scene.run import Extent, Run
+from crankmbs.scene.scene import Scene
 from crankmbs.scene.tables import CylinderTable, Table
 from crankmbs.simulate import simulate
 

@@ -10,7 +10,7 @@ import pytest
 from crankmbs.compare.confirm import differences
 from crankmbs.result import Result
 from crankmbs.scene.read import load_scene
-from crankmbs.scene.scene import Run
+from crankmbs.scene.run import Run
 from crankmbs.simulate import simulate
 
 

@@ -19,7 +19,8 @@ from crankmbs.scene.drives import Start
 from crankmbs.scene.fuel import Fuel
 from crankmbs.scene.loads import Constant, TimeTable
 from crankmbs.scene.parts import Crank, Friction, Piston, Rod
-from crankmbs.scene.scene import Extent, Run, Scene
+from crankmbs.scene.run import Extent, Run
+from crankmbs.scene.scene import Scene
 from crankmbs.scene.tables import Table
 
 R, L, E, J = 0.04, 0.13, 0.006, 0.05

@@ -13,7 +13,7 @@ from crankmbs.mechanics.inertia import reduce
 from crankmbs.mechanics.pressure import pressures_of
 from crankmbs.mechanics.reactions import reactions
 from crankmbs.mechanics.train import CrankTrain, crank_train
-from crankmbs.scene.scene import Extent
+from crankmbs.scene.run import Extent
 from validation.random_scenes import random_scene
 
 SEEDS = st.integers(0, 10_000)

@@ -13,7 +13,8 @@ from crankmbs.result import Result
 from crankmbs.scene.drives import Motion, Oscillation, Ramp, Start
 from crankmbs.scene.parts import Cylinder, Gravity, Layout
 from crankmbs.scene.read import load_scene
-from crankmbs.scene.scene import Extent, Run, Scene
+from crankmbs.scene.run import Extent, Run
+from crankmbs.scene.scene import Scene
 from crankmbs.simulate import simulate
 from validation.adapter import at_jumps, reference_motion, reference_variables
 

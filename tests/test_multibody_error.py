@@ -14,7 +14,7 @@ from crankmbs.motion.multibody.error import Convergence
 from crankmbs.motion.multibody.held import held_by
 from crankmbs.motion.multibody.problem import problem_of
 from crankmbs.scene.read import load_scene
-from crankmbs.scene.scene import Run
+from crankmbs.scene.run import Run
 
 X = np.linspace(0.0, 3.0, 50)
 EXACT = np.sin(X)

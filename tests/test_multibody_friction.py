@@ -9,7 +9,7 @@ from crankmbs import FormulationError, load_scene, simulate
 from crankmbs.scene.drives import Start
 from crankmbs.scene.loads import TimeTable
 from crankmbs.scene.parts import Friction
-from crankmbs.scene.scene import Run
+from crankmbs.scene.run import Run
 from crankmbs.scene.tables import Table
 
 ALL = Friction(ring_force=40.0, ring_pressure=0.02, viscous=30.0)

@@ -12,7 +12,8 @@ from crankmbs.result import Result
 from crankmbs.scene.drives import Start
 from crankmbs.scene.loads import Constant, TimeTable, Viscous
 from crankmbs.scene.read import load_scene
-from crankmbs.scene.scene import Extent, Run, Scene
+from crankmbs.scene.run import Extent, Run
+from crankmbs.scene.scene import Scene
 from crankmbs.scene.tables import Table
 from crankmbs.simulate import simulate
 

@@ -17,7 +17,8 @@ from crankmbs.scene.drives import Motion, SpeedFile, Start
 from crankmbs.scene.gas import Gas
 from crankmbs.scene.loads import TimeTable, Viscous
 from crankmbs.scene.read import load_scene
-from crankmbs.scene.scene import Run, Scene
+from crankmbs.scene.run import Run
+from crankmbs.scene.scene import Scene
 from crankmbs.scene.tables import Table
 from crankmbs.scene.torque import Torque
 from crankmbs.simulate import simulate

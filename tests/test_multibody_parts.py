@@ -25,7 +25,7 @@ from crankmbs.motion.multibody.taylor import taylor
 from crankmbs.scene.loads import Constant, Quadratic, SpeedTable, TimeTable, Viscous
 from crankmbs.scene.parts import Cylinder, Layout
 from crankmbs.scene.read import load_scene
-from crankmbs.scene.scene import Run
+from crankmbs.scene.run import Run
 from crankmbs.scene.tables import Table
 
 COASTING = load_scene("coasting")

@@ -10,7 +10,8 @@ from typing import Any
 
 from crankmbs.scene.drives import Motion, Start
 from crankmbs.scene.read import load_scene
-from crankmbs.scene.scene import Extent, Scene
+from crankmbs.scene.run import Extent
+from crankmbs.scene.scene import Scene
 
 __all__ = ["CASES", "Case", "Mutant", "driven", "load_case", "load_cases", "shifted"]
 

@@ -15,7 +15,8 @@ import numpy as np
 from crankmbs import Run, Viscous, load_scene
 from crankmbs.errors import InputError
 from crankmbs.result import Result
-from crankmbs.scene.scene import Extent, Scene
+from crankmbs.scene.run import Extent
+from crankmbs.scene.scene import Scene
 from crankmbs.simulate import simulate
 from validation.adapter import machine_of, reference_motion
 from validation.checks.honest import scales, true_errors

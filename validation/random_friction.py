@@ -12,7 +12,7 @@ from crankmbs import Scene
 from crankmbs.mechanics.inertia import inertia_alone
 from crankmbs.scene.loads import Constant, Quadratic, Viscous
 from crankmbs.scene.parts import Friction
-from crankmbs.scene.scene import Extent, Run
+from crankmbs.scene.run import Extent, Run
 from validation.random_scenes import random_scene
 
 __all__ = ["random_friction"]

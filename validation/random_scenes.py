@@ -16,7 +16,7 @@ from crankmbs.scene.drives import Start
 from crankmbs.scene.gas import Gas, Indicator
 from crankmbs.scene.loads import Constant, Quadratic, SpeedTable, TimeTable, Viscous
 from crankmbs.scene.parts import Crank, Cylinder, Gravity, Layout, Piston, Rod
-from crankmbs.scene.scene import Extent, Run
+from crankmbs.scene.run import Extent, Run
 from crankmbs.scene.tables import Table
 from crankmbs.scene.torque import Torque
 from crankmbs.scene.units import DEGREE

@@ -13,7 +13,7 @@ from crankmbs.mechanics.inertia import reduce
 from crankmbs.mechanics.train import crank_train
 from crankmbs.scene.drives import Start
 from crankmbs.scene.loads import Constant, Quadratic, SpeedTable, Viscous
-from crankmbs.scene.scene import Extent, Run
+from crankmbs.scene.run import Extent, Run
 from crankmbs.scene.tables import Table
 from crankmbs.scene.torque import Torque
 from validation.random_scenes import random_scene

@@ -11,7 +11,7 @@ import numpy as np
 
 from crankmbs import Scene
 from crankmbs.scene.drives import Motion, SpeedFile
-from crankmbs.scene.scene import Extent, Run
+from crankmbs.scene.run import Extent, Run
 from crankmbs.scene.speed_rows import check_over_angle
 from crankmbs.scene.tables import Table
 from validation.random_scenes import random_scene

@@ -12,7 +12,7 @@ import numpy as np
 from crankmbs import Scene
 from crankmbs.mechanics.inertia import inertia_alone
 from crankmbs.scene.loads import AngleTable
-from crankmbs.scene.scene import Extent
+from crankmbs.scene.run import Extent
 from crankmbs.scene.tables import Table
 from validation.random_scenes import random_scene
 

@@ -14,7 +14,8 @@ from crankmbs.mechanics.speed import speed_remarks
 from crankmbs.scene.cycles import cycles_in
 from crankmbs.scene.drives import Oscillation, Ramp, SpeedFile
 from crankmbs.scene.gas import Gas
-from crankmbs.scene.scene import SETTLED, Extent, Scene
+from crankmbs.scene.run import SETTLED, Extent
+from crankmbs.scene.scene import Scene
 from crankmbs.scene.speed_rows import repeats
 from crankmbs.scene.tables import CylinderTable, Table
 from crankmbs.scene.torque import Torque

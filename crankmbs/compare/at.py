@@ -14,7 +14,8 @@ from crankmbs.errors import InputError
 from crankmbs.lecture import two_mass_rod
 from crankmbs.measures.span import last_span
 from crankmbs.result import Result
-from crankmbs.scene.scene import Extent, Scene
+from crankmbs.scene.run import Extent
+from crankmbs.scene.scene import Scene
 from crankmbs.scene.units import quantity
 from crankmbs.simulate import simulate
 

@@ -12,7 +12,8 @@ from crankmbs.motion.plan import Plan, plan_of
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 from crankmbs.scene.drives import Start
-from crankmbs.scene.scene import Extent, Scene
+from crankmbs.scene.run import Extent
+from crankmbs.scene.scene import Scene
 
 __all__ = ["Difference", "differences", "followed"]
 

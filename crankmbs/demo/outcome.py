@@ -9,7 +9,8 @@ from crankmbs.compare import Budget, Comparison, budget, compare
 from crankmbs.errors import InputError
 from crankmbs.figures.view import View, last_view
 from crankmbs.result import Result
-from crankmbs.scene.scene import Extent, Scene
+from crankmbs.scene.run import Extent
+from crankmbs.scene.scene import Scene
 from crankmbs.simulate import simulate
 
 __all__ = ["Outcome", "prepared", "run"]

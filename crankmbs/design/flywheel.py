@@ -23,7 +23,8 @@ from crankmbs.numerics.collocation import gauss
 from crankmbs.result import Result
 from crankmbs.scene.drives import Motion, Oscillation, Start
 from crankmbs.scene.loads import Constant
-from crankmbs.scene.scene import SETTLED, Extent, Run, Scene
+from crankmbs.scene.run import SETTLED, Extent, Run
+from crankmbs.scene.scene import Scene
 from crankmbs.scene.torque import Torque
 from crankmbs.simulate import simulate
 

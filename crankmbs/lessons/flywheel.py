@@ -9,7 +9,8 @@ from crankmbs.lessons.runs import changed
 from crankmbs.measures import measure
 from crankmbs.result import Result
 from crankmbs.scene.drives import Motion
-from crankmbs.scene.scene import Extent, Scene
+from crankmbs.scene.run import Extent
+from crankmbs.scene.scene import Scene
 from crankmbs.simulate import simulate
 
 __all__ = ["estimate", "held", "with_inertia"]

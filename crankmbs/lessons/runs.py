@@ -13,7 +13,8 @@ from crankmbs.measures.peak import rise
 from crankmbs.result import Result
 from crankmbs.scene.parts import Cylinder, Layout
 from crankmbs.scene.read import load_scene
-from crankmbs.scene.scene import Extent, Run, Scene
+from crankmbs.scene.run import Extent, Run
+from crankmbs.scene.scene import Scene
 from crankmbs.simulate import simulate
 
 __all__ = ["changed", "finely", "one_cylinder", "peak", "peak_angle", "sample", "turn"]

@@ -1,14 +1,8 @@
-"""Newton-Euler: every joint force from crank angle, speed and acceleration. Exact.
+"""Motion of every part and force in every joint from crank angle, speed and acceleration. Exact.
 
-Body by body from the piston down, in each cylinder's frame: the piston's X balance gives the rod
-on piston along the axis, the rod's moment about the crank pin gives it across, the piston's Y
-balance the wall, the rod's balance the crank pin, and the crank's balance the main bearing and
-the torque from outside. Gas pushes the piston towards the crank, -X. The frame, on mounts, feels
-m (g - a) of every moving part and, about the crank axis, the walls and the gas on the heads.
-
-Every balance is linear in omega^2, alpha, 1, the shares of the combustion and the friction on the
-pistons, which pushes them as gas does. So where the angles
-of the samples repeat it is made for these alone, once for every angle of a period, and put together
+Every balance (`crankmbs.mechanics.newton_euler`) is linear in omega^2, alpha, 1, the shares of the
+combustion and the friction on the pistons, which pushes them as gas does. So where the angles of
+the samples repeat it is made for these alone, once for every angle of a period, and put together
 for each sample.
 """
 
@@ -23,8 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from crankmbs.mechanics.fired import Parts, fired_parts, pushed_parts
 from crankmbs.mechanics.friction import friction_forces
-from crankmbs.mechanics.geometry import close_loop, top_position
-from crankmbs.mechanics.inertia import gravity_vector, rod_centre
+from crankmbs.mechanics.newton_euler import Powers, of_crank, of_cylinder
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.variables import EVERY
 from crankmbs.numerics.arrays import Array
@@ -34,17 +27,9 @@ from crankmbs.scene.scene import Scene
 __all__ = ["deviations", "reactions"]
 
 
-class _Powers(NamedTuple):
-    """omega^2, alpha and 1 at the samples, shape (n,); or three units of them, shape (3, 1)."""
-
-    square: Array
-    alpha: Array
-    one: Array
-
-
 _PER_SPEED = ("piston_velocity", "rod_angular_speed")
 _OFTEN = 3  # so often an angle must come back for its parts to pay
-_UNITS = _Powers(*np.eye(3)[:, :, np.newaxis])
+_UNITS = Powers(*np.eye(3)[:, :, np.newaxis])
 
 
 def reactions(
@@ -129,7 +114,7 @@ class _Found(NamedTuple):
 
     columns: dict[str, list[Array]]
     which: NDArray[np.intp] | None
-    at: _Powers
+    at: Powers
     omega: Array
     more: tuple[tuple[Parts, Array], ...]
 
@@ -176,12 +161,12 @@ def _found(
 ) -> _Found:
     scene = train.scene
     theta, omega, alpha = (np.asarray(q, dtype=np.float64) for q in given)
-    samples = _Powers(omega**2, alpha, np.ones(1))
+    samples = Powers(omega**2, alpha, np.ones(1))
     once, which = one_period(theta, train.period)
     by_parts = len(theta) > _OFTEN * len(once)
     once, motion = (once, _UNITS) if by_parts else (theta, samples)
-    cylinders = [_cylinder(train, once, motion, k) for k in range(len(scene.cylinders))]
-    columns = {name: [part] for name, part in _crank(scene, once, motion, cylinders).items()}
+    cylinders = [of_cylinder(train, once, motion, k) for k in range(len(scene.cylinders))]
+    columns = {name: [part] for name, part in of_crank(scene, once, motion, cylinders).items()}
     for name in cylinders[0].variables:
         columns[name] = [c.variables[name] for c in cylinders]
     torque = columns["crank_torque"]
@@ -203,124 +188,3 @@ def _rubbed_parts(scene: Scene, theta: Array) -> Parts:
     parts = pushed_parts(scene, theta, ones)
     parts["friction_force"] = [{k: one} for k, one in enumerate(ones)]
     return parts
-
-
-class _Cylinder(NamedTuple):
-    """The variables of one cylinder by name, for velocities those per speed; what it adds to the
-    balance of the crank and of the frame, in the engine's frame."""
-
-    variables: dict[str, Array]
-    pull_x: Array
-    pull_y: Array
-    kinetic_energy: Array
-    shake_x: Array
-    shake_y: Array
-    moment: Array
-
-
-def _cylinder(
-    train: CrankTrain,
-    theta: Array,
-    motion: _Powers,
-    number: int,
-) -> _Cylinder:
-    scene, cylinder = train.scene, train.scene.cylinders[number]
-    crank, rod, piston = scene.crank, scene.rod, scene.piston
-    area = piston.gas_area or 0.0
-    r, l, a = crank.radius, rod.length, rod.center_of_mass
-    square, alpha, one = motion
-    gx, gy = gravity_vector(scene, cylinder.bank)
-    phi = theta + cylinder.phase
-    loop = close_loop(phi, r, l, piston.offset)
-    g = rod_centre(loop, r, a)
-    sin_b, cos_b = loop.sin_beta, loop.cos_beta
-    gas = np.zeros_like(phi) if train.pressure is None else train.pressure[number](phi)
-
-    x_tt = loop.x_2 * square + loop.x_1 * alpha
-    beta_tt = loop.beta_2 * square + loop.beta_1 * alpha
-    felt_x = g.x_2 * square + g.x_1 * alpha - gx * one  # the rod's acceleration minus gravity
-    felt_y = g.y_2 * square + g.y_1 * alpha - gy * one
-    felt = x_tt - gx * one  # the piston's, along the cylinder
-    pin_x = piston.mass * felt + gas * area * one
-    weight = rod.mass * (cos_b * felt_y + sin_b * felt_x)
-    pin_y = ((rod.moment_of_inertia * beta_tt - a * weight) / l - pin_x * sin_b) / cos_b
-    throw_x = rod.mass * felt_x + pin_x
-    throw_y = rod.mass * felt_y + pin_y
-    side = -pin_y - piston.mass * gy * one
-    shake_x = -rod.mass * felt_x - piston.mass * felt
-    shake_y = -rod.mass * felt_y + piston.mass * gy * one
-    cos_bank, sin_bank = np.cos(cylinder.bank), np.sin(cylinder.bank)
-    inertia = (
-        piston.mass * loop.x_1**2
-        + rod.mass * (g.x_1**2 + g.y_1**2)
-        + rod.moment_of_inertia * loop.beta_1**2
-    )
-    variables = {
-        "rod_angle": loop.beta,
-        "rod_angular_speed": loop.beta_1,
-        "rod_angular_acceleration": beta_tt,
-        "piston_position": loop.x,
-        "piston_displacement": top_position(r, l, piston.offset) - loop.x,
-        "piston_velocity": -loop.x_1,
-        "piston_acceleration": -x_tt,
-        "gas_pressure": gas,
-        "gas_force": gas * area,
-        "side_force": side,
-        "piston_pin_force_x": pin_x,
-        "piston_pin_force_y": pin_y,
-        "crank_pin_force_x": throw_x,
-        "crank_pin_force_y": throw_y,
-        "crank_torque": r * (loop.sin_phi * throw_x - loop.cos_phi * throw_y),
-    }
-    return _Cylinder(
-        variables,
-        cos_bank * throw_x - sin_bank * throw_y,
-        sin_bank * throw_x + cos_bank * throw_y,
-        0.5 * inertia * square,
-        cos_bank * shake_x - sin_bank * shake_y,
-        sin_bank * shake_x + cos_bank * shake_y,
-        -loop.x * side - piston.offset * gas * area * one,
-    )
-
-
-def _crank(
-    scene: Scene, theta: Array, motion: _Powers, cylinders: list[_Cylinder]
-) -> dict[str, Array]:
-    crank, (square, alpha, one) = scene.crank, motion
-    first_moment = crank.mass * crank.center_of_mass
-    sin_theta, cos_theta = np.sin(theta), np.cos(theta)
-    gx, gy = gravity_vector(scene)
-    x_tt = -cos_theta * square - sin_theta * alpha
-    y_tt = -sin_theta * square + cos_theta * alpha
-    weight = first_moment * (cos_theta * gy - sin_theta * gx)
-    return _rocking(scene, cylinders) | {
-        "external_torque": crank.moment_of_inertia * alpha
-        - weight * one
-        - sum(c.variables["crank_torque"] for c in cylinders),
-        "main_bearing_force_x": first_moment * x_tt
-        - crank.mass * gx * one
-        + sum(c.pull_x for c in cylinders),
-        "main_bearing_force_y": first_moment * y_tt
-        - crank.mass * gy * one
-        + sum(c.pull_y for c in cylinders),
-        "frame_force_x": crank.mass * gx * one
-        - first_moment * x_tt
-        + sum(c.shake_x for c in cylinders),
-        "frame_force_y": crank.mass * gy * one
-        - first_moment * y_tt
-        + sum(c.shake_y for c in cylinders),
-        "frame_moment": np.asarray(sum(c.moment for c in cylinders)),
-        "kinetic_energy": 0.5 * crank.moment_of_inertia * square
-        + sum(c.kinetic_energy for c in cylinders),
-    }
-
-
-def _rocking(scene: Scene, cylinders: list[_Cylinder]) -> dict[str, Array]:
-    """Moments about the middle of the crank, where every cylinder has its place along it."""
-    if scene.levers is None:
-        return {}
-    levers = np.array(scene.levers)
-    return {
-        "rocking_moment_x": -np.tensordot(levers, [c.shake_y for c in cylinders], 1),
-        "rocking_moment_y": np.tensordot(levers, [c.shake_x for c in cylinders], 1),
-    }

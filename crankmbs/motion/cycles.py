@@ -21,6 +21,7 @@ from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.windows import acting
 from crankmbs.motion.account import Rows, beside
 from crankmbs.motion.base import Points, Samples, Solved
+from crankmbs.motion.extremes import extremes
 from crankmbs.motion.gas_work import GasWork
 from crankmbs.motion.plan import Chosen
 from crankmbs.numerics.arrays import Array
@@ -34,7 +35,6 @@ MOST_CYCLES = 10_000
 _SAME = 1e-9  # of a period, and of a step: what is nearer to its end is at its end
 _NEAR = 1e-7  # rad: a decision so near the end of a cycle belongs to the next
 _POINTS = (8, 10)  # of Gauss in what is left of a step beside the end of a cycle, in either pass
-_ROUNDS = 2  # of the secant method for an extreme of the speed; its error counts twice
 
 
 class _Open(NamedTuple):
@@ -169,7 +169,7 @@ class Cycles:
         time = np.concatenate([nodes.edges, of_whole.time.ravel(), of_parts.time.ravel()])
         speed = np.concatenate([nodes.speeds, of_whole.omega.ravel(), of_parts.omega.ravel()])
         order = np.argsort(time)
-        return works, _extremes(piece, marks, time[order], speed[order])
+        return works, extremes(piece, marks, time[order], speed[order])
 
     def rows(self, count: int) -> Rows:
         """The last cycles, as many as are asked for."""
@@ -256,42 +256,6 @@ def _merged(edges: Array, cuts: Array) -> Array:
     k = np.clip(np.searchsorted(edges, cuts), 1, len(edges) - 1)
     off = np.minimum(np.abs(cuts - edges[k - 1]), np.abs(cuts - edges[k]))
     return np.union1d(edges, cuts[off > _SAME * (edges[k] - edges[k - 1])])
-
-
-def _extremes(piece: Solved, marks: Array, time: Array, speed: Array) -> Array:
-    """Least and largest speed [rad/s] between marks, shape (n + 1, 2): of the values at increasing
-    times, and where the acceleration vanishes beside those that might be it."""
-    segment = np.searchsorted(marks, time)
-    low, high = np.full((2, len(marks) + 1), np.nan)
-    for into, least in ((low, np.fmin), (high, np.fmax)):
-        least.at(into, segment, speed)
-    before, after = speed[1:-1] - speed[:-2], speed[2:] - speed[1:-1]
-    lift = np.maximum(np.abs(before), np.abs(after))
-    of = segment[1:-1]
-    may = (speed[1:-1] - lift < low[of]) | (speed[1:-1] + lift > high[of])
-    k = 1 + np.flatnonzero((before * after < 0.0) & may)
-    if len(k):
-        a, b, c = (_moving(piece, time[at]) for at in (k - 1, k, k + 1))
-        falls = b[1] * c[1] < 0.0
-        a, c = (np.where(falls, one, other) for one, other in ((b, a), (c, b)))
-        for _ in range(_ROUNDS):
-            steep = np.where(c[1] != a[1], c[1] - a[1], np.inf)
-            b = _moving(piece, np.clip(a[0] - a[1] * (c[0] - a[0]) / steep, a[0], c[0]))
-            inside = np.searchsorted(marks, b[0])
-            np.fmin.at(low, inside, b[2])
-            np.fmax.at(high, inside, b[2])
-            left = a[1] * b[1] < 0.0
-            a, c = np.where(left, a, b), np.where(left, b, c)
-    return np.column_stack([low, high])
-
-
-def _moving(piece: Solved, time: Array) -> Array:
-    """Times [s] in any order, acceleration [rad/s2] and speed [rad/s] there, shape (3, n)."""
-    order = np.argsort(time)
-    found = piece.sample(Chosen(time[order], in_time=True))
-    rows = np.empty((3, len(time)))
-    rows[:, order] = time[order], found.alpha, found.omega
-    return rows
 
 
 def _shares_beside(

@@ -7,76 +7,29 @@ degrees, angles counter-clockwise.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import cached_property
-from typing import Annotated, Literal
+from typing import Annotated
 
-from annotated_types import Ge, Le
-from pydantic import BeforeValidator, Strict, ValidationInfo
+from pydantic import Strict
 
-from crankmbs.errors import InputError, shown
-from crankmbs.scene.cycles import SAME_ANGLE, cycles_in
+from crankmbs.errors import InputError
+from crankmbs.scene.cover import check_angles, check_times
+from crankmbs.scene.cycles import cycles_in
 from crankmbs.scene.drives import Motion, SpeedFile, Start
 from crankmbs.scene.fuel import Fuel
 from crankmbs.scene.gas import Gas, tables_of
 from crankmbs.scene.parts import Crank, Cylinder, Friction, Gravity, Layout, Piston, Rod
-from crankmbs.scene.schema import Float, dumped, part
-from crankmbs.scene.sentences import did_you_mean
+from crankmbs.scene.run import SETTLED, Run
+from crankmbs.scene.schema import part
 from crankmbs.scene.speed_rows import repeats
-from crankmbs.scene.tables import CylinderTable, Table
+from crankmbs.scene.tables import CylinderTable
 from crankmbs.scene.torque import AnyTorque, Torque
-from crankmbs.scene.units import DEGREE, EXAMPLES, extent
+from crankmbs.scene.units import EXAMPLES
 
-__all__ = ["SETTLED", "Extent", "Run", "Scene"]
-
-SETTLED: Literal["settled"] = "settled"
+__all__ = ["Scene"]
 
 _FARTHEST = 1e9  # rad: its last digit is 1e-7
 _MOST_SAMPLES = 2e7  # the memory of a machine may hold less: `crankmbs.motion.memory`
-
-
-@dataclass(frozen=True, kw_only=True)
-class Extent:
-    """A stretch of angle ("rad"), of engine periods ("cycle") or of time ("s")."""
-
-    value: float
-    unit: Literal["rad", "cycle", "s"]
-
-    def __post_init__(self) -> None:
-        _check_positive(self.value, f"{self.value:g} {self.unit}")
-        if self.unit not in ("rad", "cycle", "s"):
-            raise InputError(f'unit must be "rad", "cycle" or "s"; {shown(self.unit)} came')
-
-    def resolve(self, period: float) -> tuple[float, bool]:
-        """Return (value, is_time): [s] when a time, else [rad]."""
-        return (self.value * period if self.unit == "cycle" else self.value), self.unit == "s"
-
-
-def _check_positive(number: float, came: str) -> None:
-    if not 0.0 < number < math.inf:
-        raise InputError(f"must be finite and above 0; {came} came")
-
-
-def _extent(value: object, info: ValidationInfo) -> object:
-    if isinstance(value, Extent) or dumped(value, info):
-        return value
-    if not isinstance(value, str):
-        raise InputError(
-            f"must be an angle or a time with its unit, such as {EXAMPLES['extent']}; "
-            f"{shown(value)} came"
-        )
-    number, unit = extent(value)
-    _check_positive(number, shown(value))
-    return Extent(value=number, unit=unit)  # type: ignore[arg-type]
-
-
-def _end(value: object, info: ValidationInfo) -> object:
-    if not isinstance(value, str):
-        return _extent(value, info)
-    try:
-        return value if value == SETTLED else _extent(value, info)
-    except InputError as error:
-        raise InputError(f"{error}{did_you_mean(value, [SETTLED])}") from None
 
 
 def _passing(load: Torque) -> str:
@@ -95,21 +48,6 @@ def _uneven(fuel: Fuel) -> str:
     if any(misfire.every is None for misfire in fuel.misfire or ()):
         return "a listed misfire happens once"
     return ""
-
-
-def _spacing(value: object, info: ValidationInfo) -> object:
-    return None if value is None or value == "none" else _extent(value, info)
-
-
-@part
-class Run:
-    """until: where the run ends, or "settled": the periodic motion that it comes to; every: output
-    spacing, or "none"; rtol; formulation by name, which `crankmbs.choose` knows."""
-
-    until: Annotated[Extent | Literal["settled"], BeforeValidator(_end)]
-    every: Annotated[Extent | None, BeforeValidator(_spacing)] = Extent(value=DEGREE, unit="rad")
-    rtol: Annotated[Float, Ge(1e-13), Le(1e-2)] = 1e-8
-    formulation: Annotated[str, Strict()] = "auto"
 
 
 @part
@@ -318,18 +256,18 @@ class Scene:
                 last = 0.0  # where it ends shows on the way
             what = "its window" if load.has_window else "the run"
             begin = load.after or 0.0
-            _check_cover(load.table_over_time, begin, max(begin, last), what)
+            check_times(load.table_over_time, begin, max(begin, last), what)
 
     def _check_speed(self, speed: SpeedFile, end: float) -> None:
         """Refuse a speed that does not cover the run, to a time [s] or to its end in angle."""
         assert self.motion is not None
         table, begin = speed.file, self.motion.angle
         if speed.kind == "time_table":
-            _check_cover(table, 0.0, end, "the run")
+            check_times(table, 0.0, end, "the run")
         elif not repeats(table):
             until, until_time = self.end
             reach = 0.0 if until_time else math.copysign(until, table.y[0])
-            _check_angles(table, *sorted((begin, begin + reach)))
+            check_angles(table, *sorted((begin, begin + reach)))
 
     def _check_size(self) -> None:
         """Refuse what no memory holds and what double precision cannot tell apart."""
@@ -344,24 +282,6 @@ class Scene:
         every, in_time = self.run.every.resolve(self.period)
         if in_time == until_time:
             _check_count(until / every)
-
-
-def _check_cover(table: Table, begin: float, end: float, what: str) -> None:
-    if table.x[0] > begin or table.x[-1] < end:
-        raise InputError(
-            f"{table.source}: the table must cover {what}, {begin:g} to {end:g} s; it goes from "
-            f"{table.x[0]:g} to {table.x[-1]:g} s"
-        )
-
-
-def _check_angles(table: Table, low: float, high: float) -> None:
-    first, last = table.x[0], table.x[-1]
-    if first - SAME_ANGLE > low or last + SAME_ANGLE < high:
-        raise InputError(
-            f"{table.source}: the table must cover the run, {low / DEGREE:g} to {high / DEGREE:g} "
-            f"degrees, or be 360 or 720 degrees whose last row repeats the first; it goes from "
-            f"{first / DEGREE:g} to {last / DEGREE:g} degrees"
-        )
 
 
 def _check_count(samples: float) -> None:

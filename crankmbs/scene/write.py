@@ -10,7 +10,8 @@ from typing import Any
 
 from crankmbs.errors import InputError
 from crankmbs.scene.drives import Ramp
-from crankmbs.scene.scene import Extent, Scene
+from crankmbs.scene.run import Extent
+from crankmbs.scene.scene import Scene
 from crankmbs.scene.tables import CylinderTable, Header, Table
 from crankmbs.scene.torque import Torque
 from crankmbs.scene.units import DEGREE, RPM

@@ -7,7 +7,8 @@ from functools import partial
 
 from crankmbs.errors import CrankmbsError
 from crankmbs.motion.formulations import Formulation, serving
-from crankmbs.scene.scene import Extent, Scene
+from crankmbs.scene.run import Extent
+from crankmbs.scene.scene import Scene
 from crankmbs.simulate import simulate
 from crankmbs.work_precision.contender import Answer, Contender, ContenderFailed
 from crankmbs.work_precision.reference import Reference

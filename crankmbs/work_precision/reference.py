@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 
 from crankmbs.choose import choose
 from crankmbs.result import Result
-from crankmbs.scene.scene import Extent, Scene
+from crankmbs.scene.run import Extent
+from crankmbs.scene.scene import Scene
 from crankmbs.simulate import simulate
 from crankmbs.work_precision.trace import Trace, stated, trace_of
 

@@ -14,7 +14,8 @@ from crankmbs.errors import FormulationError, InputError
 from crankmbs.mechanics.peaks import negligible
 from crankmbs.mechanics.variables import VARIABLES
 from crankmbs.result import Result
-from crankmbs.scene.scene import Extent, Scene
+from crankmbs.scene.run import Extent
+from crankmbs.scene.scene import Scene
 from crankmbs.simulate import simulate
 from validation.adapter import machine_of
 from validation.case import Case, driven, shifted

@@ -14,12 +14,12 @@ from crankmbs.mechanics.inertia import fired_torque, inertia_alone, reduce
 from crankmbs.mechanics.torque import Branch, Course
 from crankmbs.motion.base import NOWHERE, Nodes, Points, Samples, State
 from crankmbs.motion.crank_angle import loops, readout
+from crankmbs.motion.crank_angle.crossing import crossing
 from crankmbs.motion.crank_angle.grid import Grid, Strip, largest_of_row
 from crankmbs.motion.mode import Mode, decided
 from crankmbs.motion.plan import Wanted
 from crankmbs.numerics.arrays import Array, Index
 from crankmbs.numerics.periodic import one_period
-from crankmbs.numerics.roots import first_above
 
 __all__ = ["Window"]
 
@@ -169,7 +169,7 @@ class Window:
             stops.append(((int(k[0]), float(x[0])), nowhere._replace(time=t_end)))
         for limit, above in ((self.branch.omega_low, False), (self.branch.omega_high, True)):
             if math.isfinite(limit) and limit * self.sense > 0.0:
-                stop = self._crossing(limit, above=above)
+                stop = crossing(self, limit, above=above)
                 if stop is not None:
                     stops.append((stop, nowhere._replace(omega=limit)))
         stop, landed = min(stops, key=lambda item: item[0])
@@ -233,30 +233,10 @@ class Window:
         )
         return np.asarray(self.sense * np.sqrt(2.0 * self.energy[k] / inertia))
 
-    def _crossing(self, limit: float, *, above: bool) -> tuple[int, float] | None:
-        """Cell and position where the speed first leaves its branch through ``limit``."""
-        at_edges = self.speeds_at(np.arange(1, len(self.edges)))
-        omega = np.column_stack([self.sense / self.slowness, at_edges])
-        positions = np.concatenate([[0.0], self.grid.rule.nodes, [1.0]])
-        side = 1.0 if above else -1.0
-        beyond = side * (np.append(self.begin.omega, omega) - limit)
-        inside = int(np.argmax(np.append(beyond[1:] > 0.0, True)))  # stretches before it is seen
-        stretches = np.append(np.flatnonzero(_may_leave(beyond)[:inside]), inside)
-        for k, j in zip(*divmod(stretches, omega.shape[1]), strict=True):
-            if k == len(omega):
-                break
-
-            def speed(x: Array, k: int = k) -> tuple[Array, Array]:
-                at = np.array([k])
-                state = self._theta(at, x), self._time(at, x), self._energy(at, x)
-                there = self._samples(at, *state)
-                slope = self.strip.width[k] * there.alpha / np.abs(there.omega)
-                return side * (there.omega - limit), side * slope
-
-            x = first_above(speed, positions[j], positions[j + 1])
-            if x is not None:
-                return int(k), x
-        return None
+    def inside(self, k: int, x: Array) -> Samples:
+        """The samples at places x in a cell, 0 to 1."""
+        cell = np.array([k])
+        return self._samples(cell, self._theta(cell, x), self._time(cell, x), self._energy(cell, x))
 
     def _energy(self, k: Index, x: Array) -> Array:
         gained, _ = self.grid.rule.between(self.torque[k], x)
@@ -317,13 +297,3 @@ class Window:
 
 def _exact(landed: float, computed: Array) -> Array:
     return computed if math.isnan(landed) else np.array([landed])
-
-
-def _may_leave(beyond: Array) -> NDArray[np.bool_]:
-    """Between which of neighbouring points a value, below zero at both, may be above: where it
-    turns, and falls off to the neighbours by more than is missing."""
-    rise = np.diff(beyond, prepend=beyond[0], append=beyond[-1])
-    before, after = rise[:-1], -rise[1:]
-    near = (beyond < 0.0) & (beyond + before + after > 0.0)
-    top = near & (before >= 0.0) & (after >= 0.0)
-    return np.asarray(top[:-1] | top[1:])

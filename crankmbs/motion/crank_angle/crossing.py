@@ -1,0 +1,51 @@
+"""Where the speed leaves the branch of the loads, within solved cells."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crankmbs.numerics.arrays import Array
+from crankmbs.numerics.roots import first_above
+
+if TYPE_CHECKING:
+    from crankmbs.motion.crank_angle.window import Window
+
+__all__ = ["crossing"]
+
+
+def crossing(window: Window, limit: float, *, above: bool) -> tuple[int, float] | None:
+    """Cell and place in it, 0 to 1, where the speed first passes a limit [rad/s]; None where it
+    does not."""
+    at_edges = window.speeds_at(np.arange(1, len(window.edges)))
+    omega = np.column_stack([window.sense / window.slowness, at_edges])
+    positions = np.concatenate([[0.0], window.grid.rule.nodes, [1.0]])
+    side = 1.0 if above else -1.0
+    beyond = side * (np.append(window.begin.omega, omega) - limit)
+    inside = int(np.argmax(np.append(beyond[1:] > 0.0, True)))  # stretches before it is seen
+    stretches = np.append(np.flatnonzero(_may_leave(beyond)[:inside]), inside)
+    for k, j in zip(*divmod(stretches, omega.shape[1]), strict=True):
+        if k == len(omega):
+            break
+
+        def speed(x: Array, k: int = k) -> tuple[Array, Array]:
+            there = window.inside(k, x)
+            slope = window.strip.width[k] * there.alpha / np.abs(there.omega)
+            return side * (there.omega - limit), side * slope
+
+        x = first_above(speed, positions[j], positions[j + 1])
+        if x is not None:
+            return int(k), x
+    return None
+
+
+def _may_leave(beyond: Array) -> NDArray[np.bool_]:
+    """Between which of neighbouring points a value, below zero at both, may be above: where it
+    turns, and falls off to the neighbours by more than is missing."""
+    rise = np.diff(beyond, prepend=beyond[0], append=beyond[-1])
+    before, after = rise[:-1], -rise[1:]
+    near = (beyond < 0.0) & (beyond + before + after > 0.0)
+    top = near & (before >= 0.0) & (after >= 0.0)
+    return np.asarray(top[:-1] | top[1:])
