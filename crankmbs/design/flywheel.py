@@ -34,7 +34,7 @@ _CLOSE = 1e-7  # of the fluctuation: as near the target is on it
 _MOST = 40  # runs
 _WIDE = 1e4  # times the lecture's inertia: the search goes no farther
 _NARROW = 1e-6  # of the lecture's inertia: a crank so light is none
-_STAGES = 10
+_STAGES = 10  # of Gauss in a cell, more than a run takes
 
 
 @dataclass(frozen=True)

@@ -22,7 +22,7 @@ from crankmbs.scene.units import DEGREE
 
 __all__ = ["Harmonics", "Orders", "orders"]
 
-_HIGHEST = 100.0
+_HIGHEST = 100.0  # beyond it no machine has an order, and panels would be many
 _PANEL = 2.0 * DEGREE  # widest panel
 _OF_ORDER = 1.0  # rad of the highest order that a panel may hold
 _NODES = (5, 6)  # of Gauss on a panel: the difference is the quadrature's error

@@ -22,7 +22,7 @@ _NODES, _FEWER = 12, 8  # of Gauss on a panel: it is narrow enough where both gi
 _EPSILON = float(np.finfo(float).eps)
 _SAME = 16 * _EPSILON  # of two orders, where neither is better
 _OFF = 4 * _EPSILON  # of the larger row beside it: so far a speed may be off
-_HALVINGS = 60
+_HALVINGS = 60  # rounds: beside a speed near 0 panels are halved again and again
 
 
 class AngleLaw:

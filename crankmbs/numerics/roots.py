@@ -11,7 +11,7 @@ from crankmbs.numerics.arrays import Array
 __all__ = ["first_above", "invert_monotone"]
 
 
-_HALVES = 50
+_HALVES = 50  # to 1e-15 of the bracket
 
 
 def invert_monotone(

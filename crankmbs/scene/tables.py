@@ -24,7 +24,7 @@ __all__ = [
 ]
 
 _MOST = 32_000_000  # bytes: a million rows
-_LARGEST = 1e15
+_LARGEST = 1e15  # a number in a table: beyond it nothing is a unit any more
 _ENDLESS = (stat.S_ISCHR, stat.S_ISBLK, stat.S_ISFIFO, stat.S_ISSOCK)
 
 

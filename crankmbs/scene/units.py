@@ -23,7 +23,7 @@ _NUMBER_AND_UNIT = re.compile(
 )
 _FACTOR = r"[^\W\d_]+(?:\s*(?:\*\*|\^)\s*-?[1-9])?"  # one exponent: pint would raise 9^9^9
 _UNIT = re.compile(rf"{_FACTOR}(?:(?:\s*[*/·]\s*|\s+){_FACTOR})*")
-_LONGEST_UNIT = 40
+_LONGEST_UNIT = 40  # letters: a longer one is an expression
 
 _SI = {
     "acceleration": "m/s^2",

@@ -14,7 +14,7 @@ from crankmbs.work_precision.trace import Trace, stated, trace_of
 
 __all__ = ["Reference", "reference_of"]
 
-_RTOL = 1e-13
+_RTOL = 1e-13  # the finest that a run can be asked for
 _ROUNDING = 1e-13  # what rounding the scene's own numbers changes over some ten revolutions
 _PER_TURN = 10  # samples that the peers give
 

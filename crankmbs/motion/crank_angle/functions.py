@@ -18,7 +18,7 @@ from crankmbs.numerics.collocation import Maps
 
 __all__ = ["solve_functions"]
 
-_NEWTON = 20
+_NEWTON = 20  # steps, as in `loops`
 _SETTLED, _GOOD = 1e-14, 1e-11  # relative change of the energy in Newton's last step
 
 

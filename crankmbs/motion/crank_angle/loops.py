@@ -16,7 +16,7 @@ __all__ = ["affine", "fire", "fired", "newton"]
 
 Loads = tuple[Array, Array, Array, Array]  # the tables of a course of `crankmbs.mechanics.torque`
 Solved = tuple[Array, Array, Array, Array]  # edges, time, torque and slowness of cells, filled
-_MOST_NEWTON = 20  # steps; a cell that converges takes 3 to 6 (test_kinks)
+_MOST_NEWTON = 20  # steps; where they do not suffice the motion goes on over time
 # of the energy, by the slopes of a cell's loads: without them a step gains two digits, and if it
 # gains less than one, at kinks, with them
 _WEAK, _FAST = 0.01, 0.1

@@ -16,7 +16,7 @@ Coefficients = tuple[float, float, float, float]  # c0, ct, c1, c2 of `crankmbs.
 __all__ = ["carried", "motion", "read"]
 
 Solved = tuple[Array, Array, Array, Array, Array, Array]  # as `read` unpacks them
-_MOST_NEWTON = 100
+_MOST_NEWTON = 100  # steps; bisecting alone takes 53
 
 
 @kernel

@@ -34,7 +34,7 @@ from crankmbs.scene.scene import Scene
 
 __all__ = ["Lead", "evaluations", "first_grid", "run"]
 
-_PASSES = 12
+_PASSES = 12  # at most; each splits cells, or asks for less of an error
 _EVALUATIONS = 2_000_000  # over time, for which a second of the cost cap stands: as measured
 _OF_FUNCTIONS = 30_000  # the same where loads are functions of Python
 _PLACES = np.array([0.225, 0.725])  # of new edges in a cell: an old edge is then at 0.55 of a new

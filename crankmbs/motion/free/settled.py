@@ -27,7 +27,7 @@ __all__ = ["run"]
 
 _EPS = float(np.finfo(float).eps)
 _ROUNDING = 4 * _EPS  # of the energy, that a period rounds
-_POLISHES = 8
+_POLISHES = 8  # steps at most; they end where a step is not half the one before
 
 
 def run(train: CrankTrain, rtol: float, cost_cap: float, *, by_angle: bool) -> Assembled:

@@ -18,7 +18,7 @@ __all__ = ["enter"]
 
 _LOOKS = 2000  # at a load that is a function, until the end of a rest
 _LONGEST = 60.0  # s: a rest of no known end is looked through so far
-_HALVES = 50
+_HALVES = 50  # to 1e-15 of the bracket
 
 
 def enter(reduced: Reduced, state: State, scale: float) -> Equation | Ending:

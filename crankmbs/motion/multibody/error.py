@@ -13,7 +13,7 @@ from crankmbs.numerics.arrays import Array
 
 __all__ = ["Convergence"]
 
-_SAFETY = 1.5
+_SAFETY = 1.5  # times what is estimated: an order is never quite the nominal one
 _UNPROVEN = 5.0  # instead, where two runs say nothing about an order
 _SHARE = 1.0 / 8.0  # of what is usual beside it: what changes less does so by chance
 _BENT = 1.0 / 32.0  # of D, what bends within the steps leave in a first correction

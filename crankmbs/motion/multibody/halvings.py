@@ -15,7 +15,7 @@ from crankmbs.motion.multibody.stepped import Stepped, coarsest_step, model_of, 
 __all__ = ["Halvings"]
 
 _SHARE = 1.0 / 3.0  # of the cost cap, for the coarsest run: the next costs twice as much
-_RETRIES = 4
+_RETRIES = 4  # with a quarter of the step each time, where the coarsest diverges
 _GAINS = 1.01  # less by a halving is none: the cost would be astronomic, and overflows
 _AT_REST = 1e-6  # of the fastest speed
 _HELD = "a jump of the loads drives the speed back from both sides"

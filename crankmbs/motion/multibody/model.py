@@ -18,7 +18,7 @@ from crankmbs.scene.scene import Scene
 __all__ = ["Model", "Record"]
 
 _SHIFT = 2e-4  # m or rad
-_WEIGHTS = (1.0 / 3.0, -2.0, 8.0 / 3.0)
+_WEIGHTS = (1.0 / 3.0, -2.0, 8.0 / 3.0)  # of h, h/2 and h/4: without terms in h and h^2
 _FAR = 1e9  # rad: no run turns farther
 
 
