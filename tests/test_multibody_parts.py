@@ -17,7 +17,7 @@ from crankmbs.motion.multibody.gas import GasForces
 from crankmbs.motion.multibody.loads import EVERYWHERE, speeds_around, torque_function
 from crankmbs.motion.multibody.model import Model, Record
 from crankmbs.motion.multibody.problem import problem_of
-from crankmbs.motion.multibody.run_up import RUN_UP, run_free
+from crankmbs.motion.multibody.run_up import RUN_UP, Steps, run_free
 from crankmbs.motion.multibody.samples import Sampled, aligned_variables
 from crankmbs.motion.multibody.start import angle_of, coordinates, quiet_start
 from crankmbs.motion.multibody.stepped import model_of, solve
@@ -146,7 +146,9 @@ def test_after_a_run_up_the_first_rows_are_as_good_as_the_later_ones() -> None:
     errors = []
     for step in (STEP, STEP / 2.0):
         model, _ = coasting_model()
-        record, lead = run_free(COASTING, model, 0.0, (0.3, 100.0), step, STEPS, lambda *_: True)
+        record, lead = run_free(
+            COASTING, model, (0.3, 100.0), Steps(0.0, step, STEPS, lambda *_: True)
+        )
         model.close()
         assert lead == RUN_UP
         assert record.position[lead, 2] == pytest.approx(0.3, abs=1e-11)
@@ -162,7 +164,7 @@ def test_order_two_is_clean_in_motion_and_forces() -> None:
         model, _ = coasting_model()
         steps = 250 * 2**halvings
         record, _ = run_free(
-            COASTING, model, 0.0, (0.3, 100.0), 0.1 / steps, steps, lambda *_: True
+            COASTING, model, (0.3, 100.0), Steps(0.0, 0.1 / steps, steps, lambda *_: True)
         )
         model.close()
         forces = (record.crank_pin, record.piston_pin, record.bearing, record.side)
@@ -192,7 +194,9 @@ def test_a_run_up_leaves_no_ringing() -> None:
     roughness = []
     for step in (5e-4, 2.5e-4):
         model, _ = coasting_model()
-        record, lead = run_free(COASTING, model, 0.0, (0.3, 100.0), step, STEPS, lambda *_: True)
+        record, lead = run_free(
+            COASTING, model, (0.3, 100.0), Steps(0.0, step, STEPS, lambda *_: True)
+        )
         model.close()
         force = record.bearing[lead : lead + 30, 0]  # ringing changes sign at every step
         roughness.append(np.max(np.abs(np.diff(force, 8))) / 2.0**8 / np.max(np.abs(force)))

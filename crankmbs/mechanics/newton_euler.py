@@ -49,7 +49,8 @@ def of_cylinder(
     motion: Powers,
     number: int,
 ) -> Cylinder:
-    """The variables of the cylinder with an index, at crank angles of shape (n,) [rad]."""
+    """The variables of the cylinder with an index, at crank angles of shape (n,) [rad]; balance
+    after balance, in the order in which each needs the one before, hence over 50 lines."""
     scene, cylinder = train.scene, train.scene.cylinders[number]
     crank, rod, piston = scene.crank, scene.rod, scene.piston
     area = piston.gas_area or 0.0

@@ -76,13 +76,13 @@ def _loop(scene: Scene, grid: Grid, reference: Reference) -> Callable[[], Answer
     energy = 0.5 * float(inertia_alone(scene, theta)) * omega**2
     begin = Begin(sense, energy, 0.0, until if until_time else math.inf, theta)
     reduced, given = Reduced(CrankTrain(scene, None)), np.array([until])
-    no_gas = np.zeros((len(scene.cylinders), 6))
+    no_gas = np.zeros((len(scene.cylinders), 9))
 
     def run() -> Answer:
         cells = solve_affine(grid, strip, branch, begin)
         solved = strip.turned, strip.width, cells.edges, cells.time, cells.torque, cells.slowness
         k, (x, t, kinetic) = np.empty(1, np.intp), np.empty((3, 1))
-        readout.read(given, until_time, sense, grid.rule.to_legendre, solved, k, x, t, kinetic)
+        readout.read(given, until_time, sense, grid.rule.to_legendre, solved, (k, x, t, kinetic))
         at = theta + sense * (strip.turned[k] + x * strip.width[k])
         speed = sense * math.sqrt(2.0 * float(kinetic[0]) / reduced(float(at[0]), no_gas)[0])
         return Answer(Trace(t, at, np.array([speed])), cells.torque.size)

@@ -65,17 +65,13 @@ def solve_fired(
     kept[0], shares[0] = _numbers(mode.firing), mode.firing.shares
     cells, torque = Cells.empty(strip), strip.torque.copy()
     start, gauss = (begin.energy, begin.time, sense), (grid.rule.matrix, grid.rule.weights)
+    decisions = at, angles, grid.at_decisions[slots], parts
     solved, decided_ = loops.fired(
         isinstance(loads, Branch) and loads.is_affine_in_energy and not strip.drags,
-        loads.tables,
-        (begin.t_end, loads.omega_low, loads.omega_high),
-        start,
+        (loads.tables, (begin.t_end, loads.omega_low, loads.omega_high), start),
         gauss,
         (strip.width, strip.inertia, torque, strip.drag),
-        strip.of_gas,
-        (at, angles, grid.at_decisions[slots], parts),
-        law.numbers,
-        (kept, shares),
+        (strip.of_gas, decisions, law.numbers, (kept, shares)),
         cells.bare,
     )
     modes = _modes(mode, sense, angles, kept[: decided_ + 1], shares)

@@ -16,6 +16,12 @@ __all__ = ["affine", "fire", "fired", "newton"]
 
 Loads = tuple[Array, Array, Array, Array]  # the tables of a course of `crankmbs.mechanics.torque`
 Solved = tuple[Array, Array, Array, Array]  # edges, time, torque and slowness of cells, filled
+Fuel = tuple[
+    tuple[Array, Array, float],
+    tuple[Index, Array, Array, Array],
+    tuple[float, ...],
+    tuple[Array, Array],
+]  # as `fired` says
 _MOST_NEWTON = 20  # steps; where they do not suffice the motion goes on over time
 # of the energy, by the slopes of a cell's loads: without them a step gains two digits, and if it
 # gains less than one, at kinks, with them
@@ -118,7 +124,7 @@ def newton(
             (inertia[k], rest[k], drag[k]),
             (torque[k], slowness[k]),
         )
-        if not _solve(energy, room, at, loads, row, steps, of_angle, out):
+        if not _solve((energy, room, steps, row), at, loads, of_angle, out):
             return k
         inside, work, spent = True, 0.0, 0.0
         for j in range(len(weights)):
@@ -139,51 +145,30 @@ def newton(
 
 @kernel
 def _solve(
-    energy: Array,
-    room: Array,
+    scratch: tuple[Array, Array, Array, Index],
     start: tuple[float, float, float],
     loads: Loads,
-    row: Index,
-    steps: Array,
     of_angle: tuple[Array, Array, Array],
     out: tuple[Array, Array],
 ) -> bool:
-    """Newton's method in one cell, from the guess in ``energy``; whether it converges. Where the
-    loads hardly change with the speed it takes them as constant in each step.
+    """Newton's method in one cell, from a guess; whether it converges. Where the loads hardly
+    change with the speed it takes them as constant in each step.
 
-    row : numbers of the last rows of the loads, kept from cell to cell; of_angle : inertia,
-    torque and drag at the nodes; out : torque and slowness, filled
+    scratch : the guess of the energy, room for a linear system, the rule times the width, and the
+    numbers of the last rows of the loads, kept from cell to cell; of_angle : inertia, torque and
+    drag at the nodes; out : torque and slowness, filled
     """
-    (times, in_time, speeds, in_speed), (torque, slowness) = loads, out
-    inertia, rest, drag = of_angle
+    (_, _, speeds, in_speed), (torque, slowness) = loads, out
+    (energy, room, steps, row), (inertia, _, drag) = scratch, of_angle
     drags = len(drag) > 0
-    begin, t, sense = start
+    begin, _, sense = start
     stages = len(energy)
     new, system = room[0].reshape(stages, 1), room[1:]
     before = change = left = math.inf
-    weak, stiffness, f, g = False, 0.0, row[0], row[1]
-    timed = len(times) > 0 or in_time[0, 1] != 0.0
+    weak, stiffness = False, 0.0
     for n in range(_MOST_NEWTON):
-        last, stiffness = stiffness, 0.0
-        for j in range(stages):
-            slowness[j] = math.sqrt(0.5 * inertia[j] / energy[j]) if energy[j] > 0.0 else math.nan
-        for j in range(stages):
-            omega, at = sense / slowness[j], t
-            if timed:
-                for i in range(stages):
-                    at += steps[j, i] * slowness[i]
-                f = _row(times, at, f)
-                stiffness += abs(steps[stages - 1, j] * in_time[f, 1] * (at - t) / energy[j])
-            g = _row(speeds, omega, g)
-            slope = in_speed[g, 1] + 2.0 * in_speed[g, 2] * omega
-            if drags:
-                slope -= drag[j]
-            stiffness += abs(steps[stages - 1, j] * slope / (inertia[j] * omega))
-            torque[j] = rest[j] + in_time[f, 0] + in_time[f, 1] * at
-            torque[j] += in_speed[g, 0] + (in_speed[g, 1] + in_speed[g, 2] * omega) * omega
-            if drags:
-                torque[j] -= drag[j] * omega
-        row[0], row[1] = f, g
+        last, stiffness = stiffness, _load(scratch, start, loads, of_angle, out)
+        g = row[1]
         if n > 0:
             left = change * max(stiffness, last, change / before) if weak else change
         if not left >= _SETTLED:
@@ -214,32 +199,65 @@ def _solve(
 
 
 @kernel
+def _load(
+    scratch: tuple[Array, Array, Array, Index],
+    start: tuple[float, float, float],
+    loads: Loads,
+    of_angle: tuple[Array, Array, Array],
+    out: tuple[Array, Array],
+) -> float:
+    """Fill torque and slowness at the nodes of a cell from the energies there; how much of the
+    energy changes of them change it, through the loads. As in `_solve`."""
+    (energy, _, steps, row), (begun, sense) = scratch, (start[1], start[2])
+    (times, in_time, speeds, in_speed), (torque, slowness) = loads, out
+    (inertia, rest, drag), stages = of_angle, len(energy)
+    stiffness, f, g, drags = 0.0, row[0], row[1], len(drag) > 0
+    timed = len(times) > 0 or in_time[0, 1] != 0.0
+    for j in range(stages):
+        slowness[j] = math.sqrt(0.5 * inertia[j] / energy[j]) if energy[j] > 0.0 else math.nan
+    for j in range(stages):
+        omega, at = sense / slowness[j], begun
+        if timed:
+            for i in range(stages):
+                at += steps[j, i] * slowness[i]
+            f = _row(times, at, f)
+            stiffness += abs(steps[stages - 1, j] * in_time[f, 1] * (at - begun) / energy[j])
+        g = _row(speeds, omega, g)
+        slope = in_speed[g, 1] + 2.0 * in_speed[g, 2] * omega
+        if drags:
+            slope -= drag[j]
+        stiffness += abs(steps[stages - 1, j] * slope / (inertia[j] * omega))
+        torque[j] = rest[j] + in_time[f, 0] + in_time[f, 1] * at
+        torque[j] += in_speed[g, 0] + (in_speed[g, 1] + in_speed[g, 2] * omega) * omega
+        if drags:
+            torque[j] -= drag[j] * omega
+    row[0], row[1] = f, g
+    return stiffness
+
+
+@kernel
 def fired(
     affinely: bool,
-    loads: Loads,
-    bounds: tuple[float, float, float],
-    start: tuple[float, float, float],
+    course: tuple[Loads, tuple[float, float, float], tuple[float, float, float]],
     rule: tuple[Array, Array],
     cells: tuple[Array, Array, Array, Array],
-    of_gas: tuple[Array, Array, float],
-    decisions: tuple[Index, Array, Array, Array],
-    law: tuple[float, ...],
-    decided: tuple[Array, Array],
+    fuel: Fuel,
     solved: Solved,
 ) -> tuple[int, int]:
     """Solve cells as `affine` or `newton` do, from decision to decision on the fuel; count both.
 
-    cells : width, and inertia, torque and, if there is any, drag at the nodes; the torque gets what
-    is fired; of_gas : as `fire` takes it
-    decisions : the cell before which each falls, one more than those; crank angle and inertia
-    there; what is left of the cylinders' shares, NaN where they do not decide
-    law : as `crankmbs.mechanics.firing.FuelLaw.numbers` gives it
-    decided : time, angle, integral, speed where the fuel set in or NaN, and 1 where it is over; and
-    the shares; of the last decision and, filled, of the next ones
+    course : loads, bounds and start, as `newton` takes them; cells : width, and inertia, torque
+    and, if there is any, drag at the nodes; the torque gets what is fired
+    fuel : of the gas, as `fire` takes it; of the decisions, the cell before which each falls, one
+    more than those, crank angle and inertia there, and what is left of the cylinders' shares, NaN
+    where they do not decide; the law, as `crankmbs.mechanics.firing.FuelLaw.numbers` gives it; and
+    of what is decided, time, angle, integral, speed where the fuel set in or NaN, and 1 where it is
+    over, and the shares, each of the last decision and, filled, of the next ones
     """
     (width, inertia, rest, drag), (edges, time, torque, slowness) = cells, solved
+    (loads, bounds, start), (of_gas, decisions, law, (kept, shares)) = course, fuel
     combustion, rubbed, against = of_gas
-    (at, theta, there, parts), (kept, shares) = decisions, decided
+    at, theta, there, parts = decisions
     t_end, sense, n, k = bounds[0], start[2], 0, 0
     edges[0], time[0] = start[0], start[1]
     while k < len(width):

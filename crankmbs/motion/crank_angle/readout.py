@@ -26,14 +26,12 @@ def read(
     sense: float,
     to_legendre: Array,
     solved: Solved,
-    cell: Index,
-    position: Array,
-    at: Array,
-    kinetic: Array,
+    found: tuple[Index, Array, Array, Array],
 ) -> None:
-    """Cell, position in it from 0 to 1, time and energy at increasing times, or else angles since
-    the beginning; fills what follows ``solved``."""
+    """Fill ``found`` with the cell, the position in it from 0 to 1, time and energy at increasing
+    times, or else angles since the beginning."""
     edges, width, energy, time, torque, slowness = solved
+    cell, position, at, kinetic = found
     s, k = len(to_legendre), -1
     of = np.empty((5, s))  # torque and slowness as sums of P_j, and of P_j what `_integrals` needs
     for j in range(s):
@@ -101,18 +99,14 @@ def motion(
     of_angle: tuple[Array, Array, Array],
     sense: float,
     branch: Coefficients,
-    time: Array,
-    energy: Array,
-    omega: Array,
-    outside: Array,
-    alpha: Array,
+    at: tuple[Array, Array],
+    found: tuple[Array, Array, Array],
 ) -> None:
-    """Speed, torque from outside and acceleration at the angles ``which``; fills what follows
-    ``energy``.
+    """Fill ``found`` with speed, torque from outside and acceleration at the angles ``which``.
 
-    of_angle : J, J_1 and torque of gas and gravity
+    of_angle : J, J_1 and torque of gas and gravity; at : time and energy
     """
-    inertia, slope, torque = of_angle
+    (inertia, slope, torque), (time, energy), (omega, outside, alpha) = of_angle, at, found
     c0, ct, c1, c2 = branch
     for i in range(len(which)):
         k = which[i]

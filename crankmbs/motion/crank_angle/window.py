@@ -256,8 +256,9 @@ class Window:
         at_edges, at_nodes = (self.energy, self.time), (self.torque, self.slowness)
         solved = self.edges, self.strip.width, *at_edges, *at_nodes
         to_legendre = self.grid.rule.to_legendre
-        readout.read(given, in_time, self.sense, to_legendre, solved, k, x, t, energy)
-        return k, x, t, energy
+        found = k, x, t, energy
+        readout.read(given, in_time, self.sense, to_legendre, solved, found)
+        return found
 
     def _samples(self, k: Index, theta: Array, t: Array, energy: Array) -> Samples:
         """Samples in the cells k."""
@@ -274,9 +275,9 @@ class Window:
         of_angle = (inertia, slope, torque)  # bare: numba's cache must not name a class
         rubs = self.grid.train.scene.friction is not None
         if isinstance(self.branch, Branch) and not self.branch.functions and not rubs:
-            omega, outside, alpha = np.empty((3, len(theta)))
+            found = omega, outside, alpha = np.empty_like(t), np.empty_like(t), np.empty_like(t)
             loads = self.branch.coefficients
-            readout.motion(which, of_angle, self.sense, loads, t, energy, omega, outside, alpha)
+            readout.motion(which, of_angle, self.sense, loads, (t, energy), found)
         else:
             inertia, slope, torque = (part[which] for part in of_angle)
             omega = self.sense * np.sqrt(2.0 * np.maximum(energy, 0.0) / inertia)

@@ -47,27 +47,31 @@ class Reduced:
         self.train, scene, pressure = train, train.scene, train.pressure
         self._missed, self._known = missed, {phases: self}
         self._last: tuple[tuple[float, ...], Reduced] | None = None
-        self.over_angle = load = over_angle(scene, phases)
-        crank, rod, piston = scene.crank, scene.rod, scene.piston
-        friction = scene.friction or Friction()
+        self.over_angle = over_angle(scene, phases)
         knots = self._with_others(crank_angle_knots(train))
         if len(knots) == 0:  # no step of many turns: it would overlook a light rod near a fold
             knots = np.arange(0.0, train.period, 0.5)
+        bends = knots
+        if pressure and missed > 0.0 and train.combustion is None:
+            lever = (scene.piston.gas_area or 0.0) * scene.crank.radius
+            least = missed * self.torque_scale / lever
+            bends = self._with_others(merged_knots(train, [each.bends(least) for each in pressure]))
+        self.machine = bare(self._machine(knots, bends))
+
+    def _machine(self, knots: Array, bends: Array) -> Machine:
+        """The crank train with its knots."""
+        train, scene, load = self.train, self.train.scene, self.over_angle
+        crank, rod, piston = scene.crank, scene.rod, scene.piston
+        friction, pressures = scene.friction or Friction(), train.pressure or ()
         g = scene.gravity.acceleration if scene.gravity else 0.0
         pull = scene.gravity.angle if scene.gravity else 0.0
-        firsts = [each.knots[0] for each in pressure] if pressure else [0.0] * len(scene.cylinders)
+        firsts = [each.knots[0] for each in pressures] or [0.0] * len(scene.cylinders)
         axes = [
             (c.phase, g * math.cos(pull - c.bank), g * math.sin(pull - c.bank), first)
             for c, first in zip(scene.cylinders, firsts, strict=True)
         ]
-        bends = knots
-        if pressure and missed > 0.0 and train.combustion is None:
-            lever = (piston.gas_area or 0.0) * crank.radius
-            least = missed * self.torque_scale / lever
-            bends = self._with_others(merged_knots(train, [each.bends(least) for each in pressure]))
-        pressures = pressure or ()
         ends = np.cumsum([0, *(len(each.knots) for each in pressures)])
-        machine = Machine(
+        return Machine(
             lengths=(crank.radius, rod.length, rod.center_of_mass, piston.offset),
             masses=Masses(
                 crank_inertia=crank.moment_of_inertia,
@@ -95,7 +99,6 @@ class Reduced:
             ),
             friction=Rubbing(friction.ring_force, friction.ring_pressure, friction.viscous),
         )
-        self.machine = bare(machine)
 
     def at(self, phases: Phases) -> Reduced:
         """The same in other phases of the loads."""

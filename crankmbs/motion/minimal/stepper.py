@@ -205,9 +205,11 @@ def _slopes(
 
 @kernel
 def _stages(
-    which: range, t: float, h: float, y: Array, system: System, k: Array, at: Array
+    which: range, step: tuple[float, float], y: Array, system: System, k: Array, at: Array
 ) -> None:
-    """The slopes k of some stages of a step from y; leaves the state of the last one in ``at``."""
+    """The slopes k of some stages of a step from y, of a beginning and a length [s]; leaves the
+    state of the last one in ``at``."""
+    t, h = step
     for s in which:
         for q in range(3):
             rise = float(A[s, 0]) * float(k[0, q])
@@ -235,10 +237,11 @@ def _error(h: float, k: Array, allowed: tuple[float, float]) -> float:
 
 @kernel
 def _interpolate(
-    t: float, h: float, y: Array, new: Array, system: System, k: Array, row: Array
+    step: tuple[float, float], y: Array, new: Array, system: System, k: Array, row: Array
 ) -> None:
     """The interpolant of order 7 of a step from y to ``new``, as `first_exit` takes it."""
-    _stages(range(13, 16), t, h, y, system, k, row[0])
+    _, h = step
+    _stages(range(13, 16), step, y, system, k, row[0])
     for q in range(3):
         rise, first, last = new[q] - y[q], h * k[0, q], h * k[12, q]
         row[0, q], row[1, q], row[2, q] = y[q], rise, first - rise
@@ -356,7 +359,7 @@ def _short(
         width, late, lands = _reach(y, k[0], limits)[0] / (parts - j), 0.0, False
         for _ in range(2):
             width += late
-            _stages(range(_OWN, 22), t, width, y, system, k, new)
+            _stages(range(_OWN, 22), (t, width), y, system, k, new)
             evaluations += 6
             fastest = speed + max(abs(float(y[1])), abs(float(new[1])))
             late = (float(limits[which]) - new[0]) / new[1] if j + 1 == parts else 0.0
@@ -403,7 +406,8 @@ def travel(
     taken again, as its end is more exact than its inside; where it is close, steps of order 5 go
     there at once. A step much longer than knots are apart roams across those where no pressure
     bends. It ends where all room is used, at any other limit, at the end in time, where no step is
-    short enough, and where the motion dies away or is damped hard.
+    short enough, and where the motion dies away or is damped hard. Over 50 lines, since all that
+    a step carries to the next are plain numbers.
 
     control : tolerance of a step, speed [rad/s] to which it is relative, end in time [s], and into
         how many every step is divided: of a second answer none is as long as of the first
@@ -437,7 +441,7 @@ def travel(
         else:
             while True:
                 width = min(h, t_bound - t)
-                _stages(range(1, 13), t, width, y, system, k, new)
+                _stages(range(1, 13), (t, width), y, system, k, new)
                 fastest = speed + max(abs(float(y[1])), abs(float(new[1])))
                 error = _error(width, k, (tolerance, tolerance * fastest))
                 evaluations += 12
@@ -449,7 +453,7 @@ def travel(
                     return n, t, h, most, evaluations
             grown = min(10.0, 0.9 * error**-0.125) if error > 0.0 else 10.0
             h = width * (min(grown, 1.0) if refused else grown)
-            _interpolate(t, width, y, new, system, k, rows[n])
+            _interpolate((t, width), y, new, system, k, rows[n])
             evaluations += 3
             x, i = first_exit(rows[n], new, limits)
             end, cut = t_bound if width == t_bound - t else t + width, i >= 0 and x > 0.0
@@ -457,8 +461,8 @@ def travel(
             width = (x if cut else 1.0) * width / (parts if again else 1)
             for j in range(parts if again else 1):
                 if again:
-                    _stages(range(1, 13), t, width, y, system, k, new)
-                    _interpolate(t, width, y, new, system, k, rows[n])
+                    _stages(range(1, 13), (t, width), y, system, k, new)
+                    _interpolate((t, width), y, new, system, k, rows[n])
                     evaluations += 15
                 begins[n], widths[n] = t, width
                 n += 1

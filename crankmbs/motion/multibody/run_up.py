@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,7 +22,7 @@ from crankmbs.motion.multibody.taylor import taylor
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 
-__all__ = ["RUN_UP", "run_free", "run_prescribed"]
+__all__ = ["RUN_UP", "Steps", "run_free", "run_prescribed"]
 
 RUN_UP = 6  # steps: an acceleration that was not quite right has died away by then
 _SEEN = 20  # steps, of which a look at the crank's acceleration is made
@@ -32,30 +33,36 @@ _CLOSE, _CLOSER = 1e-9, 1e-12  # miss of a shot: accepted at last, and at once
 _FAR = 0.1  # miss of a shot with an acceleration that the steps do not resolve
 _OPEN = 1e-6  # m or rad: how far a body may be off the closed loop
 
-Proceed = Callable[[float, float], bool]
+
+class Steps(NamedTuple):
+    """Steps to be taken: from when, of what length [s], how many, and by crank angle and speed
+    whether to go on, asked after each."""
+
+    begin: float
+    length: float
+    number: int
+    proceed: Callable[[float, float], bool] | None
 
 
 def run_free(
     scene: Scene,
     model: Model,
-    time: float,
     state: tuple[float, float],
-    step: float,
-    steps: int,
-    proceed: Proceed | None,
+    steps: Steps,
 ) -> tuple[Record, int]:
-    """Run a free crank from its angle and speed at a time; return also the rows of run-up.
+    """Run a free crank from its angle and speed; return also the rows of run-up.
 
     Where no run-up is found the first row is what exudyn solves for there.
     """
+    time, step, count, proceed = steps
     start = _shoot(scene, model, time, state, step)
     if start is not None:
         begin = time - RUN_UP * step
-        return model.run(start, begin, step, steps + RUN_UP, proceed, RUN_UP), RUN_UP
+        return model.run(start, begin, step, count + RUN_UP, proceed, RUN_UP), RUN_UP
     row = model.consistent(coordinates(scene, *state), time)
     alpha = float(row.acceleration[0, 2])
     at_once = quiet_start(scene, angle_of(state, [alpha], step), step)
-    record = model.run(at_once, time, step, steps, proceed)
+    record = model.run(at_once, time, step, count, proceed)
     solved = row.rows()
     for name, recorded in record.rows().items():
         recorded[0] = solved[name][0]
@@ -66,16 +73,14 @@ def run_prescribed(
     scene: Scene,
     model: Model,
     law: SpeedLaw,
-    time: float,
-    step: float,
-    steps: int,
-    proceed: Proceed | None,
+    steps: Steps,
 ) -> tuple[Record, int]:
-    """Run a prescribed crank from a time on; return also the rows of run-up.
+    """Run a prescribed crank; return also the rows of run-up.
 
-    The run-up follows a polynomial through the law after ``time``, up to its eighth derivative.
+    The run-up follows a polynomial through the law after its end, up to the eighth derivative.
     """
-    places = min(_DEGREE, steps) * (0.5 - 0.5 * np.cos(np.linspace(0.0, math.pi, 2 * _DEGREE)))
+    time, step, count, proceed = steps
+    places = min(_DEGREE, count) * (0.5 - 0.5 * np.cos(np.linspace(0.0, math.pi, 2 * _DEGREE)))
     theta, omega, alpha = law.at_time(time + step * places)
     bend = np.polynomial.Polynomial.fit(places, step**2 * alpha, _DEGREE - 2)
     polynomial = bend.integ(2, [float(omega[0]) * step, float(theta[0])], lbnd=0.0)
@@ -85,12 +90,12 @@ def run_prescribed(
     def angle(row: int) -> float:
         while row >= len(angles):
             rows = np.arange(len(angles), 2 * len(angles)) - RUN_UP
-            ahead: Array = law.at_time(np.minimum(time + step * rows, time + step * steps))[0]
+            ahead: Array = law.at_time(np.minimum(time + step * rows, time + step * count))[0]
             angles.extend(ahead.tolist())
         return float(angles[row])
 
     model.angle = angle
-    quiet, rows = quiet_start(scene, first, step), steps + RUN_UP
+    quiet, rows = quiet_start(scene, first, step), count + RUN_UP
     return model.run(quiet, time - RUN_UP * step, step, rows, proceed, RUN_UP), RUN_UP
 
 

@@ -30,7 +30,7 @@ from crankmbs.motion.multibody.landing import (
 from crankmbs.motion.multibody.loads import EVERYWHERE, speeds_around, torque_function
 from crankmbs.motion.multibody.model import Model, Record
 from crankmbs.motion.multibody.problem import Problem
-from crankmbs.motion.multibody.run_up import run_free, run_prescribed
+from crankmbs.motion.multibody.run_up import Steps, run_free, run_prescribed
 from crankmbs.motion.multibody.start import coordinates
 from crankmbs.motion.multibody.step_table import StepTable, table_of
 from crankmbs.scene.torque import Torque
@@ -151,13 +151,11 @@ class Walk:
         """Run with the loads of the model; the table, if it has its rows, and how it ended."""
         problem, model, time = self._problem, self._model, self.time
         watch = Watch(bounds, self._go_on)
-        proceed = None if watch.idle else watch
+        ahead = Steps(time, step, steps, None if watch.idle else watch)
         if problem.law is None:
-            record, lead = run_free(problem.scene, model, time, self._state, step, steps, proceed)
+            record, lead = run_free(problem.scene, model, self._state, ahead)
         else:
-            record, lead = run_prescribed(
-                problem.scene, model, problem.law, time, step, steps, proceed
-            )
+            record, lead = run_prescribed(problem.scene, model, problem.law, ahead)
         record = _on_one_loop(problem, record)
         self.steps += len(record.time) - 1
         self.iterations += record.iterations
