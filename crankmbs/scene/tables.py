@@ -18,6 +18,7 @@ __all__ = [
     "Header",
     "Table",
     "check_abscissae",
+    "content_of",
     "headings",
     "read_columns",
     "read_table",
@@ -245,31 +246,48 @@ def _values(
 
 def _text(path: Path) -> str:
     try:
-        return _content(path).decode("utf-8-sig")
-    except InputError:
-        raise
+        return content_of(path).decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise InputError(
+            f"file {path} is no UTF-8 text; save the table as CSV in UTF-8; crankmbs pressure "
+            "reads what an indicating system writes"
+        ) from None
+
+
+def content_of(path: Path, most: int = _MOST) -> bytes:
+    """The bytes of a file that has an end, not farther away than ``most`` bytes.
+
+    Raises
+    ------
+    InputError : missing, unreadable, endless or too large; the file and the way out
+
+    >>> content_of(Path("no.csv"))
+    Traceback (most recent call last):
+    crankmbs.errors.InputError: file no.csv is missing; paths are relative to the scene file
+    """
+    try:
+        return _content(path, most)
     except FileNotFoundError:
         raise InputError(f"file {path} is missing; paths are relative to the scene file") from None
     except OSError as error:
         raise InputError(f"file {path} cannot be read: {error.strerror}") from None
-    except UnicodeDecodeError:
-        raise InputError(f"file {path} is no UTF-8 text; save the table as CSV") from None
-    except ValueError:
+    except ValueError as error:
+        if isinstance(error, InputError):
+            raise
         raise InputError(f"{shown(str(path))} is no file name") from None
 
 
-def _content(path: Path) -> bytes:
-    """The bytes of a file that has an end, and not too far away."""
+def _content(path: Path, most: int) -> bytes:
     if any(kind(path.stat().st_mode) for kind in _ENDLESS):  # to open a pipe waits for its writer
         raise InputError(
             f"file {path} is a device, a pipe or a socket, which may have no end; save the table "
             "as a CSV file"
         )
     with path.open("rb") as stream:
-        content = stream.read(_MOST + 1)
-    if len(content) > _MOST:
+        content = stream.read(most + 1)
+    if len(content) > most:
         raise InputError(
-            f"file {path} is larger than {_MOST / 1e6:g} MB, the most of a table; leave out the "
+            f"file {path} is larger than {most / 1e6:g} MB, the most of a table; leave out the "
             "columns and rows that are not needed"
         )
     return content
