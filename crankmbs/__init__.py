@@ -13,7 +13,9 @@ from crankmbs.errors import (
     InputError,
     OutputError,
     SceneError,
+    UndecidedError,
 )
+from crankmbs.indicated import CylinderPressure, Indicated, read_pressure
 from crankmbs.lecture.accumulated_torque import accumulated_torque
 from crankmbs.measures import EngineOrders, Orders, engine_orders, orders
 from crankmbs.motion.base import Decay
@@ -41,6 +43,7 @@ __all__ = [
     "Crank",
     "CrankmbsError",
     "Cylinder",
+    "CylinderPressure",
     "CylinderTable",
     "Decay",
     "EngineOrders",
@@ -52,6 +55,7 @@ __all__ = [
     "Gas",
     "Governor",
     "Gravity",
+    "Indicated",
     "Indicator",
     "InputError",
     "Layout",
@@ -76,6 +80,7 @@ __all__ = [
     "Start",
     "Table",
     "TimeTable",
+    "UndecidedError",
     "Viscous",
     "accumulated_torque",
     "at_angle",
@@ -87,6 +92,7 @@ __all__ = [
     "flywheel",
     "load_scene",
     "orders",
+    "read_pressure",
     "shipped_scenes",
     "simulate",
 ]
