@@ -69,8 +69,8 @@ def refuse_binary(content: bytes, name: str) -> None:
     ending = PurePath(name).suffix.lower()
     numbered = ending[1:].isdigit() and len(ending) == 4
     kind = "an iFile of an indicating system" if numbered else _ENDINGS.get(ending, "")
-    kind = f"binary, by its name {kind}," if kind else "binary"
-    raise InputError(f"file {name} is {kind} and only text is read; {_EXPORT}")
+    kind = f"binary, by its name {kind}" if kind else "binary"
+    raise InputError(f"file {name} is {kind}, and only text is read; {_EXPORT}")
 
 
 def _is_binary(probe: bytes) -> bool:

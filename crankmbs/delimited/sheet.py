@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import io
 import re
+from collections import Counter
 from collections.abc import Iterator
 from typing import NamedTuple
 
@@ -18,6 +19,7 @@ from crankmbs.delimited.dialect import (
     find_dialect,
     is_number,
     is_row,
+    named,
     split,
 )
 from crankmbs.delimited.encoding import Text
@@ -81,7 +83,7 @@ def read_sheet(
     dialect = find_dialect(_probe(head[skip:]), separator, decimal)
     begin = None if dialect is None else _begin(head, skip, dialect)
     if dialect is None or begin is None:
-        raise InputError(_no_rows(name, head, skip))
+        raise InputError(_no_rows(name, head, skip, separator, decimal))
     above = [tuple(split(line, dialect.separator)) for line in head[skip:begin]]
     body = source.text[offset[begin] :]
     width = len(split(head[begin], dialect.separator))
@@ -118,10 +120,11 @@ def _begin(lines: list[str], skip: int, dialect: Dialect) -> int | None:
     for line in lines[skip:]:
         cells = split(line, dialect.separator)
         widths.append(len(cells) if is_row(cells, dialect.decimal) else 0)
-    longest = max(widths, default=0)
+    counted = Counter(width for width in widths if width)
+    usual = max(counted, key=lambda width: (counted[width], width), default=0)
     for k, width in enumerate(widths):
         after = widths[k : k + _ALIKE]
-        if width == longest > 0 and all(each == width for each in after):
+        if width == usual > 0 and all(each == width for each in after):
             return skip + k
     return None
 
@@ -189,13 +192,18 @@ def _value(name: str, line: int, column: int, cell: str, decimal: str) -> float:
     )
 
 
-def _no_rows(name: str, lines: list[str], skip: int) -> str:
+def _no_rows(
+    name: str, lines: list[str], skip: int, separator: str | None, decimal: str | None
+) -> str:
     if not any(line.strip() for line in lines):
         return f"file {name} is empty: it needs headings and rows of crank angle and pressure"
     written = [line for line in lines[skip:] if line.strip()]
     last = shown(written[-1]) if written else "nothing"
+    given = f", separated by {named(separator)}s" if separator else ""
+    given += f', with the decimal sign "{decimal}"' if decimal else ""
     return (
-        f"file {name}: no rows of at least two numbers were found in its first {len(lines)} lines"
+        f"file {name}: no rows of at least two numbers{given} were found in its first "
+        f"{len(lines)} lines"
         f"{f' behind the {skip} skipped' if skip else ''}; the last of them is {last}; give "
         "separator, decimal and skip, or export the table alone"
     )

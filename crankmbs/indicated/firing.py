@@ -66,7 +66,9 @@ def lags(angle: Array, means: Sequence[Array], period: float) -> list[float]:
     return [(each - at[0]) % period for each in at]
 
 
-def places(measured: Sequence[float], period: float, known: Sequence[float] | None) -> list[float]:
+def places(
+    measured: Sequence[float], period: float, known: Sequence[float] | None, where: str
+) -> list[float]:
     """The lags [deg] that the measured ones stand for: that of the scene's layout where it is near,
     else the nearest even one; of cylinders each over its own angle all are 0.
 
@@ -87,8 +89,9 @@ def places(measured: Sequence[float], period: float, known: Sequence[float] | No
         nominal = min((g for g in _GRID if g < period), key=lambda g: _off(each, g, period))
         if _off(each, nominal, period) > _APART:
             raise UndecidedError(
-                f"the column of cylinder {number} fires {each:.4g} degrees behind the first one, "
-                "which no even firing has",
+                f"{where}: the cylinder of pressure column {number} fires {each:.4g} degrees "
+                "behind the first one, "
+                "first one, which no even firing has",
                 ("scene=..., whose layout says when it fires",),
             )
         found.append(float(nominal))

@@ -167,7 +167,7 @@ def _cut(
     )
     measured = lags(record.angle, means, record.period)
     known = _of_layout(channels, scene, record.period)
-    nominal = places(measured, record.period, known)
+    nominal = places(measured, record.period, known, where)
     said += _lag_words(channels, measured, nominal, known)
     raws, firsts = [], []
     for channel, values, consecutive, lag in zip(channels, filled, joined, nominal, strict=True):
