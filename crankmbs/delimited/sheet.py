@@ -143,7 +143,7 @@ def _numbers(name: str, body: str, dialect: Dialect, begin: int, width: int) -> 
     if '"' not in body and not (sign == decimal == ","):
         text = body.replace(",", ".") if decimal == "," else body
         if sign != " ":
-            text = _filled(text, re.escape(sign))
+            text = _filled(text, sign)
         stream = io.TextIOWrapper(io.BytesIO(text.encode("utf-8")), encoding="utf-8")
         del text
         try:
@@ -158,8 +158,10 @@ def _numbers(name: str, body: str, dialect: Dialect, begin: int, width: int) -> 
 
 def _filled(text: str, sign: str) -> str:
     """Empty cells as nan, where there are any."""
-    if re.search(rf"{sign}[ ]*(?:{sign}|$)|^[ ]*{sign}", text, re.MULTILINE) is None:
+    signs = (sign + sign, f"{sign}\n", f"\n{sign}", f"{sign} ")  # quicker than the expressions
+    if not any(each in text for each in signs) and sign not in (text[:1], text[-1:]):
         return text
+    sign = re.escape(sign)
     text = re.sub(rf"(?<={sign})[ ]*(?={sign}|$)", "nan", text, flags=re.MULTILINE)
     return re.sub(rf"^[ ]*(?={sign})", "nan", text, flags=re.MULTILINE)
 
