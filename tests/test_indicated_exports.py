@@ -154,6 +154,30 @@ EXPORTS = {
 }
 
 
+EXPORTS |= {
+    "a line for spreadsheets, units behind a stroke": (
+        "sep=;\n" + text([FULL, EXACT], ['"Kurbelwinkel / °KW"', '"p_Zyl1 / bar"']),
+        "utf-16",
+    ),
+    "sections, and cycles under an index": (
+        "[Measurement]\nTitle\tÖl 17\nBore [mm]\t85.25\n\n[Data]\n"
+        + text(
+            [FULL, *cycles(FIRED, FULL, 20)],
+            ["CRANKANGLE", *(f"PCYL1[{k + 1}]" for k in range(20))],
+            ["°CA aTDC", *["bar"] * 20],
+            separator="\t",
+            comma=False,
+        ),
+        "cp1252",
+    ),
+    "numbers in powers of ten": (
+        "Crank Angle [deg] Pcyl [bar]\n".replace(" P", "\tP")
+        + "\n".join(f"{a:.7e}\t{p:.7e}" for a, p in zip(FULL, EXACT, strict=True)),
+        "utf-8",
+    ),
+}
+
+
 @pytest.mark.parametrize("name", EXPORTS)
 def test_it_is_read_as_it_stands(tmp_path, name):
     content, encoding = EXPORTS[name]
@@ -241,3 +265,38 @@ def test_an_angle_that_counts_from_elsewhere_is_given(tmp_path):
     found = read_pressure(path, firing_tdc="77.5 deg")
     exact = pressure_of(FIRED, np.degrees(found.table.x) - 360.0)
     assert np.array(found.table.y) / 1e5 == pytest.approx(exact, abs=2e-3)
+
+
+def test_rows_without_names_are_angle_and_pressures(tmp_path):
+    path = export(tmp_path, "\n".join(f"{a:g} {p:.4f}" for a, p in zip(FULL, EXACT, strict=True)))
+    found = read_pressure(path, unit="bar", reference="absolute")
+    assert "no column has a name: the first is read as the crank angle" in found.sentences
+    exact = pressure_of(FIRED, np.degrees(found.table.x) - 360.0)
+    assert np.array(found.table.y) / 1e5 == pytest.approx(exact, abs=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("encoding", "name"),
+    [
+        ("utf-8", "UTF-8"),
+        ("utf-8-sig", "UTF-8"),
+        ("utf-16", "UTF-16"),
+        ("utf-16-be", "UTF-16-BE"),
+        ("utf-32", "UTF-32"),
+        ("cp1252", "Windows-1252"),
+    ],
+)
+def test_the_encoding_is_said(tmp_path, encoding, name):
+    path = tmp_path / "export.csv"
+    path.write_bytes(("Öl\n" + simple("bar", 1.0)).encode(encoding))
+    said = read_pressure(path, reference="absolute").sentences[0]
+    assert f", {name}, separated by semicolons, decimal comma; 4-stroke" in said
+
+
+def test_a_reference_against_the_unit_is_warned_of(tmp_path):
+    path = export(tmp_path, simple("barg", 1.0))
+    found = read_pressure(path, reference="absolute")
+    assert found.warnings == (
+        "warning: cylinder 1: the pressures are absolute and stay as they are (as given, though "
+        "the unit says gauge)",
+    )

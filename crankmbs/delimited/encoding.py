@@ -42,7 +42,7 @@ def decode(content: bytes, name: str) -> Text:
     refuse_binary(content, name)
     encoding = next((each for mark, each in _MARKS if content.startswith(mark)), "")
     encoding = encoding or _without_mark(content[:_PROBE])
-    text = _decoded(content, encoding, name)
+    text, encoding = _decoded(content, encoding, name)
     if "\0" in text[:_PROBE]:
         raise InputError(
             f"file {name} is binary, no text; export the pressures as text (CSV) over the crank "
@@ -51,16 +51,16 @@ def decode(content: bytes, name: str) -> Text:
     return Text(text.replace("\r\n", "\n").replace("\r", "\n"), _NAMES.get(encoding, encoding))
 
 
-def _decoded(content: bytes, encoding: str, name: str) -> str:
+def _decoded(content: bytes, encoding: str, name: str) -> tuple[str, str]:
     try:
-        return content.decode(encoding)
+        return content.decode(encoding), encoding
     except UnicodeDecodeError as error:
         if encoding != "UTF-8":
             raise InputError(
                 f"file {name}: byte {error.start} is no {encoding}, as the file begins; export it "
                 "again as text in UTF-8"
             ) from None
-    return content.decode("cp1252", errors="replace")
+    return content.decode("cp1252", errors="replace"), "cp1252"
 
 
 def _without_mark(probe: bytes) -> str:

@@ -21,7 +21,7 @@ _KINDS = {
     "maximum": r"(?<![a-z])max(imum)?(?![a-z])",
     "spread": r"(?<![a-z])(std|stdev|sdev|stddev|sigma|cov|var)(?![a-z])",
 }
-_CYCLE = re.compile(r"(?:cycle|cyc|zyklus|zyk|#)[ _.:-]*0*([0-9]+)|\(([0-9]+)\)$")
+_CYCLE = re.compile(r"(?:cycle|cyc|zyklus|zyk|#)[ _.:-]*0*([0-9]+)|[\[(]([0-9]+)[\])]$")
 _COUNTER = re.compile(r"(cycle|cyc|zyklus|zyk)([ _.-]*(no|nr|number|count|index))?[ .]*", re.I)
 _PRESSURE_NAME = re.compile(
     r"(p[ _]?(cyl|zyl|zyk)?|cyl(inder)?|zyl(inder)?|(zylinder)?druck|cylinder pressure|pressure"

@@ -90,8 +90,7 @@ def places(
         if _off(each, nominal, period) > _APART:
             raise UndecidedError(
                 f"{where}: the cylinder of pressure column {number} fires {each:.4g} degrees "
-                "behind the first one, "
-                "first one, which no even firing has",
+                "behind the first one, which no even firing has",
                 ("scene=..., whose layout says when it fires",),
             )
         found.append(float(nominal))

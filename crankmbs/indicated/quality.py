@@ -4,7 +4,6 @@ smoothing that says what it moved."""
 from __future__ import annotations
 
 import numpy as np
-from scipy.signal import savgol_filter
 
 from crankmbs.errors import InputError
 from crankmbs.indicated.shape import Shape
@@ -79,4 +78,6 @@ def smoothed(phi: Array, pressure: Array, width: float, where: str) -> Array:
             f"{where}: smooth must span at least five rows, {4.0 * step:g} degrees here, and less "
             f"than the cycle; {width:g} degrees came"
         )
+    from scipy.signal import savgol_filter  # a fifth of a second: only where it is asked for
+
     return np.asarray(savgol_filter(pressure, rows, 3, axis=1, mode="wrap"))

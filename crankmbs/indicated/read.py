@@ -83,7 +83,8 @@ def read_pressure(file: str | Path, scene: Scene | None = None, **options: Any) 
     cylinders, absolute = [], True
     for (raw, firing), lag in zip(raws, measured, strict=True):
         added, absolute, words = refer(raw, reference, shape, record.period, where)
-        said.append(f"cylinder {raw.number}: the pressures are {words} ({why})")
+        look = "warning: " if "though" in why else ""
+        said.append(f"{look}cylinder {raw.number}: {words} ({why})")
         cylinders.append(
             replace(
                 cylinder_of(raw, added, shape, record.period, wanted, absolute),

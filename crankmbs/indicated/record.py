@@ -18,7 +18,7 @@ from crankmbs.errors import InputError, UndecidedError
 from crankmbs.indicated.channels import Column, angle_column, columns_of
 from crankmbs.indicated.options import Options
 from crankmbs.numerics.arrays import Array
-from crankmbs.scene.headings import PRESSURE_UNITS, angle_factor, headings_of
+from crankmbs.scene.headings import PRESSURE_UNITS, Heading, angle_factor, headings_of
 
 __all__ = ["Channel", "Record", "record_of"]
 
@@ -74,6 +74,9 @@ def record_of(sheet: Sheet, options: Options, stroke: int | None) -> Record:
     width = sheet.values.shape[1]
     where = f"file {sheet.name}"
     headings, _ = headings_of(sheet.above, width)
+    nameless = not any(heading.name or heading.unit for heading in headings)
+    if nameless and _is_axis(sheet.values[:, 0]):
+        headings = tuple(Heading(f"PCYL{k}" if k else "CA", "") for k in range(width))
     at = angle_column(headings, where)
     columns = columns_of(headings, options, where, at)
     angle = np.degrees(sheet.values[:, at] * angle_factor(headings[at]))
@@ -83,7 +86,10 @@ def record_of(sheet: Sheet, options: Options, stroke: int | None) -> Record:
             f"file {sheet.name}, line {sheet.first + missing[0]}: the crank angle is missing; "
             "complete the row, or cut it off"
         )
-    return _Axis(sheet, angle, columns, options.stroke or stroke).record()
+    record = _Axis(sheet, angle, columns, options.stroke or stroke).record()
+    if nameless:
+        record.said.insert(0, "no column has a name: the first is read as the crank angle")
+    return record
 
 
 class _Axis:

@@ -43,9 +43,11 @@ def decide(
     ------
     UndecidedError : nothing of these
     """
-    if options.reference is not None:
-        return options.reference, "as given"
     said = {raw.said for raw in raws}
+    if options.reference is not None:
+        against = {"absolute": "gauge", "gauge": "absolute"}.get(options.reference.kind)
+        though = f", though the unit says {against}" if against in said else ""
+        return options.reference, f"as given{though}"
     if len(said) == 1 and "" not in said:
         return Reference(said.pop()), "as the unit says"
     levels = ", ".join(f"{np.mean(_low(raw, period)) / _BAR:.3g}" for raw in raws)
@@ -81,11 +83,15 @@ def refer(
     cycles = len(raw.pressure)
     kind, value = reference
     if kind == "absolute":
-        return np.zeros(cycles), True, "absolute, taken as they are"
+        return np.zeros(cycles), True, "the pressures are absolute and stay as they are"
     if kind == "gauge":
         if value is None:
-            return np.zeros(cycles), False, "gauge, and stay so"
-        return np.full(cycles, value), True, f"gauge; {value / _BAR:g} bar are added"
+            return np.zeros(cycles), False, "the pressures are gauge and stay so"
+        return (
+            np.full(cycles, value),
+            True,
+            f"the pressures are gauge; {value / _BAR:g} bar are added",
+        )
     if kind == "polytrope":
         if shape is None or shape.ratio is None:
             raise InputError(

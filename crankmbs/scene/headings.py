@@ -58,11 +58,13 @@ _TIMES = {"s", "ms", "us", "µs", "sec"}
 _NO_UNITS = {"", "-", "1", "%", "a", "v", "mv", "c", "°c", "k", "mm", "j/deg", "kj/m3deg", "j"}
 
 _ANGLE_NAME = re.compile(
-    r"(crank|kurbel)[ _]?(angle|winkel).*|crk[ _]?ang.*|°?ca|cad|deg|degrees?|angle|winkel|kw|°kw"
-    r"|theta|phi|ca[ _]?deg|deg[ _]?ca|degca|x[ _]?axis"
+    r"((crank|kurbel)[ _]?(angle|winkel).*|crk[ _]?ang.*|°?ca|cad|deg|degrees?|angle|winkel|kw|°kw"
+    r"|theta|phi|φ|ca[ _]?deg|deg[ _]?ca|degca|x[ _]?axis)([ _][ab]?tdc\w*)?"
 )
 _TIME_NAME = re.compile(r"time|zeit|t|timestamp|time[ _]?stamp|abs(olute)?[ _]?time|temps")
-_BRACKETED = re.compile(r"(.*?)\s*[\[(]([^\])]*)[\])]\s*")
+_BRACKETED = re.compile(r"(.*?)\s*[\[(]([^\])]*(?:\([ag]\))?)[\])]\s*")
+_AFTER = re.compile(r"(.+?)\s+/\s+(\S.*)|(.+?),\s*(\S+)")  # "p / bar", "p, bar"
+_OF_TDC = re.compile(r"\s*[ab]?tdcf?$")
 _NUMBERED_UNIT = re.compile(r"(.+?)_(bar|kPa|Pa|MPa|psi|kgf_cm2|deg|rad)((?:_[1-9][0-9]*)?)")
 _RANGE = re.compile(r"(.*?)([0-9]+)\.\.([0-9]+)(.*)")
 _MOST = 10_000  # columns that a range names
@@ -196,6 +198,7 @@ def _given(row: Sequence[str]) -> int:
 def _unit(text: str) -> tuple[str, str]:
     """A unit in small letters and common spelling, and the reference that it names."""
     unit = " ".join(text.strip("[]() \t").lower().split())
+    unit = _OF_TDC.sub("", unit)
     match = _REFERENCED.fullmatch(unit)
     if match:
         return match[1], {"a": "absolute", "g": "gauge"}[match[2]]
@@ -223,11 +226,12 @@ def _heading(name: str, unit: str) -> Heading:
     text, said = name.strip().strip("#").strip(), unit
     bracketed = _BRACKETED.fullmatch(text)
     numbered = _NUMBERED_UNIT.fullmatch(text)
-    if bracketed and bracketed[1] and _is_unit(bracketed[2]):
+    after = _AFTER.fullmatch(text)
+    if bracketed and bracketed[1] and _is_unit(bracketed[2]) and bracketed[2] != "1":
         text, said = bracketed[1], said or bracketed[2]
     elif numbered and not unit:
         text, said = numbered[1] + numbered[3], numbered[2]
-    elif not unit and "," in text and _is_unit(text.rpartition(",")[2]):
-        text, said = (part.strip() for part in text.rsplit(",", 1))
+    elif not unit and after and _is_unit(after[2] or after[4]):
+        text, said = after[1] or after[3], after[2] or after[4]
     plain, reference = _unit(said)
     return Heading(text, plain, reference)
