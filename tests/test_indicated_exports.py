@@ -300,3 +300,29 @@ def test_a_reference_against_the_unit_is_warned_of(tmp_path):
         "warning: cylinder 1: the pressures are absolute and stay as they are (as given, though "
         "the unit says gauge)",
     )
+
+
+def test_cylinders_without_numbers_are_counted_as_they_are_chosen(tmp_path):
+    names, units = ["Pressure B", "Pressure A", "Power"], ["bar(a)", "bar(a)", "kW"]
+    path = export(tmp_path, rows([EXACT, 1.02 * EXACT, EXACT], names, units))
+    found = read_pressure(path, columns="Pressure A, Pressure B")
+    assert [(each.number, each.name) for each in found.cylinders] == [
+        (1, "Pressure A"),
+        (2, "Pressure B"),
+    ]
+
+
+def test_cycles_of_several_cylinders_stand_in_columns(tmp_path):
+    names = [f"PCYL{c}_{k}" for c in (1, 2) for k in (1, 2, 3)]
+    values = [*cycles(FIRED, FULL, 3), *(1.02 * cycles(FIRED, FULL, 3))]
+    found = read_pressure(export(tmp_path, rows(values, names, ["bar(a)"] * 6)))
+    assert [each.pressure.shape for each in found.cylinders] == [(3, 720), (3, 720)]
+    assert found.aligned
+
+
+@pytest.mark.parametrize("names", [["P1", "P2", "P3"], ["Cyl 1", "Cyl 2", "Cyl 3"]])
+def test_short_names_are_cylinders(tmp_path, names):
+    values = [EXACT, 1.02 * EXACT, 0.98 * EXACT, 0.0 * EXACT + 1.0]
+    content = rows(values, [*names, "Cyl 1 inlet"], ["bar(a)"] * 4)
+    found = read_pressure(export(tmp_path, content))
+    assert [each.name for each in found.cylinders] == names

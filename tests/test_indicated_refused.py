@@ -155,6 +155,10 @@ MESSAGES = {
         "file a.csv: the columns are named 1 to 2, and these may be cycles of one cylinder or "
         'cylinders; give each="cycle" or each="cylinder"'
     ),
+    "two of one cylinder": (
+        'file a.csv: "PCYL1" and "PCYL1_HP" may both be the pressure of cylinder 1; give '
+        'columns="PCYL1" or columns="PCYL1_HP"'
+    ),
     "intake alone": (
         "file a.csv: no column is the pressure of a cylinder; PINT came; name the column, such "
         'as columns="PCYL1"'
@@ -193,6 +197,7 @@ ASKED = {
     "two peaks",
     "an odd lag",
     "cycles or cylinders",
+    "two of one cylinder",
 }
 
 

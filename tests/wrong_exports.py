@@ -98,6 +98,11 @@ WRONG = {
         of(FULL, EXACT, EXACT, names=("CA", "1", "2"), units=("deg", "bar(a)", "bar(a)")),
         {},
     ),
+    "two of one cylinder": (
+        "a.csv",
+        of(FULL, EXACT, EXACT, names=("CA", "PCYL1", "PCYL1_HP"), units=("deg", "bar", "bar")),
+        {},
+    ),
     "intake alone": ("a.csv", of(FULL, EXACT, names=("CA", "PINT")), {}),
     "inlet without its column": ("a.csv", GOOD, {"reference": "inlet"}),
     "polytrope without geometry": ("a.csv", GOOD, {"reference": "polytrope 1.32"}),

@@ -13,9 +13,9 @@ from crankmbs.scene.headings import PRESSURE_UNITS, Heading, is_angle, is_time, 
 __all__ = ["Column", "angle_column", "columns_of"]
 
 _KINDS = {
-    "intake": r"^p?[ _.-]*(int|inl|ein|saug|ansaug|man(?!o)|map$|boost|lade|p2)",
-    "exhaust": r"^p?[ _.-]*(exh|abg|aus(?!s)|out)",
-    "other": r"rail|inj|fuel|kraftstoff|oil|oel|öl|coolant|baro|ambient|umgebung",
+    "intake": r"^p?[ _.-]*(int|inl|ein|saug|man(?!o)|map$|boost|lade)|intake|inlet|ansaug",
+    "exhaust": r"^p?[ _.-]*(exh|abg|aus(?!s)|out)|exhaust|abgas",
+    "other": r"^[ignpbf]?mep|^p[ _]?max|rail|inj|fuel|kraftstoff|oil|oel|öl|coolant|baro|ambient",
     "mean": r"(?<![a-z])(mean|avg|average|mittel\w*|mw|moy)(?![a-z])",
     "minimum": r"(?<![a-z])min(imum)?(?![a-z])",
     "maximum": r"(?<![a-z])max(imum)?(?![a-z])",
@@ -25,7 +25,7 @@ _CYCLE = re.compile(r"(?:cycle|cyc|zyklus|zyk|#)[ _.:-]*0*([0-9]+)|[\[(]([0-9]+)
 _COUNTER = re.compile(r"(cycle|cyc|zyklus|zyk)([ _.-]*(no|nr|number|count|index))?[ .]*", re.I)
 _PRESSURE_NAME = re.compile(
     r"(p[ _]?(cyl|zyl|zyk)?|cyl(inder)?|zyl(inder)?|(zylinder)?druck|cylinder pressure|pressure"
-    r"|cyl[ _]?press\w*|cylpr|p[ _]?cylinder|cycle|cyc|zyklus)[ _.#(-]*[0-9]*.*",
+    r"|cyl[ _]?press\w*|cylpr|p[ _]?cylinder|cycle|cyc|zyklus)[ _.#(\[-]*[0-9]*([ _.#(\[-].*)?",
     re.IGNORECASE,
 )
 _MOST_CYLINDERS = 24
@@ -79,11 +79,8 @@ def columns_of(
     chosen = None
     if options.columns is not None:
         chosen = [k for k in pick(headings, options.columns, where) if k != angle]
-    rest = [
-        k
-        for k, heading in enumerate(headings)
-        if k != angle and (k in (chosen or ()) or _is_pressure(heading))
-    ]
+    others = [k for k, heading in enumerate(headings) if k != angle and _is_pressure(heading)]
+    rest = list(dict.fromkeys([*(chosen or ()), *others]))
     if not rest or (chosen is not None and not chosen):
         listed = ", ".join(shown(heading.name) for heading in headings[:8])
         raise InputError(
@@ -92,7 +89,7 @@ def columns_of(
         )
     named = [(k, _kind(headings[k].name) if k not in (chosen or ()) else "") for k in rest]
     read = [(k, kind) for k, kind in named if kind or chosen is None or k in chosen]
-    return tuple(_numbered(headings, read, options, where))
+    return _apart(_numbered(headings, read, options, where), chosen is not None, where)
 
 
 def _is_pressure(heading: Heading) -> bool:
@@ -137,6 +134,32 @@ def _numbered(
             )
         )
     return columns
+
+
+def _apart(columns: list[Column], chosen: bool, where: str) -> tuple[Column, ...]:
+    """The columns, no two of them the same cycle of a cylinder: chosen ones count cylinders then.
+
+    Raises
+    ------
+    UndecidedError : two pressures of one cylinder that are no cycles by their names
+    """
+    single = [each for each in columns if each.kind == "cycle" and not each.cycle]
+    for number in sorted({each.cylinder for each in single}):
+        names = list(dict.fromkeys(each.name for each in single if each.cylinder == number))
+        if len(names) < 2:
+            continue
+        if chosen:
+            place = {name: k for k, name in enumerate((each.name for each in single), start=1)}
+            return tuple(
+                each._replace(cylinder=place[each.name]) if each in single else each
+                for each in columns
+            )
+        raise UndecidedError(
+            f"{where}: {shown(names[0])} and {shown(names[1])} may both be the pressure of "
+            f"cylinder {number}",
+            tuple(f'columns="{name}"' for name in names[:2]),
+        )
+    return tuple(columns)
 
 
 def _numbers(name: str) -> tuple[int, int]:
