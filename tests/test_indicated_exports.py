@@ -155,6 +155,23 @@ EXPORTS = {
 
 
 EXPORTS |= {
+    "names with blanks over columns of blanks": (
+        "  Crank Angle     Cylinder 1 Pressure\n  [deg]           [bar]\n"
+        + "\n".join(f"  {a:10.2f}  {p:12.5f}" for a, p in zip(FULL, EXACT, strict=True)),
+        "utf-8",
+    ),
+    "rows of descriptions between units and numbers": (
+        simple("bar", 1.0).replace("bar\n", "bar\nencoder;6052C\n1st;channel\n", 1),
+        "utf-8",
+    ),
+    "units above the names": (
+        simple("bar", 1.0).replace("CA;PCYL1\ndeg;bar\n", "deg;bar\nCA;PCYL1\n", 1),
+        "utf-8",
+    ),
+    "names behind a sign of comment": (
+        simple("bar", 1.0).replace("CA;PCYL1\ndeg;bar\n", "% CA [deg];PCYL1 [bar]\n", 1),
+        "utf-8",
+    ),
     "a line for spreadsheets, units behind a stroke": (
         "sep=;\n" + text([FULL, EXACT], ['"Kurbelwinkel / °KW"', '"p_Zyl1 / bar"']),
         "utf-16",

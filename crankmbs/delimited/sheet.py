@@ -84,14 +84,20 @@ def read_sheet(
     begin = None if dialect is None else _begin(head, skip, dialect)
     if dialect is None or begin is None:
         raise InputError(_no_rows(name, head, skip, separator, decimal))
-    above = [tuple(split(line, dialect.separator)) for line in head[skip:begin]]
-    body = source.text[offset[begin] :]
     width = len(split(head[begin], dialect.separator))
+    above = [_headings(line, dialect.separator, width) for line in head[skip:begin]]
+    body = source.text[offset[begin] :]
     trailing = width > 2 and _ends_empty(head[begin], dialect) and _ends_empty_above(above, width)
     values = _numbers(name, body, dialect, begin, width - trailing)
     for missing in _OFF:
         values[values == missing] = np.nan
     return Sheet(name, tuple(above), values, begin + 1, dialect, source.encoding)
+
+
+def _headings(line: str, separator: str, width: int) -> tuple[str, ...]:
+    """The cells of a line above the numbers; between blanks a name may hold single ones."""
+    apart = re.split(r"\t|\s{2,}", line.strip()) if separator == " " else []
+    return tuple(apart if len(apart) == width else split(line, separator))
 
 
 def _lines(text: str, most: int) -> tuple[list[str], list[int]]:

@@ -73,7 +73,7 @@ def record_of(sheet: Sheet, options: Options, stroke: int | None) -> Record:
         return _across(sheet, options, stroke, across)
     width = sheet.values.shape[1]
     where = f"file {sheet.name}"
-    headings, _ = headings_of(sheet.above, width)
+    headings = headings_of(sheet.above, width)
     nameless = not any(heading.name or heading.unit for heading in headings)
     if nameless and _is_axis(sheet.values[:, 0]):
         headings = tuple(Heading(f"PCYL{k}" if k else "CA", "") for k in range(width))

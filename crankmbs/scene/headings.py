@@ -67,6 +67,7 @@ _AFTER = re.compile(r"(.+?)\s+/\s+(\S.*)|(.+?),\s*(\S+)")  # "p / bar", "p, bar"
 _OF_TDC = re.compile(r"\s*[ab]?tdcf?$")
 _NUMBERED_UNIT = re.compile(r"(.+?)_(bar|kPa|Pa|MPa|psi|kgf_cm2|deg|rad)((?:_[1-9][0-9]*)?)")
 _RANGE = re.compile(r"(.*?)([0-9]+)\.\.([0-9]+)(.*)")
+_ROWS = 5  # above the numbers among which names and units are looked for
 _MOST = 10_000  # columns that a range names
 
 
@@ -86,29 +87,32 @@ class Heading(NamedTuple):
         return PRESSURE_UNITS.get(self.unit)
 
 
-def headings_of(above: Sequence[Sequence[str]], width: int) -> tuple[tuple[Heading, ...], int]:
-    """The headings of ``width`` columns and how many of the lines above belong to no heading.
+def headings_of(above: Sequence[Sequence[str]], width: int) -> tuple[Heading, ...]:
+    """The headings of ``width`` columns, from the lines above their numbers.
 
-    >>> headings_of([["CA", "PCYL1"], ["deg", "bar"]], 2)[0][1]
+    Names stand in the row that has that of a crank angle, else above the units, else in the last;
+    a row of numbers of cycles below the names belongs to them.
+
+    >>> headings_of([["CA", "PCYL1"], ["deg", "bar"]], 2)[1]
     Heading(name='PCYL1', unit='bar', reference='')
     """
     rows = [_wide(row, width) for row in above]
     end = len(rows)
     while end and not any(rows[end - 1]):
         end -= 1
-    units: list[str] = [""] * width
-    if end and _is_units(rows[end - 1]):
-        units = rows[end - 1]
-        end -= 1
-    if end == 0 or _given(above[end - 1]) < min(width, 2):
-        return tuple(_heading("", unit) for unit in units), end
-    names = rows[end - 1]
-    end -= 1
-    if width > 2 and end and _are_cycles(names) and _given(above[end - 1]) == width:
-        pairs = zip(rows[end - 1], names, strict=True)
+    near = range(max(end - _ROWS, 0), end)
+    full = [k for k in near if _given(rows[k]) >= min(width, 2)]
+    under = next((k for k in reversed(near) if _is_units(rows[k])), None)
+    units = [""] * width if under is None else rows[under]
+    named = [k for k in full if k != under and _has_angle(rows[k], units)]
+    at = named[-1] if named else (end if under is None else under) - 1
+    if at not in full:
+        return tuple(_heading("", unit) for unit in units)
+    names = rows[at]
+    if width > 2 and at and _are_cycles(names) and _given(above[at - 1]) == width:
+        pairs = zip(rows[at - 1], names, strict=True)
         names = [f"{name} {cycle}" if k else name for k, (name, cycle) in enumerate(pairs)]
-        end -= 1
-    return tuple(_heading(*pair) for pair in zip(names, units, strict=True)), end
+    return tuple(_heading(*pair) for pair in zip(names, units, strict=True))
 
 
 def is_angle(heading: Heading) -> bool:
@@ -187,6 +191,15 @@ def _expanded(columns: str) -> list[str]:
     return names
 
 
+def _has_angle(row: Sequence[str], units: Sequence[str]) -> bool:
+    """Whether a row of names has that of a crank angle."""
+    return any(
+        _ANGLE_NAME.fullmatch(_heading(name, unit).name.lower()) is not None
+        for name, unit in zip(row, units, strict=True)
+        if name
+    )
+
+
 def _wide(row: Sequence[str], width: int) -> list[str]:
     return [*row[:width], *[""] * (width - len(row))]
 
@@ -223,7 +236,7 @@ def _are_cycles(names: Sequence[str]) -> bool:
 
 
 def _heading(name: str, unit: str) -> Heading:
-    text, said = name.strip().strip("#").strip(), unit
+    text, said = name.strip().strip("#%").strip(), unit
     bracketed = _BRACKETED.fullmatch(text)
     numbered = _NUMBERED_UNIT.fullmatch(text)
     after = _AFTER.fullmatch(text)

@@ -58,7 +58,7 @@ def read_measured(path: Path, how: HowRead) -> Table | CylinderTable:
     sheet = read_sheet(
         name, source, separator=sign_of(how.separator), decimal=how.decimal, skip=how.skip or 0
     )
-    headings, _ = headings_of(sheet.above, sheet.values.shape[1])
+    headings = headings_of(sheet.above, sheet.values.shape[1])
     angles = [k for k, heading in enumerate(headings) if is_angle(heading)]
     angle = angles[0] if angles else 0
     if how.columns is None:
