@@ -19,7 +19,7 @@ from crankmbs.cli.demo import demonstrate, write_page
 from crankmbs.cli.ending import ending
 from crankmbs.cli.flywheel import size_flywheel
 from crankmbs.cli.lesson import list_lessons, make_lesson
-from crankmbs.cli.pressure import measured_pressure
+from crankmbs.cli.pressure import pressure
 from crankmbs.cli.run import Wanted, run_scene
 from crankmbs.cli.validate import validate_scene
 from crankmbs.cli.work_precision import measure_scene
@@ -212,62 +212,7 @@ def page(
     write_page(scene, varied=vary or [], out=out)
 
 
-@app.command()
-def pressure(
-    file: Annotated[Path, typer.Argument(metavar="FILE", help="Text of an indicating system.")],
-    out: Annotated[
-        Path | None,
-        typer.Option("-o", "--out", help="The table; default results/FILE/pressure.csv."),
-    ] = None,
-    scene: Annotated[
-        str | None, typer.Option(help="A scene: geometry, stroke and layout of the engine.")
-    ] = None,
-    columns: Annotated[
-        str | None, typer.Option(help='Pressures by name, "PCYL1..4" or "P1,P3".')
-    ] = None,
-    unit: Annotated[str | None, typer.Option(help="Of pressures that have none.")] = None,
-    each: Annotated[
-        str | None, typer.Option(help="What numbered columns are: cycle or cylinder.")
-    ] = None,
-    stroke: Annotated[int | None, typer.Option(help="2 or 4.")] = None,
-    reference: Annotated[
-        str | None,
-        typer.Option(help='"absolute", "gauge", "gauge 1 bar", "inlet 1 bar", "polytrope 1.32".'),
-    ] = None,
-    firing_tdc: Annotated[
-        str | None, typer.Option(help="The file's angle of the firing dead centre.")
-    ] = None,
-    loss_angle: Annotated[
-        str | None, typer.Option(help="By which a motored peak comes before it.")
-    ] = None,
-    compression_ratio: Annotated[float | None, typer.Option(help="Of the cylinder.")] = None,
-    invert: Annotated[bool, typer.Option("--invert", help="Turn the signal over.")] = False,
-    smooth: Annotated[str | None, typer.Option(help='Width of a sliding cubic, "3 deg".')] = None,
-    cycles: Annotated[str, typer.Option(help='In the table: mean, all, 7 or "1-50".')] = "mean",
-    separator: Annotated[
-        str | None, typer.Option(help='";", ",", "|", tab or blank; else it is found.')
-    ] = None,
-    decimal: Annotated[str | None, typer.Option(help='"." or ","; else it is found.')] = None,
-    skip: Annotated[int, typer.Option(help="Lines at the beginning to leave out.")] = 0,
-    no_figures: _NoFigures = False,
-) -> None:
-    """Read measured cylinder pressures, check them, write the table that a scene uses."""
-    options = {
-        "columns": columns,
-        "unit": unit,
-        "each": each,
-        "stroke": stroke,
-        "reference": reference,
-        "firing_tdc": firing_tdc,
-        "loss_angle": loss_angle,
-        "compression_ratio": compression_ratio,
-        "smooth": smooth,
-        "separator": separator,
-        "decimal": decimal,
-    }
-    given: dict[str, Any] = {name: value for name, value in options.items() if value is not None}
-    given |= {"invert": invert, "cycles": cycles, "skip": skip}
-    measured_pressure(file, scene, given, out=out, figures=not no_figures)
+app.command()(pressure)
 
 
 @app.command()

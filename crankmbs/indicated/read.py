@@ -23,8 +23,8 @@ from crankmbs.indicated.report import said_of
 from crankmbs.indicated.shape import Shape, differences, of_header, shape_of
 from crankmbs.indicated.tabulate import table_of
 from crankmbs.numerics.arrays import Array
+from crankmbs.scene.content import content_of
 from crankmbs.scene.scene import Scene
-from crankmbs.scene.tables import content_of
 
 __all__ = ["read_pressure"]
 

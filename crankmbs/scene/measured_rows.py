@@ -9,8 +9,9 @@ import numpy as np
 
 from crankmbs.delimited import decode, read_sheet
 from crankmbs.errors import InputError, shown
+from crankmbs.scene.content import content_of
 from crankmbs.scene.headings import angle_factor, headings_of, is_angle, pick
-from crankmbs.scene.tables import CylinderTable, Table, content_of
+from crankmbs.scene.tables import CylinderTable, Table
 
 __all__ = ["HowRead", "read_measured", "sign_of"]
 

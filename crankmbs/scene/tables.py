@@ -5,28 +5,25 @@ from __future__ import annotations
 import csv
 import math
 import re
-import stat
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 from typing import NamedTuple
 
 from crankmbs.errors import InputError, shown
+from crankmbs.scene.content import content_of
 
 __all__ = [
     "CylinderTable",
     "Header",
     "Table",
     "check_abscissae",
-    "content_of",
     "headings",
     "read_columns",
     "read_table",
 ]
 
-_MOST = 32_000_000  # bytes: a million rows
 _LARGEST = 1e15
-_ENDLESS = (stat.S_ISCHR, stat.S_ISBLK, stat.S_ISFIFO, stat.S_ISSOCK)
 
 
 class Header(NamedTuple):
@@ -252,45 +249,6 @@ def _text(path: Path) -> str:
             f"file {path} is no UTF-8 text; save the table as CSV in UTF-8; crankmbs pressure "
             "reads what an indicating system writes"
         ) from None
-
-
-def content_of(path: Path, most: int = _MOST) -> bytes:
-    """The bytes of a file that has an end, not farther away than ``most`` bytes.
-
-    Raises
-    ------
-    InputError : missing, unreadable, endless or too large; the file and the way out
-
-    >>> content_of(Path("no.csv"))
-    Traceback (most recent call last):
-    crankmbs.errors.InputError: file no.csv is missing; paths are relative to the scene file
-    """
-    try:
-        return _content(path, most)
-    except FileNotFoundError:
-        raise InputError(f"file {path} is missing; paths are relative to the scene file") from None
-    except OSError as error:
-        raise InputError(f"file {path} cannot be read: {error.strerror}") from None
-    except ValueError as error:
-        if isinstance(error, InputError):
-            raise
-        raise InputError(f"{shown(str(path))} is no file name") from None
-
-
-def _content(path: Path, most: int) -> bytes:
-    if any(kind(path.stat().st_mode) for kind in _ENDLESS):  # to open a pipe waits for its writer
-        raise InputError(
-            f"file {path} is a device, a pipe or a socket, which may have no end; save the table "
-            "as a CSV file"
-        )
-    with path.open("rb") as stream:
-        content = stream.read(most + 1)
-    if len(content) > most:
-        raise InputError(
-            f"file {path} is larger than {most / 1e6:g} MB, the most of a table; leave out the "
-            "columns and rows that are not needed"
-        )
-    return content
 
 
 def _cells(path: Path, line: int, text: str) -> list[str]:
