@@ -68,7 +68,7 @@ def test_what_says_how_to_read_is_done_with_reading(read, tmp_path):
         ("columns = 3", "gas.columns: must be a text in quotes; 3 came"),
         (
             'separator = "semi"',
-            'gas.separator: separator: must be ";", ",", "|" or "tab", "blank"; "semi" came',
+            'gas.separator: must be ";", ",", "|" or "tab", "blank"; "semi" came',
         ),
         ('decimal = "-"', 'gas.decimal: must be "." or ","; "-" came'),
         ("skip = -1", "gas.skip: must be at least 0; -1 came"),

@@ -41,7 +41,7 @@ def sign_of(separator: str | None) -> str | None:
         return separator
     if separator in _SEPARATORS:
         return _SEPARATORS[separator]
-    raise InputError(f'separator: must be ";", ",", "|" or "tab", "blank"; {shown(separator)} came')
+    raise InputError(f'must be ";", ",", "|" or "tab", "blank"; {shown(separator)} came')
 
 
 def read_measured(path: Path, how: HowRead) -> Table | CylinderTable:
