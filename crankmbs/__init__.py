@@ -13,7 +13,9 @@ from crankmbs.errors import (
     InputError,
     OutputError,
     SceneError,
+    UndecidedError,
 )
+from crankmbs.indicated import CylinderPressure, Indicated, read_pressure
 from crankmbs.lecture.accumulated_torque import accumulated_torque
 from crankmbs.measures import EngineOrders, Orders, engine_orders, orders
 from crankmbs.motion.base import Decay
@@ -42,6 +44,7 @@ __all__ = [
     "Crank",
     "CrankmbsError",
     "Cylinder",
+    "CylinderPressure",
     "CylinderTable",
     "Decay",
     "EngineOrders",
@@ -53,6 +56,7 @@ __all__ = [
     "Gas",
     "Governor",
     "Gravity",
+    "Indicated",
     "Indicator",
     "InputError",
     "Layout",
@@ -77,6 +81,7 @@ __all__ = [
     "Start",
     "Table",
     "TimeTable",
+    "UndecidedError",
     "Viscous",
     "accumulated_torque",
     "at_angle",
@@ -88,6 +93,7 @@ __all__ = [
     "flywheel",
     "load_scene",
     "orders",
+    "read_pressure",
     "shipped_scenes",
     "simulate",
 ]

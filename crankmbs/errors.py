@@ -2,7 +2,8 @@
 
 CrankmbsError
 ├── InputError (ValueError)      a value that cannot be, in a scene, a table or an argument
-│   └── SceneError               the same, found while reading a scene: names file and key
+│   ├── SceneError               the same, found while reading a scene: names file and key
+│   └── UndecidedError           what the data leave open: `options` are what decides it
 ├── FormulationError             the formulation asked for cannot serve the scene
 └── OutputError (OSError)        a result that cannot be written or read
 
@@ -22,6 +23,7 @@ __all__ = [
     "InputError",
     "OutputError",
     "SceneError",
+    "UndecidedError",
     "shown",
 ]
 
@@ -39,6 +41,19 @@ class InputError(CrankmbsError, ValueError):
 
 class SceneError(InputError):
     """A scene that cannot be; the message begins with file and key."""
+
+
+class UndecidedError(InputError):
+    """What the data leave open and nobody should guess.
+
+    options : the arguments any of which decides it, as they are written in Python
+    """
+
+    def __init__(self, question: str, options: tuple[str, ...]) -> None:
+        *most, last = options
+        ways = f"{', '.join(most)} or {last}" if most else last
+        super().__init__(f"{question}; give {ways}")
+        self.options = options
 
 
 class FormulationError(CrankmbsError):

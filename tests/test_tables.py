@@ -147,7 +147,7 @@ def test_a_table_beyond_all_size_is_not_read(tmp_path):
 def test_binary_is_no_table(tmp_path):
     path = tmp_path / "table.csv"
     path.write_bytes(b"\x89PNG\xff\x00")
-    with pytest.raises(InputError, match=r"is no UTF-8 text; save the table as CSV$"):
+    with pytest.raises(InputError, match=r"is no UTF-8 text; save the table as CSV in UTF-8; "):
         read_table(path, X, Y)
 
 

@@ -19,6 +19,7 @@ from crankmbs.cli.demo import demonstrate, write_page
 from crankmbs.cli.ending import ending
 from crankmbs.cli.flywheel import size_flywheel
 from crankmbs.cli.lesson import list_lessons, make_lesson
+from crankmbs.cli.pressure import pressure
 from crankmbs.cli.run import Wanted, run_scene
 from crankmbs.cli.validate import validate_scene
 from crankmbs.cli.work_precision import measure_scene
@@ -209,6 +210,9 @@ def page(
 ) -> None:
     """Write the page as one file for a course: no server, no network."""
     write_page(scene, varied=vary or [], out=out)
+
+
+app.command()(pressure)
 
 
 @app.command()

@@ -16,6 +16,7 @@ from crankmbs.figures.balance import balance_figure
 from crankmbs.figures.compare import budget_figure, comparison_figure, save_validation
 from crankmbs.figures.cycles import FEWEST_CYCLES, cycles_figure
 from crankmbs.figures.difference import difference_figure
+from crankmbs.figures.indicated import pressure_figure, scatter_figure, volume_figure
 from crankmbs.figures.orders import orders_figure
 from crankmbs.figures.polar import crank_pin_figure, main_bearing_figure, piston_pin_figure
 from crankmbs.figures.strips import (
@@ -25,6 +26,7 @@ from crankmbs.figures.strips import (
     torque_figure,
 )
 from crankmbs.figures.view import View, last_view
+from crankmbs.indicated import Indicated
 from crankmbs.measures import EngineOrders
 from crankmbs.result import Result
 from crankmbs.storage.files import together, write_in_one_move
@@ -42,13 +44,17 @@ __all__ = [
     "orders_figure",
     "piston_motion_figure",
     "piston_pin_figure",
+    "pressure_figure",
     "save_balance_figure",
     "save_differences",
     "save_figures",
+    "save_indicated_figures",
     "save_orders_figure",
     "save_validation",
+    "scatter_figure",
     "speed_figure",
     "torque_figure",
+    "volume_figure",
 ]
 
 _FIGURES: dict[str, Callable[[View], Figure]] = {
@@ -79,6 +85,25 @@ def save_figures(result: Result, folder: Path) -> list[Path]:
             _save(cycles_figure(result), part / "cycles.png")
             names.append("cycles")
     return [folder / f"{name}.png" for name in names]
+
+
+def save_indicated_figures(found: Indicated, folder: Path, stem: str) -> list[Path]:
+    """Draw measured pressures into STEM_angle.png, with a geometry STEM_pv.png, and of several
+    cycles STEM_cycles.png, which appear together.
+
+    Raises
+    ------
+    OutputError : the folder cannot be made or written
+    """
+    draw = {"angle": pressure_figure}
+    if found.shape is not None:
+        draw["pv"] = volume_figure
+    if any(len(each.pressure) > 1 for each in found.cylinders):
+        draw["cycles"] = scatter_figure
+    with together(folder) as part:
+        for name, figure in draw.items():
+            _save(figure(found), part / f"{stem}_{name}.png")
+    return [folder / f"{stem}_{name}.png" for name in draw]
 
 
 def save_differences(result: Result, differences: tuple[Difference, ...], folder: Path) -> Path:

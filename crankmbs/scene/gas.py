@@ -12,10 +12,11 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from annotated_types import Ge, Gt, Le
-from pydantic import BeforeValidator, Strict, ValidationInfo
+from pydantic import AfterValidator, BeforeValidator, Strict, ValidationInfo
 
 from crankmbs.errors import InputError, shown
 from crankmbs.scene.cycles import mean_cycle
+from crankmbs.scene.measured_rows import HowRead, read_measured, sign_of
 from crankmbs.scene.pressure_rows import check_rows
 from crankmbs.scene.schema import SAVED, Float, dumped, folder_of, part, si, to_si
 from crankmbs.scene.tables import CylinderTable, Table, read_columns
@@ -110,7 +111,16 @@ def _table(value: Any, info: ValidationInfo) -> Table | CylinderTable:
             f'must be the name of a CSV file{tables}, a list of them, or a pressure such as "1 '
             f'bar"; {shown(value)} came'
         )
+    how = _how(info)
+    if how != HowRead():
+        return read_measured(folder_of(info) / value, how)
     return read_columns(folder_of(info) / value, {"crank_angle_deg": DEGREE}, _PRESSURE_COLUMNS)
+
+
+def _how(info: ValidationInfo) -> HowRead:
+    """How the files of this gas are to be read."""
+    given = info.data or {}
+    return HowRead(*(given.get(name) for name in HowRead._fields))
 
 
 @part
@@ -173,8 +183,16 @@ class Gas:
     interpolation between the rows, two of which at one angle are a jump; closing [Pa]: a closing
     row so near the first is dropped, by default 1 % of the range; motored: the pressure without
     combustion, given alike or as a Polytrope, of which a firing takes its share (`Fuel`).
+
+    columns, separator, decimal, skip: how a file is read that an indicating system wrote: the
+    columns of its pressures by name, what separates them, the decimal sign, how many lines to
+    leave out at the beginning. They are None again once it is read.
     """
 
+    columns: Annotated[str, Strict()] | None = None
+    separator: Annotated[str, Strict(), AfterValidator(sign_of)] | None = None
+    decimal: Literal[".", ","] | None = None
+    skip: Annotated[int, Strict(), Ge(0)] | None = None
     pressure: PressureSource | None = None
     indicator: Indicator | None = None
     absolute: Annotated[bool, Strict()] = True
@@ -201,6 +219,7 @@ class Gas:
                 "a gauge pressure has its ambient subtracted already; remove ambient, or give "
                 "absolute = true"
             )
+        self._forget_how_read()
         self._check_files()
         if self.indicator is not None:
             self._check_indicator(self.indicator)
@@ -214,6 +233,14 @@ class Gas:
     def tables(self) -> tuple[Table, ...]:
         """The tables of the pressure: of each cylinder, or one of all; none of a constant."""
         return tables_of(self.pressure)
+
+    def _forget_how_read(self) -> None:
+        """What was said of a file is done, and does not hold of its rows."""
+        given = [name for name in HowRead._fields if getattr(self, name) is not None]
+        if given and not self.tables:
+            raise InputError(f"{', '.join(given)}: belongs to a pressure file; remove it")
+        for name in given:
+            object.__setattr__(self, name, None)
 
     def _check_files(self) -> None:
         absolute, closing = self.absolute, self.closing

@@ -5,13 +5,13 @@ from __future__ import annotations
 import csv
 import math
 import re
-import stat
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 from typing import NamedTuple
 
 from crankmbs.errors import InputError, shown
+from crankmbs.scene.content import content_of
 
 __all__ = [
     "CylinderTable",
@@ -23,9 +23,7 @@ __all__ = [
     "read_table",
 ]
 
-_MOST = 32_000_000  # bytes: a million rows
 _LARGEST = 1e15  # a number in a table: beyond it nothing is a unit any more
-_ENDLESS = (stat.S_ISCHR, stat.S_ISBLK, stat.S_ISFIFO, stat.S_ISSOCK)
 
 
 class Header(NamedTuple):
@@ -245,34 +243,12 @@ def _values(
 
 def _text(path: Path) -> str:
     try:
-        return _content(path).decode("utf-8-sig")
-    except InputError:
-        raise
-    except FileNotFoundError:
-        raise InputError(f"file {path} is missing; paths are relative to the scene file") from None
-    except OSError as error:
-        raise InputError(f"file {path} cannot be read: {error.strerror}") from None
+        return content_of(path).decode("utf-8-sig")
     except UnicodeDecodeError:
-        raise InputError(f"file {path} is no UTF-8 text; save the table as CSV") from None
-    except ValueError:
-        raise InputError(f"{shown(str(path))} is no file name") from None
-
-
-def _content(path: Path) -> bytes:
-    """The bytes of a file that has an end, and not too far away."""
-    if any(kind(path.stat().st_mode) for kind in _ENDLESS):  # to open a pipe waits for its writer
         raise InputError(
-            f"file {path} is a device, a pipe or a socket, which may have no end; save the table "
-            "as a CSV file"
-        )
-    with path.open("rb") as stream:
-        content = stream.read(_MOST + 1)
-    if len(content) > _MOST:
-        raise InputError(
-            f"file {path} is larger than {_MOST / 1e6:g} MB, the most of a table; leave out the "
-            "columns and rows that are not needed"
-        )
-    return content
+            f"file {path} is no UTF-8 text; save the table as CSV in UTF-8; crankmbs pressure "
+            "reads what an indicating system writes"
+        ) from None
 
 
 def _cells(path: Path, line: int, text: str) -> list[str]:

@@ -1,0 +1,81 @@
+"""Files that are no text: what they are, by their first bytes or their ending, and the way out."""
+
+from __future__ import annotations
+
+from pathlib import PurePath
+
+from crankmbs.errors import InputError
+
+__all__ = ["refuse_binary"]
+
+_EXPORT = "export it from the indicating system as text (CSV, ASCII) over the crank angle"
+_RESAMPLE = (
+    "what is sampled in time is first resampled over the crank angle with the encoder's signal; "
+    "then save angle and pressures as CSV"
+)
+_SAVE = "save its sheet as CSV"
+_UNPACK = "unpack it first"
+_KINDS = (  # first bytes, what it is, the way out
+    (b"MDF     ", "an MDF measurement file (MF4, MDF, DAT)", _RESAMPLE),
+    (b"UnFinMF ", "an MDF measurement file (MF4) that was not finished", _RESAMPLE),
+    (b"TDSm", "a TDMS file of LabVIEW", _RESAMPLE),
+    (b"TDSh", "the index of a TDMS file of LabVIEW", _RESAMPLE),
+    (b"\x89HDF\r\n\x1a\n", "an HDF5 file (also MATLAB's from 7.3 on, and NetCDF-4)", _RESAMPLE),
+    (b"MATLAB 5.0", "a MATLAB file", 'save angle and pressures with writematrix(data, "a.csv")'),
+    (b"CDF\x01", "a NetCDF file", "save angle and pressures as CSV"),
+    (b"CDF\x02", "a NetCDF file", "save angle and pressures as CSV"),
+    (b"PAR1", "a Parquet file", "save angle and pressures as CSV"),
+    (b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1", "an Excel file (xls) or another of Office", _SAVE),
+    (b"PK\x03\x04", "an Excel file (xlsx), or a zip archive", f"{_SAVE}, or {_UNPACK}"),
+    (b"\x1f\x8b", "a gzip archive", _UNPACK),
+    (b"7z\xbc\xaf\x27\x1c", "a 7z archive", _UNPACK),
+    (b"%PDF", "a PDF document", _EXPORT),
+    (b"\x89PNG", "a picture", _EXPORT),
+)
+_ENDINGS = {
+    ".tdms": "a TDMS file of LabVIEW",
+    ".mf4": "an MDF measurement file",
+    ".mdf": "an MDF measurement file",
+    ".ifl": "an iFile of an indicating system",
+    ".ifile": "an iFile of an indicating system",
+    ".i": "an iFile of an indicating system",
+    ".h5": "an HDF5 file",
+    ".hdf5": "an HDF5 file",
+    ".mat": "a MATLAB file",
+    ".dxd": "a data file of a recorder",
+    ".d7d": "a data file of a recorder",
+    ".open": "a data file of an indicating system",
+}
+_PROBE = 65_536
+_MARKS = (b"\xff\xfe", b"\xfe\xff", b"\x00\x00\xfe\xff")
+_CONTROLS = bytes(set(range(32)) - set(b"\t\n\r\x0c\x1a\x1b\x00"))
+
+
+def refuse_binary(content: bytes, name: str) -> None:
+    """Refuse a file that is no text.
+
+    Raises
+    ------
+    InputError : what it is, by its first bytes, its ending or the bytes in it, and the way out
+
+    >>> refuse_binary(b"angle,pressure", "a.csv")
+    """
+    for begin, kind, way_out in _KINDS:
+        if content.startswith(begin):
+            raise InputError(f"file {name} is {kind}, and only text is read; {way_out}")
+    probe = content[:_PROBE]
+    if probe.startswith(_MARKS) or not _is_binary(probe):
+        return
+    ending = PurePath(name).suffix.lower()
+    numbered = ending[1:].isdigit() and len(ending) == 4
+    kind = "an iFile of an indicating system" if numbered else _ENDINGS.get(ending, "")
+    kind = f"binary, by its name {kind}" if kind else "binary"
+    raise InputError(f"file {name} is {kind}, and only text is read; {_EXPORT}")
+
+
+def _is_binary(probe: bytes) -> bool:
+    """Bytes that no text has, in earnest; UTF-16 has its zeros in every other place."""
+    controls = len(probe) - len(probe.translate(None, _CONTROLS))
+    zeros = [probe[first::2].count(0) for first in (0, 1)]
+    of_utf16 = min(zeros) == 0 and max(zeros) > 0.4 * (len(probe) // 2)
+    return controls > 0.001 * len(probe) + 1 or (sum(zeros) > 0 and not of_utf16)

@@ -1,0 +1,105 @@
+"""Measured pressures over the crank angle, over the volume, and their scatter over the cycles."""
+
+from __future__ import annotations
+
+import textwrap
+from pathlib import PurePath
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.figure import Figure
+
+from crankmbs.figures.style import COLOURS, STYLE, caption, legend, line_of, panels
+from crankmbs.indicated import CylinderPressure, Indicated
+
+__all__ = ["pressure_figure", "scatter_figure", "volume_figure"]
+
+_BAR = 1e5
+
+
+@rc_context(STYLE)
+def pressure_figure(found: Indicated) -> Figure:
+    """The mean cycle of each cylinder from its firing dead centre, and the band of its cycles."""
+    figure, (ax,) = panels(1, 1, 10.0, 5.5)
+    for k, each in enumerate(found.cylinders):
+        line = line_of(k)
+        if len(each.pressure) > 1:
+            low, high = np.min(each.pressure, axis=0), np.max(each.pressure, axis=0)
+            ax.fill_between(each.angle, low / _BAR, high / _BAR, color=line["color"], alpha=0.25)
+        ax.plot(each.angle, each.mean / _BAR, **line, label=_name(each))
+    ax.axvline(0.0, color="0.55", linewidth=1.0, linestyle=(0, (6, 4)), zorder=1)
+    half = 90 * found.stroke
+    ax.set_xticks(np.arange(-half, half + 1, 90))
+    ax.set_xlim(-half, half)
+    ax.set_xlabel("crank angle from the firing dead centre [deg]")
+    ax.set_ylabel(_pressure(found))
+    legend(figure, ax)
+    _footer(figure, found, "mean cycles, and the band of all" if _several(found) else "the cycle")
+    return figure
+
+
+@rc_context(STYLE)
+def volume_figure(found: Indicated) -> Figure:
+    """The mean cycle over the volume, with its imep: over V / V_clearance, both logarithmic, where
+    the compression ratio is known and the pressure absolute, and over the travel."""
+    shape = found.shape
+    assert shape is not None
+    with_log = shape.ratio is not None and found.absolute
+    figure, axes = panels(1, 1 + with_log, 10.0 if with_log else 7.0, 5.5)
+    for k, each in enumerate(found.cylinders):
+        assert each.imep is not None
+        angle = np.radians(np.append(each.angle, each.angle[0]))
+        mean = np.append(each.mean, each.mean[0]) / _BAR
+        label = f"{_name(each)}, imep {np.mean(each.imep) / _BAR:.4g} bar"
+        axes[0].plot(shape.travel(angle), mean, **line_of(k), label=label)
+        if with_log:
+            axes[1].loglog(shape.volume(angle), np.maximum(mean, 1e-3), **line_of(k))
+    axes[0].set_xlabel("piston travel over the stroke [1]")
+    axes[0].set_ylabel(_pressure(found))
+    if with_log:
+        axes[1].set_xlabel("volume over the clearance volume [1]")
+    handles, labels = axes[0].get_legend_handles_labels()
+    columns = 2 if with_log and len(labels) > 1 else 1
+    figure.legend(handles, labels, loc="outside upper center", ncols=columns)
+    _footer(figure, found, "mean cycles")
+    return figure
+
+
+@rc_context(STYLE)
+def scatter_figure(found: Indicated) -> Figure:
+    """Peak and, with a geometry, imep of each cycle."""
+    with_imep = found.shape is not None
+    figure, axes = panels(1 + with_imep, 1, 10.0, 3.2 * (1 + with_imep))
+    for k, each in enumerate(found.cylinders):
+        number = np.arange(1, len(each.pressure) + 1)
+        colour = COLOURS[k % len(COLOURS)]
+        axes[0].plot(number, each.peaks / _BAR, ".-", color=colour, lw=0.8, label=_name(each))
+        if with_imep:
+            assert each.imep is not None
+            axes[1].plot(number, each.imep / _BAR, ".-", color=colour, lw=0.8)
+    axes[0].set_ylabel("peak pressure [bar]")
+    if with_imep:
+        axes[1].set_ylabel("indicated mean\neffective pressure [bar]")
+    axes[-1].set_xlabel("cycle")
+    figure.align_ylabels(axes)
+    legend(figure, axes[0])
+    _footer(figure, found, "cycle by cycle")
+    return figure
+
+
+def _several(found: Indicated) -> bool:
+    return any(len(each.pressure) > 1 for each in found.cylinders)
+
+
+def _name(cylinder: CylinderPressure) -> str:
+    return f"cylinder {cylinder.number}"
+
+
+def _pressure(found: Indicated) -> str:
+    return f"cylinder pressure, {'absolute' if found.absolute else 'gauge'} [bar]"
+
+
+def _footer(figure: Figure, found: Indicated, about: str) -> None:
+    name = PurePath(found.source).name
+    lines = textwrap.wrap(name, 80, max_lines=1, placeholder=" ...")
+    caption(figure, [*lines, about])

@@ -1,0 +1,189 @@
+"""Which columns are pressures of which cylinder and cycle, told by their names."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from crankmbs.errors import InputError, UndecidedError, shown
+from crankmbs.indicated.options import Options
+from crankmbs.scene.headings import PRESSURE_UNITS, Heading, is_angle, is_time, pick
+
+__all__ = ["Column", "angle_column", "columns_of"]
+
+_KINDS = {
+    "intake": r"^p?[ _.-]*(int|inl|ein|saug|man(?!o)|map$|boost|lade)|intake|inlet|ansaug",
+    "exhaust": r"^p?[ _.-]*(exh|abg|aus(?!s)|out)|exhaust|abgas",
+    "other": r"^[ignpbf]?mep|^p[ _]?max|rail|inj|fuel|kraftstoff|oil|oel|öl|coolant|baro|ambient",
+    "mean": r"(?<![a-z])(mean|avg|average|mittel\w*|mw|moy)(?![a-z])",
+    "minimum": r"(?<![a-z])min(imum)?(?![a-z])",
+    "maximum": r"(?<![a-z])max(imum)?(?![a-z])",
+    "spread": r"(?<![a-z])(std|stdev|sdev|stddev|sigma|cov|var)(?![a-z])",
+}
+_CYCLE = re.compile(r"(?:cycle|cyc|zyklus|zyk|#)[ _.:-]*0*([0-9]+)|[\[(]([0-9]+)[\])]$")
+_COUNTER = re.compile(r"(cycle|cyc|zyklus|zyk)([ _.-]*(no|nr|number|count|index))?[ .]*", re.I)
+_PRESSURE_NAME = re.compile(
+    r"(p[ _]?(cyl|zyl|zyk)?|cyl(inder)?|zyl(inder)?|(zylinder)?druck|cylinder pressure|pressure"
+    r"|cyl[ _]?press\w*|cylpr|p[ _]?cylinder|cycle|cyc|zyklus)[ _.#(\[-]*[0-9]*([ _.#(\[-].*)?",
+    re.IGNORECASE,
+)
+_MOST_CYLINDERS = 24
+
+
+class Column(NamedTuple):
+    """A column of a pressure: place in the sheet, factor to Pa, what it is; cycle 0: not said."""
+
+    place: int
+    name: str
+    factor: float
+    kind: str
+    cylinder: int
+    cycle: int = 0
+    reference: str = ""
+
+
+def angle_column(headings: Sequence[Heading], where: str) -> int:
+    """The place of the crank angle.
+
+    Raises
+    ------
+    InputError : pressures over time; UndecidedError : no column is an angle by its name or unit
+    """
+    angles = [k for k, heading in enumerate(headings) if is_angle(heading)]
+    if angles:
+        return angles[0]
+    times = [heading.name for heading in headings if is_time(heading)]
+    if times:
+        raise InputError(
+            f"{where}: the pressures stand over time, column {shown(times[0])}, and a cycle is "
+            "read over the crank angle; export them over the angle, or resample them with the "
+            "encoder's signal"
+        )
+    listed = ", ".join(shown(heading.name) for heading in headings[:8])
+    raise UndecidedError(
+        f"{where}: no column is a crank angle by its name or its unit; the columns are {listed}",
+        ('the column\'s heading the name "crank_angle_deg"',),
+    )
+
+
+def columns_of(
+    headings: Sequence[Heading], options: Options, where: str, angle: int
+) -> tuple[Column, ...]:
+    """The columns of pressures, each with its cylinder and cycle.
+
+    Raises
+    ------
+    InputError : no such columns; UndecidedError : no unit, or numbers that may count either
+    """
+    chosen = None
+    if options.columns is not None:
+        chosen = [k for k in pick(headings, options.columns, where) if k != angle]
+    others = [k for k, heading in enumerate(headings) if k != angle and _is_pressure(heading)]
+    rest = list(dict.fromkeys([*(chosen or ()), *others]))
+    if not rest or (chosen is not None and not chosen):
+        listed = ", ".join(shown(heading.name) for heading in headings[:8])
+        raise InputError(
+            f"{where}: no column is a pressure by its name or its unit; the columns are {listed}; "
+            'name some, such as columns="PCYL1..4"'
+        )
+    named = [(k, _kind(headings[k].name) if k not in (chosen or ()) else "") for k in rest]
+    read = [(k, kind) for k, kind in named if kind or chosen is None or k in chosen]
+    return _apart(_numbered(headings, read, options, where), chosen is not None, where)
+
+
+def _is_pressure(heading: Heading) -> bool:
+    if heading.pressure is not None:
+        return True
+    plain = _PRESSURE_NAME.fullmatch(heading.name) is not None or heading.name.isdigit()
+    return heading.unit == "" and plain and _COUNTER.fullmatch(heading.name) is None
+
+
+def _kind(name: str) -> str:
+    low = name.lower()
+    return next((kind for kind, rule in _KINDS.items() if re.search(rule, low)), "")
+
+
+def _numbered(
+    headings: Sequence[Heading], read: list[tuple[int, str]], options: Options, where: str
+) -> list[Column]:
+    numbers = [_numbers(headings[k].name) for k, _ in read]
+    plain = {
+        cylinder
+        for (_, kind), (cylinder, cycle) in zip(read, numbers, strict=True)
+        if not kind and not cycle
+    }
+    bare = [headings[k].name for k, kind in read if not kind and headings[k].name.isdigit()]
+    each = options.each
+    if each is None and len(bare) > 1 and len(bare) <= _MOST_CYLINDERS:
+        raise UndecidedError(
+            f"{where}: the columns are named {bare[0]} to {bare[-1]}, and these may be cycles of "
+            "one cylinder or cylinders",
+            ('each="cycle"', 'each="cylinder"'),
+        )
+    as_cycles = each == "cycle" or (each is None and len(plain) > _MOST_CYLINDERS)
+    columns = []
+    for (k, kind), (cylinder, cycle) in zip(read, numbers, strict=True):
+        heading = headings[k]
+        if as_cycles and not kind and not cycle:
+            cylinder, cycle = 1, cylinder
+        factor = _factor(heading, options, where)
+        columns.append(
+            Column(
+                k, heading.name, factor, kind or "cycle", cylinder or 1, cycle, heading.reference
+            )
+        )
+    return columns
+
+
+def _apart(columns: list[Column], chosen: bool, where: str) -> tuple[Column, ...]:
+    """The columns, no two of them the same cycle of a cylinder: chosen ones count cylinders then.
+
+    Raises
+    ------
+    UndecidedError : two pressures of one cylinder that are no cycles by their names
+    """
+    single = [each for each in columns if each.kind == "cycle" and not each.cycle]
+    for number in sorted({each.cylinder for each in single}):
+        names = list(dict.fromkeys(each.name for each in single if each.cylinder == number))
+        if len(names) < 2:
+            continue
+        if chosen:
+            place = {name: k for k, name in enumerate((each.name for each in single), start=1)}
+            return tuple(
+                each._replace(cylinder=place[each.name]) if each in single else each
+                for each in columns
+            )
+        raise UndecidedError(
+            f"{where}: {shown(names[0])} and {shown(names[1])} may both be the pressure of "
+            f"cylinder {number}",
+            tuple(f'columns="{name}"' for name in names[:2]),
+        )
+    return tuple(columns)
+
+
+def _numbers(name: str) -> tuple[int, int]:
+    """The numbers of cylinder and cycle in a name, 0 where it has none."""
+    low = name.lower()
+    match = _CYCLE.search(low)
+    cycle = 0
+    if match:
+        cycle = int(match[1] or match[2])
+        low = low[: match.start()] + low[match.end() :]
+    found = [int(each) for each in re.findall(r"[0-9]+", low)]
+    cylinder = found[0] if found else 0
+    if not cycle and len(found) > 1:
+        cycle = found[1]
+    return cylinder, cycle
+
+
+def _factor(heading: Heading, options: Options, where: str) -> float:
+    if heading.pressure is not None:
+        return heading.pressure
+    if options.unit is None:
+        raise UndecidedError(
+            f"{where}: the pressures of column {shown(heading.name)} have no unit, neither in the "
+            "name nor in a row below the names",
+            ('unit="bar"', "another of kPa, Pa, MPa, psi"),
+        )
+    return PRESSURE_UNITS[options.unit]

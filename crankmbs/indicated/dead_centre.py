@@ -1,0 +1,142 @@
+"""The dead centre as the compression shows it.
+
+A motored cycle peaks before the dead centre, by the thermodynamic loss angle: heat and mass that it
+loses. Given that angle the peak is the dead centre; without it, and in a fired cycle, which shows
+its compression only up to the ignition, the dead centre is an interval.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from crankmbs.indicated.reference import EXPONENTS
+from crankmbs.indicated.shape import Shape
+from crankmbs.numerics.arrays import Array
+
+__all__ = ["DeadCentre", "fired_dead_centre", "is_fired", "motored_dead_centre", "peak_of"]
+
+_ABOUT = 8.0  # degrees about the peak: a quartic follows a motored one to 0.01 degrees
+_LOSS = (0.2, 1.2)  # degrees: loss angles that engines are taken to have where none is given
+_FIT = 0.02  # degrees: what the quartic may be off
+_SIGMAS = 2.0
+_COMPRESSION = (-100.0, -30.0)  # degrees: before any ignition
+_OFFSETS = (-5e3, 5e3)  # Pa: how well a referenced pressure is known
+_ASIDE = 45.0  # degrees from the peak, where burnt gas shows
+_MOTORED, _FIRED = 1.06, 1.25  # of the pressures behind and before the peak
+
+
+class DeadCentre(NamedTuple):
+    """Where the true dead centre lies, from that which the file has: ``low`` to ``high`` [deg].
+
+    how : "motored" or "fired", and what it rests on; peak : angle [deg] of the peak
+    skew : how far [deg] the middle of the chord at 70 % of the peak lies from the peak
+    """
+
+    low: float
+    high: float
+    how: str
+    peak: float
+    skew: float = math.nan
+
+    @property
+    def middle(self) -> float:
+        """The middle of the interval [deg]."""
+        return 0.5 * (self.low + self.high)
+
+    @property
+    def half(self) -> float:
+        """Half its width [deg]: the uncertainty."""
+        return 0.5 * (self.high - self.low)
+
+
+def is_fired(phi: Array, mean: Array) -> bool | None:
+    """Whether a mean cycle burns, by the pressures 45 degrees before and behind its peak; None
+    where that does not tell."""
+    peak = float(phi[np.argmax(mean)])
+    before, behind = np.interp([peak - _ASIDE, peak + _ASIDE], phi, mean)
+    low = float(np.min(mean))
+    rise = 0.02 * (np.max(mean) - low)  # a signal without reference has no ratios
+    ratio = (behind - low + rise) / (before - low + rise)
+    if peak > 2.5 or ratio > _FIRED or ratio < 1.0 / _FIRED:  # the last one backwards
+        return True
+    return False if ratio < _MOTORED else None
+
+
+def peak_of(phi: Array, mean: Array, noise: float) -> tuple[float, float]:
+    """Angle [deg] of a smooth peak, by a quartic about it, and its standard deviation.
+
+    noise : standard deviation of a row of the mean [Pa]
+    """
+    middle = float(phi[np.argmax(mean)])
+    for _ in range(2):  # the second time about the peak itself
+        window = np.abs(phi - middle) <= _ABOUT
+        x, y = (phi[window] - middle) / _ABOUT, mean[window]
+        powers = np.vander(x, 5)
+        quartic, *_ = np.linalg.lstsq(powers, y, rcond=None)
+        slope = np.polyder(quartic)
+        turning = np.roots(slope)
+        real = turning.real[(np.abs(turning.imag) < 1e-9) & (np.abs(turning.real) <= 1.0)]
+        at = float(real[np.argmin(np.abs(real))]) if len(real) else 0.0
+        middle += _ABOUT * at
+    bend = abs(float(np.polyval(np.polyder(slope), at)))
+    gradient = np.array([4.0 * at**3, 3.0 * at**2, 2.0 * at, 1.0, 0.0])
+    spread = gradient @ np.linalg.solve(powers.T @ powers, gradient)
+    return middle, _ABOUT * noise * math.sqrt(max(float(spread), 0.0)) / max(bend, 1e-300)
+
+
+def motored_dead_centre(
+    phi: Array, mean: Array, noise: float, loss_angle: float | None
+) -> DeadCentre:
+    """The dead centre of a motored cycle: its peak and the loss angle behind it [deg].
+
+    noise : standard deviation of a row of the mean [Pa]
+    loss_angle : None: between 0.2 and 1.2 degrees, which are taken for what engines have
+    """
+    at, spread = peak_of(phi, mean, noise)
+    off = _FIT + _SIGMAS * spread
+    least, most = _LOSS if loss_angle is None else (loss_angle, loss_angle)
+    given = "" if loss_angle is None else f", the loss angle of {loss_angle:g} degrees as given"
+    return DeadCentre(
+        at + least - off, at + most + off, f"motored{given}", at, _skew(phi, mean, at)
+    )
+
+
+def fired_dead_centre(phi: Array, mean: Array, shape: Shape) -> DeadCentre | None:
+    """The interval of the dead centre in which the compression before the ignition is a polytrope
+    of an exponent between 1.28 and 1.40, the pressure known to 0.05 bar.
+
+    least squares of ln(p + c) = ln C - n ln V(phi - d) in d and C, from 100 to 30 degrees before;
+    None where the pressure is no absolute one there
+    """
+    window = (phi >= _COMPRESSION[0]) & (phi <= _COMPRESSION[1])
+    angle, pressure = phi[window], mean[window]
+    if np.min(pressure) <= -_OFFSETS[0]:
+        return None
+    found = [_shift(angle, pressure + c, shape, n) for n in EXPONENTS for c in _OFFSETS]
+    peak = float(phi[np.argmax(mean)])
+    return DeadCentre(min(found), max(found), "fired, from its compression", peak)
+
+
+def _shift(phi: Array, pressure: Array, shape: Shape, exponent: float) -> float:
+    logarithm = np.log(pressure)
+
+    def residual(unknown: Array) -> Array:
+        volume = shape.volume(np.radians(phi - unknown[0]))
+        return np.asarray(logarithm - unknown[1] + exponent * np.log(volume))
+
+    begin = float(np.mean(logarithm + exponent * np.log(shape.volume(np.radians(phi)))))
+    return float(least_squares(residual, [0.0, begin]).x[0])
+
+
+def _skew(phi: Array, mean: Array, peak: float) -> float:
+    """Middle of the chord at 70 % of the peak less the peak [deg]."""
+    level = 0.7 * float(np.max(mean))
+    before = (phi < peak) & (phi > peak - 60.0)
+    behind = (phi > peak) & (phi < peak + 60.0)
+    first = float(np.interp(level, mean[before], phi[before]))
+    second = float(np.interp(-level, -mean[behind], phi[behind]))
+    return 0.5 * (first + second) - peak

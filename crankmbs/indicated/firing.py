@@ -1,0 +1,126 @@
+"""Where each cylinder fires, and its cycles cut where their gas exchange is.
+
+Two cylinders' firing dead centres lie as far apart as the rising flanks of their compression.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from crankmbs.errors import UndecidedError
+from crankmbs.numerics.arrays import Array
+
+__all__ = ["cut_cycles", "firing_angle", "flank", "lags", "places"]
+
+_BEFORE, _BEHIND = 25.0, 60.0  # degrees about a dead centre where the peak of a cycle may lie
+_FLANK = 0.1  # of the range: still compression, before any combustion
+_APART = 4.0  # degrees: how well a flank tells a dead centre
+_GRID = sorted({*range(0, 720, 30), *range(0, 720, 72), *range(0, 720, 45)})
+
+
+def firing_angle(angle: Array, mean: Array, period: float, where: str) -> float:
+    """The file's angle [deg] of the firing dead centre of the cylinder that counts as first: the
+    multiple of 360 degrees next to the peak.
+
+    Raises
+    ------
+    UndecidedError : no such angle is near the peak, or two of one cycle have one
+    """
+    peak = float(angle[np.argmax(mean)])
+    nominal = 360.0 * round((peak - 5.0) / 360.0)
+    if not -_BEFORE < peak - nominal < _BEHIND:
+        raise UndecidedError(
+            f"{where}: the peak of the pressure lies at {peak:.4g} degrees, beside no multiple of "
+            "360: the angles do not count from a dead centre of this cylinder",
+            ('firing_tdc="... deg", the file\'s angle of the firing dead centre',),
+        )
+    if period > 700.0:
+        other = np.interp(nominal + 360.0, angle, mean, period=period)
+        if other - np.min(mean) > 0.5 * (np.max(mean) - np.min(mean)):
+            raise UndecidedError(
+                f"{where}: the pressure is as high at {nominal:.4g} degrees as 360 degrees behind",
+                ("stroke=2", "stroke=4 with firing_tdc"),
+            )
+    return nominal
+
+
+def flank(angle: Array, mean: Array, period: float, level: float) -> float:
+    """The angle [deg] at which the pressure, on its way to the peak, last rises through a level."""
+    low, peak = float(np.min(mean)), int(np.argmax(mean))
+    n = len(mean)
+    k = peak
+    while mean[k % n] > low + level and peak - k < n:
+        k -= 1
+    a, b = mean[k % n] - low, mean[(k + 1) % n] - low
+    first = angle[k % n] + period * (k // n)
+    second = angle[(k + 1) % n] + period * ((k + 1) // n)
+    return float(first + (second - first) * (level - a) / (b - a))
+
+
+def lags(angle: Array, means: Sequence[Array], period: float) -> list[float]:
+    """By how much [deg] each cylinder fires behind the first, within a period."""
+    level = _FLANK * min(float(np.ptp(mean)) for mean in means)
+    at = [flank(angle, mean, period, level) for mean in means]
+    return [(each - at[0]) % period for each in at]
+
+
+def places(
+    measured: Sequence[float], period: float, known: Sequence[float] | None, where: str
+) -> list[float]:
+    """The lags [deg] that the measured ones stand for: that of the scene's layout where it is near,
+    else the nearest even one; of cylinders each over its own angle all are 0.
+
+    known : those of the layout, modulo the period
+
+    Raises
+    ------
+    UndecidedError : a lag that is none of these
+    """
+    near = [_off(each, 0.0, period) for each in measured]
+    if max(near, default=0.0) < _APART:
+        return [0.0] * len(measured)
+    found = []
+    for number, each in enumerate(measured, start=1):
+        if known is not None and _off(each, known[number - 1], period) <= _APART:
+            found.append(known[number - 1])
+            continue
+        nominal = min((g for g in _GRID if g < period), key=lambda g: _off(each, g, period))
+        if _off(each, nominal, period) > _APART:
+            raise UndecidedError(
+                f"{where}: the cylinder of pressure column {number} fires {each:.4g} degrees "
+                "behind the first one, which no even firing has",
+                ("scene=..., whose layout says when it fires",),
+            )
+        found.append(float(nominal))
+    return found
+
+
+def cut_cycles(
+    angle: Array, values: Array, period: float, firing: float, consecutive: bool
+) -> tuple[int, Array, Array]:
+    """The cycles from half a period before the firing dead centre to half a period behind.
+
+    Of consecutive cycles the end of one is joined to the beginning of the next, and the first
+    begun and the last unfinished are left out; of others the cycle is closed in itself.
+
+    Returns
+    -------
+    how many rows the first cycle begins behind the file's; angles [deg] from the firing dead
+    centre, shape (n,); values, shape (cycles or cycles - 1, n)
+    """
+    n = len(angle)
+    behind = np.mod(angle - firing + 0.5 * period + 1e-9, period) - 1e-9
+    first = int(np.argmin(behind))
+    phi = np.roll(behind, -first) - 0.5 * period
+    if first == 0:
+        return 0, phi, values
+    if not consecutive or len(values) < 3:
+        return first, phi, np.roll(values, -first, axis=1)
+    flat = values.reshape(-1)[first : len(values) * n - (n - first)]
+    return first, phi, flat.reshape(len(values) - 1, n)
+
+
+def _off(a: float, b: float, period: float) -> float:
+    return abs((a - b + 0.5 * period) % period - 0.5 * period)

@@ -1,0 +1,105 @@
+"""What was found in a measured file: its cylinders, the table for a scene, and what was done."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from crankmbs.indicated.dead_centre import DeadCentre
+from crankmbs.indicated.shape import Shape
+from crankmbs.numerics.arrays import Array
+from crankmbs.scene.tables import CylinderTable, Table
+
+__all__ = ["CylinderPressure", "Indicated"]
+
+
+@dataclass(frozen=True, eq=False)
+class CylinderPressure:
+    """The cycles of one cylinder, referenced.
+
+    angle : shape (n,) [deg] from its firing dead centre, over one period
+    pressure : shape (cycles, n) [Pa]; offset : shape (cycles,) [Pa] that was added
+    firing : the file's angle [deg] of its firing dead centre; lag [deg]: behind the first cylinder,
+        measured between the flanks of their compression
+    imep : shape (cycles,) [Pa]; None without a geometry
+    fired : whether it burns; None where that cannot be told
+    dead_centre : where the true dead centre lies from that used; None where nothing tells
+    noise [Pa] : standard deviation of a row; closure [Pa] : the median step from a cycle to the
+        next; moved : what smoothing did to peak [Pa], its angle [deg] and imep [Pa], None without
+    """
+
+    number: int
+    name: str
+    angle: Array
+    pressure: Array
+    offset: Array
+    firing: float
+    lag: float
+    imep: Array | None
+    fired: bool | None
+    dead_centre: DeadCentre | None
+    noise: float
+    closure: float
+    moved: tuple[float, float, float] | None = None
+
+    @property
+    def mean(self) -> Array:
+        """The mean cycle, shape (n,) [Pa]."""
+        return np.asarray(np.mean(self.pressure, axis=0))
+
+    @property
+    def peaks(self) -> Array:
+        """The highest pressure of each cycle, shape (cycles,) [Pa]."""
+        return np.asarray(np.max(self.pressure, axis=1))
+
+    @property
+    def lowered(self) -> float:
+        """By how much [Pa] the mean cycle's peak is below the mean of the peaks."""
+        return float(np.mean(self.peaks) - np.max(self.mean))
+
+
+@dataclass(frozen=True, eq=False)
+class Indicated:
+    """What `read_pressure` found.
+
+    source : the file; stroke : 2 or 4; absolute : whether the pressures are, else gauge
+    aligned : whether the table's columns run each over its own cylinder's cycle angle
+    table : crank angle [rad] and pressure [Pa], as `Gas.pressure` takes it
+    cycles : what it holds, "mean" or "sequence"
+    sentences : all that was read, found and done; those that need a look begin with "warning:"
+    """
+
+    source: str
+    stroke: int
+    absolute: bool
+    aligned: bool
+    cycles: str
+    cylinders: tuple[CylinderPressure, ...]
+    shape: Shape | None
+    table: Table | CylinderTable
+    sentences: tuple[str, ...]
+
+    def __str__(self) -> str:
+        return "\n".join(self.sentences)
+
+    def __repr__(self) -> str:
+        count = len(self.cylinders[0].pressure)
+        return f"<Indicated {self.source}: {len(self.cylinders)} cylinders, {count} cycles>"
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """The sentences that need a look."""
+        return tuple(each for each in self.sentences if each.startswith("warning:"))
+
+    def save(self, path: str | Path) -> Path:
+        """Write the table that a scene uses, with its source and what was done in its header.
+
+        Raises
+        ------
+        InputError : a table larger than a scene reads; OutputError : the file cannot be written
+        """
+        from crankmbs.indicated.write import write_table  # it knows this class
+
+        return write_table(self, Path(path))

@@ -1,0 +1,102 @@
+"""What a user says of a measured file that the file does not say itself."""
+
+from __future__ import annotations
+
+import re
+from typing import Annotated, Any, Literal, NamedTuple
+
+from annotated_types import Ge, Gt, Le
+from pydantic import AfterValidator, BeforeValidator, Strict
+
+from crankmbs.errors import InputError, shown
+from crankmbs.scene.headings import PRESSURE_UNITS
+from crankmbs.scene.measured_rows import sign_of
+from crankmbs.scene.schema import Float, part, si
+from crankmbs.scene.units import quantity
+
+__all__ = ["REFERENCES", "Options", "Reference"]
+
+REFERENCES = (
+    'reference="absolute"',
+    'reference="gauge"',
+    'reference="inlet 1.0 bar"',
+    'reference="polytrope 1.32"',
+)
+_CYCLES = re.compile(r"mean|all|[1-9][0-9]*(-[1-9][0-9]*)?")
+
+
+class Reference(NamedTuple):
+    """kind: absolute, gauge, inlet or polytrope; value: its pressure [Pa] or exponent, if any."""
+
+    kind: str
+    value: float | None = None
+
+
+def _reference(value: Any) -> Reference:
+    if isinstance(value, Reference):
+        return value
+    kind, _, rest = value.strip().partition(" ") if isinstance(value, str) else ("", "", "")
+    if kind == "polytrope" and rest:
+        try:
+            exponent = float(rest)
+        except ValueError:
+            exponent = 0.0
+        if 1.0 < exponent < 2.0:
+            return Reference(kind, exponent)
+        raise InputError(f"a polytrope's exponent lies between 1 and 2; {shown(rest)} came")
+    if kind in ("absolute", "gauge", "inlet"):
+        if kind == "absolute" and rest:
+            raise InputError(f'"absolute" stands alone; {shown(value)} came')
+        return Reference(kind, quantity(rest, "pressure") if rest else None)
+    raise InputError(
+        'must be "absolute", "gauge" (with the ambient, "gauge 1 bar", to make it absolute), '
+        f'"inlet 1.0 bar" or "polytrope 1.32"; {shown(value)} came'
+    )
+
+
+def _unit(value: str) -> str:
+    unit = value.strip().lower()
+    if unit not in PRESSURE_UNITS:
+        raise InputError(f"must be one of {', '.join(PRESSURE_UNITS)}; {shown(value)} came")
+    return unit
+
+
+def _cycles(value: Any) -> str:
+    text = str(value) if isinstance(value, int) and not isinstance(value, bool) else value
+    if not isinstance(text, str) or _CYCLES.fullmatch(text) is None:
+        raise InputError(
+            f'must be "mean", "all", the number of a cycle or a range such as "1-50"; '
+            f"{shown(value)} came"
+        )
+    first, _, last = text.partition("-")
+    if last and int(last) < int(first):
+        raise InputError(f"a range of cycles goes up; {shown(value)} came")
+    return text
+
+
+@part
+class Options:
+    """What a user says of a measured file; all of it is optional.
+
+    columns, separator, decimal, skip : as in `[gas]`; unit : of pressures that have none
+    each : whether numbered columns are cycles or cylinders; stroke : 2 or 4
+    reference : absolute, gauge, inlet or polytrope; firing_tdc [rad] : the file's angle of the
+        firing dead centre; loss_angle [rad] : by which a motored peak comes before it
+    compression_ratio [1]; invert : turn the signal over; smooth [rad] : width of the smoothing
+    cycles : what the table holds
+    """
+
+    columns: Annotated[str, Strict()] | None = None
+    separator: Annotated[str, Strict(), AfterValidator(sign_of)] | None = None
+    decimal: Literal[".", ","] | None = None
+    skip: Annotated[int, Strict(), Ge(0)] = 0
+    unit: Annotated[str, Strict(), AfterValidator(_unit)] | None = None
+    each: Literal["cycle", "cylinder"] | None = None
+    stroke: Literal[2, 4] | None = None
+    reference: Annotated[Reference, BeforeValidator(_reference)] | None = None
+    firing_tdc: Annotated[Float, si("angle")] | None = None
+    loss_angle: Annotated[Float, Ge(0), Le(0.05), si("angle")] | None = None
+    compression_ratio: Annotated[Float, Gt(1), Le(100)] | None = None
+    invert: Annotated[bool, Strict()] = False
+    smooth: Annotated[Float, Gt(0), Le(0.5), si("angle")] | None = None
+    cycles: Annotated[str, BeforeValidator(_cycles)] = "mean"

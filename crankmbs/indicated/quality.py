@@ -1,0 +1,83 @@
+"""What the cycles of a cylinder amount to: mean effective pressure, peaks, noise, closure, and a
+smoothing that says what it moved."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from crankmbs.errors import InputError
+from crankmbs.indicated.shape import Shape
+from crankmbs.numerics.arrays import Array
+
+__all__ = ["closure", "mean_effective_pressure", "noise", "smoothed"]
+
+_GAS_EXCHANGE = 200.0  # degrees from the firing dead centre: nothing burns behind
+_NORMAL = 1.4826  # standard deviations of a normal law in a median of deviations
+_FOURTH = np.array([1.0, -4.0, 6.0, -4.0, 1.0]) / np.sqrt(70.0)
+
+
+def mean_effective_pressure(phi: Array, pressure: Array, shape: Shape, period: float) -> Array:
+    """Indicated mean effective pressure of each cycle.
+
+    imep = (1 / V_d) int p dV = int p (ds/dphi) dphi over the period, s the travel over the stroke
+
+    Parameters
+    ----------
+    phi : shape (n,) [deg] from the true firing dead centre; pressure : shape (cycles, n) [Pa]
+
+    Returns
+    -------
+    shape (cycles,) [Pa]: by the trapezoidal rule, whose error for a smooth periodic pressure at
+    even angles falls faster than any power of their distance
+    """
+    angle = np.radians(phi)
+    turned = np.radians(period)
+    gaps = np.diff(np.append(angle, angle[0] + turned))
+    weight = 0.5 * (gaps + np.roll(gaps, 1))
+    return np.asarray(pressure @ (weight * shape.travel_1(angle)))
+
+
+def noise(phi: Array, pressure: Array) -> float:
+    """Standard deviation of a row's noise [Pa], from fourth differences of the gas exchange, or of
+    all rows in a two-stroke cycle: their median, which neither valves nor knocking move.
+
+    0 where the rows are too few, or their angles uneven throughout.
+    """
+    steps = np.diff(phi)
+    even = np.isclose(steps, np.median(steps), rtol=1e-3)
+    inside = np.abs(phi) > _GAS_EXCHANGE if np.max(phi) > 300.0 else np.full(phi.shape, True)
+    differences = np.apply_along_axis(np.convolve, 1, pressure[:64], _FOURTH, "valid")
+    whole = even[:-3] & even[1:-2] & even[2:-1] & even[3:] & inside[2:-2]
+    found = np.abs(differences[:, whole])
+    return float(_NORMAL * np.median(found)) if found.size > 20 else 0.0
+
+
+def closure(pressure: Array) -> Array:
+    """How far each cycle's last row lies from the first of the next one, beyond the step before
+    it; the cycle's own first where there is no next: shape (cycles,) [Pa]."""
+    following = np.append(pressure[1:, 0], pressure[-1, 0])
+    return np.asarray(following - (2.0 * pressure[:, -1] - pressure[:, -2]))
+
+
+def smoothed(phi: Array, pressure: Array, width: float, where: str) -> Array:
+    """Cycles under a sliding cubic of least squares (Savitzky and Golay) over ``width`` degrees.
+
+    Raises
+    ------
+    InputError : angles that are not evenly spaced, or a width of fewer than five rows
+    """
+    step = float(np.median(np.diff(phi)))
+    if not np.allclose(np.diff(phi), step, rtol=1e-3):
+        raise InputError(
+            f"{where}: smooth needs evenly spaced angles, and the resolution changes within the "
+            "cycle; leave smooth out, or resample the file"
+        )
+    rows = 2 * round(0.5 * width / step) + 1
+    if not 5 <= rows < len(phi):
+        raise InputError(
+            f"{where}: smooth must span at least five rows, {4.0 * step:g} degrees here, and less "
+            f"than the cycle; {width:g} degrees came"
+        )
+    from scipy.signal import savgol_filter  # a fifth of a second: only where it is asked for
+
+    return np.asarray(savgol_filter(pressure, rows, 3, axis=1, mode="wrap"))

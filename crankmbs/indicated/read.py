@@ -1,0 +1,262 @@
+"""A measured file in, its cylinders and the table for a scene out."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from crankmbs.delimited import Sheet, decode, read_sheet
+from crankmbs.delimited.dialect import named
+from crankmbs.errors import InputError
+from crankmbs.indicated.cylinders import cylinder_of
+from crankmbs.indicated.firing import cut_cycles, firing_angle, lags, places
+from crankmbs.indicated.found import Indicated
+from crankmbs.indicated.gaps import without_gaps
+from crankmbs.indicated.options import Options
+from crankmbs.indicated.record import Channel, Record, record_of
+from crankmbs.indicated.referencing import Raw, decide, refer
+from crankmbs.indicated.report import said_of
+from crankmbs.indicated.shape import Shape, differences, of_header, shape_of
+from crankmbs.indicated.tabulate import table_of
+from crankmbs.numerics.arrays import Array
+from crankmbs.scene.content import content_of
+from crankmbs.scene.scene import Scene
+
+__all__ = ["read_pressure"]
+
+_MOST = 400_000_000  # bytes
+
+
+def read_pressure(file: str | Path, scene: Scene | None = None, **options: Any) -> Indicated:
+    r"""Read cylinder pressures as an indicating system writes them, and check them.
+
+    What the file does not say, and nothing shows, is asked for; all that was done is said.
+
+    Parameters
+    ----------
+    file : a text file of pressures over the crank angle
+    scene : its geometry gives volumes, hence imep, the dead centre and references by polytrope;
+        its layout the cylinders' firing; else a header's stroke and rod length are used
+    columns : names of the pressures, "PCYL1..4"; separator, decimal, skip : as in `Gas`
+    unit : of pressures without one, "bar"; each : "cycle" or "cylinder", what numbers count
+    stroke : 2 or 4; invert : True turns the signal over
+    reference : "absolute"; "gauge", with the ambient "gauge 1 bar" made absolute; "inlet 1 bar", or
+        "inlet" with an intake's column; "polytrope 1.32"
+    firing_tdc : the file's angle of the (first cylinder's) firing dead centre, "0.35 deg"
+    loss_angle : by which a motored peak comes before the dead centre, "0.7 deg"
+    compression_ratio : where neither scene nor header has it
+    smooth : width of a sliding cubic, "3 deg"; cycles : in the table, "mean", "all", "7" or "1-50"
+
+    Returns
+    -------
+    Indicated : cylinders [deg, Pa], the table [rad, Pa], and sentences
+
+    Raises
+    ------
+    InputError : what cannot be read; UndecidedError : what is asked for, with `options`
+
+    >>> rows = "".join(f"{k},{1 + (abs(k) < 90) * (1 + np.cos(k / 90 * np.pi))}\n"
+    ...     for k in range(-360, 360))
+    >>> _ = Path("a.csv").write_text("CA [deg],PCYL1 [bar(a)]\n" + rows)
+    >>> read_pressure("a.csv").cylinders[0].peaks.tolist()
+    [300000.0]
+    """
+    wanted = Options(**options)
+    sheet = _sheet(Path(file), wanted)
+    where = f"file {sheet.name}"
+    known = scene.gas.stroke if scene is not None and scene.gas is not None else None
+    record = record_of(sheet, wanted, known)
+    header = of_header(sheet.above, sheet.dialect.decimal)
+    shape = shape_of(scene, header, wanted.compression_ratio)
+    said = [_read_as(sheet, record), *record.said]
+    if header:
+        said += [_header_words(header)]
+    if scene is not None:
+        said += differences(header, scene)
+    raws, firsts, measured, more = _cut(record, wanted, scene, where)
+    said += more
+    reference, why = decide([raw for raw, _ in raws], wanted, shape, record.period, where)
+    cylinders, absolute = [], True
+    for (raw, firing), lag in zip(raws, measured, strict=True):
+        added, absolute, words = refer(raw, reference, shape, record.period, where)
+        look = "warning: " if "though" in why else ""
+        said.append(f"{look}cylinder {raw.number}: {words} ({why})")
+        cylinders.append(
+            replace(
+                cylinder_of(raw, added, shape, record.period, wanted, absolute),
+                firing=firing,
+                lag=lag,
+            )
+        )
+    aligned = len(cylinders) > 1 and len({each.firing for each in cylinders}) == 1
+    table, words = table_of(record, cylinders, firsts, shape, wanted.cycles, where)
+    for cylinder in cylinders:
+        said += said_of(cylinder, shape, absolute)
+    return Indicated(
+        source=sheet.name,
+        stroke=record.stroke,
+        absolute=absolute,
+        aligned=aligned,
+        cycles="sequence" if table.x[-1] - table.x[0] > np.radians(record.period) else "mean",
+        cylinders=tuple(cylinders),
+        shape=shape,
+        table=table,
+        sentences=(*said, *_no_geometry(shape), words),
+    )
+
+
+def _sheet(path: Path, options: Options) -> Sheet:
+    name = str(path)
+    source = decode(content_of(path, _MOST), name)
+    return read_sheet(
+        name, source, separator=options.separator, decimal=options.decimal, skip=options.skip
+    )
+
+
+def _read_as(sheet: Sheet, record: Record) -> str:
+    rows, columns = sheet.values.shape
+    steps = np.diff(record.angle)
+    least, most = float(np.min(steps)), float(np.max(steps))
+    step = f"{most:.4g}" if most - least < 1e-3 else f"{least:.4g} to {most:.4g}"
+    comma = "comma" if sheet.dialect.decimal == "," else "point"
+    return (
+        f"{sheet.name}: {rows} rows of {columns} columns from line {sheet.first} on, "
+        f"{sheet.encoding}, separated by {named(sheet.dialect.separator)}s, decimal {comma}; "
+        f"{record.stroke}-stroke, {record.angle[0]:g} to {record.angle[-1]:g} degrees in steps of "
+        f"{step}"
+    )
+
+
+def _header_words(header: dict[str, float]) -> str:
+    parts = [
+        f"{name} {value:g}" if name == "compression ratio" else f"{name} {1e3 * value:g} mm"
+        for name, value in header.items()
+    ]
+    return f"the header gives {', '.join(parts)}"
+
+
+def _no_geometry(shape: Shape | None) -> list[str]:
+    if shape is not None:
+        return []
+    return ["no stroke and rod length are known: without a scene no imep and no volumes are found"]
+
+
+def _cut(
+    record: Record, options: Options, scene: Scene | None, where: str
+) -> tuple[list[tuple[Raw, float]], list[int], list[float], list[str]]:
+    """Each cylinder's cycles from gas exchange to gas exchange, with its firing angle; the row at
+    which each begins; measured lags; what was done."""
+    channels, said = _pressures(record, where)
+    sign = -1.0 if options.invert else 1.0
+    filled, joined = [], []
+    for channel in channels:
+        values, torn, words = without_gaps(record, channel, where)
+        filled.append(sign * values)
+        joined.append(record.consecutive and not torn)
+        said += words
+    means = [np.mean(values, axis=0) for values in filled]
+    for channel, mean in zip(channels, means, strict=True):
+        _check_sign(channel, mean, where)
+    first = (
+        firing_angle(record.angle, means[0], record.period, where)
+        if options.firing_tdc is None
+        else float(np.degrees(options.firing_tdc))
+    )
+    measured = lags(record.angle, means, record.period)
+    known = _of_layout(channels, scene, record.period)
+    nominal = places(measured, record.period, known, where)
+    said += _lag_words(channels, measured, nominal, known)
+    raws, firsts = [], []
+    for channel, values, consecutive, lag in zip(channels, filled, joined, nominal, strict=True):
+        firing = first + lag
+        start, phi, cycles = cut_cycles(record.angle, values, record.period, firing, consecutive)
+        if len(cycles) < len(values):
+            said.append(
+                f"cylinder {channel.cylinder}: cut between its gas exchanges, {len(values)} cycles "
+                f"give {len(cycles)} whole ones"
+            )
+        intake = _intake(record, channel.cylinder, start)
+        raws.append(
+            (
+                Raw(channel.cylinder, channel.name, phi, cycles, channel.reference, intake),
+                (firing + 180.0) % record.period - 180.0 if firing != first else firing,
+            )
+        )
+        firsts.append(start if len(cycles) < len(values) or start == 0 else -start)
+    return raws, firsts, measured, said
+
+
+def _pressures(record: Record, where: str) -> tuple[list[Channel], list[str]]:
+    """The channels of the cylinders, and what the others are."""
+    of_kind: dict[str, list[Channel]] = {}
+    for channel in record.channels:
+        of_kind.setdefault(channel.kind, []).append(channel)
+    said = [
+        f"{kind} of the cycles: {', '.join(each.name for each in channels)}, not in the table"
+        for kind, channels in of_kind.items()
+        if kind not in ("cycle", "other") and (kind != "mean" or "cycle" in of_kind)
+    ]
+    chosen = of_kind.get("cycle") or of_kind.get("mean")
+    if not chosen:
+        listed = ", ".join(each.name for each in record.channels)
+        raise InputError(
+            f"{where}: no column is the pressure of a cylinder; {listed} came; name the column, "
+            'such as columns="PCYL1"'
+        )
+    if "cycle" not in of_kind:
+        said.append("the file has mean cycles alone: their peaks are below those of the cycles")
+    return sorted(chosen, key=lambda channel: channel.cylinder), said
+
+
+def _check_sign(channel: Channel, mean: Array, where: str) -> None:
+    middle = float(np.median(mean))
+    if middle - np.min(mean) > 1.5 * (np.max(mean) - middle):
+        raise InputError(
+            f"{where}: {channel.name} stands upside down: its largest excursion goes down, to "
+            f"{np.min(mean) / 1e5:.4g} bar; give invert=True, or choose another column"
+        )
+
+
+def _of_layout(
+    channels: Sequence[Channel], scene: Scene | None, period: float
+) -> list[float] | None:
+    """By how much [deg] each cylinder fires behind the first, by the scene's layout."""
+    if scene is None or max(channel.cylinder for channel in channels) > len(scene.cylinders):
+        return None
+    phases = [np.degrees(scene.cylinders[each.cylinder - 1].phase) for each in channels]
+    return [float(round((phases[0] - phase) % period, 9)) for phase in phases]
+
+
+def _lag_words(
+    channels: Sequence[Channel],
+    measured: Sequence[float],
+    nominal: Sequence[float],
+    known: Sequence[float] | None,
+) -> list[str]:
+    if len(channels) == 1:
+        return []
+    if not any(nominal):
+        return ["every column runs over its own cylinder's angle: all peak together"]
+    said = []
+    for k in range(1, len(channels)):
+        text = (
+            f"cylinder {channels[k].cylinder} fires {nominal[k]:.6g} degrees behind cylinder "
+            f"{channels[0].cylinder}, {measured[k]:.4g} by the flanks of their compression"
+        )
+        if known is not None and abs(known[k] - nominal[k]) > 1e-6:
+            text = f"warning: {text}, and {known[k]:.6g} by the scene's layout: check firing_order"
+        said.append(text)
+    return said
+
+
+def _intake(record: Record, cylinder: int, start: int) -> Array | None:
+    """The intake's mean cycle, of this cylinder where each has one, over its own angles."""
+    found = [each for each in record.channels if each.kind == "intake"]
+    if not found:
+        return None
+    own = [each for each in found if each.cylinder == cylinder]
+    return np.asarray(np.roll(np.nanmean((own or found)[0].values, axis=0), -start))

@@ -1,0 +1,138 @@
+"""What was found, in sentences."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from crankmbs.indicated.found import CylinderPressure
+from crankmbs.indicated.shape import Shape
+
+__all__ = ["said_of"]
+
+_BAR = 1e5
+_LATE = -0.5  # degrees: a fired cycle that peaks before this burns too early, or is out of phase
+_EARLY = -3.0  # degrees: no loss of heat brings a motored peak so far
+_EPSILON = 1e-9
+_MOVED = 0.01  # of the range: how far a cycle may miss the next one's beginning
+
+
+def said_of(cylinder: CylinderPressure, shape: Shape | None, referenced: bool) -> Iterator[str]:
+    """The sentences of one cylinder."""
+    who = f"cylinder {cylinder.number}"
+    yield _size(cylinder, who)
+    if len(cylinder.pressure) > 1:
+        yield _scatter(cylinder, who)
+    yield _noise(cylinder, who)
+    yield from _dead_centre(cylinder, who, shape)
+    yield from _suspicions(cylinder, who, referenced)
+    if cylinder.moved is not None:
+        peak, angle, imep = cylinder.moved
+        work = "" if math.isnan(imep) else f" and the imep by {imep / _BAR:+.2g} bar"
+        yield (
+            f"{who}: smoothing moves the peak of the mean cycle by {peak / _BAR:+.3g} bar and "
+            f"{angle:+.2g} degrees{work}"
+        )
+
+
+def _size(cylinder: CylinderPressure, who: str) -> str:
+    mean = cylinder.mean
+    at = cylinder.angle[np.argmax(mean)]
+    burns = {True: "fired", False: "motored", None: "fired or motored, which is not clear"}
+    work = ""
+    if cylinder.imep is not None:
+        work = f"; imep {np.mean(cylinder.imep) / _BAR:.4g} bar"
+    side = "behind" if at >= 0.0 else "before"
+    return (
+        f"{who}: {cylinder.name}, {burns[cylinder.fired]}; the mean cycle goes from "
+        f"{np.min(mean) / _BAR:.4g} to {np.max(mean) / _BAR:.5g} bar, its peak {abs(at):.4g} "
+        f"degrees {side} the firing dead centre, {cylinder.firing:g} degrees of the file{work}"
+    )
+
+
+def _scatter(cylinder: CylinderPressure, who: str) -> str:
+    peaks = cylinder.peaks
+    text = (
+        f"{who}: over {len(peaks)} cycles the peak scatters by {np.std(peaks, ddof=1) / _BAR:.3g} "
+        f"bar (standard deviation)"
+    )
+    if cylinder.imep is not None:
+        share = np.std(cylinder.imep, ddof=1) / abs(np.mean(cylinder.imep))
+        text += f", the imep by {100.0 * share:.3g} %"
+    return f"{text}; the mean cycle's peak is {cylinder.lowered / _BAR:.3g} bar below their mean"
+
+
+def _noise(cylinder: CylinderPressure, who: str) -> str:
+    text = f"{who}: no noise is seen"
+    if cylinder.noise > _EPSILON * np.ptp(cylinder.mean):
+        text = f"{who}: noise of a row {cylinder.noise / _BAR:.2g} bar (standard deviation)"
+    return f"{text}; a cycle ends {cylinder.closure / _BAR:.2g} bar from where the next one begins"
+
+
+def _dead_centre(cylinder: CylinderPressure, who: str, shape: Shape | None) -> Iterator[str]:
+    found = cylinder.dead_centre
+    if found is None:
+        needs = "a reference that makes its pressures absolute"
+        if shape is None or shape.ratio is None:
+            needs = "stroke, rod length and compression_ratio"
+        yield (
+            f"{who}: the dead centre is not checked: a fired cycle shows it by its compression, "
+            f"for which it needs {needs}"
+        )
+        return
+    there = cylinder.firing + found.middle
+    if found.how.startswith("motored"):
+        basis = (
+            f"{who}: the motored peak lies at {found.peak:.3f} degrees, the middle of the chord at "
+            f"70 % {found.skew:+.2f} degrees beside it"
+        )
+    else:
+        basis = f"{who}: {found.how}"
+    where = (
+        f"the true dead centre lies {found.middle:+.2f} +- {found.half:.2f} degrees from the file's"
+    )
+    if "as given" in found.how:
+        where += f", with the loss angle{found.how.split('loss angle')[1]}"
+    elif found.how.startswith("motored"):
+        where += ", for a loss angle from 0.2 to 1.2 degrees, which loss_angle narrows"
+    if found.low <= 0.0 <= found.high:
+        yield f"{basis}; {where}: the file's may be right"
+        return
+    yield (
+        f"warning: {basis}; {where}; the file's is kept, "
+        f'firing_tdc="{there:.2f} deg" takes the one found'
+    )
+
+
+def _suspicions(cylinder: CylinderPressure, who: str, referenced: bool) -> Iterator[str]:
+    mean, imep = cylinder.mean, cylinder.imep
+    at = float(cylinder.angle[np.argmax(mean)])
+    if at < (_LATE if cylinder.fired else _EARLY):
+        yield (
+            f"warning: {who}: its peak lies {-at:.3g} degrees before the dead centre: "
+            "check the dead centre, and the sense in which the angle counts"
+        )
+    if imep is not None and cylinder.fired is not None:
+        work = float(np.mean(imep))
+        if cylinder.fired != (work > 0.0):
+            sense = (
+                "fired, and the gas takes work from"
+                if cylinder.fired
+                else ("motored, and the gas gives work to")
+            )
+            yield (
+                f"warning: {who}: {sense} the piston, imep {work / _BAR:.3g} bar: check the dead "
+                "centre, and the sense in which the angle counts"
+            )
+    if referenced and np.min(mean) < 0.0:
+        yield (
+            f"warning: {who}: an absolute pressure falls to {np.min(mean) / _BAR:.3g} bar: check "
+            "the reference"
+        )
+    if abs(cylinder.closure) > _MOVED * np.ptp(mean) + 5.0 * cylinder.noise:
+        yield (
+            f"warning: {who}: a cycle ends {cylinder.closure / _BAR:.2g} bar from where the next "
+            "begins, over 1 % of its range: the signal drifts, or rows are missing"
+        )

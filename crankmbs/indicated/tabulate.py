@@ -1,0 +1,117 @@
+"""The table for a scene: the mean cycle, or some cycles one behind the other, over the cycle angle.
+
+Cycle angle 360 degrees (0 of a two-stroke cycle) puts the throw on the cylinder axis; the file's
+dead centre is the true one, which with an offset lies beside it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from crankmbs.errors import InputError
+from crankmbs.indicated.found import CylinderPressure
+from crankmbs.indicated.record import Record
+from crankmbs.indicated.shape import Shape
+from crankmbs.numerics.arrays import Array
+from crankmbs.scene.tables import CylinderTable, Table
+
+__all__ = ["table_of"]
+
+
+def table_of(
+    record: Record,
+    cylinders: Sequence[CylinderPressure],
+    firsts: Sequence[int],
+    shape: Shape | None,
+    cycles: str,
+    where: str,
+) -> tuple[Table | CylinderTable, str]:
+    """The table [rad, Pa] over the cycle angle of the first cylinder, and what it holds.
+
+    firsts : how many rows behind the file's first the cycles of each cylinder begin; negative: so
+        many rows were moved behind the others of the same cycle
+
+    Raises
+    ------
+    InputError : cycles that are not there, or that do not follow one another
+    """
+    period = record.period
+    top = 0.0 if shape is None else math.degrees(shape.top)
+    zero = 360.0 if record.stroke == 4 else 0.0
+    angle = cylinders[0].angle + zero + top
+    words = f"cycle angle {zero:g} degrees is the firing dead centre"
+    if top:
+        words = (
+            f"the true firing dead centre stands at a cycle angle of {zero + top:.5g} degrees, as "
+            "the offset asks for"
+        )
+    if cycles == "mean":
+        return _mean(cylinders, firsts, angle, period), f"the table holds the mean cycle; {words}"
+    sequence = _sequence(cylinders, firsts, where)
+    first, last = _wanted(cycles, sequence.shape[1], where)
+    kept = sequence[:, first - 1 : last]
+    count = kept.shape[1]
+    long = np.concatenate([angle + k * period for k in range(count)])
+    which = f"cycle {first}" if first == last else f"cycles {first} to {last}"
+    return (
+        _tabulated(long, kept.reshape(len(cylinders), -1)),
+        f"the table holds {which} of {sequence.shape[1]}; {words}",
+    )
+
+
+def _mean(
+    cylinders: Sequence[CylinderPressure], firsts: Sequence[int], angle: Array, period: float
+) -> Table | CylinderTable:
+    """Mean cycles, in the first one's order of rows."""
+    rows = [
+        np.roll(each.mean, abs(first) - abs(firsts[0]))
+        for each, first in zip(cylinders, firsts, strict=True)
+    ]
+    within = np.mod(angle + 1e-9, period) - 1e-9
+    order = np.argsort(within)
+    return _tabulated(within[order], np.array(rows)[:, order])
+
+
+def _sequence(cylinders: Sequence[CylinderPressure], firsts: Sequence[int], where: str) -> Array:
+    """Whole cycles that all cylinders have, as the first one counts them; shape (cylinders,
+    cycles, n)."""
+    moved = [each.number for each, first in zip(cylinders, firsts, strict=True) if first < 0]
+    counts = {len(each.pressure) for each in cylinders}
+    if moved and (len(cylinders) > 1 or len(counts) > 1):
+        raise InputError(
+            f"{where}: the cycles of cylinder {moved[0]} do not follow one another, so they cannot "
+            'stand beside those of others; give cycles="mean", or one column'
+        )
+    n = len(cylinders[0].angle)
+    flat = [each.pressure.reshape(-1) for each in cylinders]
+    starts = [abs(first) for first in firsts]
+    begin = starts[0] + n * max(0, math.ceil((max(starts) - starts[0]) / n))
+    whole = (min(start + len(each) for start, each in zip(starts, flat, strict=True)) - begin) // n
+    if whole < 1:
+        raise InputError(
+            f'{where}: no cycle is whole in every cylinder; give cycles="mean", or one column'
+        )
+    parts = [
+        each[begin - start : begin - start + whole * n]
+        for each, start in zip(flat, starts, strict=True)
+    ]
+    return np.array(parts).reshape(len(cylinders), whole, n)
+
+
+def _wanted(cycles: str, count: int, where: str) -> tuple[int, int]:
+    if cycles == "all":
+        return 1, count
+    first, _, last = cycles.partition("-")
+    found = int(first), int(last or first)
+    if found[1] > count:
+        raise InputError(f"{where}: cycles must be among the {count} whole ones; {cycles} came")
+    return found
+
+
+def _tabulated(angle: Array, rows: Array) -> Table | CylinderTable:
+    x = tuple(np.radians(angle).tolist())
+    y = tuple(tuple(row) for row in rows.tolist())
+    return Table(x, y[0], "measured") if len(y) == 1 else CylinderTable(x, y, "measured")

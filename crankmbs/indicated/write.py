@@ -1,0 +1,64 @@
+"""The table that a scene uses, its source and what was done in the header."""
+
+from __future__ import annotations
+
+import io
+import textwrap
+from pathlib import Path
+
+import numpy as np
+
+from crankmbs.errors import InputError
+from crankmbs.indicated.found import Indicated
+from crankmbs.scene.tables import CylinderTable
+from crankmbs.storage.files import text_in_one_move
+
+__all__ = ["gas_lines", "write_table"]
+
+_MOST = 32_000_000  # bytes that a scene reads
+
+
+def gas_lines(found: Indicated, name: str) -> list[str]:
+    """What [gas] of a scene says of the table."""
+    lines = [f'pressure = "{name}"']
+    lines += ['ambient = "1 bar"'] if found.absolute else ["absolute = false"]
+    lines += ["stroke = 2"] if found.stroke == 2 else []
+    lines += ["aligned = true"] if found.aligned else []
+    return lines + (['cycles = "sequence"'] if found.cycles == "sequence" else [])
+
+
+def write_table(found: Indicated, path: Path) -> Path:
+    """Write the table as CSV, in degrees and bar.
+
+    Raises
+    ------
+    InputError : larger than a scene reads; OutputError : the file cannot be written
+    """
+    table = found.table
+    columns = [np.degrees(table.x)]
+    if isinstance(table, CylinderTable):
+        names = [f"pressure_bar_{k}" for k in range(1, len(table.y) + 1)]
+        columns += [np.array(each) / 1e5 for each in table.y]
+    else:
+        names = ["pressure_bar"]
+        columns.append(np.array(table.y) / 1e5)
+    head = [*_wrapped(found), "as [gas] of a scene:", *gas_lines(found, path.name)]
+    stream = io.StringIO()
+    stream.writelines(f"# {line}\n" for line in head)
+    stream.write(",".join(["crank_angle_deg", *names]) + "\n")
+    np.savetxt(stream, np.column_stack(columns), fmt="%.10g", delimiter=",")
+    text = stream.getvalue()
+    if len(text) > _MOST:
+        raise InputError(
+            f"{path}: the table of {len(text) / 1e6:.0f} MB is larger than the {_MOST / 1e6:g} MB "
+            'that a scene reads; take cycles="mean" or fewer cycles, such as cycles="1-20"'
+        )
+    text_in_one_move(path, text)
+    return path
+
+
+def _wrapped(found: Indicated) -> list[str]:
+    lines = [f"cylinder pressure from {found.source}"]
+    for sentence in found.sentences:
+        lines += textwrap.wrap(" ".join(sentence.split()), 96)
+    return lines

@@ -1,0 +1,87 @@
+"""A pressure file as an indicating system writes it, read as `[gas]` says."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from crankmbs.delimited import decode, read_sheet
+from crankmbs.errors import InputError, shown
+from crankmbs.scene.content import content_of
+from crankmbs.scene.headings import angle_factor, headings_of, is_angle, pick
+from crankmbs.scene.tables import CylinderTable, Table
+
+__all__ = ["HowRead", "read_measured", "sign_of"]
+
+_SEPARATORS = {"tab": "\t", "semicolon": ";", "comma": ",", "blank": " ", "bar": "|"}
+
+
+class HowRead(NamedTuple):
+    """How a file is read: the columns of pressures by name, and what is not left to be found."""
+
+    columns: str | None = None
+    separator: str | None = None
+    decimal: str | None = None
+    skip: int | None = None
+
+
+def sign_of(separator: str | None) -> str | None:
+    r"""The separator's sign, where it was given by its name.
+
+    Raises
+    ------
+    InputError : neither a sign nor a name
+
+    >>> sign_of("tab"), sign_of(";")
+    ('\t', ';')
+    """
+    if separator is None or separator in _SEPARATORS.values():
+        return separator
+    if separator in _SEPARATORS:
+        return _SEPARATORS[separator]
+    raise InputError(f'must be ";", ",", "|" or "tab", "blank"; {shown(separator)} came')
+
+
+def read_measured(path: Path, how: HowRead) -> Table | CylinderTable:
+    """The crank angle and the pressures that ``how.columns`` names, in SI units.
+
+    The angle's column is told by its name or unit, else it is the first. Without ``columns`` all
+    columns with a unit of pressure are read.
+
+    Raises
+    ------
+    InputError : no such column, a column without its unit, a cell without a number
+    """
+    name = str(path)
+    source = decode(content_of(path), name)
+    sheet = read_sheet(
+        name, source, separator=sign_of(how.separator), decimal=how.decimal, skip=how.skip or 0
+    )
+    headings = headings_of(sheet.above, sheet.values.shape[1])
+    angles = [k for k, heading in enumerate(headings) if is_angle(heading)]
+    angle = angles[0] if angles else 0
+    if how.columns is None:
+        places = [k for k, each in enumerate(headings) if each.pressure is not None]
+    else:
+        places = [k for k in pick(headings, how.columns, f"file {name}") if k != angle]
+    if not places:
+        raise InputError(
+            f'file {name}: no column of pressures; name some, such as columns = "PCYL1..4"'
+        )
+    for k in places:
+        if headings[k].pressure is None:
+            raise InputError(
+                f"file {name}: column {shown(headings[k].name)} has no unit of pressure, neither "
+                "in its name nor in a row below the names; crankmbs pressure reads it with --unit"
+            )
+        missing = np.flatnonzero(np.isnan(sheet.values[:, k]))
+        if len(missing):
+            raise InputError(
+                f"file {name}: column {shown(headings[k].name)} has no number in row "
+                f"{missing[0] + 1} behind its headings; crankmbs pressure deals with missing cells"
+            )
+    x = tuple((sheet.values[:, angle] * angle_factor(headings[angle])).tolist())
+    y = tuple(tuple((sheet.values[:, k] * (headings[k].pressure or 1.0)).tolist()) for k in places)
+    return Table(x, y[0], name) if len(y) == 1 else CylinderTable(x, y, name)

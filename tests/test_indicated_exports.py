@@ -1,0 +1,345 @@
+"""Exports in the manner of indicating systems are read at the first try."""
+
+import numpy as np
+import pytest
+from exports import FIRED, HEADER, columns_of_cycles, cycles, text
+
+from crankmbs import Table, read_pressure
+from validation.oracles.measured import pressure_of
+
+FULL = np.arange(-360.0, 360.0, 1.0)
+EXACT = pressure_of(FIRED, FULL)
+
+
+def rows(values, names, units, **options):
+    return text([FULL, *values], ["CA", *names], ["deg", *units], **options)
+
+
+def simple(unit, factor, **options):
+    return text([FULL, EXACT * factor], ["CA", "PCYL1"], ["deg", unit], digits=7, **options)
+
+
+CHANGING = np.concatenate(
+    [np.arange(-360.0, -30.0, 1.0), np.arange(-30.0, 90.0, 0.1), np.arange(90.0, 360.0, 1.0)]
+)
+LONG = np.arange(0.0, 720.0 * 4, 1.0)
+
+
+def across(angle, values):
+    lines = [";".join(["Cycle", *(f"{each:g}" for each in angle)])]
+    lines += [
+        ";".join([str(k + 1), *(f"{v:.4f}" for v in row)]).replace(".", ",")
+        for k, row in enumerate(values)
+    ]
+    return "PCYL1;[bar]\n" + "\n".join(lines) + "\n"
+
+
+EXPORTS = {
+    "semicolon and decimal comma": (simple("bar", 1.0), "utf-8"),
+    "tab and decimal point": (simple("bar", 1.0, separator="\t", comma=False), "utf-8"),
+    "comma and decimal point": (simple("bar", 1.0, separator=",", comma=False), "utf-8"),
+    "blanks": (simple("bar", 1.0, separator="   ", comma=False), "utf-8"),
+    "quoted commas": (
+        '"CA [deg]","PCYL1 [bar]"\n'
+        + "".join(f'"{a:.1f}","{p:.5f}"\n' for a, p in zip(FULL, EXACT, strict=True)).replace(
+            ".", ","
+        ),
+        "utf-8",
+    ),
+    "UTF-16 with a mark": (simple("bar", 1.0), "utf-16"),
+    "UTF-16 without a mark": (simple("bar", 1.0), "utf-16-le"),
+    "UTF-8 with a mark": (simple("bar", 1.0), "utf-8-sig"),
+    "umlauts of Windows": ("Prüfstand;Öl 90 °C\n" + simple("bar", 1.0), "cp1252"),
+    "lines of Windows": (simple("bar", 1.0).replace("\n", "\r\n"), "utf-8"),
+    "kPa": (simple("kPa", 100.0), "utf-8"),
+    "Pa": (simple("Pa", 1e5), "utf-8"),
+    "MPa": (simple("MPa", 0.1), "utf-8"),
+    "psi": (simple("psi", 1e5 / 6894.757293168361), "utf-8"),
+    "kgf/cm2": (simple("kgf/cm2", 1e5 / 98066.5), "utf-8"),
+    "units in the names": (
+        text([FULL, EXACT], ["Crank Angle [deg]", "Cyl Press 1 (bar)"], comma=False),
+        "utf-8",
+    ),
+    "no row of units, a name of ours": (
+        text([FULL, EXACT], ["crank_angle_deg", "pressure_bar"], separator=",", comma=False),
+        "utf-8",
+    ),
+    "a long header": (
+        "Measurement;2024-05-17\nOperator;N. N.\n\n"
+        + HEADER
+        + "Speed;2000;rpm\n\n"
+        + simple("bar", 1.0),
+        "utf-8",
+    ),
+    "a closing row": (
+        text([np.append(FULL, 360.0), np.append(EXACT, EXACT[0])], ["CA", "PCYL1"], ["deg", "bar"]),
+        "utf-8",
+    ),
+    "0 to 720, firing at 360": (
+        text([FULL + 360.0, EXACT], ["CA", "PCYL1"], ["deg", "bar"]),
+        "utf-8",
+    ),
+    "0 to 720, firing at 0": (
+        text([FULL + 360.0, pressure_of(FIRED, FULL + 360.0)], ["CA", "PCYL1"], ["deg", "bar"]),
+        "utf-8",
+    ),
+    "radians": (
+        text([np.radians(FULL), EXACT], ["Angle", "PCYL1"], ["rad", "bar"], digits=9),
+        "utf-8",
+    ),
+    "a resolution that changes": (
+        text([CHANGING, pressure_of(FIRED, CHANGING)], ["CA", "PCYL1"], ["deg", "bar"]),
+        "utf-8",
+    ),
+    "cycles as columns": (columns_of_cycles(FULL, cycles(FIRED, FULL, 30)), "utf-8"),
+    "cycles as columns of one name": (
+        rows(cycles(FIRED, FULL, 30), ["PCYL1"] * 30, ["bar"] * 30),
+        "utf-8",
+    ),
+    "cycles as columns under their numbers": (
+        rows(cycles(FIRED, FULL, 30), [str(k + 1) for k in range(30)], ["bar"] * 30),
+        "utf-8",
+    ),
+    "cycles as rows": (across(FULL, cycles(FIRED, FULL, 30)), "utf-8"),
+    "consecutive cycles in one piece": (
+        text([LONG, pressure_of(FIRED, LONG - 360.0)], ["CA", "PCYL1"], ["deg", "bar"]),
+        "utf-8",
+    ),
+    "consecutive cycles, the angle again from 0": (
+        text([LONG % 720, pressure_of(FIRED, LONG - 360.0)], ["CA", "PCYL1"], ["deg", "bar"]),
+        "utf-8",
+    ),
+    "a file that begins and ends within a cycle": (
+        text(
+            [LONG[100:2600] % 720, pressure_of(FIRED, LONG[100:2600] - 360.0)],
+            ["CA", "PCYL1"],
+            ["deg", "bar"],
+        ),
+        "utf-8",
+    ),
+    "a column that counts the cycles": (
+        text(
+            [LONG // 720 + 1, LONG % 720, pressure_of(FIRED, LONG - 360.0)],
+            ["Cycle", "CA", "PCYL1"],
+            ["-", "deg", "bar"],
+        ),
+        "utf-8",
+    ),
+    "mean, least and largest beside the cycles": (
+        rows(
+            [*cycles(FIRED, FULL, 3), EXACT, 0.5 * EXACT, 2.0 * EXACT, 0.01 * EXACT],
+            ["PCYL1_1", "PCYL1_2", "PCYL1_3", "PCYL1 mean", "PCYL1_MIN", "PCYL1_MAX", "PCYL1 std"],
+            ["bar"] * 7,
+        ),
+        "utf-8",
+    ),
+    "a mean cycle alone": (
+        rows([EXACT, 2.0 * EXACT], ["PCYL1 avg", "PCYL1 max"], ["bar"] * 2),
+        "utf-8",
+    ),
+    "intake, exhaust, rail and other columns": (
+        rows(
+            [EXACT, 0.0 * EXACT + 1.0, 0.0 * EXACT + 1.2, 1000.0 + EXACT, EXACT],
+            ["PCYL1", "PINT1", "PEXH1", "PRAIL", "TEMP"],
+            ["bar", "bar", "bar", "bar", "°C"],
+        ),
+        "utf-8",
+    ),
+    "a separator behind every line": (
+        simple("bar", 1.0).replace("\n", ";\n"),
+        "utf-8",
+    ),
+    "comments": ("# exported by hand\n# 2000 rpm\n" + simple("bar", 1.0), "utf-8"),
+    "no names": (text([FULL, EXACT], ["deg", "bar"]), "utf-8"),
+}
+
+
+EXPORTS |= {
+    "names with blanks over columns of blanks": (
+        "  Crank Angle     Cylinder 1 Pressure\n  [deg]           [bar]\n"
+        + "\n".join(f"  {a:10.2f}  {p:12.5f}" for a, p in zip(FULL, EXACT, strict=True)),
+        "utf-8",
+    ),
+    "rows of descriptions between units and numbers": (
+        simple("bar", 1.0).replace("bar\n", "bar\nencoder;6052C\n1st;channel\n", 1),
+        "utf-8",
+    ),
+    "units above the names": (
+        simple("bar", 1.0).replace("CA;PCYL1\ndeg;bar\n", "deg;bar\nCA;PCYL1\n", 1),
+        "utf-8",
+    ),
+    "names behind a sign of comment": (
+        simple("bar", 1.0).replace("CA;PCYL1\ndeg;bar\n", "% CA [deg];PCYL1 [bar]\n", 1),
+        "utf-8",
+    ),
+    "a line for spreadsheets, units behind a stroke": (
+        "sep=;\n" + text([FULL, EXACT], ['"Kurbelwinkel / °KW"', '"p_Zyl1 / bar"']),
+        "utf-16",
+    ),
+    "sections, and cycles under an index": (
+        "[Measurement]\nTitle\tÖl 17\nBore [mm]\t85.25\n\n[Data]\n"
+        + text(
+            [FULL, *cycles(FIRED, FULL, 20)],
+            ["CRANKANGLE", *(f"PCYL1[{k + 1}]" for k in range(20))],
+            ["°CA aTDC", *["bar"] * 20],
+            separator="\t",
+            comma=False,
+        ),
+        "cp1252",
+    ),
+    "numbers in powers of ten": (
+        "Crank Angle [deg] Pcyl [bar]\n".replace(" P", "\tP")
+        + "\n".join(f"{a:.7e}\t{p:.7e}" for a, p in zip(FULL, EXACT, strict=True)),
+        "utf-8",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", EXPORTS)
+def test_it_is_read_as_it_stands(tmp_path, name):
+    content, encoding = EXPORTS[name]
+    path = tmp_path / "export.txt"
+    path.write_bytes(content.encode(encoding))
+    found = read_pressure(path, reference="absolute")
+    assert [each.number for each in found.cylinders] == [1]
+    assert isinstance(found.table, Table)
+    angle = np.degrees(found.table.x)
+    assert angle[0] == pytest.approx(0.0, abs=1e-6)
+    exact = pressure_of(FIRED, angle - 360.0)
+    assert np.array(found.table.y) / 1e5 == pytest.approx(exact, abs=2e-3)
+
+
+def export(tmp_path, content):
+    path = tmp_path / "export.csv"
+    path.write_text(content)
+    return path
+
+
+def test_columns_are_chosen_by_name(tmp_path):
+    path = export(
+        tmp_path,
+        rows([EXACT, 1.02 * EXACT, 0.98 * EXACT], ["PCYL1", "PCYL2", "PCYL3"], ["bar"] * 3),
+    )
+    one = read_pressure(path, columns="PCYL2", reference="absolute")
+    assert [each.number for each in one.cylinders] == [2]
+    two = read_pressure(path, columns="PCYL2..3", reference="absolute")
+    assert [each.number for each in two.cylinders] == [2, 3]
+    assert two.aligned
+
+
+def test_the_inlet_may_be_a_column(tmp_path):
+    intake = np.full_like(FULL, 1.02)
+    path = export(tmp_path, rows([EXACT - 7.0, intake], ["PCYL1", "PINT"], ["bar"] * 2))
+    found = read_pressure(path, reference="inlet")
+    assert found.cylinders[0].offset[0] / 1e5 == pytest.approx(7.0, abs=5e-3)
+
+
+def test_the_statistics_of_the_file_are_named_and_left_out(tmp_path):
+    content, _ = EXPORTS["mean, least and largest beside the cycles"]
+    said = str(read_pressure(export(tmp_path, content), reference="absolute"))
+    assert "mean of the cycles: PCYL1 mean, not in the table" in said
+    assert "maximum of the cycles: PCYL1_MAX, not in the table" in said
+
+
+@pytest.mark.parametrize("missing", ["", "-9999", "NaN", "n/a"])
+def test_few_missing_cells_are_bridged_and_said(tmp_path, missing):
+    content = rows([EXACT], ["PCYL1"], ["bar"]).split("\n")
+    for k in (102, 103):
+        content[k] = content[k].split(";")[0] + ";" + missing
+    found = read_pressure(export(tmp_path, "\n".join(content)), reference="absolute")
+    assert (
+        "PCYL1: 2 missing cells of cycle 1, from -260 degrees, lie now on straight lines between "
+        "their neighbours"
+    ) in found.sentences
+    exact = pressure_of(FIRED, np.degrees(found.table.x) - 360.0)
+    assert np.array(found.table.y) / 1e5 == pytest.approx(exact, abs=2e-3)
+
+
+def test_a_cycle_with_many_missing_cells_is_left_out_and_said(tmp_path):
+    values = cycles(FIRED, FULL, 5)
+    values[2, 100:120] = np.nan
+    content = columns_of_cycles(FULL, values).replace("nan", "")
+    found = read_pressure(export(tmp_path, content), reference="absolute")
+    assert len(found.cylinders[0].pressure) == 4
+    assert any(
+        "1 of 5 cycles have more than 3 missing cells in a row and are left out: 3" in s
+        for s in found.sentences
+    )
+
+
+def test_a_two_stroke_cycle(tmp_path):
+    angle = np.arange(-180.0, 180.0, 1.0)
+    path = export(
+        tmp_path, text([angle, pressure_of(FIRED, angle)], ["CA", "PCYL1"], ["deg", "bar(a)"])
+    )
+    found = read_pressure(path, stroke=2)
+    assert found.stroke == 2
+    assert np.degrees(found.table.x[int(np.argmax(found.table.y))]) == pytest.approx(12.0, abs=1.0)
+
+
+def test_an_angle_that_counts_from_elsewhere_is_given(tmp_path):
+    path = export(tmp_path, text([FULL + 77.5, EXACT], ["CA", "PCYL1"], ["deg", "bar(a)"]))
+    found = read_pressure(path, firing_tdc="77.5 deg")
+    exact = pressure_of(FIRED, np.degrees(found.table.x) - 360.0)
+    assert np.array(found.table.y) / 1e5 == pytest.approx(exact, abs=2e-3)
+
+
+def test_rows_without_names_are_angle_and_pressures(tmp_path):
+    path = export(tmp_path, "\n".join(f"{a:g} {p:.4f}" for a, p in zip(FULL, EXACT, strict=True)))
+    found = read_pressure(path, unit="bar", reference="absolute")
+    assert "no column has a name: the first is read as the crank angle" in found.sentences
+    exact = pressure_of(FIRED, np.degrees(found.table.x) - 360.0)
+    assert np.array(found.table.y) / 1e5 == pytest.approx(exact, abs=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("encoding", "name"),
+    [
+        ("utf-8", "UTF-8"),
+        ("utf-8-sig", "UTF-8"),
+        ("utf-16", "UTF-16"),
+        ("utf-16-be", "UTF-16-BE"),
+        ("utf-32", "UTF-32"),
+        ("cp1252", "Windows-1252"),
+    ],
+)
+def test_the_encoding_is_said(tmp_path, encoding, name):
+    path = tmp_path / "export.csv"
+    path.write_bytes(("Öl\n" + simple("bar", 1.0)).encode(encoding))
+    said = read_pressure(path, reference="absolute").sentences[0]
+    assert f", {name}, separated by semicolons, decimal comma; 4-stroke" in said
+
+
+def test_a_reference_against_the_unit_is_warned_of(tmp_path):
+    path = export(tmp_path, simple("barg", 1.0))
+    found = read_pressure(path, reference="absolute")
+    assert found.warnings == (
+        "warning: cylinder 1: the pressures are absolute and stay as they are (as given, though "
+        "the unit says gauge)",
+    )
+
+
+def test_cylinders_without_numbers_are_counted_as_they_are_chosen(tmp_path):
+    names, units = ["Pressure B", "Pressure A", "Power"], ["bar(a)", "bar(a)", "kW"]
+    path = export(tmp_path, rows([EXACT, 1.02 * EXACT, EXACT], names, units))
+    found = read_pressure(path, columns="Pressure A, Pressure B")
+    assert [(each.number, each.name) for each in found.cylinders] == [
+        (1, "Pressure A"),
+        (2, "Pressure B"),
+    ]
+
+
+def test_cycles_of_several_cylinders_stand_in_columns(tmp_path):
+    names = [f"PCYL{c}_{k}" for c in (1, 2) for k in (1, 2, 3)]
+    values = [*cycles(FIRED, FULL, 3), *(1.02 * cycles(FIRED, FULL, 3))]
+    found = read_pressure(export(tmp_path, rows(values, names, ["bar(a)"] * 6)))
+    assert [each.pressure.shape for each in found.cylinders] == [(3, 720), (3, 720)]
+    assert found.aligned
+
+
+@pytest.mark.parametrize("names", [["P1", "P2", "P3"], ["Cyl 1", "Cyl 2", "Cyl 3"]])
+def test_short_names_are_cylinders(tmp_path, names):
+    values = [EXACT, 1.02 * EXACT, 0.98 * EXACT, 0.0 * EXACT + 1.0]
+    content = rows(values, [*names, "Cyl 1 inlet"], ["bar(a)"] * 4)
+    found = read_pressure(export(tmp_path, content))
+    assert [each.name for each in found.cylinders] == names
