@@ -151,8 +151,8 @@ def read_table(path: Path, x_units: dict[str, float], y_units: dict[str, float])
     Parameters
     ----------
     path : the file; lines that start with ``#`` are comments, other columns are ignored
-    x_units, y_units : accepted column name -> factor to SI; the first of x_units that is there is
-        read, of y_units exactly one must be there
+    x_units, y_units : accepted column name -> factor to SI; exactly one of each must be there, but
+        where x_units names two quantities, as time_s and crank_angle_deg, the first is read
 
     Raises
     ------
@@ -160,8 +160,10 @@ def read_table(path: Path, x_units: dict[str, float], y_units: dict[str, float])
     """
     rows = _rows(path)
     header = rows[0][1]
-    first = [{name: factor} for name, factor in x_units.items() if name in header]
-    given = (first or [x_units])[0]
+    found = [name for name in x_units if name in header]
+    quantities = {name.rpartition("_")[0] for name in found}
+    several = len(quantities) == len(found) > 1
+    given = {found[0]: x_units[found[0]]} if several else x_units
     x, y = _values(path, rows, [_column(path, header, given), _column(path, header, y_units)])
     return Table(x, y, source=str(path))
 
