@@ -42,6 +42,7 @@ def worth(split, name):
 def yi():
     return budget(simulate(load_scene("yi_diesel")))
 
+
 WITHOUT_FUEL = [name for name in sorted(shipped_scenes()) if load_scene(name).fuel is None]
 
 

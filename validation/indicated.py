@@ -17,9 +17,9 @@ SEED, CYCLES, SCATTER = 1, 6, 0.08
 _FIRED = models_folder() / "pressure" / "yi_diesel.csv"
 _FILE = models_folder() / "pressure" / "indicated.csv"
 _HEAD = f"""\
-# {CYCLES} cycles of a four-stroke diesel, absolute, 0 = gas-exchange TDC; computed, not measured: from
-# yi_diesel.csv by python -m validation.indicated. What combustion adds to the mirror image of the
-# compression is scattered from cycle to cycle, standard deviation {SCATTER:g}, numpy's default_rng({SEED})
+# {CYCLES} cycles of a four-stroke diesel, absolute, 0 = gas-exchange TDC; computed, not measured,
+# from yi_diesel.csv by python -m validation.indicated: what combustion adds to the mirror image
+# of the compression is scattered, standard deviation {SCATTER:g}, numpy's default_rng({SEED})
 crank_angle_deg,pressure_kgf_cm2
 """
 
