@@ -22,7 +22,7 @@ from crankmbs.scene.torque import Torque
 from validation.oracles.changes import Curve, Line, Pull
 from validation.random_scenes import random_scene
 
-__all__ = ["KINDS", "random_changes"]
+__all__ = ["KINDS", "function_with", "random_changes"]
 
 KINDS = ("windows", "pressures", "fuel", "functions", "all")
 
@@ -202,7 +202,7 @@ class _Draw:
 Function = Callable[[float, float, float], float]
 
 
-def _with(function: Any, pieces: Pull) -> Function:
+def function_with(function: Any, pieces: Pull) -> Function:
     """A function with the smooth pieces that the oracle takes for it."""
     function.pieces = pieces
     made: Function = function
@@ -214,7 +214,7 @@ def _bent_in_time(torque: float, at: float) -> Function:
         return torque * abs(t - at) / at
 
     line = Line((at,), (lambda t: torque * (at - t) / at, lambda t: torque * (t - at) / at))
-    return _with(bent, Pull(over_time=line))
+    return function_with(bent, Pull(over_time=line))
 
 
 def _jumps_at_angle(torque: float, at: float) -> Function:
@@ -224,7 +224,7 @@ def _jumps_at_angle(torque: float, at: float) -> Function:
         return torque if theta % turn >= at else -0.5 * torque
 
     pieces = (lambda x: -0.5 * torque, lambda x: torque)
-    return _with(jumps, Pull(over_angle=Curve((0.0, at), pieces, turn)))
+    return function_with(jumps, Pull(over_angle=Curve((0.0, at), pieces, turn)))
 
 
 def _rectified(torque: float) -> Function:
@@ -232,7 +232,7 @@ def _rectified(torque: float) -> Function:
         return torque * abs(math.sin(theta))
 
     curve = Curve((0.0,), (lambda x: torque * math.sin(x),), math.pi)
-    return _with(rectified, Pull(over_angle=curve))
+    return function_with(rectified, Pull(over_angle=curve))
 
 
 def _bent_in_speed(torque: float, at: float) -> Function:
@@ -240,11 +240,13 @@ def _bent_in_speed(torque: float, at: float) -> Function:
         return -torque * max(0.0, omega / at - 1.0) * (2.0 + math.cos(theta))
 
     line = Line((at,), (lambda w: 0.0, lambda w: -torque * (w / at - 1.0)))
-    return _with(bent, Pull(over_speed=line, smooth=lambda t, theta, w: 2.0 + math.cos(theta)))
+    return function_with(
+        bent, Pull(over_speed=line, smooth=lambda t, theta, w: 2.0 + math.cos(theta))
+    )
 
 
 def _smooth(torque: float, speed: float, duration: float) -> Function:
     def smooth(t: float, theta: float, omega: float) -> float:
         return torque * math.sin(3.0 * theta + t / duration) * math.tanh(omega / speed)
 
-    return _with(smooth, Pull(smooth=smooth))
+    return function_with(smooth, Pull(smooth=smooth))

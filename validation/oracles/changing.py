@@ -33,8 +33,7 @@ _BESIDE = 1e-6  # of an angle [rad] or a speed: so near a knot either value is r
 class Changed:
     """Samples: shape (n,) [rad], [rad/s], [rad/s2], [N m]; of each cylinder shape (n, cylinders):
     gas force and friction [N] towards the crank, share; clear : not beside a knot, shape (n,);
-    events : (time, angle, speed, kind), "fuel" for a decision, "load on", "load off", "reversal".
-    """
+    events : (time, angle, speed, kind), "fuel", "load on", "load off" or "reversal"."""
 
     theta: Floats
     omega: Floats
@@ -58,9 +57,10 @@ def changing_motion(changes: Changes, theta: float, omega: float, times: Floats)
 
     Raises
     ------
-    ArithmeticError : a speed that is held at a knot of the loads, or events without end
+    ArithmeticError : a speed that is held at a knot of the loads, events without end, overflow
     """
-    return _Walk(changes, theta, omega).samples(times)
+    with np.errstate(over="raise", invalid="raise"):
+        return _Walk(changes, theta, omega).samples(times)
 
 
 class _Walk:

@@ -117,13 +117,14 @@ class Stretch:
 def press(at: Stretch, ahead: float, sense: float) -> None:
     """The signs of the gas forces, and the end of the stretch where the next one changes."""
     bound = at.high if sense > 0.0 else at.low
-    for j in range(len(at.gas)):
-        grid = np.linspace(ahead, bound - sense * NEAR, 9)
-        values = [at.forces(x)[j] for x in grid]
+    grid = np.linspace(ahead, bound - sense * NEAR, 99)
+    of_each = np.array([at.forces(x) for x in grid]).T.tolist()
+    for j, values in enumerate(of_each[: len(at.gas)]):
         at.pressed[j] = math.copysign(1.0, values[0])
         for a, b, x, y in zip(values, values[1:], grid, grid[1:], strict=False):
             if a * b < 0.0:
-                bound = float(brentq(lambda z, j=j: at.forces(z)[j], x, y, xtol=1e-15))
+                root = float(brentq(lambda z, j=j: at.forces(z)[j], x, y, xtol=1e-15))
+                bound = min(bound, root) if sense > 0.0 else max(bound, root)
                 break
     if sense > 0.0:
         at.high = bound
