@@ -43,6 +43,9 @@ def yi():
     return budget(simulate(load_scene("yi_diesel")))
 
 
+WITHOUT_FUEL = [name for name in sorted(shipped_scenes()) if load_scene(name).fuel is None]
+
+
 @pytest.fixture(scope="module")
 def swinging():
     """The rigid rod of yi_diesel at a speed that swings, upright under gravity."""
@@ -53,7 +56,7 @@ def swinging():
     )
 
 
-@pytest.mark.parametrize("name", sorted(shipped_scenes()))
+@pytest.mark.parametrize("name", WITHOUT_FUEL)
 def test_the_causes_add_up_to_the_lecture_minus_the_run(name):
     found = budget(simulate(short(name)))
     assert [split.quantity for split in found.splits] == [

@@ -13,6 +13,7 @@ from crankmbs.motion.plan import plan_of
 RUNS = {
     "coasting": Run(until="2 rev", every="15 deg"),
     "propeller": Run(until="2 cycles", every="15 deg"),
+    "indicated": Run(until="1 rev", every="15 deg"),
     "torque_driven": Run(until="2 rev", every="15 deg"),
     "v_twin": Run(until="1 rev", every="15 deg"),
     "yi_diesel_free": Run(until="1 rev", every="15 deg"),
@@ -22,8 +23,13 @@ TINY = 1e-12  # of the peak: so small a stated error needs no reason
 
 
 def test_every_free_scene_is_here():
-    free = {name for name in shipped_scenes() if load_scene(name).start is not None}
-    assert free == RUNS.keys()
+    free = {
+        name
+        for name, scene in {name: load_scene(name) for name in shipped_scenes()}.items()
+        if scene.start is not None and scene.fuel is None and scene.friction is None
+    }
+    # fuel and friction have oracles of their own in validation; a wheel alone has no forces
+    assert free - {"turning_moment"} == RUNS.keys()
 
 
 @cache

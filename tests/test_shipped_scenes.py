@@ -8,19 +8,25 @@ from gas_work import gas_work
 
 from crankmbs.mechanics.pressure import pressures_of
 from crankmbs.scene.read import load_scene, models_folder, shipped_scenes
+from validation import indicated
 
 NAMES = [
     "coasting",
     "compressor",
     "friction",
     "grega_lecture",
+    "indicated",
+    "misfire",
     "propeller",
+    "run_down",
+    "run_up",
     "torque_driven",
+    "turning_moment",
     "v_twin",
     "yi_diesel",
     "yi_diesel_free",
 ]
-TABLES = sorted((models_folder() / "pressure").glob("*.csv"))
+TABLES = sorted(models_folder().rglob("*.csv"))
 AT = 98066.5  # kgf/cm2 in Pa
 
 
@@ -40,8 +46,23 @@ def test_a_shipped_scene_loads_and_names_its_source(name):
 @pytest.mark.parametrize("path", TABLES, ids=lambda path: path.stem)
 def test_a_shipped_table_says_what_it_is_and_is_used(path):
     assert path.read_text().startswith("# ")
-    users = [scene.gas.pressure for scene in map(load_scene, NAMES) if scene.gas]
+    scenes = [load_scene(name) for name in NAMES]
+    users = [scene.gas.pressure for scene in scenes if scene.gas]
+    users += [getattr(load, "file", None) for scene in scenes for load in scene.torque]
     assert str(path) in {table.source for table in users if table}
+
+
+def test_the_indicated_cycles_are_those_of_their_seed():
+    assert indicated.text() == (models_folder() / "pressure" / "indicated.csv").read_text()
+
+
+@pytest.mark.parametrize("name", ["indicated", "misfire", "run_down", "run_up"])
+def test_the_same_engine_goes_other_ways(name):
+    """What a scene of its own does not say again is that of yi_diesel_free."""
+    first, scene = load_scene("yi_diesel_free"), load_scene(name)
+    for part in ("crank", "rod", "piston", "layout"):
+        assert getattr(scene, part) == getattr(first, part)
+    assert "not measured" in scene.source or "assumed" in scene.source
 
 
 @pytest.mark.parametrize(

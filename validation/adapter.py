@@ -52,6 +52,7 @@ __all__ = [
     "machine_of",
     "reference_motion",
     "reference_variables",
+    "turns_of",
 ]
 
 _TOWARDS_CRANK = ("piston_velocity", "piston_acceleration")  # the oracle's point away from it
@@ -312,12 +313,12 @@ def _loads(torques: tuple[Torque, ...]) -> Loads:
             case SpeedTable():
                 speed_tables.append(LoadTable(load.file.x, load.file.y))
             case AngleTable():
-                angle_tables.append(_turns(load))
+                angle_tables.append(turns_of(load))
     tables = tuple(time_tables), tuple(speed_tables), tuple(angle_tables)
     return Loads(constant, viscous, quadratic, *tables)
 
 
-def _turns(load: AngleTable) -> PressureTable:
+def turns_of(load: AngleTable) -> PressureTable:
     """Rows that span at most one turn repeat after one, else after two; a closing row that is like
     the first is left out, an other one is the value before a jump."""
     x, y = load.file.x, load.file.y

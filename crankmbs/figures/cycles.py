@@ -16,6 +16,8 @@ __all__ = ["FEWEST_CYCLES", "cycles_figure", "mark_events"]
 
 FEWEST_CYCLES = 4  # fewer are seen in the figures of the run
 _MOST_MARKS = 8  # events that can be told apart in a panel
+_LABEL = 0.1  # of a panel's width, what the words of an event take
+_HEAD = 0.3  # of a panel's height, kept free above the curve for them
 
 
 @rc_context(STYLE)
@@ -49,23 +51,33 @@ def cycles_figure(result: Result) -> Figure:
 
 
 def mark_events(ax: Axes, result: Result, at: Array) -> None:
-    """Thin labelled lines at the first events of a run but the decisions on the fuel.
+    """Thin labelled lines at the first events of a run but the decisions on the fuel; events of one
+    kind so close that their words would cover one another are named once.
 
     at : shape (events,), where each stands on the panel's axis
     """
     low, high = ax.get_xlim()
     kinds, loads = result.events["kind"].values, result.events["load"].values
     shown = np.flatnonzero((kinds != "fuel") & (at >= low) & (at <= high))[:_MOST_MARKS]
-    for place, k in enumerate(shown.tolist()):
+    if len(shown):
+        bottom, top = ax.get_ylim()
+        ax.set_ylim(bottom, top + _HEAD * (top - bottom))
+    named: dict[str, float] = {}
+    for k in shown.tolist():
         ax.axvline(at[k], color="0.35", linewidth=0.9, linestyle=":", zorder=1)
         words = str(kinds[k]).replace("load", f"load {loads[k]}")
+        if abs(named.get(words, np.inf) - at[k]) < _LABEL * (high - low):
+            continue
+        left = at[k] > high - _LABEL * (high - low)
         ax.annotate(
             words,
             (at[k], 1.0),
             xycoords=("data", "axes fraction"),
-            xytext=(2, -12 * (1 + place % 4)),
+            xytext=(-2 if left else 2, -12 * (1 + len(named) % 4)),
             textcoords="offset points",
+            horizontalalignment="right" if left else "left",
             fontsize=9,
             color="0.35",
             bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5, "alpha": 0.8},
         )
+        named[words] = float(at[k])

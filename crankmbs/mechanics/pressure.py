@@ -289,6 +289,9 @@ def _shift(gas: Gas) -> float:
 
 def repeat(knots: Array, period: float, low: float, high: float) -> Array:
     """The knots of one period [rad], repeated over the open interval from ``low`` to ``high``."""
-    first, last = math.floor(low / period), math.floor(high / period)
+    if len(knots) == 0:
+        return knots
+    first = math.floor((low - float(knots.max())) / period)
+    last = math.ceil((high - float(knots.min())) / period)
     tiled = (np.arange(first, last + 1)[:, None] * period + knots).ravel()
     return np.asarray(tiled[(tiled > low) & (tiled < high)])

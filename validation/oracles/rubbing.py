@@ -17,6 +17,7 @@ from scipy.integrate import solve_ivp
 
 from validation.oracles.machine import Machine
 from validation.oracles.pressure import Pieces, pressure_pieces
+from validation.oracles.pythagoras import Place, cylinder_at, inertia_and_torque
 
 __all__ = ["Rings", "Rubbed", "rubbed_motion"]
 
@@ -45,17 +46,6 @@ class Rubbed:
     alpha: Floats
     friction: Floats
     knots: Floats
-
-
-class _Cylinder(NamedTuple):
-    """At a crank angle: velocity and acceleration of the pin per angle, and the same of the rod's
-    centre and of its angle."""
-
-    x_1: float
-    x_2: float
-    rod: tuple[float, float, float, float]
-    b_1: float
-    b_2: float
 
 
 class _Stretch(NamedTuple):
@@ -145,19 +135,8 @@ class _Walk:
             pressed.append(math.copysign(1.0, force))
         return _Stretch(low, high, gas, slides, pressed)
 
-    def _cylinder(self, theta: float, j: int) -> _Cylinder:
-        """By Pythagoras: the pin at (x, e), l^2 = (x - r cos)^2 + (e - r sin)^2."""
-        m = self.machine
-        r, l, e = (float(q) for q in (m.crank_radius, m.rod_length, m.offset))
-        phi, part = theta + float(m.cylinders[j][0]), float(m.rod_center_of_mass) / l
-        c, s = r * math.cos(phi), r * math.sin(phi)
-        u, u_1, u_2 = s - e, c, -s
-        w = math.sqrt(l * l - u * u)
-        w_1 = -u * u_1 / w
-        w_2 = -(u_1 * u_1 + u * u_2 + w_1 * w_1) / w
-        x_1, x_2 = -s + w_1, -c + w_2
-        rod = (-s + part * w_1, c - part * u_1, -c + part * w_2, -s - part * u_2)
-        return _Cylinder(x_1, x_2, rod, u_1 / w, (u_2 * w - u_1 * w_1) / (w * w))
+    def _cylinder(self, theta: float, j: int) -> Place:
+        return cylinder_at(self.machine, theta, j)
 
     def _friction(self, theta: float, omega: float, at: _Stretch, held: float) -> list[float]:
         """On every piston [N], towards the crank; ``held``: the share of the rings' that acts."""
@@ -171,24 +150,12 @@ class _Walk:
 
     def _torque(self, theta: float, omega: float, at: _Stretch) -> tuple[float, float, float]:
         """J, dJ/dtheta and the torque of gas, weights and loads on the crank."""
-        m, load = self.machine, self.machine.loads
-        gx, gy = (float(q) for q in m.gravity)
-        unbalanced = float(m.crank_mass) * float(m.crank_center_of_mass)
-        inertia, slope = float(m.crank_inertia), 0.0
-        torque = unbalanced * (gy * math.cos(theta) - gx * math.sin(theta))
+        load = self.machine.loads
+        places = [self._cylinder(theta, j) for j in range(len(self.machine.cylinders))]
+        forces = [float(np.polynomial.polynomial.polyval(theta - x, c)) for x, c in at.gas]
+        inertia, slope, torque = inertia_and_torque(self.machine, theta, places, forces)
         torque += float(load.constant) - float(load.viscous) * omega
         torque -= float(load.quadratic) * omega * abs(omega)
-        mp, mr, ir = (float(q) for q in (m.piston_mass, m.rod_mass, m.rod_inertia))
-        for j, (_, bank) in enumerate(m.cylinders):
-            c = self._cylinder(theta, j)
-            a, b, a_2, b_2 = c.rod
-            inertia += mp * c.x_1**2 + mr * (a * a + b * b) + ir * c.b_1**2
-            slope += 2.0 * (mp * c.x_1 * c.x_2 + mr * (a * a_2 + b * b_2) + ir * c.b_1 * c.b_2)
-            along = gx * math.cos(bank) + gy * math.sin(bank)
-            across = gy * math.cos(bank) - gx * math.sin(bank)
-            origin, cubic = at.gas[j]
-            force = float(np.polynomial.polynomial.polyval(theta - origin, cubic))
-            torque += mp * along * c.x_1 + mr * (along * a + across * b) - force * c.x_1
         return inertia, slope, torque
 
     def _alpha(self, theta: float, omega: float, at: _Stretch, held: float) -> float:

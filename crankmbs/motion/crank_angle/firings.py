@@ -57,7 +57,8 @@ def solve_fired(
     assert mode.firing is not None
     sense, count = begin.sense, len(strip.width)
     first = mode.high if sense > 0.0 else mode.low
-    reach = float(strip.turned[-1]) - sense * (first - state.theta)
+    # on a way back all is decided, as far as it went before
+    reach = max(0.0, float(strip.turned[-1]) - sense * (first - state.theta))
     angles, slots, parts = law.ahead(first, sense, reach)
     at = strip.turned[:count].searchsorted(sense * (angles - state.theta) - _HAIR)
     at[-1] = count  # beyond the strip

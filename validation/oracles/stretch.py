@@ -1,0 +1,140 @@
+"""A free crank between two events: smooth formulas for all that acts on it."""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_left, bisect_right
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import brentq
+
+from validation.oracles.changes import Changes, Line, Pull, Smooth
+from validation.oracles.pythagoras import Place, cylinder_at, inertia_and_torque
+
+__all__ = ["NEAR", "Acting", "GasPiece", "Stretch", "piece_at", "press"]
+
+NEAR = 1e-11
+"""A knot so near [rad] is here."""
+
+
+class Acting(NamedTuple):
+    """A load's pieces amid their knots; origin [rad] : what that over the angle counts from."""
+
+    pull: Pull
+    over_time: Smooth | None
+    over_speed: Smooth | None
+    over_angle: Smooth | None
+    origin: float
+
+    def at(self, t: float, theta: float, omega: float) -> float:
+        """The torque [N m]."""
+        value = 1.0
+        if self.over_time is not None:
+            value *= self.over_time(t)
+        if self.over_speed is not None:
+            value *= self.over_speed(omega)
+        if self.over_angle is not None:
+            value *= self.over_angle(theta - self.origin)
+        if self.pull.smooth is not None:
+            value *= self.pull.smooth(t, theta, omega)
+        return value
+
+
+class GasPiece(NamedTuple):
+    """Of a cylinder, fired and motored, and the crank angles [rad] that they count from."""
+
+    fired: Smooth
+    low: float
+    motored: Smooth | None
+    since: float
+
+
+@dataclass
+class Stretch:
+    """Between knots of the angle [rad], of the speed [rad/s] and up to one of the time [s].
+
+    shares : of the combustion; slides, pressed : the signs of every piston's velocity, towards the
+    crank, and of its gas force
+    """
+
+    changes: Changes
+    shares: tuple[float, ...]
+    low: float
+    high: float
+    slow: float
+    fast: float
+    end: float
+    gas: list[GasPiece]
+    loads: list[Acting]
+    slides: list[float]
+    pressed: list[float]
+
+    def places(self, theta: float) -> list[Place]:
+        """Of every cylinder."""
+        machine = self.changes.machine
+        return [cylinder_at(machine, theta, j) for j in range(len(machine.cylinders))]
+
+    def forces(self, theta: float) -> list[float]:
+        """Of the gas on every piston [N], towards the crank."""
+        area, forces = float(self.changes.machine.piston_area), []
+        for piece, share in zip(self.gas, self.shares, strict=True):
+            pressure = piece.fired(theta - piece.low)
+            if piece.motored is not None:
+                without = piece.motored(theta - piece.since)
+                pressure = without + share * (pressure - without)
+            forces.append(area * pressure)
+        return forces or [0.0] * len(self.changes.machine.cylinders)
+
+    def friction(self, theta: float, omega: float) -> list[float]:
+        """On every piston [N], towards the crank."""
+        places = self.places(theta)
+        if self.changes.rings is None:
+            return [0.0] * len(places)
+        ring, pressed, viscous = self.changes.rings
+        signs = self.pressed or [0.0] * len(places)
+        of_each = zip(self.slides, signs, self.forces(theta), places, strict=True)
+        return [
+            -slides * (ring + pressed * sign * force) + viscous * place.x_1 * omega
+            for slides, sign, force, place in of_each
+        ]
+
+    def external(self, t: float, theta: float, omega: float) -> float:
+        """The torque of the loads [N m]."""
+        return sum(load.at(t, theta, omega) for load in self.loads)
+
+    def alpha(self, t: float, theta: float, omega: float) -> float:
+        """The acceleration [rad/s2]."""
+        both = self.forces(theta)
+        if self.changes.rings is not None:
+            both = [a + b for a, b in zip(both, self.friction(theta, omega), strict=True)]
+        machine = self.changes.machine
+        inertia, slope, torque = inertia_and_torque(machine, theta, self.places(theta), both)
+        return (torque + self.external(t, theta, omega) - 0.5 * slope * omega * omega) / inertia
+
+
+def press(at: Stretch, ahead: float, sense: float) -> None:
+    """The signs of the gas forces, and the end of the stretch where the next one changes."""
+    bound = at.high if sense > 0.0 else at.low
+    grid = np.linspace(ahead, bound - sense * NEAR, 99)
+    of_each = np.array([at.forces(x) for x in grid]).T.tolist()
+    for j, values in enumerate(of_each[: len(at.gas)]):
+        at.pressed[j] = math.copysign(1.0, values[0])
+        for a, b, x, y in zip(values, values[1:], grid, grid[1:], strict=False):
+            if a * b < 0.0:
+                root = float(brentq(lambda z, j=j: at.forces(z)[j], x, y, xtol=1e-15))
+                bound = min(bound, root) if sense > 0.0 else max(bound, root)
+                break
+    if sense > 0.0:
+        at.high = bound
+    else:
+        at.low = bound
+
+
+def piece_at(line: Line | None, x: float, side: float) -> Smooth | None:
+    """The piece of a load where the abscissa stands, on a knot that on its side."""
+    if line is None:
+        return None
+    find = bisect_right if side > 0.0 else bisect_left
+    return line.pieces[find(line.knots, x)]
