@@ -1,0 +1,359 @@
+/** The page: knobs, mechanism and plots of one scene, and what happens between them. */
+import { decoded, engineOf } from "./answers.js";
+import { cycleOf } from "./cycle.js";
+import { dragged } from "./drag.js";
+import { deadCentres } from "./geometry.js";
+import { Knobs } from "./knobs.js";
+import { Player } from "./player.js";
+import { Plot } from "./plot.js";
+import { choices, drawn } from "./quantities.js";
+import { Refused } from "./refused.js";
+import { Stage } from "./stage.js";
+import { Address } from "./state.js";
+import { dataFile, save, sceneFile } from "./taken.js";
+import { Turner } from "./turned.js";
+import { badgeOf, deadCentreMarks, numbersOf } from "./words.js";
+
+const DEGREE = Math.PI / 180;
+const LATER = 100; // ms after the last turn of a knob: the second pass
+const PLOTS = ["upper", "lower"];
+const FORCES = ["piston", "rod", "crank", "none"];
+
+/** Begin with what Python wrote into the page. */
+export function start() {
+  const given = decoded(JSON.parse(document.getElementById("given").textContent));
+  return new Page(given);
+}
+
+class Page {
+  constructor(given) {
+    this.given = given;
+    this.turner = new Turner(given);
+    this.quick = engineOf(given.rules);
+    this.careful = engineOf(given.rules);
+    this.values = {};
+    this.view = firstView(given);
+    this.cycle = null;
+    this.address = new Address(keysOf(given), given.sentences);
+    this.stage = new Stage(find("stage"), given.compression);
+    this.player = new Player({ cycle: () => this.cycle, move: (theta) => this.pose(theta) });
+    this.listen();
+    this.begin();
+  }
+
+  listen() {
+    const { given } = this;
+    this.knobs = new Knobs(find("sliders"), given.knobs, given.sentences, {
+      turn: (name, value) => this.turn(name, value),
+      release: () => this.release(),
+      refuse: (sentence) => this.say(sentence),
+    });
+    dragged(this.stage, {
+      theta: () => this.theta,
+      turn: (theta) => this.seek(theta),
+      rim: (ratio) => this.turnRim(ratio),
+      grip: (kind) => kind !== "rim" && this.play(false),
+      release: () => this.release(),
+    });
+    this.plots = Object.fromEntries(PLOTS.map((name) => [name, this.plot(name)]));
+    this.choose();
+    this.press("play", () => this.play(!this.player.playing));
+    this.press("reset", () => this.reset());
+    this.press("toml", () => save(...sceneFile(given, this.values, this.cycle)));
+    this.press("csv", () => save(...dataFile(given, this.cycle)));
+    this.press("large", () => {
+      const on = document.documentElement.classList.toggle("projector");
+      find("large").setAttribute("aria-pressed", String(on));
+    });
+    find("angle").addEventListener("input", (event) => {
+      this.play(false);
+      this.seek(Number(event.target.value) * DEGREE);
+    });
+    find("angle").addEventListener("change", () => this.release());
+    document.addEventListener("keydown", (event) => this.key(event));
+    addEventListener("hashchange", () => this.open(location.hash));
+  }
+
+  press(id, does) {
+    find(id).addEventListener("click", does);
+  }
+
+  plot(name) {
+    const root = find(name);
+    const plot = new Plot(root, (degrees) => {
+      if (degrees === null) return this.release();
+      this.play(false);
+      return this.seek(degrees * DEGREE);
+    });
+    const pin = root.querySelector(".pin");
+    pin.addEventListener("click", () => pin.setAttribute("aria-pressed", String(plot.pin())));
+    new ResizeObserver(() => plot.redraw()).observe(plot.svg);
+    return plot;
+  }
+
+  /** Choices of the view and of the machine. */
+  choose() {
+    for (const select of document.querySelectorAll("select[data-state], input[data-state]")) {
+      select.addEventListener("change", () => {
+        const { state } = select.dataset;
+        const value = select.type === "checkbox" ? select.dataset[String(select.checked)] : select.value;
+        if (state in this.view) this.look(state, value);
+        else this.turn(state, value === select.dataset.own ? undefined : value);
+        this.release();
+      });
+    }
+  }
+
+  begin() {
+    this.update();
+    this.say("");
+    if (location.hash.length > 1) this.open(location.hash);
+    if (this.cycle === null) return;
+    if (this.view.angle === null) this.seek(tellingPose(this.cycle));
+    const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
+    this.play(!still);
+  }
+
+  /** Show the state that an address says; what cannot be leaves the page as it is. */
+  open(address) {
+    const before = { values: this.values, view: this.view };
+    try {
+      const state = this.address.read(address);
+      this.view = { ...firstView(this.given) };
+      this.values = {};
+      for (const [name, value] of Object.entries(state)) {
+        (name in this.view ? this.view : this.values)[name] = value;
+      }
+      this.compute();
+      this.say("");
+    } catch (refused) {
+      if (!(refused instanceof Refused)) throw refused;
+      Object.assign(this, before);
+      this.say(refused.message);
+    }
+    this.knobs.show(this.values);
+    this.redraw();
+    if (this.view.angle !== null) this.seek(this.view.angle * DEGREE);
+  }
+
+  /** Give a knob a value; without one, the scene's own. */
+  turn(name, value) {
+    const { [name]: _, ...others } = this.values;
+    this.values = value === undefined ? others : { ...others, [name]: value };
+    this.update();
+  }
+
+  turnRim(ratio) {
+    const knob = this.given.knobs.find((each) => each.name === "flywheel");
+    if (!knob) return;
+    const value = Math.min(Math.max(ratio * knob.value, knob.low), knob.high);
+    this.turn("flywheel", value);
+    this.knobs.show(this.values);
+  }
+
+  look(name, value) {
+    this.view = { ...this.view, [name]: value };
+    this.redraw();
+  }
+
+  reset() {
+    this.values = {};
+    this.view = { ...firstView(this.given), angle: this.view.angle };
+    this.knobs.show({});
+    this.update();
+    this.release();
+  }
+
+  /** Compute and draw; where it cannot be, keep the last good picture and say why. */
+  update() {
+    try {
+      this.compute();
+      this.say("");
+    } catch (refused) {
+      if (!(refused instanceof Refused)) throw refused;
+      this.say(refused.message);
+      return;
+    }
+    this.redraw();
+  }
+
+  compute() {
+    const scene = this.turner.scene(this.values);
+    this.cycle = cycleOf(this.quick, scene, this.given.endings, { warm: this.cycle });
+    this.good = this.values;
+    this.error = null;
+    clearTimeout(this.later);
+    this.later = setTimeout(() => this.refine(), LATER);
+  }
+
+  /** The second pass: cells cut until they are good, measures, and how far the first was off. */
+  refine() {
+    const { cycle, given } = this;
+    const better = cycleOf(this.careful, cycle.scene, given.endings, { fine: true, warm: cycle });
+    const apart = better.samples.map((v, k) =>
+      Math.abs(v.crank_speed - cycle.samples[k].crank_speed));
+    this.error = Math.max(...apart) / Math.abs(better.mean);
+    this.cycle = better;
+    this.redraw();
+  }
+
+  redraw() {
+    const { cycle, given, view } = this;
+    if (!cycle) return;
+    const k = Math.min(Number(view.cylinder), cycle.train.cylinders.length) - 1;
+    const own = given.scene.crank.inertia;
+    const ratio = own > 0 ? cycle.scene.crank.inertia / own : 1;
+    const heavy = given.knobs.some((each) => each.name === "flywheel");
+    this.stage.show(cycle, { k, body: view.forces, ratio, heavy });
+    const marks = deadCentreMarks(cycle, k, deadCentres(cycle.train.shape));
+    for (const name of PLOTS) this.plots[name].draw(drawn(view[name], cycle, k), marks);
+    this.showChoices(k);
+    this.showWords();
+    this.seek(this.theta ?? tellingPose(cycle));
+  }
+
+  showChoices(k) {
+    const { given, view, values, cycle } = this;
+    options(find("cylinder"), cycle.train.cylinders.map((_, n) => String(n + 1)));
+    const shown = { ...given.own, ...view, ...values, cylinder: String(k + 1) };
+    for (const select of document.querySelectorAll("[data-state]")) {
+      const value = shown[select.dataset.state];
+      if (select.type === "checkbox") select.checked = value === select.dataset.true;
+      else select.value = value;
+    }
+    find("cylinder").closest("label").hidden = cycle.train.cylinders.length < 2;
+    const unused = cycle.prescribed && given.scene.motion === null ? ["flywheel", "load"] : [];
+    this.knobs.disable(unused);
+    const { low, high } = spanOf(cycle);
+    Object.assign(find("angle"), { min: low, max: high });
+    const slower = find("slower");
+    if (!slower.options.length) {
+      const names = Player.choices.map((each) => (each > 1 ? `${each}× slower` : "real time"));
+      Player.choices.forEach((each, n) => slower.append(new Option(names[n], String(each))));
+      slower.value = String(Player.fitting(cycle.duration));
+      slower.addEventListener("change", () => {
+        this.player.slower = Number(slower.value);
+      });
+    }
+    this.player.slower = Number(slower.value);
+  }
+
+  showWords() {
+    const { cycle, given, error } = this;
+    const list = find("numbers");
+    list.replaceChildren();
+    for (const [name, value] of numbersOf(cycle, error)) {
+      const item = list.appendChild(document.createElement("div"));
+      item.appendChild(document.createElement("dt")).textContent = name;
+      item.appendChild(document.createElement("dd")).textContent = value;
+    }
+    const { text, good } = badgeOf(cycle, given.endings);
+    find("badge").textContent = text;
+    find("badge").className = good ? "good" : "drifts";
+    const { shape } = cycle.train;
+    const of = given.scene.gas?.shape;
+    find("carried").hidden = !of || ["radius", "length", "offset"].every((key) => shape[key] === of[key]);
+  }
+
+  /** Turn to a crank angle [rad], back into the cycle that is shown. */
+  seek(theta) {
+    const { from, to } = this.cycle;
+    const [low, period] = [Math.min(from, to), Math.abs(to - from)];
+    const turns = theta > low + period + 1e-9 || theta < low - 1e-9 ? Math.floor((theta - low) / period) : 0;
+    this.pose(theta - turns * period);
+    this.player.seek(this.theta);
+  }
+
+  pose(theta) {
+    this.theta = theta;
+    const degrees = theta / DEGREE;
+    this.stage.pose(theta);
+    for (const name of PLOTS) this.plots[name].place(degrees);
+    find("angle").value = degrees;
+    const text = `${degrees.toFixed(0)}°`;
+    find("angle").setAttribute("aria-valuetext", text);
+    find("degrees").textContent = text;
+    find("lead").textContent = this.stage.leadInWords(theta);
+  }
+
+  play(wanted) {
+    this.player.play(wanted, this.theta);
+    find("play").textContent = wanted ? "❚❚ pause" : "► play";
+    find("play").setAttribute("aria-pressed", String(wanted));
+  }
+
+  key(event) {
+    if (event.target.closest("input, select, button, textarea")) return;
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    const step = { ArrowLeft: -1, ArrowRight: 1, ArrowDown: -1, ArrowUp: 1 }[event.key];
+    if (event.key === " ") {
+      this.play(!this.player.playing);
+    } else if (step) {
+      this.play(false);
+      const degrees = Math.round(this.theta / DEGREE) + step * (event.shiftKey ? 10 : 1);
+      this.seek(degrees * DEGREE);
+      this.release();
+    } else {
+      return;
+    }
+    event.preventDefault();
+  }
+
+  /** Keep in the address what is shown. */
+  release() {
+    const first = firstView(this.given);
+    const view = Object.entries(this.view).filter(([name, value]) => value !== first[name]);
+    const state = { ...this.good, ...Object.fromEntries(view) };
+    if (!this.player.playing) state.angle = Number((this.theta / DEGREE).toFixed(3));
+    history.replaceState(null, "", this.address.write(state));
+  }
+
+  say(sentence) {
+    find("message").textContent = sentence;
+    find("message").hidden = sentence === "";
+  }
+}
+
+function find(id) {
+  return document.getElementById(id);
+}
+
+function firstView({ scene }) {
+  const gassed = scene.gas !== null;
+  const lower = gassed ? "torque of the cylinder" : "piston acceleration";
+  const upper = scene.motion === null ? "crank speed" : "piston acceleration";
+  const below = upper === lower ? "side force on the piston" : lower;
+  return { cylinder: "1", forces: "piston", upper, lower: below, angle: null };
+}
+
+/** Everything that may stand in an address. */
+function keysOf({ scene, knobs, words }) {
+  const { curves, diagrams } = choices(scene);
+  const shown = [...curves, ...diagrams];
+  return [
+    ...knobs,
+    ...words,
+    { name: "cylinder", words: ["1", "2", "3", "4", "5", "6", "7", "8"] },
+    { name: "forces", words: FORCES },
+    ...PLOTS.map((name) => ({ name, words: shown })),
+    { name: "angle", low: -1e6, high: 1e6 },
+  ];
+}
+
+/** Where crank, rod and arrows are apart: 60 degrees after the firing dead centre. */
+function tellingPose({ train, scene, from, to }) {
+  const firing = scene.period > 3 * Math.PI && train.pressure.length ? 2 * Math.PI : 0;
+  const theta = firing + Math.PI / 3 - train.cylinders[0].phase;
+  const period = Math.abs(to - from);
+  const low = Math.min(from, to);
+  return theta - Math.floor((theta - low) / period) * period;
+}
+
+function spanOf({ from, to }) {
+  return { low: Math.min(from, to) / DEGREE, high: Math.max(from, to) / DEGREE };
+}
+
+function options(select, names) {
+  if (select.options.length === names.length) return;
+  select.replaceChildren(...names.map((name) => new Option(name, name)));
+}
