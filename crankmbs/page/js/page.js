@@ -1,7 +1,8 @@
 /** The page: knobs, mechanism and plots of one scene, and what happens between them. */
-import { decoded, engineOf } from "./answers.js";
+import { decoded } from "./answers.js";
 import { cycleOf } from "./cycle.js";
 import { dragged } from "./drag.js";
+import { Engine } from "./engine.js";
 import { deadCentres } from "./geometry.js";
 import { Knobs } from "./knobs.js";
 import { Player } from "./player.js";
@@ -29,8 +30,8 @@ class Page {
   constructor(given) {
     this.given = given;
     this.turner = new Turner(given);
-    this.quick = engineOf(given.rules);
-    this.careful = engineOf(given.rules);
+    this.quick = new Engine(given.rules);
+    this.careful = new Engine(given.rules);
     this.values = {};
     this.view = firstView(given);
     this.cycle = null;
@@ -85,6 +86,11 @@ class Page {
       this.play(false);
       return this.seek(degrees * DEGREE);
     });
+    const select = root.querySelector("select");
+    for (const [label, names] of Object.entries(choices(this.given.scene))) {
+      const group = select.appendChild(document.createElement("optgroup"));
+      Object.assign(group, { label }).append(...names.map((each) => new Option(each, each)));
+    }
     const pin = root.querySelector(".pin");
     pin.addEventListener("click", () => pin.setAttribute("aria-pressed", String(plot.pin())));
     new ResizeObserver(() => plot.redraw()).observe(plot.svg);
