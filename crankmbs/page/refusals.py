@@ -1,0 +1,65 @@
+"""What of a scene the browser cannot run, each with its reason and the command that can."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from crankmbs.mechanics.speed import speed_law
+from crankmbs.motion.plan import plan_of
+from crankmbs.scene.drives import Motion, SpeedFile
+from crankmbs.scene.scene import Scene
+
+__all__ = ["refusals"]
+
+
+def refusals(scene: Scene) -> tuple[str, ...]:
+    """Why the browser cannot run a scene, one sentence each; none where it can.
+
+    What shows only on the way, a crank that comes to rest, the page says then.
+
+    >>> refusals(load_scene("propeller"))
+    ()
+    >>> refusals(load_scene("torque_driven"))[0].partition(";")[0]
+    'rest: the crank starts from rest, where time must be the variable'
+    """
+    return tuple(f"{reason}; run it with crankmbs run" for reason in _reasons(scene))
+
+
+def _reasons(scene: Scene) -> Iterator[str]:
+    if scene.run.formulation == "multibody":
+        yield "multibody: asked for by name, and the page solves one rotation"
+    if any(load.parts.function is not None for load in scene.torque):
+        yield "function: a load is a function of Python"
+    if scene.fuel is not None and scene.fuel.governor is not None:
+        yield "governor: it decides each share of the fuel anew"
+    if scene.fuel is not None and scene.fuel.scatter > 0.0:
+        yield "random firing: scatter draws each share of the fuel from Python's random numbers"
+    if scene.friction is not None:
+        yield "friction: the page has none yet on its pistons"
+    if scene.motion is not None and _over_angle(scene.motion):
+        yield "speed over the angle: the page knows prescribed speeds over time"
+    if any(abs(fold) < float("inf") for fold in plan_of(scene).folds):
+        yield "fold: the rod folds onto the crank, where the motion is not determined"
+    if scene.start is not None and scene.start.speed == 0.0:
+        yield "rest: the crank starts from rest, where time must be the variable"
+    if scene.motion is not None and _turns_back(scene):
+        yield "reversal: the prescribed speed comes to rest or turns back"
+
+
+def _over_angle(motion: Motion) -> bool:
+    return isinstance(motion.speed, SpeedFile) and motion.speed.kind == "angle_table"
+
+
+def _turns_back(scene: Scene) -> bool:
+    """Whether the prescribed speed is zero anywhere in the run."""
+    assert scene.motion is not None
+    law, (until, in_time) = speed_law(scene.motion), scene.end
+    _, speed, _ = law.at_time(0.0)
+    if float(speed) == 0.0:
+        return True
+    turn = law.turning_times[0]
+    if turn == float("inf"):
+        return False
+    theta, speed, _ = law.at_time(turn)
+    reached = turn >= until if in_time else abs(float(theta) - scene.motion.angle) >= until
+    return not reached
