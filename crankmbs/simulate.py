@@ -7,6 +7,7 @@ import time as clock
 from crankmbs.choose import choose, chosen
 from crankmbs.errors import InputError, shown
 from crankmbs.mechanics.pressure import remarks
+from crankmbs.mechanics.speed import speed_remarks
 from crankmbs.mechanics.train import crank_train
 from crankmbs.motion.assemble import dataset
 from crankmbs.motion.base import Solution
@@ -63,12 +64,13 @@ def simulate(
         scene=scene,
         data=dataset(assembled),
         formulation=choice.formulation,
-        reasons=choice.reasons + remarks(scene) + solution.reasons,
+        reasons=choice.reasons + remarks(scene) + speed_remarks(scene) + solution.reasons,
         status=solution.status,
         message=_why(solution, functions),
         cost=Cost(clock.perf_counter() - begin, solution.evaluations, solution.steps),
         error=Error(asked, assembled.relative_error),
         decay=solution.decay,
+        keep=solution.keep,
     )
 
 
@@ -76,10 +78,8 @@ def _functions(scene: Scene) -> list[tuple[int, Function]]:
     """The functions among the loads, each with its number, none of which has failed yet."""
     found = []
     for number, load in enumerate(scene.torque, start=1):
-        try:
-            load.check_runs()
-        except InputError as error:
-            raise InputError(f"torque[{number}]: {error}") from None
+        if load.lacks:
+            raise InputError(f"torque[{number}]: {load.lacks}")
         if load.parts.function is not None:
             load.parts.function.failure = ""
             found.append((number, load.parts.function))

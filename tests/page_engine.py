@@ -7,7 +7,7 @@ from browser import chromium, visiting
 from playwright.sync_api import sync_playwright
 
 from crankmbs.mechanics.peaks import peak
-from crankmbs.mechanics.variables import SUMS, WITH_FUEL
+from crankmbs.mechanics.variables import EVERY, SUMS
 from crankmbs.page import exported, joined
 from crankmbs.page.export import encoded, rules
 
@@ -47,14 +47,14 @@ def differences(result, variables):
     names = [str(n) for n in result.data.variables if n not in ("cylinder", "energy_residual")]
     expected = {name: result.data[name].values for name in names}
     assert variables.keys() == expected.keys()
-    largest = {}
+    largest: dict[str, float] = {}
     for name in names:
-        unit = WITH_FUEL[name].units
+        unit = EVERY[name].units
         largest[unit] = max(largest.get(unit, 0.0), peak(expected[name]))
     found = {}
     for name in names:
-        own, unit = peak(expected[name]), largest[WITH_FUEL[name].units]
-        size = unit if name in SUMS or own < 1e-10 * unit else own
+        own, most = peak(expected[name]), largest[EVERY[name].units]
+        size = most if name in SUMS or own < 1e-10 * most else own
         apart = peak(np.array(variables[name], dtype=float) - expected[name])
         apart = max(apart - result.data[name].attrs["error_estimate"], 0.0)
         found[name] = apart / size if size > 0.0 else apart

@@ -2,6 +2,7 @@
 
 import pytest
 
+from crankmbs import Crank, Piston, Rod, Run, Scene, Start
 from crankmbs.errors import SceneError
 
 FREE = """
@@ -65,3 +66,15 @@ exhaust_pressure = "1.1 bar"
 peak_pressure = "50 bar"
 """
 INDICATED = edited(FREE, 'pressure = "gas.csv"\nabsolute = false\n', INDICATOR)
+
+
+def scene(**changes):
+    """One cylinder that is free, built in Python, with other parts."""
+    parts = {
+        "crank": Crank(radius=0.046, inertia=0.02),
+        "rod": Rod(length=0.15),
+        "piston": Piston(mass=1.14, area=57e-4),
+        "start": Start(angle=0.0, speed=335.1),
+        "run": Run(until="0.75 s"),
+    }
+    return Scene(**{**parts, **changes})

@@ -27,6 +27,8 @@ from crankmbs.mechanics.train import crank_train
 from crankmbs.scene.read import parse_scene
 from crankmbs.scene.units import DEGREE
 from crankmbs.scene.write import scene_files
+from validation.checks.drawn import stated_ratio
+from validation.random_turning import random_turning
 
 FREE = ["crank_angle", "minimal"]
 ROWS = ((0.0, 90.0, 90.0, 200.0, 300.0), (5.0, -20.0, 40.0, 8.0, -30.0))
@@ -215,3 +217,12 @@ def test_it_is_read_and_written(tmp_path):
     again = parse_scene(files["again.toml"], tmp_path / "again.toml")
     assert again.torque[0].file.x == load.file.x
     assert again.torque[0].interpolation == "cubic"
+
+
+@pytest.mark.parametrize("formulation", FREE)
+@pytest.mark.parametrize("seed", range(4))
+def test_random_tables_against_the_oracle(seed, formulation):
+    scene = random_turning(seed)
+    result = simulate(scene, formulation=formulation)
+    assert result.status == 0
+    assert stated_ratio(result, scene)[0] <= 1.0

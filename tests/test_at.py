@@ -85,6 +85,17 @@ def test_the_lectures_forces_of_a_two_mass_rod_are_the_lectures():
         assert 0.0 < one[name].error < 1e-6 * abs(value)
 
 
+@pytest.mark.parametrize("degrees", [60.0, 720.0])
+def test_of_a_settled_motion_it_is_the_settled_one(degrees):
+    free = load_scene("yi_diesel_free")
+    result = simulate(replace(free, run=Run(until="settled")))
+    found = at_angle(result, math.radians(degrees))
+    (speed,) = (one for one in found.readings if one.quantity == "crank_speed")
+    k = round(degrees)  # a sample a degree
+    assert found.time == pytest.approx(result.data["time"].values[k], rel=1e-12)
+    assert speed.value == pytest.approx(result.data["crank_speed"].values[k], rel=1e-12)
+
+
 def test_what_cannot_be_looked_up_is_refused():
     short = simulate(replace(DIESEL, run=Run(until="1 rev")))
     with pytest.raises(InputError, match="last whole cycle"):

@@ -31,7 +31,7 @@ def folder(tmp_path, monkeypatch):
 def test_run_writes_into_results_by_name_and_reports():
     result = crankmbs_("run", "engine.toml")
     assert result.exit_code == 0, result.output
-    assert names("results/engine") == {"result.nc", "motion.csv"} | FIGURES
+    assert names("results/engine") == {"result.nc", "motion.csv", "cycles.csv"} | FIGURES
     for words in (
         "driven [red] engine",
         "kinetostatic",
@@ -68,7 +68,7 @@ def test_report_carries_the_numbers_of_the_result():
 def test_no_figures_draws_none_and_out_says_where():
     result = crankmbs_("run", "engine.toml", "--no-figures", "--out", "here/there")
     assert result.exit_code == 0
-    assert names("here/there") == {"result.nc", "motion.csv"}
+    assert names("here/there") == {"result.nc", "motion.csv", "cycles.csv"}
     assert not Path("results").exists()
 
 
@@ -219,7 +219,10 @@ def test_confirm_prints_and_draws_the_difference_beside_both_errors():
     assert ours < 1e-6
     assert share == 0.8
     assert "within the sum of both stated errors" in result.stdout
-    assert names("results/engine") == {"result.nc", "motion.csv", "difference.png"} | FIGURES
+    assert (
+        names("results/engine")
+        == {"result.nc", "motion.csv", "cycles.csv", "difference.png"} | FIGURES
+    )
 
 
 @pytest.mark.usefixtures("imitated")
@@ -234,7 +237,7 @@ def test_confirm_says_when_the_stated_errors_do_not_cover_the_difference(monkeyp
     monkeypatch.setattr(crankmbs.cli.run, "simulate", proud)
     result = crankmbs_("run", "engine.toml", "--confirm", "--no-figures")
     assert "side force differs by 2 times the sum" in result.stdout
-    assert names("results/engine") == {"result.nc", "motion.csv"}
+    assert names("results/engine") == {"result.nc", "motion.csv", "cycles.csv"}
 
 
 def test_a_small_run_loads_neither_matplotlib_nor_exudyn():

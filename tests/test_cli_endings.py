@@ -30,7 +30,7 @@ def run_into_a_closed_pipe(*words):
 def test_a_run_whose_reader_has_gone_ends_quietly_with_its_files_written(tmp_path):
     done = run_into_a_closed_pipe("run", "coasting", "--no-figures", "--out", str(tmp_path))
     assert (done.returncode, done.stderr) == (141, "")
-    assert names(tmp_path) == {"result.nc", "motion.csv"}
+    assert names(tmp_path) == {"result.nc", "motion.csv", "cycles.csv"}
 
 
 def test_help_whose_reader_has_gone_ends_quietly():

@@ -113,11 +113,20 @@ def test_check_says_what_a_crank_without_inertia_counts_as(crank, said):
     [
         ('"-900 rpm"', "-900 rpm, clockwise (-theta), from 0 deg"),
         ('{ from = "800 rpm", to = "3e3 rpm", over = "2 s" }', "from 800 rpm to 3000 rpm in 2 s, "),
-        ('{ file = "speed.csv" }', "800 rpm to 3000 rpm in 2 rows of speed.csv, from 0 deg"),
+        (
+            '{ file = "speed.csv" }',
+            "800 rpm to 3000 rpm in 2 rows of speed.csv, pchip, from 0 deg",
+        ),
+        (
+            '{ file = "cycle.csv", interpolation = "cubic" }',
+            "800 rpm to 900 rpm over the crank angle in 3 rows of cycle.csv, cubic, again every "
+            "360 deg, from 0 deg",
+        ),
     ],
 )
 def test_check_shows_every_prescribed_speed(speed, said):
     Path("speed.csv").write_text("time_s,speed_rpm\n0,800\n1,3000\n")
+    Path("cycle.csv").write_text("crank_angle_deg,speed_rpm\n0,800\n90,900\n360,800\n")
     Path("other.toml").write_text(SCENE.replace('"3000 rpm"', speed))
     assert f"motion       prescribed, {said}" in crankmbs_("check", "other.toml").stdout
 

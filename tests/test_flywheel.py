@@ -1,19 +1,26 @@
 """The flywheel for a fluctuation: met on the settled cycle, or the sentence why not."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
 from command_line import crankmbs_, refused
+from scipy.optimize import brentq
 
 from crankmbs import (
+    AngleTable,
+    Constant,
     InputError,
     Motion,
     Oscillation,
+    Piston,
     Quadratic,
     Ramp,
+    Rod,
     Run,
     Start,
+    Table,
     flywheel,
     load_scene,
     simulate,
@@ -41,6 +48,59 @@ def test_its_error_is_honest():
     rough, fine = (flywheel(replace(DIESEL, run=Run(until="1 s", rtol=r))) for r in (1e-5, 1e-11))
     apart = abs(rough.inertia.value - fine.inertia.value)
     assert apart <= 2.0 * (rough.inertia.error + fine.inertia.error)
+
+
+TURNS = AngleTable(file=Table(np.radians([0, 60, 60, 200, 300]), (-30.0, 80.0, 10.0, -60.0, -9.0)))
+
+
+@pytest.mark.parametrize("balance", [(), (Constant(torque=3.0),)], ids=["alone", "and a constant"])
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_a_turning_moment_alone_is_balanced(balance, sense):
+    """A bare wheel: E = E_0 + int (T - mean), W its range, by the exact parabolas of the table."""
+    bare = replace(
+        DIESEL, gas=None, rod=Rod(length=0.2), piston=Piston(mass=0.0), torque=(TURNS, *balance)
+    )
+    scene = replace(bare, start=Start(angle=0.3, speed=sense * 40.0))
+    found = flywheel(scene, 0.02)
+    assert found.status == 0
+    fine = np.linspace(0.0, 2.0 * np.pi, 360_001)
+    rows = np.radians([0.0, 60.0, 200.0, 300.0, 360.0])
+    torque = [(-30.0, 80.0), (10.0, -60.0), (-60.0, -9.0), (-9.0, -30.0)]
+    gained, work = [], 0.0
+    for (a, b), (low, high) in zip(torque, pairwise(rows), strict=True):
+        x = fine[(fine >= low) & (fine < high)] - low
+        gained.append(work + a * x + (b - a) / (high - low) * x**2 / 2.0)
+        work += (a + b) / 2.0 * (high - low)
+    beyond = np.concatenate(gained)
+    beyond -= work * fine[: len(beyond)] / (2.0 * np.pi)
+    assert found.work == pytest.approx(np.ptp(beyond), rel=2e-4)
+    energy, inertia = beyond - beyond.min(), found.inertia.value
+
+    def late(least):
+        return np.mean(1.0 / np.sqrt(2.0 * (energy + least) / inertia)) - 1.0 / 40.0
+
+    speeds = np.sqrt(2.0 * (energy + brentq(late, 1.0, 1e6)) / inertia)
+    assert np.ptp(speeds) / 40.0 == pytest.approx(0.02, rel=1e-5)
+    assert found.mean_speed.value == pytest.approx(sense * 40.0, rel=1e-9)
+
+
+def test_a_turning_moment_is_in_the_lectures_work():
+    found, alone = (
+        flywheel(replace(DIESEL, torque=loads), 0.01)
+        for loads in ((*DIESEL.torque, TURNS), DIESEL.torque)
+    )
+    assert found.status == 0
+    assert abs(found.lecture_error) < 0.03
+    assert abs(found.work / alone.work - 1.0) > 0.01
+
+
+def test_settled_under_a_turning_moment_is_the_run_of_many_cycles():
+    scene = replace(DIESEL, torque=(*DIESEL.torque, TURNS))
+    limit, late = (
+        simulate(replace(scene, run=Run(until=until, every=every))).data["crank_speed"].values[-1]
+        for until, every in (("settled", "10 deg"), ("600 cycles", "none"))
+    )
+    assert limit == pytest.approx(late, rel=1e-10)
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,6 @@
 """Shares of the combustion: misfires, scatter, a governor, windows."""
 
+import math
 from dataclasses import replace
 from math import pi
 
@@ -15,15 +16,24 @@ from crankmbs import (
     Misfire,
     Motion,
     Polytrope,
+    Quadratic,
     Result,
     Table,
+    Viscous,
     load_scene,
     simulate,
 )
 from crankmbs.measures import measure
 from crankmbs.mechanics.firing import governed
 from crankmbs.mechanics.pressure import motored_of, pressures_of
+from crankmbs.mechanics.torque import branch_of
 from crankmbs.mechanics.train import crank_train
+from crankmbs.motion.base import State
+from crankmbs.motion.crank_angle.firings import fired_by_stretch, solve_fired
+from crankmbs.motion.crank_angle.grid import grid_of
+from crankmbs.motion.crank_angle.solvers import Begin
+from crankmbs.motion.mode import begun
+from crankmbs.numerics.collocation import gauss
 from crankmbs.scene.write import scene_files
 from validation.adapter import machine_of
 from validation.oracles import firings
@@ -264,3 +274,26 @@ def test_fuel_needs_the_pressure_without_combustion(read):
 def test_a_diagram_has_its_own(read):
     text = edited(INDICATED, "[start]", "[fuel]\nscatter = 0.1\n\n[start]")
     assert read(text).fuel.scatter == 0.1
+
+
+@pytest.mark.parametrize("speed", [300.0, -300.0])
+@pytest.mark.parametrize("loads", [(Quadratic(coefficient=7e-4),), (Viscous(coefficient=0.2),)])
+@pytest.mark.parametrize("name", [*FUELS, "window"])
+def test_compiled_decisions_are_to_the_bit_those_of_the_law(name, loads, speed):
+    window = replace(FUELS["all at once"], from_speed=0.98 * speed, until=0.2)
+    fuel = window if name == "window" else FUELS[name]
+    start = replace(FOUR.start, angle=0.1, speed=speed)
+    grid = grid_of(crank_train(fuelled(fuel, start=start, torque=loads)), gauss(5))
+    sense = math.copysign(1.0, speed)
+    begin = State(0.0, 0.1, speed, 0.0, begun(grid.train))
+    strip = grid.strip(0.1, sense, 5000, sense * math.inf)
+    branch = branch_of(loads, 0.0, speed, rising=speed > 0.0)
+    at = Begin(sense, 8000.0, 0.0, math.inf, 0.1)
+    compiled, plain = (
+        solve(grid, strip, branch, at, begin) for solve in (solve_fired, fired_by_stretch)
+    )
+    assert compiled.modes == plain.modes
+    assert len(compiled.modes) > 10
+    for mine, other in zip(compiled.cells, plain.cells, strict=True):
+        np.testing.assert_array_equal(mine, other)
+    np.testing.assert_array_equal(compiled.strip.torque, plain.strip.torque)

@@ -82,7 +82,7 @@ def test_an_acceleration_is_as_exact_as_its_equation():
 def test_no_run_is_blamed_for_what_an_oracle_rounds(find):
     scene = random_scene(8268)
     path = find(machine_of(scene), scene.start.angle, scene.start.speed)
-    ratio, said = judge_scene._judge(scene, "crank_angle", [path])
+    ratio, said = judge_scene.judge(scene, "crank_angle", [path])
     assert ratio < 1.0, said
 
 

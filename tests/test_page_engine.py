@@ -16,12 +16,14 @@ from crankmbs.mechanics.train import crank_train
 from crankmbs.page import exported, joined, refusals
 from crankmbs.page.export import encoded
 from crankmbs.page.script import FOLDER
+from crankmbs.scene.drives import Motion, SpeedFile
 from crankmbs.scene.fuel import Fuel, Governor, Misfire
 from crankmbs.scene.gas import Polytrope
 from crankmbs.scene.loads import Constant
-from crankmbs.scene.parts import Gravity, Layout
+from crankmbs.scene.parts import Friction, Gravity, Layout
 from crankmbs.scene.python_load import Load
 from crankmbs.scene.scene import Extent
+from crankmbs.scene.tables import Table
 
 FREE = ("coasting", "propeller", "v_twin", "yi_diesel_free")
 DRIVEN = ("compressor", "grega_lecture", "yi_diesel")
@@ -225,6 +227,11 @@ def test_flywheel_and_load_rebuild_no_table(page):
     assert longer == []
 
 
+def measured_over_the_angle(scene):
+    table = Table((0.0, 3.0, 2.0 * math.pi), (300.0, 310.0, 300.0))
+    return replace(scene, motion=Motion(speed=SpeedFile(file=table, kind="angle_table")))
+
+
 def fold(scene):
     radius = scene.crank.radius
     piston = replace(scene.piston, offset=0.0)
@@ -241,6 +248,8 @@ def test_every_refusal_has_its_reason_and_the_command_that_can():
         "function": replace(free, torque=(Load(lambda t, theta, omega: 0.0),)),
         "governor": replace(burning, fuel=Fuel(governor=governor)),
         "random firing": replace(burning, fuel=Fuel(scatter=0.1)),
+        "friction": replace(free, friction=Friction(ring_force=20.0)),
+        "speed over the angle": measured_over_the_angle(driven),
         "fold": fold(free),
         "rest": load_scene("torque_driven"),
         "reversal": replace(driven, motion=replace(driven.motion, speed=speed)),

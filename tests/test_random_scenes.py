@@ -52,23 +52,24 @@ def test_errors_are_honest(seed, formulation):
     assert max(ratios.values()) <= 2.0, (max(ratios, key=ratios.get), ratios)
 
 
-def test_the_long_run_counts_what_is_red(monkeypatch, capsys):
-    monkeypatch.setattr(many, "_FORMULATIONS", ("crank_angle",))
+def test_the_long_run_counts_what_is_green(capsys):
     assert main(["--long", "2", "--first", "5", "--processes", "1"]) == 0
     out = capsys.readouterr().out
     assert "crank_angle: 2 judged, 0 skipped" in out
-    assert "2 random scenes, 1 formulations: 0 red" in out
-    monkeypatch.setattr(many, "_USUAL", 0.0)
-    assert main(["--long", "1"]) == 1
+    assert "2 random scenes, 2 formulations: 0 red" in out
+
+
+def test_the_long_run_counts_what_is_red(monkeypatch, capsys):
+    over = many.Judgement(0, "crank_angle", 2.5, "errs by 2.5 times what it states")
+    monkeypatch.setattr(many, "judge_seed", lambda *_, **__: [over])
+    assert not many.run_many(1, formulations=("crank_angle",))
     out = capsys.readouterr().out
-    assert "seed 0, crank_angle: " in out
+    assert "seed 0, crank_angle: errs by 2.5 times" in out
     assert "1 red" in out
 
 
-def test_the_long_run_says_what_it_skips(monkeypatch, capsys):
-    monkeypatch.setattr(many, "_FORMULATIONS", ("crank_angle",))
-    monkeypatch.setattr(many, "_PATIENCE", 1e-6)
-    assert main(["--long", "1"]) == 1
+def test_the_long_run_says_what_it_skips(capsys):
+    assert not many.run_many(1, formulations=("crank_angle",), patience=1e-6)
     out = capsys.readouterr().out
     assert "seed 0, crank_angle: skipped, takes longer than 1e-06 s" in out
     assert "0 judged, 1 skipped" in out

@@ -127,6 +127,15 @@ def test_a_bad_drive_gets_one_sentence(read, old, new, message):
             "speed.file: file speed.csv is missing; paths are relative to the scene file",
         ),
         ("{ file = 3 }", "speed.file: must be the name of a CSV file; 3 came"),
+        (
+            '{ file = "speed.csv", kind = "angle_table" }',
+            "speed: kind is no key of a speed: the columns of its file say what it is over",
+        ),
+        (
+            '{ file = "gas.csv", interpolation = "linear" }',
+            "speed.file: file gas.csv: the header must name exactly one column speed_rpm, with "
+            'commas between the columns; "crank_angle_deg,pressure_bar" came',
+        ),
     ],
 )
 def test_a_bad_speed_gets_one_sentence(read, speed, message):

@@ -24,6 +24,7 @@ from crankmbs import (
 )
 from crankmbs.scene.write import scene_files
 
+TURN = Table((0.0, math.pi, 2.0 * math.pi), (10.0 * math.pi, 12.0 * math.pi, 10.0 * math.pi))
 FREE, DRIVEN = load_scene("propeller"), load_scene("yi_diesel")
 
 
@@ -58,6 +59,8 @@ def test_shipped_scenes_come_back(name, tmp_path):
         Oscillation(mean=1.0 / 3.0, amplitude=0.1, order=1.5, phase=0.7),
         Ramp(start=1.0, to=math.pi, over=0.2),
         SpeedFile(file=Table((0.0, 5.0), (math.pi / 30.0, math.pi / 3.0))),
+        SpeedFile(file=Table((0.0, 5.0), (1.0, 2.0)), interpolation="cubic"),
+        SpeedFile(file=TURN, kind="angle_table", interpolation="cubic"),
     ],
 )
 def test_prescribed_speeds_come_back(speed, tmp_path):

@@ -12,6 +12,7 @@ from crankmbs.scene.read import load_scene, models_folder, shipped_scenes
 NAMES = [
     "coasting",
     "compressor",
+    "friction",
     "grega_lecture",
     "propeller",
     "torque_driven",

@@ -102,11 +102,11 @@ def test_a_peer_that_is_not_installed_is_named_with_the_way_to_it(
 def test_without_a_compiler_the_limit_is_named(lopsided, monkeypatch, tmp_path):
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.delenv("CC", raising=False)
-    limit._library.cache_clear()
+    limit.library.cache_clear()
     try:
         contenders, notes = peers_of(LOPSIDED, lopsided[0])
     finally:
-        limit._library.cache_clear()
+        limit.library.cache_clear()
     why = "no C compiler found; set CC, or install cc, gcc or clang"
     assert f"C, Gauss over theta: {why}" in notes
     assert f"C, DOP853 in time: {why}" in notes
@@ -115,11 +115,11 @@ def test_without_a_compiler_the_limit_is_named(lopsided, monkeypatch, tmp_path):
 
 def test_a_compiler_that_fails_is_named(lopsided, monkeypatch):
     monkeypatch.setenv("CC", shutil.which("false") or "false")
-    limit._library.cache_clear()
+    limit.library.cache_clear()
     try:
         _, notes = peers_of(LOPSIDED, lopsided[0])
     finally:
-        limit._library.cache_clear()
+        limit.library.cache_clear()
     assert [note for note in notes if "cannot compile" in note and note.startswith("C, Gauss")]
 
 

@@ -24,7 +24,7 @@ def judged(run, stated, only_to=None):
     side.attrs["error_estimate"] = stated * abs(side.values).max()
     parameters = {**CASE.parameters, "only_to": {"crank_angle": only_to} if only_to else {}}
     case = replace(CASE, parameters=parameters)
-    return hard._judged(case, replace(run, data=data), case.theirs(), "")
+    return hard.judged(case, replace(run, data=data), case.theirs(), "")
 
 
 @pytest.mark.parametrize(
@@ -50,7 +50,7 @@ def test_a_coarse_or_unknown_error_is_named_and_has_to_be_known(run, stated, onl
 def test_a_wrong_number_is_wrong_whatever_is_stated_of_others(run):
     data = run.data.copy(deep=True)
     data["side_force"].values[3] *= 1.01
-    answer = hard._judged(CASE, replace(run, data=data), CASE.theirs(), "")
+    answer = hard.judged(CASE, replace(run, data=data), CASE.theirs(), "")
     assert answer.text.startswith("WRONG: side_force")
     assert answer.error > CASE.tolerance
 

@@ -16,7 +16,7 @@ from crankmbs.result import Result
 from crankmbs.scene.drives import Motion as Prescribed
 from crankmbs.scene.drives import Oscillation, Ramp, SpeedFile
 from crankmbs.scene.gas import Gas
-from crankmbs.scene.loads import Constant, Quadratic, SpeedTable, TimeTable, Viscous
+from crankmbs.scene.loads import AngleTable, Constant, Quadratic, SpeedTable, TimeTable, Viscous
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.tables import CylinderTable, Table
 from crankmbs.scene.torque import Torque
@@ -36,7 +36,14 @@ from validation.oracles.machine import (
 )
 from validation.oracles.newton_euler import newton_euler
 from validation.oracles.path import Path
-from validation.oracles.prescribed import oscillating_motion, pchip, polynomial_motion
+from validation.oracles.prescribed import (
+    motion_over_angle,
+    oscillating_motion,
+    pchip,
+    polynomial_motion,
+    spline,
+)
+from validation.oracles.pressure import pressure_pieces
 
 __all__ = [
     "at_jumps",
@@ -150,7 +157,8 @@ def reference_variables(
 def load_torque(scene: Scene, motion: Motion, arithmetic: Arithmetic = LONG) -> Array:
     """The torque of all loads on a free crank. Inverse dynamics give it too, but with a heavy
     flywheel or near a fold as the small difference of large numbers."""
-    return torque_at(_loads(scene.torque), motion.time, motion.omega, arithmetic)
+    loads = _loads(scene.torque)
+    return torque_at(loads, motion.time, motion.theta, motion.omega, arithmetic)
 
 
 def diagram_of(scene: Scene) -> Diagram:
@@ -173,8 +181,14 @@ def diagram_of(scene: Scene) -> Diagram:
 
 
 def at_jumps(scene: Scene, theta: Array) -> NDArray[np.bool_]:
-    """Which crank angles lie on a jump of a cylinder's pressure: there two values are right."""
+    """Which crank angles lie on a jump of a cylinder's pressure or of a load: there two values are
+    right."""
     on = np.zeros(len(theta), dtype=bool)
+    for load in scene.torque:
+        if load.parts.over_angle is not None:
+            beside = _SAME_ANGLE * np.array([[-3.0], [3.0]])
+            below, above = load.parts.over_angle(np.asarray(theta, dtype=np.float64) + beside)
+            on |= np.abs(above - below) > 1e-6 * load.parts.over_angle.largest
     for cylinder, pressure in zip(scene.cylinders, pressures_of(scene) or (), strict=False):
         width = np.diff(pressure.knots)
         before = np.roll(pressure.piece(np.arange(len(width)), width), 1)
@@ -197,11 +211,28 @@ def _prescribed(result: Result, motion: Prescribed) -> Motion:
             breaks: tuple[float, ...] = (0.0, speed.over)
             rise = (LONG.number(speed.to) - speed.start) / LONG.number(speed.over)
             pieces = [LONG.array([speed.start, rise]), LONG.array([speed.to])]
+        case SpeedFile(kind="angle_table"):
+            return _over_angle(angles, speed)
         case SpeedFile():
-            breaks, pieces = speed.file.x[:-1], pchip(speed.file.x, speed.file.y)
+            between = spline if speed.interpolation == "cubic" else pchip
+            breaks, pieces = speed.file.x[:-1], between(speed.file.x, speed.file.y)
         case _:
             breaks, pieces = (0.0,), [LONG.array([speed])]
     return polynomial_motion(result.data["time"].values, breaks, pieces, motion.angle)
+
+
+def _over_angle(angles: NDArray[np.float64], speed: SpeedFile) -> Motion:
+    """Rows that span whole turns and close within 1 % of their range repeat, the last one left
+    out."""
+    x, y = speed.file.x, speed.file.y
+    turns = round((x[-1] - x[0]) / (2.0 * math.pi))
+    whole = turns in (1, 2) and abs(x[-1] - x[0] - 2.0 * math.pi * turns) < _SAME_ANGLE
+    if whole and abs(y[-1] - y[0]) <= 0.01 * (max(y) - min(y)):
+        period = 2.0 * math.pi * turns
+        cycle = pressure_pieces(PressureTable(x[:-1], y[:-1], period, speed.interpolation))
+        return motion_over_angle(angles, cycle.knots, list(cycle.coefficients), period)
+    between = spline if speed.interpolation == "cubic" else pchip
+    return motion_over_angle(angles, x[:-1], between(x, y))
 
 
 def _first(motion: Motion) -> Motion:
@@ -267,6 +298,7 @@ def _loads(torques: tuple[Torque, ...]) -> Loads:
     constant = viscous = quadratic = 0.0
     time_tables: list[LoadTable] = []
     speed_tables: list[LoadTable] = []
+    angle_tables: list[PressureTable] = []
     for load in torques:
         match load:
             case Constant():
@@ -279,4 +311,23 @@ def _loads(torques: tuple[Torque, ...]) -> Loads:
                 time_tables.append(LoadTable(load.file.x, load.file.y))
             case SpeedTable():
                 speed_tables.append(LoadTable(load.file.x, load.file.y))
-    return Loads(constant, viscous, quadratic, tuple(time_tables), tuple(speed_tables))
+            case AngleTable():
+                angle_tables.append(_turns(load))
+    tables = tuple(time_tables), tuple(speed_tables), tuple(angle_tables)
+    return Loads(constant, viscous, quadratic, *tables)
+
+
+def _turns(load: AngleTable) -> PressureTable:
+    """Rows that span at most one turn repeat after one, else after two; a closing row that is like
+    the first is left out, an other one is the value before a jump."""
+    x, y = load.file.x, load.file.y
+    turns = 1 if x[-1] - x[0] <= 2.0 * math.pi + _SAME_ANGLE else 2
+    period = 2.0 * math.pi * turns
+    opening = 2 if x[1] == x[0] else 1
+    closing = sum(angle - x[0] > period - _SAME_ANGLE for angle in x)
+    inner = slice(opening - 1, len(x) - closing)
+    before = y[len(x) - closing] if closing else y[0]
+    jump = before != y[opening - 1]
+    angles = (*((x[0],) if jump else ()), *x[inner])
+    torques = (*((before,) if jump else ()), *y[inner])
+    return PressureTable(angles, torques, period, load.interpolation)

@@ -24,7 +24,7 @@ from validation.oracles.free_motion import Motion, series_path
 from validation.oracles.path import Path
 from validation.random_scenes import random_scene
 
-__all__ = ["Judgement", "judge_seed"]
+__all__ = ["Judgement", "judge", "judge_seed"]
 
 _FLOOR = 2e-11  # of the peak of what has the same unit: there no statement is asked for
 # of the squared speed: the points of the bodies accelerate by multiples of it and of the crank's
@@ -55,7 +55,7 @@ def judge_seed(seed: int, formulations: Sequence[str], patience: float) -> list[
     try:
         with _limited(patience):
             for name in formulations:
-                ratio, said = _judge(scene, name, paths)
+                ratio, said = judge(scene, name, paths)
                 found.append(Judgement(seed, name, ratio, said))
     except _TooLongError:
         said = f"skipped, takes longer than {patience:g} s"
@@ -73,7 +73,7 @@ def _compile() -> None:
             simulate(replace(short, torque=torque), formulation=formulation)
 
 
-def _judge(scene: Scene, formulation: str, paths: list[Path]) -> tuple[float | None, str]:
+def judge(scene: Scene, formulation: str, paths: list[Path]) -> tuple[float | None, str]:
     """The ratio of a run, and in words where it comes from."""
     try:
         result = simulate(scene, formulation=formulation)

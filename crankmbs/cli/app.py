@@ -57,6 +57,13 @@ _CostCap = Annotated[
     float, typer.Option(help="Seconds at which multibody stops refining, minimal gives up.")
 ]
 
+_Rtol = Annotated[float | None, typer.Option(help="Relative global error asked for.")]
+_Until = Annotated[
+    str | None, typer.Option(help='End: "20 cycles", "10 rev", "0.75 s" or "settled".')
+]
+_Out = Annotated[Path | None, typer.Option(help="Folder of the results; default results/NAME.")]
+_NoFigures = Annotated[bool, typer.Option("--no-figures", help="Draw no figures.")]
+
 
 def _version(wanted: bool) -> None:
     if wanted:
@@ -80,17 +87,13 @@ def run(
         str | None,
         typer.Option(help="auto, kinetostatic, crank_angle, minimal or multibody."),
     ] = None,
-    rtol: Annotated[float | None, typer.Option(help="Relative global error asked for.")] = None,
-    until: Annotated[
-        str | None, typer.Option(help='End: "20 cycles", "10 rev", "0.75 s" or "settled".')
-    ] = None,
+    rtol: _Rtol = None,
+    until: _Until = None,
     every: Annotated[
         str | None, typer.Option(help='Output spacing: "1 deg", "0.1 ms" or "none".')
     ] = None,
-    out: Annotated[
-        Path | None, typer.Option(help="Folder of the results; default results/NAME.")
-    ] = None,
-    no_figures: Annotated[bool, typer.Option("--no-figures", help="Draw no figures.")] = False,
+    out: _Out = None,
+    no_figures: _NoFigures = False,
     confirm: Annotated[
         bool,
         typer.Option("--confirm", help="Run the multibody model too and show the difference."),
@@ -119,16 +122,12 @@ def validate(
     formulation: Annotated[
         str, typer.Option(help="Which run is compared; only multibody is independent.")
     ] = "multibody",
-    rtol: Annotated[float | None, typer.Option(help="Relative global error asked for.")] = None,
-    until: Annotated[
-        str | None, typer.Option(help='End: "20 cycles", "10 rev", "0.75 s" or "settled".')
-    ] = None,
+    rtol: _Rtol = None,
+    until: _Until = None,
     cost_cap: _CostCap = 10.0,
     cylinder: Annotated[int, typer.Option(help="Number of the cylinder compared.")] = 1,
-    out: Annotated[
-        Path | None, typer.Option(help="Folder of the results; default results/NAME.")
-    ] = None,
-    no_figures: Annotated[bool, typer.Option("--no-figures", help="Draw no figures.")] = False,
+    out: _Out = None,
+    no_figures: _NoFigures = False,
 ) -> None:
     """Compare a run with closed form and lectures; split the lectures' error into its causes."""
     options = {"rtol": rtol, "until": until}
@@ -153,10 +152,8 @@ def balance(
         str, typer.Option(help="Share of the reciprocating mass that is balanced.")
     ] = "50%",
     cost_cap: _CostCap = 10.0,
-    out: Annotated[
-        Path | None, typer.Option(help="Folder of the results; default results/NAME.")
-    ] = None,
-    no_figures: Annotated[bool, typer.Option("--no-figures", help="Draw no figures.")] = False,
+    out: _Out = None,
+    no_figures: _NoFigures = False,
 ) -> None:
     """Find counterweights; show what is left of first and second order, before and after."""
     if not balance_scene(scene, share, out=out, figures=not no_figures, cost_cap=cost_cap):
@@ -178,9 +175,7 @@ def flywheel(
 @app.command("work-precision")
 def work_precision(
     scene: _Scene,
-    out: Annotated[
-        Path | None, typer.Option(help="Folder of the results; default results/NAME.")
-    ] = None,
+    out: _Out = None,
 ) -> None:
     """Measure speed against error of every formulation that serves the scene."""
     if not measure_scene(scene, out=out):

@@ -10,11 +10,13 @@ from crankmbs.choose import Choice
 from crankmbs.measures.plausible import warnings
 from crankmbs.mechanics.geometry import close_loop, dead_centres
 from crankmbs.mechanics.pressure import PeriodicPressure, pressures_of, remarks
+from crankmbs.mechanics.speed import speed_remarks
 from crankmbs.scene.cycles import cycles_in
 from crankmbs.scene.drives import Oscillation, Ramp, SpeedFile
 from crankmbs.scene.gas import Gas
 from crankmbs.scene.scene import SETTLED, Extent, Scene
-from crankmbs.scene.tables import CylinderTable
+from crankmbs.scene.speed_rows import repeats
+from crankmbs.scene.tables import CylinderTable, Table
 from crankmbs.scene.torque import Torque
 from crankmbs.scene.units import RPM
 
@@ -36,7 +38,9 @@ def describe(path: str, scene: Scene, choice: Choice) -> str:
         ("gas", _gas(scene)),
         *(("pressure", _pressure(scene, pressure)) for pressure in pressures),
         *(("", remark) for remark in remarks(scene)),
+        ("friction", _friction(scene)),
         ("motion", _motion(scene)),
+        *(("", said) for said in speed_remarks(scene)),
         *((f"torque[{k}]", _load(scene, load)) for k, load in enumerate(scene.torque, start=1)),
         ("run", _run(scene)),
         ("formulation", choice.formulation),
@@ -143,6 +147,18 @@ def _pressure(scene: Scene, pressure: PeriodicPressure) -> str:
     )
 
 
+def _friction(scene: Scene) -> str:
+    friction = scene.friction
+    if friction is None:
+        return ""
+    parts = [
+        f"{friction.ring_force:.6g} N" * (friction.ring_force > 0.0),
+        f"{100.0 * friction.ring_pressure:.6g} % of |gas force|" * (friction.ring_pressure > 0.0),
+        f"{friction.viscous:.6g} N s/m times the velocity" * (friction.viscous > 0.0),
+    ]
+    return f"{' and '.join(part for part in parts if part) or 'none'}, against each sliding piston"
+
+
 def _motion(scene: Scene) -> str:
     if scene.motion is not None:
         speed, begin = _speed(scene.motion.speed), math.degrees(scene.motion.angle)
@@ -162,9 +178,16 @@ def _speed(speed: float | Oscillation | Ramp | SpeedFile) -> str:
             return f"from {_rpm(speed.start)} to {_rpm(speed.to)} in {speed.over:.6g} s, then held"
         case SpeedFile(file=table):
             least, most = _rpm(min(table.y)), _rpm(max(table.y))
-            return f"{least} to {most} in {len(table.x)} rows of {table.source}"
+            over = "" if speed.kind == "time_table" else " over the crank angle"
+            again = f", again every {_turned(table)}" if over and repeats(table) else ""
+            rows = f"{len(table.x)} rows of {table.source}, {speed.interpolation}"
+            return f"{least} to {most}{over} in {rows}{again}"
         case _:
             return f"{_rpm(speed)}{_sense(speed)}"
+
+
+def _turned(table: Table) -> str:
+    return f"{math.degrees(table.x[-1] - table.x[0]):.6g} deg"
 
 
 def _rpm(speed: float) -> str:

@@ -52,14 +52,23 @@ def save_orders(found: EngineOrders, folder: Path) -> Path:
 
 
 def reading_report(found: AtAngle, period: float) -> str:
-    """Every quantity at one crank angle as one table."""
+    """Every quantity at one crank angle: a table of the engine, one with a column a cylinder."""
     degrees = round(math.degrees(found.crank_angle), 9)
     within = degrees % round(math.degrees(period))
-    headings = [f"at {within:.9g} deg of the last cycle", "symbol", "value", "error"]
+    rows: dict[tuple[bool, str, str], list[Reading]] = {}
+    for one in found.readings:
+        key = one.cylinder is not None, f"{one.quantity.replace('_', ' ')}", one.symbol
+        rows.setdefault(key, []).append(one)
+    engine = [_reading(*key[1:], row) for key, row in rows.items() if not key[0]]
+    cylinders = [_reading(*key[1:], row) for key, row in rows.items() if key[0]]
+    place = f"at {within:.9g} deg of the last cycle"
+    columns = [f"cylinder {k}" for k in range(1, len(cylinders[0]) - 2)]
     return "\n".join(
         [
             "",
-            table(headings, [_reading(one) for one in found.readings]),
+            table([place, "symbol", "value", "error"], engine),
+            "",
+            table([place, "symbol", *columns, "error"], cylinders),
             f"passed at {digits(found.time, most=10)} s, at a crank angle of {degrees:.9g} deg",
         ]
     )
@@ -90,10 +99,9 @@ def _degrees(phase: float, size: float, error: float) -> str:
     return digits(math.degrees(phase), off) if off < 90.0 else "-"
 
 
-def _reading(one: Reading) -> list[str]:
-    value, error, units = one.value, one.error, one.units
+def _reading(name: str, symbol: str, row: list[Reading]) -> list[str]:
+    units, per = row[0].units, 1.0
     if units.startswith("rad"):
-        value, error, units = math.degrees(value), math.degrees(error), f"deg{units[3:]}"
-    number = "" if one.cylinder is None else f" {one.cylinder}"
-    name = f"{one.quantity.replace('_', ' ')}{number} [{units}]"
-    return [name, one.symbol, digits(value, error, most=9), error_digits(error)]
+        units, per = f"deg{units[3:]}", math.degrees(1.0)
+    values = [digits(one.value * per, one.error * per, most=9) for one in row]
+    return [f"{name} [{units}]", symbol, *values, error_digits(row[0].error * per)]

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+import numpy as np
+
 from crankmbs.cli.text import table
 from crankmbs.compare.confirm import Difference
 from crankmbs.digits import digits, error_digits
@@ -73,6 +75,7 @@ def comparison(result: Result, check: Result, rows: Sequence[Difference]) -> str
     )
 
 
+_FIRST = 5  # events that are printed
 _FORCE_HEADINGS = [
     "joint force [N]",
     "peak",
@@ -100,11 +103,33 @@ def _about(result: Result, measures: Measures) -> str:
             f"{'end':<12} {result.message}",
             f"{'samples':<12} {samples}",
             f"{'last sample':<12} {math.degrees(angle[-1]):.6g} deg, {speed[-1] / RPM:.6g} rpm",
+            *_events(result),
             _error_line(result),
             f"{'energy':<12} closes to {measures.energy_closure:.1e} of the peak kinetic energy",
             _cost_line(result),
         ]
     )
+
+
+def _events(result: Result) -> list[str]:
+    """How many events there are, and the first of them; decisions on the fuel only where they are
+    all there is."""
+    events = result.events
+    fuel = events["kind"].values == "fuel"
+    count, left_out = fuel.size, str(events.attrs["left_out"])
+    if count == 0 and not left_out:
+        return []
+    decided = f", {np.count_nonzero(fuel)} of them decisions on the fuel" if fuel.any() else ""
+    lines = [f"{count}{decided}{'; ' if left_out else ''}{left_out}"]
+    rows = np.flatnonzero(~fuel) if not fuel.all() else np.arange(count)
+    for row in rows[:_FIRST].tolist():
+        time, angle, speed = (
+            float(events[name][row]) for name in ("time", "crank_angle", "crank_speed")
+        )
+        where = f"{time:.6g} s, {math.degrees(angle):.6g} deg, {speed / RPM:.6g} rpm"
+        lines.append(f"{where}: {events['text'].values[row]}")
+    lines += ["..."] if len(rows) > _FIRST else []
+    return [f"{'' if k else 'events':<12} {line}" for k, line in enumerate(lines)]
 
 
 def _error_line(result: Result) -> str:
@@ -130,6 +155,10 @@ def _values(measures: Measures) -> list[list[str]]:
     ]
     if measures.indicated_power is not None:
         rows.append(_value("indicated power [kW]", measures.indicated_power, 1e-3))
+    if measures.friction_power is not None:
+        rows.append(_value("power of the pistons' friction [kW]", measures.friction_power, 1e-3))
+    if measures.mechanical_efficiency is not None:
+        rows.append(_value("mechanical efficiency [1]", measures.mechanical_efficiency))
     pressures = measures.imep or ()
     for number, imep in enumerate(pressures, start=1):
         whose = f", cylinder {number}" if len(pressures) > 1 else ""

@@ -110,6 +110,8 @@ def _save(made: _Made, folder: Path, *, figures: bool) -> list[str]:
     written = ["result.nc", "motion.csv"]
     with together(folder) as part:
         made.result.save(part)
+        tables = ("events.csv", "cycles.csv")
+        written += [name for name in tables if (part / name).exists()]
         if made.orders is not None:
             written.append(save_orders(made.orders, part).name)
         if figures:

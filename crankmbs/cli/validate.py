@@ -145,7 +145,8 @@ def _against(comparison: Comparison, reference: str) -> str:
 
 def _causes(split: Budget) -> str:
     """Every cause's peak in percent of the quantity's in the run."""
-    named = [*CAUSES, "total"]
+    rubs = split.excerpt.result.scene.friction is not None
+    named = [name for name in (*CAUSES, "total") if rubs or name != "friction"]
     headings = ["error budget, peaks in %", *named]
     rows = []
     for row in split.splits:

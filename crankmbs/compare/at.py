@@ -75,15 +75,7 @@ def at_angle(result: Result, angle: float | str, *, cost_cap: float = 10.0) -> A
     if window.kind != "last cycle":
         raise InputError("a crank angle is looked up in the last whole cycle; let the run last one")
     there = _in_window(result, wanted)
-    scene = result.scene
-    until = Extent(value=abs(there - _begin(scene)), unit="rad")
-    run = dataclasses.replace(scene.run, until=until, every=None)
-    again = simulate(
-        dataclasses.replace(scene, run=run),
-        formulation=result.formulation,
-        rtol=result.error.asked,
-        cost_cap=cost_cap,
-    )
+    again = _there(result, there, cost_cap)
     time = float(again.data["time"].values[-1])
     reached = abs(float(again.data["crank_angle"].values[-1]) - there) <= _SAME
     late = float(again.data["time"].attrs["error_estimate"]) + 1e-9 * window.duration
@@ -93,6 +85,24 @@ def at_angle(result: Result, angle: float | str, *, cost_cap: float = 10.0) -> A
             "reverses; look in the samples"
         )
     return AtAngle(there, time, (*_variables(again), *_lectured(again)))
+
+
+def _there(result: Result, angle: float, cost_cap: float) -> Result:
+    """The same run with its last sample at a crank angle [rad]: up to there, or, as a settled
+    motion is one of its whole period, with the angle as its first step."""
+    scene = result.scene
+    turned = Extent(value=abs(angle - _begin(scene)), unit="rad")
+    run = dataclasses.replace(scene.run, until=turned, every=None)
+    if scene.settles:
+        run = dataclasses.replace(scene.run, every=turned)
+    again = simulate(
+        dataclasses.replace(scene, run=run),
+        formulation=result.formulation,
+        rtol=result.error.asked,
+        cost_cap=cost_cap,
+    )
+    data = again.data.isel(time=slice(0, 2)) if scene.settles else again.data
+    return dataclasses.replace(again, data=data)
 
 
 def _in_window(result: Result, angle: float) -> float:

@@ -27,6 +27,7 @@ CAUSES = {
     "constant speed": "the constant speed",
     "two-mass rod": "the two-mass rod",
     "gravity": "gravity",
+    "friction": "friction",
     "solver": "the solver",
 }
 """The causes in their order, and how a sentence names them."""
@@ -143,6 +144,7 @@ def budget(result: Result, cylinder: int = 1) -> Budget:
             constant speed  the same, at the run's own omega and alpha
             two-mass rod    with the rigid rod, whose couple (m a b - I) beta'' two masses lack
             gravity         with gravity
+            friction        with the pistons' friction, where the scene has any
             solver          the run
 
     so that they add up to formula minus run, to rounding. The mean speed is the time mean.
@@ -177,7 +179,10 @@ def budget(result: Result, cylinder: int = 1) -> Budget:
     answers["constant speed"] = _from_top(excerpt, answers["datum"])
     own_motion = excerpt.lecture(UNTRUNCATED, constant_speed=False)
     answers["two-mass rod"] = _from_top(excerpt, own_motion)
-    answers["gravity"] = excerpt.newton_euler(dataclasses.replace(scene, gravity=None))
+    smooth = dataclasses.replace(scene, friction=None)
+    answers["gravity"] = excerpt.newton_euler(dataclasses.replace(smooth, gravity=None))
+    if scene.friction is not None:
+        answers["friction"] = excerpt.newton_euler(smooth)
     answers["solver"] = excerpt.newton_euler(scene)
     nothing = vanishing([*answers.values(), simulated])
     left_out += [LeftOut(name, "", reason) for name, reason in nothing.items()]

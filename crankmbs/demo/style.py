@@ -25,13 +25,14 @@ __all__ = [
     "ORANGE",
     "PINK",
     "SKY",
+    "YELLOW",
     "angle_axis",
     "legend",
     "plot",
     "scratch",
 ]
 
-BLUE, ORANGE, GREEN, PINK, SKY, _ = COLOURS
+BLUE, ORANGE, GREEN, PINK, SKY, YELLOW = COLOURS
 GREY = "#8c8c8c"
 
 CURVE: dict[str, dict[str, Any]] = {

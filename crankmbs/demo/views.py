@@ -28,6 +28,7 @@ from crankmbs.demo.style import (
     ORANGE,
     PINK,
     SKY,
+    YELLOW,
     angle_axis,
     legend,
     plot,
@@ -39,7 +40,8 @@ __all__ = ["STORES", "Views", "views"]
 STORES = ("speed", "motion", "thrust", "budget", "bearing")
 """The sources of the tabs, in the order of the tabs."""
 
-_CAUSES = dict(zip(CAUSES, (BLUE, SKY, ORANGE, GREEN, PINK, GREY), strict=True))
+_COLOURS = (BLUE, SKY, ORANGE, GREEN, PINK, YELLOW, GREY)
+_CAUSES = dict(zip(CAUSES, _COLOURS, strict=True))
 _SIDES, _ENDS = ("up", "down"), ("from", "to")
 _NAMES = {
     "simulated": "simulated",

@@ -24,6 +24,7 @@ from crankmbs.result import Result
 from crankmbs.scene.drives import Motion, Oscillation, Start
 from crankmbs.scene.loads import Constant
 from crankmbs.scene.scene import SETTLED, Extent, Run, Scene
+from crankmbs.scene.torque import Torque
 from crankmbs.simulate import simulate
 
 __all__ = ["Flywheel", "excess", "flywheel"]
@@ -71,8 +72,8 @@ def flywheel(scene: Scene, fluctuation: float = 0.01) -> Flywheel:
 
     The coefficient of fluctuation is (max - min) / mean speed over the settled cycle of the very
     scene (`crankmbs.measures.measure`), met within 1e-7 of itself. Under loads the mean speed is
-    the one they settle at; a scene without a load is balanced with a constant one, and takes the
-    motion whose mean speed is start.speed or motion.speed.
+    the one they settle at; a scene without a load that depends on the speed is balanced with a
+    constant one, and takes the motion whose mean speed is start.speed or motion.speed.
 
     Parameters
     ----------
@@ -103,13 +104,21 @@ def flywheel(scene: Scene, fluctuation: float = 0.01) -> Flywheel:
             f"{shown(fluctuation)} came"
         )
     freed = _freed(scene)
-    search = _Search(freed, float(fluctuation), simulate if freed.torque else _balanced)
+    over_speed = any(load.parts.over_speed or load.parts.function for load in freed.torque)
+    if freed.friction is not None and freed.friction.viscous > 0.0 and not over_speed:
+        raise InputError(
+            "friction.viscous: a scene without a load over the speed is balanced with a constant "
+            "one, and what viscous friction takes depends on the motion; give such a load, or "
+            f"leave it out; {freed.friction.viscous:g} N s/m came"
+        )
+    search = _Search(freed, float(fluctuation), simulate if over_speed else _balanced)
     return search.found(scene.crank.moment_of_inertia)
 
 
-def excess(even: Result) -> tuple[float, float]:
+def excess(even: Result, loads: tuple[Torque, ...] = ()) -> tuple[float, float]:
     """(W [J], J omega^2 [J]) of the lecture's formula, from a run of whole cycles at constant
-    speed: the range of the work that the rods do beyond its mean, twice the mean kinetic energy.
+    speed: the range of the work that rods, and loads over the angle, do beyond its mean, twice the
+    mean kinetic energy.
 
     >>> excess(simulate(load_scene("yi_diesel")))[0] > 0.0
     True
@@ -117,6 +126,11 @@ def excess(even: Result) -> tuple[float, float]:
     angle = even.data["crank_angle"].values
     turned = np.abs(angle - angle[0])
     work = cumulative_simpson(even.data["crank_torque"].values.sum(axis=1), x=turned, initial=0.0)
+    sense = math.copysign(1.0, angle[-1] - angle[0])
+    for load in loads:
+        if load.parts.over_angle is not None:
+            done = load.parts.over_angle.integral(angle)
+            work += sense * (done - done[0])
     surplus = work - work[-1] * turned / turned[-1]
     return float(np.ptp(surplus)), 2.0 * float(even.data["kinetic_energy"].values.mean())
 
@@ -143,7 +157,8 @@ def _mean(motion: Motion) -> float:
 
 
 def _balanced(scene: Scene) -> Result:
-    """The periodic motion under the constant load that balances gas and gravity.
+    """The periodic motion under the constant load that balances gas, gravity, rings and other
+    loads, none of which depends on the speed.
 
     Over the angle E = E_0 + (E - E_0)(theta), the same at every speed: E_0 is the one with which a
     period takes as long as at the wanted mean speed.
@@ -153,9 +168,13 @@ def _balanced(scene: Scene) -> Result:
     sense = math.copysign(1.0, start.speed)
     grid = grid_of(crank_train(scene), gauss(_STAGES))
     mean = float(np.diff(grid.edges) @ (grid.tables[1] @ grid.rule.weights)) / period
-    load = Constant(torque=-mean)
+    if scene.friction is not None:
+        rings = grid.tables.friction @ grid.rule.weights
+        mean -= sense * float(np.diff(grid.edges) @ rings) / period
+    given = sum(float(load.parts.over_time(0.0)) for load in scene.torque if load.parts.over_time)
+    loads = (*scene.torque, Constant(torque=-mean - given))
     strip = grid.strip(start.angle, sense, len(grid.edges) + 1, start.angle + sense * period)
-    one = period_of(grid, strip, branch_of((load,), 0.0, 0.0, rising=True), sense)
+    one = period_of(grid, strip, branch_of(loads, 0.0, 0.0, rising=True), sense)
     inertia = float(grid.tables[0].max())
     least, wanted = -float(one.shift.min()), period / abs(start.speed)
 
@@ -167,7 +186,7 @@ def _balanced(scene: Scene) -> Result:
     at_start = 2.0 * (least + above) / float(inertia_alone(scene, start.angle))
     moved = Start(angle=start.angle, speed=sense * math.sqrt(at_start))
     run = replace(scene.run, until=Extent(value=period, unit="rad"))
-    return simulate(replace(scene, start=moved, torque=(load,), run=run))
+    return simulate(replace(scene, start=moved, torque=loads, run=run))
 
 
 class _Trial(NamedTuple):
@@ -234,7 +253,7 @@ class _Search:
         run = replace(scene.run, until=Extent(value=scene.settled_period, unit="rad"))
         motion = Motion(speed=speed, angle=scene.start.angle)
         even = simulate(replace(scene, start=None, torque=(), motion=motion, run=run))
-        work, doubled = excess(even)
+        work, doubled = excess(even, scene.torque)
         return work, work / (self._wanted * speed**2), doubled / speed**2 - inertia
 
     def _answer(self, trial: _Trial, own: float, rest: float, off: float) -> Flywheel:

@@ -14,6 +14,7 @@ from crankmbs.compare.confirm import Difference
 from crankmbs.design import Balance
 from crankmbs.figures.balance import balance_figure
 from crankmbs.figures.compare import budget_figure, comparison_figure, save_validation
+from crankmbs.figures.cycles import FEWEST_CYCLES, cycles_figure
 from crankmbs.figures.difference import difference_figure
 from crankmbs.figures.orders import orders_figure
 from crankmbs.figures.polar import crank_pin_figure, main_bearing_figure, piston_pin_figure
@@ -33,6 +34,7 @@ __all__ = [
     "budget_figure",
     "comparison_figure",
     "crank_pin_figure",
+    "cycles_figure",
     "difference_figure",
     "forces_figure",
     "last_view",
@@ -61,7 +63,8 @@ _FIGURES: dict[str, Callable[[View], Figure]] = {
 
 
 def save_figures(result: Result, folder: Path) -> list[Path]:
-    """Draw every figure of a result into PNG files, which appear together.
+    """Draw every figure of a result into PNG files, which appear together; the cycles where there
+    are more than three.
 
     Raises
     ------
@@ -71,7 +74,11 @@ def save_figures(result: Result, folder: Path) -> list[Path]:
     with together(folder) as part:
         for name, draw in _FIGURES.items():
             _save(draw(view), part / f"{name}.png")
-    return [folder / f"{name}.png" for name in _FIGURES]
+        names = list(_FIGURES)
+        if result.keep is not None and result.cycles.sizes["cycle"] >= FEWEST_CYCLES:
+            _save(cycles_figure(result), part / "cycles.png")
+            names.append("cycles")
+    return [folder / f"{name}.png" for name in names]
 
 
 def save_differences(result: Result, differences: tuple[Difference, ...], folder: Path) -> Path:

@@ -7,6 +7,7 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from crankmbs.figures.cycles import mark_events
 from crankmbs.figures.style import (
     STYLE,
     crank_axis,
@@ -43,6 +44,10 @@ def speed_figure(view: View) -> Figure:
         turned = np.degrees(data["crank_angle"].values) / 360.0
         _speed(axes[0], data["time"].values if in_time else turned, data["crank_speed"].values)
         axes[0].set_xlabel(f"{'time [s]' if in_time else 'crank angle [rev]'}, whole run")
+        if view.result.keep is not None:
+            events = view.result.events
+            angle = np.degrees(events["crank_angle"].values) / 360.0
+            mark_events(axes[0], view.result, events["time"].values if in_time else angle)
         mark_points(axes[0])
     _speed(axes[-1], view.degrees, view.values("crank_speed"))
     crank_axis(axes[-1:], view)

@@ -146,10 +146,11 @@ def mark_points(ax: Axes) -> None:
             line.set_marker("o")
 
 
-def legend(figure: Figure, ax: Axes) -> None:
-    """One legend above the panels, out of the way of the curves."""
-    handles, labels = ax.get_legend_handles_labels()
-    if handles:
+def legend(figure: Figure, *axes: Axes) -> None:
+    """One legend above the panels, out of the way of the curves of these."""
+    pairs = [pair for ax in axes for pair in zip(*ax.get_legend_handles_labels(), strict=True)]
+    if pairs:
+        handles, labels = zip(*pairs, strict=True)
         columns = min(len(handles), int(figure.get_figwidth() / 1.65))
         figure.legend(handles, labels, loc="outside upper center", ncols=columns)
 

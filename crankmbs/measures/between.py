@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
+from crankmbs.mechanics.friction import friction_forces, friction_torque
 from crankmbs.mechanics.inertia import inertia_alone, reduce
 from crankmbs.mechanics.reactions import reactions
 from crankmbs.mechanics.speed import speed_law
@@ -116,6 +117,7 @@ class _Free:
         rate = _steepness(scene, self._time, self._theta, self._omega) / inertia_alone(
             scene, self._theta
         )
+        self._rests = (self._omega[:-1] == 0.0) & (self._omega[1:] == 0.0)
         self._stiff = np.maximum(rate[:-1], rate[1:]) * np.diff(self._time) > 1.0
 
     def motion(self, parts: int, passes: int) -> tuple[Array, Array, Array, Array] | None:
@@ -167,7 +169,11 @@ class _Free:
         interval = np.searchsorted(self._time[1:-1], t, side="right")
         torque = torque_at(self._scene.torque, t, angle, speed, self._spans) + beside
         torque = np.where(self._stiff[interval], outside, torque)
-        return np.asarray((given + torque - 0.5 * slope * speed**2) / inertia)
+        if self._scene.friction is not None:
+            shares = _fuel_at(self._data, t)
+            given = given + friction_torque(self._train, angle, speed, np.sign(speed), shares)
+        alpha = (given + torque - 0.5 * slope * speed**2) / inertia
+        return np.where(self._rests[interval], 0.0, alpha)
 
 
 def _fuel_at(data: xr.Dataset, t: Array) -> Array | None:
@@ -216,7 +222,13 @@ def _sampled(
     import xarray as xr
 
     fuel = _fuel_at(data, time)
-    found = reactions(crank_train(result.scene), theta, omega, alpha, fuel)
+    train, friction = crank_train(result.scene), None
+    if result.scene.friction is not None:
+        friction = friction_forces(train, theta, omega, fuel)
+        rests = omega == 0.0  # where it is what holds the crank
+        for k, held in enumerate(data["friction_force"].values.T):
+            friction[rests, k] = np.interp(time[rests], data["time"].values, held)
+    found = reactions(train, theta, omega, alpha, fuel, friction)
     found |= {} if fuel is None else {"fuel": fuel}
     found |= {"time": time, "crank_angle": theta, "crank_speed": omega, "crank_acceleration": alpha}
 

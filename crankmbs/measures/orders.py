@@ -166,8 +166,8 @@ def _edges(result: Result, window: Span, highest: float) -> Array:
     knots = repeat(crank_angle_knots(crank_train(result.scene)), result.scene.period, low, high)
     parts = [np.linspace(low, high, count + 1), knots]
     if result.scene.motion is not None:
-        law = speed_law(result.scene.motion)
-        corners = law.at_time(np.array(law.corners))[0]
+        law, time = speed_law(result.scene.motion), result.data["time"].values
+        corners = law.at_time(law.corners(float(time[0]), float(time[-1])))[0]
         parts.append(corners[(corners > low) & (corners < high)])
     merged = np.unique(np.concatenate(parts))
     return merged if window.angle > 0.0 else merged[::-1]

@@ -11,7 +11,7 @@ from scipy.interpolate import CubicHermiteSpline, CubicSpline
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 
-__all__ = ["Span", "integral", "last_span", "same_span"]
+__all__ = ["Span", "integral", "last_span", "measured_span", "same_span"]
 
 
 _SAME_ANGLE = 1e-9  # rad: rounding of start + k * every must not lose a cycle
@@ -21,7 +21,7 @@ _SAME_ANGLE = 1e-9  # rad: rounding of start + k * every must not lose a cycle
 class Span:
     """A stretch of a run up to its end.
 
-    kind : "last cycle", "last revolution" or "whole run"
+    kind : "last cycle", "last revolution" or "whole run"; "settled period" of several cycles
     begin, end [s]; angle : crank angle turned between them [rad], negative backwards
     first : number of the last sample at or before ``begin``
     inside : number of the first sample at or after ``begin``
@@ -55,6 +55,16 @@ def last_span(result: Result) -> Span:
         if window is not None:
             return window
     return _whole_run(result)
+
+
+def measured_span(result: Result) -> Span:
+    """What a run is summed up over: of a settled motion its whole period, else the `last_span`."""
+    scene = result.scene
+    if scene.settles and result.status == 0 and scene.settled_period > scene.period + _SAME_ANGLE:
+        whole = _ending(result, "settled period", scene.settled_period)
+        if whole is not None:
+            return whole
+    return last_span(result)
 
 
 def same_span(window: Span, result: Result) -> Span:

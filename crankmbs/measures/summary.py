@@ -19,7 +19,7 @@ from crankmbs.measures.joints import (
     stated,
 )
 from crankmbs.measures.peak import rise
-from crankmbs.measures.span import Span, integral, last_span, same_span
+from crankmbs.measures.span import Span, integral, measured_span, same_span
 from crankmbs.mechanics.geometry import close_loop, dead_centres
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
@@ -36,8 +36,12 @@ class Measures:
     crank_torque [N m] : moment of all rods on the crank, external_torque [N m] : from outside;
         both means are work per angle turned, so that torque times mean speed is power
     indicated_power [W] : work of the gas on all pistons per time; None without gas
-    imep [Pa] : work of the gas in one cycle over the displaced volume, per cylinder; None without
-        gas or without a whole cycle
+    imep [Pa] : work of the gas in a cycle, the mean of several, over the displaced volume, per
+        cylinder; None without gas or without a whole cycle
+    friction_power [W] : what the friction of all pistons takes per time; None without friction
+    mechanical_efficiency : where the gas drives, the share of the indicated power that friction
+        leaves; where it is driven, indicated power over that with the friction's; None without
+        friction or gas
     energy_closure : max |energy residual| / peak kinetic energy over the whole run
     """
 
@@ -50,11 +54,14 @@ class Measures:
     external_torque: Estimate
     indicated_power: Estimate | None
     imep: tuple[Estimate, ...] | None
+    friction_power: Estimate | None
+    mechanical_efficiency: Estimate | None
     energy_closure: float
 
 
 def measure(result: Result) -> Measures:
-    """Sum up a run over its last whole cycle (or revolution, or the run).
+    """Sum up a run over its last whole cycle (or revolution, or the run); a settled motion over
+    its period.
 
     A value is that of the motion between the samples (`crankmbs.measures.between.refined`). Its
     error sums the stated errors of the variables in it, the quadrature's (the spline through all
@@ -66,7 +73,7 @@ def measure(result: Result) -> Measures:
     >>> measure(simulate(load_scene("propeller"))).window.kind
     'last cycle'
     """
-    window = last_span(result)
+    window = measured_span(result)
     closure = _energy_closure(result)
     motions = refined(result, window.first)
     if not motions:
@@ -105,6 +112,7 @@ def _measures(
     missed: Array | float = 0.0,
 ) -> Measures:
     power, imep = _indicated(result, window)
+    rubbed = _rubbed(result, window)
     rods = result.data["crank_torque"]
     rods_error = stated(result, "crank_torque") * rods.sizes["cylinder"]
     outside = result.data["external_torque"].values
@@ -121,6 +129,8 @@ def _measures(
         external_torque=_mean_torque(result, window, outside, stated(result, "external_torque")),
         indicated_power=power,
         imep=imep,
+        friction_power=rubbed,
+        mechanical_efficiency=_efficiency(power, rubbed),
         energy_closure=energy_closure,
     )
 
@@ -174,20 +184,46 @@ def _indicated(result: Result, window: Span) -> tuple[Estimate | None, tuple[Est
     area = scene.piston.gas_area
     if scene.gas is None or area is None or window.duration == 0.0:
         return None, None
-    force, velocity = (result.data[name].values for name in ("gas_force", "piston_velocity"))
-    work, quadrature = integral(result, window, force * velocity)
-    power = np.mean(np.abs(force), axis=0) * stated(result, "piston_velocity")
-    power = power + np.mean(np.abs(velocity), axis=0) * stated(result, "gas_force")
-    error = quadrature + power * window.duration
+    work, error = _work(result, window, "gas_force")
     mean = Estimate(float(work.sum()) / window.duration, float(error.sum()) / window.duration)
-    if window.kind != "last cycle":
+    if window.kind not in ("last cycle", "settled period"):
         return mean, None
+    cycles = abs(window.angle) / scene.period
     r, l, e = scene.crank.radius, scene.rod.length, scene.piston.offset
     top, bottom = close_loop(dead_centres(r, l, e), r, l, e).x
     volume = area * float(top - bottom)
     return mean, tuple(
-        Estimate(float(w) / volume, float(d) / volume) for w, d in zip(work, error, strict=True)
+        Estimate(float(w) / (cycles * volume), float(d) / (cycles * volume))
+        for w, d in zip(work, error, strict=True)
     )
+
+
+def _rubbed(result: Result, window: Span) -> Estimate | None:
+    """What friction takes from all pistons per time."""
+    if result.scene.friction is None or window.duration == 0.0:
+        return None
+    work, error = _work(result, window, "friction_force")
+    return Estimate(-float(work.sum()) / window.duration, float(error.sum()) / window.duration)
+
+
+def _efficiency(indicated: Estimate | None, rubbed: Estimate | None) -> Estimate | None:
+    """Of indicated power I and friction's R: (I - R) / I of an engine, I / (I - R) of what is
+    driven, with the errors of both."""
+    if indicated is None or rubbed is None or indicated.value == 0.0:
+        return None
+    of_gas, left = indicated.value, indicated.value - rubbed.value
+    value, whole = (left / of_gas, of_gas) if of_gas > 0.0 else (of_gas / left, left)
+    apart = abs(rubbed.value) * indicated.error + abs(of_gas) * rubbed.error
+    return Estimate(value, apart / whole**2)
+
+
+def _work(result: Result, window: Span, force: str) -> tuple[Array, Array]:
+    """Work of a force on every piston over a window [J], and its error."""
+    along, velocity = (result.data[name].values for name in (force, "piston_velocity"))
+    work, quadrature = integral(result, window, along * velocity)
+    power = np.mean(np.abs(along), axis=0) * stated(result, "piston_velocity")
+    power = power + np.mean(np.abs(velocity), axis=0) * stated(result, force)
+    return work, quadrature + power * window.duration
 
 
 def _energy_closure(result: Result) -> float:

@@ -9,16 +9,18 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_left, bisect_right
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
+from crankmbs.numerics.arrays import Array, Index
 from crankmbs.scene.fuel import Fuel, Governor
 from crankmbs.scene.scene import Scene
 
-__all__ = ["Firing", "FuelLaw", "governed"]
+__all__ = ["Ahead", "Firing", "FuelLaw", "governed"]
 
 _SAME = 1e-8  # rad: decisions so near one another are one
 _SPREAD = 4.0  # standard deviations: hardly a share scatters farther
@@ -41,6 +43,16 @@ class Firing(NamedTuple):
     over: bool
     low: float
     high: float
+
+
+class Ahead(NamedTuple):
+    """Decisions that are to come: their angles [rad] and places among those of one period, shape
+    (n,), and what misfires and scatter leave of the share of each cylinder that decides, shape
+    (n, cylinders), NaN of the others."""
+
+    angles: Array
+    slots: Index
+    parts: Array
 
 
 def governed(
@@ -87,11 +99,6 @@ class FuelLaw:
         governor = self.fuel.governor
         return (governor.max if governor else 1.0) * (1.0 + _SPREAD * self.fuel.scatter)
 
-    @property
-    def asks_speed(self) -> bool:
-        """Whether a decision depends on the speed at its angle."""
-        return self.fuel.from_speed is not None or self.fuel.until_speed is not None
-
     @cached_property
     def first(self) -> Firing:
         """What the start decides."""
@@ -104,7 +111,49 @@ class FuelLaw:
 
     def next(self, firing: Firing) -> tuple[float, float]:
         """Crank angles [rad], backwards and forwards, at which the next decision falls."""
-        return self._below(firing.low), self._above(firing.high)
+        below = self._number(firing.low - _SAME, bisect_left) - 1
+        above = self._number(firing.high + _SAME, bisect_right)
+        return self._angle(below), self._angle(above)
+
+    def ahead(self, theta: float, sense: float, reach: float) -> Ahead:
+        """The decisions from an angle [rad] at which one falls on, in a sense of rotation, through
+        so much [rad] and one more."""
+        first, count = self._number(theta - _SAME, bisect_left), len(self.angles)
+        most = (math.ceil(reach / self.scene.period) + 1) * count + 1
+        turns, slot = np.divmod(first + int(sense) * np.arange(most), count)
+        angles = turns * self.scene.period + np.array(self.angles)[slot]
+        within = int(np.searchsorted(sense * (angles - theta), reach + _SAME)) + 1
+        angles, slot = angles[:within], slot[:within]
+        parts = self._slots[slot]
+        if self.fuel.misfire or self.fuel.scatter:
+            phases = [cylinder.phase for cylinder in self.scene.cylinders]
+            for i, k in np.argwhere(parts == 1.0).tolist():
+                cycle = self._cycle(phases[k], float(angles[i]), forwards=sense > 0.0)
+                parts[i, k] = _part(self.fuel, k + 1, cycle)
+        return Ahead(angles, slot, parts)
+
+    @cached_property
+    def _slots(self) -> Array:
+        """1 where a cylinder decides at one of `angles`, else NaN."""
+        decides = np.full((len(self.angles), len(self.scene.cylinders)), np.nan)
+        for k, cylinder in enumerate(self.scene.cylinders):
+            off = np.array(self.angles) + cylinder.phase - math.pi
+            decides[np.abs(np.remainder(off + 1.0, self.scene.period) - 1.0) < 2.0 * _SAME, k] = 1.0
+        return decides
+
+    @property
+    def numbers(self) -> tuple[float, ...]:
+        """speed, kp, ki, min and max of the governor, after, until, from_speed and until_speed of
+        the window, and the speed at the start; NaN where there is none."""
+        fuel, governor = self.fuel, self.fuel.governor
+        of = (
+            (governor.speed, governor.kp, governor.ki, governor.min, governor.max)
+            if governor
+            else (0.0, 0.0, 0.0, 1.0, 1.0)
+        )
+        ends = (fuel.until, fuel.from_speed, fuel.until_speed)
+        window = [math.nan if end is None else end for end in ends]
+        return (*of, fuel.after, *window, self.start[1])
 
     def decided(self, firing: Firing, time: float, theta: float, omega: float) -> Firing:
         """After the decision at one of the angles of `next`, at a time [s] and a speed [rad/s]."""
@@ -156,17 +205,14 @@ class FuelLaw:
             return decided - math.floor(begun + _SAME)
         return math.ceil(begun - _SAME) - decided + 1
 
-    def _above(self, theta: float) -> float:
-        period, beyond = self.scene.period, theta + _SAME
-        base = math.floor(beyond / period) * period
-        turns, k = divmod(bisect_right(self.angles, beyond - base), len(self.angles))
-        return base + turns * period + self.angles[k]
+    def _number(self, theta: float, side: Callable[[Sequence[float], float], int]) -> int:
+        """How many decisions lie below an angle [rad], counted from the first above angle 0."""
+        turns = math.floor(theta / self.scene.period)
+        return turns * len(self.angles) + side(self.angles, theta - turns * self.scene.period)
 
-    def _below(self, theta: float) -> float:
-        period, beyond = self.scene.period, theta - _SAME
-        base = math.floor(beyond / period) * period
-        turns, k = divmod(bisect_left(self.angles, beyond - base) - 1, len(self.angles))
-        return base + turns * period + self.angles[k]
+    def _angle(self, number: int) -> float:
+        turns, k = divmod(number, len(self.angles))
+        return turns * self.scene.period + self.angles[k]
 
 
 def _met(speed: float, before: float, now: float) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from crankmbs.mechanics.variables import SUMS, WITH_FUEL
+from crankmbs.mechanics.variables import EVERY, SUMS
 from crankmbs.numerics.arrays import Array
 
 __all__ = ["negligible", "peak", "relative_error"]
@@ -44,7 +44,7 @@ def relative_error(peaks: Mapping[str, float], errors: Mapping[str, float], turn
     2e-06
     """
     sizes = {**peaks, "crank_angle": turned}
-    ignored = negligible(sizes, {name: WITH_FUEL[name].units for name in sizes})
+    ignored = negligible(sizes, {name: EVERY[name].units for name in sizes})
     ignored |= SUMS | {"energy_residual"}
     ratios = [errors[name] / size for name, size in sizes.items() if name not in ignored]
     return max(ratios, default=0.0)

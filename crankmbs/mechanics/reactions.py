@@ -6,7 +6,8 @@ balance the wall, the rod's balance the crank pin, and the crank's balance the m
 the torque from outside. Gas pushes the piston towards the crank, -X. The frame, on mounts, feels
 m (g - a) of every moving part and, about the crank axis, the walls and the gas on the heads.
 
-Every balance is linear in omega^2, alpha, 1 and the shares of the combustion. So where the angles
+Every balance is linear in omega^2, alpha, 1, the shares of the combustion and the friction on the
+pistons, which pushes them as gas does. So where the angles
 of the samples repeat it is made for these alone, once for every angle of a period, and put together
 for each sample.
 """
@@ -20,11 +21,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from crankmbs.mechanics.fired import fired_parts
+from crankmbs.mechanics.fired import Parts, fired_parts, pushed_parts
+from crankmbs.mechanics.friction import friction_forces
 from crankmbs.mechanics.geometry import close_loop, top_position
 from crankmbs.mechanics.inertia import gravity_vector, rod_centre
 from crankmbs.mechanics.train import CrankTrain
-from crankmbs.mechanics.variables import VARIABLES
+from crankmbs.mechanics.variables import EVERY
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.periodic import one_period
 from crankmbs.scene.scene import Scene
@@ -51,6 +53,7 @@ def reactions(
     omega: ArrayLike,
     alpha: ArrayLike,
     fuel: Array | None = None,
+    friction: Array | None = None,
 ) -> dict[str, Array]:
     """Motion of every part and force in every joint.
 
@@ -58,6 +61,8 @@ def reactions(
     ----------
     theta, omega, alpha : shape (n,) [rad, rad/s, rad/s2]; any motion, prescribed or free
     fuel : shape (n, cylinders), shares of the combustion; None leaves it out
+    friction : shape (n, cylinders) [N], towards the crank; by default what the speeds make of it,
+        `crankmbs.mechanics.friction.friction_forces`
 
     Returns
     -------
@@ -68,7 +73,7 @@ def reactions(
     >>> float(reactions(train, [0.0], [10.0], [0.0])["rod_angle"][0, 0])
     0.0
     """
-    found = _found(train, theta, omega, alpha, fuel)
+    found = _found(train, (theta, omega, alpha), fuel, friction)
     rows = {name: len(columns) for name, columns in found.columns.items()}
     # one piece of memory, so large that the system is not asked for every run's anew
     room = np.empty((sum(rows.values()), len(found.omega)))
@@ -77,8 +82,8 @@ def reactions(
     for name, variable in variables.items():
         for k, (row, values) in enumerate(zip(variable, found.columns[name], strict=True)):
             found.put(name, values, row)
-            found.add_fired(name, k, row)
-    return {n: v.T if VARIABLES[n].per_cylinder else v[0] for n, v in variables.items()}
+            found.add_more(name, k, row)
+    return {n: v.T if EVERY[n].per_cylinder else v[0] for n, v in variables.items()}
 
 
 def deviations(
@@ -87,19 +92,22 @@ def deviations(
     omega: Array,
     alpha: Array,
     variables: Mapping[str, Array],
-    fuel: Array | None = None,
+    own: Mapping[str, Array] | None = None,
 ) -> dict[str, float]:
     """Largest absolute difference of each variable, as `reactions` gives them for another motion,
     from those of this motion, which are not kept.
 
-    Parameters are those of `reactions`; variables : by name, with the samples of this motion
+    Parameters are those of `reactions`; variables : by name, with the samples of this motion;
+    own : of that other motion "fuel" and "friction_force", where it has its own
 
     >>> train = crank_train(load_scene("torque_driven"))
     >>> motion = np.zeros((3, 2))
     >>> max(deviations(train, *motion, reactions(train, *motion)).values())
     0.0
     """
-    found = _found(train, theta, omega, alpha, fuel)
+    own = own or {}
+    given = own.get("fuel"), own.get("friction_force")
+    found = _found(train, (theta, omega, alpha), *given)
     largest = {}
     for name, columns in found.columns.items():
         rows = np.atleast_2d(variables[name].T)
@@ -115,17 +123,15 @@ class _Found(NamedTuple):
     columns : for the crank or for each cylinder, shape (n,) what depends on the angle alone, for
         velocities per speed; shape (3, n) what belongs to omega^2, alpha and 1
     which : shape (samples,), which of the n angles a sample is at; None where n are the samples
-    fired : of the variables that feel the combustion, for the crank or for each cylinder: what a
-        share of 1 of each cylinder adds, shape (n,) by the cylinder's number
-    fuel : shape (samples, cylinders), the shares
+    more : of the combustion and the friction, each: what a share of 1, or 1 N, on each cylinder
+        adds at the n angles; and the shares, or forces, shape (samples, cylinders)
     """
 
     columns: dict[str, list[Array]]
     which: NDArray[np.intp] | None
     at: _Powers
     omega: Array
-    fired: dict[str, list[dict[int, Array]]]
-    fuel: Array | None
+    more: tuple[tuple[Parts, Array], ...]
 
     def put(self, name: str, values: Array, variable: Array) -> None:
         """A variable at the samples into its place."""
@@ -136,18 +142,17 @@ class _Found(NamedTuple):
         else:
             variable[:] = self._all(name, values)
 
-    def add_fired(self, name: str, row: int, variable: Array) -> None:
-        """Add to a variable, in its place, what the firings do."""
-        if self.fuel is None or name not in self.fired:
-            return
-        for k, more in self.fired[name][row].items():
-            variable += self.fuel[:, k] * (more if self.which is None else more[self.which])
+    def add_more(self, name: str, row: int, variable: Array) -> None:
+        """Add to a variable, in its place, what firings and friction do."""
+        for parts, size in self.more:
+            for k, part in parts[name][row].items() if name in parts else ():
+                variable += size[:, k] * (part if self.which is None else part[self.which])
 
     def apart(self, name: str, row: int, values: Array, variable: Array) -> float:
         """Largest difference of a variable from this one at the samples."""
-        if self.fuel is not None and name in self.fired:
+        if any(name in parts for parts, _ in self.more):
             own = self._all(name, values) + np.zeros(len(self.omega))
-            self.add_fired(name, row, own)
+            self.add_more(name, row, own)
             return float(np.max(np.abs(own - variable), initial=0.0))
         if self.which is not None and values.ndim > 1:
             from crankmbs.mechanics import combined
@@ -165,13 +170,12 @@ class _Found(NamedTuple):
 
 def _found(
     train: CrankTrain,
-    theta: ArrayLike,
-    omega: ArrayLike,
-    alpha: ArrayLike,
+    given: tuple[ArrayLike, ArrayLike, ArrayLike],
     fuel: Array | None,
+    friction: Array | None,
 ) -> _Found:
     scene = train.scene
-    theta, omega, alpha = (np.asarray(q, dtype=np.float64) for q in (theta, omega, alpha))
+    theta, omega, alpha = (np.asarray(q, dtype=np.float64) for q in given)
     samples = _Powers(omega**2, alpha, np.ones(1))
     once, which = one_period(theta, train.period)
     by_parts = len(theta) > _OFTEN * len(once)
@@ -184,8 +188,21 @@ def _found(
     columns["journal_torque"] = list(accumulate(torque))
     pairs = zip(columns["journal_torque"], torque, strict=True)
     columns["pin_torque"] = [journal - 0.5 * own for journal, own in pairs]
-    fired = {} if fuel is None else fired_parts(train, once)
-    return _Found(columns, which if by_parts else None, samples, omega, fired, fuel)
+    more = [] if fuel is None else [(fired_parts(train, once), fuel)]
+    if scene.friction is not None:
+        if friction is None:
+            friction = friction_forces(train, theta, omega, fuel)
+        columns["friction_force"] = [np.zeros_like(once) for _ in cylinders]
+        more.append((_rubbed_parts(scene, once), friction))
+    return _Found(columns, which if by_parts else None, samples, omega, tuple(more))
+
+
+def _rubbed_parts(scene: Scene, theta: Array) -> Parts:
+    """What 1 N of friction on each piston adds."""
+    ones = [np.ones_like(theta) for _ in scene.cylinders]
+    parts = pushed_parts(scene, theta, ones)
+    parts["friction_force"] = [{k: one} for k, one in enumerate(ones)]
+    return parts
 
 
 class _Cylinder(NamedTuple):

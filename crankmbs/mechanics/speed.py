@@ -12,13 +12,16 @@ from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.interpolate import PchipInterpolator, PPoly
+from scipy.interpolate import CubicSpline, PchipInterpolator, PPoly
 
+from crankmbs.mechanics.speed_over_angle import AngleLaw
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.roots import invert_monotone
 from crankmbs.scene.drives import Motion, Oscillation, Ramp, SpeedFile
+from crankmbs.scene.scene import Scene
+from crankmbs.scene.speed_rows import over_angle, remarks_on, repeats
 
-__all__ = ["SpeedLaw", "speed_law", "speed_pieces"]
+__all__ = ["SpeedLaw", "speed_law", "speed_pieces", "speed_remarks"]
 
 
 class SpeedLaw(Protocol):
@@ -28,9 +31,12 @@ class SpeedLaw(Protocol):
     def turning_times(self) -> tuple[float, ...]:
         """Times [s] that split the law into stretches of monotone angle; the last is its end."""
 
+    def corners(self, begin: float, end: float) -> Array:
+        """Times [s] strictly between two others at which the acceleration or its slope jumps."""
+
     @property
-    def corners(self) -> tuple[float, ...]:
-        """Times [s] at which the acceleration or its slope jumps."""
+    def off(self) -> SpeedLaw:
+        """The law as far from this one as what it is made from may be, in the last digits."""
 
     def at_time(self, t: ArrayLike) -> tuple[Array, Array, Array]:
         """theta, omega, alpha [rad, rad/s, rad/s2] at times [s]; right-hand limits at corners."""
@@ -48,6 +54,9 @@ def speed_law(motion: Motion) -> SpeedLaw:
     speed = motion.speed
     if isinstance(speed, Oscillation):
         return _OscillatingLaw(speed, motion.angle)
+    if isinstance(speed, SpeedFile) and speed.kind == "angle_table":
+        pieces = over_angle(speed.file, speed.interpolation)
+        return AngleLaw(*pieces, motion.angle, repeats=repeats(speed.file))
     return _PolynomialLaw(speed_pieces(speed), motion.angle)
 
 
@@ -64,8 +73,21 @@ def speed_pieces(speed: float | Ramp | SpeedFile) -> PPoly:
             np.array([0.0, speed.over, math.inf]),
         )
     if isinstance(speed, SpeedFile):
-        return PchipInterpolator(speed.file.x, speed.file.y)
+        kind = CubicSpline if speed.interpolation == "cubic" else PchipInterpolator
+        return kind(speed.file.x, speed.file.y)
     return PPoly(np.array([[speed]]), np.array([0.0, math.inf]))
+
+
+def speed_remarks(scene: Scene) -> tuple[str, ...]:
+    """What a reader should know of what was made of a table of speeds, in sentences.
+
+    >>> speed_remarks(load_scene("yi_diesel"))
+    ()
+    """
+    speed = None if scene.motion is None else scene.motion.speed
+    if not isinstance(speed, SpeedFile) or speed.kind == "time_table":
+        return ()
+    return remarks_on(speed.file)
 
 
 class _PolynomialLaw:
@@ -76,7 +98,14 @@ class _PolynomialLaw:
         self._alpha = omega.derivative()
         self._theta = _integral(omega, start)
         self.turning_times = (*self._reversals(), float(omega.x[-1]))
-        self.corners = tuple(float(x) for x in omega.x[1:] if math.isfinite(x))
+
+    @property
+    def off(self) -> SpeedLaw:
+        return self
+
+    def corners(self, begin: float, end: float) -> Array:
+        breaks = self._omega.x[1:]
+        return np.asarray(breaks[(breaks > begin) & (breaks < end)])
 
     def at_time(self, t: ArrayLike) -> tuple[Array, Array, Array]:
         t = np.asarray(t, dtype=np.float64)
@@ -136,7 +165,13 @@ class _OscillatingLaw:
     start: float
 
     turning_times = (math.inf,)
-    corners = ()
+
+    @property
+    def off(self) -> SpeedLaw:
+        return self
+
+    def corners(self, begin: float, end: float) -> Array:
+        return np.empty(0)
 
     def at_time(self, t: ArrayLike) -> tuple[Array, Array, Array]:
         law = self.speed

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from crankmbs.scene.scene import Scene
 
-__all__ = ["SUMS", "VARIABLES", "WITH_FUEL", "Variable", "variables_of"]
+__all__ = ["EVERY", "SUMS", "VARIABLES", "Variable", "variables_of"]
 
 
 class Variable(NamedTuple):
@@ -62,17 +62,21 @@ SUMS = frozenset({"journal_torque", "pin_torque"}) | {
 """Sums in which the cylinders may cancel to nothing: no error relative to their own peak is asked
 of them, for that of what they sum up is."""
 
-WITH_FUEL = VARIABLES | {
+EVERY = VARIABLES | {
     "fuel": Variable("1", "share of the combustion of the firing that acts", True),
+    "friction_force": Variable("N", "wall's friction on the piston towards the crank", True),
 }
+"""With those that only some scenes have."""
 
 
 def variables_of(scene: Scene) -> dict[str, Variable]:
     """The variables that a result of a scene has: rocking moments where the cylinders have places,
-    the shares of the combustion where there is fuel.
+    the shares of the combustion where there is fuel, friction where there is.
 
     >>> "rocking_moment_x" in variables_of(load_scene("propeller"))
     False
     """
-    placed, every = scene.levers is not None, WITH_FUEL if scene.fuel else VARIABLES
-    return {n: v for n, v in every.items() if placed or not n.startswith("rocking_")}
+    without = {"fuel"} if scene.fuel is None else set()
+    without |= {"friction_force"} if scene.friction is None else set()
+    without |= {"rocking_moment_x", "rocking_moment_y"} if scene.levers is None else set()
+    return {name: about for name, about in EVERY.items() if name not in without}

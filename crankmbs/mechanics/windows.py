@@ -37,7 +37,7 @@ Phases = tuple[Phase, ...]
 def first_phases(torques: tuple[Torque, ...], omega: float) -> Phases:
     """The phases at time 0.
 
-    >>> first_phases((Torque(kind="constant", after=1.0),), 5.0)
+    >>> first_phases((Constant(torque=2.0, after=1.0),), 5.0)
     (<Phase.DUE: 1>,)
     """
     if not any(load.has_window for load in torques):
@@ -93,7 +93,7 @@ def span(load: Torque, time: Array, omega: Array) -> tuple[float, float]:
 
     time, omega : shape (n,) [s, rad/s]
 
-    >>> load = Torque(kind="constant", from_speed=2.0)
+    >>> load = Constant(torque=2.0, from_speed=2.0)
     >>> span(load, np.array([0.0, 1.0]), np.array([1.0, 3.0]))
     (0.5, inf)
     """

@@ -13,7 +13,7 @@ from crankmbs.mechanics.inertia import inertia_alone
 from crankmbs.mechanics.peaks import peak, relative_error
 from crankmbs.mechanics.reactions import deviations, reactions
 from crankmbs.mechanics.train import CrankTrain
-from crankmbs.mechanics.variables import SUMS, WITH_FUEL
+from crankmbs.mechanics.variables import EVERY, SUMS
 from crankmbs.motion.base import Samples, Solution
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.periodic import one_period
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["ANGLE_ROUNDING", "Assembled", "assemble", "dataset"]
 
 _ROUNDING = 64 * float(np.finfo(float).eps)  # of a variable's peak: what the formulas round
+_GIVEN = ("fuel", "friction_force")  # what reactions take from a formulation's own
 _FEW = 32  # samples: among more there is one where nothing cancels
 ANGLE_ROUNDING = 2 * float(np.finfo(float).eps)  # of the crank angle
 
@@ -115,9 +116,7 @@ class _Passes(NamedTuple):
         before = self.variables
         for samples in self._chain():
             motion = (samples.theta, samples.omega, samples.alpha)
-            apart = deviations(
-                self.off, *motion, {**before, **samples.own}, samples.own.get("fuel")
-            )
+            apart = deviations(self.off, *motion, {**before, **samples.own}, samples.own)
             missed = apart["external_torque"] if samples.own else 0.0
             given = {**_motion(samples), **samples.own}
             apart |= {name: peak(before[name] - values) for name, values in given.items()}
@@ -142,8 +141,8 @@ class _Passes(NamedTuple):
         theta, own = self.rounded.theta, self.rounded.own
         recent = ahead[np.abs(theta - theta[-1]) <= 2.0 * math.pi]
         more = math.copysign(peak(recent) - abs(ahead[-1]), ahead[-1])
-        fuel = {name: values for name, values in own.items() if name == "fuel"}
-        last = replace(self.rounded, own=fuel).select(np.array([-1]))
+        given = {name: values for name, values in own.items() if name in _GIVEN}
+        last = replace(self.rounded, own=given).select(np.array([-1]))
         end = _variables(self.off, replace(last, theta=last.theta + more))
         missed = peak(own["external_torque"][-1:] - end["external_torque"]) if own else 0.0
         names = self.variables.keys() - own.keys()
@@ -178,7 +177,7 @@ def dataset(assembled: Assembled) -> xr.Dataset:
     variables, errors = assembled.variables, assembled.errors
 
     def labelled(name: str) -> xr.Variable:
-        about = WITH_FUEL[name]
+        about = EVERY[name]
         attrs = {
             "units": about.units,
             "long_name": about.long_name,
@@ -190,14 +189,14 @@ def dataset(assembled: Assembled) -> xr.Dataset:
     coordinates = {name: labelled(name) for name in ("time", "crank_angle")}
     number = xr.Variable("cylinder", cylinders, {"long_name": "cylinder number"})
     return xr.Dataset(
-        {n: labelled(n) for n in WITH_FUEL if n in variables.keys() - coordinates},
+        {n: labelled(n) for n in EVERY if n in variables.keys() - coordinates},
         coords={**coordinates, "cylinder": number},
     )
 
 
 def _variables(train: CrankTrain, samples: Samples) -> dict[str, Array]:
-    fuel = samples.own.get("fuel")
-    found = reactions(train, samples.theta, samples.omega, samples.alpha, fuel)
+    given = (samples.own.get(name) for name in _GIVEN)
+    found = reactions(train, samples.theta, samples.omega, samples.alpha, *given)
     return {**_motion(samples), **found, **samples.own}
 
 
@@ -205,9 +204,9 @@ def _sizes(peaks: dict[str, float]) -> dict[str, float]:
     """What of each variable is rounded: its peak; of sums that may cancel the largest of a unit."""
     largest: dict[str, float] = {}
     for name, size in peaks.items():
-        unit = WITH_FUEL[name].units
+        unit = EVERY[name].units
         largest[unit] = max(largest.get(unit, 0.0), size)
-    return {n: largest[WITH_FUEL[n].units] if n in SUMS else p for n, p in peaks.items()}
+    return {n: largest[EVERY[n].units] if n in SUMS else p for n, p in peaks.items()}
 
 
 def _motion(samples: Samples) -> dict[str, Array]:

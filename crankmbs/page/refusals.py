@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from crankmbs.mechanics.speed import speed_law
 from crankmbs.motion.plan import plan_of
+from crankmbs.scene.drives import Motion, SpeedFile
 from crankmbs.scene.scene import Scene
 
 __all__ = ["refusals"]
@@ -33,12 +34,20 @@ def _reasons(scene: Scene) -> Iterator[str]:
         yield "governor: it decides each share of the fuel anew"
     if scene.fuel is not None and scene.fuel.scatter > 0.0:
         yield "random firing: scatter draws each share of the fuel from Python's random numbers"
+    if scene.friction is not None:
+        yield "friction: the page has none yet on its pistons"
+    if scene.motion is not None and _over_angle(scene.motion):
+        yield "speed over the angle: the page knows prescribed speeds over time"
     if any(abs(fold) < float("inf") for fold in plan_of(scene).folds):
         yield "fold: the rod folds onto the crank, where the motion is not determined"
     if scene.start is not None and scene.start.speed == 0.0:
         yield "rest: the crank starts from rest, where time must be the variable"
     if scene.motion is not None and _turns_back(scene):
         yield "reversal: the prescribed speed comes to rest or turns back"
+
+
+def _over_angle(motion: Motion) -> bool:
+    return isinstance(motion.speed, SpeedFile) and motion.speed.kind == "angle_table"
 
 
 def _turns_back(scene: Scene) -> bool:

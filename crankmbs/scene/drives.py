@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from numbers import Real
-from typing import Annotated
+from typing import Annotated, Literal
 
 from annotated_types import Ge, Gt, Le
 from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationInfo
 
 from crankmbs.errors import InputError, shown
-from crankmbs.scene.schema import Float, from_file, part, si
-from crankmbs.scene.tables import Table, check_abscissae
-from crankmbs.scene.units import RPM
+from crankmbs.scene.schema import Float, folder_of, from_file, of_file, part, si
+from crankmbs.scene.speed_rows import check_over_angle
+from crankmbs.scene.tables import Header, Table, check_abscissae, headings
+from crankmbs.scene.units import DEGREE, RPM
 
 __all__ = [
     "Motion",
@@ -54,22 +55,50 @@ class Ramp:
     over: Annotated[Float, Gt(0), si("time")]
 
 
+_HEADERS = {
+    "time_table": Header("time_s", 1.0, "speed_rpm", RPM),
+    "angle_table": Header("crank_angle_deg", DEGREE, "speed_rpm", RPM),
+}
+
+
 @part
 class SpeedFile:
-    """Speed over time: table of time [s] and speed [rad/s]; pchip between the rows."""
+    """Speed over time or over the crank angle, as measured: pchip or cubic between the rows.
+
+    kind : "time_table", of time [s] and speed [rad/s], or "angle_table", of crank angle [rad] and
+        speed, which never comes to 0; from a file its columns say it. Over the angle rows that span
+        one or two revolutions and close repeat, all others cover the run
+    interpolation : "pchip" keeps monotone stretches monotone; "cubic", the spline with two
+        continuous derivatives, is for smooth rows: pchip's acceleration errs there by 2 %
+    """
 
     file: Annotated[
-        Table, from_file({"time_s": 1.0}, {"speed_rpm": RPM}, "times [s], speeds [rad/s]")
+        Table,
+        from_file(
+            {header.x_name: header.x_factor for header in _HEADERS.values()},
+            {"speed_rpm": RPM},
+            "times [s] or crank angles [rad], speeds [rad/s]",
+        ),
     ]
+    interpolation: Literal["pchip", "cubic"] = "pchip"
+    kind: Literal["time_table", "angle_table"] = "time_table"
 
     def __post_init__(self) -> None:
-        check_abscissae(self.file, "times", jumps=False)
+        what = "times" if self.kind == "time_table" else "crank angles"
+        check_abscissae(self.file, what, jumps=False)
+        if self.kind == "angle_table":
+            check_over_angle(self.file, self.interpolation)
+
+    @property
+    def header(self) -> Header:
+        """The headings of its file."""
+        return _HEADERS[self.kind]
 
 
 _SPEED_KEYS = {
     "Oscillation": {"mean", "amplitude", "order", "phase"},
     "Ramp": {"from", "start", "to", "over"},
-    "SpeedFile": {"file"},
+    "SpeedFile": {"file", "interpolation", "kind"},
 }
 
 
@@ -92,7 +121,22 @@ def _check_speed(value: object, info: ValidationInfo) -> object:
             'must be a speed such as "3200 rpm", or a table with mean, amplitude, order, or with '
             f"from, to, over, or with file; {shown(value)} came"
         )
-    return value
+    return _of_columns(value, info) if isinstance(value, dict) and of_file(info) else value
+
+
+def _of_columns(value: dict[str, object], info: ValidationInfo) -> dict[str, object]:
+    """A table of a scene file, its kind as the columns of its CSV file have it."""
+    if "kind" in value:
+        raise InputError("kind is no key of a speed: the columns of its file say what it is over")
+    file = value.get("file")
+    if not isinstance(file, str):
+        return value
+    try:
+        names = headings(folder_of(info) / file)
+    except InputError:
+        return value  # its reader says so
+    over_time, over_angle = (header.x_name in names for header in _HEADERS.values())
+    return {**value, "kind": "angle_table"} if over_angle and not over_time else value
 
 
 Speed = Annotated[

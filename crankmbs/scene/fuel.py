@@ -56,6 +56,13 @@ class Misfire:
         assert match is not None
         return int(match[2]), int(match[3] or match[2]), match[1] is not None
 
+    @property
+    def every(self) -> int | None:
+        """n of "every n", else None."""
+        match = _CYCLES.fullmatch(self.cycles)
+        assert match is not None
+        return int(match[2]) if match[1] else None
+
 
 @part
 class Governor:

@@ -7,7 +7,6 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from annotated_types import Ge
 
-from crankmbs.errors import InputError
 from crankmbs.numerics.piecewise import Piecewise
 from crankmbs.scene.angle_rows import check_turns, cycle_of
 from crankmbs.scene.schema import Float, from_file, part, si
@@ -79,13 +78,29 @@ class Quadratic(Torque):
         return {"coefficient": self.coefficient * share / faster**2}
 
 
+class _OfTable(Torque):
+    """A torque whose ``file`` holds it in rows."""
+
+    file: Table
+
+    @property
+    def words(self) -> str:
+        rows = self.file
+        return (
+            f"{min(rows.y):+.6g} to {max(rows.y):+.6g} N m in {len(rows.x)} rows of {rows.source}"
+        )
+
+    def _scaled(self, share: float, faster: float) -> dict[str, Any]:
+        return {"file": self.file.scaled(share)}
+
+
 _OVER_TIME = Header("time_s", 1.0, "torque_Nm", 1.0)
 _OVER_SPEED = Header("speed_rpm", RPM, "torque_Nm", 1.0)
 
 
 @load
 @part
-class TimeTable(Torque):
+class TimeTable(_OfTable):
     """Torque [N m] over time [s], linear; two rows at one time are a jump. Covers the run."""
 
     header: ClassVar[Header | None] = _OVER_TIME
@@ -101,34 +116,13 @@ class TimeTable(Torque):
         return Parts(over_time=Piecewise.through(self.file.x, self.file.y))
 
     @property
-    def words(self) -> str:
-        return _rows(self.file)
-
-    def _scaled(self, share: float, faster: float) -> dict[str, Any]:
-        return {"file": self.file.scaled(share)}
-
-    @property
-    def is_steady(self) -> bool:
-        """Whether it is always the same function of the speed."""
-        over_time = self.parts.over_time
-        varies = over_time is not None and bool(over_time.knots or not over_time.is_constant)
-        return not (varies or self.has_window)
-
-    @property
     def table_over_time(self) -> Table | None:
         return self.file
-
-    def check_time(self, t: float) -> None:
-        if t >= self.file.x[-1]:
-            raise InputError(
-                f"file: {self.file.source}: the time table ends at {self.file.x[-1]:g} s, before "
-                "the run does; lengthen the table or shorten the run"
-            )
 
 
 @load
 @part
-class SpeedTable(Torque):
+class SpeedTable(_OfTable):
     """Torque [N m] over speed [rad/s], linear, ends held; two rows at one speed are a jump."""
 
     header: ClassVar[Header | None] = _OVER_SPEED
@@ -143,10 +137,6 @@ class SpeedTable(Torque):
     def parts(self) -> Parts:
         return Parts(over_speed=Piecewise.through(self.file.x, self.file.y))
 
-    @property
-    def words(self) -> str:
-        return _rows(self.file)
-
     def _scaled(self, share: float, faster: float) -> dict[str, Any]:
         return {"file": self.file.scaled(share, faster)}
 
@@ -156,7 +146,7 @@ _OVER_ANGLE = Header("crank_angle_deg", DEGREE, "torque_Nm", 1.0)
 
 @load
 @part
-class AngleTable(Torque):
+class AngleTable(_OfTable):
     """Torque [N m] over the crank angle [rad], modulo 360 degrees where its rows span no more, else
     720; linear, pchip or cubic. Two rows at one angle, or a closing row unlike the first, are a
     jump, up to which and from which it is interpolated.
@@ -177,13 +167,4 @@ class AngleTable(Torque):
 
     @property
     def words(self) -> str:
-        return f"{_rows(self.file)}, {self.interpolation}"
-
-    def _scaled(self, share: float, faster: float) -> dict[str, Any]:
-        return {"file": self.file.scaled(share)}
-
-
-def _rows(table: Table) -> str:
-    return (
-        f"{min(table.y):+.6g} to {max(table.y):+.6g} N m in {len(table.x)} rows of {table.source}"
-    )
+        return f"{super().words}, {self.interpolation}"

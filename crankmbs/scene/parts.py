@@ -1,4 +1,4 @@
-"""What the machine is made of: crank, rod, piston, cylinders, gravity.
+"""What the machine is made of: crank, rod, piston, cylinders, gravity, friction.
 
 Frozen dataclasses in SI units, each checking itself. Every quantity is a float in SI units, or a
 string with its unit (``"46 mm"``), which is converted on the way in.
@@ -10,13 +10,13 @@ import math
 from dataclasses import replace
 from typing import Annotated, Literal
 
-from annotated_types import Ge, Gt, Len
+from annotated_types import Ge, Gt, Le, Len
 from pydantic import Discriminator, Strict, Tag
 
 from crankmbs.errors import InputError, shown
 from crankmbs.scene.schema import Float, part, si
 
-__all__ = ["LIGHT_CRANK", "Crank", "Cylinder", "Gravity", "Layout", "Piston", "Rod"]
+__all__ = ["LIGHT_CRANK", "Crank", "Cylinder", "Friction", "Gravity", "Layout", "Piston", "Rod"]
 
 LIGHT_CRANK = (
     "inertia about the crank axis must be at least mass * center_of_mass^2 = {least:.6g} kg m^2; "
@@ -182,3 +182,13 @@ class Gravity:
 
     acceleration: Annotated[Float, Ge(0), si("acceleration")]
     angle: Angle = math.pi
+
+
+@part
+class Friction:
+    """Of each piston on its wall: ring_force [N] and ring_pressure, a share of |gas force|, against
+    the sense in which it slides; viscous [N s/m] against its velocity."""
+
+    ring_force: Annotated[Float, Ge(0), si("force")] = 0.0
+    ring_pressure: Annotated[Float, Ge(0), Le(1)] = 0.0
+    viscous: Annotated[Float, Ge(0), si("viscous friction")] = 0.0

@@ -84,12 +84,14 @@ class Load(Torque):
     def words(self) -> str:
         return named(self.function)
 
-    def check_runs(self) -> None:
-        if isinstance(self.function, _Kept):
-            raise InputError(
-                f"of the function {named(self.function)} a saved result keeps only the name; to "
-                "run the scene again, give the load anew with crankmbs.Load"
-            )
+    @property
+    def lacks(self) -> str | None:
+        if not isinstance(self.function, _Kept):
+            return None
+        return (
+            f"of the function {named(self.function)} a saved result keeps only the name; to run "
+            "the scene again, give the load anew with crankmbs.Load"
+        )
 
     def _scaled(self, share: float, faster: float) -> dict[str, Any]:
         function: Callable[[float, float, float], float] = self.function

@@ -15,13 +15,14 @@ from annotated_types import Ge, Le
 from pydantic import BeforeValidator, Strict, ValidationInfo
 
 from crankmbs.errors import InputError, shown
-from crankmbs.scene.cycles import cycles_in
+from crankmbs.scene.cycles import SAME_ANGLE, cycles_in
 from crankmbs.scene.drives import Motion, SpeedFile, Start
 from crankmbs.scene.fuel import Fuel
 from crankmbs.scene.gas import Gas, tables_of
-from crankmbs.scene.parts import Crank, Cylinder, Gravity, Layout, Piston, Rod
+from crankmbs.scene.parts import Crank, Cylinder, Friction, Gravity, Layout, Piston, Rod
 from crankmbs.scene.schema import Float, dumped, part
 from crankmbs.scene.sentences import did_you_mean
+from crankmbs.scene.speed_rows import repeats
 from crankmbs.scene.tables import CylinderTable, Table
 from crankmbs.scene.torque import AnyTorque, Torque
 from crankmbs.scene.units import DEGREE, EXAMPLES, extent
@@ -91,16 +92,14 @@ def _passing(load: Torque) -> str:
 
 
 def _uneven(fuel: Fuel) -> str:
-    """What in the fuel makes firings that differ, or may."""
-    if fuel.governor is not None:
-        return "a governor decides each share anew; its settled cycle is not found yet"
+    """What in the fuel happens once or at random, so that nothing settles with it, if any."""
     if fuel.scatter > 0.0:
         return "scatter makes every share another"
     if fuel.after > 0.0 or (fuel.until, fuel.from_speed, fuel.until_speed) != (None, None, None):
         return "a window acts once"
-    if any(not misfire.cycles.startswith("every") for misfire in fuel.misfire or ()):
+    if any(misfire.every is None for misfire in fuel.misfire or ()):
         return "a listed misfire happens once"
-    return "the shares are counted from the start; their settled cycle is not found yet"
+    return ""
 
 
 def _spacing(value: object, info: ValidationInfo) -> object:
@@ -133,6 +132,7 @@ class Scene:
     gas: Gas | None = None
     fuel: Fuel | None = None
     gravity: Gravity | None = None
+    friction: Friction | None = None
     motion: Motion | None = None
     start: Start | None = None
     torque: tuple[AnyTorque, ...] = ()
@@ -142,6 +142,7 @@ class Scene:
     def __post_init__(self) -> None:
         self._check_loop()
         self._check_gas()
+        self._check_friction()
         self._check_motion()
         self._check_settled()
         self._check_tables()
@@ -160,12 +161,15 @@ class Scene:
     @property
     def settled_period(self) -> float:
         """The angle [rad] after which a settled motion repeats itself: the least common multiple
-        of the periods of the engine, of a sequence of cycles and of loads over the angle."""
+        of the periods of the engine, of a sequence of cycles, of misfires "every n" and of loads
+        over the angle."""
         loads = (load.parts.over_angle for load in self.torque)
         own = [self.period, *(part.period for part in loads if part is not None)]
         if self.gas is not None and self.gas.cycles == "sequence":
             one = self.gas.period
             own += [cycles_in(table, one) * one for table in self.gas.tables]
+        misfires = (self.fuel.misfire if self.fuel else None) or ()
+        own += [self.period * one.every for one in misfires if one.every]
         turns = (round(period / (2.0 * math.pi)) for period in own)
         return math.lcm(*turns) * 2.0 * math.pi
 
@@ -244,6 +248,13 @@ class Scene:
                     f"{misfire.cylinder} came"
                 )
 
+    def _check_friction(self) -> None:
+        if self.gas is None and self.friction is not None and self.friction.ring_pressure > 0.0:
+            raise InputError(
+                "friction.ring_pressure: without [gas] there is no gas force to press the rings; "
+                f"leave it out, or add [gas]; {self.friction.ring_pressure:g} came"
+            )
+
     def _check_motion(self) -> None:
         if (self.motion is None) == (self.start is None):
             came = "neither" if self.motion is None else "both"
@@ -282,7 +293,7 @@ class Scene:
                 'run.until: "settled" is the periodic motion that a free crank comes to; with '
                 '[motion] give an end such as "2 cycles", or free the crank with [start]'
             )
-        if self.fuel is not None:
+        if self.fuel is not None and _uneven(self.fuel):
             raise InputError(
                 f'run.until: "settled" needs firings that are alike in every cycle, and in [fuel], '
                 f"{_uneven(self.fuel)}; give an end such as {EXAMPLES['extent']}, or remove [fuel]"
@@ -299,7 +310,7 @@ class Scene:
         until, until_time = self.end
         end = until if until_time else 0.0
         if self.motion is not None and isinstance(self.motion.speed, SpeedFile):
-            _check_cover(self.motion.speed.file, 0.0, end, "the run")
+            self._check_speed(self.motion.speed, end)
         for load in self.torque:
             if load.table_over_time is None:
                 continue
@@ -310,6 +321,17 @@ class Scene:
             what = "its window" if load.has_window else "the run"
             begin = load.after or 0.0
             _check_cover(load.table_over_time, begin, max(begin, last), what)
+
+    def _check_speed(self, speed: SpeedFile, end: float) -> None:
+        """Refuse a speed that does not cover the run, to a time [s] or to its end in angle."""
+        assert self.motion is not None
+        table, begin = speed.file, self.motion.angle
+        if speed.kind == "time_table":
+            _check_cover(table, 0.0, end, "the run")
+        elif not repeats(table):
+            until, until_time = self.end
+            reach = 0.0 if until_time else math.copysign(until, table.y[0])
+            _check_angles(table, *sorted((begin, begin + reach)))
 
     def _check_size(self) -> None:
         """Refuse what no memory holds and what double precision cannot tell apart."""
@@ -331,6 +353,16 @@ def _check_cover(table: Table, begin: float, end: float, what: str) -> None:
         raise InputError(
             f"{table.source}: the table must cover {what}, {begin:g} to {end:g} s; it goes from "
             f"{table.x[0]:g} to {table.x[-1]:g} s"
+        )
+
+
+def _check_angles(table: Table, low: float, high: float) -> None:
+    first, last = table.x[0], table.x[-1]
+    if first - SAME_ANGLE > low or last + SAME_ANGLE < high:
+        raise InputError(
+            f"{table.source}: the table must cover the run, {low / DEGREE:g} to {high / DEGREE:g} "
+            f"degrees, or be 360 or 720 degrees whose last row repeats the first; it goes from "
+            f"{first / DEGREE:g} to {last / DEGREE:g} degrees"
         )
 
 

@@ -18,6 +18,7 @@ __all__ = [
     "Header",
     "Table",
     "check_abscissae",
+    "headings",
     "read_columns",
     "read_table",
 ]
@@ -152,7 +153,8 @@ def read_table(path: Path, x_units: dict[str, float], y_units: dict[str, float])
     Parameters
     ----------
     path : the file; lines that start with ``#`` are comments, other columns are ignored
-    x_units, y_units : accepted column name -> factor to SI; exactly one of each must be there
+    x_units, y_units : accepted column name -> factor to SI; the first of x_units that is there is
+        read, of y_units exactly one must be there
 
     Raises
     ------
@@ -160,8 +162,20 @@ def read_table(path: Path, x_units: dict[str, float], y_units: dict[str, float])
     """
     rows = _rows(path)
     header = rows[0][1]
-    x, y = _values(path, rows, [_column(path, header, x_units), _column(path, header, y_units)])
+    first = [{name: factor} for name, factor in x_units.items() if name in header]
+    given = (first or [x_units])[0]
+    x, y = _values(path, rows, [_column(path, header, given), _column(path, header, y_units)])
     return Table(x, y, source=str(path))
+
+
+def headings(path: Path) -> list[str]:
+    """The names of the columns of a CSV file.
+
+    Raises
+    ------
+    InputError : file missing or unreadable
+    """
+    return _rows(path)[0][1]
 
 
 def read_columns(

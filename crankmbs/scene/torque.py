@@ -8,7 +8,7 @@ solves, draws or writes a scene asks the loads for these; nothing else knows the
 from __future__ import annotations
 
 import dataclasses
-from functools import cached_property
+from abc import ABC, abstractmethod
 from typing import Annotated, Any, ClassVar, NamedTuple, Self, TypeVar
 
 import numpy as np
@@ -44,7 +44,7 @@ class Parts(NamedTuple):
 
 
 @part
-class Torque:
+class Torque(ABC):
     """A torque from outside on the free crank; positive drives.
 
     It acts from when the time ``after`` [s] and the speed ``from_speed`` [rad/s] have both been met
@@ -84,15 +84,15 @@ class Torque:
         ends = self.after, self.until, self.from_speed, self.until_speed
         return any(end is not None for end in ends)
 
-    @cached_property
+    @property
+    @abstractmethod
     def parts(self) -> Parts:
         """What it is the sum of."""
-        raise NotImplementedError
 
     @property
+    @abstractmethod
     def words(self) -> str:
         """What a reader is told of it, after its kind."""
-        raise NotImplementedError
 
     def scaled(self, share: float, faster: float) -> Self:
         """A share of it; the same torque as before at a speed so much higher."""
@@ -100,9 +100,9 @@ class Torque:
         moved = {name: v * faster for name, v in speeds.items() if v is not None}
         return dataclasses.replace(self, **self._scaled(share, faster), **moved)  # type: ignore[arg-type]
 
+    @abstractmethod
     def _scaled(self, share: float, faster: float) -> dict[str, Any]:
         """The fields that make it a share, and the same torque at a speed so much higher."""
-        raise NotImplementedError
 
     @property
     def name(self) -> str:
@@ -121,13 +121,10 @@ class Torque:
         """Its table, if that must cover the time in which it acts."""
         return None
 
-    def check_runs(self) -> None:
-        """Refuse what only tells of a run that was.
-
-        Raises
-        ------
-        InputError : what is missing, and the way out
-        """
+    @property
+    def lacks(self) -> str | None:
+        """Why it cannot be run again, and the way out; None where it can."""
+        return None
 
     def check_time(self, t: float) -> None:
         """Refuse a time [s] at which it is not known.
@@ -136,6 +133,12 @@ class Torque:
         ------
         InputError : key, what came, and the way out
         """
+        table = self.table_over_time
+        if table is not None and t >= table.x[-1]:
+            raise InputError(
+                f"file: {table.source}: the time table ends at {table.x[-1]:g} s, before the run "
+                "does; lengthen the table or shorten the run"
+            )
 
     def __call__(self, t: ArrayLike, theta: ArrayLike, omega: ArrayLike) -> Array:
         """Torque [N m] at times [s], crank angles [rad] and speeds [rad/s] of one shape; on a jump

@@ -28,6 +28,7 @@ _LONGEST_UNIT = 40
 _SI = {
     "acceleration": "m/s^2",
     "area": "m^2",
+    "force": "N",
     "inertia": "kg m^2",
     "integral gain": "1/rad",
     "length": "m",
@@ -38,6 +39,7 @@ _SI = {
     "time": "s",
     "torque": "N m",
     "viscous coefficient": "N m s",
+    "viscous friction": "N s/m",
 }
 _ANGLE = {"rad": 1.0, "deg": DEGREE, "rev": 2.0 * math.pi}
 _SMALLEST, _LARGEST = 1e-50, 1e15  # in SI units: products of several neither vanish nor overflow
@@ -54,6 +56,7 @@ EXAMPLES = {
     "angular speed": '"3200 rpm"',
     "area": '"57.08 cm^2"',
     "extent": '"20 cycles", "10 rev" or "0.75 s"',
+    "force": '"40 N"',
     "inertia": '"0.15 kg m^2"',
     "integral gain": '"0.02 1/rad"',
     "length": '"46 mm"',
@@ -64,6 +67,7 @@ EXAMPLES = {
     "time": '"0.75 s"',
     "torque": '"87 N m"',
     "viscous coefficient": '"0.26 N m s"',
+    "viscous friction": '"30 N s/m"',
 }
 
 

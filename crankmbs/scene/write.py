@@ -35,13 +35,11 @@ _UNITS = {
     "area": "m^2",
     "acceleration": "m/s^2",
     "torque": "N m",
+    "ring_force": "N",
+    "viscous": "N s/m",
     **dict.fromkeys(("over", "after", "until"), "s"),
 }
-_HEADERS = {
-    "pressure": Header("crank_angle_deg", DEGREE, "pressure_Pa", 1.0),
-    "speed": Header("time_s", 1.0, "speed_rpm", RPM),
-}
-"""Header of a table by its use; a load states its own."""
+_PRESSURE = Header("crank_angle_deg", DEGREE, "pressure_Pa", 1.0)  # speeds and loads have their own
 
 
 def scene_files(scene: Scene, stem: str) -> dict[str, str]:
@@ -76,7 +74,8 @@ def scene_files(scene: Scene, stem: str) -> dict[str, str]:
                 assert header is not None
                 file = f"{name}.csv"
                 tables[file] = _csv(table, header)
-                value = {"file": file} if table is not value else file
+                rest = {} if table is value else {k: v for k, v in _values(value) if k != "file"}
+                value = file if table is value else {"file": file, **rest}
             elif isinstance(value, tuple) and isinstance(value[0], Table):
                 assert header is not None
                 files = [f"{name}{k}.csv" for k in range(1, len(value) + 1)]
@@ -90,7 +89,8 @@ def scene_files(scene: Scene, stem: str) -> dict[str, str]:
     for key, part in _values(scene):
         if key not in _WORDS and key not in ("torque", "run"):
             use = "pressure" if key == "gas" else "speed"
-            lines += section(f"[{key}]", part, use, _HEADERS[use])
+            header = getattr(getattr(part, "speed", None), "header", _PRESSURE)
+            lines += section(f"[{key}]", part, use, header)
     for number, load in enumerate(scene.torque, start=1):
         if load.kind not in Torque.kinds:
             raise InputError(

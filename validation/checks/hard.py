@@ -23,7 +23,7 @@ from validation.judge import Outcome
 from validation.oracles.arithmetic import LONG, multiprecision
 from validation.oracles.many_turns import many_turns
 
-__all__ = ["coarsest", "every_formulation", "flat_memory", "graded", "refused"]
+__all__ = ["coarsest", "every_formulation", "flat_memory", "graded", "judged", "refused"]
 
 _FORMULATIONS = ("kinetostatic", "crank_angle", "minimal", "multibody")
 _CAP = 3.0  # s, for multibody
@@ -109,14 +109,15 @@ def _answer(case: Case, formulation: str) -> _Answer:
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             result = simulate(ours, formulation=formulation, **cap)
-        return _judged(case, result, theirs, note)
+        return judged(case, result, theirs, note)
     except FormulationError as error:
         return _Answer(0.0, f"refused: {error}")
     except Exception as error:
         return _Answer(math.inf, f"broken: {type(error).__name__}: {error}")
 
 
-def _judged(case: Case, result: Result, scene: Scene, note: str) -> _Answer:
+def judged(case: Case, result: Result, scene: Scene, note: str) -> _Answer:
+    """How right a run is, and the sentence for it; ``note`` stands before it."""
     worst, right = _compared(case, result, scene)
     if result.status == 0:
         return _Answer(worst, note + right + _shortfall(result))

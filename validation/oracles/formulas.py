@@ -3,8 +3,7 @@
 from typing import NamedTuple
 
 from validation.oracles.arithmetic import Arithmetic, Number
-from validation.oracles.gas_pieces import gas_forces
-from validation.oracles.grid import merge
+from validation.oracles.gas_pieces import angle_pieces
 from validation.oracles.loads import LoadPiece, load_piece, speed_grid, time_grid
 from validation.oracles.machine import Machine
 from validation.oracles.taylor import GasPiece
@@ -23,14 +22,14 @@ class Formulas:
 
     def __init__(self, machine: Machine, arithmetic: Arithmetic) -> None:
         self.machine, self.arithmetic = machine, arithmetic
-        self._gas = gas_forces(machine, arithmetic)
-        self.angles = self._gas.grid if self._gas else merge([], arithmetic)
+        self._over_angle = angle_pieces(machine, arithmetic)
+        self.angles = self._over_angle.grid
         self.speeds = speed_grid(machine.loads, arithmetic)
         self.times = time_grid(machine.loads, arithmetic)
 
     def gas(self, place: Place) -> GasPiece | None:
         """The gas there; None without gas."""
-        return self._gas.piece(place.angle) if self._gas else None
+        return self._over_angle.piece(place.angle)
 
     def load(self, place: Place, time: Number) -> LoadPiece:
         """Its time counted from `time` [s]."""
@@ -39,5 +38,6 @@ class Formulas:
             time,
             self.times.inside(place.time),
             self.speeds.inside(place.speed),
+            self._over_angle.loads(place.angle),
             self.arithmetic,
         )

@@ -1,10 +1,11 @@
-"""The gas forces of all cylinders over the crank angle, between the knots of any of them."""
+"""What depends on the crank angle, the gas forces of all cylinders and the loads, between knots."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from validation.oracles.arithmetic import Arithmetic, Number
+from validation.oracles.arithmetic import Arithmetic, Array, Number
 from validation.oracles.grid import Grid, merge
 from validation.oracles.machine import Machine
 from validation.oracles.pressure import Pieces, pressure_pieces
@@ -12,20 +13,34 @@ from validation.oracles.taylor import GasPiece
 
 
 @dataclass(frozen=True)
-class GasForces:
-    """Cubic pieces of every cylinder on the common grid of their knots."""
+class AnglePieces:
+    """Cubic pieces of every cylinder and of the angle tables, on the common grid of their knots."""
 
     machine: Machine
     pieces: tuple[Pieces, ...]
+    tables: tuple[Pieces, ...]
     grid: Grid
     arithmetic: Arithmetic
 
-    def piece(self, index: int) -> GasPiece:
-        """The force of each cylinder between knots index and index + 1, a cubic in theta."""
+    def piece(self, index: int) -> GasPiece | None:
+        """The force of each cylinder between knots index and index + 1, a cubic in theta; None
+        without gas."""
+        if not self.pieces:
+            return None
+        phases = [phase for phase, _ in self.machine.cylinders]
+        force, origin = self._cubics(index, self.pieces, phases)
+        return GasPiece(force * self.arithmetic.number(self.machine.piston_area), origin)
+
+    def loads(self, index: int) -> tuple[Array, Array]:
+        """What each angle table gives there, alike, and the origins of its angle."""
+        return self._cubics(index, self.tables, [0] * len(self.tables))
+
+    def _cubics(
+        self, index: int, of_each: tuple[Pieces, ...], phases: Sequence[Number]
+    ) -> tuple[Array, Array]:
         inside = self.grid.inside(index)
-        number = self.arithmetic.number
-        rows, origins = [], []
-        for pieces, (phase, _) in zip(self.pieces, self.machine.cylinders, strict=True):
+        rows, origins = [self.arithmetic.zeros(0, 4)], [self.arithmetic.zeros(0)]
+        for pieces, phase in zip(of_each, phases, strict=True):
             angle = self.arithmetic.array([phase])
             row, beyond = pieces.locate(inside + angle)
             # The knot of this piece in theta, free of the rounding that `inside` carries.
@@ -33,18 +48,18 @@ class GasForces:
             turns = np.round(((inside - beyond - near) / pieces.period).astype(float))
             origins.append(near + self.arithmetic.array(turns.tolist()) * pieces.period)
             rows.append(pieces.coefficients[row])
-        force = np.concatenate(rows) * number(self.machine.piston_area)
-        return GasPiece(force, np.concatenate(origins))
+        return np.concatenate(rows), np.concatenate(origins)
 
 
-def gas_forces(machine: Machine, arithmetic: Arithmetic) -> GasForces | None:
-    """The gas forces of a machine; None without a pressure table."""
-    if machine.pressure is None:
-        return None
+def angle_pieces(machine: Machine, arithmetic: Arithmetic) -> AnglePieces:
+    """The pieces of a machine's pressures and angle tables."""
     of_each = tuple(pressure_pieces(pressure, arithmetic) for pressure in machine.pressures)
     knots: list[Number] = []
     period = arithmetic.whole_turns(machine.period)
-    for pieces, (phase, _) in zip(of_each, machine.cylinders, strict=True):
+    tables = tuple(pressure_pieces(table, arithmetic) for table in machine.loads.angle_tables)
+    phases = [phase for phase, _ in machine.cylinders[: len(of_each)]] + [0] * len(tables)
+    for pieces, phase in zip((*of_each, *tables), phases, strict=True):
         for k in range(round(float(period / pieces.period))):
             knots.extend(pieces.knots + k * pieces.period - arithmetic.number(phase))
-    return GasForces(machine, of_each, merge(knots, arithmetic, period), arithmetic)
+    grid = merge(knots, arithmetic, period if knots else None)
+    return AnglePieces(machine, of_each, tables, grid, arithmetic)

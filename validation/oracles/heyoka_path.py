@@ -43,7 +43,9 @@ Expression = Any
 
 
 def heyoka_path(machine: Machine, theta0: Number, omega0: Number) -> Path:
-    """The path from (theta0, omega0) [rad, rad/s] at t = 0."""
+    """The path from (theta0, omega0) [rad, rad/s] at t = 0, under loads without an angle table."""
+    if machine.loads.angle_tables:
+        raise ValueError("the compiled equations have no load over the angle")
     return Path(_Stepper(machine), theta0, omega0)
 
 

@@ -1,20 +1,24 @@
-"""The loads on the crank, piece by piece, as a polynomial in speed and time."""
+"""The loads on the crank, piece by piece, as a polynomial in speed, time and crank angle."""
 
 from dataclasses import dataclass
 
 from validation.oracles.arithmetic import Arithmetic, Array, Number
 from validation.oracles.grid import Grid, merge
 from validation.oracles.machine import Loads, LoadTable
+from validation.oracles.pressure import evaluate_pressure
 
 
 @dataclass(frozen=True)
 class LoadPiece:
-    """constant + per_speed omega + per_speed2 omega**2 + per_time (t - start of the step)."""
+    """constant + per_speed omega + per_speed2 omega**2 + per_time (t - start of the step) + what
+    the angle tables give, cubics (tables, 4) in theta - origin."""
 
     constant: Number
     per_speed: Number
     per_speed2: Number
     per_time: Number
+    cubics: Array
+    origin: Array
 
 
 def speed_grid(loads: Loads, arithmetic: Arithmetic) -> Grid:
@@ -30,9 +34,15 @@ def time_grid(loads: Loads, arithmetic: Arithmetic) -> Grid:
 
 
 def load_piece(
-    loads: Loads, time: Number, inside_time: Number, inside_speed: Number, arithmetic: Arithmetic
+    loads: Loads,
+    time: Number,
+    inside_time: Number,
+    inside_speed: Number,
+    over_angle: tuple[Array, Array],
+    arithmetic: Arithmetic,
 ) -> LoadPiece:
-    """The formula that holds at `inside_time` and `inside_speed`, its time counted from `time`."""
+    """The formula that holds at `inside_time` and `inside_speed`, its time counted from `time`, and
+    where the angle tables are these cubics in the angle from their origins."""
     number = arithmetic.number
     constant, per_time = number(loads.constant), number(0)
     per_speed, quadratic = -number(loads.viscous), number(loads.quadratic)
@@ -47,11 +57,15 @@ def load_piece(
         value, slope = _line(table, inside_speed, arithmetic)
         constant += value - slope * inside_speed
         per_speed += slope
-    return LoadPiece(constant, per_speed, quadratic if inside_speed < 0 else -quadratic, per_time)
+    quadratic = quadratic if inside_speed < 0 else -quadratic
+    return LoadPiece(constant, per_speed, quadratic, per_time, *over_angle)
 
 
-def torque_at(loads: Loads, time: Array, omega: Array, arithmetic: Arithmetic) -> Array:
-    """The torque at times [s] and speeds [rad/s], shape (n,); on a jump the value after it.
+def torque_at(
+    loads: Loads, time: Array, theta: Array, omega: Array, arithmetic: Arithmetic
+) -> Array:
+    """The torque at times [s], crank angles [rad] and speeds [rad/s], shape (n,); on a jump the
+    value after it.
 
     A time table goes beyond the last time.
     """
@@ -61,6 +75,8 @@ def torque_at(loads: Loads, time: Array, omega: Array, arithmetic: Arithmetic) -
     for tables, at in ((loads.time_tables, time), (loads.speed_tables, omega)):
         for table in tables:
             torque = torque + arithmetic.array([_line(table, x, arithmetic)[0] for x in at])
+    for turning in loads.angle_tables:
+        torque = torque + evaluate_pressure(turning, theta, arithmetic)
     return torque
 
 

@@ -72,8 +72,9 @@ class LoadTable:
 class Loads:
     """Torques on the crank, positive in the sense of +theta.
 
-    constant - viscous omega - quadratic omega |omega| + time tables + speed tables. A time table
-    must cover the run; a speed table holds its end values.
+    constant - viscous omega - quadratic omega |omega| + time tables + speed tables + angle tables.
+    A time table must cover the run; a speed table holds its end values; an angle table has torques
+    [N m] over the crank angle for pressures over the cycle angle.
     """
 
     constant: Number = 0.0
@@ -81,6 +82,7 @@ class Loads:
     quadratic: Number = 0.0
     time_tables: tuple[LoadTable, ...] = ()
     speed_tables: tuple[LoadTable, ...] = ()
+    angle_tables: tuple[PressureTable, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -122,8 +124,10 @@ class Machine:
 
     @property
     def period(self) -> Number:
-        """Crank angle [rad] after which all pressures come again; one turn without any."""
-        own = [pressure.period for pressure in self.pressures] or [2.0 * math.pi]
+        """Crank angle [rad] after which all pressures and angle tables come again; one turn without
+        any."""
+        all_of = (*self.pressures, *self.loads.angle_tables)
+        own = [each.period for each in all_of] or [2.0 * math.pi]
         if all(period == own[0] for period in own):
             return own[0]
         turns = (round(float(period) / (2.0 * math.pi)) for period in own)

@@ -103,7 +103,8 @@ def many_turns(machine: Machine, theta0: Number, omega0: Number, angles: Array) 
     ValueError : another load, or a crank that does not turn forwards
     """
     loads = machine.loads
-    if loads.viscous or loads.time_tables or loads.speed_tables or not omega0 > 0:
+    tables = (*loads.time_tables, *loads.speed_tables, *loads.angle_tables)
+    if loads.viscous or tables or not omega0 > 0:
         raise ValueError("the loads must be constant or quadratic, and the speed above 0")
     turning = Turning(machine)
     start, wanted = LONG.number(theta0), LONG.array(angles)

@@ -76,7 +76,7 @@ def _slopes(width: Array, chord: Array, kind: str) -> tuple[Array, Array]:
         slope = pchip_slopes(width, chord) if kind == "pchip" else _spline_slopes(width, chord)
         return slope, np.roll(slope, -1)
     slope, after = chord * 0, chord * 0
-    find = _pchip_slopes_between if kind == "pchip" else _spline_slopes_between
+    find = _pchip_slopes_between if kind == "pchip" else spline_slopes_between
     for k, jump in enumerate(jumps):
         next_jump = jumps[k + 1] if k + 1 < len(jumps) else jumps[0] + len(width)
         pieces = np.arange(jump + 1, next_jump) % len(width)
@@ -114,7 +114,7 @@ def _pchip_end(width: Array, chord: Array) -> Number:
     return 3 * near if near * far <= 0 and abs(slope) > abs(3 * near) else slope
 
 
-def _spline_slopes_between(width: Array, chord: Array) -> Array:
+def spline_slopes_between(width: Array, chord: Array) -> Array:
     """Slopes at the rows from one jump to the next, the two pieces at either end one cubic."""
     if len(chord) == 1:
         return np.array([chord[0], chord[0]])

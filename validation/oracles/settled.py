@@ -59,7 +59,7 @@ def settled_motion(
     ------
     ArithmeticError : the crank comes to a stop, or nothing converges
     """
-    if machine.loads.time_tables:
+    if machine.loads.time_tables or machine.loads.angle_tables:
         raise ValueError("nothing settles under a load that depends on time")
     sense = 1 if omega0 > 0 else -1
     turning, period = Turning(machine), LONG.whole_turns(period)

@@ -57,6 +57,7 @@ def motion_series(
     unknown = arithmetic.zeros(order, len(system.right))
     local = arithmetic.zeros(order, cylinders)  # theta - origin and its powers, for the gas
     square, cube = (arithmetic.zeros(order, cylinders) for _ in range(2))
+    turned, turned2, turned3 = (arithmetic.zeros(order, len(load.origin)) for _ in range(3))
 
     turn[0], speed[0] = angle, rate
     cosine[0], sine[0] = arithmetic.cos(angle), arithmetic.sin(angle)
@@ -80,6 +81,12 @@ def motion_series(
         np.add.at(right, system.turn_row, system.turning(cosine2[k], sine2[k]))
         torque = load.per_speed * speed[k, 0] + load.per_speed2 * speed2[k, 0]
         torque += load.constant if k == 0 else (load.per_time if k == 1 else 0)
+        turned[k] = turn[0, 0] - load.origin if k == 0 else turn[k, 0]
+        turned2[k] = _product(turned, turned, k)
+        turned3[k] = _product(turned, turned2, k)
+        per = load.cubics.T
+        torque += (per[1] * turned[k] + per[2] * turned2[k] + per[3] * turned3[k]).sum()
+        torque += per[0].sum() if k == 0 else 0
         right[system.given_row] += torque
         if gas is not None:
             local[k] = turn[0, 0] - gas.origin if k == 0 else turn[k, 0]

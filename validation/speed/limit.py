@@ -22,7 +22,7 @@ from crankmbs.work_precision.trace import Trace
 from validation.speed.job import Job, NotServed
 from validation.speed.reduced import parameters
 
-__all__ = ["dop853_contenders", "gauss_contenders"]
+__all__ = ["dop853_contenders", "gauss_contenders", "library"]
 
 Array = NDArray[np.float64]
 
@@ -76,7 +76,7 @@ def dop853_contenders(job: Job, reference: Trace) -> tuple[Contender, ...]:
 
 def _function(name: str, job: Job, method: Sequence[Array]) -> Callable[[float], Answer]:
     """A function of limit.c with everything but its setting filled in."""
-    function = getattr(_library(), name)
+    function = getattr(library(), name)
     machine = [parameters(job), job.knots, job.force]
     held = [np.ascontiguousarray(array, dtype=np.float64) for array in (*machine, *method)]
     pointers = [array.ctypes.data_as(ctypes.c_void_p) for array in held]  # they keep the arrays
@@ -96,7 +96,7 @@ def _function(name: str, job: Job, method: Sequence[Array]) -> Callable[[float],
 
 
 @cache
-def _library() -> ctypes.CDLL:
+def library() -> ctypes.CDLL:
     """limit.c, compiled and loaded."""
     names = (os.environ.get("CC", ""), "cc", "gcc", "clang")
     compiler = next((path for name in names if name and (path := shutil.which(name))), None)

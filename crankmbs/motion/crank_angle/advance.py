@@ -18,6 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from crankmbs.mechanics.friction import friction_torque
 from crankmbs.mechanics.inertia import inertia_alone, reduce
 from crankmbs.mechanics.torque import Branch, Course, branch_at, course_of
 from crankmbs.motion.base import State
@@ -25,6 +26,7 @@ from crankmbs.motion.crank_angle.firings import solve, solve_fired
 from crankmbs.motion.crank_angle.grid import Grid, Strip, largest_of_row
 from crankmbs.motion.crank_angle.kinks import what_misses
 from crankmbs.motion.crank_angle.periods import period_of
+from crankmbs.motion.crank_angle.rings import sign_changes_in
 from crankmbs.motion.crank_angle.solvers import Begin
 from crankmbs.motion.crank_angle.window import Window
 from crankmbs.motion.ending import Ending
@@ -41,7 +43,7 @@ _REACH = 1.0  # rad: what Newton's method can hold of loads that are functions, 
 _HAIR = 1e-6  # of a cell: as near its edge it is as exact as there
 _BEYOND = (_HAIR, 1e-4, 1e-2)  # of a cell: how far ahead a landing near a turn may really be
 _ROUNDS = 6  # of cutting cells at kinks
-_KEPT = 2  # whole periods at the end that are solved cell by cell when only the last is kept
+_KEPT = 2  # whole periods at the end that are solved cell by cell, at least, when not all are kept
 
 
 def is_fast(grid: Grid, state: State, branch: Branch, times: float) -> bool:
@@ -94,8 +96,8 @@ def advance(
         state, skipped = window.end, 0
         t_end = min(branch.t_end, plan.time_bound)
         goes_on = state.mode == mode and state.time < t_end and grid.train.law is None
-        if math.isfinite(plan.last) and goes_on and branch.is_affine_in_energy:
-            state, skipped = _skip(way._replace(state=state, t_end=t_end), branch)
+        if math.isfinite(plan.last) and goes_on and branch.is_affine_in_energy and not grid.drags:
+            state, skipped = _skip(way._replace(state=state, t_end=t_end), branch, plan.last)
 
 
 class _Way(NamedTuple):
@@ -117,7 +119,8 @@ def _stretch(way: _Way, branch: Branch) -> Window | None:
     course = course_of(way.grid.train.scene.torque, branch, way.state.time, way.state.mode.loads)
     if isinstance(course, Branch):
         return _solve(way, course)
-    window = _before_kink(way, branch, course) if branch.is_affine_in_energy else None
+    affine = branch.is_affine_in_energy and not way.grid.drags
+    window = _before_kink(way, branch, course) if affine else None
     return window or _solve(way, course) or _solve(way, branch)
 
 
@@ -157,7 +160,7 @@ def _landed(way: _Way, window: Window, t_end: float) -> tuple[Window | None, Win
     return None, window
 
 
-def _skip(way: _Way, branch: Branch) -> tuple[State, int]:
+def _skip(way: _Way, branch: Branch, last: float) -> tuple[State, int]:
     """Pass whole periods at once, all but the last ones; return the state after them and the
     number of cells passed."""
     grid, state, _, sense, bound, t_end, _ = way
@@ -177,12 +180,13 @@ def _skip(way: _Way, branch: Branch) -> tuple[State, int]:
 
     start = _enter(grid, state)[1]
     first = at(state.time, 0.0, start)
-    most = min(abs(bound - state.theta) / period, 1e15) // 1.0 - _KEPT
+    kept = max(_KEPT, math.ceil(last / period))
+    most = min(abs(bound - state.theta) / period, 1e15) // 1.0 - kept
     if first is None:
         return state, 0
     one = period_of(grid, first.strip, branch, sense)
     while most >= 1.0:
-        run = one.run(start, state.time, most, t_end, _KEPT)
+        run = one.run(start, state.time, most, t_end, kept)
         if run.periods == 0:
             break
         far = at(run.time, run.periods * period, run.energy)
@@ -199,6 +203,9 @@ def _enter(grid: Grid, state: State) -> tuple[Branch | None, float]:
     """The branch of the loads that the motion enters, and its kinetic energy [J]."""
     inertia, slope, torque = reduce(grid.train, state.theta, state.mode.shares)
     torque = torque + grid.outside(np.asarray(state.theta))
+    if grid.train.scene.friction is not None:
+        sense, shares = math.copysign(1.0, state.omega), state.mode.shares or None
+        torque = torque + friction_torque(grid.train, state.theta, state.omega, sense, shares)
     rest = float(torque - 0.5 * slope * state.omega**2)
     torques = grid.train.scene.torque
     branch = branch_at(torques, state[:3], rest, state.mode.loads)
@@ -224,9 +231,10 @@ def _solve(way: _Way, loads: Branch | Course) -> Window | None:
         if window is None:
             return None
         marks, missing, gained = what_misses(window, allowed)
-        if len(missing) == 0:
+        bends = sign_changes_in(window)
+        if len(missing) == 0 and len(bends) == 0:
             return window.with_more(gained) if gained.any() else window
-        strip = grid.cut(strip, state.theta, sense, marks)
+        strip = grid.cut(strip, state.theta, sense, np.append(marks, bends))
         window = _solved(way, loads, strip, t_end)
     return None
 
@@ -247,6 +255,8 @@ def _solved(way: _Way, loads: Branch | Course, strip: Strip, t_end: float) -> Wi
         for function in loads.functions:
             at_ends = strip.angles(state.theta, sense, grid.rule)[:, -1]
             outside = outside + function(time[1:], at_ends, sense / slowness[:, -1])
+        if strip.drags:
+            outside = outside - strip.drag[:, -1] * sense / slowness[:, -1]
         scale = grid.scale[strip.cell] + np.abs(outside)
         least = 0.5 * grid.least[strip.cell] / largest_of_row(slowness) ** 2
         good = np.minimum(least, np.minimum(edges[1:], edges[:-1])) > _SLOW * scale  # not of a NaN

@@ -31,7 +31,7 @@ def solve_functions(grid: Grid, strip: Strip, loads: Branch | Course, begin: Beg
     slowness = np.sqrt(0.5 * strip.inertia / energy)
     for _ in range(_NEWTON):
         omega = sense / slowness
-        slope = loads.slope(omega)
+        slope = loads.slope(omega) - strip.drag if strip.drags else loads.slope(omega)
         for function in loads.functions:
             slope = slope + function.slope(t, theta, omega)
         torque, rate = _torque(strip, loads, t, theta, omega), slope / (strip.inertia * omega)
@@ -51,6 +51,8 @@ def solve_functions(grid: Grid, strip: Strip, loads: Branch | Course, begin: Beg
 def _torque(strip: Strip, loads: Branch | Course, t: Array, theta: Array, omega: Array) -> Array:
     """Torque of all at the nodes [N m]."""
     torque = strip.torque + loads(t, omega)
+    if strip.drags:
+        torque = torque - strip.drag * omega
     for function in loads.functions:
         torque = torque + function(t, theta, omega)
     return torque

@@ -8,23 +8,24 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crankmbs.mechanics.inertia import fired_torque, reduce
-from crankmbs.mechanics.torque import knots_over_angle, over_angle
-from crankmbs.mechanics.train import CrankTrain, crank_angle_knots
+from crankmbs.mechanics.friction import rubbing
+from crankmbs.mechanics.inertia import fired_torque, inertia_alone, reduce
+from crankmbs.mechanics.torque import over_angle
+from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.windows import Phases
+from crankmbs.motion.crank_angle.edges import WIDEST, edges_of
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.collocation import Rule, gauss
 from crankmbs.numerics.cycle import Cycle
-from crankmbs.scene.units import DEGREE
 
 __all__ = ["Grid", "Strip", "grid_of", "largest_of_row"]
 
 
-_WIDEST = 6.0 * DEGREE
 _SLIVER = 1e-12  # rad: a start this close to an edge is on it
 
 
@@ -34,18 +35,35 @@ class Strip:
 
     cell : shape (m,), their numbers in the grid; width : shape (m,) [rad]
     turned : shape (m + 1,) [rad], angle from the beginning to every edge
-    inertia, torque : shape (m, s), J [kg m2] and the torque over the angle [N m], of gas, gravity
-        and loads, at the nodes
+    against : the share of the gas's torque that its rings oppose, with the sense of rotation
+    inertia, torque : shape (m, s), J [kg m2] and the torque over the angle [N m], of gas, gravity,
+        loads and friction, at the nodes
     combustion : shape (m, s, cylinders) [N m], what firings of share 1 add to the torque; no
         cylinders without fuel
+    rubbed : shape (m, s, cylinders) [N m], with fuel, of the gas without combustion the torque
+        that presses rings; no cylinders where none are pressed
+    drag : shape (m, s) [N m s/rad], of viscous friction; (m, 0) without
     """
 
     cell: NDArray[np.intp]
     width: Array
     turned: Array
+    against: float
     inertia: Array
     torque: Array
     combustion: Array
+    rubbed: Array
+    drag: Array
+
+    @property
+    def drags(self) -> bool:
+        """Whether friction depends on angle and speed together."""
+        return bool(self.drag.shape[-1])
+
+    @property
+    def of_gas(self) -> tuple[Array, Array, float]:
+        """What firings add to the torque: combustion, rubbed and against."""
+        return self.combustion, self.rubbed, self.against
 
     def angles(self, theta: float, sense: float, rule: Rule) -> Array:
         """Crank angles [rad] of the nodes of a rule, shape (m, s), where it begins at one."""
@@ -58,17 +76,22 @@ class Strip:
 
     def part(self, low: int, high: int) -> Strip:
         """The cells from one number to another; edges are still counted from the beginning."""
-        of_cells = (self.inertia[low:high], self.torque[low:high], self.combustion[low:high])
+        tables = (self.inertia, self.torque, self.combustion, self.rubbed, self.drag)
+        of_cells = (table[low:high] for table in tables)
         turned = self.turned[low : high + 1]
-        return Strip(self.cell[low:high], self.width[low:high], turned, *of_cells)
+        return Strip(self.cell[low:high], self.width[low:high], turned, self.against, *of_cells)
 
-    def fired(self, shares: Array) -> Strip:
-        """The torque with these shares of the combustion, of each cell or of all, shape
-        (..., cylinders)."""
-        if self.combustion.shape[-1] == 0:
-            return self
-        more = (self.combustion @ shares[..., None])[..., 0]
-        return replace(self, torque=self.torque + more)
+
+class _Tables(NamedTuple):
+    """At the nodes of every cell: J, torque over the angle without friction, what the combustion of
+    each cylinder adds; friction against either sense of rotation; rubbed and drag of `Strip`."""
+
+    inertia: Array
+    torque: Array
+    combustion: Array
+    friction: Array
+    rubbed: Array
+    drag: Array
 
 
 @dataclass(frozen=True)
@@ -94,6 +117,12 @@ class Grid:
             self.known[phases] = replace(self, phases=phases)
         return self.known[phases]
 
+    @property
+    def drags(self) -> bool:
+        """Whether friction depends on angle and speed together."""
+        friction = self.train.scene.friction
+        return friction is not None and friction.viscous > 0.0
+
     @cached_property
     def _has_loads(self) -> bool:
         """Whether loads depend on the angle."""
@@ -104,32 +133,42 @@ class Grid:
         """What loads that act give over the angle."""
         return over_angle(self.train.scene, self.phases)
 
+    @cached_property
+    def at_decisions(self) -> Array:
+        """J [kg m2] at the crank angles of one period at which the fuel is decided."""
+        law = self.train.law
+        return inertia_alone(self.train.scene, np.array(law.angles if law else ()))
+
     def outside(self, theta: Array) -> Array | float:
         """Torque of loads over the angle [N m], at angles [rad]."""
         return 0.0 if self.over_angle is None else self.over_angle(theta)
 
     @cached_property
-    def tables(self) -> tuple[Array, Array, Array]:
-        """J and torque over the angle at the nodes of every cell, shape (n, s) each; what the
-        combustion of each cylinder adds, shape (n, s, cylinders)."""
+    def tables(self) -> _Tables:
+        """J and torques over the angle at the nodes of every cell, shape (n, s) each, or
+        (n, s, cylinders)."""
         return self._tabulate(self.edges[:-1], np.diff(self.edges))
 
     @cached_property
     def scale(self) -> Array:
         """Largest torque over the angle in and around each cell, shape (n,) [N m]."""
-        _, torque, combustion = self.tables
+        tables, scene = self.tables, self.train.scene
         share = self.train.law.most if self.train.law else 0.0
-        torque = np.abs(torque) + share * np.abs(combustion).sum(axis=-1)
+        pressing = scene.friction.ring_pressure if scene.friction else 0.0
+        torque = np.abs(tables.torque)
+        torque = torque + (1.0 + pressing) * share * np.abs(tables.combustion).sum(axis=-1)
+        if scene.friction is not None:
+            torque += tables.friction + pressing * np.abs(tables.rubbed).sum(axis=-1)
         most = np.append(largest_of_row(torque), 0.0)
         middle = 0.5 * (self.edges[1:] + self.edges[:-1])
-        around = np.add.outer(middle, [-_WIDEST, _WIDEST])
+        around = np.add.outer(middle, [-WIDEST, WIDEST])
         from_to = np.searchsorted(middle, around.ravel())
         return np.asarray(np.maximum.reduceat(most, from_to)[::2])
 
     @cached_property
     def least(self) -> Array:
         """Smallest J in each cell, shape (n,) [kg m2]."""
-        return -largest_of_row(-self.tables[0])
+        return -largest_of_row(-self.tables.inertia)
 
     @cached_property
     def finer(self) -> Grid:
@@ -193,64 +232,51 @@ class Grid:
         self, theta: float, sense: float, cell: NDArray[np.intp], width: Array, turned: Array
     ) -> Strip:
         """The strip of these cells; what is a part of a cell is tabulated anew."""
-        inertia, torque, combustion = (table.take(cell, axis=0) for table in self.tables)
+        tables = [table.take(cell, axis=0) for table in self.tables]
         if sense < 0.0:
-            inertia, torque = inertia[:, ::-1].copy(), torque[:, ::-1].copy()
-            combustion = combustion[:, ::-1].copy()
+            tables = [table[:, ::-1].copy() for table in tables]
         parts = np.flatnonzero(width != np.diff(self.edges)[cell])
         if len(parts):
             period = float(self.edges[-1])
             local = theta - math.floor((theta + sense * _SLIVER) / period) * period
             start = local + sense * turned[parts]
             anew = self._tabulate(start, sense * width[parts])
-            inertia[parts], torque[parts], combustion[parts] = anew
-        return Strip(cell, width, turned, inertia, torque, combustion)
+            for table, part in zip(tables, anew, strict=True):
+                table[parts] = part
+        inertia, torque, combustion, friction, *others = tables
+        against = 0.0
+        if self.train.scene.friction is not None:
+            against = sense * self.train.scene.friction.ring_pressure
+            torque -= sense * friction
+        return Strip(cell, width, turned, against, inertia, torque, combustion, *others)
 
-    def _tabulate(self, start: Array, width: Array) -> tuple[Array, Array, Array]:
+    def _tabulate(self, start: Array, width: Array) -> _Tables:
         theta = start[:, None] + width[:, None] * self.rule.nodes
         found = reduce(self.train, theta)
         torque = np.asarray(found.torque + self.outside(theta))
-        return found.inertia, torque, fired_torque(self.train, theta)
+        return _Tables(found.inertia, torque, fired_torque(self.train, theta), *self._rub(theta))
+
+    def _rub(self, theta: Array) -> tuple[Array, Array, Array]:
+        """What of `_Tables` comes from friction, at angles of shape (m, s)."""
+        friction, empty = self.train.scene.friction, np.empty((*theta.shape, 0))
+        nothing = np.empty((len(theta), 0))
+        if friction is None:
+            return nothing, empty, nothing
+        found = rubbing(self.train, theta)
+        drag = found.drag if friction.viscous > 0.0 else nothing
+        if friction.ring_pressure > 0.0 and self.train.combustion is not None:
+            return found.rings, found.gas, drag
+        return found.coulomb(), empty, drag
 
 
-def grid_of(train: CrankTrain, rule: Rule, widest: float = _WIDEST) -> Grid:
-    """The coarsest grid of a crank train: edges at the knots of the pressure and of the loads, at
-    the decisions on the fuel, and around folds that a rod just escapes, no cell wider than
+def grid_of(train: CrankTrain, rule: Rule, widest: float = WIDEST) -> Grid:
+    """The coarsest grid of a crank train: with the edges that it must have, no cell wider than
     ``widest`` [rad]."""
-    knots = [crank_angle_knots(train), knots_over_angle(train), _near_folds(train)]
-    marks = np.unique(np.concatenate([[0.0], *knots, _decisions(train), [train.period]]))
+    marks = np.unique(np.concatenate([[0.0], edges_of(train), [train.period]]))
     marks = marks[np.append(True, np.diff(marks) > _SLIVER)]
     marks[-1] = train.period
     grid = Grid(train, marks, rule)
     return grid.split(np.maximum(np.ceil(np.diff(marks) / widest - 1e-9), 1).astype(np.intp))
-
-
-def _decisions(train: CrankTrain) -> Array:
-    """Crank angles [rad] in one period at which the fuel is decided."""
-    if train.law is None:
-        return np.empty(0)
-    own = train.scene.period
-    turns = own * np.arange(round(train.period / own))
-    return np.asarray(np.add.outer(turns, train.law.angles).ravel())
-
-
-def _near_folds(train: CrankTrain) -> Array:
-    """Crank angles [rad] around those where a rod is hardly longer than it must be, ever farther.
-
-    The rod swings over within ``width`` of there, where its formulas have their singularity beside
-    the real angles: in wider cells two rules err alike, if they see it at all.
-    """
-    scene, period = train.scene, train.period
-    radius, spare = scene.crank.radius, scene.rod.length - scene.crank.radius
-    marks = [np.empty(0)]
-    for fold, gap in ((0.5, spare + scene.piston.offset), (-0.5, spare - scene.piston.offset)):
-        width = math.sqrt(2.0 * max(gap, 0.0) / radius)
-        if 0.0 < width < _WIDEST:
-            beside = width * 2.0 ** np.arange(math.ceil(math.log2(_WIDEST / width)))
-            around = fold * math.pi + np.concatenate([-beside, [0.0], beside])
-            turns = 2.0 * math.pi * np.arange(round(period / (2.0 * math.pi)))
-            marks += [np.add.outer(turns - c.phase, around).ravel() for c in scene.cylinders]
-    return np.asarray(np.mod(np.concatenate(marks), period))
 
 
 def largest_of_row(table: Array) -> Array:

@@ -23,7 +23,7 @@ from crankmbs.numerics.arrays import Array, Index
 __all__ = ["Missing", "what_misses"]
 
 _WORST = 0.31  # over s^2: what s nodes miss of a kink of slope 1; (pi / 2)^2 / 8, for many nodes
-_HALVES = 20
+_HALVES = 10  # a mark a thousandth of the stretch off still lies between the two kinks
 _NEWTON = 5
 _MENDED = 50.0  # times what may be missed: kinks whose errors, known to a hundredth, are added
 _CALM = 0.01  # of a cell's energy, by the slopes of its loads: what a missed kink feeds back

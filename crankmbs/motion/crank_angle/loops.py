@@ -13,7 +13,7 @@ Coefficients = tuple[float, float, float, float]  # c0, ct, c1, c2 of `crankmbs.
 _SETTLED, _GOOD = 1e-14, 1e-11  # relative change of the energy in Newton's last step
 
 
-__all__ = ["affine", "carried", "newton"]
+__all__ = ["affine", "fire", "fired", "newton"]
 
 Loads = tuple[Array, Array, Array, Array]  # the tables of a course of `crankmbs.mechanics.torque`
 _MOST_NEWTON = 20
@@ -89,7 +89,7 @@ def newton(
     bounds: tuple[float, float, float],
     start: tuple[float, float, float],
     rule: tuple[Array, Array],
-    cells: tuple[Array, Array, Array],
+    cells: tuple[Array, Array, Array, Array],
     edges: Array,
     time: Array,
     torque: Array,
@@ -98,7 +98,8 @@ def newton(
     """Solve cells by Newton's method, to the end of the loads' course; fill what follows ``cells``.
 
     loads : their tables; bounds : their end in time, lowest and highest speed; start : energy, time
-    and sense; rule : matrix and weights; cells : width, and inertia and torque at the nodes
+    and sense; rule : matrix and weights; cells : width, and inertia, torque and, if there is any,
+    drag at the nodes
 
     Returns
     -------
@@ -107,7 +108,7 @@ def newton(
     t_end, low, high = bounds
     begin, t, sense = start
     matrix, weights = rule
-    width, inertia, rest = cells
+    width, inertia, rest, drag = cells
     energy, room = np.empty(len(weights)), np.empty((len(weights) + 1, len(weights)))
     steps = np.empty(matrix.shape)
     row = np.zeros(2, np.intp)
@@ -120,7 +121,11 @@ def newton(
             for i in range(len(weights)):
                 steps[j, i] = width[k] * matrix[j, i]
                 energy[j] += sense * steps[j, i] * (rest[k, i] + load)
-        at, of_angle, out = (begin, t, sense), (inertia[k], rest[k]), (torque[k], slowness[k])
+        at, of_angle, out = (
+            (begin, t, sense),
+            (inertia[k], rest[k], drag[k]),
+            (torque[k], slowness[k]),
+        )
         if not _solve(energy, room, at, loads, row, steps, of_angle, out):
             return k
         inside, work, spent = True, 0.0, 0.0
@@ -148,16 +153,18 @@ def _solve(
     loads: Loads,
     row: Index,
     steps: Array,
-    of_angle: tuple[Array, Array],
+    of_angle: tuple[Array, Array, Array],
     out: tuple[Array, Array],
 ) -> bool:
     """Newton's method in one cell, from the guess in ``energy``; whether it converges. Where the
     loads hardly change with the speed it takes them as constant in each step.
 
-    row : numbers of the last rows of the loads, kept from cell to cell; of_angle : inertia and
-    torque at the nodes; out : torque and slowness, filled
+    row : numbers of the last rows of the loads, kept from cell to cell; of_angle : inertia,
+    torque and drag at the nodes; out : torque and slowness, filled
     """
-    (times, in_time, speeds, in_speed), (inertia, rest), (torque, slowness) = loads, of_angle, out
+    (times, in_time, speeds, in_speed), (torque, slowness) = loads, out
+    inertia, rest, drag = of_angle
+    drags = len(drag) > 0
     begin, t, sense = start
     stages = len(energy)
     new, system = room[0].reshape(stages, 1), room[1:]
@@ -177,9 +184,13 @@ def _solve(
                 stiffness += abs(steps[stages - 1, j] * in_time[f, 1] * (at - t) / energy[j])
             g = _row(speeds, omega, g)
             slope = in_speed[g, 1] + 2.0 * in_speed[g, 2] * omega
+            if drags:
+                slope -= drag[j]
             stiffness += abs(steps[stages - 1, j] * slope / (inertia[j] * omega))
             torque[j] = rest[j] + in_time[f, 0] + in_time[f, 1] * at
             torque[j] += in_speed[g, 0] + (in_speed[g, 1] + in_speed[g, 2] * omega) * omega
+            if drags:
+                torque[j] -= drag[j] * omega
         row[0], row[1] = f, g
         if n > 0:
             left = change * max(stiffness, last, change / before) if weak else change
@@ -193,6 +204,8 @@ def _solve(
                 omega = sense / slowness[j]
                 g = _row(speeds, omega, g)
                 rate = sense * (in_speed[g, 1] + 2.0 * in_speed[g, 2] * omega)
+                if drags:
+                    rate -= sense * drag[j]
                 rate /= inertia[j] * omega
                 push -= rate * energy[j]
             for i in range(stages):
@@ -209,11 +222,102 @@ def _solve(
 
 
 @kernel
-def carried(growth: Array, gained: Array, more: Array) -> None:
-    """Energy more at every edge, filled, of which cells grow by a part and gain a further one."""
-    more[0] = 0.0
-    for k in range(len(gained)):
-        more[k + 1] = more[k] + (growth[k] * more[k] + gained[k])
+def fired(
+    affinely: bool,
+    loads: Loads,
+    bounds: tuple[float, float, float],
+    start: tuple[float, float, float],
+    rule: tuple[Array, Array],
+    cells: tuple[Array, Array, Array, Array],
+    of_gas: tuple[Array, Array, float],
+    decisions: tuple[Index, Array, Array, Array],
+    law: tuple[float, ...],
+    decided: tuple[Array, Array],
+    solved: tuple[Array, Array, Array, Array],
+) -> tuple[int, int]:
+    """Solve cells as `affine` or `newton` do, from decision to decision on the fuel; count both.
+
+    cells : width, and inertia, torque and, if there is any, drag at the nodes; the torque gets what
+    is fired; of_gas : as `fire` takes it
+    decisions : the cell before which each falls, one more than those; crank angle and inertia
+    there; what is left of the cylinders' shares, NaN where they do not decide
+    law : as `crankmbs.mechanics.firing.FuelLaw.numbers` gives it
+    decided : time, angle, integral, speed where the fuel set in or NaN, and 1 where it is over; and
+    the shares; of the last decision and, filled, of the next ones
+    solved : edges, time, torque and slowness, filled
+    """
+    (width, inertia, rest, drag), (edges, time, torque, slowness) = cells, solved
+    combustion, rubbed, against = of_gas
+    (at, theta, there, parts), (kept, shares) = decisions, decided
+    t_end, sense, n, k = bounds[0], start[2], 0, 0
+    edges[0], time[0] = start[0], start[1]
+    while k < len(width):
+        if at[n] <= k:
+            omega = sense * math.sqrt(2.0 * edges[k] / there[n])
+            share = _decide(law, (time[k], theta[n], omega), kept[n], kept[n + 1])
+            for i in range(shares.shape[1]):
+                decides = parts[n, i] == parts[n, i]
+                shares[n + 1, i] = share * parts[n, i] if decides else shares[n, i]
+            n += 1
+            continue
+        m = min(at[n], len(width))
+        push, h, inside, stretch = rest[k:m], width[k:m], inertia[k:m], edges[k : m + 1]
+        fire(push, combustion[k:m], rubbed[k:m], against, shares[n])
+        out = stretch, time[k : m + 1], torque[k:m], slowness[k:m]
+        if affinely:
+            s, begin = len(rule[1]), (edges[k], time[k], t_end)
+            of_loads = (sense * h, push + loads[1][0, 0], 2.0 * loads[3][0, 2] / inside, inside)
+            maps = (np.empty((m - k, s)), np.empty((m - k, s)), np.empty(m - k), np.empty(m - k))
+            found = affine(
+                np.arange(m - k), of_loads, maps, np.empty((s, s + 2)), rule, begin, h, *out
+            )
+        else:
+            now = (edges[k], time[k], sense)
+            found = newton(loads, bounds, now, rule, (h, inside, push, drag[k:m]), *out)
+        k += found
+        if k < m or not edges[k] > 0.0 or time[k] >= t_end:
+            break
+    return k, n
+
+
+@kernel
+def fire(torque: Array, combustion: Array, rubbed: Array, against: float, shares: Array) -> None:
+    """Add to the torque at the nodes that of the combustion of each cylinder with these shares,
+    and of the rings that the gas presses, where it does.
+
+    combustion, rubbed, against : of `crankmbs.motion.crank_angle.grid.Strip`
+    """
+    for k in range(len(torque)):
+        for j in range(torque.shape[1]):
+            more = 0.0
+            for i in range(len(shares)):
+                more += combustion[k, j, i] * shares[i]
+            for i in range(rubbed.shape[2]):
+                more -= against * abs(rubbed[k, j, i] + combustion[k, j, i] * shares[i])
+            torque[k, j] += more
+
+
+@kernel
+def _decide(
+    law: tuple[float, ...], now: tuple[float, float, float], before: Array, after: Array
+) -> float:
+    """The share decided at a time, crank angle and speed, as by `crankmbs.mechanics.firing`."""
+    speed, kp, ki, least, most, since, until, from_speed, until_speed, at_start = law
+    (time, theta, omega), (last, turned, integral, set_in, over) = now, before
+    spent = time - last
+    error = speed - ((theta - turned) / spent if spent > 0.0 else omega)
+    more = integral + ki * error * spent
+    wanted = kp * error + more
+    share = min(max(wanted, least), most)
+    if (wanted > most and error > 0.0) or (wanted < least and error < 0.0):
+        more = integral
+    if time >= until or (set_in - until_speed) * (omega - until_speed) <= 0.0:
+        over = 1.0
+    met = from_speed != from_speed or (at_start - from_speed) * (omega - from_speed) <= 0.0
+    if set_in != set_in and met and time >= since:
+        set_in = omega
+    after[0], after[1], after[2], after[3], after[4] = time, theta, more, set_in, over
+    return share if set_in == set_in and over == 0.0 else 0.0
 
 
 @kernel

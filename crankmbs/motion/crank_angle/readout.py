@@ -13,7 +13,7 @@ from crankmbs.numerics.kernels import kernel
 Coefficients = tuple[float, float, float, float]  # c0, ct, c1, c2 of `crankmbs.mechanics.torque`
 
 
-__all__ = ["motion", "read"]
+__all__ = ["carried", "motion", "read"]
 
 Solved = tuple[Array, Array, Array, Array, Array, Array]  # as `read` unpacks them
 _MOST_NEWTON = 100
@@ -120,3 +120,11 @@ def motion(
         load = c0 + ct * time[i] + (c1 + c2 * w) * w
         omega[i], outside[i] = w, load
         alpha[i] = (torque[k] + load - 0.5 * slope[k] * w * w) / inertia[k]
+
+
+@kernel
+def carried(growth: Array, gained: Array, more: Array) -> None:
+    """Energy more at every edge, filled, of which cells grow by a part and gain a further one."""
+    more[0] = 0.0
+    for k in range(len(gained)):
+        more[k + 1] = more[k] + (growth[k] * more[k] + gained[k])

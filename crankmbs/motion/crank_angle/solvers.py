@@ -49,7 +49,10 @@ class Cells(NamedTuple):
 def solve_affine(grid: Grid, strip: Strip, branch: Branch, begin: Begin) -> Cells:
     """dE/du = sense (T + c0) + 2 sense c2 E / J: an affine map per cell, the same every period."""
     m, n = len(strip.width), len(grid.edges) - 1
-    once = min(m - 1, n + 1)  # the first cell may be a part; then one period, then the last cell
+    alike = grid.train.law is None  # whose shares differ from period to period
+    once = (
+        min(m - 1, n + 1) if alike else m - 1
+    )  # the first cell may be a part; then one period, then the last cell
     which = np.append(np.arange(once), m - 1)
     again = np.append(np.arange(m - 1), once)
     again[once:-1] = 1 + (again[once:-1] - 1) % n
@@ -67,6 +70,6 @@ def solve_newton(grid: Grid, strip: Strip, loads: Branch | Course, begin: Begin)
     sense, start, t0, t_end, _ = begin
     cells = Cells.empty(strip)
     bounds = (t_end, loads.omega_low, loads.omega_high)
-    tables = (strip.width, strip.inertia, strip.torque)
+    tables = (strip.width, strip.inertia, strip.torque, strip.drag)
     at, gauss = (start, t0, sense), (grid.rule.matrix, grid.rule.weights)
     return cells.first(loops.newton(loads.tables, bounds, at, gauss, tables, *cells))

@@ -9,13 +9,14 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from crankmbs.mechanics.friction import friction_forces, friction_torque
 from crankmbs.mechanics.inertia import fired_torque, inertia_alone, reduce
 from crankmbs.mechanics.torque import Branch, Course
-from crankmbs.motion.base import NOWHERE, Samples, State
+from crankmbs.motion.base import NOWHERE, Nodes, Points, Samples, State
 from crankmbs.motion.crank_angle import loops, readout
 from crankmbs.motion.crank_angle.grid import Grid, Strip, largest_of_row
 from crankmbs.motion.mode import Mode, decided
-from crankmbs.motion.plan import Plan
+from crankmbs.motion.plan import Wanted
 from crankmbs.numerics.arrays import Array, Index
 from crankmbs.numerics.periodic import one_period
 from crankmbs.numerics.roots import first_above
@@ -49,7 +50,18 @@ class Window:
     skipped: int = 0
     modes: tuple[tuple[int, Mode], ...] = ()
 
-    def sample(self, plan: Plan) -> Samples:
+    def nodes(self) -> Nodes:
+        """The whole cells, and the nodes of the collocation."""
+        m, rule = self.stop[0] + (self.stop[1] == 1.0), self.grid.rule
+        strip = self.strip.first(m)
+        width, slowness = strip.width[:, None], self.slowness[:m]
+        time = self.time[:m, None] + width * (slowness @ rule.matrix.T)
+        theta = strip.angles(self.begin.theta, self.sense, rule)
+        turned = self.sense * width * rule.weights
+        speeds = self.speeds_at(np.arange(m + 1))
+        return Nodes(self.time[: m + 1], speeds, Points(time, theta, self.sense / slowness, turned))
+
+    def sample(self, plan: Wanted) -> Samples:
         """The samples of the plan after the beginning, up to the end and with it."""
         if plan.in_time:
             k, x, t, energy = self._read(plan.between(self.begin.time, self.end.time), in_time=True)
@@ -91,12 +103,28 @@ class Window:
         mode = decided(self.grid.train, last, time, theta, omega)
         return State(time, theta, omega, residual, mode)
 
+    @property
+    def decisions(self) -> tuple[State, ...]:
+        """The states inside at which the fuel is decided, each with the mode after."""
+        if len(self.modes) < 2:
+            return ()
+        k = np.array([cell for cell, _ in self.modes[1:]])
+        speeds, times = self.speeds_at(k).tolist(), self.time[k].tolist()
+        before = (mode.high if self.sense > 0.0 else mode.low for _, mode in self.modes)
+        after = (mode for _, mode in self.modes[1:])
+        found = zip(times, before, speeds, after, strict=False)
+        return tuple(State(t, angle, speed, math.nan, mode) for t, angle, speed, mode in found)
+
     @cached_property
     def errors(self) -> tuple[Array, Array]:
         """Errors of the energy [J] and the time [s] gained in each cell, shape (m, s + 3) each:
         what a finer Gauss rule along the solution gives, at its nodes and at the cell's end."""
         rule, finer = self.grid.rule, self.grid.finer.rule
-        strip = self.grid.finer.same(self.strip, self.begin.theta, self.sense).fired(self.shares)
+        strip = self.grid.finer.same(self.strip, self.begin.theta, self.sense)
+        torque = strip.torque.copy()
+        ends = [*(k for k, _ in self.modes[1:]), len(torque)]
+        for (k, mode), end in zip(self.modes, ends, strict=False):
+            loops.fire(torque[k:end], *strip.part(k, end).of_gas, np.array(mode.shares))
         inside = rule.integrals(finer.nodes).T
         to_nodes = np.vstack([finer.matrix, finer.weights]).T
         own = np.column_stack([inside, rule.weights])
@@ -105,7 +133,9 @@ class Window:
         t = self.time[:-1, None] + width * (self.slowness @ inside)
         with np.errstate(divide="ignore"):
             slowness = np.sqrt(0.5 * strip.inertia / np.maximum(energy, 0.0))
-            torque = strip.torque + self.branch(t, self.sense / slowness)
+            torque += self.branch(t, self.sense / slowness)
+            if strip.drags:
+                torque -= strip.drag * self.sense / slowness
             theta = strip.angles(self.begin.theta, self.sense, finer)
             for function in self.branch.functions:
                 torque = torque + function(t, theta, self.sense / slowness)
@@ -163,15 +193,19 @@ class Window:
     @cached_property
     def shares(self) -> Array:
         """Shares of the combustion in each cell, shape (m, cylinders); without fuel (m, 0)."""
-        shares = np.empty((len(self.torque), len(self.modes[0][1].shares) if self.modes else 0))
-        for k, mode in self.modes:
-            shares[k:] = mode.shares
-        return shares
+        if not self.modes:
+            return np.empty((len(self.torque), 0))
+        begins = [k for k, _ in self.modes]
+        cells = np.diff([*begins, len(self.torque)])
+        return np.repeat(np.array([mode.shares for _, mode in self.modes]), cells, axis=0)
 
     def rate(self, which: NDArray[np.bool_]) -> Array:
         """dQ/dE [1/rad] at the nodes of some cells."""
         omega = self.sense / self.slowness[which]
-        return self.branch.slope(omega) / (self.strip.inertia[which] * omega)
+        slope = self.branch.slope(omega)
+        if self.strip.drags:
+            slope = slope - self.strip.drag[which]
+        return slope / (self.strip.inertia[which] * omega)
 
     def with_more(self, gained: Array) -> Window:
         """With so much more energy [J] gained in each cell, little enough for what follows from it
@@ -179,7 +213,7 @@ class Window:
         width, weights = self.sense * self.strip.width, self.grid.rule.weights
         rate = self.rate(np.ones(len(width), dtype=np.bool_))
         more = np.empty_like(self.energy)
-        loops.carried(width * (rate @ weights), gained, more)
+        readout.carried(width * (rate @ weights), gained, more)
         before = more[:-1, None]
         torque = self.torque + rate * before + (gained / width)[:, None]
         faster = self.slowness * (self.slowness**2 / self.strip.inertia * before)
@@ -251,14 +285,15 @@ class Window:
         inertia, slope, torque = reduce(self.grid.train, once)
         over_angle = np.zeros_like(torque) + self.grid.outside(once)
         torque = torque + over_angle
-        fuel = {}
+        own = {}
         if self.modes:
-            fuel = {"fuel": self.shares[k]}
-            more = fired_torque(self.grid.train, once)[which] * fuel["fuel"]
+            own = {"fuel": self.shares[k]}
+            more = fired_torque(self.grid.train, once)[which] * own["fuel"]
             inertia, slope, torque = inertia[which], slope[which], torque[which] + more.sum(axis=1)
             over_angle, which = over_angle[which], np.arange(len(theta))
         of_angle = (inertia, slope, torque)  # bare: numba's cache must not name a class
-        if isinstance(self.branch, Branch) and not self.branch.functions:
+        rubs = self.grid.train.scene.friction is not None
+        if isinstance(self.branch, Branch) and not self.branch.functions and not rubs:
             omega, outside, alpha = np.empty((3, len(theta)))
             loads = self.branch.coefficients
             readout.motion(which, of_angle, self.sense, loads, t, energy, omega, outside, alpha)
@@ -268,10 +303,16 @@ class Window:
             outside = self.branch(t, omega)
             for function in self.branch.functions:
                 outside = outside + function(t, theta, omega)
+            if rubs:
+                given = own.get("fuel")
+                torque = torque + friction_torque(self.grid.train, theta, omega, self.sense, given)
+                slides = np.full_like(omega, self.sense)
+                forces = friction_forces(self.grid.train, theta, omega, given, slides)
+                own["friction_force"] = forces
             alpha = (torque + outside - 0.5 * slope * omega**2) / inertia
         residual = self.begin.residual - self.missed[k]
         outside = outside + over_angle[which]
-        return Samples(t, theta, omega, alpha, residual, {"external_torque": outside, **fuel})
+        return Samples(t, theta, omega, alpha, residual, {"external_torque": outside, **own})
 
 
 def _exact(landed: float, computed: Array) -> Array:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Generator
+from collections.abc import Callable, Generator
 
 import numpy as np
 
@@ -12,12 +12,13 @@ from crankmbs.motion.base import Piece, Samples, State
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.plan import Plan
 
-__all__ = ["Passage", "Pieces"]
+__all__ = ["Passage", "Pieces", "Watch"]
 
 _VAIN = 20  # as many reversals that reach no farther, and the end is not coming
 _SAMPLE = 200  # evaluations as costly as a sample of a swing
 
 Pieces = Generator[Piece, None, Ending | None]
+Watch = Callable[[Piece], None]
 
 
 class Passage:
@@ -25,10 +26,13 @@ class Passage:
 
     can_swing : whether a swing that reaches no farther is known to go on so for ever
     left : evaluations over time that are still allowed
+    watch : is shown every piece
     """
 
-    def __init__(self, plan: Plan, first: Samples, *, can_swing: bool, allowed: int) -> None:
-        self._plan, self._can_swing, self.left = plan, can_swing, allowed
+    def __init__(
+        self, plan: Plan, first: Samples, *, can_swing: bool, allowed: int, watch: Watch | None
+    ) -> None:
+        self._plan, self._can_swing, self.left, self._watch = plan, can_swing, allowed, watch
         self._farthest, self._since = 0.0, 0  # reach [rad], and reversals that reached no farther
         self.turned_back = plan.start  # crank angle of the last reversal [rad]
         self._blocks, self._count = [first], 1
@@ -54,6 +58,8 @@ class Passage:
                     return Ending.COSTLY
 
     def _add(self, piece: Piece) -> None:
+        if self._watch is not None:
+            self._watch(piece)
         self.steps += piece.steps
         self.evaluations += piece.evaluations
         if piece.end.omega == 0.0:

@@ -15,8 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crankmbs.mechanics.inertia import reduce
-from crankmbs.mechanics.torque import Branch, branch_at, branch_of
+from crankmbs.mechanics.torque import Branch
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.variables import VARIABLES
 from crankmbs.motion.assemble import ANGLE_ROUNDING, Assembled, assemble
@@ -25,16 +24,20 @@ from crankmbs.motion.crank_angle import advance as crank_angle
 from crankmbs.motion.crank_angle.grid import Grid, grid_of
 from crankmbs.motion.crank_angle.window import Window
 from crankmbs.motion.ending import Ending
+from crankmbs.motion.free.first import first_sample
 from crankmbs.motion.free.matching import match, stays
-from crankmbs.motion.free.passage import Passage, Pieces
+from crankmbs.motion.free.passage import Passage, Pieces, Watch
+from crankmbs.motion.free.recount import Leg, recount
 from crankmbs.motion.minimal import advance as minimal
 from crankmbs.motion.minimal.reduced import Reduced
 from crankmbs.motion.mode import begun
 from crankmbs.motion.plan import Plan, plan_of
+from crankmbs.motion.remarks import left_open
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.collocation import gauss
+from crankmbs.scene.scene import Scene
 
-__all__ = ["Begin", "Lead", "Pass", "Way", "begin_at_start", "run", "travel"]
+__all__ = ["Begin", "Lead", "Pass", "Trail", "Way", "begin_at_start", "run", "travel"]
 
 Begin = Callable[[Grid, float], State]
 
@@ -66,27 +69,38 @@ class Lead(NamedTuple):
 
 
 class Way(NamedTuple):
-    """What a pass follows: from where, sampled how, and the evaluations over time it may take."""
+    """What a pass follows: from where, sampled how, and the evaluations over time it may take.
+
+    watch : is shown every piece, of which then only the last is kept
+    """
 
     begin: Begin
     plan: Plan
     allowed: int
+    watch: Watch | None = None
+
+
+class Trail(NamedTuple):
+    """Where a pass begins, the one sample there, and the spans of time [s] that the crank angle
+    carries."""
+
+    state: State
+    begin: Samples
+    fast: tuple[tuple[float, float], ...]
 
 
 class Pass(NamedTuple):
     """One pass over the whole motion.
 
-    begin : the one sample at the start
     local : shape (2, cells), errors at ends and inside
-    fast, slow : spans of time [s] that the crank angle carried, and where time took over
+    slow : times [s] where time took over
     """
 
-    begin: Samples
+    trail: Trail
     samples: Samples
     ending: Ending
     path: Passage
     local: Array
-    fast: list[tuple[float, float]]
     slow: list[float]
 
 
@@ -139,24 +153,34 @@ def run(
         if left and parts.max() > 1 and len(grid.edges) < _MOST_CELLS:
             grid = grid.split(parts)
             continue
-        better = travel(grid.finer, way, 1e-2 * local, by_angle=by_angle, first=answer)
-        solution = _solution(answer, better, way.plan, way.allowed)
+        trail = answer.trail
+        better = travel(grid.finer, way, 1e-2 * local, by_angle=by_angle, first=trail)
+        legs = [Leg(grid, local, trail.state)]
+        legs.append(Leg(grid.finer, 1e-2 * local, better.trail.state, trail))
+        solution = _solution(train.scene, answer, better, way)
         assembled = assemble(train, solution)
         if functions:
-            staggered = travel(_staggered(grid), way, 0.1 * local, by_angle=by_angle, first=answer)
-            again = assemble(train, _solution(answer, staggered, way.plan, way.allowed))
+            other = _staggered(grid)
+            staggered = travel(other, way, 0.1 * local, by_angle=by_angle, first=trail)
+            legs.append(Leg(other, 0.1 * local, staggered.trail.state, trail))
+            again = assemble(train, _solution(train.scene, answer, staggered, way))
             assembled = _stated_twice(assembled, again)
         near = local <= 10.0 * finest
         estimate = assembled.relative_error * (2.0 if near else 1.0)
         if estimate <= least:
             best, least, rounded = assembled, estimate, near
+            followed = tuple(legs)
         if estimate <= rtol or local <= finest or answer.ending in _BROKEN:
             break
         local = max(local * max(1e-3, 0.1 * rtol / estimate), finest)
     assert best is not None
+    share = 2.0 if functions else 1.0
     if rounded or least > rtol:
         # what is left is rounding, in both passes alike, and their difference too small an estimate
         best = best._replace(errors={name: 2.0 * error for name, error in best.errors.items()})
+        share *= 2.0
+    keep = partial(recount, partial(travel, by_angle=by_angle), way, followed, share)
+    best = best._replace(solution=replace(best.solution, keep=keep))
     if best.relative_error > rtol and best.solution.status >= 0:
         text = f"asked for {rtol:.0e}, reached {best.relative_error:.0e}"
         solution = replace(best.solution, message=f"{best.solution.message}; {text}")
@@ -180,16 +204,18 @@ def _stated_twice(by_order: Assembled, by_place: Assembled) -> Assembled:
 
 
 def travel(
-    grid: Grid, way: Way, local: float, *, by_angle: bool, first: Pass | None = None
+    grid: Grid, way: Way, local: float, *, by_angle: bool, first: Trail | None = None
 ) -> Pass:
     """One pass from start to end, handing over between the formulations near rest; a second one
     betters the ``first``."""
     scene, plan = grid.train.scene, way.plan
-    state = way.begin(grid, local)
+    state = begun_in = way.begin(grid, local)
     steady = all(load.is_steady for load in scene.torque) and grid.train.law is None
+    steady = steady and not _sticks(scene)
     same = first is not None and first.begin.omega[0] == state.omega
-    begin = first.begin if first and same else _first(grid, state)
-    path = Passage(plan, begin, can_swing=steady, allowed=way.allowed)
+    begin = first.begin if first and same else first_sample(grid, state)
+    kept = plan if way.watch is None else replace(plan, last=0.0)
+    path = Passage(kept, begin, can_swing=steady, allowed=way.allowed, watch=way.watch)
     if first:  # it begins a rounding ahead: so the difference knows what the motion makes of one
         ahead = math.copysign(ANGLE_ROUNDING * state.theta, state.omega or float(begin.alpha[0]))
         state = state._replace(theta=state.theta + ahead)
@@ -228,7 +254,14 @@ def travel(
         over_time = not over_time
     if ending is Ending.COMPLETE and plan.folds_at((path.state or state).theta):
         ending = Ending.FOLD
-    return Pass(begin, path.samples(), ending, path, worst, fast, slow if by_angle else [])
+    trail = Trail(begun_in, begin, tuple(fast))
+    return Pass(trail, path.samples(), ending, path, worst, slow if by_angle else [])
+
+
+def _sticks(scene: Scene) -> bool:
+    """Whether friction brings a swing to rest."""
+    friction = scene.friction
+    return friction is not None and friction.ring_force + friction.ring_pressure > 0.0
 
 
 def _noted(windows: Generator[Window, None, Ending | None], worst: Array) -> Pieces:
@@ -244,30 +277,6 @@ def _noted(windows: Generator[Window, None, Ending | None], worst: Array) -> Pie
         yield window
 
 
-def _first(grid: Grid, state: State) -> Samples:
-    """The sample at the start."""
-    shares = state.mode.shares
-    inertia, slope, torque = reduce(grid.train, state.theta, shares)
-    of_angle = float(grid.at(state.mode.loads).outside(np.asarray(state.theta)))
-    rest = float(torque - 0.5 * slope * state.omega**2) + of_angle
-    torques, phases = grid.train.scene.torque, state.mode.loads
-    branch = branch_at(torques, state[:3], rest, phases)
-    held = branch is None and state.omega == 0.0
-    branch = branch or branch_of(torques, state.time, state.omega, rising=True, phases=phases)
-    outside = float(branch(state.time, state.omega))
-    outside += sum(f.number(state.time, state.theta, state.omega) for f in branch.functions)
-    outside = -rest if held else outside
-    fuel = {"fuel": np.array([shares])} if shares else {}
-    return Samples(
-        time=np.array([state.time]),
-        theta=np.array([state.theta]),
-        omega=np.array([state.omega]),
-        alpha=np.array([(rest + outside) / float(inertia)]),
-        energy_residual=np.zeros(1),
-        own={"external_torque": np.array([outside + of_angle])} | fuel,
-    )
-
-
 def _parts(grid: Grid, worst: Array, local: float) -> NDArray[np.intp]:
     """Into how many parts to cut every cell, to err by ``local`` per radian at its end, and by
     ``local`` inside, where the order is lower."""
@@ -278,8 +287,8 @@ def _parts(grid: Grid, worst: Array, local: float) -> NDArray[np.intp]:
     return np.asarray(np.clip(np.nan_to_num(parts, nan=2.0), 1, 4), dtype=np.intp)
 
 
-def _solution(answer: Pass, better: Pass, plan: Plan, allowed: int) -> Solution:
-    path, endings = answer.path, {answer.ending, better.ending}
+def _solution(scene: Scene, answer: Pass, better: Pass, way: Way) -> Solution:
+    plan, path, endings = way.plan, answer.path, {answer.ending, better.ending}
     ends = _RESTING if plan.until_time else _RESTING - {Ending.COMPLETE}
     both, in_time, reversals = (answer.samples, better.samples), plan.in_time, path.reversals
     still = endings <= ends and stays(*both)
@@ -296,7 +305,9 @@ def _solution(answer: Pass, better: Pass, plan: Plan, allowed: int) -> Solution:
     elif (len(endings) > 1 and not at_rest) or parted:
         ending = Ending.PARTED
     last = float(samples.theta[-1]), float(samples.omega[-1])
-    status, text = ending.said(*last, reversals=path.reversals, allowed=allowed)
+    status, text = ending.said(*last, reversals=path.reversals, allowed=way.allowed)
+    if status >= 0 and path.state is not None:
+        text = "; ".join([text, *left_open(scene, path.state.mode, samples.own.get("fuel"))])
     reasons: tuple[str, ...] = ()
     if answer.slow:
         times = ", ".join(f"{t:.4g}" for t in answer.slow[:5])

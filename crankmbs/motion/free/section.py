@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from crankmbs.mechanics.friction import rubbing
 from crankmbs.mechanics.inertia import inertia_alone
 from crankmbs.mechanics.torque import branch_of, torque_at
 from crankmbs.mechanics.train import CrankTrain
@@ -63,11 +64,11 @@ class Slope(NamedTuple):
 
 
 class LostError(Exception):
-    """The run does not settle, for a reason."""
+    """The run does not settle, for a reason; factor by which a period changes a disturbance."""
 
-    def __init__(self, ending: Ending) -> None:
+    def __init__(self, ending: Ending, factor: float = math.nan) -> None:
         super().__init__(ending)
-        self.ending = ending
+        self.ending, self.factor = ending, factor
 
 
 class Section:
@@ -148,9 +149,15 @@ class Section:
         most = max(high.fast**2 * self.most_inertia, 2.0 * energy)
         return Slope(factor, error, 0.5 * most / energy)
 
+    @cached_property
+    def _drag(self) -> float:
+        """The largest torque of viscous friction per speed [N m s/rad] in a period."""
+        angles = np.linspace(0.0, self.scene.settled_period, _ANGLES)
+        return float(rubbing(CrankTrain(self.scene, None), angles).drag.max())
+
     def slopes(self, slow: float, fast: float, sense: float) -> tuple[float, float]:
-        """Least and greatest slope dT/domega [N m s] of the loads between two speeds [rad/s]; that
-        of a jump is steep."""
+        """Least and greatest slope dT/domega [N m s] of loads and friction between two speeds
+        [rad/s]; that of a jump is steep."""
         fast = max(fast, slow * (1.0 + 1e-6))
         inside = self._rows[(self._rows > slow) & (self._rows < fast)]
         speeds = np.geomspace(max(slow, 1e-6 * fast), fast, _SPEEDS)
@@ -158,14 +165,18 @@ class Section:
         still = np.zeros_like(omega)
         torque = torque_at(self.scene.torque, still, still, omega)
         slope = np.diff(torque) / np.diff(omega)
-        least, most = float(slope.min()), float(slope.max())
+        least, most = float(slope.min()) - self._drag, float(slope.max())
         return least, most if most > _FLAT * abs(least) else min(most, 0.0)
 
     def closed_form(self, grid: Grid, sense: float) -> Period | None:
         """The affine map of a period, where loads are such that there is one at every speed."""
         branch = branch_of(self.scene.torque, 0.0, 0.0, rising=sense > 0.0)
         bounds = (branch.omega_low, branch.omega_high)
-        if not branch.is_affine_in_energy or any(0.0 < sense * b < math.inf for b in bounds):
+        if (
+            grid.drags
+            or not branch.is_affine_in_energy
+            or any(0.0 < sense * b < math.inf for b in bounds)
+        ):
             return None
         if not self._by_angle or any(map(math.isfinite, self._plan.folds)):
             return None

@@ -19,6 +19,7 @@ from crankmbs.motion.crank_angle.grid import Grid
 from crankmbs.motion.crank_angle.periods import Period
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.free import passes
+from crankmbs.motion.free.fuelled import Fuelled
 from crankmbs.motion.free.search import Limit, search
 from crankmbs.motion.free.section import MOST_SHOTS, LostError, Section
 
@@ -36,25 +37,29 @@ def run(train: CrankTrain, rtol: float, cost_cap: float, *, by_angle: bool) -> A
     """
     if not train.scene.settles:
         return passes.run(train, rtol, cost_cap, by_angle=by_angle)
-    section = Section(train, passes.evaluations(train, cost_cap), by_angle=by_angle)
+    allowed = passes.evaluations(train, cost_cap)
     try:
         grid = passes.first_grid(train, rtol)
-        limit = search(section, grid)
-        settling = _Settling(section, limit)
-        lead = passes.Lead(grid, rtol * min(limit.damping, 1.0), settling.begin)
+        settling: _Settling | Fuelled
+        if train.law is None:
+            section = Section(train, allowed, by_angle=by_angle)
+            settling = _Settling(section, search(section, grid))
+        else:
+            settling = Fuelled(train, grid, allowed, by_angle=by_angle)
+        lead = passes.Lead(grid, rtol * min(settling.damping, 1.0), settling.begin)
         found = passes.run(train, rtol, cost_cap, by_angle=by_angle, lead=lead)
         decay = settling.decay()
     except LostError as lost:
         found = passes.run(train, rtol, cost_cap, by_angle=by_angle)
-        return found if found.solution.status != 0 else _said(found, lost.ending)
+        return found if found.solution.status != 0 else _said(found, lost)
     return found if found.solution.status != 0 else _settled(found, decay)
 
 
-def _said(found: Assembled, ending: Ending) -> Assembled:
+def _said(found: Assembled, lost: LostError) -> Assembled:
     """The period from the start, with the reason why nothing settles."""
     samples = found.solution.samples
     at = float(samples.theta[-1]), float(samples.omega[-1])
-    status, message = ending.said(*at, shots=MOST_SHOTS)
+    status, message = lost.ending.said(*at, shots=MOST_SHOTS, factor=lost.factor)
     return found._replace(solution=replace(found.solution, status=status, message=message))
 
 
@@ -72,6 +77,11 @@ class _Settling:
         self._section, self._limit = section, limit
         # grids, energies and closed forms of the passes
         self._seen: list[tuple[Grid, float, Period | None]] = []
+
+    @property
+    def damping(self) -> float:
+        """1 less the factor."""
+        return self._limit.damping
 
     def begin(self, grid: Grid, local: float) -> State:
         """Where the settled period begins on a grid, by periods with this tolerance; on one that

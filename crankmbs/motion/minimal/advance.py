@@ -12,19 +12,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Generator
-from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.integrate import DOP853, Radau
 
-from crankmbs.mechanics.torque import Branch, branch_at, branch_of
-from crankmbs.mechanics.windows import phase_ends
+from crankmbs.mechanics.torque import Branch
 from crankmbs.motion.base import State
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.minimal import stepper
+from crankmbs.motion.minimal.entering import enter
 from crankmbs.motion.minimal.reduced import Reduced
-from crankmbs.motion.minimal.stretch import BALANCED, Equation, Stretch, Track
+from crankmbs.motion.minimal.stretch import Equation, Stretch, Track
 from crankmbs.motion.plan import Plan
 from crankmbs.numerics.arrays import Array
 
@@ -61,14 +60,14 @@ def advance(
     tolerance, parts, allowed = effort
     scale = reduced.torque_scale
     evaluations, most, h, room = 0, 0.0, math.inf, 1
+    base = reduced
     while evaluations < allowed:
-        reduced = reduced.at(state.mode.loads)
-        equation = _enter(reduced, state, scale)
+        reduced = base.at(state.mode.loads).fired(state.mode.shares)
+        equation = enter(reduced, state, scale)
         if isinstance(equation, Ending):
             return equation
         if equation.holds:
-            rest = Stretch.at_rest(equation, state, min(equation.branch.t_end, plan.time_bound))
-            yield rest
+            yield (rest := Stretch.at_rest(equation, state, min(equation.until, plan.time_bound)))
             state = rest.end
             if state.time >= plan.time_bound:
                 return Ending.COMPLETE
@@ -98,33 +97,6 @@ def advance(
         if is_fast(state, equation.branch):
             return None
     return Ending.COSTLY
-
-
-def _enter(reduced: Reduced, state: State, scale: float) -> Equation | Ending:
-    """The piece that the motion enters, or why it enters none; at rest against loads that hold it
-    it waits for those that are still to set in or to end."""
-    torques, phases = reduced.train.scene.torque, state.mode.loads
-    if state.omega != 0.0:
-        between = reduced.around(state.theta, math.copysign(1.0, state.omega), state.mode.shares)
-        _, slope, torque = reduced(state.theta, between.pieces)
-        rest = torque - 0.5 * slope * state.omega**2
-        branch = branch_at(torques, state[:3], rest, phases)
-        return Ending.HELD if branch is None else Equation(reduced, between, branch)
-    sides: list[Equation] = []
-    resisted = False
-    for sense in (1.0, -1.0):
-        branch = branch_of(torques, state.time, 0.0, rising=sense > 0.0, phases=phases)
-        equation = Equation(reduced, reduced.around(state.theta, sense, state.mode.shares), branch)
-        pull = equation.pull(state)
-        if pull * sense > BALANCED * scale:
-            return equation
-        resisted = resisted or pull * sense < -BALANCED * scale
-        sides.append(equation)
-    if resisted:
-        waits = bool(phase_ends(torques, phases)[0])
-        return replace(sides[0], holds=True) if waits else Ending.HELD
-    later = sides[1] if sides[0].branch.ct < 0.0 else sides[0]  # where a load that sets in drives
-    return Ending.STUCK if later.is_balanced(state, scale) else later
 
 
 class _Control(NamedTuple):

@@ -7,11 +7,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from copy import copy
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
+from crankmbs.mechanics.friction import friction_knots, friction_torque, sign_changes
 from crankmbs.mechanics.inertia import reduce
 from crankmbs.mechanics.torque import knots_over_angle, over_angle
 from crankmbs.mechanics.train import CrankTrain, crank_angle_knots, merged_knots
@@ -20,6 +22,7 @@ from crankmbs.motion.minimal import stepper
 from crankmbs.motion.minimal.system import Machine, bare
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.cycle import NEAR
+from crankmbs.scene.parts import Friction
 
 __all__ = ["KnotPair", "Reduced"]
 
@@ -43,9 +46,11 @@ class Reduced:
     def __init__(self, train: CrankTrain, missed: float = 0.0, phases: Phases = ()) -> None:
         self.train, scene, pressure = train, train.scene, train.pressure
         self._missed, self._known = missed, {phases: self}
+        self._last: tuple[tuple[float, ...], Reduced] | None = None
         self.over_angle = load = over_angle(scene, phases)
         crank, rod, piston = scene.crank, scene.rod, scene.piston
-        knots = self._with_loads(crank_angle_knots(train))
+        friction = scene.friction or Friction()
+        knots = self._with_others(crank_angle_knots(train))
         if len(knots) == 0:  # no step of many turns: it would overlook a light rod near a fold
             knots = np.arange(0.0, train.period, 0.5)
         g = scene.gravity.acceleration if scene.gravity else 0.0
@@ -59,7 +64,7 @@ class Reduced:
         if pressure and missed > 0.0 and train.combustion is None:
             lever = (piston.gas_area or 0.0) * crank.radius
             least = missed * self.torque_scale / lever
-            bends = self._with_loads(merged_knots(train, [each.bends(least) for each in pressure]))
+            bends = self._with_others(merged_knots(train, [each.bends(least) for each in pressure]))
         pressures = pressure or ()
         ends = np.cumsum([0, *(len(each.knots) for each in pressures)])
         machine = Machine(
@@ -88,6 +93,9 @@ class Reduced:
             load_first=float(load.knots[0]) if load else 0.0,
             load_starts=load.knots - load.knots[0] if load else np.empty(0),
             load_coefficients=load.coefficients.copy() if load else np.empty((4, 0)),
+            ring_force=friction.ring_force,
+            ring_pressure=friction.ring_pressure,
+            viscous=friction.viscous,
         )
         self.machine = bare(machine)
 
@@ -105,9 +113,23 @@ class Reduced:
         """Whether a load depends on the angle."""
         return any(load.parts.over_angle is not None for load in self.train.scene.torque)
 
-    def _with_loads(self, knots: Array) -> Array:
-        """Knots of the crank train, and those of the loads."""
-        own = knots_over_angle(self.train)
+    def fired(self, shares: tuple[float, ...]) -> Reduced:
+        """The same with knots where a gas force changes its sign with these shares of the
+        combustion, where rings feel it."""
+        if self.train.combustion is None or len(sign_changes(self.train, shares)) == 0:
+            return self
+        if self._last is None or self._last[0] != shares:
+            again, machine = copy(self), Machine(*self.machine)
+            knots = np.append(machine.knots, sign_changes(self.train, shares))
+            knots = np.unique(knots)
+            knots = knots[np.append(True, np.diff(knots) > NEAR)]
+            again.machine = bare(machine._replace(knots=knots, bends=knots))
+            self._last = shares, again
+        return self._last[1]
+
+    def _with_others(self, knots: Array) -> Array:
+        """Knots of the pressures, and those of loads and friction."""
+        own = np.concatenate([knots_over_angle(self.train), friction_knots(self.train)])
         if len(own) == 0:
             return knots
         merged = np.unique(np.concatenate([knots, own]))
@@ -117,7 +139,7 @@ class Reduced:
         """The knots next to theta in the sense of rotation, and the polynomials between them, with
         these shares of the combustion."""
         count = len(self.train.scene.cylinders)
-        pieces = np.zeros((count + (self.over_angle is not None), 7))
+        pieces = np.zeros((count + (self.over_angle is not None), 9))
         pieces[:count, 6] = shares or 0.0
         low, high = stepper.enter(theta, sense, self.machine, pieces)
         return KnotPair(low, high, pieces)
@@ -138,11 +160,18 @@ class Reduced:
         share = self.train.law.most if self.train.law else 0.0
         shares = np.full(len(self.train.scene.cylinders), share)
         torque = reduce(self.train, angles, shares).torque
-        return load + float(np.max(np.abs(torque)))
+        most = np.abs(torque)
+        if self.train.scene.friction is not None:
+            most = most - friction_torque(self.train, angles, 0.0, 1.0, shares)
+        return load + float(np.max(most))
 
     def __call__(self, theta: float, pieces: Array) -> tuple[float, float, float]:
         """J [kg m2], dJ/dtheta [kg m2/rad], torque over the angle [N m]."""
-        return stepper.reduced(theta, self.machine, pieces)
+        return stepper.reduced(theta, self.machine, pieces)[:3]
+
+    def drag(self, theta: float, pieces: Array) -> float:
+        """Torque of viscous friction per speed [N m s/rad]."""
+        return stepper.reduced(theta, self.machine, pieces)[3]
 
 
 def _side_by_side(coefficients: Sequence[Array]) -> Array:

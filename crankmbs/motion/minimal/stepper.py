@@ -35,16 +35,32 @@ _HARD = 1e3 / math.radians(5.0)  # 1/rad: damped a thousand times while the cran
 def enter(theta: float, sense: float, machine: Machine, pieces: Array) -> tuple[float, float]:
     """The knots next to theta in the sense of rotation; fills ``pieces``.
 
-    pieces : shape (cylinders, 7), of every cylinder's pressure between the two: the crank angle
+    pieces : shape (cylinders, 9), of every cylinder's pressure between the two: the crank angle
         [rad] where its cubic begins, its coefficients [Pa], highest power first, and the width
-        after which `reduced` takes the next one; 0, where it is continued; last, given, the share
-        of the combustion. With loads over the crank angle one row more [N m]
+        after which `reduced` takes the next one; 0, where it is continued; given, the share of the
+        combustion; and the signs that friction keeps there, of the sense of rotation times that of
+        dx/dtheta, and of the gas force. With loads over the crank angle one row more [N m]
     """
     base, low, high = _beside(machine[13], theta + sense * _PASSED, machine[14])
     for j in range(0 if len(machine[16]) > 0 else len(machine[12]), len(pieces)):
         _fill(j, base, 0.5 * (low + high), machine, pieces)
         pieces[j, 5] = 0.0
+    if machine[23] > 0.0 or machine[24] > 0.0:
+        for j in range(len(machine[12])):
+            _rub(j, base + 0.5 * (low + high), sense, machine, pieces)
     return base + low, base + high
+
+
+@kernel
+def _rub(j: int, theta: float, sense: float, machine: Machine, pieces: Array) -> None:
+    """Put the signs that friction keeps, as they are at an angle, into row j of ``pieces``."""
+    r, l, e, phi = machine[0], machine[1], machine[3], theta + float(machine[12][j, 0])
+    sin_b = (r * math.sin(phi) - e) / l
+    rise = -math.sin(phi) * math.sqrt(1.0 - sin_b * sin_b) - math.cos(phi) * sin_b
+    pieces[j, 7] = math.copysign(sense, sense * rise)
+    d = theta - float(pieces[j, 0])
+    cubic = (float(pieces[j, 1]) * d + float(pieces[j, 2])) * d + float(pieces[j, 3])
+    pieces[j, 8] = math.copysign(1.0, cubic * d + float(pieces[j, 4]))
 
 
 @kernel
@@ -109,10 +125,12 @@ def _passed(knots: Array, value: float) -> int:
 
 
 @kernel
-def reduced(theta: float, machine: Machine, pieces: Array) -> tuple[float, float, float]:
-    """J [kg m2], dJ/dtheta [kg m2/rad], torque of gas, gravity and loads over the angle [N m]."""
+def reduced(theta: float, machine: Machine, pieces: Array) -> tuple[float, float, float, float]:
+    """J [kg m2], dJ/dtheta [kg m2/rad], torque of gas, gravity, loads over the angle and friction
+    without the viscous [N m], of which the last is the torque per speed [N m s/rad]."""
     r, l, a, e, i_crank, i_rod, m_rod, m_piston, area, unbalance, gx, gy, cylinders = machine[:13]
     spare, far = max(l - r - abs(e), 0.0), abs(e)
+    (ring_force, pressed, viscous), drag = machine[23:26], 0.0
     inertia, slope = i_crank, 0.0
     torque = unbalance * (gy * math.cos(theta) - gx * math.sin(theta))
     for j in range(len(cylinders)):
@@ -141,13 +159,17 @@ def reduced(theta: float, machine: Machine, pieces: Array) -> tuple[float, float
         cubic = (float(pieces[j, 1]) * d + float(pieces[j, 2])) * d + float(pieces[j, 3])
         gas = area * (cubic * d + float(pieces[j, 4]))
         torque += (m_piston * gx - gas) * x1 + m_rod * (gx * gx1 + gy * gy1)
+        if ring_force > 0.0 or pressed > 0.0:
+            limit = ring_force + pressed * float(pieces[j, 8]) * gas
+            torque -= float(pieces[j, 7]) * x1 * limit
+        drag += viscous * x1 * x1
     for j in range(len(cylinders), len(pieces)):
         if pieces[j, 5] > 0.0 and not 0.0 <= theta - pieces[j, 0] <= pieces[j, 5]:
             _fill(j, 0.0, theta, machine, pieces)
         d = theta - float(pieces[j, 0])
         cubic = (float(pieces[j, 1]) * d + float(pieces[j, 2])) * d + float(pieces[j, 3])
         torque += cubic * d + float(pieces[j, 4])
-    return inertia, slope, torque
+    return inertia, slope, torque, drag
 
 
 @kernel
@@ -164,12 +186,13 @@ def _slopes(
     t: float,
     omega: float,
     load: tuple[float, float, float, float],
-    of_angle: tuple[float, float, float],
+    of_angle: tuple[float, float, float, float],
     out: Array,
 ) -> None:
     """The same where the train has been reduced."""
-    inertia, slope, torque = of_angle
+    inertia, slope, torque, drag = of_angle
     torque += load[0] + load[1] * t + (load[2] + load[3] * omega) * omega
+    torque -= drag * omega
     alpha, power = (torque - 0.5 * slope * omega * omega) / inertia, torque * omega
     if math.isfinite(alpha * power):
         out[0], out[1], out[2] = omega, alpha, power
@@ -453,6 +476,7 @@ def travel(
             evaluations += 1
         inertia = of_angle[0]
         kinetic, damping = 0.5 * inertia * omega * omega, load[2] + 2.0 * load[3] * omega
+        damping -= of_angle[3]
         most, hard = max(most, kinetic), abs(damping) > _HARD * inertia * abs(omega)
         if hard or kinetic <= tolerance * tolerance * most or t >= t_bound:
             break

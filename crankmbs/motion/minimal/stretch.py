@@ -9,19 +9,23 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from crankmbs.mechanics.friction import friction_forces, friction_torque, held_share
 from crankmbs.mechanics.inertia import reduce
 from crankmbs.mechanics.torque import Branch
-from crankmbs.motion.base import Samples, State
+from crankmbs.motion.base import Nodes, Points, Samples, State
 from crankmbs.motion.minimal import stepper
 from crankmbs.motion.minimal.reduced import KnotPair, Reduced
 from crankmbs.motion.minimal.system import System
 from crankmbs.motion.mode import decided
-from crankmbs.motion.plan import Plan
+from crankmbs.motion.plan import Wanted
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.roots import invert_monotone
 from crankmbs.scene.units import DEGREE
 
 __all__ = ["BALANCED", "Equation", "Stretch", "Track"]
+
+_GAUSS = np.polynomial.legendre.leggauss(8)  # what a step's polynomials give is of degree 15
+_PLACES, _WEIGHTS = 0.5 * (1.0 + _GAUSS[0]), 0.5 * _GAUSS[1]
 
 BALANCED = 1e-13  # of the largest torque: what the rounding of an angle leaves at a dead centre
 
@@ -30,13 +34,14 @@ BALANCED = 1e-13  # of the largest torque: what the rounding of an angle leaves 
 class Equation:
     """The equation of motion on one piece: between two knots and on one branch of the loads.
 
-    holds : whether the crank is at rest and its loads hold it there
+    holds : whether the crank is at rest and its loads or friction hold it there, until a time [s]
     """
 
     reduced: Reduced
     between: KnotPair
     branch: Branch
     holds: bool = False
+    until: float = math.inf
 
     def __call__(self, t: float, y: Array) -> Array:
         """Slopes of (theta, omega, work) in time."""
@@ -66,7 +71,8 @@ class Equation:
     def is_stiff(self, state: State, inertia: float) -> bool:
         """Whether the loads damp the speed a thousand times while the crank turns 5 degrees, and
         what they had to damp is gone: while it still dies away small steps are needed anyway."""
-        damping = abs(self.branch.c1 + 2.0 * self.branch.c2 * state.omega) / inertia
+        drag = self.reduced.drag(state.theta, self.between.pieces)
+        damping = abs(self.branch.c1 + 2.0 * self.branch.c2 * state.omega - drag) / inertia
         strong = damping * 5.0 * DEGREE > 1e3 * abs(state.omega)
         return strong and abs(self.pull(state)) < 0.01 * inertia * damping * abs(state.omega)
 
@@ -77,8 +83,9 @@ class Equation:
         return not changes and abs(self.pull(state._replace(omega=0.0))) <= BALANCED * scale
 
     def pull(self, state: State) -> float:
-        """Torque of gas, gravity and loads at a state [N m]."""
+        """Torque of gas, gravity, friction and loads at a state [N m]."""
         torque = self.reduced(state.theta, self.between.pieces)[2]
+        torque -= self.reduced.drag(state.theta, self.between.pieces) * state.omega
         at = state.time, state.theta, state.omega
         return torque + self.outside(state.time, state.omega) + self._of_functions(*at)
 
@@ -134,6 +141,11 @@ class Stretch:
         return cls(equation, track, begin, end)
 
     @property
+    def decisions(self) -> tuple[State, ...]:
+        """None inside: a decision ends a stretch."""
+        return ()
+
+    @property
     def steps(self) -> int:
         """Accepted steps."""
         return len(self.track.widths)
@@ -143,7 +155,18 @@ class Stretch:
         """Evaluations of the equation of motion."""
         return self.track.evaluations
 
-    def sample(self, plan: Plan) -> Samples:
+    def nodes(self) -> Nodes:
+        """The steps, and Gauss points in them."""
+        track = self.track
+        edges = np.append(track.begins, self.end.time)
+        width = np.diff(edges)[:, None]  # that of a step which was cut at a knot differs
+        time = track.begins[:, None] + width * _PLACES
+        steps = np.repeat(np.arange(self.steps), len(_PLACES))
+        theta, omega, _ = track.at(time.ravel(), steps).reshape(3, *time.shape)
+        speeds = np.append(track.rows[:, 0, 1], self.end.omega)
+        return Nodes(edges, speeds, Points(time, theta, omega, width * _WEIGHTS * omega))
+
+    def sample(self, plan: Wanted) -> Samples:
         """The samples of the plan after the beginning, up to the end and with it."""
         track = self.track
         if plan.in_time:
@@ -190,18 +213,31 @@ class Stretch:
             outside = outside + reduced.over_angle(theta)
         for function in self.equation.branch.functions:
             outside = outside + function(t, theta, omega)
+        own = {"fuel": np.tile(shares, (len(t), 1))} if shares else {}
+        if reduced.train.scene.friction is not None:
+            sense = self.end.theta - self.begin.theta or self.begin.omega or self.end.omega
+            slides = np.full_like(t, np.sign(sense))
+            torque = torque + friction_torque(reduced.train, theta, omega, slides, shares or None)
+            forces = friction_forces(reduced.train, theta, omega, own.get("fuel"), slides)
+            own["friction_force"] = forces
         alpha = (torque + outside - 0.5 * slope * omega**2) / inertia
-        fuel = {"fuel": np.tile(shares, (len(t), 1))} if shares else {}
         start = self.equation.kinetic(self.begin.theta, self.begin.omega)
         residual = self.begin.residual + 0.5 * inertia * omega**2 - start - work
-        return Samples(t, theta, omega, alpha, residual, {"external_torque": outside, **fuel})
+        return Samples(t, theta, omega, alpha, residual, {"external_torque": outside, **own})
 
 
 class _Rest(Stretch):
-    """A stretch at rest: the loads give what it takes."""
+    """A stretch at rest: friction gives what it takes, and loads the rest."""
 
     def _samples(self, t: Array, k: NDArray[np.intp], theta: Array | None = None) -> Samples:
-        at = super()._samples(t, k, theta)
-        reduced = self.equation.reduced
-        held = np.asarray(-reduce(reduced.train, at.theta, self.begin.mode.shares).torque)
-        return replace(at, alpha=np.zeros_like(t), own={**at.own, "external_torque": held})
+        at, train = super()._samples(t, k, theta), self.equation.reduced.train
+        shares = self.begin.mode.shares
+        given = reduce(train, at.theta, shares).torque
+        own = dict(at.own)
+        if train.scene.friction is not None:
+            loads = at.own["external_torque"]
+            share = np.clip(held_share(train, self.begin.theta, given + loads, shares), -1.0, 1.0)
+            given = given + friction_torque(train, at.theta, 0.0, share, shares or None)
+            motion = at.theta, at.omega, own.get("fuel")
+            own["friction_force"] = friction_forces(train, *motion, share)
+        return replace(at, alpha=np.zeros_like(t), own={**own, "external_torque": -given})

@@ -28,6 +28,7 @@ class Machine(NamedTuple):
     combustion : what a share of 1 adds to the cubics; no columns without fuel
     load_first, load_starts, load_coefficients : of the loads over the crank angle [N m], the first
         knot, the knots behind it, and the cubics
+    ring_force [N], ring_pressure, viscous [N s/m] : of the pistons' friction
     """
 
     radius: float
@@ -53,6 +54,9 @@ class Machine(NamedTuple):
     load_first: float
     load_starts: Array
     load_coefficients: Array
+    ring_force: float
+    ring_pressure: float
+    viscous: float
 
 
 System = tuple[Machine, Array, tuple[float, float, float, float]]

@@ -33,6 +33,7 @@ from crankmbs.motion.multibody.beside import errors_beside_jumps
 from crankmbs.motion.multibody.error import Convergence
 from crankmbs.motion.multibody.halvings import Halvings
 from crankmbs.motion.multibody.samples import Sampled, aligned_variables
+from crankmbs.motion.multibody.seen import account_of_runs
 from crankmbs.numerics.arrays import Array
 
 __all__ = ["run"]
@@ -74,12 +75,15 @@ def run(train: CrankTrain, rtol: float, cost_cap: float) -> Solution:
             answer = {name: values[:1] for name, values in answer.items()}
         elif worst > rtol:
             message += runs.shortfall(rtol, worst, before / latest)
+        account = account_of_runs(train, runs)
     finally:
         runs.close()
     own = {name: value for name, value in answer.items() if name not in _MOTION}
     time, theta, omega, alpha, residual = (answer[name] for name in _MOTION)
     samples = Samples(time, theta, omega, alpha, residual, own)
-    return Solution(samples, status, message, runs.iterations, runs.steps, errors=errors)
+    return Solution(
+        samples, status, message, runs.iterations, runs.steps, errors=errors, keep=lambda: account
+    )
 
 
 def _worst(answer: dict[str, Array], errors: dict[str, float]) -> float:

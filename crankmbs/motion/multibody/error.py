@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from crankmbs.mechanics.peaks import negligible, peak
-from crankmbs.mechanics.variables import SUMS, WITH_FUEL
+from crankmbs.mechanics.variables import EVERY, SUMS
 from crankmbs.numerics.arrays import Array
 
 __all__ = ["Convergence"]
@@ -137,9 +137,9 @@ def _largest(sizes: Sequence[float], shrinks: float, most: float, stalled: float
 
 def _silence(answer: dict[str, Array]) -> None:
     """Make zero what is but rounding beside the others of its unit, or beside speed squared."""
-    peaks = {name: peak(values) for name, values in answer.items() if name in WITH_FUEL}
-    units = {name: WITH_FUEL[name].units for name in peaks}
+    peaks = {name: peak(values) for name, values in answer.items() if name in EVERY}
+    units = {name: EVERY[name].units for name in peaks}
     peaks["speed squared"] = peaks["crank_speed"] ** 2
-    units["speed squared"] = WITH_FUEL["crank_acceleration"].units
+    units["speed squared"] = EVERY["crank_acceleration"].units
     for name in negligible(peaks, units) - {"speed squared"}:
         answer[name] = np.zeros_like(answer[name])

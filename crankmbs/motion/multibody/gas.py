@@ -1,13 +1,13 @@
-"""GasForces forces over the crank angle, smooth between the angles at which one of them jumps.
+"""Gas forces over the crank angle, smooth between the angles at which one of them jumps.
 
 A step of the pressure would ring in the solver. So a run is cut where a cylinder's pressure jumps,
-and on a stretch between two jumps the forces go on without them.
+and on a stretch between two jumps the forces go on without them. Rings on the wall jump where a
+piston turns: at dead centres, which cut a run as well, and where the crank reverses.
 """
 
 from __future__ import annotations
 
 import math
-from bisect import bisect_right
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -15,15 +15,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crankmbs.mechanics.firing import Firing
+from crankmbs.mechanics.geometry import dead_centres
 from crankmbs.mechanics.pressure import PeriodicPressure
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.numerics.arrays import Array
+from crankmbs.numerics.cycle import NEAR, Cycle
 
-__all__ = ["NEAR", "GasForces", "GasStretch"]
+__all__ = ["GasForces", "GasStretch"]
 
 Force = Callable[[float], float]
 
-NEAR = 1e-9  # rad: a knot so close ahead is reached, as in PeriodicPressure
 _JUMP = 1e-9  # of the highest pressure or slope: less is rounding
 _MOST_JUMPS = 60  # in a period; a table of more steps is run over as it is
 
@@ -37,6 +38,9 @@ class GasForces:
         self._pressures, self._period = train.pressure or (), train.period
         self._combustion, self.law = train.combustion or (), train.law
         self._area = scene.piston.gas_area or 0.0
+        self.friction = scene.friction
+        shape = (scene.crank.radius, scene.rod.length, scene.piston.offset)
+        self._centres = np.array(dead_centres(*shape))
         self._angles, self._rises, self._fired = self._jumps()
 
     @property
@@ -49,11 +53,13 @@ class GasForces:
         """1 where forces jump within a stretch, 2 where they bend there, else 3."""
         if self.jumps and len(self._angles) == 0:
             return 1
+        if self.friction is not None and self.friction.ring_pressure > 0.0:
+            return 2
         bend = any(len(_knots(each)[1]) > 0 for each in (*self._pressures, *self._combustion))
         return 2 if bend else 3
 
     def force(self, theta: Array, shares: Sequence[float] = ()) -> Array:
-        """GasForces forces [N] towards the crank, shape (m, n), at crank angles of shape (m,).
+        """Gas forces [N] towards the crank, shape (m, n), at crank angles of shape (m,).
 
         shares : of the combustion of each cylinder; none leave it out
         """
@@ -70,22 +76,13 @@ class GasForces:
         A bisection and a cubic in plain Python take 0.7 us; a symbolic tree of branches in
         exudyn's generic object, the only other way, costs 9 us a step.
         """
+        if not self._pressures:
+            return lambda angle: 0.0
         pressure = self._pressures[k]
-        first, period = float(pressure.knots[0]) - NEAR, pressure.period
-        knots = (pressure.knots[:-1] - pressure.knots[0]).tolist()
         cubics = pressure.coefficients
         if shares:
             cubics = cubics + shares[k] * self._combustion[k].coefficients
-        pieces = (self._area * cubics.T).tolist()
-
-        def force(angle: float) -> float:
-            x = (angle - first) % period
-            k = bisect_right(knots, x) - 1
-            a, b, c, d = pieces[k]
-            x -= knots[k] + NEAR
-            return float(((a * x + b) * x + c) * x + d)
-
-        return force
+        return Cycle(pressure.knots, self._area * cubics).by_number()
 
     def stretch(self, theta: float, sense: float, firing: Firing | None = None) -> GasStretch:
         """The stretch that a motion of this sense (its sign) enters at a crank angle [rad].
@@ -98,7 +95,20 @@ class GasForces:
             before, after = self.law.next(firing)
             rises = rises * np.array([[low >= before], [high <= after]])
             low, high = max(low, before), min(high, after)
-        return GasStretch(self, low, high, rises, shares)
+        if self.friction is None:
+            return GasStretch(self, low, high, rises, shares)
+        before, after = self._between_centres(theta + math.copysign(NEAR, sense))
+        rises = rises * np.array([[low >= before], [high <= after]])
+        low, high = max(low, before), min(high, after)
+        behind = np.mod(0.5 * (before + after) + self.phases - self._centres[0], 2.0 * math.pi)
+        outwards = np.where(behind < np.diff(self._centres), 1.0, -1.0)
+        return GasStretch(self, low, high, rises, shares, math.copysign(1.0, sense) * outwards)
+
+    def _between_centres(self, theta: float) -> tuple[float, float]:
+        """The dead centres of any piston beside a crank angle [rad]."""
+        angles = np.subtract.outer(self._centres, self.phases).ravel()
+        ahead = np.mod(angles - theta, 2.0 * math.pi)
+        return theta + float(ahead.max()) - 2.0 * math.pi, theta + float(ahead.min())
 
     def _between_jumps(
         self, theta: float, sense: float, shares: Sequence[float]
@@ -143,10 +153,12 @@ class GasForces:
 
 @dataclass(frozen=True)
 class GasStretch:
-    """GasForces forces between the crank angles ``low`` and ``high`` [rad], and smoothly beyond.
+    """Gas forces between the crank angles ``low`` and ``high`` [rad], and smoothly beyond.
 
     rises : shape (2, n) [N], what each cylinder's force rises by at low and at high
     shares : of the combustion of each cylinder; none without fuel
+    slides : shape (n,), the sign of each piston's velocity, by which its rings rub; without
+        friction none
     """
 
     gas: GasForces
@@ -154,17 +166,39 @@ class GasStretch:
     high: float
     rises: Array
     shares: tuple[float, ...] = ()
+    slides: Array | None = None
+
+    def rubbed(self, forces: Array) -> Array:
+        """Friction of the rings [N] towards the crank, shape (m, n), under gas forces alike."""
+        friction = self.gas.friction
+        if friction is None or self.slides is None:
+            return np.zeros_like(forces)
+        limit = friction.ring_force + friction.ring_pressure * np.abs(forces)
+        return np.asarray(-self.slides * limit)
+
+    def along(self, theta: Array) -> Array:
+        """Forces of gas and rings [N] towards the crank, shape (m, n), at crank angles (m,)."""
+        forces = self.force(theta)
+        return forces + self.rubbed(forces)
 
     def force(self, theta: Array) -> Array:
-        """GasForces forces [N] towards the crank, shape (m, n), at crank angles of shape (m,)."""
+        """Gas forces [N] towards the crank, shape (m, n), at crank angles of shape (m,)."""
         below, above = theta < self.low - NEAR, theta >= self.high - NEAR
         lifted = below[:, None] * self.rises[0] - above[:, None] * self.rises[1]
         return np.asarray(self.gas.force(theta, self.shares) + lifted)
 
     def functions(self) -> list[Force]:
-        """The same cylinder by cylinder, from crank angle to force."""
-        forces = (self.gas.scalar(k, self.shares) for k in range(len(self.gas.phases)))
-        return [self._function(k, force) for k, force in enumerate(forces)]
+        """Forces of gas and rings cylinder by cylinder, from crank angle to force."""
+        numbers = range(len(self.gas.phases))
+        forces = [self._function(k, self.gas.scalar(k, self.shares)) for k in numbers]
+        friction, slides = self.gas.friction, self.slides
+        if friction is None or slides is None:
+            return forces
+        ring, pressed = friction.ring_force, friction.ring_pressure
+        return [
+            _with_rings(f, side * ring, side * pressed)
+            for f, side in zip(forces, slides.tolist(), strict=True)
+        ]
 
     def _function(self, k: int, force: Force) -> Force:
         phase = float(self.gas.phases[k])
@@ -178,6 +212,16 @@ class GasStretch:
             return force(theta + phase) + lifted
 
         return without_jumps
+
+
+def _with_rings(force: Force, ring: float, pressed: float) -> Force:
+    """A gas force and what its rings rub, of the signs of the piston's velocity."""
+
+    def along(theta: float) -> float:
+        gas = force(theta)
+        return gas - ring - pressed * abs(gas)
+
+    return along
 
 
 def _knots(pressure: PeriodicPressure) -> tuple[NDArray[np.intp], NDArray[np.intp]]:

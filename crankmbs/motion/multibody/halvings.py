@@ -20,6 +20,7 @@ _GAINS = 1.01  # less by a halving is none: the cost would be astronomic, and ov
 _AT_REST = 1e-6  # of the fastest speed
 _HELD = "a jump of the loads drives the speed back from both sides"
 _NO_STEP = "exudyn's Newton iteration does not converge"
+_STILL = 1e-9  # rad/s: a speed that a stretch has landed on
 _UNTOUCHED = 0.98  # of the time to where the solver fails: before it goes wrong
 
 
@@ -27,6 +28,7 @@ class Halvings:
     """The last three runs of a problem, coarsest first.
 
     moves : False where the crank stays at rest
+    ending : of the runs, once the first is made
     """
 
     def __init__(self, train: CrankTrain, cost_cap: float) -> None:
@@ -34,6 +36,7 @@ class Halvings:
         self.problem = problem_of(train)
         self.paths: list[Stepped] = []
         self.steps = self.iterations = 0
+        self.ending = Ending.COMPLETE
         self._model = model_of(self.problem)
         self._step, self.moves = coarsest_step(self.problem, self._model)
         self._halvings = 0
@@ -130,15 +133,19 @@ class Halvings:
         plan = self.problem.plan
         self.problem = self.problem._replace(end=8.0 * self._step)
         self.paths = [self._run(math.inf)]
-        return Ending.UNMOVED.said(plan.start)
+        self.ending = Ending.UNMOVED
+        return self.ending.said(plan.start)
 
     def _end(self, path: Stepped) -> tuple[int, str]:
         _, theta, omega = reached(path)
-        ending = path.ending
-        if ending is not Ending.HELD and self.problem.rests:
+        ending, scene = path.ending, self.problem.scene
+        if ending is Ending.HELD and scene.friction and abs(omega) < _STILL:
+            ending = Ending.STICKS
+        elif ending is not Ending.HELD and self.problem.rests:
             ending = Ending.LAW_RESTS
         elif ending is not Ending.HELD and self.problem.plan.folds_at(theta):
             ending = Ending.FOLD
+        self.ending = ending
         return ending.said(theta, omega if self.moves else 0.0)
 
     def _cut(self, path: Stepped) -> tuple[int, str]:
@@ -147,13 +154,16 @@ class Halvings:
         if path.ending is Ending.DIVERGED:
             self.problem = self.problem._replace(end=_UNTOUCHED * time)
             self.paths = [self._run(math.inf)]
-            return Ending.DIVERGED.said(theta, time=time)
+            self.ending = Ending.DIVERGED
+            return self.ending.said(theta, time=time)
         share = (time if plan.until_time else abs(theta - plan.start)) / plan.until
         self.problem = self.problem._replace(end=time)
         if slowed(path) < _AT_REST:
-            return Ending.SLOWED.said(theta, time=time)
+            self.ending = Ending.SLOWED
+            return self.ending.said(theta, time=time)
         whole = self._cost / share / _SHARE
-        return Ending.CALLED_OFF.said(theta, time=time, whole=_rounded(whole), cap=self._cap)
+        self.ending = Ending.CALLED_OFF
+        return self.ending.said(theta, time=time, whole=_rounded(whole), cap=self._cap)
 
 
 def _rounded(cost: float) -> float:

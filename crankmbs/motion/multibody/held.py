@@ -1,4 +1,4 @@
-"""What the gas alone does in every joint while the crank is held.
+"""What the gas, and rings, alone do in every joint while the crank is held.
 
 It is taken off the recorded forces before they are interpolated between the steps and put back
 after, at the sample's own crank angle: kinks of the pressure between two steps then do not bend
@@ -17,12 +17,12 @@ __all__ = ["held_by"]
 
 
 def held_by(scene: Scene, gas: Array, theta: Array) -> dict[str, Array]:
-    """Joint forces [N] and torques [N m] of gas forces, shape (m, n), at crank angles (m,).
+    """Joint forces [N] and torques [N m] of gas and rings, shape (m, n), at crank angles (m,).
 
     The rod pushes along itself: (P, -P tan(beta)) on the piston and on the crank pin. Empty
-    without gas.
+    without both.
     """
-    if scene.gas is None:
+    if scene.gas is None and scene.friction is None:
         return {}
     phi = theta[:, None] + np.array([c.phase for c in scene.cylinders])
     bank = np.array([c.bank for c in scene.cylinders])

@@ -8,7 +8,6 @@ from collections.abc import Callable
 
 import numpy as np
 
-from crankmbs.numerics.cycle import NEAR, Cycle
 from crankmbs.numerics.piecewise import Piecewise
 from crankmbs.scene.torque import Torque
 
@@ -32,7 +31,7 @@ def torque_function(torques: tuple[Torque, ...], times: Range, speeds: Range) ->
     in_speed = [part.over_speed for part in parts if part.over_speed is not None]
     over_time = [_between(part, *times) for part in in_time]
     over_speed = [_between(part, *speeds) for part in in_speed if part.knots]
-    over_angle = [_periodic(part.over_angle) for part in parts if part.over_angle is not None]
+    over_angle = [part.over_angle.by_number() for part in parts if part.over_angle is not None]
     functions = [part.function for part in parts if part.function is not None]
     smooth = np.sum([part.pieces[0] for part in in_speed if not part.knots] or [(0.0,) * 3], axis=0)
     c0, c1, c2 = map(float, smooth)
@@ -64,22 +63,6 @@ def speeds_around(
     k = bisect_right(rows, omega) if sense > 0.0 else bisect_left(rows, omega)
     ends = [-math.inf, *rows, math.inf]
     return ends[k], ends[k + 1]
-
-
-def _periodic(part: Cycle) -> Callable[[float], float]:
-    """A cycle from number to number."""
-    first, period = float(part.knots[0]) - NEAR, part.period
-    knots = (part.knots[:-1] - part.knots[0]).tolist()
-    pieces = part.coefficients.T.tolist()
-
-    def value(angle: float) -> float:
-        x = (angle - first) % period
-        k = bisect_right(knots, x) - 1
-        a, b, c, d = pieces[k]
-        x -= knots[k] + NEAR
-        return float(((a * x + b) * x + c) * x + d)
-
-    return value
 
 
 def _between(part: Piecewise, begin: float, end: float) -> Callable[[float], float]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any, NamedTuple
@@ -52,7 +53,7 @@ class Record(NamedTuple):
 class Model:
     """The system of a scene. Set its loads, then run it.
 
-    gas : per cylinder the gas force [N] over the crank angle [rad]; empty without gas
+    gas : per cylinder the force [N] of gas and rings over the crank angle [rad]; empty without both
     torque : torque [N m] on a free crank over time [s], crank angle [rad] and speed [rad/s]
     angle : crank angle [rad] of a prescribed motion over the number of the step
     stiff : whether Newton's method shall know how the loads change; 2.7 times as slow
@@ -81,6 +82,9 @@ class Model:
             )
         for k in range(len(scene.cylinders) if gas else 0):
             assembly.push(k, self._gas_force(k))
+        if scene.friction is not None and scene.friction.viscous > 0.0:
+            for k, cylinder in enumerate(scene.cylinders):
+                assembly.push(k, self._viscous_force(k, cylinder.bank, scene.friction.viscous))
         self._system.Assemble()
         data = self._system.systemData
         self._q, self._v = (  # exudyn's own memory: always the current state
@@ -150,6 +154,11 @@ class Model:
 
     def _gas_force(self, k: int) -> Callable[[], float]:
         return lambda: self.gas[k](self._zero + self._q.item(2))
+
+    def _viscous_force(self, k: int, bank: float, viscous: float) -> Callable[[], float]:
+        """Against the piston's own velocity, towards the crank [N]."""
+        x, along, across = 6 + 5 * k, viscous * math.cos(bank), viscous * math.sin(bank)
+        return lambda: along * self._v.item(x) + across * self._v.item(x + 1)
 
     def _set(self, start: Start, begin: float, step: float) -> None:
         self._begin, self._step = begin, step

@@ -68,10 +68,13 @@ def jump_times(problem: Problem) -> list[float]:
             times |= set(load.parts.over_time.jumps)
         times |= {end for end in (load.after, load.until) if end is not None}
     if problem.law is not None:
-        for corner in problem.law.corners:
-            before, after = problem.law.at_time(corner * np.array([1.0 - 1e-9, 1.0 + 1e-9]))[2]
-            if abs(after - before) > 1e-6 * max(abs(after), abs(before)):
-                times.add(corner)
+        corners = problem.law.corners(0.0, problem.end)
+        beside = corners * np.array([[1.0 - 1e-9], [1.0 + 1e-9]])
+        before, after = problem.law.at_time(beside)[2]
+        between = 0.5 * (corners[1:] + corners[:-1])  # at a corner it may be 0
+        most = np.max(np.abs(problem.law.at_time(np.append(between, beside))[2]), initial=0.0)
+        jumps = np.abs(after - before) > 1e-6 * most
+        times |= set(corners[jumps].tolist())
     return sorted(t for t in times if t > 0.0)
 
 
@@ -93,7 +96,8 @@ def erratic_order(problem: Problem) -> int:
     prescribed motion.
     """
     if problem.law is not None:
-        return 2 if set(problem.law.corners) - set(jump_times(problem)) else 3
+        corners = problem.law.corners(0.0, problem.end).tolist()
+        return 2 if set(corners) - set(jump_times(problem)) else 3
     parts = (load.parts.over_angle for load in problem.scene.torque)
     over_angle = min((part.order for part in parts if part is not None), default=3)
     if any(load.parts.function is not None for load in problem.scene.torque):

@@ -9,16 +9,18 @@ from typing import NamedTuple
 
 import numpy as np
 
-from crankmbs.motion.multibody.gas import NEAR
+from crankmbs.motion.multibody.held import held_by
 from crankmbs.motion.multibody.problem import Problem
 from crankmbs.motion.multibody.step_table import StepTable
 from crankmbs.motion.multibody.stepped import Stepped
 from crankmbs.numerics.arrays import Array
+from crankmbs.numerics.cycle import NEAR
 from crankmbs.numerics.roots import invert_monotone
 
-__all__ = ["Sampled", "aligned_variables", "reached", "slowed"]
+__all__ = ["Sampled", "aligned_variables", "monotone", "reached", "slowed", "times_of"]
 
 _BEYOND = 2.0  # steps that the variables are continued past the end of a run
+_AT_END = 1e-3  # of a step: so near the end of a stretch a sample is at it
 _NEAR = 1e-9  # of the sample spacing, and rad: what is nearer is one
 
 
@@ -131,14 +133,14 @@ def _samples(problem: Problem, path: Stepped) -> _Samples:
     times, angles, stretches = [np.zeros(1)], [np.array([problem.start[0]])], [np.zeros(1, int)]
     moved = False  # what comes first then is the start, which is there
     for k, table in enumerate(path.tables):
-        for begin, until in _monotone(table):
+        for begin, until in monotone(table):
             theta_begin, theta_until = table.one_at("crank_angle", np.array([begin, until]))
             if plan.in_time:
                 t = _grid(0.0, plan.every, begin, until)
                 theta = table.one_at("crank_angle", t)
             else:
                 theta = _grid(plan.start, plan.every, theta_begin, theta_until)
-                t = _times_of(table, theta, begin, until)
+                t = times_of(table, theta, begin, until)
             new = slice(0 if moved else 1, None)
             moved |= until > 0.0 and (
                 plan.in_time or abs(theta_until - plan.start) > _NEAR * plan.every
@@ -161,7 +163,8 @@ def _above_jumps(path: Stepped, time: Array, theta: Array, stretch: Array) -> Ar
     tables = path.tables
     for k in range(1, len(tables)):
         table, jump = tables[k], tables[k].gas.high
-        if abs(tables[k - 1].gas.low - jump) <= NEAR:
+        rises = table.gas.slides is None or table.gas.rises[1].any()  # else it is friction's
+        if abs(tables[k - 1].gas.low - jump) <= NEAR and rises:
             at_once = np.abs(time - table.after) < table.step
             on = at_once & (stretch == k) & (np.abs(theta - jump) <= NEAR)
             stretch = stretch - on
@@ -180,7 +183,7 @@ def _same_angles(path: Stepped, own: _Samples, finest: _Samples) -> _Samples | N
     for k, table in enumerate([*path.tables[:-1], beyond]):
         low, high = sense * table.one_at("crank_angle", np.array([table.after, table.until]))
         here = (sense * theta >= low - _NEAR) & (sense * theta < high - _NEAR)
-        times.append(_times_of(table, theta[here], table.after, table.until))
+        times.append(times_of(table, theta[here], table.after, table.until))
         stretches.append(np.full(np.count_nonzero(here), k))
     time = np.concatenate(times)
     if len(time) != len(theta):
@@ -200,7 +203,7 @@ def _grid(origin: float, every: float, begin: float, end: float) -> Array:
     return np.asarray(origin + sign * every * np.arange(first, last))
 
 
-def _monotone(table: StepTable) -> list[tuple[float, float]]:
+def monotone(table: StepTable) -> list[tuple[float, float]]:
     """Times between which the crank does not reverse."""
     times, speed = table.times, table.column("crank_speed")
     moving = (times > table.after) & (times < table.until)
@@ -217,7 +220,7 @@ def _monotone(table: StepTable) -> list[tuple[float, float]]:
     return list(itertools.pairwise([table.after, *turns, table.until]))
 
 
-def _times_of(table: StepTable, theta: Array, begin: float, end: float) -> Array:
+def times_of(table: StepTable, theta: Array, begin: float, end: float) -> Array:
     """Times at which the crank comes to the angles, where it does not reverse."""
     times = table.times
     between, ends = (times > begin) & (times < end), np.array([begin, end])
@@ -250,6 +253,18 @@ def _fuel(path: Stepped, k: int, theta: Array) -> Array:
     return fuel
 
 
+def _turn(table: StepTable, after: StepTable, part: dict[str, Array]) -> None:
+    """Where a sample ends a stretch at a dead centre, as gas above a jump is asked for, friction
+    is still that after it: it has no lever there, and changes the joint forces alone."""
+    at_end = np.abs(part["time"] - table.until) < _AT_END * table.step
+    if at_end.any():
+        gas, theta = part["gas_force"], part["crank_angle"]
+        change = (after.gas.rubbed(gas) - table.gas.rubbed(gas)) * at_end[:, None]
+        part["rings"] = table.gas.rubbed(gas) + change
+        for name, force in held_by(table.scene, change, theta).items():
+            part[name] = part[name] + force
+
+
 def _variables_at(
     problem: Problem, path: Stepped, samples: _Samples, *, by_angle: bool = False
 ) -> dict[str, Array]:
@@ -266,6 +281,13 @@ def _variables_at(
         if table.gas.shares:
             part["fuel"] = _fuel(path, k, part["crank_angle"])
         part["gas_force"] = table.gas.force(part["crank_angle"])
+        if problem.scene.friction is not None:
+            if k + 1 < len(path.tables):
+                _turn(table, path.tables[k + 1], part)
+            rings = part.pop("rings", table.gas.rubbed(part["gas_force"]))
+            part["friction_force"] = (
+                rings - problem.scene.friction.viscous * part["piston_velocity"]
+            )
         part["gas_pressure"] = part["gas_force"] / (problem.scene.piston.gas_area or 1.0)
         parts.append(part)
     return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}

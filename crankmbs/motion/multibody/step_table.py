@@ -56,7 +56,7 @@ class StepTable(NamedTuple):
         named = self._named(self._interpolated(self.columns, time))
         theta = named["crank_angle"]
         named["external_torque"] = named["external_torque"] + self._over_angle(theta)
-        held = held_by(self.scene, self.gas.force(theta), theta)
+        held = held_by(self.scene, self.gas.along(theta), theta)
         return named | {name: named[name] + force for name, force in held.items()}
 
     def under(self, loads: tuple[Cycle, ...]) -> StepTable:
@@ -143,9 +143,9 @@ def table_of(
 ) -> StepTable:
     """The variables at every step, from exudyn's own coordinates and multipliers.
 
-    The energy residual is ``residual`` at time ``after``. The work of gas and outside torque is
-    the integral over time of their power at the steps, by the cubic through four neighbouring
-    steps; that of gravity is what the centres of mass fell.
+    The energy residual is ``residual`` at time ``after``. The work of gas, friction and outside
+    torque is the integral over time of their power at the steps, by the cubic through four
+    neighbouring steps; that of gravity is what the centres of mass fell.
 
     torque : shape (m,) [N m], from outside on the crank
     """
@@ -162,8 +162,9 @@ def table_of(
     crank_pin, piston_pin = _complex(record.crank_pin) * turn, _complex(record.piston_pin) * turn
     phi = theta[:, None] + gas.gas.phases
     kinetic = _kinetic_energy(scene, crank_v, rods_v, pistons_v)
-    forces = gas.force(theta)
-    power = torque * omega - (forces * velocity).sum(axis=1)
+    forces = gas.along(theta)
+    viscous = scene.friction.viscous if scene.friction else 0.0
+    power = torque * omega - ((forces + viscous * velocity) * velocity).sum(axis=1)
     closure = kinetic - _integral(power, record.time) - _fall(scene, crank, rods, pistons)
     closure += residual - np.interp(after, record.time, closure)
     top = top_position(scene.crank.radius, scene.rod.length, scene.piston.offset)

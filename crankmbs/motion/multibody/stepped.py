@@ -12,14 +12,15 @@ from typing import NamedTuple
 
 import numpy as np
 
+from crankmbs.motion.base import State
 from crankmbs.motion.ending import Ending
-from crankmbs.motion.multibody.gas import NEAR
 from crankmbs.motion.multibody.landing import LEAST_STEPS, PASSED
 from crankmbs.motion.multibody.model import Model
 from crankmbs.motion.multibody.problem import Problem, jump_times, kink_times
 from crankmbs.motion.multibody.start import coordinates
 from crankmbs.motion.multibody.step_table import StepTable
 from crankmbs.motion.multibody.walk import SAME, Walk, initial_acceleration
+from crankmbs.numerics.cycle import NEAR
 
 __all__ = ["Stepped", "coarsest_step", "model_of", "solve"]
 
@@ -33,12 +34,14 @@ class Stepped(NamedTuple):
     """A run at one step size.
 
     tables : the stretches, one after the other
+    landings : the state at the start and at the end of each stretch that has some length
     ending : COMPLETE, CALLED_OFF, HELD, or DIVERGED where the solver gave up
     blind : whether it ran over bends or jumps of the loads over speed
     steps, iterations : what it cost
     """
 
     tables: tuple[StepTable, ...]
+    landings: tuple[State, ...]
     ending: Ending
     blind: bool
     steps: int
@@ -48,7 +51,7 @@ class Stepped(NamedTuple):
 def model_of(problem: Problem) -> Model:
     """exudyn's system for a problem."""
     reference = coordinates(problem.scene, problem.start[0], 0.0)
-    gas = problem.scene.gas is not None
+    gas = problem.scene.gas is not None or problem.scene.friction is not None
     return Model(problem.scene, reference, gas=gas, free=problem.law is None)
 
 
@@ -80,13 +83,16 @@ def solve(
             last = walk.tables[-1]  # half of it: an end at a jump has no certain side
             walk.tables[-1] = last._replace(until=0.5 * (last.after + last.until))
             return _path(walk, Ending.CALLED_OFF)
-    if walk.time > 0.0 and (walk.is_at_gas_jump(PASSED) or at_jump_in_time()):
+    if walk.time > 0.0 and (
+        walk.is_at_gas_jump(PASSED) or walk.is_at_dead_centre(PASSED) or at_jump_in_time()
+    ):
         walk.above(h)  # what comes after the jump is asked for at the end, too
     return _path(walk, ending)
 
 
 def _path(walk: Walk, ending: Ending) -> Stepped:
-    return Stepped(tuple(walk.tables), ending, walk.is_blind, walk.steps, walk.iterations)
+    made = tuple(walk.tables), tuple(walk.landings)
+    return Stepped(*made, ending, walk.is_blind, walk.steps, walk.iterations)
 
 
 def coarsest_step(problem: Problem, model: Model) -> tuple[float, bool]:

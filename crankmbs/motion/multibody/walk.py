@@ -8,13 +8,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from crankmbs.mechanics.geometry import close_loop
 from crankmbs.mechanics.windows import acting, first_phases, later_phases, phase_ends
+from crankmbs.motion.base import State
 from crankmbs.motion.ending import Ending
+from crankmbs.motion.mode import Mode
 from crankmbs.motion.multibody.gas import GasStretch
 from crankmbs.motion.multibody.landing import (
     LEAST_STEPS,
@@ -47,6 +50,7 @@ class Walk:
     tables : one per stretch
     time [s] : where the last one ended
     bound [rad] : the crank angle that ended it, if one did
+    landings : the state at the start and where each stretch of some length ended
     steps, iterations : what they cost
     """
 
@@ -62,6 +66,7 @@ class Walk:
         self._firing = law.first if law else None
         self._phases = first_phases(problem.scene.torque, problem.start[1]) if free else ()
         self._speeds_left = _MOST_SPEEDS
+        self.landings = [self._landing()]
         self.steps = self.iterations = 0
 
     @property
@@ -73,6 +78,21 @@ class Walk:
         """Whether the gas force of a cylinder jumps here, or so near [rad]; if so, go there."""
         theta, omega = self._state
         gas = self._problem.gas.stretch(theta, 1.0)
+        rubs = self._problem.scene.friction is not None  # then it may be a dead centre
+        ends = [
+            end
+            for end, rises in zip((gas.low, gas.high), gas.rises, strict=True)
+            if abs(end - theta) < near and (rises.any() or not rubs)
+        ]
+        self._state = (ends[0] if ends else theta, omega)
+        return bool(ends)
+
+    def is_at_dead_centre(self, near: float) -> bool:
+        """Whether friction jumps here, or so near [rad], as a piston turns; if so, go there."""
+        theta, omega = self._state
+        if self._problem.scene.friction is None:
+            return False
+        gas = self._problem.gas.stretch(theta, -omega or 1.0)
         ends = [end for end in (gas.low, gas.high) if abs(end - theta) < near]
         self._state = (ends[0] if ends else theta, omega)
         return bool(ends)
@@ -112,7 +132,8 @@ class Walk:
         return Ending.HELD
 
     def above(self, step: float) -> None:
-        """Take a stretch of no length, with what is above a jump of the gas force here.
+        """Take a stretch of no length, with what is above a jump of the gas force here, and after
+        one of friction.
 
         None where a jump of the loads over speed stands against it, or where the solver fails.
         """
@@ -176,9 +197,14 @@ class Walk:
         return None if beside else (gas, speeds)
 
     def _gas_beside(self, sense: float) -> GasStretch:
-        """Give the model the gas that a motion of this sense enters here."""
-        gas = self._problem.gas.stretch(self._state[0], sense, self._firing)
-        has_gas = self._problem.scene.gas is not None
+        """Give the model the gas that a motion of this sense enters here, and the friction that the
+        motion itself does."""
+        (theta, omega), gases = self._state, self._problem.gas
+        gas = gases.stretch(theta, sense, self._firing)
+        if gas.slides is not None and omega * sense < 0.0:
+            gas = replace(gas, slides=gases.stretch(theta, omega, self._firing).slides)
+        scene = self._problem.scene
+        has_gas = scene.gas is not None or scene.friction is not None
         self._model.gas = gas.functions() if has_gas else ()
         return gas
 
@@ -197,10 +223,13 @@ class Walk:
         """The speeds next to that of here at which a load bends, jumps, sets in or ends; blind,
         those at which one sets in or ends."""
         stops = phase_ends(self._problem.scene.torque, self._phases)[1]
+        stops += (0.0,) if self._problem.scene.friction is not None else ()
         return speeds_around(() if self.is_blind else self._acting, self._state[1], sense, stops)
 
     def _jumps(self, omega: float) -> bool:
-        """Whether a load jumps at a speed."""
+        """Whether a load jumps at a speed, or friction, at 0."""
+        if omega == 0.0 and self._problem.scene.friction is not None:
+            return True
         theta = self._state[0]
         now = self.time, self.time
         sides = (
@@ -235,6 +264,10 @@ class Walk:
         self._decide()
         torques, late = self._problem.scene.torque, self.time * (1.0 + SAME)
         self._phases = later_phases(torques, self._phases, late, self._state[1])
+        self.landings.append(self._landing())
+
+    def _landing(self) -> State:
+        return State(self.time, *self._state, 0.0, Mode(self._phases, firing=self._firing))
 
     def _decide(self) -> None:
         """The decision on the fuel, where the last stretch has ended at its angle."""

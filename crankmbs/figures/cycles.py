@@ -1,0 +1,71 @@
+"""What changes from cycle to cycle, and what happens on the way of a run."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from crankmbs.figures.style import COLOURS, STYLE, footer, legend, line_of, name_of, panels
+from crankmbs.numerics.arrays import Array
+from crankmbs.result import Result
+from crankmbs.scene.units import RPM
+
+__all__ = ["FEWEST_CYCLES", "cycles_figure", "mark_events"]
+
+FEWEST_CYCLES = 4  # fewer are seen in the figures of the run
+_MOST_MARKS = 8  # events that can be told apart in a panel
+
+
+@rc_context(STYLE)
+def cycles_figure(result: Result) -> Figure:
+    """Mean, least and largest speed of each cycle and, with gas, the mean effective pressures; the
+    events of the run at the place where they lie between the cycles."""
+    cycles = result.cycles
+    number = cycles["cycle"].values
+    with_gas = "imep" in cycles
+    figure, axes = panels(1 + with_gas, 1, 10.0, 3.5 * (1 + with_gas))
+    least, largest, mean = (
+        cycles[f"{name}_speed"].values / RPM for name in ("least", "largest", "mean")
+    )
+    axes[0].fill_between(
+        number, least, largest, color=COLOURS[4], alpha=0.4, label="least to largest"
+    )
+    axes[0].plot(number, mean, color=COLOURS[0], label="mean")
+    axes[0].set_ylabel("crank speed [rpm]")
+    if with_gas:
+        for k, values in enumerate(cycles["imep"].values.T):
+            axes[1].plot(number, values * 1e-5, **line_of(k), label=name_of(k))
+        axes[1].set_ylabel("indicated mean\neffective pressure [bar]")
+    begins = cycles["time"].values
+    at = np.interp(result.events["time"].values, begins, number, np.nan, number[-1])
+    mark_events(axes[0], result, np.asarray(at))
+    axes[-1].set_xlabel("cycle")
+    legend(figure, *(axes if result.data.sizes["cylinder"] > 1 else axes[:1]))
+    figure.align_ylabels(axes)
+    footer(figure, result, "cycle by cycle")
+    return figure
+
+
+def mark_events(ax: Axes, result: Result, at: Array) -> None:
+    """Thin labelled lines at the first events of a run but the decisions on the fuel.
+
+    at : shape (events,), where each stands on the panel's axis
+    """
+    low, high = ax.get_xlim()
+    kinds, loads = result.events["kind"].values, result.events["load"].values
+    shown = np.flatnonzero((kinds != "fuel") & (at >= low) & (at <= high))[:_MOST_MARKS]
+    for place, k in enumerate(shown.tolist()):
+        ax.axvline(at[k], color="0.35", linewidth=0.9, linestyle=":", zorder=1)
+        words = str(kinds[k]).replace("load", f"load {loads[k]}")
+        ax.annotate(
+            words,
+            (at[k], 1.0),
+            xycoords=("data", "axes fraction"),
+            xytext=(2, -12 * (1 + place % 4)),
+            textcoords="offset points",
+            fontsize=9,
+            color="0.35",
+            bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5, "alpha": 0.8},
+        )

@@ -1,0 +1,135 @@
+"""The account of a run in files: variables of the netCDF beside the samples, and CSV."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from crankmbs.mechanics.variables import Variable
+from crankmbs.motion.account import Account, Kind, Rows
+from crankmbs.motion.labels import CYCLES, EVENTS, dims_of
+from crankmbs.numerics.arrays import Array
+from crankmbs.scene.scene import Scene
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["DIMS", "account_in", "with_account", "write_rows"]
+
+
+@dataclass(frozen=True)
+class _Stored:
+    """How rows are stored: each column by its name behind the one of the rows."""
+
+    rows: str
+    about: dict[str, Variable]
+    dims: Callable[[str], tuple[str, ...]]
+
+    def variables(self, rows: Rows) -> dict[str, tuple[tuple[str, ...], Array, dict[str, object]]]:
+        """The columns as variables of a file."""
+        found = {}
+        for name, values in rows.columns.items():
+            about = self.about[name]
+            attrs: dict[str, object] = {"units": about.units, "long_name": about.long_name}
+            attrs["error_estimate"] = rows.errors[name]
+            found[f"{self.rows}_{name}"] = (self.dims(name), values, attrs)
+        return found
+
+    def read(self, data: xr.Dataset, names: Iterable[str], left_out: int) -> Rows:
+        """The rows with these columns that a file holds; no row where it holds none."""
+        columns: dict[str, Array] = {}
+        errors = dict.fromkeys(names, 0.0)
+        for name in errors:
+            stored = f"{self.rows}_{name}"
+            if self.rows in data.dims:
+                columns[name] = data[stored].values
+                errors[name] = float(data[stored].attrs["error_estimate"])
+            else:
+                columns[name] = np.empty([0, *(data.sizes[d] for d in self.dims(name)[1:])])
+        return Rows(columns, errors, left_out)
+
+
+_NUMBERED = {"number": Variable("1", "number, from 1 at the start"), **CYCLES}
+_EVENTS = _Stored("event", EVENTS, lambda _: ("event",))
+_CYCLES = _Stored("cycle", _NUMBERED, lambda name: dims_of(name) if name in CYCLES else ("cycle",))
+DIMS = {f"event_{name}": _EVENTS.dims(name) for name in EVENTS}
+DIMS |= {f"cycle_{name}": _CYCLES.dims(name) for name in _NUMBERED}
+"""The dimensions of what an account adds to a file, by its name there."""
+
+
+def with_account(data: xr.Dataset, account: Account) -> xr.Dataset:
+    """The data with the rows of an account beside them."""
+    for stored, rows in ((_EVENTS, account.events), (_CYCLES, account.cycles)):
+        if rows.count:
+            data = data.assign(stored.variables(rows))
+            data = data.assign_coords({stored.rows: np.arange(1, rows.count + 1)})
+            if "load" in data.dims:
+                data = data.assign_coords(load=np.arange(1, data.sizes["load"] + 1))
+    return data
+
+
+def account_in(
+    data: xr.Dataset, scene: Scene, left_out: tuple[int, int]
+) -> tuple[Account, xr.Dataset]:
+    """The account that `with_account` has put beside the data of a scene, and these alone.
+
+    left_out : events and cycles
+
+    Raises
+    ------
+    ValueError, KeyError : it is no account of this scene
+    """
+    names = [name for name in _NUMBERED if _has(scene, name)]
+    if data.sizes.get("load", len(scene.torque)) != len(scene.torque):
+        raise ValueError("loads of another scene")
+    sizes = data.assign_coords(load=np.arange(len(scene.torque)))
+    account = Account(
+        _EVENTS.read(data, EVENTS, left_out[0]), _CYCLES.read(sizes, names, left_out[1])
+    )
+    of_loads = (Kind.LOAD_ON, Kind.LOAD_OFF)
+    most = {Kind.FUEL: len(scene.cylinders), **dict.fromkeys(of_loads, len(scene.torque))}
+    codes, numbers = (account.events.columns[name].tolist() for name in ("kind", "number"))
+    for code, number in zip(codes, numbers, strict=True):
+        if Kind(code) in most and number not in range(1, most[Kind(code)] + 1):
+            raise ValueError(f"an event of number {number}")
+    return account, data.drop_dims(["event", "cycle", "load"], errors="ignore")
+
+
+def _has(scene: Scene, name: str) -> bool:
+    """Whether the cycles of a scene have a variable."""
+    return {
+        "gas_work": scene.gas is not None,
+        "imep": scene.gas is not None,
+        "fuel": scene.fuel is not None,
+        "friction_work": scene.friction is not None,
+        "load_work": bool(scene.torque),
+        "drive_work": scene.motion is not None,
+    }.get(name, True)
+
+
+def write_rows(data: xr.Dataset, file: Path) -> None:
+    """Write a dataset as CSV, a line for each of its rows; what has a value for each cylinder or
+    load in as many columns."""
+    columns: dict[str, list[str]] = {}
+    (rows,) = {one.dims[0] for one in data.data_vars.values()}
+    if rows == "cycle":
+        columns["cycle"] = _cells(data["cycle"].values.tolist())
+    for name, one in data.data_vars.items():
+        unit = f" [{one.attrs['units']}]" if "units" in one.attrs else ""
+        if one.ndim == 1:
+            columns[f"{name}{unit}"] = _cells(one.values.tolist())
+        else:
+            for k, values in enumerate(one.values.T.tolist(), start=1):
+                columns[f"{name} {k}{unit}"] = _cells(values)
+    with file.open("w", newline="", encoding="utf-8") as stream:
+        lines = csv.writer(stream, lineterminator="\n")
+        lines.writerows([list(columns), *zip(*columns.values(), strict=True)])
+
+
+def _cells(values: Sequence[object]) -> list[str]:
+    return [f"{value:.12g}" if isinstance(value, float) else str(value) for value in values]

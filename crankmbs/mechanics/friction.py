@@ -1,0 +1,235 @@
+"""Friction of the pistons on their walls.
+
+    friction_force = -sign(v) (ring_force + ring_pressure |gas_force|) - viscous v
+
+with the piston's velocity v = -x_1 omega, positive towards the crank. A piston changes the sense in
+which it slides at its dead centres, which are known angles: there the value after counts. By
+virtual work the crank feels
+
+    Q = sum of friction_force dv/domega
+      = -sign(omega) sum (ring_force |x_1| + ring_pressure |Q_gas|) - viscous omega sum x_1^2
+
+with the torque Q_gas of each cylinder's gas. So at one sense of rotation all but the last term is a
+function of the angle, smooth between the dead centres and the angles at which a gas force changes
+its sign.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.interpolate import PPoly
+
+from crankmbs.mechanics.geometry import close_loop, dead_centres
+from crankmbs.mechanics.inertia import fired_torque
+from crankmbs.mechanics.pressure import KNOT, PeriodicPressure
+from crankmbs.mechanics.train import CrankTrain, merged_knots
+from crankmbs.numerics.arrays import Array
+from crankmbs.numerics.periodic import one_period
+from crankmbs.scene.parts import Friction
+from crankmbs.scene.scene import Scene
+
+__all__ = [
+    "Rubbing",
+    "friction_forces",
+    "friction_knots",
+    "friction_torque",
+    "held_share",
+    "rubbing",
+    "sign_changes",
+]
+
+_NONE = Friction()
+
+
+class Rubbing(NamedTuple):
+    """What rubs at crank angles of shape (...), as torques on the crank.
+
+    rings : shape (...) [N m], of the ring force, against either sense of rotation
+    gas : shape (..., cylinders) [N m], torque of the gas without combustion, of which the rings
+        feel the share ``pressed``
+    drag : shape (...) [N m s/rad], of the viscous friction per speed
+    """
+
+    rings: Array
+    gas: Array
+    drag: Array
+    pressed: float
+
+    def coulomb(self, more: Array | float = 0.0) -> Array:
+        """Torque against either sense of rotation [N m]; ``more``: what combustion adds to that of
+        the gas."""
+        return np.asarray(self.rings + self.pressed * np.abs(self.gas + more).sum(axis=-1))
+
+
+def rubbing(train: CrankTrain, theta: ArrayLike) -> Rubbing:
+    """Friction reduced to the crank, at crank angles of shape (...) [rad]; exact.
+
+    >>> float(rubbing(crank_train(load_scene("coasting")), 1.0).coulomb())
+    0.0
+    """
+    scene, friction = train.scene, train.scene.friction or _NONE
+    theta, area = np.asarray(theta, dtype=np.float64), train.scene.piston.gas_area or 0.0
+    rings, drag = np.zeros_like(theta), np.zeros_like(theta)
+    gas = np.zeros((*theta.shape, len(scene.cylinders)))
+    for k, cylinder in enumerate(scene.cylinders):
+        phi = theta + cylinder.phase
+        x_1 = _rise(scene, phi)
+        rings += friction.ring_force * np.abs(x_1)
+        drag += friction.viscous * x_1**2
+        if train.pressure is not None:
+            gas[..., k] = -area * train.pressure[k](phi) * x_1
+    return Rubbing(rings, gas, drag, friction.ring_pressure)
+
+
+def friction_torque(
+    train: CrankTrain,
+    theta: ArrayLike,
+    omega: ArrayLike,
+    sense: ArrayLike,
+    shares: ArrayLike | None = None,
+) -> Array:
+    """Torque of the friction on the crank [N m], at crank angles, speeds and senses of rotation of
+    one shape (...) [rad, rad/s, a sign].
+
+    shares : shape (cylinders,) or (..., cylinders), of the combustion; None leaves it out
+
+    >>> float(friction_torque(crank_train(load_scene("coasting")), 1.0, 2.0, 1.0))
+    -0.0
+    """
+    found, more = rubbing(train, theta), 0.0
+    if shares is not None and train.combustion is not None:
+        more = fired_torque(train, theta) * np.asarray(shares)
+    against = np.asarray(sense) * found.coulomb(more)
+    return np.asarray(-against - found.drag * np.asarray(omega))
+
+
+def friction_forces(
+    train: CrankTrain,
+    theta: Array,
+    omega: Array,
+    fuel: Array | None = None,
+    slides: Array | None = None,
+) -> Array:
+    """Friction on every piston [N], positive towards the crank; exact.
+
+    Parameters
+    ----------
+    theta, omega : shape (n,) [rad, rad/s]
+    fuel : shape (n, cylinders), shares of the combustion; None leaves it out
+    slides : shape (n,), the sense of rotation that sets the sense of sliding, by default the sign
+        of the speed; between -1 and 1 it is, at rest, the share of the friction that holds
+
+    Returns
+    -------
+    shape (n, cylinders); 0 at rest, where ``slides`` is not given
+
+    >>> friction_forces(crank_train(load_scene("coasting")), np.ones(1), np.ones(1)).shape
+    (1, 1)
+    """
+    scene, friction = train.scene, train.scene.friction or _NONE
+    theta, omega = np.asarray(theta, dtype=np.float64), np.asarray(omega, dtype=np.float64)
+    slides = np.sign(omega) if slides is None else slides
+    area, forces = scene.piston.gas_area or 0.0, np.empty((len(theta), len(scene.cylinders)))
+    once, which = one_period(theta, train.period)
+    for k, cylinder in enumerate(scene.cylinders):
+        phi = once + cylinder.phase
+        gas = np.zeros(len(theta))
+        if train.pressure is not None:
+            gas = area * train.pressure[k](phi)[which]
+        if train.combustion is not None and fuel is not None:
+            gas = gas + fuel[:, k] * (area * train.combustion[k](phi))[which]
+        sliding = [_towards(scene, phi, sense)[which] for sense in (1.0, -1.0)]
+        towards = np.where(slides >= 0.0, *sliding)
+        limit = friction.ring_force + friction.ring_pressure * np.abs(gas)
+        velocity = -_rise(scene, phi)[which] * omega
+        forces[:, k] = -np.abs(slides) * towards * limit - friction.viscous * velocity
+    return forces
+
+
+def held_share(
+    train: CrankTrain, theta: float, torque: ArrayLike, shares: Sequence[float] = ()
+) -> Array:
+    """The share of the friction of a crank at rest that it takes to hold a torque [N m] on it, with
+    its sign; above 1 or below -1 it does not hold, infinite where nothing rubs.
+
+    >>> float(held_share(crank_train(load_scene("coasting")), 1.0, -3.0))
+    -inf
+    """
+    torque = np.asarray(torque, dtype=np.float64)
+    most = -friction_torque(train, theta, 0.0, 1.0, shares or None)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(torque == 0.0, 0.0, torque / np.abs(most))
+
+
+def friction_knots(train: CrankTrain) -> Array:
+    """Crank angles in [0, period) at which friction jumps or bends: dead centres, and, without
+    fuel, where a gas force changes its sign.
+
+    Returns
+    -------
+    shape (n,) [rad], increasing; empty without friction. With fuel the latter depend on the shares:
+    `sign_changes`
+
+    >>> friction_knots(crank_train(load_scene("coasting"))).size
+    0
+    """
+    scene = train.scene
+    if scene.friction is None:
+        return np.empty(0)
+    turns = 2.0 * math.pi * np.arange(round(train.period / (2.0 * math.pi)))
+    centres = dead_centres(scene.crank.radius, scene.rod.length, scene.piston.offset)
+    angles = [np.add.outer(turns, np.array(centres) - c.phase).ravel() for c in scene.cylinders]
+    if train.combustion is None:
+        angles.append(sign_changes(train))
+    knots = np.unique(np.mod(np.concatenate(angles), train.period))
+    return np.asarray(knots[np.append(True, np.diff(knots) > KNOT)])
+
+
+def sign_changes(train: CrankTrain, shares: Sequence[float] = ()) -> Array:
+    """Crank angles in [0, period) at which the gas force of a cylinder changes its sign with these
+    shares of the combustion, where rings feel it: the roots of its cubics.
+
+    Returns
+    -------
+    shape (n,) [rad], increasing
+
+    >>> sign_changes(crank_train(load_scene("coasting"))).size
+    0
+    """
+    friction = train.scene.friction
+    if friction is None or friction.ring_pressure == 0.0 or train.pressure is None:
+        return np.empty(0)
+    pressures = list(train.pressure)
+    if shares and train.combustion is not None:
+        pressures = [
+            PeriodicPressure(p.knots, p.coefficients + share * more.coefficients)
+            for p, more, share in zip(pressures, train.combustion, shares, strict=True)
+        ]
+    once = {each: _roots(each) for each in dict.fromkeys(pressures)}
+    return merged_knots(train, [once[each] for each in pressures])
+
+
+def _roots(pressure: PeriodicPressure) -> Array:
+    """Cycle angles [rad] of one period at which a pressure is 0 between two knots."""
+    found = PPoly(pressure.coefficients, pressure.knots).roots(
+        discontinuity=False, extrapolate=False
+    )
+    return np.unique(found[np.isfinite(found)])
+
+
+def _rise(scene: Scene, phi: Array) -> Array:
+    """dx/dphi of the piston pin [m] at cycle angles."""
+    shape = (scene.crank.radius, scene.rod.length, scene.piston.offset)
+    return close_loop(phi, *shape).x_1
+
+
+def _towards(scene: Scene, phi: Array, sense: float) -> Array:
+    """The sign of a piston's velocity just beyond cycle angles [rad], in a sense of rotation."""
+    top, bottom = dead_centres(scene.crank.radius, scene.rod.length, scene.piston.offset)
+    behind = np.mod(phi + sense * KNOT - top, 2.0 * math.pi)
+    return np.where(behind < bottom - top, sense, -sense)

@@ -1,0 +1,71 @@
+"""What a run that has ended leaves open: windows that a speed did not end or begin, and a governor
+that hunts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from crankmbs.mechanics.windows import Phase
+from crankmbs.motion.mode import Mode
+from crankmbs.numerics.arrays import Array
+from crankmbs.scene.fuel import Fuel
+from crankmbs.scene.scene import Scene
+from crankmbs.scene.units import RPM
+
+__all__ = ["left_open"]
+
+_SWINGS = 3  # from one end to the other: a load step makes one, and one back
+
+
+def left_open(scene: Scene, mode: Mode, shares: Array | None) -> tuple[str, ...]:
+    """A sentence for each window that waits for a speed at the end of a run, and for a governor
+    whose share goes from its least to its greatest and back throughout the second half of it.
+
+    mode : at the end; shares : shape (n, cylinders), of the combustion at the samples, if any
+
+    >>> left_open(load_scene("propeller"), Mode(), None)
+    ()
+    """
+    said = [*_windows(scene, mode)]
+    fuel, firing = scene.fuel, mode.firing
+    if fuel is not None and firing is not None:
+        if firing.set_in is None and fuel.from_speed is not None:
+            said.append(
+                f"fuel: from_speed, {fuel.from_speed / RPM:.6g} rpm, was not met where shares are "
+                "decided, and the engine did not start"
+            )
+        if shares is not None:
+            said += _hunting(fuel, shares[len(shares) // 2 :])
+    return tuple(said)
+
+
+def _windows(scene: Scene, mode: Mode) -> Iterator[str]:
+    for number, (load, phase) in enumerate(zip(scene.torque, mode.loads, strict=False), start=1):
+        if phase is Phase.ACTING and load.until_speed is not None:
+            yield (
+                f"torque[{number}]: until_speed, {load.until_speed / RPM:.6g} rpm, was not met, "
+                "and the load never let go"
+            )
+        if phase is Phase.WAITING and load.from_speed is not None:
+            yield (
+                f"torque[{number}]: from_speed, {load.from_speed / RPM:.6g} rpm, was not met, and "
+                "the load never set in"
+            )
+
+
+def _hunting(fuel: Fuel, shares: Array) -> Iterator[str]:
+    """Of the cylinder that goes from end to end most often; scatter hides the ends."""
+    governor, most = fuel.governor, 0
+    if governor is None or fuel.scatter > 0.0 or governor.min == governor.max:
+        return
+    misfiring = {one.cylinder - 1 for one in fuel.misfire or ()}
+    for k in set(range(shares.shape[1])) - misfiring:
+        at_end = (shares[:, k] >= governor.max).astype(int) - (shares[:, k] <= governor.min)
+        most = max(most, int(np.count_nonzero(np.diff(at_end[at_end != 0]))))
+    if most >= _SWINGS:
+        yield (
+            f"the governor hunts: in the second half of the run its share went {most} times from "
+            f"one end, {governor.min:g} or {governor.max:g}, to the other; lower its gains"
+        )
