@@ -12,7 +12,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from crankmbs.errors import InputError
-from crankmbs.mechanics.variables import WITH_FUEL
+from crankmbs.mechanics.variables import EVERY
 from crankmbs.motion.ending import Ending
 from crankmbs.page.export import encoded, exported, rules
 from crankmbs.page.knobs import AS_GIVEN, FIRING_ORDERS, Choice, choices_of, knobs_of
@@ -106,7 +106,7 @@ def _given(scene: Scene, stem: str, choices: tuple[Choice, ...]) -> dict[str, An
         "compression": None if indicator is None else indicator.compression_ratio,
         "orders": {name: list(order) for name, order in FIRING_ORDERS.items()},
         "as_given": AS_GIVEN,
-        "units": {name: variable.units for name, variable in WITH_FUEL.items()},
+        "units": {name: variable.units for name, variable in EVERY.items()},
         "endings": _ENDINGS,
         "sentences": {
             "open_loop": OPEN_LOOP,

@@ -10,6 +10,7 @@ const SKIRT = 0.3;
 const CLEARANCE = 1 / 14; // of the stroke
 const RIM = 1.75; // of the crank radius: the flywheel's rim, at the inertia that the scene has
 const WIDEST = 2.45;
+const ROOM = 0.7; // of the crank radius
 
 /** The proportions of a machine [m]. ratio : of the flywheel's inertia to that of the scene */
 export function proportions(train, ratio, compression) {
@@ -27,7 +28,9 @@ export function proportions(train, ratio, compression) {
   const ends = cylinders.flatMap(({ bank }) =>
     [-across, across].map((y) => [y * Math.cos(bank) + head * Math.sin(bank),
       head * Math.cos(bank) - y * Math.sin(bank) + 0.1 * width]));
-  const edge = ring + 0.25 * r;
+  const above = piston.area ? ROOM * r : 0; // for the arrow of the gas
+  ends.push(...cylinders.map(({ bank }) => turnedBy(bank, head + above, 0).reverse()));
+  const edge = ring + 0.15 * r;
   const far = Math.max(edge, ...ends.map(([y]) => Math.abs(y)));
   const high = Math.max(...ends.map(([, x]) => x), edge);
   const bounds = { left: -far, top: -high, width: 2 * far, height: high + edge };

@@ -37,10 +37,10 @@ export function readable(x, decimals) {
   return Number(text) === 0 ? (0).toFixed(decimals) : text.replace("-", "\u2212");
 }
 
-/** How many digits after the point show a thousandth of a size. */
+/** How many digits after the point show a size in four digits. */
 export function decimalsFor(size) {
   if (!(size > 0)) return 0;
-  return Math.min(Math.max(3 - Math.ceil(Math.log10(size)), 0), 9);
+  return Math.min(Math.max(4 - Math.ceil(Math.log10(size)), 0), 9);
 }
 
 /** Round steps over a range, about so many: { ticks, step }. */

@@ -39,6 +39,7 @@ class Page {
     this.stage = new Stage(find("stage"), given.compression);
     this.player = new Player({ cycle: () => this.cycle, move: (theta) => this.pose(theta) });
     this.listen();
+    new ResizeObserver(() => this.redraw()).observe(this.stage.root);
     this.begin();
   }
 
@@ -220,14 +221,14 @@ class Page {
 
   showChoices(k) {
     const { given, view, values, cycle } = this;
-    options(find("cylinder"), cycle.train.cylinders.map((_, n) => String(n + 1)));
+    options(find("cylinder"), cycle.train.cylinders.length);
     const shown = { ...given.own, ...view, ...values, cylinder: String(k + 1) };
     for (const select of document.querySelectorAll("[data-state]")) {
       const value = shown[select.dataset.state];
       if (select.type === "checkbox") select.checked = value === select.dataset.true;
       else select.value = value;
     }
-    find("cylinder").closest("label").hidden = cycle.train.cylinders.length < 2;
+    find("cylinder").hidden = cycle.train.cylinders.length < 2;
     const unused = cycle.prescribed && given.scene.motion === null ? ["flywheel", "load"] : [];
     this.knobs.disable(unused);
     const { low, high } = spanOf(cycle);
@@ -346,10 +347,10 @@ function keysOf({ scene, knobs, words }) {
   ];
 }
 
-/** Where crank, rod and arrows are apart: 60 degrees after the firing dead centre. */
+/** Where crank, rod and arrows are apart: 30 degrees after the firing dead centre. */
 function tellingPose({ train, scene, from, to }) {
   const firing = scene.period > 3 * Math.PI && train.pressure.length ? 2 * Math.PI : 0;
-  const theta = firing + Math.PI / 3 - train.cylinders[0].phase;
+  const theta = firing + Math.PI / 6 - train.cylinders[0].phase;
   const period = Math.abs(to - from);
   const low = Math.min(from, to);
   return theta - Math.floor((theta - low) / period) * period;
@@ -359,7 +360,8 @@ function spanOf({ from, to }) {
   return { low: Math.min(from, to) / DEGREE, high: Math.max(from, to) / DEGREE };
 }
 
-function options(select, names) {
-  if (select.options.length === names.length) return;
-  select.replaceChildren(...names.map((name) => new Option(name, name)));
+function options(select, count) {
+  if (select.options.length === count) return;
+  const names = Array.from({ length: count }, (_, n) => String(n + 1));
+  select.replaceChildren(...names.map((name) => new Option(`cylinder ${name}`, name)));
 }

@@ -3,11 +3,11 @@
  * It is drawn in pixels of the page, so that its type has the size of the page's; the cursor can
  * be dragged, and what lies under the pointer is read out.
  */
-import { decimalsFor, readable, roundTicks } from "./format.js";
+import { axes } from "./axis.js";
+import { decimalsFor, readable } from "./format.js";
 import { add, pathOf, set } from "./svg.js";
 
-const STRIP = 0.27; // of the height, for the differences
-const QUARTERS = [45, 90, 180, 360, 720]; // degrees between ticks of the crank angle
+const STRIP = 0.3; // of the height, for the differences
 const NOTHING = 1e-9; // of the largest value: a difference that is none
 
 export class Plot {
@@ -49,17 +49,19 @@ export class Plot {
     set(svg, { viewBox: `0 0 ${width} ${height}`, "aria-label": this.described() });
     const type = parseFloat(getComputedStyle(svg).fontSize);
     const strip = shape.differences.length > 0;
-    const box = { left: 4.6 * type, right: width - 0.8 * type, top: 1.9 * type };
-    const foot = height - 2.7 * type;
+    const foot = height - (isDiagram(shape) ? 2.6 : 1.5) * type;
     const split = strip ? foot - STRIP * height : foot;
-    const top = { ...box, bottom: strip ? split - 0.7 * type : foot };
+    const box = { left: 4.4 * type, right: width - 1.2 * type, top: 1.3 * type };
     const curves = this.ghost ? [...shape.curves, this.ghost.curve] : shape.curves;
+    const about = { type, shape, marks: this.marks, overAngle: !isDiagram(shape) };
     this.type = type;
-    this.upper = this.area(top, shape, curves, !strip);
+    this.cursor = null;
+    const top = { ...box, bottom: strip ? split - 1.5 * type : foot };
+    this.upper = axes(svg, top, curves, { ...about, last: !strip, name: nameOf(shape) });
     this.lower = null;
     if (strip) {
       const below = { ...box, top: split, bottom: foot };
-      this.lower = this.area(below, shape, this.visible(), true, "difference");
+      this.lower = axes(svg, below, this.visible(), { ...about, last: true, name: "difference" });
     }
     if (this.ghost) this.line(this.upper, this.ghost.curve, "ghost");
     shape.curves.forEach((curve, n) => this.line(this.upper, curve, styleOf(curve, n)));
@@ -74,63 +76,6 @@ export class Plot {
     const size = Math.max(...curves.flatMap(({ y }) => y.map(Math.abs)));
     const styled = differences.map((each, n) => ({ ...each, style: `difference${n}` }));
     return styled.filter(({ y }) => y.some((value) => Math.abs(value) > NOTHING * size));
-  }
-
-  /** Axes: maps of values to pixels, with grid, ticks and names. */
-  area(box, shape, curves, last, name = null) {
-    const { svg, type } = this;
-    const over = shape.up.text && !shape.equal && !isDiagram(shape);
-    const y = rangeOf(curves.flatMap((curve) => curve.y), over || name);
-    let x = over ? ends(shape.curves[0].x) : rangeOf(curves.flatMap((curve) => curve.x));
-    let bounds = box;
-    if (shape.equal) [x, bounds] = [x, squared(box, x, y)];
-    const right = (value) =>
-      bounds.left + ((value - x.low) / (x.high - x.low)) * (bounds.right - bounds.left);
-    const up = (value) =>
-      bounds.bottom - ((value - y.low) / (y.high - y.low)) * (bounds.bottom - bounds.top);
-    const group = add(svg, "g", { class: "axes" });
-    const space = bounds.bottom - bounds.top;
-    const ticks = roundTicks(y.low, y.high, Math.max(Math.floor(space / (2.6 * type)), 1.5));
-    const digits = Math.max(-Math.floor(Math.log10(ticks.step) + 1e-9), 0);
-    for (const tick of ticks.ticks) {
-      const at = up(tick);
-      const style = Math.abs(tick) < 1e-9 * ticks.step ? "zero" : "grid";
-      add(group, "line", { x1: bounds.left, x2: bounds.right, y1: at, y2: at, class: style });
-      const place = { x: bounds.left - 0.4 * type, y: at + 0.35 * type, class: "tick end" };
-      add(group, "text", place, readable(tick, digits));
-    }
-    this.abscissa(group, bounds, right, { x, over, last });
-    const unit = `${name ?? shape.up.text} [${shape.up.unit}]`;
-    const head = { x: box.left, y: box.top - 0.5 * type, class: "name" };
-    add(group, "text", head, name ? `difference [${shape.up.unit}]` : unit);
-    return { box: bounds, right, up, x, y };
-  }
-
-  /** The axis to the right, with the dead centres over the crank angle. */
-  abscissa(group, box, right, { x, over, last }) {
-    const { shape, type, marks } = this;
-    const wide = (box.right - box.left) / (4.2 * type);
-    const span = x.high - x.low;
-    const step = QUARTERS.find((each) => span / each <= wide) ?? 720;
-    const ticks = over ? multiples(x, step) : roundTicks(x.low, x.high, Math.max(wide / 1.6, 2));
-    const list = over ? ticks : ticks.ticks;
-    const digits = over ? 0 : Math.max(-Math.floor(Math.log10(ticks.step) + 1e-9), 0);
-    for (const tick of list) {
-      const at = right(tick);
-      add(group, "line", { x1: at, x2: at, y1: box.top, y2: box.bottom, class: "grid" });
-      if (!last) continue;
-      const place = { x: at, y: box.bottom + 1.1 * type, class: "tick" };
-      add(group, "text", place, readable(tick, digits));
-    }
-    if (over) {
-      for (const { degrees } of marks) {
-        const at = right(degrees);
-        add(group, "line", { x1: at, x2: at, y1: box.top, y2: box.bottom, class: "dead" });
-      }
-    }
-    if (!last) return;
-    const middle = { x: 0.5 * (box.left + box.right), y: box.bottom + 2.3 * type, class: "name mid" };
-    add(group, "text", middle, `${shape.right.text} [${shape.right.unit}]`);
   }
 
   line({ right, up }, { x, y }, style) {
@@ -260,50 +205,14 @@ function styleOf({ name }, n) {
   return n === 0 ? "simulated" : name === "lecture" ? "lecture" : "exact";
 }
 
+function nameOf({ up, right }) {
+  return right.text === "crank angle" ? up.unit : `${up.text} [${up.unit}]`;
+}
+
 /** The value of a curve at an angle, between its points. */
 function between({ x, y }, degrees) {
   const n = x.length - 1;
   const place = ((degrees - x[0]) / (x[n] - x[0])) * n;
   const k = Math.min(Math.max(Math.floor(place), 0), n - 1);
   return y[k] + (y[k + 1] - y[k]) * (place - k);
-}
-
-function ends(x) {
-  return { low: Math.min(x[0], x[x.length - 1]), high: Math.max(x[0], x[x.length - 1]) };
-}
-
-/** A range around values that ends on round numbers. */
-function rangeOf(values, padded = true) {
-  let low = Math.min(...values);
-  let high = Math.max(...values);
-  const size = Math.max(Math.abs(low), Math.abs(high), 1e-12);
-  if (!(high - low > 1e-9 * size)) [low, high] = [low - 0.01 * size, high + 0.01 * size];
-  const { step } = roundTicks(low, high, 8);
-  const room = padded ? 0.02 * (high - low) : 0;
-  return {
-    low: Math.floor((low - room) / step) * step,
-    high: Math.ceil((high + room) / step) * step,
-  };
-}
-
-/** A box in which both axes have one scale. */
-function squared(box, x, y) {
-  const scale = Math.min(
-    (box.right - box.left) / (x.high - x.low),
-    (box.bottom - box.top) / (y.high - y.low),
-  );
-  const middle = 0.5 * (box.left + box.right);
-  const half = 0.5 * scale * (x.high - x.low);
-  return {
-    left: middle - half,
-    right: middle + half,
-    top: box.bottom - scale * (y.high - y.low),
-    bottom: box.bottom,
-  };
-}
-
-function multiples({ low, high }, step) {
-  const found = [];
-  for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-6; k++) found.push(k * step);
-  return found;
 }

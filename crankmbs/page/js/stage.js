@@ -5,7 +5,7 @@ import { BODIES, forcesOn } from "./forces.js";
 import { general, readable, roundBelow } from "./format.js";
 import { add, set } from "./svg.js";
 
-const REACH = 1.5; // of the crank radius: the longest arrow
+const REACH = 1.2; // of the crank radius: the longest arrow
 const LEAD = (14 * Math.PI) / 180; // the ring's magnified lead, at most
 const TICKS = 24;
 const UNITS = 1000; // of the drawing per metre
@@ -18,8 +18,8 @@ export class Stage {
   }
 
   /** Show another cycle: of cylinder k from 0, the forces on a body or "none"; ratio : of the
-   * flywheel's inertia to the scene's own. */
-  show(cycle, { k, body, ratio }) {
+   * flywheel's inertia to the scene's own; heavy : whether its rim can be dragged. */
+  show(cycle, { k, body, ratio, heavy }) {
     const { train } = cycle;
     Object.assign(this, { cycle, train, k, body });
     this.sizes = proportions(train, ratio, this.compression);
@@ -27,7 +27,7 @@ export class Stage {
     this.most = Math.max(...cycle.samples.map((v) => v.cylinders[k].gas_pressure), 1);
     const lead = Math.max(...cycle.leads.map(Math.abs));
     this.magnified = lead > 1e-9 ? Math.max(roundBelow(LEAD / lead), 1) : 0;
-    this.build();
+    this.build(heavy);
   }
 
   /** Metres of arrow per newton, from the largest force of the cycle. */
@@ -43,25 +43,33 @@ export class Stage {
     return most > 0 ? (REACH * this.sizes.r) / most : 0;
   }
 
-  build() {
+  build(heavy) {
     const { root, sizes, train } = this;
     const { left, top, width, height } = scaledBox(sizes.bounds);
     set(root, { viewBox: `${left} ${top} ${width} ${height}` });
     root.replaceChildren();
-    this.type = 0.2 * sizes.r * UNITS;
+    this.type = this.letters(width, height);
     const flywheel = add(root, "g", { class: "flywheel" });
     this.disc = add(flywheel, "circle", { r: sizes.rim * UNITS, class: "disc" });
     this.mark = add(flywheel, "path", { class: "mark" });
-    add(flywheel, "circle", { r: sizes.rim * UNITS, class: "rim grip", "data-grip": "rim" });
-    this.ring = add(root, "g", { class: "ring" });
-    this.buildRing();
+    const rim = heavy ? { class: "rim grip", "data-grip": "rim" } : { class: "rim" };
+    add(flywheel, "circle", { r: sizes.rim * UNITS, ...rim });
     const order = train.cylinders.map((_, k) => k).filter((k) => k !== this.k);
     this.parts = [];
     for (const k of [...order, this.k]) this.parts[k] = this.cylinder(k);
     this.axle = add(root, "circle", { r: 0.13 * sizes.r * UNITS, class: "axle" });
+    this.ring = add(root, "g", { class: "ring" });
+    this.buildRing();
     this.arrows = add(root, "g", { class: "arrows" });
     this.bar = add(root, "g", { class: "scale" });
     this.buildScale();
+  }
+
+  /** The size of letters in the drawing's units: on the screen that of the page's small type. */
+  letters(width, height) {
+    const box = this.root.getBoundingClientRect();
+    const scale = Math.min(box.width / width, box.height / height) || 1;
+    return (0.85 * parseFloat(getComputedStyle(document.documentElement).fontSize)) / scale;
   }
 
   /** Ticks of the ring at mean speed, and its pointer. */
@@ -209,7 +217,7 @@ export class Stage {
       }
       add(arrows, "path", { d: arrowOf(x, y, dx, dy, 0.055 * sizes.r * UNITS), class: kind });
       const [ex, ey] = pushes ? [-0.02 * dx, -0.02 * dy] : [dx, dy]; // from where its name stands out
-      const label = { "font-size": 0.85 * this.type, class: kind };
+      const label = { "font-size": this.type, class: kind };
       const text = add(arrows, "text", label, name);
       set(text, placed(ex, ey, this.type, { x: x + ex, y: y + ey }));
     }
