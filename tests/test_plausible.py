@@ -18,7 +18,7 @@ from crankmbs import (
     load_scene,
     shipped_scenes,
 )
-from crankmbs.demo.knobs import turned
+from turned import turned
 from crankmbs.measures.plausible import warnings
 from crankmbs.scene.read import parse_scene
 from crankmbs.scene.template import template

@@ -3,8 +3,9 @@
 What only Python can run is named in refusals, with the command that does.
 """
 
+from crankmbs.page.document import page_of
 from crankmbs.page.export import exported
 from crankmbs.page.refusals import refusals
 from crankmbs.page.script import joined
 
-__all__ = ["exported", "joined", "refusals"]
+__all__ = ["exported", "joined", "page_of", "refusals"]

@@ -4,6 +4,7 @@ import dataclasses
 
 import numpy as np
 import pytest
+from turned import turned
 
 from crankmbs import (
     Constant,
@@ -19,7 +20,7 @@ from crankmbs import (
     load_scene,
     shipped_scenes,
 )
-from crankmbs.demo.knobs import FIRING_ORDERS, knobs_of, turned
+from crankmbs.page.knobs import FIRING_ORDERS, choices_of, knobs_of
 
 SINGLE, DIESEL = load_scene("propeller"), load_scene("yi_diesel_free")
 RPM = np.pi / 30.0
@@ -30,20 +31,31 @@ def test_knobs_at_their_values_leave_the_scene_alone(name):
     scene = load_scene(name)
     assert turned(scene, {knob.name: knob.value for knob in knobs_of(scene)}) is scene
     for knob in knobs_of(scene):
-        assert knob.start <= knob.value <= knob.end
-        assert knob.step > 0.0
+        assert knob.low <= knob.value <= knob.high
+        assert knob.low < knob.high
 
 
 def test_only_knobs_that_mean_something_are_there():
-    assert {k.name for k in knobs_of(DIESEL)} == {
-        "rod_ratio", "offset", "rod_mass", "flywheel", "speed", "load", "pressure",
+    everywhere = {"rod_ratio", "offset", "rod_mass"}
+    free = {"flywheel", "speed", "load"}
+    assert {k.name for k in knobs_of(DIESEL)} == everywhere | free | {"pressure"}
+    assert {k.name for k in knobs_of(SINGLE)} == everywhere | free | {"pressure", "counterweight"}
+    assert {k.name for k in knobs_of(load_scene("grega_lecture"))} == everywhere | {
+        "speed", "pressure",
     }  # fmt: skip
-    assert {k.name for k in knobs_of(load_scene("grega_lecture"))} == {
-        "rod_ratio", "offset", "rod_mass", "speed", "pressure",
+    assert {k.name for k in knobs_of(load_scene("torque_driven"))} == everywhere | {
+        "flywheel", "load", "counterweight",
     }  # fmt: skip
-    assert {k.name for k in knobs_of(load_scene("torque_driven"))} == {
-        "rod_ratio", "offset", "rod_mass", "flywheel", "load",
-    }  # fmt: skip
+
+
+def test_only_choices_that_mean_something_are_there():
+    assert [c.name for c in choices_of(DIESEL)] == ["rod", "cylinders", "speed_is"]
+    assert [c.name for c in choices_of(load_scene("yi_diesel"))] == ["rod", "cylinders"]
+    of_each = dataclasses.replace(DIESEL.gas, pressure=(DIESEL.gas.pressure,) * 4)
+    assert "cylinders" not in {
+        c.name for c in choices_of(dataclasses.replace(DIESEL, gas=of_each))
+    }
+    assert [c.own for c in choices_of(load_scene("grega_lecture"))][0] == "two-mass"
 
 
 def test_another_rod_keeps_its_shape():

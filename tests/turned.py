@@ -1,80 +1,21 @@
-"""What can be turned on the page, and the scene that it gives."""
+"""The scene that the page's knobs give, in Python: what the page's own is held against."""
 
 from __future__ import annotations
 
 import dataclasses
-import math
 from collections.abc import Mapping
 from typing import Any, Literal
 
-from crankmbs.scene.drives import Oscillation
+from crankmbs.mechanics.carried import carried_over
+from crankmbs.page.knobs import AS_GIVEN, FIRING_ORDERS, knobs_of
+from crankmbs.scene.drives import Motion, Oscillation
 from crankmbs.scene.gas import Gas, Polytrope, PressureGiven
 from crankmbs.scene.parts import Layout
-from crankmbs.scene.scene import Scene
+from crankmbs.scene.scene import Extent, Scene
 from crankmbs.scene.tables import CylinderTable, Table
 from crankmbs.scene.units import RPM
 
-__all__ = ["AS_GIVEN", "FIRING_ORDERS", "Knob", "Values", "knobs_of", "turned"]
-
 Values = Mapping[str, float | str]
-
-AS_GIVEN = "as given"
-FIRING_ORDERS = {
-    "1": (1,),
-    "2": (1, 2),
-    "3": (1, 3, 2),
-    "4": (1, 3, 4, 2),
-    "5": (1, 2, 4, 5, 3),
-    "6": (1, 5, 3, 6, 2, 4),
-}
-"""Usual firing orders, evenly spaced, in line."""
-
-
-@dataclasses.dataclass(frozen=True)
-class Knob:
-    """A slider: its title with unit, its ends and step, and the value that the scene has."""
-
-    name: str
-    title: str
-    start: float
-    end: float
-    step: float
-    value: float
-    format: str
-
-
-def knobs_of(scene: Scene) -> tuple[Knob, ...]:
-    """The sliders that mean something for a scene."""
-    r, rod = scene.crank.radius * 1e3, scene.rod
-    ratio = scene.crank.radius / rod.length
-    heaviest = _above(3.0 * rod.mass or scene.piston.mass or 1.0)
-    offset = scene.piston.offset * 1e3
-    far = max(_above(0.5 * r), abs(offset))
-    knobs = [
-        Knob("rod_ratio", "rod ratio r/l", 0.1, 0.9, 0.005, ratio, "0.000"),
-        Knob("offset", "offset [mm]", -far, far, far / 100.0, offset, "0.0"),
-        Knob("rod_mass", "rod mass [kg]", 0.0, heaviest, heaviest / 150.0, rod.mass, "0.00"),
-    ]
-    if scene.start is not None:
-        inertia = scene.crank.moment_of_inertia or 1e-3
-        most = _above(4.0 * inertia)
-        title = "flywheel [kg m²]"
-        least = most / 100.0
-        knobs.append(
-            Knob(
-                "flywheel", title, least, most, least, scene.crank.moment_of_inertia, _format(most)
-            )
-        )
-    speed = _speed(scene)
-    if speed:
-        rpm = speed / RPM
-        low, high = sorted((0.25 * rpm, _above(1.75 * abs(rpm)) * math.copysign(1.0, rpm)))
-        knobs.append(Knob("speed", "speed [rpm]", low, high, abs(rpm) / 100.0, rpm, "0"))
-    if scene.torque:
-        knobs.append(Knob("load", "load [%]", 0.0, 200.0, 1.0, 100.0, "0"))
-    if scene.gas is not None:
-        knobs.append(Knob("pressure", "pressure [%]", 20.0, 200.0, 1.0, 100.0, "0"))
-    return tuple(knobs)
 
 
 def turned(scene: Scene, values: Values) -> Scene:
@@ -87,7 +28,8 @@ def turned(scene: Scene, values: Values) -> Scene:
     Parameters
     ----------
     values : knob -> its value, in the knob's unit; besides, "rod" -> "rigid" or "two-mass",
-        "cylinders" -> "as given" or a key of `FIRING_ORDERS`; what is missing stays
+        "cylinders" -> "as given" or a key of `FIRING_ORDERS`, "speed_is" -> "free" or "prescribed";
+        what is missing stays
 
     Raises
     ------
@@ -100,8 +42,10 @@ def turned(scene: Scene, values: Values) -> Scene:
         parts["rod"] = _rod(scene, new, changed, str(values.get("rod", "")))
     if "offset" in changed:
         parts["piston"] = dataclasses.replace(scene.piston, offset=new["offset"] * 1e-3)
-    if "flywheel" in changed:
-        parts["crank"] = dataclasses.replace(scene.crank, inertia=new["flywheel"])
+    if changed & {"flywheel", "counterweight"}:
+        inertia = new["flywheel"] if "flywheel" in changed else scene.crank.inertia
+        center = new.get("counterweight", 1e3 * scene.crank.center_of_mass) * 1e-3
+        parts["crank"] = dataclasses.replace(scene.crank, inertia=inertia, center_of_mass=center)
     faster = 1.0
     if "speed" in changed:
         faster = new["speed"] * RPM / _speed(scene)
@@ -116,7 +60,15 @@ def turned(scene: Scene, values: Values) -> Scene:
         parts["torque"] = tuple(load.scaled(share, faster) for load in scene.torque)
     if scene.gas is not None and "pressure" in changed:
         parts["gas"] = _pressed(scene.gas, new["pressure"] / 100.0)
-    return dataclasses.replace(scene, **parts) if parts else scene
+    if values.get("speed_is") == "prescribed":
+        start = parts.get("start", scene.start)
+        parts |= {"start": None, "torque": (), "run": _one_cycle(scene)}
+        parts["motion"] = Motion(speed=start.speed, angle=start.angle)
+    return carried_over(dataclasses.replace(scene, **parts), scene) if parts else scene
+
+
+def _one_cycle(scene: Scene) -> Any:
+    return dataclasses.replace(scene.run, until=Extent(value=1.0, unit="cycle"))
 
 
 def _rod(scene: Scene, new: dict[str, float], changed: set[str], kind: str) -> Any:
@@ -137,17 +89,6 @@ def _rod(scene: Scene, new: dict[str, float], changed: set[str], kind: str) -> A
         center_of_mass=rod.center_of_mass * stretch,
         inertia=inertia,
     )
-
-
-def _speed(scene: Scene) -> float:
-    """The speed [rad/s] that the knob turns; 0 where there is none to turn."""
-    if scene.start is not None:
-        return scene.start.speed
-    assert scene.motion is not None
-    speed = scene.motion.speed
-    if isinstance(speed, Oscillation):
-        return speed.mean
-    return speed if isinstance(speed, float) else 0.0
 
 
 def _sped(scene: Scene, speed: float, faster: float) -> dict[str, Any]:
@@ -188,11 +129,12 @@ def _pressed_more(pressure: PressureGiven, factor: float) -> PressureGiven:
     return tuple(table.scaled(factor) for table in pressure)
 
 
-def _above(value: float) -> float:
-    """The next number of one or two digits."""
-    step = 10.0 ** (math.floor(math.log10(value)) - 1)
-    return round(math.ceil(value / step - 1e-9) * step, 12)
-
-
-def _format(most: float) -> str:
-    return f"0.{'0' * max(1, 2 - math.floor(math.log10(most)))}"
+def _speed(scene: Scene) -> float:
+    """The speed [rad/s] that the knob turns; 0 where there is none to turn."""
+    if scene.start is not None:
+        return scene.start.speed
+    assert scene.motion is not None
+    speed = scene.motion.speed
+    if isinstance(speed, Oscillation):
+        return speed.mean
+    return speed if isinstance(speed, float) else 0.0
