@@ -187,13 +187,14 @@ def refused_number(knob, text):
     from typing import Annotated
 
     from annotated_types import Ge, Le
-    from pydantic import ValidationError, create_model
+    from pydantic import ConfigDict, ValidationError, create_model
 
     from crankmbs.scene.schema import Float
     from crankmbs.scene.sentences import sentence
 
     bounded = Annotated[Float, Ge(knob.low), Le(knob.high)]
-    root = create_model("Knobs", **{knob.name: (bounded, ...)})
+    finite = ConfigDict(allow_inf_nan=False)
+    root = create_model("Knobs", __config__=finite, **{knob.name: (bounded, ...)})
     try:
         value = float(text) if not text.startswith("0x") else text
     except ValueError:

@@ -16,8 +16,8 @@ export function axes(svg, box, curves, about) {
   const [first] = shape.curves;
   const x = overAngle ? ends(first.x) : rangeOf(curves.flatMap((curve) => curve.x));
   const bounds = shape.equal ? squared(box, x, y) : box;
-  const right = (value) =>
-    bounds.left + ((value - x.low) / (x.high - x.low)) * (bounds.right - bounds.left);
+  const [from, to] = shape.equal ? [bounds.right, bounds.left] : [bounds.left, bounds.right];
+  const right = (value) => from + ((value - x.low) / (x.high - x.low)) * (to - from);
   const up = (value) =>
     bounds.bottom - ((value - y.low) / (y.high - y.low)) * (bounds.bottom - bounds.top);
   const group = add(svg, "g", { class: "axes" });

@@ -1,5 +1,6 @@
 /** The page: knobs, mechanism and plots of one scene, and what happens between them. */
 import { decoded } from "./answers.js";
+import { find, listenToChoices, showChoices, showSlower, showWords } from "./controls.js";
 import { cycleOf } from "./cycle.js";
 import { dragged } from "./drag.js";
 import { Engine } from "./engine.js";
@@ -13,12 +14,12 @@ import { Stage } from "./stage.js";
 import { Address } from "./state.js";
 import { dataFile, save, sceneFile } from "./taken.js";
 import { Turner } from "./turned.js";
-import { badgeOf, deadCentreMarks, numbersOf } from "./words.js";
+import { firstView, keysOf, tellingPose } from "./view.js";
+import { deadCentreMarks } from "./words.js";
 
 const DEGREE = Math.PI / 180;
 const LATER = 100; // ms after the last turn of a knob: the second pass
 const PLOTS = ["upper", "lower"];
-const FORCES = ["piston", "rod", "crank", "none"];
 
 /** Begin with what Python wrote into the page. */
 export function start() {
@@ -58,7 +59,11 @@ class Page {
       release: () => this.release(),
     });
     this.plots = Object.fromEntries(PLOTS.map((name) => [name, this.plot(name)]));
-    this.choose();
+    listenToChoices((name, value) => {
+      if (name in this.view) this.view = { ...this.view, [name]: value };
+      this.turn(name, name in this.view ? undefined : value);
+      this.release();
+    });
     this.press("play", () => this.play(!this.player.playing));
     this.press("reset", () => this.reset());
     this.press("toml", () => save(...sceneFile(given, this.values, this.cycle)));
@@ -96,19 +101,6 @@ class Page {
     pin.addEventListener("click", () => pin.setAttribute("aria-pressed", String(plot.pin())));
     new ResizeObserver(() => plot.redraw()).observe(plot.svg);
     return plot;
-  }
-
-  /** Choices of the view and of the machine. */
-  choose() {
-    for (const select of document.querySelectorAll("select[data-state], input[data-state]")) {
-      select.addEventListener("change", () => {
-        const { state } = select.dataset;
-        const value = select.type === "checkbox" ? select.dataset[String(select.checked)] : select.value;
-        if (state in this.view) this.look(state, value);
-        else this.turn(state, value === select.dataset.own ? undefined : value);
-        this.release();
-      });
-    }
   }
 
   begin() {
@@ -156,11 +148,6 @@ class Page {
     const value = Math.min(Math.max(ratio * knob.value, knob.low), knob.high);
     this.turn("flywheel", value);
     this.knobs.show(this.values);
-  }
-
-  look(name, value) {
-    this.view = { ...this.view, [name]: value };
-    this.redraw();
   }
 
   reset() {
@@ -214,52 +201,13 @@ class Page {
     this.stage.show(cycle, { k, body: view.forces, ratio, heavy });
     const marks = deadCentreMarks(cycle, k, deadCentres(cycle.train.shape));
     for (const name of PLOTS) this.plots[name].draw(drawn(view[name], cycle, k), marks);
-    this.showChoices(k);
-    this.showWords();
+    showChoices(given, cycle, { ...given.own, ...view, ...this.values, cylinder: String(k + 1) });
+    this.knobs.disable(cycle.prescribed && given.scene.motion === null ? ["flywheel", "load"] : []);
+    this.player.slower = showSlower(cycle, (slower) => {
+      this.player.slower = slower;
+    });
+    showWords(given, cycle, this.error);
     this.seek(this.theta ?? tellingPose(cycle));
-  }
-
-  showChoices(k) {
-    const { given, view, values, cycle } = this;
-    options(find("cylinder"), cycle.train.cylinders.length);
-    const shown = { ...given.own, ...view, ...values, cylinder: String(k + 1) };
-    for (const select of document.querySelectorAll("[data-state]")) {
-      const value = shown[select.dataset.state];
-      if (select.type === "checkbox") select.checked = value === select.dataset.true;
-      else select.value = value;
-    }
-    find("cylinder").hidden = cycle.train.cylinders.length < 2;
-    const unused = cycle.prescribed && given.scene.motion === null ? ["flywheel", "load"] : [];
-    this.knobs.disable(unused);
-    const { low, high } = spanOf(cycle);
-    Object.assign(find("angle"), { min: low, max: high });
-    const slower = find("slower");
-    if (!slower.options.length) {
-      const names = Player.choices.map((each) => (each > 1 ? `${each}× slower` : "real time"));
-      Player.choices.forEach((each, n) => slower.append(new Option(names[n], String(each))));
-      slower.value = String(Player.fitting(cycle.duration));
-      slower.addEventListener("change", () => {
-        this.player.slower = Number(slower.value);
-      });
-    }
-    this.player.slower = Number(slower.value);
-  }
-
-  showWords() {
-    const { cycle, given, error } = this;
-    const list = find("numbers");
-    list.replaceChildren();
-    for (const [name, value] of numbersOf(cycle, error)) {
-      const item = list.appendChild(document.createElement("div"));
-      item.appendChild(document.createElement("dt")).textContent = name;
-      item.appendChild(document.createElement("dd")).textContent = value;
-    }
-    const { text, good } = badgeOf(cycle, given.endings);
-    find("badge").textContent = text;
-    find("badge").className = good ? "good" : "drifts";
-    const { shape } = cycle.train;
-    const of = given.scene.gas?.shape;
-    find("carried").hidden = !of || ["radius", "length", "offset"].every((key) => shape[key] === of[key]);
   }
 
   /** Turn to a crank angle [rad], back into the cycle that is shown. */
@@ -319,49 +267,4 @@ class Page {
     find("message").textContent = sentence;
     find("message").hidden = sentence === "";
   }
-}
-
-function find(id) {
-  return document.getElementById(id);
-}
-
-function firstView({ scene }) {
-  const gassed = scene.gas !== null;
-  const lower = gassed ? "torque of the cylinder" : "piston acceleration";
-  const upper = scene.motion === null ? "crank speed" : "piston acceleration";
-  const below = upper === lower ? "side force on the piston" : lower;
-  return { cylinder: "1", forces: "piston", upper, lower: below, angle: null };
-}
-
-/** Everything that may stand in an address. */
-function keysOf({ scene, knobs, words }) {
-  const { curves, diagrams } = choices(scene);
-  const shown = [...curves, ...diagrams];
-  return [
-    ...knobs,
-    ...words,
-    { name: "cylinder", words: ["1", "2", "3", "4", "5", "6", "7", "8"] },
-    { name: "forces", words: FORCES },
-    ...PLOTS.map((name) => ({ name, words: shown })),
-    { name: "angle", low: -1e6, high: 1e6 },
-  ];
-}
-
-/** Where crank, rod and arrows are apart: 30 degrees after the firing dead centre. */
-function tellingPose({ train, scene, from, to }) {
-  const firing = scene.period > 3 * Math.PI && train.pressure.length ? 2 * Math.PI : 0;
-  const theta = firing + Math.PI / 6 - train.cylinders[0].phase;
-  const period = Math.abs(to - from);
-  const low = Math.min(from, to);
-  return theta - Math.floor((theta - low) / period) * period;
-}
-
-function spanOf({ from, to }) {
-  return { low: Math.min(from, to) / DEGREE, high: Math.max(from, to) / DEGREE };
-}
-
-function options(select, count) {
-  if (select.options.length === count) return;
-  const names = Array.from({ length: count }, (_, n) => String(n + 1));
-  select.replaceChildren(...names.map((name) => new Option(`cylinder ${name}`, name)));
 }

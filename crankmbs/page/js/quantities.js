@@ -38,7 +38,8 @@ const QUANTITIES = {
   "frame force, Y": whole("frame_force_y"),
 };
 
-/** Diagrams by name: what goes right and up, each [text, unit, SI value, of a sample]. */
+/** Diagrams by name: what goes right and up, each [text, unit, SI value, of a sample]; one of equal
+ * scales has X up and Y to the left, as the mechanism beside it. */
 const DIAGRAMS = {
   "p-V diagram": {
     right: ["swept volume", "cm³", 1e-6, (v, k, c) =>

@@ -108,7 +108,7 @@ function pressed(gas, factor, count) {
   if (gas === null) return null;
   const same = count === gas.pressure.length;
   if (factor === 1 && same) return gas;
-  const every = (list) => (same ? list : Array(count).fill(list[0]));
+  const every = (list) => (same || !list.length ? list : Array(count).fill(list[0]));
   const gauge = gas.ambient * (factor - 1);
   return {
     ...gas,
