@@ -52,8 +52,9 @@ export class Stage {
     const flywheel = add(root, "g", { class: "flywheel" });
     this.disc = add(flywheel, "circle", { r: sizes.rim * UNITS, class: "disc" });
     this.mark = add(flywheel, "path", { class: "mark" });
-    const rim = heavy ? { class: "rim grip", "data-grip": "rim" } : { class: "rim" };
-    add(flywheel, "circle", { r: sizes.rim * UNITS, ...rim });
+    const rim = { r: sizes.rim * UNITS };
+    add(flywheel, "circle", { ...rim, class: "rim" });
+    if (heavy) add(flywheel, "circle", { ...rim, class: "hold grip", "data-grip": "rim" });
     const order = train.cylinders.map((_, k) => k).filter((k) => k !== this.k);
     this.parts = [];
     for (const k of [...order, this.k]) this.parts[k] = this.cylinder(k);
