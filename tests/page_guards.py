@@ -116,12 +116,20 @@ def tasks(angles):
     scenes = [joined_by(*pair) for pair in JOINED]
     scenes += [jumping(), GUARDS["started"], GUARDS["affine"]]
     found += [("carried", {"scene": exported(scene), "shape": shape}) for scene in scenes]
+    names = ("affine", "started")
+    found += [("dragged", {"scene": longer(GUARDS[n]), "angles": angles[n][::3]}) for n in names]
     still = balanced()
     found.append(("answer", {"scene": exported(still), "angles": np.array([0.0, still.period])}))
     return found + [
         ("answer", {"scene": exported(scene), "angles": angles[name]})
         for name, scene in GUARDS.items()
     ]
+
+
+def longer(scene):
+    """What a knob makes of a scene: another rod, the pressure carried over."""
+    found = exported(scene)
+    return {**found, "rod": {**found["rod"], "length": 1.03 * found["rod"]["length"]}}
 
 
 JOINED = (

@@ -1,7 +1,25 @@
 """Mutants of the page's engine by module: the text as it is, and as the mutant has it."""
 
 MUTANTS = {
+    "strong": [
+        (
+            "Math.abs(jump) + BEND * Math.abs(bend)",
+            "BEND * Math.abs(bend)",
+        ),
+        (
+            "strong[0] + knots[n] - knots[0]",
+            "strong[0] + 2 * (knots[n] - knots[0])",
+        ),
+        (
+            "seen > STRONG * (high - low)",
+            "seen > 20 * STRONG * (high - low)",
+        ),
+    ],
     "geometry": [
+        (
+            "if (phi === this.phi)",
+            "if (Math.abs(phi - this.phi) < 0.3)",
+        ),
         (
             "const sinBeta = (r * sinPhi - e) / l;",
             "const sinBeta = (r * sinPhi + e) / l;",
@@ -63,6 +81,10 @@ MUTANTS = {
     ],
     "cubics": [
         (
+            "if (ahead + first < knots[k]) k = 0;",
+            "",
+        ),
+        (
             "return cubic * x + coefficients[3 * n + k];",
             "return cubic * x;",
         ),
@@ -105,7 +127,7 @@ MUTANTS = {
             "const down = within <= 3;",
         ),
         (
-            "Math.sin(half) ** 2) / (topPosition(shape) + at.x)",
+            "Math.sin(half) ** 2) / (top + at.x)",
             "Math.sin(half) ** 2) / at.x",
         ),
         (
@@ -151,11 +173,11 @@ MUTANTS = {
             "2 * piston.mass * at.x1 * at.x1 + rod",
         ),
         (
-            "found.slope += 2 * rod.inertia * at.beta1 * at.beta2;",
+            "slope += 2 * rod.inertia * at.beta1 * at.beta2;",
             "",
         ),
         (
-            "found.inertia += rod.inertia * at.beta1 * at.beta1;",
+            "inertia += rod.inertia * at.beta1 * at.beta1;",
             "",
         ),
         (
@@ -179,28 +201,28 @@ MUTANTS = {
             "const angle = gravity.angle;",
         ),
         (
-            "weight * (gy * Math.cos(theta) - gx * Math.sin(theta));",
-            "0;",
+            "return first * (gy * Math.cos(theta) - gx * Math.sin(theta));",
+            "return 0;",
         ),
         (
             "rod * (ax * gx1[i] + ay * gy1[i]);",
             "rod * ax * gx1[i];",
         ),
         (
-            "pistonMass * x + rodMass * rod[i]",
-            "pistonMass * x",
+            "pistonMass * piston[i] + rodMass * rod[i]",
+            "pistonMass * piston[i]",
         ),
         (
-            "-area * valueAt(cycle, angles[i] + phase) * x1",
-            "-area * valueAt(cycle, angles[i])",
+            "valuesAlong(cycle, angles, cylinders[k].phase)",
+            "valuesAlong(cycle, angles, 0)",
         ),
         (
-            "found.torque -= piston.area * valueAt(pressure[k], phi)",
-            "found.torque -= 0",
+            "torque -= piston.area * valueAt(pressure[k], phi)",
+            "torque -= 0",
         ),
         (
-            "found.combustion.push(-piston.area",
-            "found.combustion.push(piston.area",
+            "burning.push(-piston.area",
+            "burning.push(piston.area",
         ),
     ],
     "loads": [
@@ -254,6 +276,10 @@ MUTANTS = {
         ),
     ],
     "path": [
+        (
+            "integralTo(rule, cell.torque, first, x);\n  const of",
+            "integralTo(rule, cell.torque, 0, x);\n  const of",
+        ),
         (
             "(given + outside - 0.5 * of.slope * omega * omega) / of.inertia;\n  return",
             "(given + outside) / of.inertia;\n  return",
@@ -331,6 +357,18 @@ MUTANTS = {
     ],
     "engine": [
         (
+            "quick ? SEEN : DIAGRAM",
+            "DIAGRAM",
+        ),
+        (
+            "quick ? this.strong([...pressure, ...combustion]) : pressure",
+            "pressure",
+        ),
+        (
+            "quick ? strongOf(tables) : tables",
+            "tables",
+        ),
+        (
             "return { ...found, theta, time: found.time + turns * this.duration - this.late };",
             "return { ...found, theta, time: found.time };",
         ),
@@ -393,8 +431,12 @@ MUTANTS = {
             "const ownX = 0",
         ),
         (
-            "crank.inertia * alpha - first * (cos * gy - sin * gx) - torque",
-            "-torque",
+            "crank.inertia * alpha - first * (cos * gy - sin * gx)",
+            "0",
+        ),
+        (
+            "found.external_torque -= variables.crank_torque;",
+            "found.external_torque += variables.crank_torque;",
         ),
         (
             "journal - 0.5 * variables.crank_torque",

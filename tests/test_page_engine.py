@@ -163,6 +163,18 @@ def assert_carried(page, before, scene):
             np.testing.assert_allclose(moved(phi), one(phi), rtol=0.0, atol=1e-11 * size)
 
 
+@pytest.mark.parametrize("change", [{}, {"length": 1.08, "offset": 0.004}], ids=["", "geometry"])
+@pytest.mark.parametrize("name", SETTLING)
+def test_what_is_shown_while_a_knob_moves_is_right_to_less_than_a_pixel(page, name, change):
+    before = settled(name)
+    scene = altered(before, **change)
+    result = simulate(carried_over(scene, before), rtol=1e-10)
+    moved = {**exported(scene), "gas": exported(before)["gas"]}
+    found = page.ask("dragged", scene=moved, angles=result.data["crank_angle"].values)
+    worst = differences(result, found)
+    assert max(worst.values()) < 1e-3, max(worst.items(), key=lambda one: one[1])
+
+
 def test_misfires_and_late_fuel_are_those_of_python(page):
     base = fuelled("yi_diesel_free", motored=POLYTROPE)
     lists = (Misfire(cylinder=2, cycles="2-3"), Misfire(cylinder=4, cycles="every 2"))

@@ -130,10 +130,10 @@ export class AffinePeriod {
         found.least = Math.min(found.least, kinetic);
         found.most = Math.max(found.most, kinetic);
       }
-      const nodes = [c * s, (c + 1) * s];
-      const begin = { from: this.from(c), width, energy: at.value, time: time.value, sense };
-      const own = { torque: torque.subarray(...nodes), slowness: slowness.subarray(...nodes) };
-      path.add({ ...begin, ...own, branch, phases, shares, number: this.number[c] });
+      path.add({
+        from: this.from(c), width, energy: at.value, time: time.value, sense,
+        branch, phases, shares, number: this.number[c], torque, slowness, first: c * s,
+      });
       at.add(this.growth[c] * at.value + this.rise[c]);
       time.add(spent);
       grown *= 1 + this.growth[c];

@@ -37,6 +37,13 @@ export function answer(engine, { scene, angles }) {
   return { ending, factor, balanced, variables: columns(samples), measures };
 }
 
+/** The variables of a scene at crank angles as they are shown while a knob moves. */
+export function dragged(engine, { scene, angles }) {
+  const motion = engine.run(scene);
+  if (motion.ending !== "complete") return { ending: motion.ending };
+  return columns(Array.from(angles, (theta) => reactionsAt(motion.train, motion.at(theta))));
+}
+
 /** The quantities of a lecture, by its name, at samples of a scene's motion. */
 export function lectured(engine, { scene, lecture, samples }) {
   const train = engine.train(scene);

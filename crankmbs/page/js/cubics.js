@@ -15,9 +15,31 @@ export function valueAt(cycle, angle) {
   const first = knots[0];
   const ahead = wrapped(angle - first + NEAR, knots[n] - first);
   const k = countUpTo(knots, ahead + first, 1, n) - 1;
-  const x = ahead - NEAR - (knots[k] - first);
+  return piece(coefficients, n, k, ahead - NEAR - (knots[k] - first));
+}
+
+/** Value of cubic k of n behind its knot [rad]. */
+function piece(coefficients, n, k, x) {
   const cubic = (coefficients[k] * x + coefficients[n + k]) * x + coefficients[2 * n + k];
   return cubic * x + coefficients[3 * n + k];
+}
+
+/** Values of a cycle at increasing angles [rad], all shifted by another: from knot to knot, without
+ * looking for each. */
+export function valuesAlong(cycle, angles, shift) {
+  const { knots, coefficients } = cycle;
+  const n = knots.length - 1;
+  const first = knots[0];
+  const period = knots[n] - first;
+  const found = new Float64Array(angles.length);
+  let k = 0;
+  for (let i = 0; i < angles.length; i++) {
+    const ahead = wrapped(angles[i] + shift - first + NEAR, period);
+    if (ahead + first < knots[k]) k = 0;
+    while (k + 1 < n && knots[k + 1] <= ahead + first) k++;
+    found[i] = piece(coefficients, n, k, ahead - NEAR - (knots[k] - first));
+  }
+  return found;
 }
 
 /** The knots of a cycle, shifted by an angle and repeated over a period, from 0 to it [rad]. */

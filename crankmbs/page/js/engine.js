@@ -7,12 +7,13 @@ import { remembering } from "./arrays.js";
 import { knotsOver } from "./cubics.js";
 import { Firing, decisionAngles } from "./fuel.js";
 import { Loop } from "./geometry.js";
-import { pressuresOf } from "./gas.js";
+import { DIAGRAM, SEEN, pressuresOf } from "./gas.js";
 import { Travel } from "./motion.js";
 import { readCell } from "./path.js";
 import { partsOf } from "./refine.js";
 import { settle } from "./settled.js";
 import { speedLaw } from "./speed.js";
+import { strongOf } from "./strong.js";
 import { Tables, edgesOf, reduceAt, split } from "./tables.js";
 
 const ROUNDS = 8; // of cutting cells
@@ -26,32 +27,38 @@ export class Engine {
     this.tables = new Tables();
     this.finer = new Tables();
     this.shape = remembering((radius, length, offset) => ({ radius, length, offset }));
-    this.loop = remembering((shape) => new Loop(shape));
-    this.pressures = remembering(pressuresOf);
+    this.loops = remembering((shape, n) => Array.from({ length: n }, () => new Loop(shape)));
+    this.pressures = { fine: remembering(pressuresOf), quick: remembering(pressuresOf) };
     // a stronger load has the knots that it had
     this.marks = remembering(marksOf);
     this.edges = remembering(edgesOf);
+    this.strong = remembering(strongOf);
   }
 
-  /** The crank train of a scene: its machine with the pressures that its shape has. */
-  train(scene) {
+  /** The crank train of a scene: its machine with the pressures that its shape has.
+   *
+   * quick : diagrams of polytropes are fitted to what a screen shows */
+  train(scene, quick = false) {
     const { crank, rod, piston, cylinders, levers, gravity, loads, fuel, period } = scene;
     const shape = this.shape(crank.radius, rod.length, piston.offset);
-    const loop = this.loop(shape);
-    const machine = { shape, loop, crank, rod, piston, cylinders, levers, gravity };
-    const { pressure, combustion } = this.pressures(scene.gas, shape);
-    return { ...machine, loads, fuel, period, pressure, combustion };
+    const loops = this.loops(shape, cylinders.length);
+    const machine = { shape, loop: loops[0], loops, crank, rod, piston, cylinders, levers };
+    const pressures = quick ? this.pressures.quick : this.pressures.fine;
+    const { pressure, combustion } = pressures(scene.gas, shape, quick ? SEEN : DIAGRAM);
+    return { ...machine, gravity, loads, fuel, period, pressure, combustion };
   }
 
   /** The motion of a scene; its cells are cut until they err by no more than a tolerance, relative,
-   * per radian; with none they are taken as they are, which is quick. */
+   * per radian. With none it is quick: cells pass over knots at which hardly anything bends, and
+   * are taken as they are. */
   run(scene, { stages = 5, tolerance = null, warm = null } = {}) {
-    const train = this.train(scene);
-    let edges = this.edgesFor(train, scene.grid_period);
+    const quick = tolerance === null;
+    const train = this.train(scene, quick);
+    let edges = this.edgesFor(train, scene.grid_period, quick);
     if (scene.motion !== null) return new Prescribed(train, scene.motion, edges, scene.run);
     for (let round = 0; ; round++) {
       const motion = this.pass(scene, train, this.grid(train, edges, stages, this.tables), warm);
-      if (tolerance === null || round >= ROUNDS || edges.length > MOST_CELLS) return motion;
+      if (quick || round >= ROUNDS || edges.length > MOST_CELLS) return motion;
       if (motion.ending !== "complete") return motion;
       const finer = this.grid(train, edges, stages + 2, this.finer);
       const parts = partsOf(train, motion.grid, finer, motion.path, tolerance);
@@ -60,13 +67,14 @@ export class Engine {
     }
   }
 
-  edgesFor(train, period) {
-    const { shape, cylinders, pressure, loads, fuel } = train;
+  edgesFor(train, period, quick) {
+    const { shape, cylinders, pressure, combustion, loads, fuel } = train;
     const tables = loads.map((load) => load.over_angle).filter((cycle) => cycle !== null);
     const decisions = decisionAngles(fuel, cylinders, train.period);
-    const knots = tables.map((cycle) => cycle.knots);
+    const knots = (quick ? strongOf(tables) : tables).map((cycle) => cycle.knots);
     const marks = this.marks(knots, decisions, train.period, period);
-    return this.edges(shape, cylinders, pressure, marks, period);
+    const cycles = quick ? this.strong([...pressure, ...combustion]) : pressure;
+    return this.edges(shape, cylinders, cycles, marks, period);
   }
 
   grid(train, edges, stages, tables) {

@@ -6,35 +6,39 @@
  * within each stroke between the true dead centres, at the same compression ratio; a diagram of
  * polytropes is one of the volume already.
  */
-import { distinct, eliminate } from "./arrays.js";
+import { distinct } from "./arrays.js";
 import { joined, knotsOver, valueAt } from "./cubics.js";
 import { Loop, bottomPosition, deadCentres, topPosition } from "./geometry.js";
 
 const TURN = 2 * Math.PI;
 const KNOT = 1e-9; // rad: two knots closer than this are one
-const DIAGRAM = 1e-9; // of the absolute pressure: how far the cubics may be from a polytrope
+// of the absolute pressure: how far cubics may be from a polytrope, as in Python, or on a screen
+export const DIAGRAM = 1e-9;
+export const SEEN = 1e-5;
 const SUPPORT = [0, 0.25, 0.75, 1]; // Chebyshev's extrema: the ends are met exactly
 const BETWEEN = [0.1, 0.5, 0.9]; // where a cubic through the support errs most
 
 /** The cycles of the pressure without combustion, and of what combustion adds, of each cylinder.
  *
  * gas : as Python passes it, or null; shape : may differ from that of the scene, gas.shape
+ * closeness : of the absolute pressure, of cubics to a polytrope
  */
-export function pressuresOf(gas, shape) {
+export function pressuresOf(gas, shape, closeness = DIAGRAM) {
   if (gas === null) return { pressure: [], combustion: [] };
   const { radius, length, offset } = gas.shape;
   if (shape.radius === radius && shape.length === length && shape.offset === offset) {
     return gas;
   }
   const once = new Map();
+  const close = { ...gas, closeness };
   const fired = gas.fired.map((number) => {
-    if (!once.has(number)) once.set(number, cycleOf(gas, gas.sources[number], shape));
+    if (!once.has(number)) once.set(number, cycleOf(close, gas.sources[number], shape));
     return once.get(number);
   });
   if (gas.motored === null) return { pressure: fired, combustion: [] };
   const both = gas.motored.map((number, k) => {
     const source = gas.sources[number];
-    return combustionOf(fired[k], cycleOf(gas, source, shape, fired[k]));
+    return combustionOf(fired[k], cycleOf(close, source, shape, fired[k]));
   });
   return { pressure: both.map((each) => each[0]), combustion: both.map((each) => each[1]) };
 }
@@ -49,7 +53,7 @@ function cycleOf(gas, source, shape, fired) {
       coefficients: Float64Array.of(0, 0, 0, source.value),
     };
   }
-  const angle = source.angle.map((each) => carriedAngle(each, gas.shape, shape));
+  const angle = source.angle.map(carrying(gas.shape, shape));
   const last = angle.length - 1;
   angle[last] = angle[0] + (source.angle[last] - source.angle[0]);
   return joined({ ...source, angle }, source.interpolation);
@@ -58,30 +62,40 @@ function cycleOf(gas, source, shape, fired) {
 /** The cycle angle [rad] in one machine at which the piston has swept the same fraction of the
  * same stroke as at a cycle angle in another. */
 export function carriedAngle(phi, from, to) {
+  return carrying(from, to)(phi);
+}
+
+/** The same for many angles of the same two machines, as a function of the angle. */
+function carrying(from, to) {
   const centres = deadCentres(from);
-  const turn = Math.floor((phi - centres.top) / TURN);
-  const within = phi - turn * TURN;
-  const swept = sweptFrom(within, from);
+  const swept = sweptIn(from);
   const x = topPosition(to);
   const stroke = x - bottomPosition(to);
-  const above = swept.fraction * stroke;
-  const below = swept.rest * stroke;
-  const lead = leadAt(x - above, above, below, to);
-  const along = Math.atan2(to.offset, x - above);
-  const down = within <= centres.bottom;
-  return (down ? along + lead : along - lead + TURN) + turn * TURN;
+  return (phi) => {
+    const turn = Math.floor((phi - centres.top) / TURN);
+    const within = phi - turn * TURN;
+    const part = swept(within);
+    const above = part.fraction * stroke;
+    const lead = leadAt(x - above, above, part.rest * stroke, to);
+    const along = Math.atan2(to.offset, x - above);
+    const down = within <= centres.bottom;
+    return (down ? along + lead : along - lead + TURN) + turn * TURN;
+  };
 }
 
 /** Swept fraction of the stroke at a cycle angle and what is left of it, both exact where small:
  * x_top^2 - x^2 = 4 r l sin^2(psi / 2), x^2 - x_bottom^2 = 4 r l cos^2(psi / 2), with psi =
  * phi + beta. */
-function sweptFrom(phi, shape) {
-  const { radius, length } = shape;
-  const at = new Loop(shape).at(phi);
-  const half = 0.5 * (phi + at.beta);
-  const above = (4 * radius * length * Math.sin(half) ** 2) / (topPosition(shape) + at.x);
-  const below = (4 * radius * length * Math.cos(half) ** 2) / (at.x + bottomPosition(shape));
-  return { fraction: above / (above + below), rest: below / (above + below) };
+function sweptIn(shape) {
+  const [loop, top, bottom] = [new Loop(shape), topPosition(shape), bottomPosition(shape)];
+  const size = 4 * shape.radius * shape.length;
+  return (phi) => {
+    const at = loop.at(phi);
+    const half = 0.5 * (phi + at.beta);
+    const above = (size * Math.sin(half) ** 2) / (top + at.x);
+    const below = (size * Math.cos(half) ** 2) / (at.x + bottom);
+    return { fraction: above / (above + below), rest: below / (above + below) };
+  };
 }
 
 /** The angle [rad] by which the throw leads the direction of the piston pin at x, opposite the rod;
@@ -100,7 +114,7 @@ function leadAt(x, above, below, { radius, length, offset }) {
 /** An indicator diagram: compression p V^n, a rise at the firing dead centre, combustion at
  * constant pressure, expansion p V^n, and with four strokes intake and exhaust. */
 function diagram(gas, source, shape) {
-  const parts = strokesOf(gas, source, shape).map((stroke) => fitted(...stroke));
+  const parts = strokesOf(gas, source, shape).map((stroke) => fitted(gas.closeness, ...stroke));
   const lefts = parts.flatMap((part) => part.lefts);
   const coefficients = [0, 1, 2, 3].flatMap((power) => {
     const gauge = power === 3 ? gas.ambient : 0;
@@ -150,7 +164,7 @@ function relativeVolume(ratio, shape) {
  *
  * Quarter turns are knots from the start: a rod no longer than radius + offset folds there.
  */
-function fitted(begin, end, pressure) {
+function fitted(closeness, begin, end, pressure) {
   const quarter = 0.5 * Math.PI;
   const edges = [begin, end];
   for (let k = Math.ceil(begin / quarter); k < Math.ceil(end / quarter); k++) {
@@ -164,7 +178,7 @@ function fitted(begin, end, pressure) {
   while (open.length) {
     const [left, right] = open.pop();
     const cubic = throughSupport(left, right - left, pressure);
-    if (right - left < KNOT || follows(cubic, left, right - left, pressure)) {
+    if (right - left < KNOT || follows(cubic, left, right - left, pressure, closeness)) {
       lefts.push(left);
       cubics.push(cubic.map((each, k) => each / (right - left) ** (3 - k)));
     } else {
@@ -176,16 +190,18 @@ function fitted(begin, end, pressure) {
 }
 
 function throughSupport(left, width, pressure) {
-  const matrix = Float64Array.from(SUPPORT.flatMap((s) => [s * s * s, s * s, s, 1]));
-  const cubic = Float64Array.from(SUPPORT, (s) => pressure(left + width * s));
-  eliminate(matrix, cubic, 4, 1);
-  return Array.from(cubic);
+  const [y0, y1, y2, y3] = SUPPORT.map((s) => pressure(left + width * s));
+  // divided differences
+  const [first, middle, last] = [4 * (y1 - y0), 2 * (y2 - y1), 4 * (y3 - y2)];
+  const [near, far] = [(middle - first) / 0.75, (last - middle) / 0.75];
+  const a = far - near;
+  return [a, near - a, first - 0.25 * near + 0.1875 * a, y0];
 }
 
-function follows([a, b, c, d], left, width, pressure) {
+function follows([a, b, c, d], left, width, pressure, closeness) {
   return BETWEEN.every((s) => {
     const exact = pressure(left + width * s);
-    return Math.abs(((a * s + b) * s + c) * s + d - exact) <= DIAGRAM * exact;
+    return Math.abs(((a * s + b) * s + c) * s + d - exact) <= closeness * exact;
   });
 }
 
@@ -201,7 +217,7 @@ function continued(gas, source, shape, fired) {
   for (let at = first; at < first + period - 1e-6; at += gas.period) {
     const pressed = valueAt(fired, at) + gas.ambient;
     const size = volume(at);
-    const part = fitted(at, at + length, (phi) =>
+    const part = fitted(gas.closeness, at, at + length, (phi) =>
       pressed * Math.pow(size / volume(phi), source.polytrope));
     knots.push(...part.lefts);
     cubics.push(...part.cubics.map(([a, b, c, d]) => [a, b, c, d - gas.ambient]));

@@ -14,12 +14,14 @@ export class Loop {
     this.length = length;
     this.offset = offset;
     this.spare = Math.max(length - radius - Math.abs(offset), 0);
+    this.phi = NaN;
     this.sinPhi = this.cosPhi = this.sinBeta = this.cosBeta = 0.5;
     this.beta1 = this.beta2 = this.x = this.x1 = this.x2 = 0.5;
   }
 
   /** Close the loop at a cycle angle [rad]; also near the fold of a short rod to rounding. */
   at(phi) {
+    if (phi === this.phi) return this; // as the forces at a sample ask for what its motion had
     const { radius: r, length: l, offset: e, spare } = this;
     const sinPhi = Math.sin(phi);
     const cosPhi = Math.cos(phi);
@@ -36,6 +38,7 @@ export class Loop {
     const towards = (e >= 0 ? below : above) / l;
     const bend = sinPhi * (spare / l) * (1 + (r + far) / l) + e * r * towards * towards;
     const beta2 = (-r * bend) / (l * cosBeta * cosBeta * cosBeta);
+    this.phi = phi;
     this.sinPhi = sinPhi;
     this.cosPhi = cosPhi;
     this.sinBeta = sinBeta;

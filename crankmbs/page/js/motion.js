@@ -113,8 +113,11 @@ export class Travel {
     const { stepper, energy, time } = this;
     const width = target - this.theta;
     const { sense, branch, phases } = this;
-    const at = { from: this.theta, width, energy, time, sense, branch, phases, number };
-    this.path.add({ ...at, ...stepper.nodes(), shares: this.firing.shares });
+    const { torque, slowness } = stepper.nodes();
+    this.path.add({
+      from: this.theta, width, energy, time, sense,
+      branch, phases, shares: this.firing.shares, number, torque, slowness, first: 0,
+    });
     const gained = width * stepper.work - this.lost;
     this.energy = energy + gained;
     this.lost = this.energy - energy - gained;

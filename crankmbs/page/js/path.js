@@ -4,7 +4,8 @@ import { torqueOf, torqueOverAngle } from "./loads.js";
 import { integralTo } from "./rule.js";
 import { burnt, reduceAt } from "./tables.js";
 
-/** Solved cells, each from `from` over `width` [rad, signed] on one branch of the loads. */
+/** Solved cells, each from `from` over `width` [rad, signed] on one branch of the loads; torque and
+ * slowness at its nodes stand in their arrays from number `first` on. */
 export class Path {
   constructor(rule) {
     this.rule = rule;
@@ -34,10 +35,10 @@ export class Path {
 
 /** What `Path.at` gives, in a cell. */
 export function readCell(train, rule, cell, theta) {
-  const { from, width, sense, energy, time, torque, slowness, branch, phases, shares } = cell;
+  const { from, width, sense, energy, time, first, branch, phases, shares } = cell;
   const x = (theta - from) / width;
-  const t = time + Math.abs(width) * integralTo(rule, slowness, 0, x);
-  const kinetic = energy + width * integralTo(rule, torque, 0, x);
+  const t = time + Math.abs(width) * integralTo(rule, cell.slowness, first, x);
+  const kinetic = energy + width * integralTo(rule, cell.torque, first, x);
   const of = reduceAt(train, theta);
   const omega = sense * Math.sqrt((2 * Math.max(kinetic, 0)) / of.inertia);
   const outside = torqueOf(branch, t, omega) + torqueOverAngle(train.loads, phases, theta);

@@ -40,7 +40,7 @@ function cylinderAt(train, { theta, omega, alpha, shares }, number) {
   const area = piston.area ?? 0;
   const [gx, gy] = gravityVector(gravity, bank);
   const phi = theta + phase;
-  const at = train.loop.at(phi);
+  const at = train.loops[number].at(phi);
   const g = rodCentre(at, rod.center_of_mass);
   const square = omega * omega;
   const pressure = pressureAt(train, shares, number, phi);
@@ -106,17 +106,24 @@ function crankAt({ crank, gravity, levers }, theta, omega, alpha, cylinders) {
   const [gx, gy] = gravityVector(gravity, 0);
   const ownX = first * (-cos * square - sin * alpha) - crank.mass * gx;
   const ownY = first * (-sin * square + cos * alpha) - crank.mass * gy;
-  const sum = (part) => cylinders.reduce((total, each) => total + part(each), 0);
-  const torque = sum((each) => each.variables.crank_torque);
   const found = {
-    external_torque: crank.inertia * alpha - first * (cos * gy - sin * gx) - torque,
-    main_bearing_force_x: ownX + sum((each) => each.pull[0]),
-    main_bearing_force_y: ownY + sum((each) => each.pull[1]),
-    frame_force_x: -ownX + sum((each) => each.shake[0]),
-    frame_force_y: -ownY + sum((each) => each.shake[1]),
-    frame_moment: sum((each) => each.moment),
-    kinetic_energy: 0.5 * crank.inertia * square + sum((each) => each.kinetic),
+    external_torque: crank.inertia * alpha - first * (cos * gy - sin * gx),
+    main_bearing_force_x: ownX,
+    main_bearing_force_y: ownY,
+    frame_force_x: -ownX,
+    frame_force_y: -ownY,
+    frame_moment: 0,
+    kinetic_energy: 0.5 * crank.inertia * square,
   };
+  for (const { variables, pull, shake, moment, kinetic } of cylinders) {
+    found.external_torque -= variables.crank_torque;
+    found.main_bearing_force_x += pull[0];
+    found.main_bearing_force_y += pull[1];
+    found.frame_force_x += shake[0];
+    found.frame_force_y += shake[1];
+    found.frame_moment += moment;
+    found.kinetic_energy += kinetic;
+  }
   if (levers === null) return found;
   const about = (part) => levers.reduce((total, lever, k) => total + lever * part(cylinders[k]), 0);
   found.rocking_moment_x = -about((each) => each.shake[1]);

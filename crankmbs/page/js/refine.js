@@ -37,8 +37,8 @@ function errorsOf(train, rule, finer, cell) {
       work += weight(i) * along.torque[i];
       spent += weight(i) * along.slowness[i];
     }
-    const energy = Math.abs(cell.width * (work - integralTo(rule, cell.torque, 0, x)));
-    const late = Math.abs(cell.width * (spent - integralTo(rule, cell.slowness, 0, x)));
+    const energy = Math.abs(cell.width * (work - integralTo(rule, cell.torque, cell.first, x)));
+    const late = Math.abs(cell.width * (spent - integralTo(rule, cell.slowness, cell.first, x)));
     return energy / cell.energy + late * fastest;
   });
   return { atEnd: errors[s], inside: Math.max(...errors) };
@@ -53,8 +53,8 @@ function alongFiner(train, rule, { rule: fine, tables }, cell) {
   fine.nodes.forEach((x, j) => {
     const i = number * s + (sense > 0 ? j : s - 1 - j);
     const inertia = train.crank.inertia + tables.inertia[i];
-    const energy = cell.energy + width * integralTo(rule, cell.torque, 0, x);
-    const time = cell.time + Math.abs(width) * integralTo(rule, cell.slowness, 0, x);
+    const energy = cell.energy + width * integralTo(rule, cell.torque, cell.first, x);
+    const time = cell.time + Math.abs(width) * integralTo(rule, cell.slowness, cell.first, x);
     const omega = sense * Math.sqrt((2 * Math.max(energy, 0)) / inertia);
     let given = tables.torque[i] + torqueOverAngle(train.loads, phases, tables.angles[i]);
     shares.forEach((share, c) => {

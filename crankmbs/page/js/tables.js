@@ -8,7 +8,7 @@
  * The crank's inertia is added where it is used, so that a flywheel costs nothing here.
  */
 import { distinct, remembering, wrapped } from "./arrays.js";
-import { knotsOver, valueAt } from "./cubics.js";
+import { knotsOver, valueAt, valuesAlong } from "./cubics.js";
 import { Loop } from "./geometry.js";
 import { nodesBetween } from "./rule.js";
 
@@ -25,27 +25,34 @@ export function gravityVector(gravity, bank) {
 /** The crank train at one crank angle [rad]: inertia J [kg m2] with the crank's, slope dJ/dtheta,
  * torque of gas and weights [N m], and what the combustion of each cylinder adds to it. */
 export function reduceAt(train, theta) {
-  const { crank, rod, piston, cylinders, gravity, pressure, combustion, loop } = train;
-  const [gx, gy] = gravityVector(gravity, 0);
-  const weight = crank.mass * crank.center_of_mass;
-  const found = { inertia: crank.inertia, slope: 0, torque: 0, combustion: [] };
-  found.torque = weight * (gy * Math.cos(theta) - gx * Math.sin(theta));
-  cylinders.forEach(({ phase, bank }, k) => {
-    const phi = theta + phase;
-    const at = loop.at(phi);
+  const { crank, rod, piston, cylinders, gravity, pressure, combustion, loops } = train;
+  let inertia = crank.inertia;
+  let slope = 0;
+  let torque = crankWeight(crank, gravity, theta);
+  const burning = [];
+  for (let k = 0; k < cylinders.length; k++) {
+    const phi = theta + cylinders[k].phase;
+    const at = loops[k].at(phi);
     const g = rodCentre(at, rod.center_of_mass);
-    found.inertia += piston.mass * at.x1 * at.x1 + rod.mass * (g.x1 * g.x1 + g.y1 * g.y1);
-    found.inertia += rod.inertia * at.beta1 * at.beta1;
-    found.slope += 2 * (piston.mass * at.x1 * at.x2 + rod.mass * (g.x1 * g.x2 + g.y1 * g.y2));
-    found.slope += 2 * rod.inertia * at.beta1 * at.beta2;
-    const [ax, ay] = gravityVector(gravity, bank);
-    found.torque += piston.mass * ax * at.x1 + rod.mass * (ax * g.x1 + ay * g.y1);
-    if (pressure.length) found.torque -= piston.area * valueAt(pressure[k], phi) * at.x1;
-    if (combustion.length) {
-      found.combustion.push(-piston.area * valueAt(combustion[k], phi) * at.x1);
+    inertia += piston.mass * at.x1 * at.x1 + rod.mass * (g.x1 * g.x1 + g.y1 * g.y1);
+    inertia += rod.inertia * at.beta1 * at.beta1;
+    slope += 2 * (piston.mass * at.x1 * at.x2 + rod.mass * (g.x1 * g.x2 + g.y1 * g.y2));
+    slope += 2 * rod.inertia * at.beta1 * at.beta2;
+    if (gravity !== null) {
+      const [ax, ay] = gravityVector(gravity, cylinders[k].bank);
+      torque += piston.mass * ax * at.x1 + rod.mass * (ax * g.x1 + ay * g.y1);
     }
-  });
-  return found;
+    if (pressure.length) torque -= piston.area * valueAt(pressure[k], phi) * at.x1;
+    if (combustion.length) burning.push(-piston.area * valueAt(combustion[k], phi) * at.x1);
+  }
+  return { inertia, slope, torque, combustion: burning };
+}
+
+/** Torque of the crank's own weight at a crank angle [N m]. */
+function crankWeight(crank, gravity, theta) {
+  const [gx, gy] = gravityVector(gravity, 0);
+  const first = crank.mass * crank.center_of_mass;
+  return first * (gy * Math.cos(theta) - gx * Math.sin(theta));
 }
 
 /** What the combustion adds with these shares [N m]. */
@@ -67,12 +74,16 @@ export function rodCentre(at, a) {
 /** The edges of the cells of one period [rad]: at the knots of pressures and of loads over the
  * angle, at decisions on the fuel and around folds, no cell wider than 6 degrees.
  *
+ * cycles : over the cycle angle, of one cylinder after the other, and so on
  * marks : knots [rad], of cycles over the crank angle and decisions
  */
-export function edgesOf(shape, cylinders, pressure, marks, period) {
+export function edgesOf(shape, cylinders, cycles, marks, period) {
   const found = [0, period, ...nearFolds(shape, cylinders, period)];
-  for (const each of marks) found.push(...each);
-  pressure.forEach((cycle, k) => found.push(...knotsOver(cycle, cylinders[k].phase, period)));
+  for (const each of marks) for (const mark of each) found.push(mark);
+  cycles.forEach((cycle, k) => {
+    const { phase } = cylinders[k % cylinders.length];
+    for (const knot of knotsOver(cycle, phase, period)) found.push(knot);
+  });
   const edges = distinct(found, SLIVER);
   edges[edges.length - 1] = period;
   const widest = (k) => Math.max(Math.ceil((edges[k + 1] - edges[k]) / WIDEST - 1e-9), 1);
@@ -118,7 +129,7 @@ export class Tables {
     this.gas = remembering(gasTorque);
     this.burning = remembering(gasTorque);
     this.weights = remembering(weightTorque);
-    this.total = remembering((parts) => parts.reduce((a, b) => a.map((each, i) => each + b[i])));
+    this.total = remembering(totalOf);
   }
 
   /** Inertia without the crank's [kg m2], torque [N m] and what combustion adds to it, by cylinder,
@@ -138,6 +149,13 @@ export class Tables {
       combustion: burning,
     };
   }
+}
+
+/** The sum of arrays. */
+function totalOf([first, ...others]) {
+  const total = first.slice();
+  for (const other of others) for (let i = 0; i < total.length; i++) total[i] += other[i];
+  return total;
 }
 
 /** Derivatives of every cylinder's loop at crank angles, and the sums of their squares. */
@@ -165,22 +183,31 @@ function loopsAt(shape, center, cylinders, angles) {
 
 function inertiaOf({ squares }, pistonMass, rodMass, rodInertia) {
   const { piston, rod, turn } = squares;
-  return piston.map((x, i) => pistonMass * x + rodMass * rod[i] + rodInertia * turn[i]);
+  const inertia = new Float64Array(piston.length);
+  for (let i = 0; i < inertia.length; i++) {
+    inertia[i] = pistonMass * piston[i] + rodMass * rod[i] + rodInertia * turn[i];
+  }
+  return inertia;
 }
 
 /** Torque of pressures on the crank, by cylinder. */
 function gasTorque({ each }, cylinders, pressure, area, angles) {
   return pressure.map((cycle, k) => {
-    const { phase } = cylinders[k];
-    return each[k].x1.map((x1, i) => -area * valueAt(cycle, angles[i] + phase) * x1);
+    const torque = valuesAlong(cycle, angles, cylinders[k].phase);
+    const { x1 } = each[k];
+    for (let i = 0; i < torque.length; i++) torque[i] *= -area * x1[i];
+    return torque;
   });
 }
 
 /** Torque of the weights on the crank; given the crank's first moment [kg m], rod and piston. */
 function weightTorque({ each }, [first, rod, piston], cylinders, gravity, angles) {
   const [gx, gy] = gravityVector(gravity, 0);
-  const torque = angles.map((theta) => first * (gy * Math.cos(theta) - gx * Math.sin(theta)));
+  const torque = new Float64Array(angles.length);
   if (gravity === null) return torque;
+  for (let i = 0; i < torque.length; i++) {
+    torque[i] = first * (gy * Math.cos(angles[i]) - gx * Math.sin(angles[i]));
+  }
   cylinders.forEach(({ bank }, k) => {
     const [ax, ay] = gravityVector(gravity, bank);
     const { x1, gx1, gy1 } = each[k];
