@@ -78,7 +78,8 @@ def test_a_turned_knob_shows_what_simulate_gives(browser, tmp_path, name, values
         before = visited.settle().curve("lower")
         visited.go(address_of(values))
         visited.page.wait_for_function(
-            "(d) => document.querySelector('#lower path.simulated').getAttribute('d') !== d", arg=before
+            "(d) => document.querySelector('#lower path.simulated').getAttribute('d') !== d",
+            arg=before,
         )
         assert visited.message == ""
         assert_same(visited.data(), expected(turned(scene, values)))
@@ -119,9 +120,7 @@ def test_a_coasting_crank_keeps_its_mean_speed_and_says_that_any_would_do(browse
     turned_in = data["time [s]"][-1] - data["time [s]"][0]
     assert scene.period / turned_in == pytest.approx(scene.start.speed, rel=1e-9)
     start = dataclasses.replace(scene.start, speed=float(speed[0]))
-    np.testing.assert_allclose(
-        speed, one_cycle(dataclasses.replace(scene, start=start)), rtol=1e-9
-    )
+    np.testing.assert_allclose(speed, one_cycle(dataclasses.replace(scene, start=start)), rtol=1e-9)
 
 
 def one_cycle(scene):
@@ -132,7 +131,9 @@ def one_cycle(scene):
 
 
 def rod_ratios():
-    return [{"rod_ratio": 0.9, "offset": offset} for offset in (-20.0, -12.0, -5.2, 5.2, 12.0, 20.0)]
+    return [
+        {"rod_ratio": 0.9, "offset": offset} for offset in (-20.0, -12.0, -5.2, 5.2, 12.0, 20.0)
+    ]
 
 
 CLOSED = [
@@ -169,7 +170,7 @@ NUMBERS = [
 
 @pytest.mark.parametrize(("name", "text"), NUMBERS)
 def test_a_number_that_cannot_be_is_refused_as_a_key_of_a_scene_would_be(page, name, text):
-    """Against pydantic's own problem with a number between the knob's ends, in Python's sentence."""
+    """Against pydantic's own problem with a number between the knob's ends."""
     good = page.curve()
     (knob,) = (each for each in knobs_of(load_scene("propeller")) if each.name == name)
     sentence = refused_number(knob, text)
@@ -202,8 +203,10 @@ def refused_number(knob, text):
     with pytest.raises(ValidationError) as caught:
         root(**{knob.name: value})
     said = sentence(caught.value, root, {knob.name: value})
-    return said if isinstance(value, str) or not math.isfinite(value) else said.replace(
-        f"; {value!r} came", f"; {text} came"
+    return (
+        said
+        if isinstance(value, str) or not math.isfinite(value)
+        else said.replace(f"; {value!r} came", f"; {text} came")
     )
 
 

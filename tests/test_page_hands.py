@@ -221,8 +221,10 @@ LUMINANCE = """([ink, ground]) => {
   const [a, b] = [of(ink), of(ground)].sort((x, y) => y - x);
   return (a + 0.05) / (b + 0.05);
 }"""
-TEXT = ("--text", "--soft", "--accent", "--good", "--bad", "--gasarrow", "--wallarrow", "--pinarrow",
-        "--bearing")  # fmt: skip
+TEXT = (
+    *("--text", "--soft", "--accent", "--good", "--bad"),
+    *("--gasarrow", "--wallarrow", "--pinarrow", "--bearing"),
+)
 LINES = ("--line", "--run", "--exact", "--lecture", "--ghost", "--edge", "--web")
 
 
