@@ -4,28 +4,31 @@ import { add } from "./svg.js";
 
 const QUARTERS = [45, 90, 180, 360, 720]; // degrees between ticks of the crank angle
 
-/** Draw axes for curves { x, y } into a box of an svg.
- *
- * about : { type in pixels, shape, marks at dead centres, overAngle, last whether the angles stand
- * below, name }
- * Returns { box, right, up, x, y }: maps of values to pixels, and the ranges shown.
- */
-export function axes(svg, box, curves, about) {
-  const { type, shape, overAngle, name } = about;
+/** How curves { x, y } are put into a box: { box, right, up, x, y }, maps of values to pixels and the
+ * ranges shown. */
+export function frameOf(box, curves, { shape, overAngle }) {
   const y = rangeOf(curves.flatMap((curve) => curve.y));
-  const [first] = shape.curves;
-  const x = overAngle ? ends(first.x) : rangeOf(curves.flatMap((curve) => curve.x));
+  const x = overAngle ? ends(shape.curves[0].x) : rangeOf(curves.flatMap((curve) => curve.x));
   const bounds = shape.equal ? squared(box, x, y) : box;
   const [from, to] = shape.equal ? [bounds.right, bounds.left] : [bounds.left, bounds.right];
   const right = (value) => from + ((value - x.low) / (x.high - x.low)) * (to - from);
   const up = (value) =>
     bounds.bottom - ((value - y.low) / (y.high - y.low)) * (bounds.bottom - bounds.top);
-  const group = add(svg, "g", { class: "axes" });
-  ordinate(group, bounds, up, { y, type });
-  if (overAngle) angles(group, bounds, right, { x, ...about });
-  else abscissa(group, bounds, right, { x, ...about });
-  add(group, "text", { x: box.left, y: box.top - 0.35 * type, class: "name" }, name);
   return { box: bounds, right, up, x, y };
+}
+
+/** Draw the axes of a frame into a group.
+ *
+ * about : { type in pixels, shape, marks at dead centres, overAngle, last whether the angles stand
+ * below, name, left where it stands }
+ */
+export function drawAxes(group, { box, right, up, x, y }, about) {
+  group.replaceChildren();
+  ordinate(group, box, up, { y, type: about.type });
+  if (about.overAngle) angles(group, box, right, { x, ...about });
+  else abscissa(group, box, right, { x, ...about });
+  const at = { x: about.left, y: box.top - 0.35 * about.type, class: "name" };
+  add(group, "text", at, about.name);
 }
 
 function ordinate(group, box, up, { y, type }) {

@@ -3,6 +3,8 @@ import { Player } from "./player.js";
 import { spanOf } from "./view.js";
 import { badgeOf, numbersOf } from "./words.js";
 
+let shownAs = ""; // the choices that stand there, as text
+
 export function find(id) {
   return document.getElementById(id);
 }
@@ -19,12 +21,16 @@ export function listenToChoices(chosen) {
 
 /** Show the choices of a state, { name: word }, and the ends of a cycle. */
 export function showChoices(given, cycle, state) {
+  const { low, high } = spanOf(cycle);
+  const words = Object.values(state).filter((value) => typeof value === "string");
+  const as = JSON.stringify([words, low, high, cycle.train.cylinders.length]);
+  if (as === shownAs) return;
+  shownAs = as;
   options(find("cylinder"), cycle.train.cylinders.length);
   for (const select of document.querySelectorAll("select[data-state]")) {
     select.value = state[select.dataset.state];
   }
   find("cylinder").hidden = cycle.train.cylinders.length < 2;
-  const { low, high } = spanOf(cycle);
   Object.assign(find("angle"), { min: low, max: high });
 }
 

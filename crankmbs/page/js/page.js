@@ -37,10 +37,9 @@ class Page {
     this.view = firstView(given);
     this.cycle = null;
     this.address = new Address(keysOf(given), given.sentences);
-    this.stage = new Stage(find("stage"), given.compression);
+    this.stage = new Stage(find("stage"), given.compression, () => this.redraw());
     this.player = new Player({ cycle: () => this.cycle, move: (theta) => this.pose(theta) });
     this.listen();
-    new ResizeObserver(() => this.redraw()).observe(this.stage.root);
     this.begin();
   }
 
@@ -99,7 +98,6 @@ class Page {
     }
     const pin = root.querySelector(".pin");
     pin.addEventListener("click", () => pin.setAttribute("aria-pressed", String(plot.pin())));
-    new ResizeObserver(() => plot.redraw()).observe(plot.svg);
     return plot;
   }
 

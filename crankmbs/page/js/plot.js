@@ -3,9 +3,9 @@
  * It is drawn in pixels of the page, so that its type has the size of the page's; the cursor can
  * be dragged, and what lies under the pointer is read out.
  */
-import { axes } from "./axis.js";
+import { drawAxes, frameOf } from "./axis.js";
 import { decimalsFor, readable } from "./format.js";
-import { add, pathOf, set } from "./svg.js";
+import { add, pathOf, set, watched } from "./svg.js";
 
 const STRIP = 0.3; // of the height, for the differences
 const NOTHING = 1e-9; // of the largest value: a difference that is none
@@ -21,6 +21,14 @@ export class Plot {
     this.ghost = null;
     this.degrees = 0;
     this.hover = null;
+    this.size = null;
+    this.axes = { upper: add(this.svg, "g"), lower: add(this.svg, "g") };
+    this.lines = add(this.svg, "g");
+    this.cursor = add(this.svg, "g", { class: "cursor" });
+    watched(this.svg, (size) => {
+      this.size = size;
+      this.redraw();
+    });
     this.svg.addEventListener("pointerdown", (event) => this.press(event));
     this.svg.addEventListener("pointermove", (event) => this.move(event));
     this.svg.addEventListener("pointerleave", () => this.point(null));
@@ -42,32 +50,54 @@ export class Plot {
   }
 
   redraw() {
-    const { svg, shape } = this;
-    const { width, height } = svg.getBoundingClientRect();
-    if (!shape || width < 50 || height < 50) return;
-    svg.replaceChildren();
+    const { svg, shape, size } = this;
+    if (!shape || !size || size.width < 50 || size.height < 50) return;
+    const { width, height, type } = size;
     set(svg, { viewBox: `0 0 ${width} ${height}`, "aria-label": this.described() });
-    const type = parseFloat(getComputedStyle(svg).fontSize);
+    this.type = type;
+    const seen = this.visible();
     const strip = shape.differences.length > 0;
-    const foot = height - (isDiagram(shape) ? 2.6 : 1.5) * type;
+    const overAngle = !isDiagram(shape);
+    const foot = height - (overAngle ? 1.5 : 2.6) * type;
     const split = strip ? foot - STRIP * height : foot;
     const box = { left: 4.4 * type, right: width - 1.2 * type, top: 1.3 * type };
-    const curves = this.ghost ? [...shape.curves, this.ghost.curve] : shape.curves;
-    const about = { type, shape, marks: this.marks, overAngle: !isDiagram(shape) };
-    this.type = type;
-    this.cursor = null;
     const top = { ...box, bottom: strip ? split - 1.5 * type : foot };
-    this.upper = axes(svg, top, curves, { ...about, last: !strip, name: nameOf(shape) });
-    this.lower = null;
-    if (strip) {
-      const below = { ...box, top: split, bottom: foot };
-      this.lower = axes(svg, below, this.visible(), { ...about, last: true, name: "difference" });
-    }
-    if (this.ghost) this.line(this.upper, this.ghost.curve, "ghost");
-    shape.curves.forEach((curve, n) => this.line(this.upper, curve, styleOf(curve, n)));
-    if (strip) this.visible().forEach((each) => this.line(this.lower, each, each.style));
-    this.cursor = add(svg, "g", { class: "cursor" });
+    const curves = this.ghost ? [...shape.curves, this.ghost.curve] : shape.curves;
+    const about = { type, shape, marks: this.marks, overAngle, left: box.left };
+    this.upper = frameOf(top, curves, about);
+    this.draws("upper", this.upper, { ...about, last: !strip, name: nameOf(shape) });
+    this.lower = strip ? frameOf({ ...box, top: split, bottom: foot }, seen, about) : null;
+    this.draws("lower", this.lower, { ...about, last: true, name: "difference" });
+    const lines = this.ghost ? [[this.upper, this.ghost.curve, "ghost"]] : [];
+    shape.curves.forEach((curve, n) => lines.push([this.upper, curve, styleOf(curve, n)]));
+    if (strip) seen.forEach((each) => lines.push([this.lower, each, each.style]));
+    this.drawLines(lines);
     this.place(this.degrees);
+  }
+
+  /** Draw axes anew where they differ from those that stand there. */
+  draws(name, frame, about) {
+    const group = this.axes[name];
+    if (frame === null) {
+      group.replaceChildren();
+      this.axes[`${name} as`] = "";
+      return;
+    }
+    const { box, x, y } = frame;
+    const { type, marks, last, name: title, overAngle, shape: { right } } = about;
+    const as = JSON.stringify([box, x, y, type, marks, last, title, overAngle, right]);
+    if (this.axes[`${name} as`] !== as) drawAxes(group, frame, about);
+    this.axes[`${name} as`] = as;
+  }
+
+  /** Draw lines, each [frame, curve, style]. */
+  drawLines(lines) {
+    const { lines: group } = this;
+    while (group.children.length > lines.length) group.lastChild.remove();
+    lines.forEach(([{ right, up }, { x, y }, style], n) => {
+      const d = pathOf(x.map((each, k) => [right(each), up(y[k])]));
+      set(group.children[n] ?? add(group, "path"), { d, class: `curve ${style}` });
+    });
   }
 
   /** The differences that are more than rounding. */
@@ -78,16 +108,11 @@ export class Plot {
     return styled.filter(({ y }) => y.some((value) => Math.abs(value) > NOTHING * size));
   }
 
-  line({ right, up }, { x, y }, style) {
-    const d = pathOf(x.map((each, k) => [right(each), up(y[k])]));
-    add(this.svg, "path", { d, class: `curve ${style}` });
-  }
-
   /** Put the cursor at a crank angle [deg]. */
   place(degrees) {
     this.degrees = degrees;
     const { shape, cursor, upper, lower } = this;
-    if (!shape || !cursor) return;
+    if (!shape || !upper) return;
     cursor.replaceChildren();
     const at = this.hover ?? degrees;
     if (isDiagram(shape)) {

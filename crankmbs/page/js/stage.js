@@ -3,7 +3,7 @@
 import { proportions, turnedBy } from "./drawing.js";
 import { BODIES, forcesOn } from "./forces.js";
 import { general, readable, roundBelow } from "./format.js";
-import { add, set } from "./svg.js";
+import { add, set, watched } from "./svg.js";
 
 const REACH = 1.2; // of the crank radius: the longest arrow
 const LEAD = (14 * Math.PI) / 180; // the ring's magnified lead, at most
@@ -11,10 +11,16 @@ const TICKS = 24;
 const UNITS = 1000; // of the drawing per metre
 
 export class Stage {
-  /** root : its svg; compression : the ratio that the scene has, or null */
-  constructor(root, compression) {
+  /** root : its svg; compression : the ratio that the scene has, or null; resized : called when its
+   * size has changed */
+  constructor(root, compression, resized) {
     this.root = root;
     this.compression = compression;
+    this.size = { width: 300, height: 300, type: 16 };
+    watched(root, (size) => {
+      this.size = size;
+      resized();
+    });
   }
 
   /** Show another cycle: of cylinder k from 0, the forces on a body or "none"; ratio : of the
@@ -27,7 +33,13 @@ export class Stage {
     this.most = Math.max(...cycle.samples.map((v) => v.cylinders[k].gas_pressure), 1);
     const lead = Math.max(...cycle.leads.map(Math.abs));
     this.magnified = lead > 1e-9 ? Math.max(roundBelow(LEAD / lead), 1) : 0;
-    this.build(heavy);
+    const { rim, ...others } = this.sizes;
+    const all = [others, this.size, k, train.cylinders, heavy, this.magnified, train.shape];
+    const as = JSON.stringify(all);
+    if (as !== this.as) this.build(heavy);
+    this.as = as;
+    for (const disc of this.discs) set(disc, { r: rim * UNITS });
+    this.buildScale();
   }
 
   /** Metres of arrow per newton, from the largest force of the cycle. */
@@ -50,11 +62,11 @@ export class Stage {
     root.replaceChildren();
     this.type = this.letters(width, height);
     const flywheel = add(root, "g", { class: "flywheel" });
-    this.disc = add(flywheel, "circle", { r: sizes.rim * UNITS, class: "disc" });
+    this.discs = [add(flywheel, "circle", { class: "disc" })];
     this.mark = add(flywheel, "path", { class: "mark" });
-    const rim = { r: sizes.rim * UNITS };
-    add(flywheel, "circle", { ...rim, class: "rim" });
-    if (heavy) add(flywheel, "circle", { ...rim, class: "hold grip", "data-grip": "rim" });
+    this.discs.push(add(flywheel, "circle", { class: "rim" }));
+    const hold = { class: "hold grip", "data-grip": "rim" };
+    if (heavy) this.discs.push(add(flywheel, "circle", hold));
     const order = train.cylinders.map((_, k) => k).filter((k) => k !== this.k);
     this.parts = [];
     for (const k of [...order, this.k]) this.parts[k] = this.cylinder(k);
@@ -63,14 +75,12 @@ export class Stage {
     this.buildRing();
     this.arrows = add(root, "g", { class: "arrows" });
     this.bar = add(root, "g", { class: "scale" });
-    this.buildScale();
   }
 
   /** The size of letters in the drawing's units: on the screen that of the page's small type. */
   letters(width, height) {
-    const box = this.root.getBoundingClientRect();
-    const scale = Math.min(box.width / width, box.height / height) || 1;
-    return (0.85 * parseFloat(getComputedStyle(document.documentElement).fontSize)) / scale;
+    const scale = Math.min(this.size.width / width, this.size.height / height) || 1;
+    return (0.85 * this.size.type) / scale;
   }
 
   /** Ticks of the ring at mean speed, and its pointer. */
@@ -92,6 +102,7 @@ export class Stage {
   /** A bar as long as a round force. */
   buildScale() {
     const { force, bar, type } = this;
+    bar.replaceChildren();
     if (!force) return;
     const newtons = roundBelow(this.largest / 2.2);
     const long = newtons * force * UNITS;

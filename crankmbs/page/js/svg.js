@@ -22,11 +22,18 @@ export function pathOf(points, closed = false) {
   let pen = "M";
   for (const [x, y] of points) {
     if (Number.isFinite(x) && Number.isFinite(y)) {
-      d += `${pen}${x.toFixed(1)} ${y.toFixed(1)}`;
+      d += `${pen}${Math.round(10 * x) / 10} ${Math.round(10 * y) / 10}`;
       pen = "L";
     } else {
       pen = "M";
     }
   }
   return closed ? `${d}Z` : d;
+}
+
+/** Call with the size of an element [px] and of its letters, now and whenever it changes. */
+export function watched(element, changed) {
+  new ResizeObserver(([{ contentRect: { width, height } }]) => {
+    changed({ width, height, type: parseFloat(getComputedStyle(element).fontSize) });
+  }).observe(element);
 }
