@@ -116,8 +116,9 @@ def tasks(angles):
     scenes = [joined_by(*pair) for pair in JOINED]
     scenes += [jumping(), GUARDS["started"], GUARDS["affine"]]
     found += [("carried", {"scene": exported(scene), "shape": shape}) for scene in scenes]
-    names = ("affine", "started")
+    names, balancing = ("affine", "started"), ("affine", "settling")
     found += [("dragged", {"scene": longer(GUARDS[n]), "angles": angles[n][::3]}) for n in names]
+    found += [("balancing", {"scene": exported(GUARDS[n]), "speed": 345.0}) for n in balancing]
     still = balanced()
     found.append(("answer", {"scene": exported(still), "angles": np.array([0.0, still.period])}))
     return found + [

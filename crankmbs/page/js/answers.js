@@ -44,6 +44,14 @@ export function dragged(engine, { scene, angles }) {
   return columns(Array.from(angles, (theta) => reactionsAt(motion.train, motion.at(theta))));
 }
 
+/** By what share the loads of a scene are scaled to settle to a mean speed: at once, and finely. */
+export function balancing(engine, { scene, speed }) {
+  return [{}, FINE].map((settings) => {
+    const { ending, share } = engine.rebalanced(scene, speed, settings);
+    return { ending, share };
+  });
+}
+
 /** The quantities of a lecture, by its name, at samples of a scene's motion. */
 export function lectured(engine, { scene, lecture, samples }) {
   const train = engine.train(scene);
