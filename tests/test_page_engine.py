@@ -302,6 +302,7 @@ def test_every_refusal_has_its_reason_and_the_command_that_can():
         "function": replace(free, torque=(Load(lambda t, theta, omega: 0.0),)),
         "governor": replace(burning, fuel=Fuel(governor=governor)),
         "random firing": replace(burning, fuel=Fuel(scatter=0.1)),
+        "settled fuel": replace(burning, run=replace(burning.run, until="settled")),
         "friction": replace(free, friction=Friction(ring_force=20.0)),
         "speed over the angle": measured_over_the_angle(driven),
         "fold": fold(free),
