@@ -82,6 +82,12 @@ def balanced():
     return running("yi_diesel_free", "settled", gas=None, torque=(Constant(torque=0.0),))
 
 
+def braked():
+    """Driven by one load, braked by another."""
+    loads = (Constant(torque=9.0), Quadratic(coefficient=1e-5))
+    return running("yi_diesel_free", "settled", gas=None, torque=loads)
+
+
 def driven(speed):
     scene = running("yi_diesel", Extent(value=1.5, unit="cycle"), **MACHINE)
     return replace(scene, motion=Motion(speed=speed, angle=0.2))
@@ -116,8 +122,10 @@ def tasks(angles):
     scenes = [joined_by(*pair) for pair in JOINED]
     scenes += [jumping(), GUARDS["started"], GUARDS["affine"]]
     found += [("carried", {"scene": exported(scene), "shape": shape}) for scene in scenes]
-    names = ("affine", "started")
+    names, balancing = ("affine", "started"), ("affine", "settling")
     found += [("dragged", {"scene": longer(GUARDS[n]), "angles": angles[n][::3]}) for n in names]
+    scenes = [braked(), *(GUARDS[name] for name in balancing)]
+    found += [("balancing", {"scene": exported(scene), "speed": 345.0}) for scene in scenes]
     still = balanced()
     found.append(("answer", {"scene": exported(still), "angles": np.array([0.0, still.period])}))
     return found + [

@@ -1,6 +1,28 @@
 """Mutants of the page's engine by module: the text as it is, and as the mutant has it."""
 
 MUTANTS = {
+    "rebalance": [
+        (
+            "energy *= (1 + late) ** 2;",
+            "energy *= 1;",
+        ),
+        (
+            "share += more;",
+            "share -= more;",
+        ),
+        (
+            "side * torque > 0",
+            "side * torque !== 0",
+        ),
+        (
+            "(time * Math.abs(speed)) / section.period - 1",
+            "0",
+        ),
+        (
+            "share * each",
+            "each",
+        ),
+    ],
     "strong": [
         (
             "Math.abs(jump) + BEND * Math.abs(bend)",

@@ -16,10 +16,10 @@ from crankmbs.mechanics.train import crank_train
 from crankmbs.page import exported, joined, refusals
 from crankmbs.page.export import encoded
 from crankmbs.page.script import FOLDER
-from crankmbs.scene.drives import Motion, SpeedFile
+from crankmbs.scene.drives import Motion, SpeedFile, Start
 from crankmbs.scene.fuel import Fuel, Governor, Misfire
 from crankmbs.scene.gas import Polytrope
-from crankmbs.scene.loads import Constant
+from crankmbs.scene.loads import Constant, Quadratic, Viscous
 from crankmbs.scene.parts import Friction, Gravity, Layout
 from crankmbs.scene.python_load import Load
 from crankmbs.scene.scene import Extent
@@ -202,6 +202,48 @@ def test_where_every_speed_is_periodic_the_starts_mean_is_kept(page, sense):
     assert found["measures"]["fluctuation"] > 0.01
 
 
+def taking(torque):
+    return Constant(torque=torque), Viscous(coefficient=0.02), Quadratic(coefficient=1e-5)
+
+
+BALANCED = {
+    "quadratic": settled("propeller"),
+    "constant": replace(settled("yi_diesel_free"), torque=(Constant(torque=-20.0),)),
+    "driven": replace(settled("yi_diesel_free"), gas=None, torque=taking(9.0)),
+    "backwards": replace(
+        settled("coasting"), start=Start(angle=0.0, speed=-300.0), torque=taking(-9.0)
+    ),
+}
+
+
+@pytest.mark.parametrize("name", BALANCED)
+def test_loads_are_rebalanced_to_the_mean_speed(page, name):
+    scene = BALANCED[name]
+    speed = 1.05 * scene.start.speed
+    rough, fine = page.ask("balancing", scene=exported(scene), speed=speed)
+    assert rough["ending"] == fine["ending"] == "complete"
+    assert rough["share"] == pytest.approx(fine["share"], rel=3e-3)
+    takes = [load for load in scene.torque if load(0.0, 0.0, speed) * speed < 0.0]
+    loads = tuple(
+        load.scaled(fine["share"], 1.0) if load in takes else load for load in scene.torque
+    )
+    start = replace(scene.start, speed=speed)
+    if name == "constant":
+        page_mean = page.answer(replace(scene, torque=loads, start=start), [0.0, scene.period])
+        assert page_mean["balanced"]
+        assert page_mean["measures"]["mean_speed"] == pytest.approx(speed, rel=1e-12)
+        return
+    result = simulate(replace(scene, torque=loads, start=start), rtol=1e-12)
+    found = mean_speed(result, last_span(result))
+    assert found.value == pytest.approx(speed, rel=1e-9)
+
+
+def test_what_no_share_of_a_load_balances_is_named(page):
+    lifted = replace(settled("coasting"), torque=(Viscous(coefficient=0.1),))
+    for found in page.ask("balancing", scene=exported(lifted), speed=100.0):
+        assert found["ending"] == "unbalanced"
+
+
 def test_what_does_not_settle_is_named(page):
     base = replace(settled("coasting"), gravity=None)
     for torque, ending in ((5.0, "runs_away"), (-5.0, "decays")):
@@ -260,6 +302,7 @@ def test_every_refusal_has_its_reason_and_the_command_that_can():
         "function": replace(free, torque=(Load(lambda t, theta, omega: 0.0),)),
         "governor": replace(burning, fuel=Fuel(governor=governor)),
         "random firing": replace(burning, fuel=Fuel(scatter=0.1)),
+        "settled fuel": replace(burning, run=replace(burning.run, until="settled")),
         "friction": replace(free, friction=Friction(ring_force=20.0)),
         "speed over the angle": measured_over_the_angle(driven),
         "fold": fold(free),

@@ -34,6 +34,8 @@ def _reasons(scene: Scene) -> Iterator[str]:
         yield "governor: it decides each share of the fuel anew"
     if scene.fuel is not None and scene.fuel.scatter > 0.0:
         yield "random firing: scatter draws each share of the fuel from Python's random numbers"
+    if scene.fuel is not None and scene.settles:
+        yield "settled fuel: the page settles what burns alike in every cycle"
     if scene.friction is not None:
         yield "friction: the page has none yet on its pistons"
     if scene.motion is not None and _over_angle(scene.motion):

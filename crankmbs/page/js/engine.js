@@ -10,6 +10,7 @@ import { Loop } from "./geometry.js";
 import { DIAGRAM, SEEN, pressuresOf } from "./gas.js";
 import { Travel } from "./motion.js";
 import { readCell } from "./path.js";
+import { rebalanced } from "./rebalance.js";
 import { partsOf } from "./refine.js";
 import { settle } from "./settled.js";
 import { speedLaw } from "./speed.js";
@@ -18,6 +19,8 @@ import { Tables, edgesOf, reduceAt, split } from "./tables.js";
 
 const ROUNDS = 8; // of cutting cells
 const MOST_CELLS = 20000;
+const CLOSE = 1e-6; // of the mean speed, where loads are rebalanced while a knob moves
+const CLOSEST = 1e-12;
 const SAME = 1e-9; // rad: a decision so near has not been passed
 
 /** rules : of Gauss collocation, by their number of stages. */
@@ -65,6 +68,18 @@ export class Engine {
       if (parts.every((each) => each === 1)) return motion;
       edges = split(edges, parts);
     }
+  }
+
+  /** A scene with its loads scaled so that it settles to a mean speed [rad/s]: `rebalanced`. */
+  rebalanced(scene, speed, { stages = 5, tolerance = null } = {}) {
+    const train = this.train(scene, true);
+    const edges = this.edgesFor(train, scene.grid_period, true);
+    const grid = this.grid(train, edges, stages, this.tables);
+    const rough = rebalanced(scene, speed, { train, grid }, CLOSE);
+    if (tolerance === null || rough.ending !== "complete") return rough;
+    const motion = this.run(rough.scene, { stages, tolerance });
+    const fine = rebalanced(rough.scene, speed, motion, CLOSEST);
+    return { ...fine, share: rough.share * fine.share };
   }
 
   edgesFor(train, period, quick) {

@@ -30,15 +30,13 @@ const SPEEDS = 65; // at which the slope of the loads is looked at
 export function settle(train, grid, start, warm) {
   const sense = start.speed < 0 ? -1 : 1;
   const section = new Section(train, grid, start, sense);
-  const branch = section.branch(start.speed);
-  const bounded = branch && [branch.low, branch.high].some((limit) =>
-    sense * limit > 0 && Number.isFinite(limit));
-  if (branch && isAffine(branch) && !bounded) return section.inClosedForm(branch, start);
+  const branch = section.affineBranch(start.speed);
+  if (branch !== null) return section.inClosedForm(branch, start);
   return section.byNewton(warm ?? section.energyAt(start.speed), start.speed);
 }
 
 /** One period of a motion, from an edge of the grid on. */
-class Section {
+export class Section {
   constructor(train, grid, start, sense) {
     const { edges } = grid;
     const period = edges[edges.length - 1];
@@ -61,6 +59,27 @@ class Section {
     const over = torqueOverAngle(train.loads, phases, this.theta);
     const rest = of.torque + over - 0.5 * of.slope * omega * omega;
     return branchAt(train.loads, phases, 0, omega, rest);
+  }
+
+  /** The branch at a speed if under it every cell is affine, at whatever speed; else null. */
+  affineBranch(omega) {
+    const branch = this.branch(omega);
+    if (branch === null || !isAffine(branch)) return null;
+    const ends = (limit) => this.sense * limit > 0 && Number.isFinite(limit);
+    return ends(branch.low) || ends(branch.high) ? null : branch;
+  }
+
+  /** What the period gains [J] that begins with an energy, and how long it takes [s]. */
+  once(energy, { speed }) {
+    const branch = this.affineBranch(speed);
+    if (branch === null) {
+      const shot = this.shot(energy);
+      return { ending: shot.ending, gained: shot.energy - energy, time: shot.time };
+    }
+    const period = new AffinePeriod(this, branch);
+    const { growth, rise } = period.whole;
+    const { time } = period.sweep(energy);
+    return { ending: time > 0 ? "complete" : "slow", gained: growth * energy + rise, time };
   }
 
   shot(energy) {
