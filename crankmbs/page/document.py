@@ -31,6 +31,7 @@ _ON = "run it with crankmbs run"
 _ENDINGS = {
     "runs_away": Ending.RUNS_AWAY.value[1].removeprefix("does not settle: "),
     "decays": Ending.STALLS.value[1].removeprefix("does not settle: "),
+    "unbalanced": "no share of the loads makes the crank settle to this mean speed",
     "wanders": "the search for the motion that repeats itself finds none",
     "slow": f"the crank comes near rest, where time must be the variable; {_ON}",
     "held": f"a jump of the loads holds the speed from both sides; {_ON}",
@@ -65,7 +66,7 @@ def page_of(scene: Scene, stem: str) -> str:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    choices = choices_of(scene)
+    choices = choices_of(shown)
     return environment.get_template("page.html").render(
         scene=scene,
         stem=stem,
@@ -86,9 +87,10 @@ def shown_scene(scene: Scene) -> Scene:
     if scene.motion is not None:
         return scene
     try:
-        return dataclasses.replace(scene, run=dataclasses.replace(scene.run, until=SETTLED))
+        settled = dataclasses.replace(scene, run=dataclasses.replace(scene.run, until=SETTLED))
     except InputError:
         return scene
+    return scene if refusals(settled) else settled
 
 
 def _given(scene: Scene, stem: str, choices: tuple[Choice, ...]) -> dict[str, Any]:

@@ -59,7 +59,7 @@ def knobs_of(scene: Scene) -> tuple[Knob, ...]:
 
 
 def choices_of(scene: Scene) -> tuple[Choice, ...]:
-    """The choices that mean something for a scene.
+    """The choices that mean something for a scene; loads of one that settles can be rebalanced.
 
     >>> [choice.name for choice in choices_of(load_scene("yi_diesel"))]
     ['rod', 'cylinders']
@@ -71,6 +71,8 @@ def choices_of(scene: Scene) -> tuple[Choice, ...]:
         choices.append(Choice("cylinders", "cylinders", words, AS_GIVEN))
     if scene.start is not None:
         choices.append(Choice("speed_is", "speed", ("free", "prescribed"), "free"))
+    if scene.settles and scene.torque:
+        choices.append(Choice("load_is", "load", ("given", "rebalanced"), "given"))
     return tuple(choices)
 
 

@@ -4,8 +4,8 @@ import { add } from "./svg.js";
 
 const QUARTERS = [45, 90, 180, 360, 720]; // degrees between ticks of the crank angle
 
-/** How curves { x, y } are put into a box: { box, right, up, x, y }, maps of values to pixels and the
- * ranges shown. */
+/** How curves { x, y } are put into a box: { box, right, up, x, y }, maps of values to pixels and
+ * the ranges shown. */
 export function frameOf(box, curves, { shape, overAngle }) {
   const y = rangeOf(curves.flatMap((curve) => curve.y));
   const x = overAngle ? ends(shape.curves[0].x) : rangeOf(curves.flatMap((curve) => curve.x));

@@ -11,12 +11,14 @@ const RPM = Math.PI / 30;
 
 /** The cycle of a scene.
  *
- * fine : with cells cut until they are good, and measures; warm : a cycle close by, or null
+ * fine : with cells cut until they are good, and measures; warm : a cycle close by, or null;
+ * speed : the mean [rad/s] to which the loads are rebalanced, or null
  *
  * Raises Refused with the sentence of a motion that ends before its time.
  */
-export function cycleOf(engine, scene, endings, { fine = false, warm = null } = {}) {
+export function cycleOf(engine, asked, endings, { fine = false, warm = null, speed = null } = {}) {
   const settings = fine ? FINE : QUICK;
+  const { scene, share } = balanced(engine, asked, endings, { speed, settings });
   let motion = engine.run(scene, { ...settings, warm: warm?.energy ?? null });
   let why = null;
   if (scene.run.settled && motion.ending !== "complete") {
@@ -25,16 +27,25 @@ export function cycleOf(engine, scene, endings, { fine = false, warm = null } = 
     motion = engine.run({ ...scene, run }, settings);
   }
   if (motion.ending !== "complete") throw new Refused(endings[motion.ending]);
-  const span = lastSpan(motion.from, motion.to, scene.run.settled ? scene.grid_period : scene.period);
+  const period = scene.run.settled ? scene.grid_period : scene.period;
+  const span = lastSpan(motion.from, motion.to, period);
   const measures = fine ? measuresOf(motion, engine.rules[9], span) : null;
-  return new Cycle(scene, motion, span, { why, measures });
+  return new Cycle(scene, motion, span, { why, measures, share });
+}
+
+/** A scene with its loads so that it settles to a mean speed, and by what share they are scaled. */
+function balanced(engine, scene, endings, { speed, settings }) {
+  if (speed === null || !scene.run.settled) return { scene, share: 1 };
+  const found = engine.rebalanced(scene, speed, settings);
+  if (found.ending !== "complete") throw new Refused(endings[found.ending]);
+  return found;
 }
 
 /** Samples of one cycle, and what the formulas say at them. */
 class Cycle {
-  constructor(scene, motion, span, { why, measures }) {
+  constructor(scene, motion, span, { why, measures, share }) {
     const { from, to, kind } = span;
-    Object.assign(this, { scene, motion, from, to, why, measures, window: kind });
+    Object.assign(this, { scene, motion, from, to, why, measures, share, window: kind });
     this.train = motion.train;
     this.sense = Math.sign(to - from);
     this.angles = Array.from({ length: POINTS + 1 }, (_, k) => from + ((to - from) * k) / POINTS);

@@ -170,18 +170,27 @@ class Page {
   }
 
   compute() {
-    const scene = this.turner.scene(this.values);
-    this.cycle = cycleOf(this.quick, scene, this.given.endings, { warm: this.cycle });
-    this.good = this.values;
+    const { values } = this;
+    const asked = this.turner.scene(values);
+    this.cycle = this.pass(this.quick, asked, values, { warm: this.cycle });
+    this.asked = asked;
+    this.good = values;
     this.error = null;
     clearTimeout(this.later);
     this.later = setTimeout(() => this.refine(), LATER);
   }
 
+  /** The cycle of a scene that is asked for, by an engine. */
+  pass(engine, asked, values, options) {
+    const balanced = values.load_is === "rebalanced" && asked.motion === null;
+    const speed = balanced ? asked.start.speed : null;
+    return cycleOf(engine, asked, this.given.endings, { ...options, speed });
+  }
+
   /** The second pass: cells cut until they are good, measures, and how far the first was off. */
   refine() {
-    const { cycle, given } = this;
-    const better = cycleOf(this.careful, cycle.scene, given.endings, { fine: true, warm: cycle });
+    const { cycle, asked, good } = this;
+    const better = this.pass(this.careful, asked, good, { fine: true, warm: cycle });
     const apart = better.samples.map((v, k) =>
       Math.abs(v.crank_speed - cycle.samples[k].crank_speed));
     this.error = Math.max(...apart) / Math.abs(better.mean);
@@ -200,7 +209,7 @@ class Page {
     const marks = deadCentreMarks(cycle, k, deadCentres(cycle.train.shape));
     for (const name of PLOTS) this.plots[name].draw(drawn(view[name], cycle, k), marks);
     showChoices(given, cycle, { ...given.own, ...view, ...this.values, cylinder: String(k + 1) });
-    this.knobs.disable(cycle.prescribed && given.scene.motion === null ? ["flywheel", "load"] : []);
+    this.knobs.disable(unused(cycle, given, this.values));
     this.player.slower = showSlower(cycle, (slower) => {
       this.player.slower = slower;
     });
@@ -212,7 +221,8 @@ class Page {
   seek(theta) {
     const { from, to } = this.cycle;
     const [low, period] = [Math.min(from, to), Math.abs(to - from)];
-    const turns = theta > low + period + 1e-9 || theta < low - 1e-9 ? Math.floor((theta - low) / period) : 0;
+    const outside = theta > low + period + 1e-9 || theta < low - 1e-9;
+    const turns = outside ? Math.floor((theta - low) / period) : 0;
     this.pose(theta - turns * period);
     this.player.seek(this.theta);
   }
@@ -265,4 +275,10 @@ class Page {
     find("message").textContent = sentence;
     find("message").hidden = sentence === "";
   }
+}
+
+/** The knobs that change nothing at present. */
+function unused(cycle, given, values) {
+  if (cycle.prescribed && given.scene.motion === null) return ["flywheel", "load"];
+  return values.load_is === "rebalanced" ? ["load"] : [];
 }

@@ -81,7 +81,8 @@ function sum(list, part) {
 /** The names of what a plot can show of a scene: first curves, then diagrams. */
 export function choices(scene) {
   const gassed = (name) => scene.gas !== null || !/pressure|p-V/.test(name);
-  return { curves: Object.keys(QUANTITIES).filter(gassed), diagrams: Object.keys(DIAGRAMS).filter(gassed) };
+  const [curves, diagrams] = [QUANTITIES, DIAGRAMS].map((all) => Object.keys(all).filter(gassed));
+  return { curves, diagrams };
 }
 
 /** What a plot draws of a cycle: { title, right, up, curves: [{ name, x, y }], differences }.

@@ -178,7 +178,8 @@ export class Stage {
     set(piston, { transform: `translate(0 ${-x})` });
     const crown = -x - sizes.crown * UNITS;
     const share = Math.min(Math.max(at.gas_pressure / this.most, 0), 1);
-    set(gas, { height: Math.max(crown - head, 0), "fill-opacity": 0.08 + 0.8 * Math.sqrt(share) });
+    const opacity = 0.08 + 0.8 * Math.sqrt(share);
+    set(gas, { height: Math.max(crown - head, 0), "fill-opacity": opacity });
     const angle = theta + phase + bank;
     const [cx, cy] = onScreen(turnedBy(angle, r, 0));
     const [px, py] = onScreen(turnedBy(bank, x, -middle));
@@ -228,7 +229,7 @@ export class Stage {
         [x, y] = pushes ? [x + ux - dx, y + uy - dy] : [x + ux, y + uy];
       }
       add(arrows, "path", { d: arrowOf(x, y, dx, dy, 0.055 * sizes.r * UNITS), class: kind });
-      const [ex, ey] = pushes ? [-0.02 * dx, -0.02 * dy] : [dx, dy]; // from where its name stands out
+      const [ex, ey] = pushes ? [-0.02 * dx, -0.02 * dy] : [dx, dy]; // whence its name
       const label = { "font-size": this.type, class: kind };
       const text = add(arrows, "text", label, name);
       set(text, placed(ex, ey, this.type, { x: x + ex, y: y + ey }));

@@ -1,4 +1,4 @@
-/** What can be taken away: the scene that is shown, as TOML with its tables, and its data as CSV. */
+/** What can be taken away: the scene that is shown, as TOML with its tables, and its data. */
 import { carriedAngle } from "./gas.js";
 import { general } from "./format.js";
 import { Toml } from "./toml.js";
@@ -31,7 +31,7 @@ export function sceneFiles(given, values, cycle) {
   const files = { ...given.files };
   const toml = new Toml(files[first]);
   putMachine(toml, given, values, scene);
-  const tables = { toml, files, given, scene };
+  const tables = { toml, files, given, scene, balance: cycle.share };
   if (scene.gas !== null) putGas(tables, values);
   if (scene.motion !== null && given.scene.motion === null) prescribe(tables);
   else putDrive(tables, values);
@@ -62,7 +62,8 @@ function putMachine(toml, given, values, { crank, rod, piston }) {
 /** Pressures that have moved or changed, as rows over the cycle angle. */
 function putGas({ toml, files, given, scene }, values) {
   const { gas } = scene;
-  const shape = { radius: scene.crank.radius, length: scene.rod.length, offset: scene.piston.offset };
+  const [{ radius }, { length }, { offset }] = [scene.crank, scene.rod, scene.piston];
+  const shape = { radius, length, offset };
   const same = ["radius", "length", "offset"].every((key) => shape[key] === gas.shape[key]);
   if (same && !("pressure" in values)) return;
   const sources = { pressure: gas.fired };
@@ -117,14 +118,14 @@ function prescribe({ toml, scene }) {
   toml.put("[run]", "until", '"1 cycle"');
 }
 
-function putDrive({ toml, files, given, scene }, values) {
+function putDrive({ toml, files, given, scene, balance }, values) {
   const faster = "speed" in values ? speedOf(scene) / speedOf(given.scene) : 1;
   const speed = `"${speedOf(scene)} rad/s"`;
   if (faster !== 1 && scene.motion === null) toml.put("[start]", "speed", speed);
   if (faster !== 1 && scene.motion !== null) putMotion(toml, scene.motion, speed);
   if (scene.motion !== null) return;
   const more = scene.cylinders.length / given.scene.cylinders.length;
-  const share = ((values.load ?? 100) / 100) * more;
+  const share = ((values.load ?? 100) / 100) * more * balance;
   if (share === 1 && faster === 1) return;
   for (let n = 0; n < toml.count("[[torque]]"); n++) putLoad({ toml, files }, n, share, faster);
 }

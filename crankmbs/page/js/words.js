@@ -18,6 +18,7 @@ export function numbersOf(cycle, error) {
       found.push(["indicated power", `${readable(measures.indicated_power / 1e3, 2)} kW`]);
     }
   }
+  if (cycle.share !== 1) found.push(["load, rebalanced", `${readable(100 * cycle.share, 1)} %`]);
   const cells = train.cylinders.length > 1 ? [["cylinders", `${train.cylinders.length}`]] : [];
   const trust = error === null ? "…" : `${general(Math.max(error, 1e-15), 1)}`;
   return [...found, ...cells, ["error of the quick pass", trust]];

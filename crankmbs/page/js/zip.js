@@ -21,8 +21,10 @@ export function zipped(files) {
     const [title, content] = [name, text].map((each) => new TextEncoder().encode(each));
     const about = [20, 0x800, 0, 0, 0x21]; // version, UTF-8, stored, 1 January 1980
     const sizes = [checksum(content), content.length, content.length];
-    const head = bytesOf([[4, 0x04034b50], ...shorts(about), ...longs(sizes), [2, title.length], [2, 0]]);
-    const fields = [...shorts([20, ...about]), ...longs(sizes), ...shorts([title.length, 0, 0, 0, 0])];
+    const [local, central] = [[title.length, 0], [20, ...about]];
+    const head = bytesOf([[4, 0x04034b50], ...shorts(about), ...longs(sizes), ...shorts(local)]);
+    const rest = shorts([title.length, 0, 0, 0, 0]);
+    const fields = [...shorts(central), ...longs(sizes), ...rest];
     entries.push(bytesOf([[4, 0x02014b50], ...fields, [4, 0], [4, at]]), title);
     parts.push(head, title, content);
     at += head.length + title.length + content.length;
