@@ -15,7 +15,7 @@ from crankmbs.errors import InputError
 from crankmbs.mechanics.variables import EVERY
 from crankmbs.motion.ending import Ending
 from crankmbs.page.export import encoded, exported, rules
-from crankmbs.page.knobs import AS_GIVEN, FIRING_ORDERS, Choice, choices_of, knobs_of
+from crankmbs.page.knobs import FIRING_ORDERS, Choice, choices_of, knobs_of
 from crankmbs.page.refusals import refusals
 from crankmbs.page.script import joined
 from crankmbs.scene.parts import LIGHT_CRANK
@@ -107,7 +107,6 @@ def _given(scene: Scene, stem: str, choices: tuple[Choice, ...]) -> dict[str, An
         "two_mass": scene.rod.inertia == "two-mass",
         "compression": None if indicator is None else indicator.compression_ratio,
         "orders": {name: list(order) for name, order in FIRING_ORDERS.items()},
-        "as_given": AS_GIVEN,
         "units": {name: variable.units for name, variable in EVERY.items()},
         "endings": _ENDINGS,
         "sentences": {
