@@ -38,6 +38,11 @@ _ENDINGS = {
 }
 _FOLD = f"fold: the rod folds onto the crank, where the motion is not determined; {_ON}"
 
+_FLUCTUATION = (
+    "fluctuation: the {what} is {percent:.4g} %, with the flywheel of {end:g} kg m^2 at the end of "
+    "its knob; {came:g} came"
+)
+
 
 def page_of(scene: Scene, stem: str) -> str:
     """A scene's page as HTML that needs no network; everything on it is computed in the browser.
@@ -70,6 +75,7 @@ def page_of(scene: Scene, stem: str) -> str:
     return environment.get_template("page.html").render(
         scene=scene,
         stem=stem,
+        heavy=scene.start is not None,
         choices={choice.name: choice for choice in choices},
         policy=_policy(script, style),
         script=Markup(script),
@@ -113,6 +119,7 @@ def _given(scene: Scene, stem: str, choices: tuple[Choice, ...]) -> dict[str, An
             "open_loop": OPEN_LOOP,
             "light_crank": LIGHT_CRANK,
             "fold": _FOLD,
+            "fluctuation": _FLUCTUATION,
             **{kind: RULES[kind] for kind in _NUMBERS},
         },
     }
