@@ -52,7 +52,7 @@ class Choice:
 def knobs_of(scene: Scene) -> tuple[Knob, ...]:
     """The sliders that mean something for a scene; the scene's value lies between their ends.
 
-    >>> [knob.name for knob in knobs_of(load_scene("yi_diesel"))]
+    >>> [knob.name for knob in knobs_of(load_scene("grega_lecture"))]
     ['speed', 'pressure', 'rod_ratio', 'offset', 'rod_mass']
     """
     return (*_drive(scene), *_machine(scene))
