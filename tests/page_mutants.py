@@ -49,8 +49,8 @@ MUTANTS = {
     ],
     "over_angle": [
         (
-            "begin[k] + x + turns * period + beyond",
-            "begin[k] + x + beyond",
+            "const turns = repeats ? Math.floor(aim / whole) : 0;",
+            "const turns = 0;",
         ),
         (
             "omega, slope * omega];",
