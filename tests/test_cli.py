@@ -244,7 +244,7 @@ def test_a_small_run_loads_neither_matplotlib_nor_exudyn():
     code = (
         "import sys; from crankmbs.cli import app;"
         "app(['run', 'engine.toml', '--no-figures'], standalone_mode=False);"
-        "print(sorted({'matplotlib', 'exudyn', 'rich', 'numba', 'bokeh'} & set(sys.modules)))"
+        "print(sorted({'matplotlib', 'exudyn', 'rich', 'numba'} & set(sys.modules)))"
     )
     done = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=60
@@ -265,7 +265,20 @@ def test_a_cost_cap_that_cannot_be_is_refused():
     assert message == "cost_cap must be a time above 0 s; 0.0 came"
 
 
-@pytest.mark.parametrize("port", ["-5", "65536"])
-def test_a_port_that_cannot_be_is_refused(port):
-    message = refused("demo", "coasting", "--no-browser", "--port", port)
-    assert message == f"--port must be from 0, a free one, to 65535; {port} came"
+def test_demo_writes_its_page_beneath_the_working_folder_and_says_where():
+    stdout = crankmbs_("demo", "coasting", "--no-browser").stdout
+    (written,) = Path("results").glob("*.html")
+    assert stdout == f"coasting: {written.absolute()}\n"
+    assert written.read_text().startswith("<!DOCTYPE html>")
+
+
+def test_page_writes_one_file():
+    assert crankmbs_("page", "coasting", "-o", "mine.html").stdout.startswith("wrote mine.html")
+    assert "<svg" in Path("mine.html").read_text()
+
+
+def test_what_the_page_cannot_show_names_the_command_that_can():
+    assert refused("page", "torque_driven") == (
+        "the page cannot show this scene. rest: the crank starts from rest, where time must be the "
+        "variable; run it with crankmbs run"
+    )

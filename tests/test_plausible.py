@@ -5,6 +5,7 @@ from math import pi
 from pathlib import Path
 
 import pytest
+from turned import turned
 
 from crankmbs import (
     Constant,
@@ -18,7 +19,6 @@ from crankmbs import (
     load_scene,
     shipped_scenes,
 )
-from crankmbs.demo.knobs import turned
 from crankmbs.measures.plausible import warnings
 from crankmbs.scene.read import parse_scene
 from crankmbs.scene.template import template

@@ -6,9 +6,9 @@ from math import pi
 import numpy as np
 import pytest
 from references import worst_ratio
+from turned import turned
 
 from crankmbs import Gas, InputError, Motion, Run, Start, Table, load_scene, simulate
-from crankmbs.demo.knobs import turned
 from crankmbs.mechanics.pressure import pressures_of, remarks
 from validation.adapter import machine_of
 from validation.oracles.arithmetic import distance, multiprecision

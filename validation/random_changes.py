@@ -16,7 +16,7 @@ from crankmbs.scene.fuel import Fuel, Governor, Misfire
 from crankmbs.scene.gas import Gas
 from crankmbs.scene.loads import Constant, Quadratic, SpeedTable, TimeTable, Viscous
 from crankmbs.scene.parts import Friction
-from crankmbs.scene.scene import Extent, Run
+from crankmbs.scene.run import Extent, Run
 from crankmbs.scene.tables import Table
 from crankmbs.scene.torque import Torque
 from validation.oracles.changes import Curve, Line, Pull

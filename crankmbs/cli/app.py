@@ -15,10 +15,10 @@ from crankmbs.choose import choose
 from crankmbs.cli.animate import animate_scene
 from crankmbs.cli.balance import balance_scene
 from crankmbs.cli.check import describe
-from crankmbs.cli.demo import demonstrate, write_page
 from crankmbs.cli.ending import ending
 from crankmbs.cli.flywheel import size_flywheel
 from crankmbs.cli.lesson import list_lessons, make_lesson
+from crankmbs.cli.page import demonstrate, write_page
 from crankmbs.cli.pressure import pressure
 from crankmbs.cli.run import Wanted, run_scene
 from crankmbs.cli.validate import validate_scene
@@ -188,13 +188,12 @@ def demo(
     scene: Annotated[
         str, typer.Argument(metavar="SCENE", help="A scene file, or the name of a shipped scene.")
     ] = "propeller",
-    port: Annotated[int, typer.Option(help="Port of the page; 0: a free one.")] = 5006,
     no_browser: Annotated[
-        bool, typer.Option("--no-browser", help="Serve only, open no browser.")
+        bool, typer.Option("--no-browser", help="Write the file only, open no browser.")
     ] = False,
 ) -> None:
-    """Serve a page that shows the mechanism moving, and what each knob changes."""
-    demonstrate(scene, port=port, browser=not no_browser)
+    """Open a page that shows the mechanism moving, and what each knob changes."""
+    demonstrate(scene, browser=not no_browser)
 
 
 @app.command()
@@ -203,13 +202,9 @@ def page(
     out: Annotated[
         Path | None, typer.Option("-o", "--out", help="The file; default NAME.html.")
     ] = None,
-    vary: Annotated[
-        list[str] | None,
-        typer.Option(help="A knob of the page; may be given twice. Default: flywheel."),
-    ] = None,
 ) -> None:
-    """Write the page as one file for a course: no server, no network."""
-    write_page(scene, varied=vary or [], out=out)
+    """Write the page as one file: no server, no network."""
+    write_page(scene, out=out)
 
 
 app.command()(pressure)

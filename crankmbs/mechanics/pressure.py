@@ -15,13 +15,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import PPoly
 
+from crankmbs.mechanics.cycle_rows import rows_of, rows_of_table
 from crankmbs.mechanics.indicator import INDICATOR_RTOL, fit, indicator_pieces, relative_volume
 from crankmbs.numerics.arrays import Array
-from crankmbs.scene.cycles import cycles_in, mean_cycle
+from crankmbs.scene.cycles import cycles_in
 from crankmbs.scene.gas import Gas, Polytrope, PressureGiven, tables_of
-from crankmbs.scene.pressure_rows import close, closing_row, interpolate, overshoot
+from crankmbs.scene.pressure_rows import closing_row, interpolate, overshoot
 from crankmbs.scene.scene import Scene
-from crankmbs.scene.tables import CylinderTable, Table
+from crankmbs.scene.tables import Table
 
 __all__ = [
     "KNOT",
@@ -202,12 +203,9 @@ def _given(scene: Scene, gas: Gas, source: PressureGiven) -> tuple[PeriodicPress
     if isinstance(source, float):
         value = np.array([[0.0], [0.0], [0.0], [source - (gas.ambient or 0.0)]])
         return (PeriodicPressure(np.array([0.0, gas.period]), value),) * len(cylinders)
-    if isinstance(source, Table):
-        return (_joined(gas, source, _shift(gas)),) * len(cylinders)
-    by_instant = isinstance(source, CylinderTable) and not gas.aligned
-    lags = [c.phase - cylinders[0].phase if by_instant else 0.0 for c in cylinders]
-    pairs = zip(tables_of(source), lags, strict=True)
-    return tuple(_joined(gas, table, _shift(gas) + lag) for table, lag in pairs)
+    rows = rows_of(scene, gas, source)
+    once = {id(one): PeriodicPressure(*interpolate(one, gas.interpolation)) for one in rows}
+    return tuple(once[id(one)] for one in rows)
 
 
 def _continued(
@@ -259,32 +257,18 @@ def _remarks(gas: Gas, table: Table) -> Iterator[str]:
         yield (
             f"{table.source}: the closing row, {apart / 1e5:.3g} bar from the first one, is dropped"
         )
-    joined = _joined(gas, table, 0.0)
-    beyond, *between = overshoot(joined.knots, joined.coefficients)
+    knots, coefficients = interpolate(rows_of_table(gas, table), gas.interpolation)
+    beyond, *between = overshoot(knots, coefficients)
     share = beyond / ((max(table.y) - min(table.y)) or 1.0)
     if gas.interpolation == "cubic" and share > _OVERSHOOT:
         past = np.array(between) - table.x[0]
-        first, second = np.degrees(np.mod(past + KNOT, joined.period) - KNOT + table.x[0])
+        first, second = np.degrees(np.mod(past + KNOT, knots[-1] - knots[0]) - KNOT + table.x[0])
         yield (
             f"warning: {table.source}: between the rows at {first:.8g} and {second:.8g} degrees "
             f"the spline goes {100.0 * share:.3g} % of the table's range beyond both; the run is "
             'that of the spline, not of the machine; use interpolation = "pchip", or give two rows '
             "at one angle for a jump"
         )
-
-
-def _joined(gas: Gas, table: Table, shift: float) -> PeriodicPressure:
-    """The table gauge and in cycle angle, which its angles lag by ``shift``, its rows joined."""
-    table = mean_cycle(table, gas.period) if gas.cycles == "mean" else table
-    angle, value = np.add(table.x, shift), np.subtract(table.y, gas.ambient or 0.0)
-    period = cycles_in(table, gas.period) * gas.period
-    rows = close(Table(angle.tolist(), value.tolist()), period)
-    return PeriodicPressure(*interpolate(rows, gas.interpolation))
-
-
-def _shift(gas: Gas) -> float:
-    """Cycle angle [rad] of the table's 0."""
-    return 2.0 * math.pi if gas.zero == "firing_tdc" and gas.stroke == 4 else 0.0
 
 
 def repeat(knots: Array, period: float, low: float, high: float) -> Array:

@@ -21,7 +21,7 @@ from crankmbs.scene.drives import Motion, Oscillation, Ramp, SpeedFile
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.speed_rows import over_angle, remarks_on, repeats
 
-__all__ = ["SpeedLaw", "speed_law", "speed_remarks"]
+__all__ = ["SpeedLaw", "speed_law", "speed_pieces", "speed_remarks"]
 
 
 class SpeedLaw(Protocol):
@@ -54,16 +54,28 @@ def speed_law(motion: Motion) -> SpeedLaw:
     speed = motion.speed
     if isinstance(speed, Oscillation):
         return _OscillatingLaw(speed, motion.angle)
+    if isinstance(speed, SpeedFile) and speed.kind == "angle_table":
+        pieces = over_angle(speed.file, speed.interpolation)
+        return AngleLaw(*pieces, motion.angle, repeats=repeats(speed.file))
+    return _PolynomialLaw(speed_pieces(speed), motion.angle)
+
+
+def speed_pieces(speed: float | Ramp | SpeedFile) -> PPoly:
+    """The speed [rad/s] over time [s] as polynomials, the last of which may be endless.
+
+    >>> speed_pieces(3.0).x
+    array([ 0., inf])
+    """
     if isinstance(speed, Ramp):
         rate = (speed.to - speed.start) / speed.over
-        pieces = PPoly(
+        return PPoly(
             np.array([[rate, 0.0], [speed.start, speed.to]]),
             np.array([0.0, speed.over, math.inf]),
         )
-        return _PolynomialLaw(pieces, motion.angle)
     if isinstance(speed, SpeedFile):
-        return _tabled(speed, motion.angle)
-    return _PolynomialLaw(PPoly(np.array([[speed]]), np.array([0.0, math.inf])), motion.angle)
+        kind = CubicSpline if speed.interpolation == "cubic" else PchipInterpolator
+        return kind(speed.file.x, speed.file.y)
+    return PPoly(np.array([[speed]]), np.array([0.0, math.inf]))
 
 
 def speed_remarks(scene: Scene) -> tuple[str, ...]:
@@ -76,15 +88,6 @@ def speed_remarks(scene: Scene) -> tuple[str, ...]:
     if not isinstance(speed, SpeedFile) or speed.kind == "time_table":
         return ()
     return remarks_on(speed.file)
-
-
-def _tabled(speed: SpeedFile, start: float) -> SpeedLaw:
-    """The law of a table over time or over the crank angle."""
-    if speed.kind == "angle_table":
-        pieces = over_angle(speed.file, speed.interpolation)
-        return AngleLaw(*pieces, start, repeats=repeats(speed.file))
-    kind = CubicSpline if speed.interpolation == "cubic" else PchipInterpolator
-    return _PolynomialLaw(kind(speed.file.x, speed.file.y), start)
 
 
 class _PolynomialLaw:

@@ -42,10 +42,19 @@ class Misfire:
         >>> Misfire(cylinder=1, cycles="every 4").strikes(8)
         True
         """
+        first, last, every = self.bounds
+        return cycle % first == 0 if every else first <= cycle <= last
+
+    @property
+    def bounds(self) -> tuple[int, int, bool]:
+        """The first and the last of the cycles; or the number of which every multiple is one.
+
+        >>> Misfire(cylinder=1, cycles="5-8").bounds
+        (5, 8, False)
+        """
         match = _CYCLES.fullmatch(self.cycles)
         assert match is not None
-        first = int(match[2])
-        return cycle % first == 0 if match[1] else first <= cycle <= int(match[3] or first)
+        return int(match[2]), int(match[3] or match[2]), match[1] is not None
 
     @property
     def every(self) -> int | None:

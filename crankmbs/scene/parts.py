@@ -16,7 +16,12 @@ from pydantic import Discriminator, Strict, Tag
 from crankmbs.errors import InputError, shown
 from crankmbs.scene.schema import Float, part, si
 
-__all__ = ["Crank", "Cylinder", "Friction", "Gravity", "Layout", "Piston", "Rod"]
+__all__ = ["LIGHT_CRANK", "Crank", "Cylinder", "Friction", "Gravity", "Layout", "Piston", "Rod"]
+
+LIGHT_CRANK = (
+    "inertia about the crank axis must be at least mass * center_of_mass^2 = {least:.6g} kg m^2; "
+    "{came:.6g} came"
+)
 
 Length = Annotated[Float, Gt(0), si("length")]
 Distance = Annotated[Float, si("length")]
@@ -52,10 +57,7 @@ class Crank:
     def __post_init__(self) -> None:
         least = self.mass * self.center_of_mass**2
         if self.moment_of_inertia < least * (1.0 - 1e-12):
-            raise InputError(
-                f"inertia about the crank axis must be at least mass * center_of_mass^2 = "
-                f"{least:.6g} kg m^2; {self.inertia:.6g} came"
-            )
+            raise InputError(LIGHT_CRANK.format(least=least, came=self.inertia))
 
     @property
     def moment_of_inertia(self) -> float:

@@ -26,7 +26,12 @@ from crankmbs.scene.tables import CylinderTable
 from crankmbs.scene.torque import AnyTorque, Torque
 from crankmbs.scene.units import EXAMPLES
 
-__all__ = ["Scene"]
+__all__ = ["OPEN_LOOP", "Scene"]
+
+OPEN_LOOP = (
+    "rod.length must be at least crank.radius + |piston.offset| = {least:.12g} m, or the crank "
+    "cannot turn; {came:.12g} m came"
+)
 
 _FARTHEST = 1e9  # rad: its last digit is 1e-7
 _MOST_SAMPLES = 2e7  # the memory of a machine may hold less: `crankmbs.motion.memory`
@@ -137,10 +142,7 @@ class Scene:
     def _check_loop(self) -> None:
         least = self.crank.radius + abs(self.piston.offset)
         if self.rod.length < least * (1.0 - 1e-15):
-            raise InputError(
-                f"rod.length must be at least crank.radius + |piston.offset| = {least:.12g} m, or "
-                f"the crank cannot turn; {self.rod.length:.12g} m came"
-            )
+            raise InputError(OPEN_LOOP.format(least=least, came=self.rod.length))
         if self.rod.moment_of_inertia < 0.0:  # after its length, which may be what is wrong
             raise InputError(
                 'rod: the inertia "two-mass" needs a center_of_mass between the pins, 0 to '

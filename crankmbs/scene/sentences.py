@@ -16,13 +16,13 @@ from pydantic import ValidationError
 
 from crankmbs.errors import InputError, shown
 
-__all__ = ["PartError", "did_you_mean", "sentence"]
+__all__ = ["RULES", "PartError", "did_you_mean", "sentence"]
 
 _CLOSE = 0.7  # where the choices are listed anyway: "spline" is no misspelling of "linear", 0.67
 _BARE_KEY = re.compile(r"[\w-]{1,60}")
 _UNKNOWN = {"unexpected_keyword_argument", "extra_forbidden"}
 _MISSING = {"missing", "missing_keyword_only_argument", "missing_argument"}
-_RULES = {
+RULES = {
     "bool_type": "must be true or false",
     "finite_number": "must be finite",
     "float_type": "must be a number",
@@ -34,6 +34,7 @@ _RULES = {
     "too_short": "must have at least {min_length} entry",
     "tuple_type": "must be a list",
 }
+"""Rules by the kind of problem; the page has those of numbers in the same words."""
 _IN_PYTHON = {
     "bool_type": "must be True or False",
     "string_type": "must be a str",
@@ -142,8 +143,8 @@ def _rule(problem: Any, root: type[Any], loc: Sequence[int | str]) -> str:
         return f"must be a table with {', '.join(_names_at(root, loc))}"
     if kind == "tuple_type" and isinstance(problem["input"], dict):
         return f"must be a list; write [[{_dotted(loc)}]]"
-    if kind in _RULES:
-        return _RULES[kind].format(**context)
+    if kind in RULES:
+        return RULES[kind].format(**context)
     return str(problem["msg"]).replace("Input should", "must")
 
 

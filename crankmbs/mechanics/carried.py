@@ -1,0 +1,132 @@
+"""A pressure carried over to a machine of another geometry.
+
+The gas knows the volume, not the crank angle: within each stroke between the true dead centres the
+pressure stays a function of the swept fraction of the stroke, at the same compression ratio. So
+the rows of a table move, and are interpolated anew; a diagram of polytropes is a function of the
+volume already. Left where they are, rows would fire beside the dead centres that have moved.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from crankmbs.mechanics.cycle_rows import Tables, behind
+from crankmbs.mechanics.geometry import close_loop, dead_centres, top_position
+from crankmbs.numerics.arrays import Array
+from crankmbs.scene.gas import Gas, tables_of
+from crankmbs.scene.scene import Scene
+from crankmbs.scene.tables import CylinderTable, Table
+
+__all__ = ["Shape", "carried_angle", "carried_over"]
+
+_TURN = 2.0 * math.pi
+
+
+class Shape(NamedTuple):
+    """What the swept volume over the cycle angle depends on [m]."""
+
+    radius: float
+    rod_length: float
+    offset: float
+
+
+def carried_over(scene: Scene, before: Scene) -> Scene:
+    """A scene with other crank, rod or piston than before, the rows of its pressures moved to where
+    the same fraction of the same stroke is swept; each cylinder's then over its own cycle angle.
+
+    Parameters
+    ----------
+    scene : with the gas of the scene before
+
+    >>> carried_over(*2 * [load_scene("v_twin")]) == load_scene("v_twin")
+    True
+    """
+    gas, ways = scene.gas, (_shape(before), _shape(scene))
+    if gas is None or gas.indicator is not None or ways[0] == ways[1]:
+        return scene
+    moved: dict[str, Any] = {
+        name: _moved(before, gas, given, ways)
+        for name in ("pressure", "motored")
+        if isinstance(given := getattr(gas, name), Table | CylinderTable | tuple)
+    }
+    of_table = isinstance(moved.get("pressure"), tuple) and not isinstance(gas.pressure, tuple)
+    moved |= {"aligned": False} if of_table else {}
+    return dataclasses.replace(scene, gas=dataclasses.replace(gas, **moved))
+
+
+def carried_angle(cycle_angle: ArrayLike, before: Shape, after: Shape) -> Array:
+    """The cycle angles [rad] at which a machine has swept the same fraction of the same stroke as
+    another before at these, shape (...).
+
+    With the pin at x, d = hypot(x, e) from the crank axis, the throw leads the direction
+    atan2(e, x) of the pin by the angle opposite the rod,
+
+        tan^2(lead / 2) = (r + l - d)(l + d - r) / ((r + d - l)(r + d + l)),
+
+    on the way down, and lags it as much on the way up. Exact to rounding also at the dead centres,
+    where the distances from them are computed as such and not as differences.
+
+    >>> same = Shape(0.046, 0.153, 0.001)
+    >>> f"{carried_angle(1.0, same, same):.12f}"
+    '1.000000000000'
+    """
+    phi = np.asarray(cycle_angle, dtype=np.float64)
+    top, bottom = dead_centres(*before)
+    turns = np.floor((phi - top) / _TURN)
+    within = phi - turns * _TURN
+    swept, left = _swept(within, before)
+    r, l, e = after
+    stroke = top_position(*after) - _bottom_position(after)
+    above, below = swept * stroke, left * stroke
+    x = top_position(*after) - above
+    distance = np.hypot(x, e)
+    near_top = above * (top_position(*after) + x) / (r + l + distance)
+    near_bottom = below * (_bottom_position(after) + x) / (distance + l - r)
+    over, under = near_top * (l + distance - r), near_bottom * (r + distance + l)
+    lead = 2.0 * np.arctan2(np.sqrt(np.maximum(over, 0.0)), np.sqrt(np.maximum(under, 0.0)))
+    along = np.arctan2(e, x)
+    moved = np.where(within <= bottom, along + lead, along - lead + _TURN)
+    return np.asarray(moved + turns * _TURN)
+
+
+def _swept(phi: Array, shape: Shape) -> tuple[Array, Array]:
+    """The swept fraction of the stroke, and what is left of it; each exact where it is small.
+
+    x_top^2 - x^2 = 4 r l sin^2(psi / 2), x^2 - x_bottom^2 = 4 r l cos^2(psi / 2), psi = phi + beta.
+    """
+    r, l, _ = shape
+    loop = close_loop(phi, *shape)
+    half = 0.5 * (phi + loop.beta)
+    above = 4.0 * r * l * np.sin(half) ** 2 / (top_position(*shape) + loop.x)
+    below = 4.0 * r * l * np.cos(half) ** 2 / (loop.x + _bottom_position(shape))
+    return above / (above + below), below / (above + below)
+
+
+def _bottom_position(shape: Shape) -> float:
+    return float(close_loop(dead_centres(*shape)[1], *shape).x)
+
+
+def _shape(scene: Scene) -> Shape:
+    return Shape(scene.crank.radius, scene.rod.length, scene.piston.offset)
+
+
+def _moved(
+    before: Scene, gas: Gas, given: Tables, ways: tuple[Shape, Shape]
+) -> Table | tuple[Table, ...]:
+    """Every table with its rows moved, one for all cylinders or one for each."""
+    shifts = behind(before, gas, given)
+    if isinstance(given, Table):
+        return _table(given, shifts[0], shifts[0], ways)
+    aligned = behind(before, gas, tables_of(given))  # what a list of tables lags
+    every = zip(tables_of(given), shifts, aligned, strict=True)
+    return tuple(_table(table, shift, own, ways) for table, shift, own in every)
+
+
+def _table(table: Table, shift: float, back: float, ways: tuple[Shape, Shape]) -> Table:
+    angle = carried_angle(np.add(table.x, shift), *ways) - back
+    return Table(tuple(angle.tolist()), table.y, table.source)

@@ -1,0 +1,139 @@
+"""The page as one file: its modules, its style and its scene, and nothing from elsewhere."""
+
+from __future__ import annotations
+
+import base64
+import dataclasses
+import hashlib
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from markupsafe import Markup
+
+from crankmbs.errors import InputError
+from crankmbs.mechanics.variables import EVERY
+from crankmbs.motion.ending import Ending
+from crankmbs.page.export import encoded, exported, rules
+from crankmbs.page.knobs import FIRING_ORDERS, Choice, choices_of, knobs_of
+from crankmbs.page.refusals import refusals
+from crankmbs.page.script import joined
+from crankmbs.scene.parts import LIGHT_CRANK
+from crankmbs.scene.run import SETTLED
+from crankmbs.scene.scene import OPEN_LOOP, Scene
+from crankmbs.scene.sentences import RULES
+from crankmbs.scene.write import scene_files
+
+__all__ = ["page_of", "shown_scene"]
+
+_FOLDER = Path(__file__).parent
+_NUMBERS = ("finite_number", "float_type", "greater_than_equal", "less_than_equal")
+_ON = "run it with crankmbs run"
+_ENDINGS = {
+    "runs_away": Ending.RUNS_AWAY.value[1].removeprefix("does not settle: "),
+    "decays": Ending.STALLS.value[1].removeprefix("does not settle: "),
+    "unbalanced": "no share of the loads makes the crank settle to this mean speed",
+    "wanders": "the search for the motion that repeats itself finds none",
+    "slow": f"the crank comes near rest, where time must be the variable; {_ON}",
+    "held": f"a jump of the loads holds the speed from both sides; {_ON}",
+}
+_FOLD = f"fold: the rod folds onto the crank, where the motion is not determined; {_ON}"
+
+_FLUCTUATION = (
+    "fluctuation: the {what} is {percent:.4g} %, with the flywheel of {end:g} kg m^2 at the end of "
+    "its knob; {came:g} came"
+)
+
+
+def page_of(scene: Scene, stem: str) -> str:
+    """A scene's page as HTML that needs no network; everything on it is computed in the browser.
+
+    Parameters
+    ----------
+    stem : name of the files that it hands out
+
+    Raises
+    ------
+    InputError : a scene that the browser cannot run, with the reasons
+
+    >>> page_of(load_scene("propeller"), "mine").startswith("<!DOCTYPE html>")
+    True
+    """
+    reasons = refusals(scene)
+    if reasons:
+        raise InputError(f"the page cannot show this scene. {'. '.join(reasons)}")
+    shown = shown_scene(scene)
+    script = f"{joined('page')}.start();"
+    style = (_FOLDER / "page.css").read_text(encoding="utf-8")
+    environment = Environment(
+        loader=FileSystemLoader(_FOLDER),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    choices = choices_of(shown)
+    return environment.get_template("page.html").render(
+        scene=scene,
+        stem=stem,
+        heavy=scene.start is not None,
+        choices={choice.name: choice for choice in choices},
+        policy=_policy(script, style),
+        script=Markup(script),
+        style=Markup(style),
+        given=Markup(encoded(_given(shown, stem, choices))),
+    )
+
+
+def shown_scene(scene: Scene) -> Scene:
+    """The scene as the page runs it: settled, where it is free and can settle.
+
+    >>> shown_scene(load_scene("propeller")).settles
+    True
+    """
+    if scene.motion is not None:
+        return scene
+    try:
+        settled = dataclasses.replace(scene, run=dataclasses.replace(scene.run, until=SETTLED))
+    except InputError:
+        return scene
+    return scene if refusals(settled) else settled
+
+
+def _given(scene: Scene, stem: str, choices: tuple[Choice, ...]) -> dict[str, Any]:
+    """What the scripts take of a scene."""
+    indicator = None if scene.gas is None else scene.gas.indicator
+    return {
+        "scene": exported(scene),
+        "rules": rules(),
+        "stem": stem,
+        "files": scene_files(scene, stem),
+        "knobs": [dataclasses.asdict(knob) for knob in knobs_of(scene)],
+        "words": [{"name": choice.name, "words": choice.words} for choice in choices],
+        "own": {choice.name: choice.own for choice in choices},
+        "two_mass": scene.rod.inertia == "two-mass",
+        "compression": None if indicator is None else indicator.compression_ratio,
+        "orders": {name: list(order) for name, order in FIRING_ORDERS.items()},
+        "units": {name: variable.units for name, variable in EVERY.items()},
+        "endings": _ENDINGS,
+        "sentences": {
+            "open_loop": OPEN_LOOP,
+            "light_crank": LIGHT_CRANK,
+            "fold": _FOLD,
+            "fluctuation": _FLUCTUATION,
+            **{kind: RULES[kind] for kind in _NUMBERS},
+        },
+    }
+
+
+def _policy(script: str, style: str) -> str:
+    """A content-security policy under which nothing else runs, and nothing is fetched."""
+    return (
+        f"default-src 'none'; script-src {_hash(script)}; style-src {_hash(style)}; "
+        "base-uri 'none'; form-action 'none'"
+    )
+
+
+def _hash(text: str) -> str:
+    digest = hashlib.sha256(text.encode()).digest()
+    return f"'sha256-{base64.b64encode(digest).decode()}'"

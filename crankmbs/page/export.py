@@ -1,0 +1,193 @@
+"""A scene as the modules in JavaScript take it: numbers in SI units, arrays as base64 doubles.
+
+Loads go as their parts, so that a new one needs no new JavaScript; pressures as their polynomials,
+and besides as what these were made of, for when a knob changes the geometry.
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+import math
+from typing import Any
+
+import numpy as np
+
+from crankmbs.mechanics.speed import speed_pieces
+from crankmbs.mechanics.speed_over_angle import AngleLaw
+from crankmbs.mechanics.train import CrankTrain, crank_train
+from crankmbs.numerics.arrays import Array
+from crankmbs.numerics.collocation import gauss
+from crankmbs.numerics.cycle import Cycle
+from crankmbs.numerics.piecewise import Piecewise
+from crankmbs.page.gas import exported_gas
+from crankmbs.scene.drives import Motion, Oscillation, SpeedFile
+from crankmbs.scene.fuel import Fuel, Misfire
+from crankmbs.scene.scene import Scene
+from crankmbs.scene.speed_rows import over_angle, repeats
+from crankmbs.scene.torque import Torque
+
+__all__ = ["encoded", "exported", "rules"]
+
+_STAGES = range(3, 10)  # of the Gauss rules that the passes take, and those that check them
+_FRICTION = ("ring_force", "ring_pressure", "viscous")
+_WINDOW = ("after", "until", "from_speed", "until_speed")
+
+
+def exported(scene: Scene) -> dict[str, Any]:
+    """What the engine of the page needs of a scene; arrays are still NumPy's (`encoded`).
+
+    >>> exported(load_scene("propeller"))["crank"]["radius"]
+    0.046
+    """
+    train = crank_train(scene)
+    return {
+        **_machine(scene),
+        "gas": exported_gas(scene, train),
+        "loads": [_load(load) for load in scene.torque],
+        "fuel": None if scene.fuel is None else _fuel(scene.fuel),
+        "period": scene.period,
+        "grid_period": _grid_period(scene, train),
+        "start": None if scene.start is None else _fields(scene.start, "angle", "speed"),
+        "motion": None if scene.motion is None else _motion(scene.motion),
+        "run": _run(scene),
+    }
+
+
+def rules() -> dict[int, dict[str, Array]]:
+    """The Gauss rules by their number of stages.
+
+    >>> sorted(rules()[3])
+    ['matrix', 'nodes', 'to_legendre', 'weights']
+    """
+    return {
+        s: {
+            "nodes": rule.nodes,
+            "weights": rule.weights,
+            "matrix": rule.matrix.ravel(),
+            "to_legendre": rule.to_legendre.ravel(),
+        }
+        for s in _STAGES
+        for rule in [gauss(s)]
+    }
+
+
+def encoded(value: object) -> str:
+    """JSON that may stand inside a script: arrays as base64 doubles, no ``<``, no NaN.
+
+    >>> encoded({"x": np.array([1.0])})
+    '{"x":{"f64":"AAAAAAAA8D8="}}'
+    """
+    text = json.dumps(value, default=_array, allow_nan=False, separators=(",", ":"))
+    return text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
+
+
+def _array(value: object) -> dict[str, str]:
+    assert isinstance(value, np.ndarray)
+    return {"f64": base64.b64encode(value.astype("<f8").tobytes()).decode("ascii")}
+
+
+def _machine(scene: Scene) -> dict[str, Any]:
+    crank, rod, piston, gravity = scene.crank, scene.rod, scene.piston, scene.gravity
+    friction = scene.friction
+    return {
+        "crank": {
+            "inertia": crank.moment_of_inertia,
+            **_fields(crank, "radius", "mass", "center_of_mass"),
+        },
+        "rod": {
+            "inertia": rod.moment_of_inertia,
+            **_fields(rod, "length", "mass", "center_of_mass"),
+        },
+        "piston": {"area": piston.gas_area, **_fields(piston, "mass", "offset")},
+        "gravity": None if gravity is None else _fields(gravity, "acceleration", "angle"),
+        "friction": None if friction is None else _fields(friction, *_FRICTION),
+        "cylinders": [_fields(cylinder, "phase", "bank") for cylinder in scene.cylinders],
+        "levers": None if scene.levers is None else list(scene.levers),
+    }
+
+
+def _fields(part: object, *names: str) -> dict[str, Any]:
+    return {name: getattr(part, name) for name in names}
+
+
+def _load(load: Torque) -> dict[str, Any]:
+    over_time, over_speed, over_angle, _ = load.parts
+    return {
+        "over_time": None if over_time is None else _pieces(over_time),
+        "over_speed": None if over_speed is None else _pieces(over_speed),
+        "over_angle": None if over_angle is None else _cycle(over_angle),
+        **_fields(load, *_WINDOW),
+    }
+
+
+def _pieces(function: Piecewise) -> dict[str, Array]:
+    knots, pieces = function.arrays
+    return {"knots": knots, "pieces": pieces.ravel()}
+
+
+def _cycle(cycle: Cycle) -> dict[str, Array]:
+    return {"knots": cycle.knots, "coefficients": cycle.coefficients.ravel()}
+
+
+def _fuel(fuel: Fuel) -> dict[str, Any]:
+    misfires = [_misfire(each) for each in fuel.misfire or ()]
+    return {"misfire": misfires, **_fields(fuel, *_WINDOW)}
+
+
+def _misfire(misfire: Misfire) -> dict[str, Any]:
+    first, last, every = misfire.bounds
+    return {"cylinder": misfire.cylinder, "first": first, "last": last, "every": every}
+
+
+def _grid_period(scene: Scene, train: CrankTrain) -> float:
+    """Over which the cells repeat [rad]: what settles does so over a multiple of all periods."""
+    return scene.settled_period if scene.settles else train.period
+
+
+def _motion(motion: Motion) -> dict[str, Any]:
+    speed = motion.speed
+    if isinstance(speed, Oscillation):
+        swing = _fields(speed, "mean", "amplitude", "order", "phase")
+        return {"kind": "oscillation", "angle": motion.angle, **swing}
+    if isinstance(speed, SpeedFile) and speed.kind == "angle_table":
+        return _over_angle(motion.angle, speed)
+    pieces = speed_pieces(speed)
+    cubics = np.zeros((4, pieces.c.shape[1]))
+    cubics[4 - len(pieces.c) :] = pieces.c
+    return {
+        "kind": "polynomial",
+        "angle": motion.angle,
+        "knots": pieces.x,
+        "coefficients": cubics.ravel(),
+    }
+
+
+def _over_angle(start: float, speed: SpeedFile) -> dict[str, Any]:
+    knots, coefficients = over_angle(speed.file, speed.interpolation)
+    law = AngleLaw(knots, coefficients, start, repeats=repeats(speed.file))
+    nodes, weights = law.rule
+    return {
+        "kind": "over_angle",
+        "angle": start,
+        "repeats": repeats(speed.file),
+        "knots": knots,
+        "coefficients": coefficients.ravel(),
+        "nodes": nodes,
+        "weights": weights,
+        **law.panels._asdict(),
+    }
+
+
+def _run(scene: Scene) -> dict[str, Any]:
+    until, in_time = scene.end
+    every, over_time = math.radians(1.0), False
+    if scene.run.every is not None:
+        every, over_time = scene.run.every.resolve(scene.period)
+    return {
+        "until": until,
+        "in_time": in_time,
+        "settled": scene.settles,
+        "every": every,
+        "every_in_time": over_time,
+    }

@@ -1,0 +1,104 @@
+"""The gas of a scene for the browser: pressures, and what they were made of."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from crankmbs.mechanics.cycle_rows import rows_of
+from crankmbs.mechanics.pressure import PeriodicPressure
+from crankmbs.mechanics.train import CrankTrain
+from crankmbs.numerics.arrays import Array
+from crankmbs.scene.gas import Gas, Indicator, Polytrope, PressureGiven
+from crankmbs.scene.scene import Scene
+
+__all__ = ["exported_gas"]
+
+_DIAGRAM = (
+    "compression_ratio",
+    "n_compression",
+    "n_expansion",
+    "intake_pressure",
+    "exhaust_pressure",
+    "peak_pressure",
+    "pre_expansion",
+)
+
+
+def exported_gas(scene: Scene, train: CrankTrain) -> dict[str, Any] | None:
+    """Pressures and combustion of every cylinder, as cycles; their sources, and by number which is
+    that of which cylinder; the shape that the pressures belong to. None without gas.
+
+    >>> scene = load_scene("v_twin")
+    >>> exported_gas(scene, crank_train(scene))["fired"]
+    [0, 0]
+    """
+    gas = scene.gas
+    if gas is None or train.pressure is None:
+        return None
+    sources = _Sources(scene, gas)
+    fired = sources.numbers(gas.pressure if gas.indicator is None else gas.indicator, fires=True)
+    motored = None
+    if scene.fuel is not None:
+        given = gas.motored if gas.indicator is None else gas.indicator
+        motored = sources.numbers(given, fires=False)
+    return {
+        "shape": {
+            "radius": scene.crank.radius,
+            "length": scene.rod.length,
+            "offset": scene.piston.offset,
+        },
+        "pressure": [_cycle(each) for each in train.pressure],
+        "combustion": [_cycle(each) for each in train.combustion or ()],
+        "sources": sources.found,
+        "fired": fired,
+        "motored": motored,
+        "period": gas.period,
+        "ambient": gas.ambient or 0.0,
+    }
+
+
+def _cycle(pressure: PeriodicPressure) -> dict[str, Array]:
+    return {"knots": pressure.knots, "coefficients": pressure.coefficients.ravel()}
+
+
+class _Sources:
+    """The different sources that have come, numbered."""
+
+    def __init__(self, scene: Scene, gas: Gas) -> None:
+        self._scene, self._gas = scene, gas
+        self.found: list[dict[str, Any]] = []
+
+    def numbers(
+        self, given: PressureGiven | Indicator | Polytrope | None, *, fires: bool
+    ) -> list[int]:
+        """The numbers of the sources of the cylinders."""
+        count, gas = len(self._scene.cylinders), self._gas
+        if isinstance(given, float):
+            value = given - (gas.ambient or 0.0)
+            return [self._number({"kind": "constant", "value": value})] * count
+        if isinstance(given, Indicator):
+            numbers = {name: getattr(given, name) for name in _DIAGRAM}
+            return [self._number({"kind": "indicator", "fires": fires, **numbers})] * count
+        if isinstance(given, Polytrope):
+            names = ("polytrope", "closes", "compression_ratio")
+            numbers = {name: getattr(given, name) for name in names}
+            return [self._number({"kind": "polytrope", **numbers})] * count
+        assert given is not None
+        rows = rows_of(self._scene, gas, given)
+        once = {
+            id(one): self._number(
+                {
+                    "kind": "rows",
+                    "angle": one.angle,
+                    "value": one.value,
+                    "jumps": bool(one.jumps),
+                    "interpolation": gas.interpolation,
+                }
+            )
+            for one in rows
+        }
+        return [once[id(one)] for one in rows]
+
+    def _number(self, source: dict[str, Any]) -> int:
+        self.found.append(source)
+        return len(self.found) - 1

@@ -1,0 +1,93 @@
+/** What Python asks of the engine: a scene in, all numbers of its motion out. */
+import { pressuresOf } from "./gas.js";
+import { Engine } from "./engine.js";
+import { LECTURES, lecturedAt } from "./lecture.js";
+import { lastSpan, measuresOf } from "./measures.js";
+import { reactionsAt } from "./reactions.js";
+
+const FINE = { stages: 7, tolerance: 1e-12 };
+
+/** Values as Python wrote them, arrays from base64 doubles. */
+export function decoded(value) {
+  if (Array.isArray(value)) return value.map(decoded);
+  if (value === null || typeof value !== "object") return value;
+  if ("f64" in value) return doubles(value.f64);
+  return Object.fromEntries(Object.entries(value).map(([key, each]) => [key, decoded(each)]));
+}
+
+function doubles(text) {
+  const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+  return new Float64Array(bytes.buffer);
+}
+
+/** One engine for many scenes. */
+export function engineOf(rules) {
+  return new Engine(decoded(rules));
+}
+
+/** How the motion of a scene ends, and if well its variables at crank angles, each a list, those of
+ * the cylinders a list of lists, and its measures over the last cycle. */
+export function answer(engine, { scene, angles }) {
+  const motion = engine.run(scene, FINE);
+  const { ending, factor = null, balanced = false } = motion;
+  if (ending !== "complete") return { ending };
+  const samples = Array.from(angles, (theta) => reactionsAt(motion.train, motion.at(theta)));
+  const span = lastSpan(angles[0], angles[angles.length - 1], scene.period);
+  const measures = measuresOf(motion, engine.rules[9], span);
+  return { ending, factor, balanced, variables: columns(samples), measures };
+}
+
+/** The variables of a scene at crank angles as they are shown while a knob moves. */
+export function dragged(engine, { scene, angles }) {
+  const motion = engine.run(scene);
+  if (motion.ending !== "complete") return { ending: motion.ending };
+  return columns(Array.from(angles, (theta) => reactionsAt(motion.train, motion.at(theta))));
+}
+
+/** Milliseconds that a scene takes as a knob moves: pressures and cells, tables and motion, samples
+ * with every reaction. */
+export function timed(engine, scene) {
+  const marks = [performance.now()];
+  const train = engine.train(scene, true);
+  engine.edgesFor(train, scene.grid_period, true);
+  marks.push(performance.now());
+  const motion = engine.run(scene);
+  marks.push(performance.now());
+  const { from, to } = motion;
+  for (let k = 0; k <= 360; k++) {
+    reactionsAt(motion.train, motion.at(from + ((to - from) * k) / 360));
+  }
+  marks.push(performance.now());
+  return marks.slice(1).map((mark, k) => mark - marks[k]);
+}
+
+/** By what share the loads of a scene are scaled to settle to a mean speed: at once, and finely. */
+export function balancing(engine, { scene, speed }) {
+  return [{}, FINE].map((settings) => {
+    const { ending, share } = engine.rebalanced(scene, speed, settings);
+    return { ending, share };
+  });
+}
+
+/** The quantities of a lecture, by its name, at samples of a scene's motion. */
+export function lectured(engine, { scene, lecture, samples }) {
+  const train = engine.train(scene);
+  return columns(samples.map((each) => lecturedAt(train, LECTURES[lecture], each)));
+}
+
+function columns(samples) {
+  const { cylinders, ...crank } = samples[0];
+  const found = {};
+  for (const name of Object.keys(crank)) found[name] = samples.map((each) => each[name]);
+  for (const name of Object.keys(cylinders[0])) {
+    found[name] = samples.map((each) => each.cylinders.map((one) => one[name]));
+  }
+  return found;
+}
+
+/** The pressures of a scene in a machine of another shape, and what combustion adds, as lists. */
+export function carried(_, { scene, shape }) {
+  const { pressure, combustion } = pressuresOf(scene.gas, shape);
+  const plain = ({ knots, coefficients }) => [Array.from(knots), Array.from(coefficients)];
+  return { pressure: pressure.map(plain), combustion: combustion.map(plain) };
+}

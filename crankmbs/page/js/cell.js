@@ -1,0 +1,172 @@
+/** Gauss collocation in one cell of the crank angle: Newton's method on energies at its nodes. */
+import { eliminate } from "./arrays.js";
+import { torqueOf, torqueOverAngle } from "./loads.js";
+import { integralTo } from "./rule.js";
+import { ringTorqueIn } from "./friction.js";
+import { givenAt, reduceAt } from "./tables.js";
+
+const SLOW = Math.PI / 360; // rad: where the energy would be gone within this angle, it is refused
+const SETTLED = 1e-15; // relative change of the energy in Newton's last step
+const GOOD = 1e-11;
+const NEWTON = 30;
+
+/** The cell that is being solved: what is at its nodes, and what comes of it. */
+export class Stepper {
+  constructor(rule) {
+    const s = rule.nodes.length;
+    this.rule = rule;
+    this.places = [0, ...rule.nodes, 1];
+    for (const name of ["inertia", "given", "energy", "torque", "slowness", "rate", "drag"]) {
+      this[name] = new Float64Array(s);
+    }
+    this.right = new Float64Array(s);
+    this.system = new Float64Array(s * s);
+    this.work = this.spent = 0;
+  }
+
+  /** Inertia and torque over the angle at the nodes of a whole cell, from the tables. */
+  load({ train, phases, firing }, { tables }, number, sense) {
+    const s = this.given.length;
+    const { shares } = firing;
+    const { friction } = train;
+    for (let j = 0; j < s; j++) {
+      const i = number * s + (sense > 0 ? j : s - 1 - j);
+      this.inertia[j] = train.crank.inertia + tables.inertia[i];
+      let given = tables.torque[i] + torqueOverAngle(train.loads, phases, tables.angles[i]);
+      for (let c = 0; c < shares.length; c++) given += shares[c] * tables.combustion[c][i];
+      if (friction !== null) {
+        given -= sense * ringTorqueIn(friction, tables, i, shares);
+        this.drag[j] = friction.viscous * tables.square[i];
+      }
+      this.given[j] = given;
+    }
+  }
+
+  /** The same from where a motion is to an angle. */
+  tabulate({ train, phases, firing, theta, sense }, target) {
+    this.rule.nodes.forEach((node, j) => {
+      const angle = theta + (target - theta) * node;
+      const of = reduceAt(train, angle);
+      this.inertia[j] = of.inertia;
+      this.given[j] = givenAt(train, of, firing.shares, sense, 0);
+      this.drag[j] = (train.friction?.viscous ?? 0) * of.square;
+      this.given[j] += torqueOverAngle(train.loads, phases, angle);
+    });
+  }
+
+  /** Solve the cell of a signed width from a motion's state on; whether that converges. */
+  solve({ energy: begin, time, sense, branch }, width) {
+    const { rule, given, inertia, energy, slowness, torque } = this;
+    const s = given.length;
+    const first = sense * Math.sqrt((2 * begin) / inertia[0]);
+    const load = torqueOf(branch, time, first);
+    for (let j = 0; j < s; j++) {
+      energy[j] = begin;
+      for (let i = 0; i < s; i++) energy[j] += width * rule.matrix[j * s + i] * (given[i] + load);
+    }
+    let change = Infinity;
+    for (let n = 0; n < NEWTON; n++) {
+      const before = change;
+      this.evaluate(branch, time, sense, width);
+      change = this.correct(begin, width);
+      if (!(change < Infinity)) return false;
+      if (change <= SETTLED || (change < GOOD && change > 0.5 * before)) break;
+    }
+    if (!(change < GOOD)) return false;
+    this.evaluate(branch, time, sense, width);
+    this.work = this.spent = 0;
+    for (let j = 0; j < s; j++) {
+      this.work += rule.weights[j] * torque[j];
+      this.spent += rule.weights[j] * slowness[j];
+    }
+    return begin + width * this.work > 0;
+  }
+
+  /** Slowness, torque and its rate of change with the energy, at the energies of the nodes. */
+  evaluate(branch, time, sense, width) {
+    const { rule, given, inertia, energy, slowness, torque, rate, drag } = this;
+    const s = given.length;
+    for (let j = 0; j < s; j++) {
+      slowness[j] = energy[j] > 0 ? Math.sqrt((0.5 * inertia[j]) / energy[j]) : NaN;
+    }
+    for (let j = 0; j < s; j++) {
+      const omega = sense / slowness[j];
+      let t = time;
+      if (branch.ct !== 0) {
+        for (let i = 0; i < s; i++) t += Math.abs(width) * rule.matrix[j * s + i] * slowness[i];
+      }
+      torque[j] = given[j] + torqueOf(branch, t, omega) - drag[j] * omega;
+      rate[j] = (branch.c1 + 2 * branch.c2 * omega - drag[j]) / (inertia[j] * omega);
+    }
+  }
+
+  /** One step of Newton's method; the relative change of the energies. */
+  correct(begin, width) {
+    const { rule, energy, torque, rate, right, system } = this;
+    const s = energy.length;
+    for (let j = 0; j < s; j++) {
+      right[j] = begin;
+      for (let i = 0; i < s; i++) {
+        const step = width * rule.matrix[j * s + i];
+        right[j] += step * (torque[i] - rate[i] * energy[i]);
+        system[j * s + i] = (i === j ? 1 : 0) - step * rate[i];
+      }
+    }
+    eliminate(system, right, s, 1);
+    let change = 0;
+    for (let j = 0; j < s; j++) {
+      change += Math.abs(right[j] / energy[j] - 1);
+      energy[j] = right[j];
+    }
+    return change;
+  }
+
+  /** By what part a small difference of the energy grows in the solved cell. */
+  growth(width) {
+    const { rule, rate, right, system } = this;
+    const s = rate.length;
+    for (let j = 0; j < s; j++) {
+      right[j] = 1;
+      for (let i = 0; i < s; i++) {
+        system[j * s + i] = (i === j ? 1 : 0) - width * rule.matrix[j * s + i] * rate[i];
+      }
+    }
+    eliminate(system, right, s, 1);
+    let grown = 0;
+    for (let j = 0; j < s; j++) grown += width * rule.weights[j] * rate[j] * right[j];
+    return grown;
+  }
+
+  /** Whether the energy would be gone within half a degree. */
+  isSlow() {
+    return this.energy.some((each, j) => {
+      const load = Math.abs(this.torque[j] - this.given[j]);
+      return each <= SLOW * (Math.abs(this.given[j]) + load);
+    });
+  }
+
+  /** Whether the speed may reach a limit in the cell, as its spread at the nodes tells. */
+  mayLeave(limit, sense) {
+    let low = Infinity;
+    let high = -Infinity;
+    for (const slowness of this.slowness) {
+      low = Math.min(low, sense / slowness);
+      high = Math.max(high, sense / slowness);
+    }
+    const spread = 2 * (high - low);
+    return limit >= low - spread && limit <= high + spread;
+  }
+
+  workTo(x) {
+    return integralTo(this.rule, this.torque, 0, x);
+  }
+
+  spentTo(x) {
+    return integralTo(this.rule, this.slowness, 0, x);
+  }
+
+  nodes() {
+    return { torque: this.torque.slice(), slowness: this.slowness.slice() };
+  }
+}
+

@@ -1,0 +1,92 @@
+/** The page's choices and words: selects, slow motion, measures, badge. */
+import { Player } from "./player.js";
+import { choices } from "./quantities.js";
+import { spanOf } from "./view.js";
+import { badgeOf, numbersOf } from "./words.js";
+
+let shownAs = ""; // the choices that stand there, as text
+
+export function find(id) {
+  return document.getElementById(id);
+}
+
+/** What a plot can show of a scene, as options. */
+export function fillChoices(select, scene) {
+  for (const [label, names] of Object.entries(choices(scene))) {
+    const group = select.appendChild(document.createElement("optgroup"));
+    Object.assign(group, { label }).append(...names.map((each) => new Option(each, each)));
+  }
+}
+
+/** Listen to the choices; chosen(name, value), undefined for what the scene has itself. */
+export function listenToChoices(chosen) {
+  for (const select of document.querySelectorAll("select[data-state]")) {
+    select.addEventListener("change", () => {
+      const { state, own } = select.dataset;
+      chosen(state, select.value === own ? undefined : select.value);
+    });
+  }
+}
+
+/** Show the choices of a state, { name: word }, and the ends of a cycle. */
+export function showChoices(given, cycle, state) {
+  const { low, high } = spanOf(cycle);
+  const words = Object.values(state).filter((value) => typeof value === "string");
+  const as = JSON.stringify([words, low, high, cycle.train.cylinders.length]);
+  if (as === shownAs) return;
+  shownAs = as;
+  options(find("cylinder"), cycle.train.cylinders.length);
+  for (const select of document.querySelectorAll("select[data-state]")) {
+    select.value = state[select.dataset.state];
+  }
+  find("cylinder").hidden = cycle.train.cylinders.length < 2;
+  Object.assign(find("angle"), { min: low, max: high });
+}
+
+/** The factor of slow motion; the first time that which fits a cycle. */
+export function showSlower(cycle, changed) {
+  const slower = find("slower");
+  if (!slower.options.length) {
+    for (const each of Player.choices) {
+      slower.append(new Option(each > 1 ? `${each}× slower` : "real time", String(each)));
+    }
+    slower.value = String(Player.fitting(cycle.duration));
+    slower.addEventListener("change", () => changed(Number(slower.value)));
+  }
+  return Number(slower.value);
+}
+
+/** Measures, badge, and whether the pressure was carried over. error : of the quick pass */
+export function showWords(given, cycle, error) {
+  const items = numbersOf(cycle, error).map(([name, value]) => {
+    const item = document.createElement("div");
+    item.appendChild(document.createElement("dt")).textContent = name;
+    item.appendChild(document.createElement("dd")).textContent = value;
+    return item;
+  });
+  find("numbers").replaceChildren(...items);
+  const { text, good } = badgeOf(cycle, given.endings);
+  find("badge").textContent = text;
+  find("badge").className = good ? "good" : "drifts";
+  const [shape, own] = [cycle.train.shape, given.scene.gas?.shape];
+  const moved = own && ["radius", "length", "offset"].some((key) => shape[key] !== own[key]);
+  find("carried").hidden = !moved;
+}
+
+function options(select, count) {
+  if (select.options.length === count) return;
+  const names = Array.from({ length: count }, (_, n) => String(n + 1));
+  select.replaceChildren(...names.map((name) => new Option(`cylinder ${name}`, name)));
+}
+
+/** The knobs that change nothing at present. */
+export function unused(cycle, given, values) {
+  if (cycle.prescribed && given.scene.motion === null) return ["flywheel", "load"];
+  return values.load_is === "rebalanced" ? ["load"] : [];
+}
+
+/** Large type for a projector, or no longer. */
+export function enlarge({ target }) {
+  const on = document.documentElement.classList.toggle("projector");
+  target.setAttribute("aria-pressed", String(on));
+}

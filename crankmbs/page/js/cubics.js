@@ -1,0 +1,279 @@
+/** Functions that are a cubic between every two of their knots: periodic ones of an angle, and the
+ * rows of a table joined to such a one.
+ *
+ * A cycle is { knots, coefficients }: knots (n + 1) [rad], the last one period above the first;
+ * coefficients (4 x n), by descending power of the angle behind the knot.
+ */
+import { countUpTo, eliminate, wrapped } from "./arrays.js";
+
+const NEAR = 1e-9; // rad: an angle this close below a knot counts as on it
+
+/** Value of a cycle at an angle [rad]; on a jump that after it. */
+export function valueAt(cycle, angle) {
+  const { knots, coefficients } = cycle;
+  const n = knots.length - 1;
+  const first = knots[0];
+  const ahead = wrapped(angle - first + NEAR, knots[n] - first);
+  const k = countUpTo(knots, ahead + first, 1, n) - 1;
+  return piece(coefficients, n, k, ahead - NEAR - (knots[k] - first));
+}
+
+/** Value of cubic k of n behind its knot [rad]. */
+function piece(coefficients, n, k, x) {
+  const cubic = (coefficients[k] * x + coefficients[n + k]) * x + coefficients[2 * n + k];
+  return cubic * x + coefficients[3 * n + k];
+}
+
+/** Values of a cycle at increasing angles [rad], all shifted by another: from knot to knot, without
+ * looking for each. */
+export function valuesAlong(cycle, angles, shift) {
+  const { knots, coefficients } = cycle;
+  const n = knots.length - 1;
+  const first = knots[0];
+  const period = knots[n] - first;
+  const found = new Float64Array(angles.length);
+  let k = 0;
+  for (let i = 0; i < angles.length; i++) {
+    const ahead = wrapped(angles[i] + shift - first + NEAR, period);
+    if (ahead + first < knots[k]) k = 0;
+    while (k + 1 < n && knots[k + 1] <= ahead + first) k++;
+    found[i] = piece(coefficients, n, k, ahead - NEAR - (knots[k] - first));
+  }
+  return found;
+}
+
+/** The knots of a cycle, shifted by an angle and repeated over a period, from 0 to it [rad]. */
+export function knotsOver(cycle, shift, period) {
+  const own = cycle.knots[cycle.knots.length - 1] - cycle.knots[0];
+  const turns = Math.round(period / own);
+  const found = [];
+  for (let turn = 0; turn < turns; turn++) {
+    for (let k = 0; k + 1 < cycle.knots.length; k++) {
+      found.push(wrapped(cycle.knots[k] + turn * own - shift, period));
+    }
+  }
+  return found;
+}
+
+/** Rows over exactly one period joined to a cycle.
+ *
+ * angle [rad], value : the first value is that after the ends of the period, the last that before
+ * them; a repeated angle inside is a jump. jumps : whether it jumps where the period ends.
+ * interpolation : "step", "linear", "pchip" or "cubic", from jump to jump, without any periodic
+ */
+export function joined(rows, interpolation) {
+  const { angle, value } = rows.jumps ? rows : beginningAtJump(rows);
+  const cuts = [];
+  for (let k = 1; k < angle.length; k++) if (angle[k] === angle[k - 1]) cuts.push(k);
+  if (!rows.jumps && angle === rows.angle && cuts.length === 0) {
+    return cycleOf(angle, [periodicCubics(angle, value, interpolation)]);
+  }
+  const ends = [0, ...cuts, angle.length];
+  const knots = [];
+  const pieces = [];
+  for (let k = 0; k + 1 < ends.length; k++) {
+    const x = angle.slice(ends[k], ends[k + 1]);
+    pieces.push(openCubics(x, value.slice(ends[k], ends[k + 1]), interpolation));
+    knots.push(...x.slice(0, -1));
+  }
+  return cycleOf([...knots, angle[angle.length - 1]], pieces);
+}
+
+/** The rows from a jump on, if there is one inside: no stretch then runs across the ends. */
+function beginningAtJump(rows) {
+  const { angle, value } = rows;
+  const last = angle.length - 1;
+  const cut = angle.findIndex((each, k) => k > 0 && each === angle[k - 1]);
+  if (cut < 0) return rows;
+  const period = angle[last] - angle[0];
+  const turned = Array.from(angle.slice(0, cut), (each) => each + period);
+  return {
+    angle: Float64Array.from([...angle.slice(cut, last), ...turned]),
+    value: Float64Array.from([...value.slice(cut, last), ...value.slice(0, cut)]),
+  };
+}
+
+function cycleOf(knots, pieces) {
+  const coefficients = [];
+  for (let power = 0; power < 4; power++) {
+    for (const cubics of pieces) coefficients.push(...cubics[power]);
+  }
+  return { knots: Float64Array.from(knots), coefficients: Float64Array.from(coefficients) };
+}
+
+/** Cubics by descending power from values and slopes at both ends of every piece (Hermite). */
+function hermite(x, y, slope) {
+  const cubics = [[], [], [], []];
+  for (let k = 0; k + 1 < x.length; k++) {
+    const width = x[k + 1] - x[k];
+    const rise = (y[k + 1] - y[k]) / width;
+    const bend = (slope[k] + slope[k + 1] - 2 * rise) / width;
+    cubics[0].push(bend / width);
+    cubics[1].push((rise - slope[k]) / width - bend);
+    cubics[2].push(slope[k]);
+    cubics[3].push(y[k]);
+  }
+  return cubics;
+}
+
+function openCubics(x, y, interpolation) {
+  if (interpolation === "cubic") return hermite(x, y, splineSlopes(x, y));
+  if (interpolation === "pchip") return hermite(x, y, pchipSlopes(x, y));
+  return straight(x, y, interpolation);
+}
+
+function periodicCubics(x, y, interpolation) {
+  if (interpolation === "cubic") return hermite(x, y, periodicSplineSlopes(x, y));
+  if (interpolation === "pchip") return hermite(x, y, periodicPchipSlopes(x, y));
+  return straight(x, y, interpolation);
+}
+
+function straight(x, y, interpolation) {
+  const cubics = [[], [], [], []];
+  for (let k = 0; k + 1 < x.length; k++) {
+    cubics[0].push(0);
+    cubics[1].push(0);
+    cubics[2].push(interpolation === "step" ? 0 : (y[k + 1] - y[k]) / (x[k + 1] - x[k]));
+    cubics[3].push(y[k]);
+  }
+  return cubics;
+}
+
+/** Slopes that keep monotone stretches monotone (Fritsch and Butland's harmonic mean). */
+function pchipSlopes(x, y) {
+  const n = x.length;
+  const width = Array.from({ length: n - 1 }, (_, k) => x[k + 1] - x[k]);
+  const rise = width.map((w, k) => (y[k + 1] - y[k]) / w);
+  if (n === 2) return [rise[0], rise[0]];
+  const slope = new Array(n).fill(0);
+  for (let k = 1; k + 1 < n; k++) {
+    if (rise[k - 1] * rise[k] <= 0) continue;
+    const before = 2 * width[k] + width[k - 1];
+    const after = width[k] + 2 * width[k - 1];
+    slope[k] = (before + after) / (before / rise[k - 1] + after / rise[k]);
+  }
+  slope[0] = endSlope(width[0], width[1], rise[0], rise[1]);
+  slope[n - 1] = endSlope(width[n - 2], width[n - 3], rise[n - 2], rise[n - 3]);
+  return slope;
+}
+
+/** Three-point slope at an end, kept from overshooting. */
+function endSlope(near, next, rise, riseNext) {
+  const slope = ((2 * near + next) * rise - near * riseNext) / (near + next);
+  if (Math.sign(slope) !== Math.sign(rise)) return 0;
+  const turns = Math.sign(rise) !== Math.sign(riseNext);
+  return turns && Math.abs(slope) > 3 * Math.abs(rise) ? 3 * rise : slope;
+}
+
+function periodicPchipSlopes(x, y) {
+  // three rows more on either side make the one-sided end slopes irrelevant
+  const n = x.length - 1;
+  const period = x[n] - x[0];
+  const wide = Array.from({ length: n + 7 }, (_, k) => k - 3);
+  const row = (k) => ((k % n) + n) % n;
+  const angle = wide.map((k) => x[row(k)] + Math.floor(k / n) * period);
+  return pchipSlopes(angle, wide.map((k) => y[row(k)])).slice(3, 4 + n);
+}
+
+/** Slopes of the twice differentiable spline with the third derivative continuous at the second
+ * row from either end ("not a knot"); the parabola through three rows, the line through two. */
+function splineSlopes(x, y) {
+  const n = x.length;
+  const width = Array.from({ length: n - 1 }, (_, k) => x[k + 1] - x[k]);
+  const rise = width.map((w, k) => (y[k + 1] - y[k]) / w);
+  if (n === 2) return [rise[0], rise[0]];
+  if (n === 3) return parabolaSlopes(width, rise);
+  const last = n - 1;
+  const diagonal = new Array(n);
+  const lower = new Array(n).fill(0);
+  const upper = new Array(n).fill(0);
+  const right = new Array(n);
+  diagonal[0] = width[1];
+  upper[0] = width[0] + width[1];
+  right[0] = notAKnot(width[0], width[1], rise[0], rise[1]);
+  for (let k = 1; k < last; k++) {
+    lower[k] = width[k];
+    diagonal[k] = 2 * (width[k - 1] + width[k]);
+    upper[k] = width[k - 1];
+    right[k] = 3 * (width[k] * rise[k - 1] + width[k - 1] * rise[k]);
+  }
+  diagonal[last] = width[last - 2];
+  lower[last] = width[last - 1] + width[last - 2];
+  right[last] = notAKnot(width[last - 1], width[last - 2], rise[last - 1], rise[last - 2]);
+  return tridiagonal(lower, diagonal, upper, right);
+}
+
+function notAKnot(near, next, rise, riseNext) {
+  const both = near + next;
+  return ((near + 2 * both) * next * rise + near * near * riseNext) / both;
+}
+
+function parabolaSlopes(width, rise) {
+  const matrix = Float64Array.of(1, 1, 0, width[1], 2 * (width[0] + width[1]), width[0], 0, 1, 1);
+  const slope = Float64Array.of(
+    2 * rise[0],
+    3 * (width[0] * rise[1] + width[1] * rise[0]),
+    2 * rise[1],
+  );
+  eliminate(matrix, slope, 3, 1);
+  return slope;
+}
+
+/** Slopes of the periodic spline, the last equal to the first. */
+function periodicSplineSlopes(x, y) {
+  const n = x.length - 1;
+  const width = Array.from({ length: n }, (_, k) => x[k + 1] - x[k]);
+  const rise = width.map((w, k) => (y[k + 1] - y[k]) / w);
+  const before = (k) => (k + n - 1) % n;
+  if (n < 3) return periodicByElimination(width, rise, n);
+  const diagonal = width.map((w, k) => 2 * (width[before(k)] + w));
+  const right = width.map((w, k) => 3 * (w * rise[before(k)] + width[before(k)] * rise[k]));
+  const lower = [...width];
+  const upper = width.map((_, k) => width[before(k)]);
+  // the two corners by the formula of Sherman and Morrison
+  const gamma = -diagonal[0];
+  const corner = lower[0];
+  const other = upper[n - 1];
+  diagonal[0] -= gamma;
+  diagonal[n - 1] -= (corner * other) / gamma;
+  const rank = new Array(n).fill(0);
+  rank[0] = gamma;
+  rank[n - 1] = other;
+  const plain = tridiagonal(lower, diagonal, upper, right);
+  const along = tridiagonal(lower, diagonal, upper, rank);
+  const share = (plain[0] + (corner / gamma) * plain[n - 1]) /
+    (1 + along[0] + (corner / gamma) * along[n - 1]);
+  const slope = plain.map((each, k) => each - share * along[k]);
+  return [...slope, slope[0]];
+}
+
+function periodicByElimination(width, rise, n) {
+  const matrix = new Float64Array(n * n);
+  const slope = new Float64Array(n);
+  for (let k = 0; k < n; k++) {
+    const before = (k + n - 1) % n;
+    matrix[k * n + before] += width[k];
+    matrix[k * n + k] += 2 * (width[before] + width[k]);
+    matrix[k * n + ((k + 1) % n)] += width[before];
+    slope[k] = 3 * (width[k] * rise[before] + width[before] * rise[k]);
+  }
+  eliminate(matrix, slope, n, 1);
+  return [...slope, slope[0]];
+}
+
+/** Solve a tridiagonal system; the end rows of a spline may have a small diagonal, and are mild. */
+function tridiagonal(lower, diagonal, upper, right) {
+  const n = diagonal.length;
+  const pivot = new Array(n);
+  const answer = new Array(n);
+  pivot[0] = diagonal[0];
+  answer[0] = right[0];
+  for (let k = 1; k < n; k++) {
+    const factor = lower[k] / pivot[k - 1];
+    pivot[k] = diagonal[k] - factor * upper[k - 1];
+    answer[k] = right[k] - factor * answer[k - 1];
+  }
+  answer[n - 1] /= pivot[n - 1];
+  for (let k = n - 2; k >= 0; k--) answer[k] = (answer[k] - upper[k] * answer[k + 1]) / pivot[k];
+  return answer;
+}

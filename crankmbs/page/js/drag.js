@@ -1,0 +1,91 @@
+/** Dragging the mechanism: what the pointer holds says at which crank angle it wants it, or how
+ * heavy the flywheel. */
+import { inertiaOfRim } from "./drawing.js";
+
+/** Listen to a stage.
+ *
+ * on : { theta() now, turn(theta), rim(ratio), grip(held), release() }
+ */
+export function dragged(stage, on) {
+  const { root } = stage;
+  let held = null;
+  root.addEventListener("pointerdown", (event) => {
+    const grip = event.target.closest("[data-grip]");
+    if (!grip) return;
+    event.preventDefault();
+    root.setPointerCapture?.(event.pointerId);
+    const at = place(root, event);
+    held = { kind: grip.dataset.grip, k: Number(grip.dataset.k ?? 0), id: event.pointerId };
+    held.offset = offsetOf(stage, held, at, on.theta());
+    root.classList.add("held");
+    on.grip(held.kind);
+  });
+  root.addEventListener("pointermove", (event) => {
+    if (held?.id !== event.pointerId) return;
+    follow(stage, held, place(root, event), on);
+  });
+  const release = (event) => {
+    if (held?.id !== event.pointerId) return;
+    held = null;
+    root.classList.remove("held");
+    on.release();
+  };
+  root.addEventListener("pointerup", release);
+  root.addEventListener("pointercancel", release);
+}
+
+/** Where the pointer is in the drawing's units. */
+function place(root, { clientX, clientY }) {
+  const { x, y } = new DOMPoint(clientX, clientY).matrixTransform(root.getScreenCTM().inverse());
+  return { x, y };
+}
+
+/** The angle of a place about the crank axis, from X upwards to Y on the left [rad]. */
+function angleOf({ x, y }) {
+  return Math.atan2(-x, -y);
+}
+
+/** By how much what is held is away from the pointer: it must not jump. */
+function offsetOf(stage, { kind, k }, at, theta) {
+  if (kind === "rim") return Math.hypot(at.x, at.y) - 1000 * stage.sizes.rim;
+  if (kind === "piston") return along(stage, k, at) - positionAt(stage, k, theta);
+  return angleOf(at) - theta;
+}
+
+function follow(stage, held, at, on) {
+  if (held.kind === "rim") {
+    const rim = (Math.hypot(at.x, at.y) - held.offset) / 1000;
+    on.rim(inertiaOfRim(Math.max(rim, 0.01 * stage.sizes.r), stage.sizes.r));
+  } else if (held.kind === "piston") {
+    on.turn(towards(stage, held.k, along(stage, held.k, at) - held.offset, on.theta()));
+  } else {
+    const step = angleOf(at) - held.offset - on.theta();
+    on.turn(on.theta() + step - 2 * Math.PI * Math.round(step / (2 * Math.PI)));
+  }
+}
+
+/** How far a place is along a cylinder [m]. */
+function along(stage, k, { x, y }) {
+  const { bank } = stage.train.cylinders[k];
+  return (-y * Math.cos(bank) - x * Math.sin(bank)) / 1000;
+}
+
+function positionAt({ train }, k, theta) {
+  return train.loop.at(theta + train.cylinders[k].phase).x;
+}
+
+/** The crank angle nearest to the present one at which the piston comes closest to a position: from
+ * where it is the crank goes on in the sense in which it can follow. */
+function towards(stage, k, wanted, theta) {
+  const far = (angle) => Math.abs(positionAt(stage, k, angle) - wanted);
+  let best = theta;
+  for (const sense of [1, -1]) {
+    let at = theta;
+    for (let step = Math.PI / 12; step > 1e-5; step /= 2) {
+      while (far(at + sense * step) < far(at)) at += sense * step;
+      while (far(at - sense * step) < far(at)) at -= sense * step;
+    }
+    if (far(at) < far(best) - 1e-9) best = at;
+  }
+  return best;
+}

@@ -1,0 +1,54 @@
+/** Sizes of the drawing that a scene does not say, and its places on the screen.
+ *
+ * X, to the head, points up and Y to the left, so that counter-clockwise stays so. Lengths are in
+ * metres times a scale.
+ */
+import { bottomPosition, topPosition } from "./geometry.js";
+
+const CROWN = 0.4; // of the piston's width, above its pin
+const SKIRT = 0.3;
+const CLEARANCE = 1 / 14; // of the stroke
+const RIM = 1.65; // of the crank radius: the flywheel's rim, at the inertia that the scene has
+const WIDEST = 2.5;
+const ROOM = 0.7; // of the crank radius
+
+/** The proportions of a machine [m]. ratio : of the flywheel's inertia to that of the scene */
+export function proportions(train, ratio, compression) {
+  const { shape, piston, cylinders } = train;
+  const r = shape.radius;
+  const width = piston.area ? Math.sqrt((4 * piston.area) / Math.PI) : 1.6 * r;
+  const top = topPosition(shape);
+  const bottom = bottomPosition(shape);
+  const clearance = compression ? (top - bottom) / (compression - 1) : CLEARANCE * (top - bottom);
+  const head = top + CROWN * width + clearance;
+  const low = bottom - SKIRT * width;
+  const rim = rimOf(r, ratio);
+  const ring = WIDEST * r;
+  const across = 0.62 * width + Math.abs(shape.offset);
+  const ends = cylinders.flatMap(({ bank }) =>
+    [-across, across].map((y) => [y * Math.cos(bank) + head * Math.sin(bank),
+      head * Math.cos(bank) - y * Math.sin(bank) + 0.1 * width]));
+  const above = piston.area ? ROOM * r : 0; // for the arrow of the gas
+  ends.push(...cylinders.map(({ bank }) => turnedBy(bank, head + above, 0).reverse()));
+  const edge = ring + 0.15 * r;
+  const far = Math.max(edge, ...ends.map(([y]) => Math.abs(y)));
+  const high = Math.max(...ends.map(([, x]) => x), edge);
+  const bounds = { left: -far, top: -high, width: 2 * far, height: high + edge };
+  return { r, width, head, low, rim, ring, bounds, crown: CROWN * width, skirt: SKIRT * width };
+}
+
+/** A disc of one thickness: its inertia grows with the fourth power of its radius. */
+function rimOf(radius, ratio) {
+  return Math.min(RIM * ratio ** 0.25, WIDEST) * radius;
+}
+
+/** The inertia, of the scene's, that a rim of this radius stands for. */
+export function inertiaOfRim(rim, radius) {
+  return (rim / (RIM * radius)) ** 4;
+}
+
+/** From a cylinder's frame to the engine's. */
+export function turnedBy(bank, x, y) {
+  const [cos, sin] = [Math.cos(bank), Math.sin(bank)];
+  return [x * cos - y * sin, x * sin + y * cos];
+}

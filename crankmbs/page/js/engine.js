@@ -1,0 +1,235 @@
+/** From a scene to its motion: the one place that knows every part.
+ *
+ * The engine keeps what it made last. A new flywheel, load or speed rebuilds no table; a new mass
+ * only sums what the loops have; a new shape, all.
+ */
+import { remembering } from "./arrays.js";
+import { knotsOver } from "./cubics.js";
+import { frictionMarks } from "./friction.js";
+import { Firing, decisionAngles } from "./fuel.js";
+import { Loop } from "./geometry.js";
+import { DIAGRAM, SEEN, pressuresOf } from "./gas.js";
+import { Travel } from "./motion.js";
+import { readCell } from "./path.js";
+import { rebalanced } from "./rebalance.js";
+import { partsOf } from "./refine.js";
+import { settle } from "./settled.js";
+import { speedLaw } from "./speed.js";
+import { strongOf } from "./strong.js";
+import { Tables, edgesOf, reduceAt, split } from "./tables.js";
+
+const ROUNDS = 8; // of cutting cells
+const MOST_CELLS = 20000;
+const CLOSE = 1e-6; // of the mean speed, where loads are rebalanced while a knob moves
+const CLOSEST = 1e-12;
+const SAME = 1e-9; // rad: a decision so near has not been passed
+
+/** rules : of Gauss collocation, by their number of stages. */
+export class Engine {
+  constructor(rules) {
+    this.rules = rules;
+    this.tables = new Tables();
+    this.finer = new Tables();
+    this.shape = remembering((radius, length, offset) => ({ radius, length, offset }));
+    this.loops = remembering((shape, n) => Array.from({ length: n }, () => new Loop(shape)));
+    this.pressures = { fine: remembering(pressuresOf), quick: remembering(pressuresOf) };
+    // a stronger load has the knots that it had
+    this.marks = remembering(marksOf);
+    this.edges = remembering(edgesOf);
+    this.bends = remembering(frictionMarks);
+    this.strong = remembering(strongOf);
+  }
+
+  /** The crank train of a scene: its machine with the pressures that its shape has.
+   *
+   * quick : diagrams of polytropes are fitted to what a screen shows */
+  train(scene, quick = false) {
+    const { crank, rod, piston, cylinders, levers } = scene;
+    const shape = this.shape(crank.radius, rod.length, piston.offset);
+    const loops = this.loops(shape, cylinders.length);
+    const machine = { shape, loop: loops[0], loops, crank, rod, piston, cylinders, levers };
+    const pressures = quick ? this.pressures.quick : this.pressures.fine;
+    const { pressure, combustion } = pressures(scene.gas, shape, quick ? SEEN : DIAGRAM);
+    const { gravity, friction, loads, fuel, period } = scene;
+    const outside = { gravity, friction, loads, fuel, period };
+    return { ...machine, ...outside, pressure, combustion };
+  }
+
+  /** The motion of a scene; its cells are cut until they err by no more than a tolerance, relative,
+   * per radian. With none it is quick: cells pass over knots at which hardly anything bends, and
+   * are taken as they are. */
+  run(scene, { stages = 5, tolerance = null, warm = null } = {}) {
+    const quick = tolerance === null;
+    const train = this.train(scene, quick);
+    let edges = this.edgesFor(train, scene.grid_period, quick);
+    if (scene.motion !== null) return new Prescribed(train, scene.motion, edges, scene.run);
+    for (let round = 0; ; round++) {
+      const motion = this.pass(scene, train, this.grid(train, edges, stages, this.tables), warm);
+      if (quick || round >= ROUNDS || edges.length > MOST_CELLS) return motion;
+      if (motion.ending !== "complete") return motion;
+      const finer = this.grid(train, edges, stages + 2, this.finer);
+      const parts = partsOf(train, motion.grid, finer, motion.path, tolerance);
+      if (parts.every((each) => each === 1)) return motion;
+      edges = split(edges, parts);
+    }
+  }
+
+  /** A scene with its loads scaled so that it settles to a mean speed [rad/s]: `rebalanced`. */
+  rebalanced(scene, speed, { stages = 5, tolerance = null } = {}) {
+    const train = this.train(scene, true);
+    const edges = this.edgesFor(train, scene.grid_period, true);
+    const grid = this.grid(train, edges, stages, this.tables);
+    const rough = rebalanced(scene, speed, { train, grid }, CLOSE);
+    if (tolerance === null || rough.ending !== "complete") return rough;
+    const motion = this.run(rough.scene, { stages, tolerance });
+    const fine = rebalanced(rough.scene, speed, motion, CLOSEST);
+    return { ...fine, share: rough.share * fine.share };
+  }
+
+  edgesFor(train, period, quick) {
+    const { shape, cylinders, pressure, combustion, loads, fuel } = train;
+    const tables = loads.map((load) => load.over_angle).filter((cycle) => cycle !== null);
+    const decisions = decisionAngles(fuel, cylinders, train.period);
+    const knots = (quick ? strongOf(tables) : tables).map((cycle) => cycle.knots);
+    const marks = this.marks(knots, decisions, train.period, period);
+    const bends = this.bends(train.friction, shape, cylinders, pressure, combustion, period);
+    const cycles = quick ? this.strong([...pressure, ...combustion]) : pressure;
+    return this.edges(shape, cylinders, cycles, [...marks, bends], period);
+  }
+
+  grid(train, edges, stages, tables) {
+    const rule = this.rules[stages];
+    return { edges, rule, tables: tables.of(train, edges, rule) };
+  }
+
+  pass(scene, train, grid, warm) {
+    const { start, run } = scene;
+    if (run.settled) {
+      const found = settle(train, grid, start, warm);
+      return new Settled(train, grid, start, found);
+    }
+    const { inertia } = reduceAt(train, start.angle);
+    const sense = start.speed < 0 ? -1 : 1;
+    const energy = 0.5 * inertia * start.speed * start.speed;
+    const begin = { theta: start.angle, time: 0, energy, sense };
+    const theta = run.in_time ? sense * Infinity : start.angle + sense * run.until;
+    const stop = { theta, time: run.in_time ? run.until : Infinity };
+    return new Free(train, grid, new Travel(train, grid, begin, stop));
+  }
+}
+
+/** Crank angles [rad] at which loads over the angle have knots and the fuel is decided. */
+function marksOf(knots, decisions, own, period) {
+  const turns = Array.from({ length: Math.round(period / own) }, (_, turn) => turn * own);
+  const decided = decisions.flatMap((angle) => turns.map((turn) => angle + turn));
+  return [decided, ...knots.map((each) => knotsOver({ knots: each }, 0, period))];
+}
+
+/** A free motion from its start to its end. */
+class Free {
+  constructor(train, grid, travel) {
+    Object.assign(this, { train, grid, path: travel.path, ending: travel.ending });
+    this.from = travel.path.cells.length ? travel.path.cells[0].from : travel.theta;
+    this.to = travel.theta;
+  }
+
+  /** The sample at a crank angle [rad] between `from` and `to`. */
+  at(theta) {
+    return this.path.at(this.train, theta);
+  }
+
+  /** Crank angles from one to another between which all is smooth. */
+  smoothBetween(from, to) {
+    return inside(this.path.cells.map((cell) => cell.from), from, to);
+  }
+}
+
+/** A settled motion, over a period from its start. */
+class Settled {
+  constructor(train, grid, start, found) {
+    const { ending, motion, factor, balanced, theta, sense, period } = found;
+    Object.assign(this, { train, grid, ending, factor, balanced, sense, period });
+    if (ending !== "complete") return;
+    this.path = motion.path;
+    this.base = theta;
+    this.duration = motion.time;
+    this.from = start.angle;
+    this.to = start.angle + sense * period;
+    this.late = 0;
+    this.late = this.at(start.angle).time;
+  }
+
+  /** The sample at any crank angle [rad]; time counts from the start's angle. */
+  at(theta) {
+    const { train, period, sense, base, path } = this;
+    const turns = Math.floor((sense * (theta - base)) / period);
+    const within = theta - sense * turns * period;
+    const found = readCell(train, path.rule, path.cellAt(within), within);
+    return { ...found, theta, time: found.time + turns * this.duration - this.late };
+  }
+
+  /** Crank angles from one to another between which all is smooth. */
+  smoothBetween(from, to) {
+    const { period, sense, base } = this;
+    const own = this.path.cells.map((cell) => cell.from);
+    const turn = (theta) => Math.floor((sense * (theta - base)) / period);
+    const [first, last] = [turn(from), turn(to)];
+    const turns = Array.from({ length: last - first + 1 }, (_, k) => sense * period * (first + k));
+    return inside(turns.flatMap((far) => own.map((each) => each + far)), from, to);
+  }
+}
+
+/** One angle, those that lie between, in order, and the other. */
+function inside(angles, from, to) {
+  const sense = to < from ? -1 : 1;
+  const between = angles.filter((each) => sense * (each - from) > 0 && sense * (to - each) > 0);
+  return [from, ...between.sort((a, b) => sense * (a - b)), to];
+}
+
+/** A prescribed motion: nothing has to be integrated. */
+class Prescribed {
+  constructor(train, motion, edges, run) {
+    Object.assign(this, { train, edges, ending: "complete" });
+    this.law = speedLaw(motion);
+    const [, omega] = this.law.at(0);
+    this.sense = omega < 0 ? -1 : 1;
+    this.from = motion.angle;
+    this.to = run.in_time ? this.law.at(run.until)[0] : this.from + this.sense * run.until;
+    this.shares = this.decisions({ angle: motion.angle, speed: omega });
+  }
+
+  /** The shares of the combustion from each crank angle on at which some are decided. */
+  decisions(start) {
+    const { train, sense } = this;
+    const firing = new Firing(train.fuel, train.cylinders, train.period, start);
+    const found = [{ theta: this.from, shares: firing.shares }];
+    if (train.fuel === null) return found;
+    for (const theta of this.smoothBetween(this.from, this.to).slice(1)) {
+      const time = this.law.timeAt(theta);
+      firing.pass(time, theta, this.law.at(time)[1], sense);
+      found.push({ theta, shares: firing.shares });
+    }
+    return found;
+  }
+
+  /** The sample at a crank angle [rad]; at a decision with the shares before it. */
+  at(theta) {
+    const { sense, shares: all } = this;
+    const time = this.law.timeAt(theta);
+    const [, omega, alpha] = this.law.at(time);
+    let k = all.length - 1;
+    while (k > 0 && sense * (theta - all[k].theta) <= SAME) k--;
+    return { time, theta, omega, alpha, external_torque: null, shares: all[k].shares };
+  }
+
+  /** Crank angles from one to another between which all is smooth. */
+  smoothBetween(from, to) {
+    const period = this.edges[this.edges.length - 1];
+    const [low, high] = [Math.min(from, to), Math.max(from, to)];
+    const angles = this.law.bendsBetween(low, high);
+    for (let turn = Math.floor(low / period); turn * period < high; turn++) {
+      for (const edge of this.edges) angles.push(edge + turn * period);
+    }
+    return inside(angles, from, to);
+  }
+}

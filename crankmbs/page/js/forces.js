@@ -1,0 +1,61 @@
+/** The forces on one body, as arrows: from where, how large, on what. */
+import { turnedBy } from "./drawing.js";
+
+/** The bodies that one can look at. */
+export const BODIES = ["piston", "rod", "crank"];
+
+/** The forces on a body at a sample, in the engine's frame: { name, kind, at: [x, y], force }.
+ *
+ * v : variables; k : number of the cylinder
+ */
+export function forcesOn(body, train, v, k) {
+  if (body === "piston") return onPiston(train, v, k);
+  if (body === "rod") return onRod(train, v, k);
+  return onCrank(train, v);
+}
+
+function onPiston(train, v, k) {
+  const { bank } = train.cylinders[k];
+  const at = v.cylinders[k];
+  const pin = turnedBy(bank, at.piston_position, train.shape.offset);
+  const place = (x, y) => turnedBy(bank, x, y);
+  const found = [
+    arrow("wall on piston", "wall", pin, place(0, at.side_force)),
+    arrow("rod on piston", "pin", pin, place(at.piston_pin_force_x, at.piston_pin_force_y)),
+  ];
+  if (train.pressure.length) {
+    found.push({ ...arrow("gas on piston", "gas", pin, place(-at.gas_force, 0)), onCrown: true });
+  }
+  return found;
+}
+
+function onRod(train, v, k) {
+  const { bank, phase } = train.cylinders[k];
+  const at = v.cylinders[k];
+  const pin = turnedBy(bank, at.piston_position, train.shape.offset);
+  const throwAt = v.crank_angle + phase + bank;
+  const r = train.shape.radius;
+  const crank = [r * Math.cos(throwAt), r * Math.sin(throwAt)];
+  const [px, py] = [at.piston_pin_force_x, at.piston_pin_force_y];
+  return [
+    arrow("piston on rod", "pin", pin, turnedBy(bank, -px, -py)),
+    arrow("crank on rod", "bearing", crank,
+      turnedBy(bank, at.crank_pin_force_x, at.crank_pin_force_y)),
+  ];
+}
+
+function onCrank(train, v) {
+  const r = train.shape.radius;
+  const rods = train.cylinders.map(({ bank, phase }, k) => {
+    const angle = v.crank_angle + phase + bank;
+    const { crank_pin_force_x: x, crank_pin_force_y: y } = v.cylinders[k];
+    const name = train.cylinders.length > 1 ? `rod ${k + 1} on crank` : "rod on crank";
+    return arrow(name, "pin", [r * Math.cos(angle), r * Math.sin(angle)], turnedBy(bank, -x, -y));
+  });
+  const bearing = [v.main_bearing_force_x, v.main_bearing_force_y];
+  return [...rods, arrow("bearing on crank", "bearing", [0, 0], bearing)];
+}
+
+function arrow(name, kind, at, force) {
+  return { name, kind, at, force };
+}

@@ -1,0 +1,78 @@
+/** Each firing's share of the combustion: where it is decided, and how.
+ *
+ * A cylinder decides where its compression begins, at the cycle angle of 180 degrees, and at the
+ * start; the share holds one period. Fuel is { misfire: [{ cylinder, first, last, every }], after,
+ * until, from_speed, until_speed }; governed and scattered firings run in Python alone.
+ */
+import { wrapped } from "./arrays.js";
+
+const SAME = 1e-8; // rad: decisions so near one another are one
+
+/** Crank angles in one period at which a cylinder decides [rad]; none without fuel. */
+export function decisionAngles(fuel, cylinders, period) {
+  return fuel === null ? [] : cylinders.map((c) => wrapped(Math.PI - c.phase, period));
+}
+
+/** The decisions on the way of a crank that turns in one sense. */
+export class Firing {
+  constructor(fuel, cylinders, period, start) {
+    this.fuel = fuel;
+    this.cylinders = cylinders;
+    this.period = period;
+    this.start = start;
+    this.shares = new Float64Array(fuel === null ? 0 : cylinders.length);
+    this.setIn = null; // speed at the decision at which the fuel set in
+    this.isOver = false;
+    if (fuel !== null) this.decide(0, start.speed, cylinders.map(() => 1));
+  }
+
+  /** Decide at a crank angle, for the cylinders that do so there. */
+  pass(time, theta, omega, sense) {
+    if (this.fuel === null || Math.abs(theta - this.start.angle) <= SAME) return;
+    const cycles = this.cylinders.map(({ phase }) => {
+      const turns = (theta + phase - Math.PI) / this.period;
+      const apart = Math.abs(turns - Math.round(turns)) * this.period;
+      return apart < 2 * SAME ? this.cycleOf(phase, Math.round(turns), sense) : 0;
+    });
+    if (cycles.some((cycle) => cycle > 0)) this.decide(time, omega, cycles);
+  }
+
+  /** How many firing dead centres the cycle that is decided and those since the start hold. */
+  cycleOf(phase, decided, sense) {
+    const begun = (this.start.angle + phase - 2 * Math.PI) / this.period;
+    if (sense > 0) return decided - Math.floor(begun + SAME);
+    return Math.ceil(begun - SAME) - decided + 1;
+  }
+
+  /** cycles : number of the cycle that each cylinder decides on; 0 where it does not. */
+  decide(time, omega, cycles) {
+    this.judgeWindow(time, omega);
+    const burns = this.setIn !== null && !this.isOver ? 1 : 0;
+    this.shares = this.shares.map((share, k) => {
+      if (cycles[k] === 0) return share;
+      return this.fuel.misfire.some((each) => strikes(each, k + 1, cycles[k])) ? 0 : burns;
+    });
+  }
+
+  judgeWindow(time, omega) {
+    const { after, until, from_speed: from, until_speed: last } = this.fuel;
+    if (until !== null && time >= until) this.isOver = true;
+    if (this.setIn === null) {
+      const met = from === null || isMet(from, this.start.speed, omega);
+      if (met && time >= after) this.setIn = omega;
+    } else if (last !== null && isMet(last, this.setIn, omega)) {
+      this.isOver = true;
+    }
+  }
+}
+
+/** Whether a speed has been met between two decisions, from either side. */
+function isMet(speed, before, now) {
+  return (before - speed) * (now - speed) <= 0;
+}
+
+/** Whether a misfire strikes a cycle, counted from 1. */
+function strikes({ cylinder, first, last, every }, number, cycle) {
+  if (cylinder !== number) return false;
+  return every ? cycle % first === 0 : first <= cycle && cycle <= last;
+}

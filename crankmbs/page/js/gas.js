@@ -1,0 +1,271 @@
+/** The gas: pressure difference across each piston over its cycle angle [Pa], and what becomes of
+ * it when the geometry changes.
+ *
+ * Python passes the cubics of the shape that a scene has, and what they were made of. With another
+ * shape the rows of a table move, so that the pressure stays a function of the swept fraction
+ * within each stroke between the true dead centres, at the same compression ratio; a diagram of
+ * polytropes is one of the volume already.
+ */
+import { distinct } from "./arrays.js";
+import { joined, knotsOver, valueAt } from "./cubics.js";
+import { Loop, bottomPosition, deadCentres, topPosition } from "./geometry.js";
+
+const TURN = 2 * Math.PI;
+const KNOT = 1e-9; // rad: two knots closer than this are one
+// of the absolute pressure: how far cubics may be from a polytrope, as in Python, or on a screen
+export const DIAGRAM = 1e-9;
+export const SEEN = 1e-5;
+const SUPPORT = [0, 0.25, 0.75, 1]; // Chebyshev's extrema: the ends are met exactly
+const BETWEEN = [0.1, 0.5, 0.9]; // where a cubic through the support errs most
+
+/** The cycles of the pressure without combustion, and of what combustion adds, of each cylinder.
+ *
+ * gas : as Python passes it, or null; shape : may differ from that of the scene, gas.shape
+ * closeness : of the absolute pressure, of cubics to a polytrope
+ */
+export function pressuresOf(gas, shape, closeness = DIAGRAM) {
+  if (gas === null) return { pressure: [], combustion: [] };
+  const { radius, length, offset } = gas.shape;
+  if (shape.radius === radius && shape.length === length && shape.offset === offset) {
+    return gas;
+  }
+  const once = new Map();
+  const close = { ...gas, closeness };
+  const fired = gas.fired.map((number) => {
+    if (!once.has(number)) once.set(number, cycleOf(close, gas.sources[number], shape));
+    return once.get(number);
+  });
+  if (gas.motored === null) return { pressure: fired, combustion: [] };
+  const both = gas.motored.map((number, k) => {
+    const source = gas.sources[number];
+    return combustionOf(fired[k], cycleOf(close, source, shape, fired[k]));
+  });
+  return { pressure: both.map((each) => each[0]), combustion: both.map((each) => each[1]) };
+}
+
+/** The pressure that a source stands for in a machine of this shape. */
+function cycleOf(gas, source, shape, fired) {
+  if (source.kind === "indicator") return diagram(gas, source, shape);
+  if (source.kind === "polytrope") return continued(gas, source, shape, fired);
+  if (source.kind === "constant") {
+    return {
+      knots: Float64Array.of(0, gas.period),
+      coefficients: Float64Array.of(0, 0, 0, source.value),
+    };
+  }
+  const angle = source.angle.map(carrying(gas.shape, shape));
+  const last = angle.length - 1;
+  angle[last] = angle[0] + (source.angle[last] - source.angle[0]);
+  return joined({ ...source, angle }, source.interpolation);
+}
+
+/** The cycle angle [rad] in one machine at which the piston has swept the same fraction of the
+ * same stroke as at a cycle angle in another. */
+export function carriedAngle(phi, from, to) {
+  return carrying(from, to)(phi);
+}
+
+/** The same for many angles of the same two machines, as a function of the angle. */
+function carrying(from, to) {
+  const centres = deadCentres(from);
+  const swept = sweptIn(from);
+  const x = topPosition(to);
+  const stroke = x - bottomPosition(to);
+  return (phi) => {
+    const turn = Math.floor((phi - centres.top) / TURN);
+    const within = phi - turn * TURN;
+    const part = swept(within);
+    const above = part.fraction * stroke;
+    const lead = leadAt(x - above, above, part.rest * stroke, to);
+    const along = Math.atan2(to.offset, x - above);
+    const down = within <= centres.bottom;
+    return (down ? along + lead : along - lead + TURN) + turn * TURN;
+  };
+}
+
+/** Swept fraction of the stroke at a cycle angle and what is left of it, both exact where small:
+ * x_top^2 - x^2 = 4 r l sin^2(psi / 2), x^2 - x_bottom^2 = 4 r l cos^2(psi / 2), with psi =
+ * phi + beta. */
+function sweptIn(shape) {
+  const [loop, top, bottom] = [new Loop(shape), topPosition(shape), bottomPosition(shape)];
+  const size = 4 * shape.radius * shape.length;
+  return (phi) => {
+    const at = loop.at(phi);
+    const half = 0.5 * (phi + at.beta);
+    const above = (size * Math.sin(half) ** 2) / (top + at.x);
+    const below = (size * Math.cos(half) ** 2) / (at.x + bottom);
+    return { fraction: above / (above + below), rest: below / (above + below) };
+  };
+}
+
+/** The angle [rad] by which the throw leads the direction of the piston pin at x, opposite the rod;
+ * above, below [m] : how far the pin is from its dead centres. */
+function leadAt(x, above, below, { radius, length, offset }) {
+  const distance = Math.hypot(x, offset);
+  const top = x + above;
+  const bottom = x - below;
+  const nearTop = (above * (top + x)) / (radius + length + distance);
+  const nearBottom = (below * (bottom + x)) / (distance + length - radius);
+  const over = nearTop * (length + distance - radius);
+  const under = nearBottom * (radius + distance + length);
+  return 2 * Math.atan2(Math.sqrt(Math.max(over, 0)), Math.sqrt(Math.max(under, 0)));
+}
+
+/** An indicator diagram: compression p V^n, a rise at the firing dead centre, combustion at
+ * constant pressure, expansion p V^n, and with four strokes intake and exhaust. */
+function diagram(gas, source, shape) {
+  const parts = strokesOf(gas, source, shape).map((stroke) => fitted(gas.closeness, ...stroke));
+  const lefts = parts.flatMap((part) => part.lefts);
+  const coefficients = [0, 1, 2, 3].flatMap((power) => {
+    const gauge = power === 3 ? gas.ambient : 0;
+    return parts.flatMap((part) => part.cubics.map((cubic) => cubic[power] - gauge));
+  });
+  const knots = Float64Array.from([...lefts, lefts[0] + gas.period]);
+  return { knots, coefficients: Float64Array.from(coefficients) };
+}
+
+/** Begin, end [rad] and absolute pressure [Pa] of each smooth part of a diagram. */
+function strokesOf(gas, source, shape) {
+  const { top, bottom } = deadCentres(shape);
+  const ratio = source.compression_ratio;
+  const volume = relativeVolume(ratio, shape);
+  const compression = (phi) =>
+    source.intake_pressure * Math.pow(ratio / volume(phi), source.n_compression);
+  const expansion = (phi) =>
+    source.peak_pressure * Math.pow(source.pre_expansion / volume(phi), source.n_expansion);
+  const fired = TURN + top;
+  const closed = [[bottom, fired, compression]];
+  let burnt = fired;
+  if (source.fires && source.pre_expansion > 1) {
+    const stroke = topPosition(shape) - bottomPosition(shape);
+    const above = ((source.pre_expansion - 1) / (ratio - 1)) * stroke;
+    const x = topPosition(shape) - above;
+    burnt = TURN + Math.atan2(shape.offset, x) + leadAt(x, above, stroke - above, shape);
+    closed.push([fired, burnt, () => source.peak_pressure]);
+  }
+  closed.push([burnt, TURN + bottom, source.fires ? expansion : compression]);
+  if (gas.period < 1.5 * TURN) return closed;
+  return [
+    [top, bottom, () => source.intake_pressure],
+    ...closed,
+    [TURN + bottom, TURN + fired, () => source.exhaust_pressure],
+  ];
+}
+
+/** V / V_clearance over the cycle angle, for a compression ratio. */
+function relativeVolume(ratio, shape) {
+  const loop = new Loop(shape);
+  const top = topPosition(shape);
+  const stroke = top - bottomPosition(shape);
+  return (phi) => 1 + ((ratio - 1) * (top - loop.at(phi).x)) / stroke;
+}
+
+/** The left knots and cubics of a smooth pressure: pieces are halved until each is good enough.
+ *
+ * Quarter turns are knots from the start: a rod no longer than radius + offset folds there.
+ */
+function fitted(closeness, begin, end, pressure) {
+  const quarter = 0.5 * Math.PI;
+  const edges = [begin, end];
+  for (let k = Math.ceil(begin / quarter); k < Math.ceil(end / quarter); k++) {
+    edges.push(k * quarter);
+  }
+  const marks = distinct(edges, 0);
+  const open = [];
+  for (let k = marks.length - 1; k > 0; k--) open.push([marks[k - 1], marks[k]]);
+  const lefts = [];
+  const cubics = [];
+  while (open.length) {
+    const [left, right] = open.pop();
+    const cubic = throughSupport(left, right - left, pressure);
+    if (right - left < KNOT || follows(cubic, left, right - left, pressure, closeness)) {
+      lefts.push(left);
+      cubics.push(cubic.map((each, k) => each / (right - left) ** (3 - k)));
+    } else {
+      const middle = 0.5 * (left + right);
+      open.push([middle, right], [left, middle]);
+    }
+  }
+  return { lefts, cubics };
+}
+
+function throughSupport(left, width, pressure) {
+  const [y0, y1, y2, y3] = SUPPORT.map((s) => pressure(left + width * s));
+  // divided differences
+  const [first, middle, last] = [4 * (y1 - y0), 2 * (y2 - y1), 4 * (y3 - y2)];
+  const [near, far] = [(middle - first) / 0.75, (last - middle) / 0.75];
+  const a = far - near;
+  return [a, near - a, first - 0.25 * near + 0.1875 * a, y0];
+}
+
+function follows([a, b, c, d], left, width, pressure, closeness) {
+  return BETWEEN.every((s) => {
+    const exact = pressure(left + width * s);
+    return Math.abs(((a * s + b) * s + c) * s + d - exact) <= closeness * exact;
+  });
+}
+
+/** A fired pressure, from where it closes to the bottom dead centre a polytrope in its place, in
+ * every cycle. */
+function continued(gas, source, shape, fired) {
+  const volume = relativeVolume(source.compression_ratio, shape);
+  const first = TURN + source.closes;
+  const length = Math.PI - source.closes;
+  const period = fired.knots[fired.knots.length - 1] - fired.knots[0];
+  const knots = [];
+  const cubics = [];
+  for (let at = first; at < first + period - 1e-6; at += gas.period) {
+    const pressed = valueAt(fired, at) + gas.ambient;
+    const size = volume(at);
+    const part = fitted(gas.closeness, at, at + length, (phi) =>
+      pressed * Math.pow(size / volume(phi), source.polytrope));
+    knots.push(...part.lefts);
+    cubics.push(...part.cubics.map(([a, b, c, d]) => [a, b, c, d - gas.ambient]));
+    const rest = knotsBetween(fired, at + length, at + gas.period);
+    knots.push(...rest.slice(0, -1));
+    cubics.push(...cubicsOn(fired, rest));
+  }
+  knots.push(first + period);
+  return { knots: Float64Array.from(knots), coefficients: flat(cubics) };
+}
+
+/** The pressure without combustion, and what combustion adds to it, on the same knots. */
+function combustionOf(fired, motored) {
+  const ends = (cycle) => [cycle.knots[0], cycle.knots[cycle.knots.length - 1]];
+  const [first, last] = ends(fired);
+  const inside = (cycle) => knotsOver(cycle, first, last - first).map((each) => first + each);
+  const marks = distinct([first, ...inside(fired), ...inside(motored)], KNOT);
+  const knots = Float64Array.from([...marks.filter((each) => each < last - KNOT), last]);
+  const without = cubicsOn(motored, knots);
+  const more = cubicsOn(fired, knots).map((cubic, k) => cubic.map((c, j) => c - without[k][j]));
+  return [{ knots, coefficients: flat(without) }, { knots, coefficients: flat(more) }];
+}
+
+function knotsBetween(cycle, low, high) {
+  const period = cycle.knots[cycle.knots.length - 1] - cycle.knots[0];
+  const inside = knotsOver(cycle, low, period).map((each) => low + each);
+  const kept = inside.filter((each) => each > low && each < high);
+  return [low, ...distinct(kept, 0), high];
+}
+
+/** The cubics of a cycle behind other knots, between each two of which lies one piece. */
+function cubicsOn(cycle, knots) {
+  const { knots: own, coefficients } = cycle;
+  const n = own.length - 1;
+  const period = own[n] - own[0];
+  const found = [];
+  for (let k = 0; k + 1 < knots.length; k++) {
+    const middle = 0.5 * (knots[k] + knots[k + 1]);
+    const within = middle - Math.floor((middle - own[0]) / period) * period;
+    let piece = n - 1;
+    while (piece > 0 && own[piece] > within) piece--;
+    const x = within - own[piece] - (middle - knots[k]);
+    const [a, b, c, d] = [0, 1, 2, 3].map((power) => coefficients[power * n + piece]);
+    found.push([a, b + 3 * a * x, c + (2 * b + 3 * a * x) * x, d + (c + (b + a * x) * x) * x]);
+  }
+  return found;
+}
+
+function flat(cubics) {
+  return Float64Array.from([0, 1, 2, 3].flatMap((power) => cubics.map((cubic) => cubic[power])));
+}

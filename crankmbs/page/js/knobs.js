@@ -1,0 +1,81 @@
+/** Knobs: a slider without steps, with a number to type and its unit. */
+import { Refused } from "./refused.js";
+import { numberOf } from "./state.js";
+
+export class Knobs {
+  /** root : where they stand; knobs : { name, label, unit, low, high, value, decimals, about };
+   * rules : templates of sentences; on : { turn(name, value), release(), refuse(sentence) } */
+  constructor(root, knobs, rules, on) {
+    this.rules = rules;
+    this.on = on;
+    this.made = new Map(knobs.map((knob) => [knob.name, this.make(root, knob)]));
+  }
+
+  make(root, knob) {
+    const row = element("div", "knob", root);
+    const label = element("label", "", row);
+    label.htmlFor = `knob-${knob.name}`;
+    label.textContent = knob.label;
+    const entry = element("input", "entry", row);
+    Object.assign(entry, { type: "text", inputMode: "decimal", autocomplete: "off" });
+    entry.setAttribute("aria-label", `${knob.label}${knob.unit ? `, in ${knob.unit}` : ""}`);
+    element("span", "unit", row).textContent = knob.unit;
+    const slider = element("input", "slider", row);
+    Object.assign(slider, { type: "range", min: knob.low, max: knob.high, step: "any" });
+    slider.id = label.htmlFor;
+    if (knob.about) row.title = knob.about;
+    slider.addEventListener("input", () => this.turn(knob, Number(slider.value)));
+    slider.addEventListener("change", () => this.on.release());
+    slider.addEventListener("dblclick", () => {
+      this.turn(knob, knob.value);
+      this.on.release();
+    });
+    entry.addEventListener("change", () => this.type(knob, entry.value));
+    const made = { row, slider, entry, knob };
+    show(made, knob.value);
+    return made;
+  }
+
+  turn(knob, value) {
+    show(this.made.get(knob.name), value);
+    this.on.turn(knob.name, value);
+  }
+
+  /** A number that was typed: the knob as it was, with the reason, where it cannot be. */
+  type(knob, text) {
+    try {
+      this.turn(knob, numberOf(text, knob, this.rules));
+      this.on.release();
+    } catch (refused) {
+      if (!(refused instanceof Refused)) throw refused;
+      this.on.refuse(refused.message);
+    }
+  }
+
+  /** Show the values that a state has, without turning. */
+  show(values) {
+    for (const [name, made] of this.made) show(made, values[name] ?? made.knob.value);
+  }
+
+  /** Leave knobs out of use that mean nothing at present. */
+  disable(names) {
+    for (const [name, { row, slider, entry }] of this.made) {
+      const off = names.includes(name);
+      row.classList.toggle("off", off);
+      slider.disabled = entry.disabled = off;
+    }
+  }
+}
+
+function show({ slider, entry, knob }, value) {
+  slider.value = value;
+  entry.value = value.toFixed(knob.decimals);
+  const text = `${entry.value} ${knob.unit}`.trim();
+  slider.setAttribute("aria-valuetext", text);
+}
+
+function element(tag, name, parent) {
+  const made = document.createElement(tag);
+  if (name) made.className = name;
+  return parent.appendChild(made);
+}

@@ -1,0 +1,126 @@
+/** What the lectures answer at a crank angle: exact for a rod of two masses, or truncated.
+ *
+ * Their model: gas and the inertia force of the reciprocating mass act along the cylinder, the rod
+ * is two masses on a bar without mass, the crank a mass at its radius, nothing has weight. With the
+ * rod ratio lambda = r / l and k = e / r the truncated motion and forces stop after the second
+ * harmonic. Displacement counts from l + r; a force towards the crank is positive.
+ */
+import { pressureAt } from "./reactions.js";
+
+/** Piston displacement [m], velocity and acceleration, exact at any angular acceleration. */
+function exactMotion(phi, { radius: r, length: l, offset: e }, omega, alpha) {
+  const sine = (r * Math.sin(phi) - e) / l;
+  const cosine = Math.sqrt((1 - sine) * (1 + sine));
+  const slope = sine / cosine;
+  const [across, along] = [Math.sin(phi), Math.cos(phi)];
+  const first = r * (across + along * slope);
+  const second = r * (along - across * slope + ((r / l) * along ** 2) / cosine ** 3);
+  return {
+    displacement: r * (1 - along) + l * (1 - cosine),
+    velocity: omega * first,
+    acceleration: second * omega ** 2 + first * alpha,
+  };
+}
+
+/** The same truncated, at constant speed:
+ * s = r [1 - cos phi + (lambda/4)(1 - cos 2 phi) - k lambda sin phi] and its derivatives. */
+function truncatedMotion(phi, { radius: r, length: l, offset: e }, omega) {
+  const ratio = r / l;
+  const skew = (e / r) * ratio;
+  const [across, along] = [Math.sin(phi), Math.cos(phi)];
+  const bow = (ratio / 4) * (1 - Math.cos(2 * phi));
+  return {
+    displacement: r * (1 - along + bow - skew * across),
+    velocity: r * omega * (across + (ratio / 2) * Math.sin(2 * phi) - skew * along),
+    acceleration: r * omega ** 2 * (along + ratio * Math.cos(2 * phi) + skew * across),
+  };
+}
+
+/** Side thrust, rod force, tangential and radial force on the crank pin from the net force [N]:
+ * N = F tan beta, K = F / cos beta, T = K sin(phi + beta), R = K cos(phi + beta). */
+function exactForces(phi, { radius: r, length: l, offset: e }, net) {
+  const sine = (r * Math.sin(phi) - e) / l;
+  const cosine = Math.sqrt((1 - sine) * (1 + sine));
+  const beta = Math.asin(sine);
+  const rod = net / cosine;
+  const side = (net * sine) / cosine;
+  return { side, rod, tangential: rod * Math.sin(phi + beta), radial: rod * Math.cos(phi + beta) };
+}
+
+/** The same truncated. */
+function truncatedForces(phi, { radius: r, length: l, offset: e }, net) {
+  const ratio = r / l;
+  const k = e / r;
+  const [across, along] = [Math.sin(phi), Math.cos(phi)];
+  const second = 1 - Math.cos(2 * phi);
+  return {
+    side: net * ratio * (across - k),
+    rod: net * (1 + (ratio ** 2 / 4) * second),
+    tangential: net * (across + (ratio / 2) * Math.sin(2 * phi) - k * ratio * along),
+    radial: net * (along - (ratio / 2) * second + k * ratio * across),
+  };
+}
+
+/** The lectures by the names under which they are compared. */
+export const LECTURES = {
+  "untruncated lecture": { motion: exactMotion, forces: exactForces },
+  "S0 (motion truncated)": { motion: truncatedMotion, forces: exactForces },
+  "S1 (motion and forces truncated)": { motion: truncatedMotion, forces: truncatedForces },
+};
+
+/** The compared quantities by a lecture's formulas: of every cylinder, and of the main bearing.
+ *
+ * sample : { theta, omega, alpha, shares }, with the mean speed and alpha 0 what a lecture would
+ * reckon with
+ */
+export function lecturedAt(train, lecture, sample) {
+  const { theta, omega, alpha } = sample;
+  const cylinders = train.cylinders.map((_, k) => cylinderBy(train, lecture, sample, k));
+  const { crank, shape } = train;
+  const web = (crank.mass * crank.center_of_mass) / shape.radius;
+  let [x, y] = inertiaAtThrow(web, shape.radius, theta, omega, alpha);
+  cylinders.forEach((found, k) => {
+    const [sin, cos] = [Math.sin(train.cylinders[k].bank), Math.cos(train.cylinders[k].bank)];
+    x += found["crank pin force x"] * cos - found["crank pin force y"] * sin;
+    y += found["crank pin force x"] * sin + found["crank pin force y"] * cos;
+  });
+  return { "main bearing force x": x, "main bearing force y": y, cylinders };
+}
+
+function cylinderBy(train, { motion, forces }, { theta, omega, alpha, shares }, number) {
+  const { rod, piston, shape, cylinders } = train;
+  const r = shape.radius;
+  const phi = theta + cylinders[number].phase;
+  const atPistonPin = (rod.mass * rod.center_of_mass) / shape.length;
+  const atCrankPin = rod.mass - atPistonPin;
+  const moved = motion(phi, shape, omega, alpha);
+  const gas = (piston.area ?? 0) * pressureAt(train, shares, number, phi);
+  const forceWith = (mass) => gas - mass * moved.acceleration;
+  const net = forceWith(piston.mass + atPistonPin);
+  const of = forces(phi, shape, net);
+  const [turningX, turningY] = inertiaAtThrow(atCrankPin, r, phi, omega, alpha);
+  return {
+    "piston displacement": moved.displacement,
+    "piston velocity": moved.velocity,
+    "piston acceleration": moved.acceleration,
+    "net force": net,
+    "side thrust": of.side,
+    "rod force": of.rod,
+    "tangential force": of.tangential,
+    "radial force": of.radial,
+    torque: of.tangential * r - atCrankPin * r ** 2 * alpha,
+    "gas torque": forces(phi, shape, gas).tangential * r,
+    "piston pin force x": forceWith(piston.mass),
+    "piston pin force y": -of.side,
+    "crank pin force x": net + turningX,
+    "crank pin force y": turningY - of.side,
+  };
+}
+
+/** Force that a mass turning at the crank radius needs: inwards, and forwards with alpha [N]. */
+function inertiaAtThrow(mass, radius, angle, omega, alpha) {
+  const inwards = mass * radius * omega ** 2;
+  const forwards = mass * radius * alpha;
+  const [sin, cos] = [Math.sin(angle), Math.cos(angle)];
+  return [-inwards * cos - forwards * sin, -inwards * sin + forwards * cos];
+}

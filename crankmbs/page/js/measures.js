@@ -1,0 +1,178 @@
+/** What a motion amounts to over a stretch of angle: means, peaks, power, with refined peaks.
+ *
+ * Integrals are Gauss sums over panels in which everything is smooth, halved where a quantity is
+ * not: the size of a force has a kink where the force passes zero. Peaks are looked for between the
+ * samples, panel by panel.
+ */
+import { bottomPosition, topPosition } from "./geometry.js";
+import { reactionsAt } from "./reactions.js";
+
+const ROUGH = 1e-7; // of a quantity: such a tail of its polynomial, and the sum errs by its square
+const DEEPEST = 24; // halvings of one panel
+const CANDIDATES = 6;
+const GOLDEN = 0.5 * (Math.sqrt(5) - 1);
+const CLOSENESS = 45; // steps of the golden section: to 4e-10 of a panel
+
+/** The size of the force in each joint of a cylinder, by its name. */
+const JOINTS = {
+  "crank pin": (v) => Math.hypot(v.crank_pin_force_x, v.crank_pin_force_y),
+  "piston pin": (v) => Math.hypot(v.piston_pin_force_x, v.piston_pin_force_y),
+  "side force": (v) => Math.abs(v.side_force),
+};
+
+/** The last whole cycle of a motion that ends at `to` after turning from `from`; without one the
+ * last whole revolution, or else all of it: its kind, and where it begins [rad]. */
+export function lastSpan(from, to, period) {
+  const turned = Math.abs(to - from);
+  const sense = Math.sign(to - from);
+  for (const [kind, wanted] of [["last cycle", period], ["last revolution", 2 * Math.PI]]) {
+    if (turned >= wanted - 1e-9) return { kind, from: to - sense * wanted, to };
+  }
+  return { kind: "whole run", from, to };
+}
+
+/** The measures of a motion over a span, in SI units; joints as { joint, cylinder, peak, mean,
+ * crank_angle }. rule : of Gauss, with more nodes than the motion's own */
+export function measuresOf(motion, rule, span) {
+  const { train } = motion;
+  const [first, last] = [motion.at(span.from), motion.at(span.to)];
+  const duration = last.time - first.time;
+  const places = placesOf(train);
+  const panels = panelsOf(motion, rule, span, (at) => rowOf(train, places, at));
+  const means = integrals(panels, rule).map((each) => each / duration);
+  const angle = span.to - span.from;
+  const speed = angle / duration;
+  const peaks = places.map((place, q) => highest(motion, panels, place, q));
+  const joints = places.slice(0, -2).map(({ joint, cylinder }, k) => {
+    return { joint, cylinder, ...peaks[k], mean: means[k] };
+  });
+  const [fastest, slowest] = peaks.slice(-2).map((each) => each.peak);
+  const [rods, outside, ...gas] = means.slice(places.length);
+  const work = gas.map((each) => each * duration);
+  return {
+    window: span.kind,
+    mean_speed: speed,
+    fluctuation: (fastest + slowest) / Math.abs(speed),
+    speed_gain: last.omega - first.omega,
+    joints,
+    crank_torque: rods / speed,
+    external_torque: outside / speed,
+    ...indicated(train, span.kind, work, duration),
+  };
+}
+
+/** Power and mean effective pressure of the gas, whose work on each piston is given [J]. */
+function indicated({ pressure, piston, shape }, kind, work, duration) {
+  if (!pressure.length) return { indicated_power: null, imep: null };
+  const total = work.reduce((sum, each) => sum + each, 0);
+  const volume = piston.area * (topPosition(shape) - bottomPosition(shape));
+  const imep = kind === "last cycle" ? work.map((each) => each / volume) : null;
+  return { indicated_power: total / duration, imep };
+}
+
+/** What has a peak: every joint's force, the speed and the negative speed. */
+function placesOf({ cylinders }) {
+  const bearing = (v) => Math.hypot(v.main_bearing_force_x, v.main_bearing_force_y);
+  const places = [{ joint: "main bearing", cylinder: null, size: bearing }];
+  for (const [joint, size] of Object.entries(JOINTS)) {
+    cylinders.forEach((_, k) => {
+      places.push({ joint, cylinder: k + 1, size: (v) => size(v.cylinders[k]) });
+    });
+  }
+  return [...places, { size: (v) => v.crank_speed }, { size: (v) => -v.crank_speed }];
+}
+
+/** The sizes of all places, the power of the rods and from outside, and that of the gas by
+ * cylinder, at a sample. */
+function rowOf(train, places, sample) {
+  const v = reactionsAt(train, sample);
+  const rods = v.cylinders.reduce((sum, each) => sum + each.crank_torque, 0);
+  const gas = v.cylinders.map((each) => each.gas_force * each.piston_velocity);
+  const power = [rods * v.crank_speed, v.external_torque * v.crank_speed, ...gas];
+  return [...places.map(({ size }) => size(v)), ...power];
+}
+
+/** The span cut into panels, each with rows at its nodes, halved where one is not smooth. */
+function panelsOf(motion, rule, span, row) {
+  const edges = motion.smoothBetween(span.from, span.to);
+  const open = [];
+  for (let k = edges.length - 1; k > 0; k--) open.push([edges[k - 1], edges[k], 0]);
+  const done = [];
+  const scale = [];
+  while (open.length) {
+    const [from, to, depth] = open.pop();
+    const samples = Array.from(rule.nodes, (node) => motion.at(from + (to - from) * node));
+    const rows = samples.map(row);
+    rows.forEach((each) => each.forEach((value, q) => {
+      scale[q] = Math.max(scale[q] ?? 0, Math.abs(value));
+    }));
+    if (depth < DEEPEST && isRough(rows, rule, scale)) {
+      const middle = 0.5 * (from + to);
+      open.push([middle, to, depth + 1], [from, middle, depth + 1]);
+    } else {
+      const spent = samples.map(({ omega }) => (to - from) / omega);
+      done.push({ from, to, rows, spent });
+    }
+  }
+  return done;
+}
+
+/** Whether the polynomial through the nodes still has much in its last two coefficients. */
+function isRough(rows, rule, scale) {
+  const s = rule.nodes.length;
+  return scale.some((size, q) => {
+    let tail = 0;
+    for (const j of [s - 2, s - 1]) {
+      let sum = 0;
+      for (let i = 0; i < s; i++) sum += rule.to_legendre[j * s + i] * rows[i][q];
+      tail += Math.abs(sum);
+    }
+    return tail > ROUGH * size;
+  });
+}
+
+/** Integrals over time of everything in the rows. */
+function integrals(panels, rule) {
+  const totals = panels[0].rows[0].map(() => 0);
+  for (const { rows, spent } of panels) {
+    rows.forEach((row, i) => row.forEach((value, q) => {
+      totals[q] += rule.weights[i] * spent[i] * value;
+    }));
+  }
+  return totals;
+}
+
+/** The largest value of a place, number q in the rows, and the crank angle where it is. */
+function highest(motion, panels, { size }, q) {
+  const valueAt = (theta) => size(reactionsAt(motion.train, motion.at(theta)));
+  const coarse = panels.map(({ from, to, rows }) => {
+    const values = rows.map((row) => row[q]);
+    const top = Math.max(...values);
+    return { from, to, top, reach: top + (top - Math.min(...values)) };
+  });
+  const most = Math.max(...coarse.map((each) => each.top));
+  const order = coarse.filter((each) => each.reach >= most).sort((a, b) => b.top - a.top);
+  const found = order.slice(0, CANDIDATES).map((panel) => highestIn(valueAt, panel));
+  return found.reduce((best, each) => (each.peak > best.peak ? each : best));
+}
+
+/** The same in a panel in which it rises and falls at most once, by the golden section. */
+function highestIn(valueAt, { from, to }) {
+  let [low, high] = [from, to];
+  let [a, b] = [high - GOLDEN * (high - low), low + GOLDEN * (high - low)];
+  let [atA, atB] = [valueAt(a), valueAt(b)];
+  for (let n = 0; n < CLOSENESS; n++) {
+    if (atA > atB) {
+      [high, b, atB] = [b, a, atA];
+      a = high - GOLDEN * (high - low);
+      atA = valueAt(a);
+    } else {
+      [low, a, atA] = [a, b, atB];
+      b = low + GOLDEN * (high - low);
+      atB = valueAt(b);
+    }
+  }
+  const ends = [[from, valueAt(from)], [to, valueAt(to)], [a, atA], [b, atB]];
+  const [crank_angle, peak] = ends.reduce((best, each) => (each[1] > best[1] ? each : best));
+  return { peak, crank_angle };
+}

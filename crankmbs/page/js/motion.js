@@ -1,0 +1,243 @@
+/** One free rotation that does not reverse, with the crank angle as the variable.
+ *
+ * The kinetic energy E = J omega^2 / 2 obeys dE/dtheta = Q, the torque of gas, weights and loads;
+ * time follows from dt/dtheta = 1 / omega. Gauss collocation solves cell after cell, between edges
+ * that are the knots of pressures and loads over the angle. Where a load bends or jumps in time or
+ * speed the motion lands on the kink and goes on from there in a new cell.
+ */
+import { countUpTo } from "./arrays.js";
+import { Stepper } from "./cell.js";
+import { Firing } from "./fuel.js";
+import { branchAt, firstPhases, laterPhases, torqueOf, torqueOverAngle } from "./loads.js";
+import { Path } from "./path.js";
+import { givenAt, reduceAt } from "./tables.js";
+
+const SLIVER = 1e-12; // rad
+const LANDINGS = 12;
+const GRAZES = 16; // places in a cell at which a speed is looked at that comes near a kink
+
+/** A motion on its way from a state, cell by cell.
+ *
+ * grid : { edges, tables, rule }; begin : { theta, time, energy, sense }; stop : { theta, time }
+ * ending : "complete", "slow" where the crank comes near rest, "held" where a jump of a load holds
+ * its speed; factor : by which a small difference of the energy has grown
+ */
+export class Travel {
+  constructor(train, grid, begin, stop) {
+    Object.assign(this, { train, grid, stop, ...begin });
+    const { inertia } = reduceAt(train, this.theta);
+    const omega = this.sense * Math.sqrt((2 * this.energy) / inertia);
+    this.start = { angle: this.theta, speed: omega };
+    this.phases = firstPhases(train.loads, omega);
+    this.firing = new Firing(train.fuel, train.cylinders, train.period, this.start);
+    this.path = new Path(grid.rule);
+    this.stepper = new Stepper(grid.rule);
+    this.factor = 1;
+    this.lost = 0; // of the energy and the time by rounding
+    this.late = 0;
+    this.stuck = 0;
+    this.ending = null;
+    if (this.enter(omega)) this.go();
+  }
+
+  /** Take the branch of the loads that the motion enters; whether there is one. */
+  enter(omega) {
+    const { train, theta, time, phases } = this;
+    const of = reduceAt(train, theta);
+    const given = givenAt(train, of, this.firing.shares, this.sense, omega);
+    const rest = given + torqueOverAngle(train.loads, phases, theta) - 0.5 * of.slope * omega ** 2;
+    this.branch = branchAt(train.loads, phases, time, omega, rest);
+    if (this.branch === null) {
+      this.ending = "held";
+      return false;
+    }
+    this.branch.tEnd = Math.min(this.branch.tEnd, this.stop.time);
+    return true;
+  }
+
+  go() {
+    const { edges } = this.grid;
+    const n = edges.length - 1;
+    const period = edges[n];
+    let turn = Math.floor((this.theta + this.sense * SLIVER) / period);
+    let k = countUpTo(edges, this.theta + this.sense * SLIVER - turn * period) - 1;
+    if (k === n) [turn, k] = [turn + 1, 0];
+    while (this.ending === null) {
+      this.toEdge(turn, k);
+      k += this.sense;
+      if (k === n) [turn, k] = [turn + 1, 0];
+      if (k < 0) [turn, k] = [turn - 1, n - 1];
+    }
+  }
+
+  /** Through cell k of a period, across all kinks in it, to its other edge or the end. */
+  toEdge(turn, k) {
+    const { edges } = this.grid;
+    const base = turn * edges[edges.length - 1];
+    const [low, high] = [base + edges[k], base + edges[k + 1]];
+    const edge = this.sense > 0 ? high : low;
+    const last = this.sense * (this.stop.theta - edge) <= SLIVER;
+    const target = last ? this.stop.theta : edge;
+    if (!last && this.sense * (target - this.theta) <= SLIVER) return;
+    const short = high - low - Math.abs(target - this.theta);
+    const whole = target === edge && Math.abs(short) < SLIVER;
+    if (whole) this.stepper.load(this, this.grid, k, this.sense);
+    this.pass(target, whole ? k : -1);
+    while (this.ending === null && this.theta !== target) this.pass(target, -1);
+    if (this.ending !== null) return;
+    if (last) this.ending = "complete";
+    else if (this.train.fuel !== null) this.decide();
+  }
+
+  decide() {
+    const { inertia } = reduceAt(this.train, this.theta);
+    const omega = this.sense * Math.sqrt((2 * this.energy) / inertia);
+    this.firing.pass(this.time, this.theta, omega, this.sense);
+  }
+
+  /** To an angle, or the first kink on the way; number : of the cell, if it is a whole one. */
+  pass(target, number) {
+    const { stepper } = this;
+    if (number < 0) stepper.tabulate(this, target);
+    if (!stepper.solve(this, target - this.theta) || stepper.isSlow()) {
+      this.ending = "slow";
+      return;
+    }
+    const exit = this.exit(target - this.theta);
+    if (exit === null) this.accept(target, number);
+    else this.land(target, exit);
+  }
+
+  /** Add the solved cell and go on to its end. */
+  accept(target, number) {
+    const { stepper, energy, time } = this;
+    const width = target - this.theta;
+    const { sense, branch, phases } = this;
+    const { torque, slowness } = stepper.nodes();
+    this.path.add({
+      from: this.theta, width, energy, time, sense,
+      branch, phases, shares: this.firing.shares, number, torque, slowness, first: 0,
+    });
+    const gained = width * stepper.work - this.lost;
+    this.energy = energy + gained;
+    this.lost = this.energy - energy - gained;
+    const spent = Math.abs(width) * stepper.spent - this.late;
+    this.time = time + spent;
+    this.late = this.time - time - spent;
+    this.factor *= 1 + stepper.growth(width);
+    this.theta = target;
+    this.stuck = 0;
+  }
+
+  /** Where in the solved cell, from 0 to 1, the branch ends first, and by what; null if nowhere. */
+  exit(width) {
+    const { branch, stepper, sense, time } = this;
+    const exits = [];
+    if (time + Math.abs(width) * stepper.spent >= branch.tEnd) {
+      const late = (x) => time + Math.abs(width) * stepper.spentTo(x) - branch.tEnd;
+      exits.push({ x: rootIn(late, 0, 1), time: branch.tEnd, omega: null });
+    }
+    for (const [limit, side] of [[branch.low, -1], [branch.high, 1]]) {
+      if (!Number.isFinite(limit) || limit * sense <= 0) continue;
+      const beyond = (x) => side * (this.speedIn(width, x) - limit);
+      const x = firstAbove(beyond, stepper.places, stepper.mayLeave(limit, sense));
+      if (x !== null) exits.push({ x, time: null, omega: limit });
+    }
+    return exits.reduce((first, one) => (first === null || one.x < first.x ? one : first), null);
+  }
+
+  /** Speed [rad/s] at a place of the solved cell. */
+  speedIn(width, x) {
+    const { inertia } = reduceAt(this.train, this.theta + x * width);
+    const energy = this.energy + width * this.stepper.workTo(x);
+    return this.sense * Math.sqrt((2 * Math.max(energy, 0)) / inertia);
+  }
+
+  /** Solve again up to the kink, by Newton's method, and go on from there on the next branch. */
+  land(target, exit) {
+    const { stepper } = this;
+    const whole = target - this.theta;
+    let width = exit.x * whole;
+    for (let n = 0; n < LANDINGS && Math.abs(width) > SLIVER; n++) {
+      stepper.tabulate(this, this.theta + width);
+      if (!stepper.solve(this, width)) break;
+      const step = this.missing(exit, width);
+      if (Math.abs(step) <= 1e-15 * Math.max(1, Math.abs(this.theta))) break;
+      const next = width + step;
+      width = next / whole > 0 ? next : 0.5 * width;
+    }
+    if (Math.abs(width) > SLIVER) this.accept(this.theta + width, -1);
+    else if (++this.stuck > 3) this.ending = "held";
+    if (this.ending === null) this.arrive(exit);
+  }
+
+  /** By how much wider [rad] the solved cell must be to end on the kink. */
+  missing({ time, omega }, width) {
+    const { stepper } = this;
+    const at = this.theta + width;
+    const end = this.energy + width * stepper.work;
+    const of = reduceAt(this.train, at);
+    const speed = this.sense * Math.sqrt((2 * end) / of.inertia);
+    const t = this.time + Math.abs(width) * stepper.spent;
+    if (time !== null) return speed * (time - t);
+    const given = givenAt(this.train, of, this.firing.shares, this.sense, speed);
+    const outside = torqueOf(this.branch, t, speed);
+    const over = torqueOverAngle(this.train.loads, this.phases, at);
+    const alpha = (given + outside + over - 0.5 * of.slope * speed * speed) / of.inertia;
+    return ((omega - speed) * speed) / alpha;
+  }
+
+  /** On a kink: exactly there, in the phases and on the branch that begin. */
+  arrive({ time, omega }) {
+    const { inertia } = reduceAt(this.train, this.theta);
+    if (time !== null) this.time = time;
+    if (omega !== null) this.energy = 0.5 * inertia * omega * omega;
+    this.lost = this.late = 0;
+    if (time !== null && time >= this.stop.time) {
+      this.ending = "complete";
+      return;
+    }
+    const speed = omega ?? this.sense * Math.sqrt((2 * this.energy) / inertia);
+    const before = this.accelerated(speed);
+    this.phases = laterPhases(this.train.loads, this.phases, this.time, speed);
+    // where the torque jumps a difference of energies is passed on by the ratio of accelerations
+    if (this.enter(speed) && omega !== null && before !== 0) {
+      this.factor *= this.accelerated(speed) / before;
+    }
+  }
+
+  /** Acceleration times inertia [N m] at the state, on the present branch. */
+  accelerated(omega) {
+    const { train, theta, time, branch, phases } = this;
+    const of = reduceAt(train, theta);
+    const given = givenAt(train, of, this.firing.shares, this.sense, omega);
+    const outside = torqueOf(branch, time, omega) + torqueOverAngle(train.loads, phases, theta);
+    return given + outside - 0.5 * of.slope * omega * omega;
+  }
+}
+
+/** A root of a function that is below 0 at one place and not below at a later one. */
+function rootIn(f, low, high) {
+  if (f(low) >= 0) return low;
+  for (let n = 0; n < 60 && high - low > 1e-16; n++) {
+    const middle = 0.5 * (low + high);
+    if (f(middle) >= 0) high = middle;
+    else low = middle;
+  }
+  return high;
+}
+
+/** The first place, from 0 to 1, where a function rises above 0: between neighbouring places, or,
+ * where it comes near, between more of them. */
+function firstAbove(f, places, near) {
+  if (!near) return null;
+  let before = 0;
+  for (let k = 1; k < places.length; k++) {
+    for (let part = 1; part <= GRAZES; part++) {
+      const x = places[k - 1] + ((places[k] - places[k - 1]) * part) / GRAZES;
+      if (f(x) > 0) return rootIn(f, before, x);
+      before = x;
+    }
+  }
+  return null;
+}

@@ -1,0 +1,294 @@
+/** The page: knobs, mechanism and plots of one scene, and what happens between them. */
+import { decoded } from "./answers.js";
+import { fillChoices, find, listenToChoices, showChoices, showSlower } from "./controls.js";
+import { enlarge, showWords, unused } from "./controls.js";
+import { cycleOf } from "./cycle.js";
+import { dragged } from "./drag.js";
+import { Engine } from "./engine.js";
+import { inertiaFor } from "./flywheel.js";
+import { deadCentres } from "./geometry.js";
+import { Knobs } from "./knobs.js";
+import { Player } from "./player.js";
+import { Plot } from "./plot.js";
+import { drawn } from "./quantities.js";
+import { Refused } from "./refused.js";
+import { Stage } from "./stage.js";
+import { Address, numberOf } from "./state.js";
+import { dataFile, save, sceneFile } from "./taken.js";
+import { Turner } from "./turned.js";
+import { firstView, keysOf, tellingPose } from "./view.js";
+import { deadCentreMarks } from "./words.js";
+
+const DEGREE = Math.PI / 180;
+const LATER = 100; // ms after the last turn of a knob: the second pass
+const PLOTS = ["upper", "lower"];
+
+/** Begin with what Python wrote into the page. */
+export function start() {
+  const given = decoded(JSON.parse(document.getElementById("given").textContent));
+  return new Page(given);
+}
+
+class Page {
+  constructor(given) {
+    this.given = given;
+    this.turner = new Turner(given);
+    this.quick = new Engine(given.rules);
+    this.careful = new Engine(given.rules);
+    this.values = {};
+    this.view = firstView(given);
+    this.cycle = null;
+    this.address = new Address(keysOf(given), given.sentences);
+    this.stage = new Stage(find("stage"), given.compression, () => this.redraw());
+    this.player = new Player({ cycle: () => this.cycle, move: (theta) => this.pose(theta) });
+    this.listen();
+    this.begin();
+  }
+
+  listen() {
+    const { given } = this;
+    this.knobs = new Knobs(find("sliders"), given.knobs, given.sentences, {
+      turn: (name, value) => this.turn(name, value),
+      release: () => this.release(),
+      refuse: (sentence) => this.say(sentence),
+    });
+    find("fluctuation")?.addEventListener("change", ({ target }) => this.even(target.value));
+    dragged(this.stage, {
+      theta: () => this.theta,
+      turn: (theta) => this.seek(theta),
+      rim: (ratio) => this.turnRim(ratio),
+      grip: (kind) => kind !== "rim" && this.play(false),
+      release: () => this.release(),
+    });
+    this.plots = Object.fromEntries(PLOTS.map((name) => [name, this.plot(name)]));
+    listenToChoices((name, value) => {
+      if (name in this.view) this.view = { ...this.view, [name]: value };
+      this.turn(name, name in this.view ? undefined : value);
+      this.release();
+    });
+    this.press("play", () => this.play(!this.player.playing));
+    this.press("reset", () => this.reset());
+    this.press("toml", () => save(...sceneFile(given, this.values, this.cycle)));
+    this.press("csv", () => save(...dataFile(given, this.cycle)));
+    this.press("large", enlarge);
+    find("angle").addEventListener("input", (event) => {
+      this.play(false);
+      this.seek(Number(event.target.value) * DEGREE);
+    });
+    find("angle").addEventListener("change", () => this.release());
+    document.addEventListener("keydown", (event) => this.key(event));
+    addEventListener("hashchange", () => this.open(location.hash));
+  }
+
+  press(id, does) {
+    find(id).addEventListener("click", does);
+  }
+
+  plot(name) {
+    const root = find(name);
+    const plot = new Plot(root, (degrees) => {
+      if (degrees === null) return this.release();
+      this.play(false);
+      return this.seek(degrees * DEGREE);
+    });
+    fillChoices(root.querySelector("select"), this.given.scene);
+    const pin = root.querySelector(".pin");
+    pin.addEventListener("click", () => pin.setAttribute("aria-pressed", String(plot.pin())));
+    return plot;
+  }
+
+  begin() {
+    this.update();
+    this.say("");
+    if (location.hash.length > 1) this.open(location.hash);
+    if (this.cycle === null) return;
+    if (this.view.angle === null) this.seek(tellingPose(this.cycle));
+    const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
+    this.play(!still);
+  }
+
+  /** Show the state that an address says; what cannot be leaves the page as it is. */
+  open(address) {
+    const before = { values: this.values, view: this.view };
+    try {
+      const state = this.address.read(address);
+      this.view = { ...firstView(this.given) };
+      this.values = {};
+      for (const [name, value] of Object.entries(state)) {
+        (name in this.view ? this.view : this.values)[name] = value;
+      }
+      this.compute();
+      this.say("");
+    } catch (refused) {
+      if (!(refused instanceof Refused)) throw refused;
+      Object.assign(this, before);
+      this.say(refused.message);
+    }
+    this.knobs.show(this.values);
+    this.redraw();
+    if (this.view.angle !== null) this.seek(this.view.angle * DEGREE);
+  }
+
+  /** Give a knob a value; without one, the scene's own. */
+  turn(name, value) {
+    const { [name]: _, ...others } = this.values;
+    this.values = value === undefined ? others : { ...others, [name]: value };
+    this.update();
+  }
+
+  turnRim(ratio) {
+    const knob = this.given.knobs.find((each) => each.name === "flywheel");
+    this.turn("flywheel", Math.min(Math.max(ratio * knob.value, knob.low), knob.high));
+    this.knobs.show(this.values);
+  }
+
+  /** Take the flywheel with which the speed fluctuates by so many percent. */
+  even(text) {
+    const { given, values } = this;
+    const knob = given.knobs.find((each) => each.name === "flywheel");
+    const present = { ...knob, value: values.flywheel ?? knob.value };
+    try {
+      const limits = { name: "fluctuation", low: 0, high: 100 };
+      const wanted = numberOf(text, limits, given.sentences) / 100;
+      const at = (flywheel) => {
+        const turned = { ...values, flywheel };
+        const asked = this.turner.scene(turned);
+        return this.pass(this.careful, asked, turned, { fine: true }).fluctuation;
+      };
+      this.turn("flywheel", inertiaFor(wanted, at, present, given.sentences.fluctuation));
+      this.knobs.show(this.values);
+      this.release();
+    } catch (refused) {
+      if (!(refused instanceof Refused)) throw refused;
+      this.say(refused.message);
+    }
+  }
+
+  reset() {
+    this.values = {};
+    this.view = { ...firstView(this.given), angle: this.view.angle };
+    this.knobs.show({});
+    this.update();
+    this.release();
+  }
+
+  /** Compute and draw; where it cannot be, keep the last good picture and say why. */
+  update() {
+    try {
+      this.compute();
+      this.say("");
+    } catch (refused) {
+      if (!(refused instanceof Refused)) throw refused;
+      this.say(refused.message);
+      return;
+    }
+    this.redraw();
+  }
+
+  compute() {
+    const { values } = this;
+    const asked = this.turner.scene(values);
+    this.cycle = this.pass(this.quick, asked, values, { warm: this.cycle });
+    this.asked = asked;
+    this.good = values;
+    this.error = null;
+    clearTimeout(this.later);
+    this.later = setTimeout(() => this.refine(), LATER);
+  }
+
+  /** The cycle of a scene that is asked for, by an engine. */
+  pass(engine, asked, values, options) {
+    const balanced = values.load_is === "rebalanced" && asked.motion === null;
+    const speed = balanced ? asked.start.speed : null;
+    return cycleOf(engine, asked, this.given.endings, { ...options, speed });
+  }
+
+  /** The second pass: cells cut until they are good, measures, and how far the first was off. */
+  refine() {
+    const { cycle, asked, good } = this;
+    const better = this.pass(this.careful, asked, good, { fine: true, warm: cycle });
+    const apart = better.samples.map((v, k) =>
+      Math.abs(v.crank_speed - cycle.samples[k].crank_speed));
+    this.error = Math.max(...apart) / Math.abs(better.mean);
+    this.cycle = better;
+    this.redraw();
+  }
+
+  redraw() {
+    const { cycle, given, view } = this;
+    if (!cycle) return;
+    const k = Math.min(Number(view.cylinder), cycle.train.cylinders.length) - 1;
+    const own = given.scene.crank.inertia;
+    const ratio = own > 0 ? cycle.scene.crank.inertia / own : 1;
+    const heavy = given.knobs.some((each) => each.name === "flywheel");
+    this.stage.show(cycle, { k, body: view.forces, ratio, heavy });
+    const marks = deadCentreMarks(cycle, k, deadCentres(cycle.train.shape));
+    for (const name of PLOTS) this.plots[name].draw(drawn(view[name], cycle, k), marks);
+    showChoices(given, cycle, { ...given.own, ...view, ...this.values, cylinder: String(k + 1) });
+    this.knobs.disable(unused(cycle, given, this.values));
+    this.player.slower = showSlower(cycle, (slower) => {
+      this.player.slower = slower;
+    });
+    showWords(given, cycle, this.error);
+    this.seek(this.theta ?? tellingPose(cycle));
+  }
+
+  /** Turn to a crank angle [rad], back into the cycle that is shown. */
+  seek(theta) {
+    const { from, to } = this.cycle;
+    const [low, period] = [Math.min(from, to), Math.abs(to - from)];
+    const outside = theta > low + period + 1e-9 || theta < low - 1e-9;
+    const turns = outside ? Math.floor((theta - low) / period) : 0;
+    this.pose(theta - turns * period);
+    this.player.seek(this.theta);
+  }
+
+  pose(theta) {
+    this.theta = theta;
+    const degrees = theta / DEGREE;
+    this.stage.pose(theta);
+    for (const name of PLOTS) this.plots[name].place(degrees);
+    find("angle").value = degrees;
+    const text = `${degrees.toFixed(0)}°`;
+    find("angle").setAttribute("aria-valuetext", text);
+    find("degrees").textContent = text;
+    find("lead").textContent = this.stage.leadInWords(theta);
+  }
+
+  play(wanted) {
+    this.player.play(wanted, this.theta);
+    find("play").textContent = wanted ? "❚❚ pause" : "► play";
+    find("play").setAttribute("aria-pressed", String(wanted));
+  }
+
+  key(event) {
+    if (event.target.closest("input, select, button, textarea")) return;
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    const step = { ArrowLeft: -1, ArrowRight: 1, ArrowDown: -1, ArrowUp: 1 }[event.key];
+    if (event.key === " ") {
+      this.play(!this.player.playing);
+    } else if (step) {
+      this.play(false);
+      const degrees = Math.round(this.theta / DEGREE) + step * (event.shiftKey ? 10 : 1);
+      this.seek(degrees * DEGREE);
+      this.release();
+    } else {
+      return;
+    }
+    event.preventDefault();
+  }
+
+  /** Keep in the address what is shown. */
+  release() {
+    const first = firstView(this.given);
+    const view = Object.entries(this.view).filter(([name, value]) => value !== first[name]);
+    const state = { ...this.good, ...Object.fromEntries(view) };
+    if (!this.player.playing) state.angle = Number((this.theta / DEGREE).toFixed(3));
+    history.replaceState(null, "", this.address.write(state));
+  }
+
+  say(sentence) {
+    find("message").textContent = sentence;
+    find("message").hidden = sentence === "";
+  }
+}

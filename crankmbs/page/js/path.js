@@ -1,0 +1,48 @@
+/** A solved motion: cells of the crank angle, and what lies between their edges. */
+import { countUpTo } from "./arrays.js";
+import { torqueOf, torqueOverAngle } from "./loads.js";
+import { integralTo } from "./rule.js";
+import { givenAt, reduceAt } from "./tables.js";
+
+/** Solved cells, each from `from` over `width` [rad, signed] on one branch of the loads; torque and
+ * slowness at its nodes stand in their arrays from number `first` on. */
+export class Path {
+  constructor(rule) {
+    this.rule = rule;
+    this.cells = [];
+    this.starts = [];
+  }
+
+  add(cell) {
+    this.cells.push(cell);
+    this.starts.push(cell.sense * cell.from);
+  }
+
+  /** The cell in which a crank angle lies; one on an edge is in that before it. */
+  cellAt(theta) {
+    const { sense } = this.cells[0];
+    let k = countUpTo(this.starts, sense * theta) - 1;
+    if (k > 0 && this.starts[k] === sense * theta) k--;
+    return this.cells[Math.max(k, 0)];
+  }
+
+  /** Time [s], speed, acceleration [rad/s, rad/s2], torque from outside [N m] and shares of the
+   * combustion at a crank angle [rad]. */
+  at(train, theta) {
+    return readCell(train, this.rule, this.cellAt(theta), theta);
+  }
+}
+
+/** What `Path.at` gives, in a cell. */
+export function readCell(train, rule, cell, theta) {
+  const { from, width, sense, energy, time, first, branch, phases, shares } = cell;
+  const x = (theta - from) / width;
+  const t = time + Math.abs(width) * integralTo(rule, cell.slowness, first, x);
+  const kinetic = energy + width * integralTo(rule, cell.torque, first, x);
+  const of = reduceAt(train, theta);
+  const omega = sense * Math.sqrt((2 * Math.max(kinetic, 0)) / of.inertia);
+  const outside = torqueOf(branch, t, omega) + torqueOverAngle(train.loads, phases, theta);
+  const given = givenAt(train, of, shares, sense, omega);
+  const alpha = (given + outside - 0.5 * of.slope * omega * omega) / of.inertia;
+  return { time: t, theta, omega, alpha, external_torque: outside, shares };
+}

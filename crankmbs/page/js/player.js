@@ -1,0 +1,49 @@
+/** Lets the crank turn as fast as the run has it, so many times slower. */
+
+const SECONDS = 7; // that a cycle takes at first
+const SLOWER = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000];
+
+export class Player {
+  /** on : { cycle() the cycle shown, move(theta) } */
+  constructor(on) {
+    this.on = on;
+    this.playing = false;
+    this.slower = null;
+    this.turn = this.turn.bind(this);
+  }
+
+  /** The factor of slow motion at which a cycle takes some seconds. */
+  static fitting(duration) {
+    const wanted = Math.log(SECONDS / duration);
+    const far = (factor) => Math.abs(Math.log(factor) - wanted);
+    return SLOWER.reduce((best, each) => (far(each) < far(best) ? each : best));
+  }
+
+  static get choices() {
+    return SLOWER;
+  }
+
+  play(wanted, theta) {
+    if (wanted && !this.playing) {
+      this.time = this.on.cycle().timeTo(theta);
+      this.before = null;
+      requestAnimationFrame(this.turn);
+    }
+    this.playing = wanted;
+  }
+
+  /** Go on from another angle. */
+  seek(theta) {
+    if (this.playing) this.time = this.on.cycle().timeTo(theta);
+  }
+
+  turn(now) {
+    if (!this.playing) return;
+    const passed = this.before === null ? 0 : Math.min(now - this.before, 100) / 1000;
+    this.before = now;
+    const cycle = this.on.cycle();
+    this.time = (this.time + passed / this.slower) % cycle.duration;
+    this.on.move(cycle.angleAt(this.time));
+    requestAnimationFrame(this.turn);
+  }
+}

@@ -1,0 +1,243 @@
+/** One plot: curves over the crank angle with a strip of their differences, or a diagram.
+ *
+ * It is drawn in pixels of the page, so that its type has the size of the page's; the cursor can
+ * be dragged, and what lies under the pointer is read out.
+ */
+import { drawAxes, frameOf } from "./axis.js";
+import { decimalsFor, readable } from "./format.js";
+import { add, pathOf, set, watched } from "./svg.js";
+
+const STRIP = 0.3; // of the height, for the differences
+const NOTHING = 1e-9; // of the largest value: a difference that is none
+
+export class Plot {
+  /** root : a figure with .legend and svg; onMove : of the crank angle [deg] that is asked for */
+  constructor(root, onMove) {
+    this.root = root;
+    this.svg = root.querySelector("svg");
+    this.legend = root.querySelector(".legend");
+    this.onMove = onMove;
+    this.shape = null;
+    this.ghost = null;
+    this.degrees = 0;
+    this.hover = null;
+    this.size = null;
+    this.axes = { upper: add(this.svg, "g"), lower: add(this.svg, "g") };
+    this.lines = add(this.svg, "g");
+    this.cursor = add(this.svg, "g", { class: "cursor" });
+    watched(this.svg, (size) => {
+      this.size = size;
+      this.redraw();
+    });
+    this.svg.addEventListener("pointerdown", (event) => this.press(event));
+    this.svg.addEventListener("pointermove", (event) => this.move(event));
+    this.svg.addEventListener("pointerleave", () => this.point(null));
+  }
+
+  /** Draw other curves: { shape, marks } with the shape of `quantities.drawn`. */
+  draw(shape, marks) {
+    this.shape = shape;
+    this.marks = marks;
+    if (this.ghost && this.ghost.title !== shape.title) this.ghost = null;
+    this.redraw();
+  }
+
+  /** Keep the curve of the run as it is, or let it go. */
+  pin() {
+    this.ghost = this.ghost ? null : { title: this.shape.title, curve: this.shape.curves[0] };
+    this.redraw();
+    return this.ghost !== null;
+  }
+
+  redraw() {
+    const { svg, shape, size } = this;
+    if (!shape || !size || size.width < 50 || size.height < 50) return;
+    const { width, height, type } = size;
+    set(svg, { viewBox: `0 0 ${width} ${height}`, "aria-label": this.described() });
+    this.type = type;
+    const seen = this.visible();
+    const strip = shape.differences.length > 0;
+    const overAngle = !isDiagram(shape);
+    const foot = height - (overAngle ? 1.5 : 2.6) * type;
+    const split = strip ? foot - STRIP * height : foot;
+    const box = { left: 4.4 * type, right: width - 1.2 * type, top: 1.3 * type };
+    const top = { ...box, bottom: strip ? split - 1.5 * type : foot };
+    const curves = this.ghost ? [...shape.curves, this.ghost.curve] : shape.curves;
+    const about = { type, shape, marks: this.marks, overAngle, left: box.left };
+    this.upper = frameOf(top, curves, about);
+    this.draws("upper", this.upper, { ...about, last: !strip, name: nameOf(shape) });
+    this.lower = strip ? frameOf({ ...box, top: split, bottom: foot }, seen, about) : null;
+    this.draws("lower", this.lower, { ...about, last: true, name: "difference" });
+    const lines = this.ghost ? [[this.upper, this.ghost.curve, "ghost"]] : [];
+    shape.curves.forEach((curve, n) => lines.push([this.upper, curve, styleOf(curve, n)]));
+    if (strip) seen.forEach((each) => lines.push([this.lower, each, each.style]));
+    this.drawLines(lines);
+    this.place(this.degrees);
+  }
+
+  /** Draw axes anew where they differ from those that stand there. */
+  draws(name, frame, about) {
+    const group = this.axes[name];
+    if (frame === null) {
+      group.replaceChildren();
+      this.axes[`${name} as`] = "";
+      return;
+    }
+    const { box, x, y } = frame;
+    const { type, marks, last, name: title, overAngle, shape: { right } } = about;
+    const as = JSON.stringify([box, x, y, type, marks, last, title, overAngle, right]);
+    if (this.axes[`${name} as`] !== as) drawAxes(group, frame, about);
+    this.axes[`${name} as`] = as;
+  }
+
+  /** Draw lines, each [frame, curve, style]. */
+  drawLines(lines) {
+    const { lines: group } = this;
+    while (group.children.length > lines.length) group.lastChild.remove();
+    lines.forEach(([{ right, up }, { x, y }, style], n) => {
+      const d = pathOf(x.map((each, k) => [right(each), up(y[k])]));
+      set(group.children[n] ?? add(group, "path"), { d, class: `curve ${style}` });
+    });
+  }
+
+  /** The differences that are more than rounding. */
+  visible() {
+    const { curves, differences } = this.shape;
+    const size = Math.max(...curves.flatMap(({ y }) => y.map(Math.abs)));
+    const styled = differences.map((each, n) => ({ ...each, style: `difference${n}` }));
+    return styled.filter(({ y }) => y.some((value) => Math.abs(value) > NOTHING * size));
+  }
+
+  /** Put the cursor at a crank angle [deg]. */
+  place(degrees) {
+    this.degrees = degrees;
+    const { shape, cursor, upper, lower } = this;
+    if (!shape || !upper) return;
+    cursor.replaceChildren();
+    const at = this.hover ?? degrees;
+    if (isDiagram(shape)) {
+      const [x, y] = shape.of((at * Math.PI) / 180);
+      add(cursor, "circle", { cx: upper.right(x), cy: upper.up(y), r: 0.35 * this.type });
+    } else {
+      const x = upper.right(degrees);
+      const bottom = (lower ?? upper).box.bottom;
+      add(cursor, "line", { x1: x, x2: x, y1: upper.box.top, y2: bottom });
+      const value = shape.of((degrees * Math.PI) / 180);
+      add(cursor, "circle", { cx: x, cy: upper.up(value), r: 0.3 * this.type });
+      if (this.hover !== null) {
+        const h = upper.right(at);
+        add(cursor, "line", { x1: h, x2: h, y1: upper.box.top, y2: bottom, class: "hover" });
+      }
+    }
+    this.read(at);
+  }
+
+  /** Write the values at an angle [deg] into the legend. */
+  read(degrees) {
+    const { shape, legend } = this;
+    const entries = isDiagram(shape)
+      ? shape.curves.map(({ name }, n) => [name, styleOf({ name }, n), ""])
+      : this.values(degrees);
+    if (this.ghost) entries.push(["pinned", "ghost", ""]);
+    const hovers = this.hover !== null && !isDiagram(shape);
+    const where = hovers ? [[`at ${readable(degrees, 0)}°`, "", ""]] : [];
+    const all = [...where, ...entries];
+    while (legend.children.length > all.length) legend.lastChild.remove();
+    all.forEach(([name, style, value], n) => {
+      const item = legend.children[n] ?? legend.appendChild(entry());
+      item.children[0].className = style ? `swatch ${style}` : "none";
+      item.children[1].textContent = value ? `${name} ` : name;
+      item.children[2].textContent = value;
+    });
+  }
+
+  /** Name, style and value of every curve and difference at an angle [deg]. */
+  values(degrees) {
+    const { curves, differences } = this.shape;
+    const run = this.shape.of((degrees * Math.PI) / 180);
+    const decimals = decimalsFor(Math.max(...curves[0].y.map(Math.abs)));
+    const styled = curves.map((curve, n) => {
+      const value = n === 0 ? run : between(curve, degrees);
+      return [curve.name, styleOf(curve, n), readable(value, decimals)];
+    });
+    if (!differences.length) return styled;
+    const seen = this.visible().map((each) => {
+      const size = Math.max(...each.y.map(Math.abs));
+      return [each.name, each.style, readable(between(each, degrees), decimalsFor(size))];
+    });
+    return seen.length ? [...styled, ...seen] : [...styled, ["no difference but rounding", "", ""]];
+  }
+
+  degreesAt(event) {
+    const { left } = this.svg.getBoundingClientRect();
+    const { box, x } = this.upper;
+    const part = (event.clientX - left - box.left) / (box.right - box.left);
+    return x.low + Math.min(Math.max(part, 0), 1) * (x.high - x.low);
+  }
+
+  press(event) {
+    if (!this.shape || isDiagram(this.shape)) return;
+    event.preventDefault();
+    this.svg.setPointerCapture?.(event.pointerId);
+    this.held = event.pointerId;
+    const release = () => {
+      this.held = null;
+      this.onMove(null);
+    };
+    this.svg.addEventListener("pointerup", release, { once: true });
+    this.svg.addEventListener("pointercancel", release, { once: true });
+    this.move(event);
+  }
+
+  move(event) {
+    if (!this.shape || !this.upper || isDiagram(this.shape)) return;
+    const degrees = this.degreesAt(event);
+    if (this.held === event.pointerId) {
+      this.hover = null;
+      this.onMove(degrees);
+    } else {
+      this.point(degrees);
+    }
+  }
+
+  point(degrees) {
+    this.hover = degrees;
+    this.place(this.degrees);
+  }
+
+  described() {
+    const { shape } = this;
+    const ys = shape.curves[0].y;
+    const decimals = decimalsFor(Math.max(...ys.map(Math.abs)));
+    const [low, high] = [Math.min(...ys), Math.max(...ys)].map((y) => readable(y, decimals));
+    return `${shape.title}: ${low} to ${high} ${shape.up.unit}, over the ${shape.right.text}`;
+  }
+}
+
+function entry() {
+  const item = document.createElement("span");
+  item.className = "entry";
+  item.append(document.createElement("i"), document.createElement("span"));
+  item.append(document.createElement("b"));
+  return item;
+}
+
+function isDiagram(shape) {
+  return shape.right.text !== "crank angle";
+}
+
+function styleOf({ name }, n) {
+  return n === 0 ? "simulated" : name === "lecture" ? "lecture" : "exact";
+}
+
+function nameOf({ up, right }) {
+  return right.text === "crank angle" ? up.unit : `${up.text} [${up.unit}]`;
+}
+
+/** The value of a curve at an angle, between its points. */
+function between({ x, y }, degrees) {
+  const n = x.length - 1;
+  const place = ((degrees - x[0]) / (x[n] - x[0])) * n;
+  const k = Math.min(Math.max(Math.floor(place), 0), n - 1);
+  return y[k] + (y[k + 1] - y[k]) * (place - k);
+}

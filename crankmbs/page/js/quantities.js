@@ -1,0 +1,179 @@
+/** What the plots can show: quantities over the crank angle, and diagrams of two of them. */
+import { topPosition } from "./geometry.js";
+
+const RPM = Math.PI / 30;
+const DEGREE = Math.PI / 180;
+const EXACT = "untruncated lecture";
+const LECTURE = "S1 (motion and forces truncated)";
+
+/** The three curves of a quantity, by what made them. */
+export const CURVES = ["simulated", "exact formula", "lecture"];
+
+/** Quantities by name: unit, its SI value, `of` a sample and a cylinder; `said` by the formulas. */
+const QUANTITIES = {
+  "crank speed": { unit: "rpm", si: RPM, of: (v) => v.crank_speed, even: (c) => c.mean },
+  "crank ahead of the mean": { unit: "°", si: DEGREE, ahead: true, even: () => 0 },
+  "turning moment": {
+    unit: "N m",
+    si: 1,
+    of: (v) => sum(v.cylinders, (each) => each.crank_torque),
+    said: (found) => sum(found.cylinders, (each) => each.torque),
+  },
+  "torque of the cylinder": own("N m", 1, "crank_torque", "torque"),
+  "piston displacement": {
+    ...own("mm", 1e-3, "piston_displacement", "piston displacement"),
+    datum: ({ radius, length, offset }) =>
+      radius + length - topPosition({ radius, length, offset }),
+  },
+  "piston velocity": own("m/s", 1, "piston_velocity", "piston velocity"),
+  "piston acceleration": own("m/s²", 1, "piston_acceleration", "piston acceleration"),
+  "gas pressure": own("bar", 1e5, "gas_pressure"),
+  "side force on the piston": own("N", 1, "side_force", "side thrust"),
+  "piston pin force, axial": own("N", 1, "piston_pin_force_x", "piston pin force x"),
+  "crank pin force, axial": own("N", 1, "crank_pin_force_x", "crank pin force x"),
+  "crank pin force, across": own("N", 1, "crank_pin_force_y", "crank pin force y"),
+  "main bearing force, X": whole("main_bearing_force_x", "main bearing force x"),
+  "main bearing force, Y": whole("main_bearing_force_y", "main bearing force y"),
+  "frame force, X": whole("frame_force_x"),
+  "frame force, Y": whole("frame_force_y"),
+};
+
+/** Diagrams by name: what goes right and up, each [text, unit, SI value, of a sample]; one of equal
+ * scales has X up and Y to the left, as the mechanism beside it. */
+const DIAGRAMS = {
+  "p-V diagram": {
+    right: ["swept volume", "cm³", 1e-6, (v, k, c) =>
+      v.cylinders[k].piston_displacement * (c.train.piston.area ?? 0)],
+    up: ["gas pressure", "bar", 1e5, (v, k) => v.cylinders[k].gas_pressure],
+  },
+  "main bearing, polar": polar("main bearing force", (v) => v, (f) => f),
+  "crank pin, polar": polar("crank pin force", (v, k) => v.cylinders[k], (f, k) => f.cylinders[k]),
+  "frame force, polar": {
+    equal: true,
+    right: ["frame force Y", "N", 1, (v) => v.frame_force_y],
+    up: ["frame force X", "N", 1, (v) => v.frame_force_x],
+  },
+};
+
+function own(unit, si, name, said) {
+  const found = { unit, si, cylinder: true, of: (v, k) => v.cylinders[k][name] };
+  return said ? { ...found, said: (f, k) => f.cylinders[k][said] } : found;
+}
+
+function whole(name, said) {
+  const found = { unit: "N", si: 1, of: (v) => v[name] };
+  return said ? { ...found, said: (f) => f[said] } : found;
+}
+
+function polar(name, of, said) {
+  const key = name.replaceAll(" ", "_");
+  return {
+    equal: true,
+    right: [`${name} Y`, "N", 1, (v, k) => of(v, k)[`${key}_y`], (f, k) => said(f, k)[`${name} y`]],
+    up: [`${name} X`, "N", 1, (v, k) => of(v, k)[`${key}_x`], (f, k) => said(f, k)[`${name} x`]],
+  };
+}
+
+function sum(list, part) {
+  return list.reduce((total, each) => total + part(each), 0);
+}
+
+/** The names of what a plot can show of a scene: first curves, then diagrams. */
+export function choices(scene) {
+  const gassed = (name) => scene.gas !== null || !/pressure|p-V/.test(name);
+  const [curves, diagrams] = [QUANTITIES, DIAGRAMS].map((all) => Object.keys(all).filter(gassed));
+  return { curves, diagrams };
+}
+
+/** What a plot draws of a cycle: { title, right, up, curves: [{ name, x, y }], differences }.
+ *
+ * name : of a quantity or diagram; k : number of the cylinder from 0
+ */
+export function drawn(name, cycle, k) {
+  return name in DIAGRAMS ? diagram(name, cycle, k) : overAngle(name, cycle, k);
+}
+
+function overAngle(name, cycle, k) {
+  const quantity = QUANTITIES[name];
+  const x = cycle.angles.map((theta) => theta / DEGREE);
+  const values = curvesOf(quantity, cycle, k);
+  const size = Math.max(...values.flatMap(({ y }) => [Math.max(...y), -Math.min(...y)]));
+  const { unit, si } = scaled(quantity.unit, quantity.si, size);
+  const curves = values.map(({ name: what, y }) => ({ name: what, x, y: y.map((v) => v / si) }));
+  return {
+    title: name,
+    up: { text: name, unit },
+    right: { text: "crank angle", unit: "°" },
+    curves,
+    differences: differencesOf(curves),
+    of: (theta) => read(quantity, cycle, theta, k) / si,
+  };
+}
+
+/** One value of the run at an angle. */
+function read(quantity, cycle, theta, k) {
+  return quantity.ahead ? cycle.leadAt(theta) : quantity.of(cycle.at(theta), k);
+}
+
+function curvesOf(quantity, cycle, k) {
+  const run = quantity.ahead ? cycle.leads : cycle.samples.map((v) => quantity.of(v, k));
+  const found = [{ name: CURVES[0], y: run }];
+  if (quantity.even) found.push({ name: "constant speed", y: run.map(() => quantity.even(cycle)) });
+  if (!quantity.said) return found;
+  const datum = quantity.datum ? quantity.datum(cycle.train.shape) : 0;
+  [EXACT, LECTURE].forEach((lecture, n) => {
+    const y = cycle.lectured(lecture).map((each) => quantity.said(each, k) - datum);
+    found.push({ name: CURVES[n + 1], y });
+  });
+  return found;
+}
+
+/** Each curve less the one after it. */
+function differencesOf(curves) {
+  return curves.slice(1).map((next, n) => {
+    const before = curves[n];
+    return {
+      name: `${before.name} − ${next.name}`,
+      x: before.x,
+      y: before.y.map((value, i) => value - next.y[i]),
+    };
+  });
+}
+
+function diagram(name, cycle, k) {
+  const { right, up, equal = false } = DIAGRAMS[name];
+  const pairs = [{ name: CURVES[0], ...along(cycle.samples, right[3], up[3], k, cycle) }];
+  if (right[4]) {
+    const says = cycle.lectured(LECTURE);
+    pairs.push({ name: CURVES[2], ...along(says, right[4], up[4], k, cycle) });
+  }
+  const size = Math.max(...pairs.flatMap(({ y }) => y.map(Math.abs)));
+  const wide = Math.max(...pairs.flatMap(({ x }) => x.map(Math.abs)));
+  const sizes = equal ? [Math.max(size, wide), Math.max(size, wide)] : [wide, size];
+  const scales = [right, up].map(([, unit, si], n) => scaled(unit, si, sizes[n]));
+  const over = (values, n) => values.map((value) => value / scales[n].si);
+  return {
+    title: name,
+    equal,
+    right: { text: right[0], unit: scales[0].unit },
+    up: { text: up[0], unit: scales[1].unit },
+    curves: pairs.map((each) => ({ ...each, x: over(each.x, 0), y: over(each.y, 1) })),
+    differences: [],
+    of: (theta) => {
+      const v = cycle.at(theta);
+      return [right[3](v, k, cycle) / scales[0].si, up[3](v, k, cycle) / scales[1].si];
+    },
+  };
+}
+
+function along(samples, right, up, k, cycle) {
+  return {
+    x: samples.map((v) => right(v, k, cycle)),
+    y: samples.map((v) => up(v, k, cycle)),
+  };
+}
+
+/** N becomes kN where that reads better. */
+function scaled(unit, si, size) {
+  return unit === "N" && size >= 1e3 ? { unit: "kN", si: 1e3 } : { unit, si };
+}

@@ -1,0 +1,2 @@
+/** What cannot be, with the sentence that says why. */
+export class Refused extends Error {}

@@ -1,0 +1,204 @@
+/** What a free run settles to: the motion that repeats itself after a period.
+ *
+ * Seen once a period the energy E goes through a map. Under loads of c0 + c2 omega^2 every cell is
+ * affine, the map is a E + b, and E0 = b / (1 - a). Else Newton's method finds where the map gives
+ * back what came, with its derivative multiplied up along the period. With a = 1 and nothing gained
+ * every speed is periodic: that with the start's mean is kept.
+ */
+import { AffinePeriod } from "./affine.js";
+import { countUpTo } from "./arrays.js";
+import { branchAt, firstPhases, isAffine, torqueOverAngle } from "./loads.js";
+import { Travel } from "./motion.js";
+import { givenAt, reduceAt } from "./tables.js";
+
+const SLOW = Math.PI / 360; // rad: where the energy would be gone within this angle, it is refused
+const NONE = 1e-11; // of the energy: nothing but rounding
+const SHOTS = 400;
+const CLOSE = 1e-3; // of the energy: from so near Newton's method takes over from the run itself
+const MOST = 8; // times: how far one step of Newton's method may go
+const FARTHEST = 1e6; // of the energy: with no fixed point below it is taken to grow without bound
+const SPEEDS = 65; // at which the slope of the loads is looked at
+
+/** The settled motion from a start { angle, speed }, over one period of the grid.
+ *
+ * warm [J] : an energy to begin with, such as that of a motion close by; null: the start's
+ *
+ * { ending, motion, theta, period, sense, factor, balanced } : ending "complete", "slow", "held",
+ * "runs_away", "decays" or "wanders"; motion : { path, time } of the period from theta on; factor :
+ * what a period leaves of a disturbance; balanced : whether every speed would do
+ */
+export function settle(train, grid, start, warm) {
+  const sense = start.speed < 0 ? -1 : 1;
+  const section = new Section(train, grid, start, sense);
+  const branch = section.affineBranch(start.speed);
+  if (branch !== null) return section.inClosedForm(branch, start);
+  return section.byNewton(warm ?? section.energyAt(start.speed), start.speed);
+}
+
+/** One period of a motion, from an edge of the grid on. */
+export class Section {
+  constructor(train, grid, start, sense) {
+    const { edges } = grid;
+    const period = edges[edges.length - 1];
+    const base = Math.floor(start.angle / period) * period;
+    const k = Math.max(countUpTo(edges, start.angle - base) - 1, 0);
+    Object.assign(this, { train, grid, sense, period });
+    this.theta = base + edges[k];
+    this.first = k;
+    this.inertia = reduceAt(train, this.theta).inertia;
+    this.phases = firstPhases(train.loads, start.speed);
+  }
+
+  energyAt(omega) {
+    return 0.5 * this.inertia * omega * omega;
+  }
+
+  branch(omega) {
+    const { train, phases } = this;
+    const of = reduceAt(train, this.theta);
+    const over = torqueOverAngle(train.loads, phases, this.theta);
+    const rest = givenAt(train, of, [], this.sense, omega) + over - 0.5 * of.slope * omega * omega;
+    return branchAt(train.loads, phases, 0, omega, rest);
+  }
+
+  /** The branch at a speed if under it every cell is affine, at whatever speed; else null. */
+  affineBranch(omega) {
+    const branch = this.branch(omega);
+    const drags = this.train.friction !== null && this.train.friction.viscous > 0;
+    if (branch === null || !isAffine(branch) || drags) return null;
+    const ends = (limit) => this.sense * limit > 0 && Number.isFinite(limit);
+    return ends(branch.low) || ends(branch.high) ? null : branch;
+  }
+
+  /** What the period gains [J] that begins with an energy, and how long it takes [s]. */
+  once(energy, { speed }) {
+    const branch = this.affineBranch(speed);
+    if (branch === null) {
+      const shot = this.shot(energy);
+      return { ending: shot.ending, gained: shot.energy - energy, time: shot.time };
+    }
+    const period = new AffinePeriod(this, branch);
+    const { growth, rise } = period.whole;
+    const { time } = period.sweep(energy);
+    return { ending: time > 0 ? "complete" : "slow", gained: growth * energy + rise, time };
+  }
+
+  shot(energy) {
+    const begin = { theta: this.theta, time: 0, energy, sense: this.sense };
+    const stop = { theta: this.theta + this.sense * this.period, time: Infinity };
+    return new Travel(this.train, this.grid, begin, stop);
+  }
+
+  /** What is found: the motion over a period, or none where it ends otherwise. */
+  found(ending, motion = null, about = {}) {
+    const { theta, period, sense } = this;
+    return { ending, motion, theta, period, sense, factor: undefined, balanced: false, ...about };
+  }
+
+  inClosedForm(branch, start) {
+    const period = new AffinePeriod(this, branch);
+    const { growth, rise } = period.whole;
+    const energy = this.energyAt(start.speed);
+    const gained = growth * energy + rise;
+    const balanced = growth >= -NONE;
+    if (balanced && Math.abs(gained) > NONE * period.sweep(energy).most) {
+      return this.found(gained > 0 ? "runs_away" : "decays");
+    }
+    if (!balanced && !(rise > 0)) return this.found("decays");
+    const motion = balanced ? this.withMean(period, start.speed) : period.sweep(-rise / growth);
+    const slow = !(motion.least > SLOW * this.largest(branch));
+    return this.found(slow ? "slow" : "complete", motion, { factor: 1 + growth, balanced });
+  }
+
+  /** The largest torque over the angle with that of a branch at rest [N m]. */
+  largest(branch) {
+    return this.grid.tables.torque.reduce((most, each) => Math.max(most, Math.abs(each)), 0) +
+      Math.abs(branch.c0);
+  }
+
+  /** The motion of which a period lasts as long as at a mean speed [rad/s], by Newton's method. */
+  withMean(period, speed) {
+    const wanted = this.period / Math.abs(speed);
+    let energy = this.energyAt(speed);
+    let motion = period.sweep(energy);
+    for (let n = 0; n < 60; n++) {
+      const step = (motion.time - wanted) / motion.slope;
+      if (!(Math.abs(step) > 4e-16 * energy)) break;
+      energy = Math.max(energy - step, 0.5 * energy);
+      motion = period.sweep(energy);
+    }
+    return motion;
+  }
+
+  byNewton(begin, speed) {
+    const several = this.mayBeSeveral();
+    let energy = begin;
+    let before = { gained: Infinity, moved: Infinity };
+    const bracket = { low: 0, high: Infinity };
+    for (let n = 0; n < SHOTS; n++) {
+      const shot = this.shot(energy);
+      if (shot.ending !== "complete") return this.found(shot.ending);
+      const gained = shot.energy - energy;
+      const damping = 1 - shot.factor;
+      if (energy > FARTHEST * begin) return this.found("runs_away");
+      if (Math.abs(gained) <= NONE * Math.min(energy, begin) && damping <= NONE) {
+        return this.shown(this.withMeanByShots(energy, speed), true);
+      }
+      bracket[gained > 0 ? "low" : "high"] = energy;
+      const follows = several && Math.abs(gained) > CLOSE * damping * energy;
+      const next = follows ? shot.energy : nextIn(bracket, energy, gained, damping, before.gained);
+      const moved = Math.abs(next - energy);
+      if (moved <= 4e-16 * energy || (moved <= 1e-12 * energy && moved >= 0.5 * before.moved)) {
+        return this.shown(energy, false);
+      }
+      before = { gained, moved };
+      energy = next;
+    }
+    return this.found("wanders");
+  }
+
+  /** The period that begins with an energy [J], solved cell by cell. */
+  shown(energy, balanced) {
+    const shot = this.shot(energy);
+    return this.found(shot.ending, shot, { factor: shot.factor, balanced });
+  }
+
+  /** The same where loads bend: a period lasts about as the inverse root of the energy. */
+  withMeanByShots(begin, speed) {
+    const wanted = this.period / Math.abs(speed);
+    let energy = begin;
+    for (let n = 0; n < 60; n++) {
+      const longer = this.shot(energy).time / wanted;
+      energy *= longer * longer;
+      if (Math.abs(longer - 1) <= 2e-15) break;
+    }
+    return energy;
+  }
+
+  /** Whether a load rises with the speed anywhere, so that the map may give back several energies:
+   * then the run itself tells to which it goes. */
+  mayBeSeveral() {
+    return this.train.loads.some(({ over_speed: load }) => load !== null && rises(load));
+  }
+}
+
+/** The energy to try next: Newton's step, no farther than MOST times; the middle of the bracket
+ * where that leaves it, or where kinks let the steps gain little. */
+function nextIn({ low, high }, energy, gained, damping, before) {
+  const step = damping > NONE ? gained / damping : gained * Infinity;
+  const next = Math.min(Math.max(energy + step, energy / MOST), energy * MOST);
+  const slow = Math.abs(gained) > 0.5 * Math.abs(before) && Math.abs(step) > 1e-9 * energy;
+  const closed = low > 0 && high < Infinity;
+  const inside = next >= low && next <= high && !(closed && slow);
+  return inside || !closed ? next : 0.5 * (low + high);
+}
+
+function rises({ knots, pieces }) {
+  const far = knots.length ? 2 * Math.max(...knots.map(Math.abs)) + 1 : 1;
+  for (let k = 0; k <= SPEEDS; k++) {
+    const omega = far * ((2 * k) / SPEEDS - 1);
+    const piece = 3 * countUpTo(knots, omega);
+    if (pieces[piece + 1] + 2 * pieces[piece + 2] * omega > 0) return true;
+  }
+  return false;
+}

@@ -1,0 +1,111 @@
+/** Prescribed speeds that do not reverse: crank angle, speed and acceleration over time, and back.
+ *
+ * A law is { kind: "polynomial", knots, coefficients, angle }, omega(t) of cubics between times of
+ * which the last may be infinite; or { kind: "oscillation", mean, amplitude, order, phase, angle },
+ * omega = mean + amplitude cos(order theta + phase); or one "over_angle".
+ */
+import { countUpTo } from "./arrays.js";
+import { OverAngle } from "./over_angle.js";
+
+/** The law as an object with `at(time)` -> [theta, omega, alpha], `timeAt(theta)` and the crank
+ * angles at which it bends, `bendsBetween(low, high)`. */
+export function speedLaw(law) {
+  if (law.kind === "over_angle") return new OverAngle(law);
+  return law.kind === "oscillation" ? new Oscillation(law) : new Polynomial(law);
+}
+
+class Polynomial {
+  constructor({ knots, coefficients, angle }) {
+    this.knots = knots;
+    const n = knots.length - 1;
+    this.cubics = Array.from({ length: n }, (_, k) =>
+      [0, 1, 2, 3].map((power) => coefficients[power * n + k]));
+    this.angles = [angle];
+    for (let k = 0; k + 1 < n; k++) {
+      this.angles.push(this.angles[k] + turned(this.cubics[k], knots[k + 1] - knots[k]));
+    }
+    const before = this.at(0)[0] - angle;
+    this.angles = this.angles.map((each) => each - before);
+  }
+
+  at(time) {
+    const { knots, cubics, angles } = this;
+    const k = Math.max(countUpTo(knots, time, 1, knots.length - 1) - 1, 0);
+    const x = time - knots[k];
+    const [a, b, c, d] = cubics[k];
+    const omega = ((a * x + b) * x + c) * x + d;
+    return [angles[k] + turned(cubics[k], x), omega, (3 * a * x + 2 * b) * x + c];
+  }
+
+  timeAt(theta) {
+    const { knots, cubics, angles } = this;
+    const sense = this.at(0)[1] < 0 ? -1 : 1;
+    let k = countUpTo(angles.map((each) => sense * each), sense * theta) - 1;
+    k = Math.max(k, 0);
+    const whole = knots[k + 1] - knots[k];
+    let [low, high] = [0, Number.isFinite(whole) ? whole : 2 * this.least(k, theta)];
+    let x = 0.5 * (low + high);
+    for (let n = 0; n < 100; n++) {
+      const ahead = angles[k] + turned(cubics[k], x) - theta;
+      if (sense * ahead > 0) high = x;
+      else low = x;
+      let next = x - ahead / this.at(knots[k] + x)[1];
+      if (!(next >= low && next <= high)) next = 0.5 * (low + high);
+      if (Math.abs(next - x) <= 4e-16 * (knots[k] + next)) return knots[k] + next;
+      x = next;
+    }
+    return knots[k] + x;
+  }
+
+  bendsBetween() {
+    return Array.from(this.knots).slice(1).filter(Number.isFinite).map((time) => this.at(time)[0]);
+  }
+
+  /** Time [s] that an endless piece, of constant speed, takes to an angle. */
+  least(k, theta) {
+    return Math.abs((theta - this.angles[k]) / this.cubics[k][3]) + 1e-9;
+  }
+}
+
+/** Angle turned after x [s] under a cubic of the speed [rad]. */
+function turned([a, b, c, d], x) {
+  return ((((a / 4) * x + b / 3) * x + c / 2) * x + d) * x;
+}
+
+/** With psi = n theta + phase the angle u(psi) = 2 atan(kappa tan(psi / 2)), where kappa^2 =
+ * (m - A) / (m + A), grows evenly in time: u' = n sqrt(m^2 - A^2). */
+class Oscillation {
+  constructor(law) {
+    const { mean: m, amplitude: a, order } = law;
+    Object.assign(this, law);
+    this.kappa = Math.sqrt((m - a) / (m + a));
+    this.rate = Math.sign(m) * order * Math.sqrt((m - a) * (m + a));
+    this.begin = this.even(order * law.angle + law.phase);
+  }
+
+  at(time) {
+    const u = this.begin + this.rate * time;
+    const psi = u + bend(u, 1 / this.kappa);
+    const omega = this.mean + this.amplitude * Math.cos(psi);
+    const alpha = -this.amplitude * this.order * Math.sin(psi) * omega;
+    return [(psi - this.phase) / this.order, omega, alpha];
+  }
+
+  timeAt(theta) {
+    return (this.even(this.order * theta + this.phase) - this.begin) / this.rate;
+  }
+
+  bendsBetween() {
+    return [];
+  }
+
+  even(psi) {
+    return psi + bend(psi, this.kappa);
+  }
+}
+
+/** 2 atan(kappa tan(angle / 2)) - angle, without a branch cut. */
+function bend(angle, kappa) {
+  const [s, c] = [Math.sin(0.5 * angle), Math.cos(0.5 * angle)];
+  return 2 * Math.atan2((kappa - 1) * s * c, c * c + kappa * s * s);
+}

@@ -1,0 +1,152 @@
+"""What can be turned on the page: knobs with their ends, and choices among words."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+from crankmbs.scene.drives import Oscillation
+from crankmbs.scene.scene import Scene
+from crankmbs.scene.tables import CylinderTable
+from crankmbs.scene.units import RPM
+
+__all__ = ["AS_GIVEN", "FIRING_ORDERS", "Choice", "Knob", "choices_of", "knobs_of"]
+
+AS_GIVEN = "given"
+FIRING_ORDERS = {
+    "1": (1,),
+    "2": (1, 2),
+    "3": (1, 3, 2),
+    "4": (1, 3, 4, 2),
+    "5": (1, 2, 4, 5, 3),
+    "6": (1, 5, 3, 6, 2, 4),
+}
+"""Usual firing orders, evenly spaced, in line."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Knob:
+    """A slider: its name, its label and unit, its ends, the scene's value, the digits shown after
+    the point, and what it does to the rest."""
+
+    name: str
+    label: str
+    unit: str
+    low: float
+    high: float
+    value: float
+    decimals: int
+    about: str = ""
+
+
+@dataclasses.dataclass(frozen=True)
+class Choice:
+    """A choice among words, of which one is the scene's own."""
+
+    name: str
+    label: str
+    words: tuple[str, ...]
+    own: str
+
+
+def knobs_of(scene: Scene) -> tuple[Knob, ...]:
+    """The sliders that mean something for a scene; the scene's value lies between their ends.
+
+    >>> [knob.name for knob in knobs_of(load_scene("grega_lecture"))]
+    ['speed', 'pressure', 'rod_ratio', 'offset', 'rod_mass']
+    """
+    return (*_drive(scene), *_machine(scene))
+
+
+def choices_of(scene: Scene) -> tuple[Choice, ...]:
+    """The choices that mean something for a scene; loads of one that settles can be rebalanced.
+
+    >>> [choice.name for choice in choices_of(load_scene("yi_diesel"))]
+    ['rod', 'cylinders']
+    """
+    rod = "two-mass" if scene.rod.inertia == "two-mass" else "rigid"
+    choices = [Choice("rod", "rod", ("rigid", "two-mass"), rod)]
+    if _is_of_any_number(scene):
+        words = (AS_GIVEN, *FIRING_ORDERS)
+        choices.append(Choice("cylinders", "cylinders", words, AS_GIVEN))
+    if scene.start is not None:
+        choices.append(Choice("speed_is", "speed", ("free", "prescribed"), "free"))
+    if scene.settles and scene.torque:
+        choices.append(Choice("load_is", "load", ("given", "rebalanced"), "given"))
+    return tuple(choices)
+
+
+def _drive(scene: Scene) -> list[Knob]:
+    """The knobs of what turns the crank."""
+    knobs = []
+    speed = _speed(scene)
+    if speed:
+        rpm = speed / RPM
+        low, high = sorted((0.25 * rpm, _above(1.75 * abs(rpm)) * math.copysign(1.0, rpm)))
+        about = "the loads give their torque at this speed" if scene.torque else ""
+        knobs.append(Knob("speed", "speed", "rpm", low, high, rpm, 0, about))
+    if scene.torque:
+        about = "of what the scene gives"
+        knobs.append(Knob("load", "load", "%", 0.0, 200.0, 100.0, 0, about))
+    if scene.gas is not None:
+        about = "absolute, of what the scene gives"
+        knobs.append(Knob("pressure", "pressure", "%", 20.0, 200.0, 100.0, 0, about))
+    if scene.start is not None:
+        inertia = scene.crank.moment_of_inertia or 1e-3
+        most = _above(4.0 * inertia)
+        about = "inertia of all that turns with the crank"
+        value = scene.crank.moment_of_inertia
+        low, digits = min(most / 100.0, value), _decimals(most)
+        knobs.append(Knob("flywheel", "flywheel", "kg m²", low, most, value, digits, about))
+    return knobs
+
+
+def _machine(scene: Scene) -> list[Knob]:
+    """The knobs of its parts."""
+    r, rod = scene.crank.radius * 1e3, scene.rod
+    ratio = scene.crank.radius / rod.length
+    heaviest = _above(3.0 * rod.mass or scene.piston.mass or 1.0)
+    offset = scene.piston.offset * 1e3
+    far = max(_above(0.5 * r), abs(offset))
+    about = "pressures keep to the swept fraction of each stroke" if scene.gas is not None else ""
+    knobs = [
+        Knob("rod_ratio", "rod ratio r/l", "", min(0.1, ratio), 0.9, ratio, 3, about),
+        Knob("offset", "offset", "mm", -far, far, offset, 1, about),
+        Knob("rod_mass", "rod mass", "kg", 0.0, heaviest, rod.mass, 2),
+    ]
+    if scene.crank.mass > 0.0:
+        center = scene.crank.center_of_mass * 1e3
+        wide = max(_above(r), abs(center))
+        about = "the crank's centre of mass from its axis; below 0 a counterweight"
+        title = "crank's centre"
+        knobs.append(Knob("counterweight", title, "mm", -wide, wide, center, 1, about))
+    return knobs
+
+
+def _is_of_any_number(scene: Scene) -> bool:
+    """Whether other cylinders than the scene's can have its pressure and fuel."""
+    gas = scene.gas
+    if scene.fuel is not None or gas is None:
+        return scene.fuel is None
+    return not any(isinstance(each, CylinderTable | tuple) for each in (gas.pressure, gas.motored))
+
+
+def _speed(scene: Scene) -> float:
+    """The speed [rad/s] that the knob turns; 0 where there is none to turn."""
+    if scene.start is not None:
+        return scene.start.speed
+    assert scene.motion is not None
+    speed = scene.motion.speed
+    if isinstance(speed, Oscillation):
+        return speed.mean
+    return speed if isinstance(speed, float) else 0.0
+
+
+def _above(value: float) -> float:
+    """The next number of one or two digits."""
+    step = 10.0 ** (math.floor(math.log10(value)) - 1)
+    return round(math.ceil(value / step - 1e-9) * step, 12)
+
+
+def _decimals(most: float) -> int:
+    return max(1, 2 - math.floor(math.log10(most)))

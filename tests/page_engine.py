@@ -1,0 +1,104 @@
+"""The engine of the page in a browser, and what Python says of the same scenes."""
+
+from contextlib import contextmanager
+
+import numpy as np
+from browser import chromium, visiting
+from playwright.sync_api import sync_playwright
+
+from crankmbs.mechanics.peaks import peak
+from crankmbs.mechanics.variables import EVERY, SUMS
+from crankmbs.page import exported, joined
+from crankmbs.page.export import encoded, rules
+
+_ASK = "([name, text]) => answers[name](engine, answers.decoded(JSON.parse(text)))"
+
+
+@contextmanager
+def engine():
+    """The engine in chromium; asked by the name of what it answers and its arguments."""
+    with sync_playwright() as playwright:
+        opened = playwright.chromium.launch(executable_path=chromium(), args=["--no-sandbox"])
+        with visiting(opened, offline=True) as visit:
+            visit.page.evaluate(f"() => {{ window.answers = {joined('answers')} }}")
+            start = "(text) => { window.engine = answers.engineOf(JSON.parse(text)) }"
+            visit.page.evaluate(start, encoded(rules()))
+            yield Engine(visit.page)
+        opened.close()
+
+
+class Engine:
+    """What the page's modules answer."""
+
+    def __init__(self, page):
+        self.page = page
+
+    def ask(self, name, **arguments):
+        return self.page.evaluate(_ASK, [name, encoded(arguments)])
+
+    def answer(self, scene, angles):
+        return self.ask("answer", scene=exported(scene), angles=np.asarray(angles))
+
+
+def differences(result, variables):
+    """By how much every variable is off at most, beyond the error that Python states, of its peak;
+    of sums that may cancel and of what is nothing beside others of its unit, of the largest of
+    that."""
+    names = [str(n) for n in result.data.variables if n not in ("cylinder", "energy_residual")]
+    expected = {name: result.data[name].values for name in names}
+    assert variables.keys() == expected.keys()
+    largest: dict[str, float] = {}
+    for name in names:
+        unit = EVERY[name].units
+        largest[unit] = max(largest.get(unit, 0.0), peak(expected[name]))
+    found = {}
+    for name in names:
+        own, most = peak(expected[name]), largest[EVERY[name].units]
+        size = most if name in SUMS or own < 1e-10 * most else own
+        apart = peak(np.array(variables[name], dtype=float) - expected[name])
+        apart = max(apart - result.data[name].attrs["error_estimate"], 0.0)
+        found[name] = apart / size if size > 0.0 else apart
+    return found
+
+
+def unlike(measures, found, size):
+    """The measures of Python that those of the page are not: by more than 1e-9 of a size, and twice
+    the error that Python states.
+
+    size : of the measures by name
+    """
+    pairs = {
+        name: (found[name], getattr(measures, name))
+        for name in ("mean_speed", "fluctuation", "speed_gain", "crank_torque", "external_torque")
+    }
+    if measures.indicated_power is not None:
+        pairs["indicated_power"] = (found["indicated_power"], measures.indicated_power)
+    for k, one in enumerate(measures.imep or ()):
+        pairs[f"imep {k}"] = (found["imep"][k], one)
+    for own, one in zip(found["joints"], measures.joints, strict=True):
+        assert (own["joint"], own["cylinder"]) == (one.joint, one.cylinder)
+        for part in ("peak", "mean"):
+            pairs[f"force {one.joint} {one.cylinder} {part}"] = (own[part], getattr(one, part))
+    assert found["window"] == measures.window.kind
+    return {
+        name: (abs(value - one.value), 1e-9 * size[name.split()[0]], one.error)
+        for name, (value, one) in pairs.items()
+        if not abs(value - one.value) <= 1e-9 * size[name.split()[0]] + 2.0 * one.error
+    }
+
+
+def sizes(result, measures):
+    """What the measures are compared to: the peaks that they are made of."""
+    rods = peak(result.data["crank_torque"].values) * result.data.sizes["cylinder"]
+    torque = max(rods, peak(result.data["external_torque"].values))
+    speed = abs(measures.mean_speed.value)
+    return {
+        "mean_speed": speed,
+        "fluctuation": 1.0,
+        "speed_gain": speed,
+        "crank_torque": torque,
+        "external_torque": torque,
+        "indicated_power": torque * speed,
+        "imep": peak(result.data["gas_pressure"].values),
+        "force": max(one.peak.value for one in measures.joints),
+    }

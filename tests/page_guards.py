@@ -1,0 +1,190 @@
+"""Scenes that between them use every formula of the page's engine, and what it must answer."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from crankmbs import load_scene
+from crankmbs.page import exported
+from crankmbs.scene.drives import Motion, Oscillation, Ramp, SpeedFile, Start
+from crankmbs.scene.fuel import Fuel, Misfire
+from crankmbs.scene.gas import Polytrope
+from crankmbs.scene.loads import AngleTable, Constant, Quadratic, SpeedTable, TimeTable, Viscous
+from crankmbs.scene.parts import Cylinder, Friction, Gravity, Layout
+from crankmbs.scene.run import Extent
+from crankmbs.scene.tables import Table
+
+EVERY = Extent(value=math.radians(15.0), unit="rad")
+MACHINE = {
+    "layout": Layout(
+        cylinders=(
+            Cylinder(phase=0.0, bank=-0.4, position=0.0),
+            Cylinder(phase=2.0, bank=0.5, position=0.1),
+        )
+    ),
+    "gravity": Gravity(acceleration=9.81, angle=2.5),
+}
+
+
+POLYTROPE = Polytrope(polytrope=1.32, closes=math.radians(-20.0), compression_ratio=18.0)
+
+
+def running(name, until, **changes):
+    scene = load_scene(name)
+    run = replace(scene.run, until=until, every=EVERY)
+    return replace(scene, run=run, **changes)
+
+
+def started():
+    """Every load, window and kink, fuel of every kind."""
+    scene = running("yi_diesel_free", Extent(value=0.14, unit="s"), **MACHINE)
+    angle = np.linspace(0.0, 6.0, 9)
+    bent = Table((250.0, 325.0, 330.0, 330.0, 400.0), (60.0, 40.0, 20.0, 35.0, -90.0))
+    loads = (
+        Quadratic(coefficient=2e-4, after=0.02, until_speed=345.0),
+        Viscous(coefficient=0.05, from_speed=342.0),
+        TimeTable(file=Table((0.0, 0.03, 0.03, 0.05, 1.0), (0.0, 40.0, -30.0, 10.0, 0.0))),
+        SpeedTable(file=bent, until=0.1),
+        AngleTable(
+            file=Table(tuple(angle.tolist()), tuple((20.0 * np.sin(3.0 * angle)).tolist())),
+            interpolation="pchip",
+        ),
+        Constant(torque=-40.0, after=0.04, until=0.09),
+    )
+    lists = (Misfire(cylinder=2, cycles="2"), Misfire(cylinder=1, cycles="every 2"))
+    crank = replace(scene.crank, mass=6.0, center_of_mass=0.01)
+    gas = replace(scene.gas, motored=POLYTROPE)
+    fuel = Fuel(misfire=lists, until=0.1)
+    return replace(scene, crank=crank, torque=loads, gas=gas, fuel=fuel)
+
+
+def backwards():
+    scene = running("coasting", Extent(value=2.0, unit="cycle"))
+    loads = (SpeedTable(file=Table((-120.0, -98.0, -60.0), (9.0, 2.0, 0.0))),)
+    return replace(scene, start=Start(angle=0.3, speed=-100.0), torque=loads)
+
+
+def short_rod():
+    """So short that cells of 6 degrees must be cut."""
+    scene = running("coasting", Extent(value=1.0, unit="cycle"))
+    return replace(scene, rod=replace(scene.rod, length=0.0475))
+
+
+def settling():
+    """Under a table of the speed, whose rows the speed passes in every cycle."""
+    scene = running("propeller", "settled", **MACHINE)
+    table = Table((150.0, 335.0, 337.0, 500.0), (0.0, -15.0, -30.0, -60.0))
+    return replace(scene, torque=(SpeedTable(file=table),))
+
+
+def balanced():
+    return running("yi_diesel_free", "settled", gas=None, torque=(Constant(torque=0.0),))
+
+
+def braked():
+    """Driven by one load, braked by another."""
+    loads = (Constant(torque=9.0), Quadratic(coefficient=1e-5))
+    return running("yi_diesel_free", "settled", gas=None, torque=loads)
+
+
+RUBBING = Friction(ring_force=30.0, ring_pressure=0.03, viscous=20.0)
+
+
+def rubbing(name, until, friction, **changes):
+    return replace(running(name, until, **changes), friction=friction)
+
+
+def driven(speed):
+    scene = running("yi_diesel", Extent(value=1.5, unit="cycle"), **MACHINE)
+    return replace(scene, motion=Motion(speed=speed, angle=0.2))
+
+
+def misfiring(scene):
+    fuel = Fuel(misfire=(Misfire(cylinder=2, cycles="1"),), after=0.01)
+    return replace(scene, gas=replace(scene.gas, motored=POLYTROPE), fuel=fuel)
+
+
+SWING = Oscillation(mean=300.0, amplitude=60.0, order=1.5, phase=0.4)
+RISE = Ramp(start=250.0, to=330.0, over=0.02)
+MEASURED_SPEED = SpeedFile(file=Table((0.0, 0.02, 0.05, 0.2), (280.0, 300.0, 260.0, 300.0)))
+
+ROWS = Table((0.013, 2.0, 3.3, 5.1, 0.013 + math.tau), (300.0, 380.0, 180.0, 270.0, 300.0))
+OVER_ANGLE = SpeedFile(file=ROWS, kind="angle_table", interpolation="cubic")
+
+GUARDS = {
+    "swinging": driven(SWING),
+    "rising": misfiring(driven(RISE)),
+    "measured speed": driven(MEASURED_SPEED),
+    "over the angle": driven(OVER_ANGLE),
+    "settling": settling(),
+    "backwards": backwards(),
+    "short rod": short_rod(),
+    "affine": running("v_twin", "settled"),
+    "rings": rubbing("v_twin", "settled", replace(RUBBING, viscous=0.0), **MACHINE),
+    "rubbing": rubbing("propeller", Extent(value=1.2, unit="cycle"), RUBBING),
+    "rubbing driven": replace(misfiring(driven(RISE)), friction=RUBBING),
+    "rubbing backwards": replace(backwards(), friction=replace(RUBBING, ring_pressure=0.0)),
+    "started": replace(started(), friction=RUBBING),
+}
+
+
+def tasks(angles):
+    """What is asked of an engine, by name and arguments, the quickest first: lectures, pressures
+    carried over, and the guards by their names at crank angles."""
+    found = [("lectured", lecture(name)) for name in ("untruncated lecture", S1)]
+    shape = {"radius": 0.044, "length": 0.14, "offset": 0.011}
+    scenes = [joined_by(*pair) for pair in JOINED]
+    scenes += [jumping(), GUARDS["started"], GUARDS["affine"]]
+    found += [("carried", {"scene": exported(scene), "shape": shape}) for scene in scenes]
+    names, balancing = ("affine", "started"), ("affine", "settling")
+    found += [("dragged", {"scene": longer(GUARDS[n]), "angles": angles[n][::3]}) for n in names]
+    scenes = [braked(), *(GUARDS[name] for name in balancing)]
+    found += [("balancing", {"scene": exported(scene), "speed": 345.0}) for scene in scenes]
+    still = balanced()
+    found.append(("answer", {"scene": exported(still), "angles": np.array([0.0, still.period])}))
+    return found + [
+        ("answer", {"scene": exported(scene), "angles": angles[name]})
+        for name, scene in GUARDS.items()
+    ]
+
+
+def longer(scene):
+    """What a knob makes of a scene: another rod, the pressure carried over."""
+    found = exported(scene)
+    return {**found, "rod": {**found["rod"], "length": 1.03 * found["rod"]["length"]}}
+
+
+JOINED = (
+    ("propeller", "pchip"),
+    ("yi_diesel", "cubic"),
+    ("yi_diesel", "linear"),
+    ("propeller", "step"),
+)
+
+
+def joined_by(name, interpolation):
+    scene = load_scene(name)
+    return replace(scene, gas=replace(scene.gas, interpolation=interpolation))
+
+
+S1 = "S1 (motion and forces truncated)"
+
+
+def jumping():
+    """Rows that jump, joined by splines from jump to jump."""
+    scene = load_scene("propeller")
+    angle = (0.0, 2.0, 4.0, 6.0, 6.4, 6.4, 7.0, 8.0, 9.0, 10.5, 12.0)
+    value = (1e5, 0.0, 1e5, 9e5, 3e6, 4e6, 2e6, 1e6, 6e5, 2e5, 1e5)
+    gas = replace(scene.gas, pressure=Table(angle, value), interpolation="cubic")
+    return replace(scene, gas=gas)
+
+
+def lecture(name):
+    scene = replace(load_scene("yi_diesel"), **MACHINE)
+    theta = np.linspace(0.0, 12.0, 19)
+    samples = [
+        {"theta": each, "omega": 300.0, "alpha": 2e3 * math.sin(each), "shares": []}
+        for each in theta.tolist()
+    ]
+    return {"scene": exported(scene), "lecture": name, "samples": samples}

@@ -1,0 +1,122 @@
+"""Break the page's engine, one law at a time: the numbers that Python is held against change."""
+
+import math
+
+import numpy as np
+import pytest
+from page_engine import differences, engine
+from page_guards import GUARDS, tasks
+from page_mutants import MUTANTS
+
+from crankmbs import simulate
+from crankmbs.page import joined
+from crankmbs.page.export import encoded, rules
+from crankmbs.page.script import FOLDER
+
+_VISIBLE = 2e-9  # relative: twice what the engine may differ by from Python
+# in a worker, as a mutant may never come to an end
+_TAKE = """([script, rules]) => {
+  const source = `const tried = ${script};
+    const own = tried.engineOf(${rules});
+    onmessage = ({ data: [name, text] }) => {
+      try {
+        postMessage(tried[name](own, tried.decoded(JSON.parse(text))));
+      } catch (error) {
+        postMessage({ broken: String(error) });
+      }
+    };`;
+  window.worker?.terminate();
+  window.worker = new Worker(URL.createObjectURL(new Blob([source])));
+}"""
+_RUN = """(task) => new Promise((resolve) => {
+  const timer = setTimeout(() => resolve({ broken: "no end" }), 60_000);
+  worker.onerror = ({ message }) => resolve({ broken: message });
+  worker.onmessage = ({ data }) => {
+    clearTimeout(timer);
+    resolve(data);
+  };
+  worker.postMessage(task);
+})"""
+
+
+@pytest.fixture(scope="module")
+def results():
+    return {name: simulate(scene, rtol=1e-12) for name, scene in GUARDS.items()}
+
+
+@pytest.fixture(scope="module")
+def asked(results):
+    angles = {name: result.data["crank_angle"].values for name, result in results.items()}
+    return [[name, encoded(arguments)] for name, arguments in tasks(angles)]
+
+
+@pytest.fixture(scope="module")
+def page():
+    with engine() as opened:
+        yield opened
+
+
+@pytest.fixture(scope="module")
+def unbroken(page, asked):
+    return list(run(page, joined("answers"), asked))
+
+
+def run(page, script, asked):
+    """The answers of a script, one after the other."""
+    page.page.evaluate(_TAKE, [script, encoded(rules())])
+    for task in asked:
+        yield page.page.evaluate(_RUN, task)
+
+
+def test_the_guards_are_right(unbroken, results):
+    for (name, result), found in zip(results.items(), unbroken[-len(results) :], strict=True):
+        assert result.status == 0, result.message
+        assert found["ending"] == "complete", name
+        assert max(differences(result, found["variables"]).values()) < 1e-9, name
+    assert all("broken" not in one for one in unbroken)
+
+
+def differs(one, other):
+    """Whether two answers differ by more than may be, of the largest number in a list."""
+    if isinstance(one, dict):
+        if not isinstance(other, dict) or one.keys() != other.keys():
+            return True
+        return any(differs(value, other[key]) for key, value in one.items())
+    if isinstance(one, list) and any(isinstance(each, dict) for each in one):
+        return len(one) != len(other) or any(map(differs, one, other))
+    if one is None or isinstance(one, str | bool):
+        return one != other
+    a, b = (np.array(list(flat(part)), dtype=float) for part in (one, other))
+    if len(a) != len(b):
+        return True
+    size = max(np.abs(a).max(initial=0.0), 1e-6)
+    return not bool((np.abs(a - b) <= _VISIBLE * size).all())
+
+
+def flat(value):
+    """The numbers in lists of lists; what is no number is NaN, and so like nothing."""
+    if not isinstance(value, list):
+        yield math.nan if value is None else value
+        return
+    for each in value:
+        yield from flat(each)
+
+
+@pytest.mark.parametrize("module", list(MUTANTS))
+def test_a_broken_law_shows_in_the_numbers(page, asked, unbroken, module):
+    source = (FOLDER / f"{module}.js").read_text(encoding="utf-8")
+    survivors = []
+    for find, replace in MUTANTS[module]:
+        assert source.count(find) == 1, f"{find!r} stands {source.count(find)} times"
+        script = joined("answers")
+        assert script.count(find) == 1, f"{find!r} stands in another module too"
+        answers = run(page, script.replace(find, replace), asked)
+        if not any(differs(*pair) for pair in zip(unbroken, answers, strict=True)):
+            survivors.append((find, replace))
+    assert survivors == []
+
+
+def test_every_module_has_mutants():
+    helpers = {"answers"}
+    modules = {path.stem for path in FOLDER.glob("*.js")} - helpers
+    assert modules == MUTANTS.keys()
