@@ -1,7 +1,6 @@
 """A page of a scene, opened in the browser from its file: its knobs, its curves, its files."""
 
 import io
-import math
 import zipfile
 from contextlib import contextmanager
 from dataclasses import replace
@@ -52,6 +51,14 @@ class Opened:
     def curve(self, plot="upper", style="simulated"):
         return self.page.get_attribute(f"#{plot} path.{style}", "d")
 
+    def shows(self, curve):
+        """Wait until the upper plot has a curve again, and no message is there."""
+        self.page.wait_for_function(
+            "(curve) => document.getElementById('message').hidden && curve === "
+            "document.querySelector('#upper path.simulated').getAttribute('d')",
+            arg=curve,
+        )
+
     def type(self, knob, text):
         """A number typed into a knob."""
         entry = self.page.locator(f".knob:has(#knob-{knob}) input.entry")
@@ -85,11 +92,18 @@ class Opened:
         return load_scene(folder / name)
 
 
-def expected(scene):
-    """What Python has for the cycle that the page shows of a scene, at its angles."""
-    every = Extent(value=math.degrees(scene.period) / 360.0 * math.pi / 180.0, unit="rad")
+def expected(scene, speed=None):
+    """What Python has for the cycle that the page shows of a scene, at its angles.
+
+    speed : where the cycle begins, of a scene that comes round at every speed
+    """
     shown = shown_scene(scene)
-    result = simulate(replace(shown, run=replace(shown.run, every=every, rtol=1e-11)))
+    period = shown.settled_period if shown.settles else scene.period
+    run = replace(shown.run, every=Extent(value=period / 360.0, unit="rad"), rtol=1e-11)
+    if speed is not None:
+        shown = replace(shown, start=replace(shown.start, speed=speed))
+        run = replace(run, until=Extent(value=period, unit="rad"))
+    result = simulate(replace(shown, run=run))
     assert result.status == 0
     return result.data.isel(time=slice(-361, None))
 

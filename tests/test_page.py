@@ -47,10 +47,19 @@ def test_every_shown_scene_is_a_small_file_that_asks_for_nothing(browser, tmp_pa
         assert visited.curve("lower")
 
 
-@pytest.mark.parametrize("name", [name for name in SHOWN if name != "coasting"])
+@pytest.mark.parametrize("name", [n for n in SHOWN if n not in {"coasting", "turning_moment"}])
 def test_a_page_shows_what_simulate_gives(browser, tmp_path, name):
     with opened(browser, tmp_path, name) as visited:
         assert_same(visited.data(), expected(load_scene(name)))
+
+
+def test_a_load_that_balances_at_every_speed_keeps_the_mean_of_the_start(browser, tmp_path):
+    scene = load_scene("turning_moment")
+    with opened(browser, tmp_path, "turning_moment") as visited:
+        data = visited.data()
+        period = data["time [s]"][-1] - data["time [s]"][0]
+        assert scene.period / period == pytest.approx(scene.start.speed, rel=1e-9)
+        assert_same(data, expected(scene, speed=data["crank_speed [rad/s]"][0]))
 
 
 TURNED = [
@@ -157,7 +166,7 @@ def test_states_that_cannot_be_are_refused_in_pythons_words(browser, tmp_path, n
             assert visited.message == str(caught.value).removeprefix("crank: ")
             assert visited.curve() == good
             visited.go("#")
-            visited.page.wait_for_function("() => document.getElementById('message').hidden")
+            visited.shows(good)
 
 
 NUMBERS = [

@@ -16,10 +16,9 @@ from crankmbs.mechanics.variables import EVERY
 from crankmbs.motion.ending import Ending
 from crankmbs.page.export import encoded, exported, rules
 from crankmbs.page.knobs import FIRING_ORDERS, Choice, choices_of, knobs_of
-from crankmbs.page.refusals import refusals
+from crankmbs.page.refusals import refusals, settling
 from crankmbs.page.script import joined
 from crankmbs.scene.parts import LIGHT_CRANK
-from crankmbs.scene.run import SETTLED
 from crankmbs.scene.scene import OPEN_LOOP, Scene
 from crankmbs.scene.sentences import RULES
 from crankmbs.scene.write import scene_files
@@ -91,13 +90,7 @@ def shown_scene(scene: Scene) -> Scene:
     >>> shown_scene(load_scene("propeller")).settles
     True
     """
-    if scene.motion is not None:
-        return scene
-    try:
-        settled = dataclasses.replace(scene, run=dataclasses.replace(scene.run, until=SETTLED))
-    except InputError:
-        return scene
-    return scene if refusals(settled) else settled
+    return settling(scene) or scene
 
 
 def _given(scene: Scene, stem: str, choices: tuple[Choice, ...]) -> dict[str, Any]:

@@ -3,25 +3,48 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
+from crankmbs.errors import InputError
 from crankmbs.mechanics.speed import speed_law
 from crankmbs.motion.plan import plan_of
+from crankmbs.scene.run import SETTLED
 from crankmbs.scene.scene import Scene
+from crankmbs.simulate import simulate
 
-__all__ = ["refusals"]
+__all__ = ["refusals", "settling"]
 
 
 def refusals(scene: Scene) -> tuple[str, ...]:
     """Why the browser cannot run a scene, one sentence each; none where it can.
 
-    What shows only on the way, a crank that comes to rest, the page says then.
+    What shows only when a knob is turned, a crank that comes to rest, the page says then.
 
     >>> refusals(load_scene("propeller"))
     ()
     >>> refusals(load_scene("torque_driven"))[0].partition(";")[0]
     'rest: the crank starts from rest, where time must be the variable'
     """
-    return tuple(f"{reason}; run it with crankmbs run" for reason in _reasons(scene))
+    reasons = list(_reasons(scene))
+    if not reasons and scene.start is not None and settling(scene) is None:
+        result = simulate(replace(scene, run=replace(scene.run, every=None)))
+        reasons += [f"end: {result.message}"] if result.status else []
+    return tuple(f"{reason}; run it with crankmbs run" for reason in reasons)
+
+
+def settling(scene: Scene) -> Scene | None:
+    """The scene until it has settled, as the page shows it where it can; else None.
+
+    >>> settling(load_scene("propeller")).settles
+    True
+    >>> settling(load_scene("misfire")) is None
+    True
+    """
+    try:
+        settled = replace(scene, run=replace(scene.run, until=SETTLED))
+    except InputError:
+        return None
+    return None if any(_reasons(settled)) else settled
 
 
 def _reasons(scene: Scene) -> Iterator[str]:
