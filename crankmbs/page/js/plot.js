@@ -60,7 +60,7 @@ export class Plot {
     const overAngle = !isDiagram(shape);
     const foot = height - (overAngle ? 1.5 : 2.6) * type;
     const split = strip ? foot - STRIP * height : foot;
-    const box = { left: 4.4 * type, right: width - 1.2 * type, top: 1.3 * type };
+    const box = { left: 4.4 * type, right: width - 1.7 * type, top: 1.3 * type };
     const top = { ...box, bottom: strip ? split - 1.5 * type : foot };
     const curves = this.ghost ? [...shape.curves, this.ghost.curve] : shape.curves;
     const about = { type, shape, marks: this.marks, overAngle, left: box.left };

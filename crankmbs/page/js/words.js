@@ -37,7 +37,8 @@ export function badgeOf(cycle, endings) {
   }
   if (cycle.settled) return said("settled cycle: it repeats itself", true);
   const why = cycle.why === null ? "" : `; ${endings[cycle.why]}`;
-  return said(`not settled: the first cycle ${drifts}${why}`, false);
+  const which = cycle.scene.run.settled ? "first" : "last";
+  return said(`not settled: the ${which} cycle ${drifts}${why}`, false);
 }
 
 function said(text, good) {
