@@ -45,8 +45,9 @@ def _size(cylinder: CylinderPressure, who: str) -> str:
     if cylinder.imep is not None:
         work = f"; imep {np.mean(cylinder.imep) / _BAR:.4g} bar"
     side = "behind" if at >= 0.0 else "before"
+    named = "" if cylinder.name == who else f"{cylinder.name}, "
     return (
-        f"{who}: {cylinder.name}, {burns[cylinder.fired]}; the mean cycle goes from "
+        f"{who}: {named}{burns[cylinder.fired]}; the mean cycle goes from "
         f"{np.min(mean) / _BAR:.4g} to {np.max(mean) / _BAR:.5g} bar, its peak {abs(at):.4g} "
         f"degrees {side} the firing dead centre, {cylinder.firing:g} degrees of the file{work}"
     )
