@@ -17,9 +17,11 @@ from turned import turned
 from crankmbs import InputError, load_scene, shipped_scenes, simulate
 from crankmbs.page import page_of, refusals
 from crankmbs.page.knobs import knobs_of
+from crankmbs.page.refusals import early_end
 from crankmbs.scene.run import Extent
 
-SHOWN = [name for name in shipped_scenes() if not refusals(load_scene(name))]
+SHIPPED = {name: load_scene(name) for name in shipped_scenes()}
+SHOWN = [name for name, one in SHIPPED.items() if not refusals(one) and not early_end(one)]
 
 
 @pytest.fixture(scope="module")

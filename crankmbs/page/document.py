@@ -16,7 +16,7 @@ from crankmbs.mechanics.variables import EVERY
 from crankmbs.motion.ending import Ending
 from crankmbs.page.export import encoded, exported, rules
 from crankmbs.page.knobs import FIRING_ORDERS, Choice, choices_of, knobs_of
-from crankmbs.page.refusals import refusals, settling
+from crankmbs.page.refusals import early_end, refusals, settling
 from crankmbs.page.script import joined
 from crankmbs.scene.parts import LIGHT_CRANK
 from crankmbs.scene.scene import OPEN_LOOP, Scene
@@ -58,7 +58,7 @@ def page_of(scene: Scene, stem: str) -> str:
     >>> page_of(load_scene("propeller"), "mine").startswith("<!DOCTYPE html>")
     True
     """
-    reasons = refusals(scene)
+    reasons = refusals(scene) or early_end(scene)
     if reasons:
         raise InputError(f"the page cannot show this scene. {'. '.join(reasons)}")
     shown = shown_scene(scene)

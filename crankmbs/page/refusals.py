@@ -12,24 +12,35 @@ from crankmbs.scene.run import SETTLED
 from crankmbs.scene.scene import Scene
 from crankmbs.simulate import simulate
 
-__all__ = ["refusals", "settling"]
+__all__ = ["early_end", "refusals", "settling"]
+
+_ON = "run it with crankmbs run"
 
 
 def refusals(scene: Scene) -> tuple[str, ...]:
     """Why the browser cannot run a scene, one sentence each; none where it can.
 
-    What shows only when a knob is turned, a crank that comes to rest, the page says then.
+    What shows only on the way, a crank that comes to rest, `early_end` says, and of turned knobs
+    the page.
 
     >>> refusals(load_scene("propeller"))
     ()
     >>> refusals(load_scene("torque_driven"))[0].partition(";")[0]
     'rest: the crank starts from rest, where time must be the variable'
     """
-    reasons = list(_reasons(scene))
-    if not reasons and scene.start is not None and settling(scene) is None:
-        result = simulate(replace(scene, run=replace(scene.run, every=None)))
-        reasons += [f"end: {result.message}"] if result.status else []
-    return tuple(f"{reason}; run it with crankmbs run" for reason in reasons)
+    return tuple(f"{reason}; {_ON}" for reason in _reasons(scene))
+
+
+def early_end(scene: Scene) -> tuple[str, ...]:
+    """Why a run that does not settle ends before its last cycle, which the page shows of it.
+
+    >>> early_end(load_scene("run_down"))[0].startswith("end: at rest at 4406.69 degrees")
+    True
+    """
+    if scene.start is None or settling(scene) is not None:
+        return ()
+    result = simulate(replace(scene, run=replace(scene.run, every=None)))
+    return (f"end: {result.message}; {_ON}",) if result.status else ()
 
 
 def settling(scene: Scene) -> Scene | None:
