@@ -1,54 +1,284 @@
-"""A lesson in a real browser, from disk and with the network off: its sliders and its answers."""
+"""Lessons in a real browser, from disk and with the network off: figures, words, typed answers."""
 
+import math
+import re
+from importlib import import_module
+
+import numpy as np
 import pytest
-from browser import chromium
+from browser import chromium, visiting
 from playwright.sync_api import sync_playwright
 
-from crankmbs.lessons import write_lesson
+from crankmbs import load_scene, simulate
+from crankmbs.lessons import LESSONS, write_lesson
+
+PASSES = "() => [...document.querySelectorAll('figure')].every((f) => f.dataset.passes === '2')"
+PHONE, LAPTOP, LARGE = (390, 844), (1366, 641), (1920, 1080)
+
+
+@pytest.fixture(scope="module")
+def browser():
+    with sync_playwright() as playwright:
+        started = playwright.chromium.launch(executable_path=chromium(), args=["--no-sandbox"])
+        yield started
+        started.close()
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory):
+    """The file of a lesson, written once."""
+    folder = tmp_path_factory.mktemp("lessons")
+
+    def file(name):
+        target = folder / f"{name}.html"
+        return target if target.is_file() else write_lesson(name, folder)
+
+    return file
+
+
+class Opened:
+    """A lesson that is open."""
+
+    def __init__(self, visit, file):
+        self.page = visit.page
+        self.visit = visit
+        self.page.goto(file.as_uri())
+        self.settle()
+
+    def settle(self):
+        """Wait for the second pass of every figure."""
+        self.page.wait_for_function(PASSES)
+
+    def said(self, what):
+        """The number in a text that follows a figure."""
+        self.settle()
+        text = self.page.locator(f'[data-say="{what}"]').first.inner_text()
+        return float(re.search(r"[-\u2212\d.]+", text)[0].replace("\u2212", "-"))
+
+    def curve(self, figure, style="simulated"):
+        return self.page.locator(f"#{figure} path.curve.{style}").first.get_attribute("d")
+
+    def type(self, figure, knob, text):
+        entry = self.page.locator(f"#{figure} .knob:has(#{figure}-knob-{knob}) input.entry")
+        entry.fill(str(text))
+        entry.press("Enter")
+
+    def choose(self, figure, choice, word):
+        self.page.locator(f"#{figure} select[data-choice={choice}]").select_option(word)
+
+    def answer(self, question, text):
+        root = self.page.locator(f"#{question}")
+        root.locator("input").fill(text)
+        root.locator("button").click()
+        return root.locator(".reply")
 
 
 @pytest.fixture
-def opened(tmp_path):
-    """The page of the first lesson at slide size, with all it asked for and complained about."""
-    file = write_lesson("displacement", tmp_path)
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=chromium(), args=["--no-sandbox"])
-        context = browser.new_context(viewport={"width": 1280, "height": 800}, offline=True)
-        page = context.new_page()
-        requests, complaints = [], []
-        page.on("request", lambda request: requests.append(request.url))
-        page.on("pageerror", lambda error: complaints.append(str(error)))
-        page.on("console", lambda message: complaints.append(message.text))
-        page.goto(file.as_uri())
-        yield page
-        browser.close()
-    assert requests == [file.as_uri()]
-    assert complaints == []
+def lesson(browser, written):
+    """Opens lessons, and at the end finds that nothing was asked for nor complained of."""
+    visits = []
+
+    def opened(name, size=LAPTOP, **options):
+        manager = visiting(browser, size=size, offline=True, **options)
+        visits.append(manager)
+        return Opened(manager.__enter__(), written(name))
+
+    yield opened
+    for manager in visits:
+        manager.__exit__(None, None, None)
 
 
-def test_a_slider_shows_its_frame_and_an_answer_opens_on_a_click(opened):
-    figure = opened.locator("figure").first
-    slider, frames = figure.locator("input"), figure.locator(".frame")
-    marks = slider.get_attribute("data-marks").split("|")
-    for k in (len(marks) - 1, 0):
-        slider.focus()
-        opened.keyboard.press("End" if k else "Home")
-        assert [frames.nth(i).is_visible() for i in range(len(marks))] == [
-            i == k for i in range(len(marks))
-        ]
-        assert figure.locator("output").inner_text() == marks[k]
-    answer = opened.locator("details").first
-    assert not answer.locator("p").is_visible()
-    answer.locator("summary").click()
-    assert answer.locator("p").is_visible()
-    assert "5.8359" in answer.locator("#brix_simulated").inner_text()
+@pytest.mark.parametrize("size", [PHONE, LAPTOP, LARGE], ids=str)
+@pytest.mark.parametrize("name", LESSONS)
+def test_a_lesson_fits_every_screen(lesson, name, size):
+    opened = lesson(name, size)
+    wide = "[document.documentElement.scrollWidth, document.documentElement.clientWidth]"
+    scrolled, width = opened.page.evaluate(wide)
+    assert scrolled <= width
+    for one in opened.page.locator(".formula").all():
+        inner, outer = one.locator("math").bounding_box(), one.bounding_box()
+        assert inner["x"] + inner["width"] <= outer["x"] + outer["width"] + 1.0
+        assert 10.0 < inner["height"] < 110.0  # built up, and not one line of letters
 
 
-def test_figures_and_formulas_fit_the_page(opened):
-    width = opened.evaluate("document.documentElement.clientWidth")
-    assert opened.evaluate("document.documentElement.scrollWidth") == width
-    for box in opened.locator(".formula").all():
-        formula = box.locator("math").bounding_box()
-        around = box.bounding_box()
-        assert 15.0 < formula["height"] < 80.0  # built up, and not one line of letters
-        assert formula["x"] + formula["width"] <= around["x"] + around["width"]
+@pytest.mark.parametrize("name", LESSONS)
+def test_formulas_are_set_in_the_font_that_is_embedded(lesson, name):
+    opened = lesson(name)
+    session = opened.page.context.new_cdp_session(opened.page)
+    session.send("DOM.enable")
+    session.send("CSS.enable")
+    root = session.send("DOM.getDocument")["root"]["nodeId"]
+    found = session.send("DOM.querySelectorAll", {"nodeId": root, "selector": "math"})["nodeIds"]
+    assert found
+    for node in found:
+        fonts = session.send("CSS.getPlatformFontsForNode", {"nodeId": node})["fonts"]
+        assert all(font["isCustomFont"] for font in fonts), fonts
+
+
+KNOBS = [
+    ("displacement", "half", "rod_ratio", 0.5),
+    ("displacement", "series", "rod_ratio", 0.5),
+    ("acceleration", "motion", "rod_ratio", 0.4),
+    ("acceleration", "valley", "rod_ratio", 0.2),
+    ("forces", "along", "speed", 5000),
+    ("forces", "side", "share", 1.0),
+    ("forces", "worth", "rod_ratio", 0.5),
+    ("fluctuation", "swing", "flywheel", 0.05),
+    ("fluctuation", "cost", "flywheel", 0.05),
+    ("balance", "twin", "bank", 90),
+    ("omega", "energy", "flywheel", 0.3),
+    ("omega", "speed", "flywheel", 0.3),
+    ("polar", "pin", "speed", 5000),
+    ("polar", "turning", "speed", 5000),
+]
+
+
+@pytest.mark.parametrize(("name", "figure", "knob", "value"), KNOBS, ids=str)
+def test_a_slider_moves_the_curve(lesson, name, figure, knob, value):
+    opened = lesson(name)
+    before = opened.curve(figure)
+    opened.type(figure, knob, value)
+    assert opened.curve(figure) != before
+    opened.page.locator(f"#{figure}-knob-{knob}").dispatch_event("dblclick")
+    opened.settle()
+    assert opened.curve(figure) == before
+
+
+def test_the_crank_can_be_dragged_and_the_cursor_follows(lesson):
+    opened = lesson("displacement")
+    pin = opened.page.locator("#half .stage [data-grip=pin]").bounding_box()
+    axle = opened.page.locator("#half .stage .axle").bounding_box()
+    x, y = (axle[a] + 0.5 * axle[b] for a, b in (("x", "width"), ("y", "height")))
+    begin = pin["x"] + 0.5 * pin["width"], pin["y"] + 0.5 * pin["height"]
+    opened.page.mouse.move(*begin)
+    opened.page.mouse.down()
+    opened.page.mouse.move(x, y + math.dist(begin, (x, y)))
+    opened.page.mouse.up()
+    assert float(opened.page.locator("#half .angle").input_value()) == pytest.approx(180.0, abs=2.0)
+
+
+def test_a_figure_plays_while_it_is_seen_but_not_with_reduced_motion(lesson):
+    angle = "() => document.querySelector('#half .angle').value"
+    moving = lesson("displacement", motion="no-preference")
+    moving.page.wait_for_function("() => document.querySelector('#half .angle').value > 100")
+    assert moving.page.locator("#half .play").get_attribute("aria-pressed") == "true"
+    moving.page.locator("footer").scroll_into_view_if_needed()
+    pressed = "() => document.querySelector('#half .play').getAttribute('aria-pressed') === 'false'"
+    moving.page.wait_for_function(pressed)
+    still = lesson("displacement")
+    assert still.page.evaluate(angle) == "90"
+
+
+def test_displacement_says_what_python_has(lesson):
+    opened, r, l = lesson("displacement"), 40.0, 140.0
+    lead = l - math.sqrt(l * l - r * r)
+    assert opened.said("half.lead") == pytest.approx(lead, abs=0.006)
+    assert opened.said("half.angle") == pytest.approx(math.degrees(math.acos(r / l / 2)), abs=0.006)
+    assert opened.said("series.short") == pytest.approx(1e3 * (lead - r * r / l / 2), abs=0.06)
+    opened.type("half", "rod_ratio", 0.5)
+    assert opened.said("half.lead") == pytest.approx(80.0 - math.sqrt(80.0**2 - r * r), abs=0.006)
+
+
+def numbers_of(name):
+    """The numbers that Python computes for a lesson, by their ids."""
+    module = import_module(f"crankmbs.lessons.{name}")
+    texts = module.lesson(load_scene(module.SCENE)).texts
+    data = re.compile(r'<data id="(\w+)" value="([^"]+)"')
+    return {key: float(value) for text in texts for key, value in data.findall(text)}
+
+
+SAID = [
+    ("acceleration", "valley.least", "minimum_exact", 0.006),
+    ("forces", "side.off", "missing", 0.6),
+    ("forces", "worth.masses", "missing_share", 0.02),
+    ("fluctuation", "swing.delta", "fluctuation", 0.006),
+    ("fluctuation", "swing.mean", "mean_speed", 0.06),
+    ("fluctuation", "fall.delta", "fluctuation", 0.006),
+    ("balance", "shake.second", "second", 0.006),
+    ("omega", "energy.swing", "swing", 0.6),
+    ("omega", "speed.delta", "fluctuation", 0.006),
+    ("polar", "bearing.peak", "bearing_peak", 0.006),
+    ("polar", "pin.peak", "pin_peak", 0.006),
+    ("polar", "pin.angle", "pin_angle", 0.6),
+]
+
+
+@pytest.mark.parametrize(("name", "place", "number", "close"), SAID, ids=str)
+def test_words_that_follow_a_figure_say_what_python_has(lesson, name, place, number, close):
+    assert lesson(name).said(place) == pytest.approx(numbers_of(name)[number], abs=close)
+
+
+def test_cylinders_in_a_row_rock_as_python_has_it(lesson):
+    from crankmbs.lessons.shaking import reciprocating
+    from crankmbs.scene.parts import Layout
+
+    opened = lesson("balance")
+    bare = reciprocating(load_scene("grega_lecture"))
+    for word, order in (("3", (1, 3, 2)), ("2", (1, 2)), ("4", (1, 3, 4, 2))):
+        from dataclasses import replace
+
+        scene = replace(bare, layout=Layout(firing_order=order, spacing=0.088))
+        most = np.abs(simulate(scene).data["rocking_moment_y"].values).max()
+        opened.choose("couple", "cylinders", word)
+        assert opened.said("couple.most") == pytest.approx(most, abs=0.6)
+
+
+def test_a_weight_balances_the_v_twin_at_90_degrees_only(lesson):
+    opened = lesson("balance")
+    opened.type("twin", "weight", 100)
+    assert opened.said("twin.first") > 0.5
+    opened.type("twin", "bank", 90)
+    assert opened.said("twin.first") == pytest.approx(0.0, abs=0.005)
+
+
+@pytest.mark.parametrize(("method", "order"), [("Euler", 1), ("Heun", 2), ("Runge-Kutta", 4)])
+def test_half_the_step_is_worth_the_order(lesson, method, order):
+    opened = lesson("trust")
+    opened.choose("order", "method", method)
+    opened.type("order", "size", 0.5)
+    assert math.log2(opened.said("order.times")) == pytest.approx(order, abs=0.35)
+    opened.choose("stated", "method", method)
+    opened.type("stated", "size", 0.5)
+    assert opened.said("stated.ratio") == pytest.approx(1.0, abs=0.4)
+
+
+ANSWERS = [
+    ("5.84 mm", "right", "Right"),
+    ("0,584 cm", "right", "Right"),
+    ("5.3 mm", "wrong", "Close"),
+    ("40 mm", "wrong", "Half of r"),
+    ("5.84", "unclear", "unit is missing"),
+    ("5.84 kN", "unclear", "no unit of it"),
+    ("some", "unclear", "A number"),
+]
+
+
+@pytest.mark.parametrize(("typed", "verdict", "text"), ANSWERS, ids=str)
+def test_a_typed_answer_is_checked_with_its_unit(lesson, typed, verdict, text):
+    opened = lesson("displacement")
+    reply = opened.answer("ask_lead", typed)
+    assert verdict in reply.get_attribute("class")
+    assert text in reply.inner_text()
+    shown = opened.page.locator("#ask_lead details p").is_visible()
+    assert shown == (verdict == "right")
+
+
+@pytest.mark.parametrize("name", LESSONS)
+def test_every_answer_of_python_is_right_and_its_double_is_wrong(lesson, name):
+    module = import_module(f"crankmbs.lessons.{name}")
+    opened = lesson(name)
+    for question in module.lesson(load_scene(module.SCENE)).questions:
+        wanted = question.wanted
+        for factor, verdict in ((1.0, "right"), (2.0, "wrong")):
+            reply = opened.answer(question.name, f"{factor * wanted.value:.9g} {wanted.unit}")
+            assert verdict in reply.get_attribute("class"), (question.name, reply.inner_text())
+
+
+def test_a_number_that_cannot_be_keeps_the_picture_and_says_why(lesson):
+    opened = lesson("displacement")
+    before = opened.curve("half")
+    opened.type("half", "rod_ratio", "7")
+    assert "less than or equal" in opened.page.inner_text("#half .message") or "at most" in (
+        opened.page.inner_text("#half .message")
+    )
+    assert opened.curve("half") == before

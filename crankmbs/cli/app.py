@@ -260,14 +260,21 @@ def animate(
 @app.command()
 def lesson(
     name: Annotated[
-        str, typer.Argument(metavar="NAME", help="Its name; the command lessons lists them.")
-    ],
+        str | None,
+        typer.Argument(
+            metavar="NAME", help="Its name, as lessons lists them; without it all, with an index."
+        ),
+    ] = None,
     out: Annotated[
         Path, typer.Option("--out", "-o", metavar="DIR", help="Folder of the page.")
     ] = Path("lessons"),
+    scene: Annotated[
+        str | None,
+        typer.Option("--scene", metavar="SCENE", help="Which it is about; default its own."),
+    ] = None,
 ) -> None:
-    """Write a lesson: a page with the lecture's formula, the simulation on top, and questions."""
-    make_lesson(name, out)
+    """Write a lesson: figures that compute while you drag them, formulas, and questions."""
+    make_lesson(name, out, scene)
 
 
 @app.command()

@@ -5,89 +5,141 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from matplotlib import rc_context
-from matplotlib.figure import Figure
 
 from crankmbs import lecture
 from crankmbs.compare import Budget, budget, compare
-from crankmbs.figures.style import STYLE, crank_axis, legend, line_of, panels
-from crankmbs.figures.view import last_view
-from crankmbs.lessons.parts import Formula, Lesson, Question, Slider, Step, exact, simulated
-from crankmbs.lessons.runs import changed, finely, peak, peak_angle
+from crankmbs.errors import InputError
+from crankmbs.lessons.pieces import Figure, Formula, Lesson, Question, Section, exact, simulated
+from crankmbs.lessons.runs import (
+    changed,
+    finely,
+    held,
+    named,
+    peak,
+    peak_angle,
+    ratio_knob,
+    speed_knob,
+)
 from crankmbs.measures import Estimate, measure
+from crankmbs.page.knobs import Choice, Knob
 from crankmbs.result import Result
-from crankmbs.scene.read import load_scene
 from crankmbs.scene.scene import Scene
 from crankmbs.simulate import simulate
 
-__all__ = ["lesson"]
+__all__ = ["IDEA", "SCENE", "lesson"]
 
-_SHARES = (0.6, 0.7, 0.8, 0.9, 1.0, 1.1)  # of the two masses' inertia
 _SPACING = 0.1  # deg, of the samples
-_FORCES = ("net force", "side thrust", "rod force", "torque")
+_QUANTITIES = (
+    "side force on the piston",
+    "torque of the cylinder",
+    "crank pin force, axial",
+    "crank pin force, across",
+)
+
+SCENE = "yi_diesel"
+IDEA = (
+    "Gas and inertia push the piston along the cylinder; the tilted rod turns part of it "
+    "against the wall. Two masses in place of the rod weigh as much and balance alike, but "
+    "are too hard to swing: that spoils the side thrust, and never the mean torque."
+)
 
 
-def lesson() -> Lesson:
-    """Run the lesson's scene and its variants and put the page together."""
-    scene = load_scene("yi_diesel")
+def lesson(own: Scene) -> Lesson:
+    """The lesson about a scene.
+
+    Raises
+    ------
+    InputError : a rod without mass, or no gas
+    """
+    scene = held(own, "forces")
+    if not _two_masses(scene) > 0.0:
+        raise InputError(
+            "rod.mass: the lesson forces swings a rod that has mass, its center_of_mass between "
+            f"the pins; {scene.rod.mass:g} kg with {scene.rod.center_of_mass:g} m came"
+        )
     result = finely(scene, _SPACING)
-    own = scene.rod.moment_of_inertia / _two_masses(scene)
-    shares = sorted((*_SHARES, own))
-    runs = [
-        simulate(changed(scene, rod={"inertia": share * _two_masses(scene)})) for share in shares
-    ]
-    split = budget(result)
     return Lesson(
-        idea="Gas and inertia push the piston along the cylinder; the tilted rod turns part of it "
-        "against the wall. Two masses in place of the rod weigh as much and balance alike, but "
-        "are too hard to swing: that spoils the side thrust, and never the mean torque.",
-        steps=(
-            Step(
-                title="Gas against inertia",
-                figures=(_along(result),),
-                caption="Forces on the piston pin along the cylinder, over one cycle: of the gas, "
-                "and of the mass $m_A$ that moves with the piston. At top dead centre inertia "
-                "pulls where gas pushes, and the bearings feel the sum.",
-                formulas=(
-                    Formula(r"F_v = F_p + F_{zp}", lecture.net_force),
-                    Formula(r"F_{zp} = -m_A\,a", lecture.inertia_force),
-                ),
-            ),
-            Step(
-                title="The rod is not two masses",
-                figures=tuple(map(_side, runs)),
-                caption="Side thrust of the wall on the piston, with a rigid rod and with the "
-                "lecture's two masses. Move the slider: they agree only where the rod has the "
-                "inertia of its two masses.",
-                slider=Slider(
-                    r"rod inertia $I/(m\,a\,b)$",
-                    tuple(f"{share:.3g}" for share in shares),
-                    shares.index(own),
-                ),
-                formulas=(
-                    Formula(r"N = F_v\,\tan\beta", lecture.side_thrust),
-                    Formula(r"I_2 = m\,a\,b,\quad b=l-a", lecture.two_mass_rod_inertia),
-                ),
-                words=r"A rod with less inertia than $m\,a\,b$ needs a smaller couple "
-                r"$I\,\varepsilon$ for its angular acceleration $\varepsilon$. The wall gives it "
-                r"with the lever $l\,\cos\beta$, so two masses are wrong by "
-                r"$(m\,a\,b-I)\,\varepsilon/(l\,\cos\beta)$.",
-            ),
-            Step(
-                title="What each simplification is worth",
-                figures=(_causes(split),),
-                caption="Largest error of the truncated lecture, cause by cause, in percent of the "
-                "quantity's peak ($k=e/r$ is the offset). Along the cylinder two masses are exact; "
-                "across it they are not.",
-                formulas=(
-                    Formula(r"N \approx F_v\,\lambda\,(\sin\varphi-k)", lecture.side_thrust_series),
-                    Formula(r"M_k = F_T\,r", lecture.crank_torque),
-                ),
-            ),
+        idea=IDEA,
+        sections=(_along(scene), _side(scene), _worth(scene)),
+        questions=(_greatest(result), _missing(result, budget(result)), _torque(result)),
+        scene=scene,
+        about=f"The machine: {named(own)}, at constant speed.",
+        error=result.error.estimated,
+    )
+
+
+def _along(scene: Scene) -> Section:
+    return Section(
+        title="Gas against inertia",
+        before="Along the cylinder two forces meet on the piston pin: that of the gas, and that of "
+        "the mass $m_A$ that moves with the piston. Where the gas pushes most, with "
+        '<output data-say="along.gas"></output>, inertia adds '
+        '<output data-say="along.inertia"></output>. Turn the speed up: inertia grows with its '
+        "square, the gas does not.",
+        figure=Figure(
+            name="along",
+            caption="Forces towards the crank over one cycle; the arrows are those on the piston.",
+            plots=("Gas, inertia, and their sum",),
+            knobs=(speed_knob(scene),),
+            forces="piston",
         ),
-        questions=(_greatest(result), _missing(result, split), _torque(result)),
-        scene="yi_diesel",
-        result=result,
+        formulas=(
+            Formula(r"F_v = F_p + F_{zp}", lecture.net_force),
+            Formula(r"F_{zp} = -m_A\,a", lecture.inertia_force),
+        ),
+    )
+
+
+def _side(scene: Scene) -> Section:
+    own = scene.rod.moment_of_inertia / _two_masses(scene)
+    label = "rod inertia, of two masses'"
+    return Section(
+        title="The rod is not two masses",
+        before="The tilted rod presses the piston against the wall. The lectures put two masses in "
+        "place of the rod: right in weight and balance, but too hard to swing. Move the slider: "
+        "both agree only where the rod has the inertia of its two masses. Now they differ by "
+        '<output data-say="side.off"></output> at most.',
+        figure=Figure(
+            name="side",
+            caption="Side thrust of the wall on the piston with a rigid rod and with the lecture's "
+            "two masses, and below their difference.",
+            plots=("Side thrust on the piston",),
+            knobs=(Knob("share", label, "", min(0.6, own), max(1.2, own), own, 3),),
+            forces="piston",
+        ),
+        after=r"A rod with less inertia than $m\,a\,b$ needs a smaller couple "
+        r"$I\,\varepsilon$ for its angular acceleration $\varepsilon$. The wall gives it "
+        r"with the lever $l\,\cos\beta$, so two masses are wrong by "
+        r"$(m\,a\,b-I)\,\varepsilon/(l\,\cos\beta)$.",
+        formulas=(
+            Formula(r"N = F_v\,\tan\beta", lecture.side_thrust),
+            Formula(r"I_2 = m\,a\,b,\quad b=l-a", lecture.two_mass_rod_inertia),
+        ),
+    )
+
+
+def _worth(scene: Scene) -> Section:
+    return Section(
+        title="What each simplification is worth",
+        before="The truncated lecture errs twice: by its two masses, here at most "
+        '<output data-say="worth.masses"></output> of the peak, and by its two harmonics, '
+        '<output data-say="worth.series"></output>. Choose a force: along the cylinder two masses '
+        "are exact, across it they are not.",
+        figure=Figure(
+            name="worth",
+            caption="Simulated, by the exact formula for two masses, and by the truncated lecture; "
+            "below what each step leaves out.",
+            plots=("A force, and its errors by cause",),
+            knobs=(ratio_knob(scene), speed_knob(scene)),
+            choices=(Choice("quantity", "force", _QUANTITIES, _QUANTITIES[0]),),
+            machine=False,
+        ),
+        formulas=(
+            Formula(
+                r"N \approx F_v\,\lambda\,(\sin\varphi-k),\quad k=e/r", lecture.side_thrust_series
+            ),
+            Formula(r"M_k = F_T\,r", lecture.crank_torque),
+        ),
     )
 
 
@@ -101,60 +153,6 @@ def _two_masses(scene: Scene) -> float:
     )
 
 
-@rc_context(STYLE)
-def _along(result: Result) -> Figure:
-    figure, (ax,) = panels(1, 1, 11.0, 4.8)
-    view = last_view(result)
-    gas = view.values("gas_force")[:, 0] * 1e-3
-    net = compare(result).simulated["net force"] * 1e-3
-    ax.axhline(0.0, color="0.55", linewidth=1.0)
-    ax.plot(view.degrees, gas, **line_of(1), label="gas $F_p$")
-    ax.plot(view.degrees, net - gas, **line_of(2), label="inertia $F_{zp}$")
-    ax.plot(view.degrees, net, **line_of(0), linewidth=3.0, label="net force $F_v$")
-    ax.set_ylabel("force towards\nthe crank [kN]")
-    crank_axis([ax], view)
-    legend(figure, ax)
-    return figure
-
-
-@rc_context(STYLE)
-def _side(result: Result) -> Figure:
-    figure, (above, below) = panels(2, 1, 11.0, 5.6)
-    view, row = last_view(result), compare(result).row("side thrust", "untruncated lecture")
-    for ax in (above, below):
-        ax.axhline(0.0, color="0.55", linewidth=1.0)
-    thrust = view.values("side_force")[:, 0] * 1e-3
-    above.plot(view.degrees, thrust, **line_of(0), label="simulated, rigid rod")
-    above.plot(view.degrees, row.values * 1e-3, **line_of(1), label="lecture, two masses")
-    above.set_ylabel("side thrust\nalong Y [kN]")
-    below.plot(view.degrees, row.error, **line_of(2))
-    below.set_ylabel("lecture minus\nsimulated [N]")
-    below.set_ylim(-720.0, 720.0)  # one scale for every rod
-    crank_axis([above, below], view)
-    figure.align_ylabels([above, below])
-    legend(figure, above)
-    return figure
-
-
-@rc_context(STYLE)
-def _causes(split: Budget) -> Figure:
-    figure, (ax,) = panels(1, 1, 11.0, 4.2)
-    for k, cause in enumerate(("series", "two-mass rod")):
-        shares = [split.split(name).share(split.split(name).cause(cause)) for name in _FORCES]
-        places = np.arange(len(_FORCES)) + 0.38 * (k - 0.5)
-        label = {"series": "the truncated series", "two-mass rod": "the two-mass rod"}[cause]
-        ax.barh(places, shares, height=0.36, color=line_of(k)["color"], label=label)
-        for place, share in zip(places, shares, strict=True):
-            ax.text(share, place, f" {share:.3g} %", va="center")
-    ax.set_yticks(range(len(_FORCES)), _FORCES)
-    ax.invert_yaxis()
-    ax.margins(x=0.1)
-    ax.grid(visible=False, axis="y")
-    ax.set_xlabel("largest error [% of the peak]")
-    legend(figure, ax)
-    return figure
-
-
 def _greatest(result: Result) -> Question:
     thrust = peak(result, "side_force")
     at = peak_angle(result, "side_force", 0.0, 720.0)
@@ -164,9 +162,14 @@ def _greatest(result: Result) -> Question:
         for name in ("untruncated lecture", "S1 (motion and forces truncated)")
     )
     where = math.degrees(answers.excerpt.size("side thrust", np.maximum(two.values, 0.0)).angle)
+    wanted = simulated("side_peak", thrust, "kN", 1e-3, 5)
     return Question(
-        "How hard does the piston press against the wall towards +Y, and when?",
-        f"{simulated('side_peak', thrust, 'kN', 1e-3, 5)} at "
+        name="ask_thrust",
+        asked="How hard does the piston press against the wall, at most, on the side on which it "
+        "does so after firing?",
+        wanted=wanted,
+        hint="Drag the cursor of the side thrust to its peak, and read the rigid rod's value.",
+        answer=f"{wanted} at "
         f"{simulated('side_angle', at, '°')}, just after firing. The lecture says "
         f"{exact('side_two_masses', two.values.max(), 'kN', 1e-3, 5)} with two masses, at "
         f"{simulated('side_two_angle', Estimate(where, _SPACING), '°')}, and "
@@ -189,12 +192,17 @@ def _missing(result: Result, split: Budget) -> Question:
     cosine = math.sqrt(1.0 - sine**2)
     swing = r / l * omega**2 / cosine  # at 270 degrees, where beta' is 0
     couple = (_two_masses(scene) - scene.rod.moment_of_inertia) * swing
+    wanted = simulated("missing", found, "N")
     return Question(
-        "How much of the side thrust do the two masses make up, and where?",
-        f"At {simulated('missing_angle', where, '°')} the rod swings hardest, "
+        name="ask_missing",
+        asked="How many newtons of the side thrust do the two masses make up, at most?",
+        wanted=wanted,
+        hint="The strip below the side thrust shows it, with the slider where the rod has it.",
+        tolerance=0.02,
+        answer=f"At {simulated('missing_angle', where, '°')} the rod swings hardest, "
         rf"$|\varepsilon|=\lambda\omega^2/\cos\beta$, and the couple too much is "
         f"{exact('couple', couple, 'N m')}: {exact('missing_formula', couple / l / cosine, 'N')} "
-        f"at the wall. The error budget finds {simulated('missing', found, 'N')}, "
+        f"at the wall. The error budget finds {wanted}, "
         f"{simulated('missing_share', share, '%', most=3)} of the peak.",
     )
 
@@ -209,8 +217,14 @@ def _torque(result: Result) -> Question:
         )
         for (greatest, average), run in zip(names, (result, lumped), strict=True)
     )
+    number = measure(result).crank_torque
     return Question(
-        "Does the error reach the power?",
-        f"No. The greatest torque is {rigid}, with two masses {two}; the mean is {mean} and "
-        f"{mean_two}. Swinging the rod to and fro takes no work over a cycle.",
+        name="ask_torque",
+        asked="Does the error reach the power? What is the mean torque of one cylinder with two "
+        f"masses, when it is {simulated('mean_asked', number, 'N m', most=5)} with the rigid rod?",
+        wanted=simulated("mean_wanted", number, "N m", most=5),
+        hint="How much work does it take to swing a rod to and fro, over a cycle?",
+        answer=f"The same, so no. The greatest torque is {rigid}, with two masses {two}; "
+        f"the mean is {mean} and {mean_two}. Swinging the rod to and fro takes no work over a "
+        "cycle.",
     )

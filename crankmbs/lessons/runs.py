@@ -8,16 +8,32 @@ from typing import Any
 
 import numpy as np
 
+from crankmbs.errors import InputError
 from crankmbs.measures import Estimate
 from crankmbs.measures.peak import rise
+from crankmbs.page.knobs import Knob
 from crankmbs.result import Result
+from crankmbs.scene.drives import Motion, Oscillation
 from crankmbs.scene.parts import Cylinder, Layout
-from crankmbs.scene.read import load_scene
 from crankmbs.scene.run import Extent, Run
 from crankmbs.scene.scene import Scene
+from crankmbs.scene.units import RPM
 from crankmbs.simulate import simulate
 
-__all__ = ["changed", "finely", "one_cylinder", "peak", "peak_angle", "sample", "turn"]
+__all__ = [
+    "changed",
+    "even",
+    "finely",
+    "held",
+    "named",
+    "one_cylinder",
+    "peak",
+    "peak_angle",
+    "ratio_knob",
+    "sample",
+    "speed_knob",
+    "speed_of",
+]
 
 
 def changed(scene: Scene, **parts: dict[str, Any]) -> Scene:
@@ -30,16 +46,94 @@ def changed(scene: Scene, **parts: dict[str, Any]) -> Scene:
     return dataclasses.replace(scene, **new)
 
 
-def one_cylinder(name: str) -> Scene:
-    """One cylinder of a shipped scene without gas, for one revolution: its motion alone."""
-    layout = Layout(cylinders=(Cylinder(),))
-    run = Run(until=Extent(value=2.0 * math.pi, unit="rad"))
-    return dataclasses.replace(load_scene(name), layout=layout, gas=None, run=run)
+def named(scene: Scene) -> str:
+    """What a scene is called on the pages.
+
+    >>> named(load_scene("propeller"))
+    'single-cylinder petrol engine with a propeller, free speed'
+    """
+    return scene.title or "the scene"
 
 
-def turn(scene: Scene, rod_ratio: float) -> Result:
-    """Run the scene with a rod of this ratio of crank radius to rod length."""
-    return simulate(changed(scene, rod={"length": scene.crank.radius / rod_ratio}))
+def speed_of(scene: Scene) -> float:
+    """The speed [rad/s] that a scene starts with, or its mean.
+
+    Raises
+    ------
+    InputError : a speed that is 0 or has no mean
+    """
+    speed = scene.start.speed if scene.start is not None else scene.motion and scene.motion.speed
+    mean = speed.mean if isinstance(speed, Oscillation) else speed
+    if not isinstance(mean, float) or mean == 0.0:
+        raise InputError(
+            "speed: a lesson needs a start.speed, or a constant or oscillating motion.speed, that "
+            f"is not 0; {'0' if mean == 0.0 else type(speed).__name__} came"
+        )
+    return mean
+
+
+def one_cylinder(scene: Scene) -> Scene:
+    """One cylinder without gas, weight and offset at constant speed for one revolution.
+
+    >>> len(one_cylinder(load_scene("v_twin")).cylinders)
+    1
+    """
+    return dataclasses.replace(
+        scene,
+        layout=Layout(cylinders=(Cylinder(),)),
+        piston=dataclasses.replace(scene.piston, offset=0.0),
+        gas=None,
+        fuel=None,
+        friction=None,
+        gravity=None,
+        torque=(),
+        start=None,
+        motion=Motion(speed=abs(speed_of(scene))),
+        run=Run(until=Extent(value=2.0 * math.pi, unit="rad")),
+    )
+
+
+def held(scene: Scene, lesson: str) -> Scene:
+    """One cycle of a scene with gas at constant speed, without loads.
+
+    Raises
+    ------
+    InputError : no gas, or no speed
+
+    >>> held(load_scene("propeller"), "forces").settles
+    False
+    """
+    if scene.gas is None:
+        raise InputError(f"gas: the lesson {lesson} is about a machine with [gas]; none came")
+    return even(scene)
+
+
+def even(scene: Scene) -> Scene:
+    """One cycle of a scene at constant speed, without loads.
+
+    >>> even(load_scene("coasting")).start is None
+    True
+    """
+    return dataclasses.replace(
+        scene,
+        friction=None,
+        torque=(),
+        start=None,
+        motion=Motion(speed=abs(speed_of(scene))),
+        run=Run(until=Extent(value=1.0, unit="cycle")),
+    )
+
+
+def ratio_knob(scene: Scene, low: float = 0.1, high: float = 0.6) -> Knob:
+    """A slider of the rod ratio in which the scene's own lies."""
+    own = scene.crank.radius / scene.rod.length
+    return Knob("rod_ratio", "rod ratio r/l", "", min(low, own), max(high, own), own, 3)
+
+
+def speed_knob(scene: Scene) -> Knob:
+    """A slider of the speed."""
+    own = abs(speed_of(scene)) / RPM
+    return Knob("speed", "speed", "rpm", 0.25 * own, 2.0 * own, own, 0)
 
 
 def finely(scene: Scene, degrees: float = 0.01) -> Result:

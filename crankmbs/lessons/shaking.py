@@ -14,15 +14,14 @@ from crankmbs.result import Result
 from crankmbs.scene.parts import Cylinder, Layout
 from crankmbs.scene.scene import Scene
 
-__all__ = ["FRAME", "amplitude", "reciprocating", "twin"]
-
-FRAME = ("frame_force_x", "frame_force_y")
+__all__ = ["amplitude", "reciprocating", "twin"]
 
 
 def reciprocating(scene: Scene) -> Scene:
     """The machine without gas, its rotating masses balanced, m_A with the piston."""
     rod = {"mass": 0.0, "inertia": 0.0}
-    lumped = changed(scene, rod=rod, piston={"mass": _moving_mass(scene)})
+    crank = {"mass": 0.0, "center_of_mass": 0.0, "inertia": None}
+    lumped = changed(scene, crank=crank, rod=rod, piston={"mass": _moving_mass(scene)})
     return dataclasses.replace(lumped, gas=None)
 
 

@@ -4,9 +4,18 @@ they take it.
 What only Python can run is named in refusals, with the command that does.
 """
 
-from crankmbs.page.document import page_of
-from crankmbs.page.export import exported
+from crankmbs.page.document import given_of, page_of, policy
+from crankmbs.page.export import encoded, exported
 from crankmbs.page.refusals import refusals
-from crankmbs.page.script import joined
+from crankmbs.page.script import FOLDER, joined
 
-__all__ = ["exported", "joined", "page_of", "refusals"]
+__all__ = [
+    "FOLDER",
+    "encoded",
+    "exported",
+    "given_of",
+    "joined",
+    "page_of",
+    "policy",
+    "refusals",
+]

@@ -23,7 +23,7 @@ from crankmbs.scene.scene import OPEN_LOOP, Scene
 from crankmbs.scene.sentences import RULES
 from crankmbs.scene.write import scene_files
 
-__all__ = ["page_of", "shown_scene"]
+__all__ = ["given_of", "page_of", "policy", "shown_scene"]
 
 _FOLDER = Path(__file__).parent
 _NUMBERS = ("finite_number", "float_type", "greater_than_equal", "less_than_equal")
@@ -77,7 +77,7 @@ def page_of(scene: Scene, stem: str) -> str:
         stem=stem,
         heavy=scene.start is not None,
         choices={choice.name: choice for choice in choices},
-        policy=_policy(script, style),
+        policy=policy(script, style),
         script=Markup(script),
         style=Markup(style),
         given=Markup(encoded(_given(shown, stem, choices))),
@@ -97,17 +97,28 @@ def _given(scene: Scene, stem: str, choices: tuple[Choice, ...]) -> dict[str, An
     """What the scripts take of a scene."""
     indicator = None if scene.gas is None else scene.gas.indicator
     return {
-        "scene": exported(scene),
-        "rules": rules(),
+        **given_of(scene),
         "stem": stem,
         "files": scene_files(scene, stem),
         "knobs": [dataclasses.asdict(knob) for knob in knobs_of(scene)],
         "words": [{"name": choice.name, "words": choice.words} for choice in choices],
         "own": {choice.name: choice.own for choice in choices},
-        "two_mass": scene.rod.inertia == "two-mass",
         "compression": None if indicator is None else indicator.compression_ratio,
-        "orders": {name: list(order) for name, order in FIRING_ORDERS.items()},
         "units": {name: variable.units for name, variable in EVERY.items()},
+    }
+
+
+def given_of(scene: Scene) -> dict[str, Any]:
+    """What the engine takes to run a scene as its knobs turn it, and to say what cannot be.
+
+    >>> sorted(given_of(load_scene("propeller")))
+    ['endings', 'orders', 'rules', 'scene', 'sentences', 'two_mass']
+    """
+    return {
+        "scene": exported(scene),
+        "rules": rules(),
+        "two_mass": scene.rod.inertia == "two-mass",
+        "orders": {name: list(order) for name, order in FIRING_ORDERS.items()},
         "endings": _ENDINGS,
         "sentences": {
             "open_loop": OPEN_LOOP,
@@ -119,11 +130,17 @@ def _given(scene: Scene, stem: str, choices: tuple[Choice, ...]) -> dict[str, An
     }
 
 
-def _policy(script: str, style: str) -> str:
-    """A content-security policy under which nothing else runs, and nothing is fetched."""
+def policy(script: str, style: str, *, fonts: bool = False) -> str:
+    """A content-security policy under which nothing else runs, and nothing is fetched.
+
+    fonts : whether the style brings fonts with it
+
+    >>> "font-src" in policy("", "")
+    False
+    """
     return (
         f"default-src 'none'; script-src {_hash(script)}; style-src {_hash(style)}; "
-        "base-uri 'none'; form-action 'none'"
+        f"{'font-src data:; ' if fonts else ''}base-uri 'none'; form-action 'none'"
     )
 
 

@@ -73,18 +73,24 @@ def rules() -> dict[int, dict[str, Array]]:
 
 
 def encoded(value: object) -> str:
-    """JSON that may stand inside a script: arrays as base64 doubles, no ``<``, no NaN.
+    """JSON that may stand inside a script: arrays as base64 doubles, no ``<``, no NaN; an array
+    that comes again, as the number of the different ones before its first.
 
-    >>> encoded({"x": np.array([1.0])})
-    '{"x":{"f64":"AAAAAAAA8D8="}}'
+    >>> encoded([np.array([1.0]), np.array([1.0])])
+    '[{"f64":"AAAAAAAA8D8="},{"again":0}]'
     """
-    text = json.dumps(value, default=_array, allow_nan=False, separators=(",", ":"))
+    seen: dict[bytes, int] = {}
+
+    def array(value: object) -> dict[str, str | int]:
+        assert isinstance(value, np.ndarray)
+        data = value.astype("<f8").tobytes()
+        if data in seen:
+            return {"again": seen[data]}
+        seen[data] = len(seen)
+        return {"f64": base64.b64encode(data).decode("ascii")}
+
+    text = json.dumps(value, default=array, allow_nan=False, separators=(",", ":"))
     return text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
-
-
-def _array(value: object) -> dict[str, str]:
-    assert isinstance(value, np.ndarray)
-    return {"f64": base64.b64encode(value.astype("<f8").tobytes()).decode("ascii")}
 
 
 def _machine(scene: Scene) -> dict[str, Any]:

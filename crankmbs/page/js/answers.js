@@ -7,12 +7,13 @@ import { reactionsAt } from "./reactions.js";
 
 const FINE = { stages: 7, tolerance: 1e-12 };
 
-/** Values as Python wrote them, arrays from base64 doubles. */
-export function decoded(value) {
-  if (Array.isArray(value)) return value.map(decoded);
+/** Values as Python wrote them, arrays from base64 doubles; seen : the different ones so far. */
+export function decoded(value, seen = []) {
+  if (Array.isArray(value)) return value.map((each) => decoded(each, seen));
   if (value === null || typeof value !== "object") return value;
-  if ("f64" in value) return doubles(value.f64);
-  return Object.fromEntries(Object.entries(value).map(([key, each]) => [key, decoded(each)]));
+  if ("again" in value) return seen[value.again];
+  if ("f64" in value) return seen[seen.push(doubles(value.f64)) - 1];
+  return Object.fromEntries(Object.entries(value).map(([key, each]) => [key, decoded(each, seen)]));
 }
 
 function doubles(text) {

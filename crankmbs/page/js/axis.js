@@ -5,10 +5,11 @@ import { add } from "./svg.js";
 const QUARTERS = [45, 90, 180, 360, 720]; // degrees between ticks of the crank angle
 
 /** How curves { x, y } are put into a box: { box, right, up, x, y }, maps of values to pixels and
- * the ranges shown. */
-export function frameOf(box, curves, { shape, overAngle }) {
-  const y = rangeOf(curves.flatMap((curve) => curve.y));
-  const x = overAngle ? ends(shape.curves[0].x) : rangeOf(curves.flatMap((curve) => curve.x));
+ * the ranges shown. holds : values { x, y } that the ranges hold besides, or none */
+export function frameOf(box, curves, { shape, overAngle, holds = {} }) {
+  const y = rangeOf([...curves.flatMap((curve) => curve.y), ...(holds.y ?? [])]);
+  const across = () => [...curves.flatMap((curve) => curve.x), ...(holds.x ?? [])];
+  const x = overAngle ? ends(shape.curves[0].x) : rangeOf(across());
   const bounds = shape.equal ? squared(box, x, y) : box;
   const [from, to] = shape.equal ? [bounds.right, bounds.left] : [bounds.left, bounds.right];
   const right = (value) => from + ((value - x.low) / (x.high - x.low)) * (to - from);
@@ -67,7 +68,8 @@ function abscissa(group, box, right, { x, type, shape }) {
     add(group, "text", place, readable(tick, digitsOf(step)));
   }
   const middle = { x: 0.5 * (box.left + box.right), y: box.bottom + 2.3 * type };
-  const text = `${shape.right.text} [${shape.right.unit}]`;
+  const { text: name, unit } = shape.right;
+  const text = unit ? `${name} [${unit}]` : name;
   add(group, "text", { ...middle, class: "name mid" }, text);
 }
 

@@ -3,8 +3,9 @@ import { Refused } from "./refused.js";
 import { numberOf } from "./state.js";
 
 export class Knobs {
-  /** root : where they stand; knobs : { name, label, unit, low, high, value, decimals, about };
-   * rules : templates of sentences; on : { turn(name, value), release(), refuse(sentence) } */
+  /** root : where they stand, its data-prefix before their ids; knobs : { name, label, unit, low,
+   * high, value, decimals, about }; rules : templates of sentences; on : { turn(name, value),
+   * release(), refuse(sentence) } */
   constructor(root, knobs, rules, on) {
     this.rules = rules;
     this.on = on;
@@ -14,7 +15,7 @@ export class Knobs {
   make(root, knob) {
     const row = element("div", "knob", root);
     const label = element("label", "", row);
-    label.htmlFor = `knob-${knob.name}`;
+    label.htmlFor = `${root.dataset.prefix ?? ""}knob-${knob.name}`;
     label.textContent = knob.label;
     const entry = element("input", "entry", row);
     Object.assign(entry, { type: "text", inputMode: "decimal", autocomplete: "off" });

@@ -34,7 +34,8 @@ export class Plot {
     this.svg.addEventListener("pointerleave", () => this.point(null));
   }
 
-  /** Draw other curves: { shape, marks } with the shape of `quantities.drawn`. */
+  /** Draw other curves: { shape, marks } with the shape of `quantities.drawn`. It may also hold
+   * values in the range of its axes, `holds` and `holdsBelow`, and its curves have a style. */
   draw(shape, marks) {
     this.shape = shape;
     this.marks = marks;
@@ -64,9 +65,10 @@ export class Plot {
     const top = { ...box, bottom: strip ? split - 1.5 * type : foot };
     const curves = this.ghost ? [...shape.curves, this.ghost.curve] : shape.curves;
     const about = { type, shape, marks: this.marks, overAngle, left: box.left };
-    this.upper = frameOf(top, curves, about);
+    this.upper = frameOf(top, curves, { ...about, holds: shape.holds });
     this.draws("upper", this.upper, { ...about, last: !strip, name: nameOf(shape) });
-    this.lower = strip ? frameOf({ ...box, top: split, bottom: foot }, seen, about) : null;
+    const below = { ...box, top: split, bottom: foot };
+    this.lower = strip ? frameOf(below, seen, { ...about, holds: shape.holdsBelow }) : null;
     this.draws("lower", this.lower, { ...about, last: true, name: "difference" });
     const lines = this.ghost ? [[this.upper, this.ghost.curve, "ghost"]] : [];
     shape.curves.forEach((curve, n) => lines.push([this.upper, curve, styleOf(curve, n)]));
@@ -136,7 +138,7 @@ export class Plot {
   read(degrees) {
     const { shape, legend } = this;
     const entries = isDiagram(shape)
-      ? shape.curves.map(({ name }, n) => [name, styleOf({ name }, n), ""])
+      ? shape.curves.map((curve, n) => [curve.name, styleOf(curve, n), ""])
       : this.values(degrees);
     if (this.ghost) entries.push(["pinned", "ghost", ""]);
     const hovers = this.hover !== null && !isDiagram(shape);
@@ -226,12 +228,14 @@ function isDiagram(shape) {
   return shape.right.text !== "crank angle";
 }
 
-function styleOf({ name }, n) {
+function styleOf({ name, style }, n) {
+  if (style) return style;
   return n === 0 ? "simulated" : name === "lecture" ? "lecture" : "exact";
 }
 
 function nameOf({ up, right }) {
-  return right.text === "crank angle" ? up.unit : `${up.text} [${up.unit}]`;
+  if (right.text === "crank angle") return up.unit;
+  return up.unit ? `${up.text} [${up.unit}]` : up.text;
 }
 
 /** The value of a curve at an angle, between its points. */

@@ -1,0 +1,172 @@
+"""Lesson 6: why the speed is not constant: the balance of energy over a cycle."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from crankmbs.lessons.freed import flywheel_knob, free, settled
+from crankmbs.lessons.pieces import Figure, Formula, Lesson, Question, Section, exact, simulated
+from crankmbs.lessons.runs import changed, named
+from crankmbs.measures import Estimate, measure
+from crankmbs.measures.peak import rise
+from crankmbs.result import Result
+from crankmbs.scene.run import Extent
+from crankmbs.scene.scene import Scene
+
+__all__ = ["IDEA", "SCENE", "lesson"]
+
+SCENE = "yi_diesel_free"
+IDEA = (
+    "The gas gives its work in pulses, the load takes it evenly. What is given and not yet taken "
+    "is kinetic energy, so the speed must swing: a flywheel cannot stop it, only make it small."
+)
+_ENERGY = "The balance of energy"
+
+
+def lesson(own: Scene) -> Lesson:
+    """The lesson about a scene.
+
+    Raises
+    ------
+    InputError : a machine that does not settle
+    """
+    scene = free(own, "omega")
+    every = Extent(value=math.radians(0.1), unit="rad")
+    result = settled(changed(scene, run={"every": every}))
+    return Lesson(
+        idea=IDEA,
+        sections=(_moment(scene), _energy(scene), _speed(scene)),
+        questions=(_swing(result), _fluctuation(result), _inertia(result)),
+        scene=scene,
+        about=f"The machine: {named(own)}; its settled motion.",
+        error=result.error.estimated,
+    )
+
+
+def _moment(scene: Scene) -> Section:
+    return Section(
+        title="The gas gives in pulses, the load takes evenly",
+        before="Turn the crank through a cycle. Where the gas gives more than the load takes, the "
+        "crank gains; where it gives less, or takes itself, the crank must pay. The load takes "
+        '<output data-say="moment.load"></output> on average, the gas gives up to '
+        '<output data-say="moment.most"></output>. Over the whole cycle the two areas are equal, '
+        "or the next cycle would be faster than this one.",
+        figure=Figure(
+            name="moment",
+            caption="Work of the gas on all pistons per radian, and the torque of the load.",
+            plots=("What the gas gives and the load takes",),
+            forces="piston",
+            ring=True,
+        ),
+        formulas=(
+            Formula(
+                r"\frac{dT}{d\varphi} = M_{\text{gas}} - M_{\text{load}}",
+                note="Exact, without weights and friction: T is the kinetic energy of all parts.",
+                source=_ENERGY,
+            ),
+        ),
+    )
+
+
+def _energy(scene: Scene) -> Section:
+    return Section(
+        title="The difference is stored as kinetic energy",
+        before="Summed over the angle, the difference is the kinetic energy. It swings by "
+        '<output data-say="energy.swing"></output> around '
+        '<output data-say="energy.stored"></output>. Make the flywheel heavier: far more is '
+        "stored, but the swing hardly changes, because gas and load do not know of the flywheel.",
+        figure=Figure(
+            name="energy",
+            caption="Kinetic energy of crank, flywheel, rods and pistons over one settled cycle.",
+            plots=("Kinetic energy",),
+            knobs=(flywheel_knob(scene),),
+            ring=True,
+        ),
+    )
+
+
+def _speed(scene: Scene) -> Section:
+    return Section(
+        title="From the energy to the speed",
+        before="The speed follows from the energy and the inertia. The same swing of energy is a "
+        'small swing of a large store: the speed now fluctuates by <output data-say="speed.delta">'
+        "</output>. Even with constant energy it would not stand still: pistons and rods that "
+        "move fast near mid-stroke and stop at its ends make the inertia swing between "
+        '<output data-say="speed.least"></output> and <output data-say="speed.most"></output>.',
+        figure=Figure(
+            name="speed",
+            caption="Crank speed, and what it would be if the inertia were constant at its mean.",
+            plots=("Crank speed",),
+            knobs=(flywheel_knob(scene),),
+            machine=False,
+        ),
+        formulas=(
+            Formula(
+                r"\omega = \sqrt{\frac{2\,T(\varphi)}{J(\varphi)}}",
+                note="Exact: J is the inertia of all parts as the crank feels it.",
+                source=_ENERGY,
+            ),
+            Formula(
+                r"\delta \approx \frac{\Delta T}{J\,\omega_m^2}",
+                note="Approximate: what the swing of energy alone would do, were J constant.",
+                source=_ENERGY,
+            ),
+        ),
+    )
+
+
+def _range(values: np.ndarray, stated: float) -> Estimate:
+    """The greatest less the least value, with what its samples miss."""
+    missed = rise(values, int(np.argmax(values))) + rise(-values, int(np.argmin(values)))
+    return Estimate(float(np.ptp(values)), 2.0 * stated + missed)
+
+
+def _swing(result: Result) -> Question:
+    energy = result.data["kinetic_energy"]
+    stated = float(energy.attrs["error_estimate"])
+    wanted = simulated("swing", _range(energy.values, stated), "J")
+    return Question(
+        name="ask_swing",
+        asked="By how many joules does the kinetic energy swing over a cycle?",
+        wanted=wanted,
+        hint="Read the greatest and the least value with the cursor of the second figure.",
+        answer=f"By {wanted}, between the angles at which the torque of the gas crosses that of "
+        "the load.",
+        tolerance=0.02,
+    )
+
+
+def _fluctuation(result: Result) -> Question:
+    found = measure(result)
+    energy = result.data["kinetic_energy"].values
+    wanted = exact("from_energy", float(np.ptp(energy) / (2.0 * energy.mean())), "%", 100.0)
+    return Question(
+        name="ask_fluctuation",
+        asked="How much would the speed fluctuate by that swing alone, if the inertia were "
+        "constant?",
+        wanted=wanted,
+        hint="Twice the mean kinetic energy is J times the square of the speed; the second figure "
+        "tells both energies.",
+        answer=f"By {wanted}, the swing over twice the mean energy. The run has "
+        f"{simulated('fluctuation', found.fluctuation, '%', 100.0)}: what the inertia of rods and "
+        "pistons adds, or takes away, is no small part.",
+        tolerance=0.03,
+    )
+
+
+def _inertia(result: Result) -> Question:
+    speed = result.data["crank_speed"].values
+    inertia = 2.0 * result.data["kinetic_energy"].values / speed**2
+    stated = 3.0 * result.error.estimated * float(inertia.max())
+    wanted = simulated("inertia_swing", _range(inertia, stated), "kg m²")
+    least = float(inertia.min())
+    return Question(
+        name="ask_inertia",
+        asked="By how much does the inertia that the crank feels change over a turn?",
+        wanted=wanted,
+        hint="The text above the last figure tells its least and its greatest value.",
+        answer=f"By {wanted}, above a least of {least:.4g} kg m².",
+        tolerance=0.03,
+    )

@@ -1,0 +1,228 @@
+/** A figure of a lesson: the mechanism, curves, sliders, and words that follow them. */
+import { cycleOf } from "./cycle.js";
+import { dragged } from "./drag.js";
+import { Engine } from "./engine.js";
+import { deadCentres } from "./geometry.js";
+import { Knobs } from "./knobs.js";
+import { Player } from "./player.js";
+import { Plot } from "./plot.js";
+import { Refused } from "./refused.js";
+import { Stage } from "./stage.js";
+import { add, watched } from "./svg.js";
+import { spanOf, tellingPose } from "./view.js";
+import { deadCentreMarks } from "./words.js";
+
+const DEGREE = Math.PI / 180;
+const LATER = 100; // ms after the last turn of a knob: the second pass
+
+/** One figure.
+ *
+ * root : its element; lesson : { given, turner }; spec : what Python says of it, { knobs, choices,
+ * values, forces, cylinder, angle, ring }; made : what its lesson computes,
+ * { scene(turner, values, given), shapes(cycle, values, given), says(cycle, values, given),
+ * levels(cycle), draw(svg, cycle, theta, size) }, each but shapes may be left out
+ */
+export class Figure {
+  constructor(root, lesson, spec, made) {
+    Object.assign(this, { root, lesson, spec, made });
+    this.quick = new Engine(lesson.given.rules);
+    this.careful = new Engine(lesson.given.rules);
+    this.values = { ...spec.values };
+    this.cycle = null;
+    this.theta = null;
+    this.stopped = false; // by hand
+    this.player = new Player({ cycle: () => this.cycle, move: (theta) => this.pose(theta) });
+    this.listen();
+    this.update();
+  }
+
+  find(selector) {
+    return this.root.querySelector(selector);
+  }
+
+  listen() {
+    const { spec, lesson, root } = this;
+    this.knobs = new Knobs(this.find(".sliders"), spec.knobs, lesson.given.sentences, {
+      turn: (name, value) => this.turn(name, value),
+      release: () => {},
+      refuse: (sentence) => this.say(sentence),
+    });
+    for (const select of root.querySelectorAll("select[data-choice]")) {
+      select.value = this.values[select.dataset.choice];
+      select.addEventListener("change", () => this.turn(select.dataset.choice, select.value));
+    }
+    const plots = [...root.querySelectorAll(".plot")];
+    this.plots = plots.map((each) => new Plot(each, (degrees) => this.grasp(degrees)));
+    this.listenToStage();
+    const drawing = this.find(".drawing");
+    if (drawing) {
+      watched(drawing, (size) => {
+        this.size = size;
+        if (this.cycle) this.pose(this.theta);
+      });
+    }
+    this.find(".play")?.addEventListener("click", () => {
+      this.stopped = this.player.playing;
+      this.play(!this.player.playing);
+    });
+    this.find(".angle")?.addEventListener("input", (event) => this.grasp(Number(event.target.value)));
+  }
+
+  listenToStage() {
+    const svg = this.find(".stage");
+    this.stage = null;
+    if (!svg) return;
+    this.stage = new Stage(svg, this.lesson.given.compression, () => this.cycle && this.redraw());
+    dragged(this.stage, {
+      theta: () => this.theta,
+      turn: (theta) => this.seek(theta),
+      rim: (ratio) => this.turnRim(ratio),
+      grip: (kind) => kind !== "rim" && this.hold(),
+      release: () => {},
+    });
+  }
+
+  /** Play while it is seen, unless it was stopped by hand. */
+  seen(visible) {
+    if (!this.find(".play") || this.cycle === null) return;
+    const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
+    this.play(visible && !still && !this.stopped);
+  }
+
+  play(wanted) {
+    this.player.play(wanted, this.theta);
+    const button = this.find(".play");
+    button.textContent = wanted ? "❚❚" : "►";
+    button.setAttribute("aria-pressed", String(wanted));
+  }
+
+  /** Stop for a hand. */
+  hold() {
+    this.stopped = true;
+    if (this.find(".play")) this.play(false);
+  }
+
+  /** Turn to a crank angle [deg] that a hand wants; null where it lets go. */
+  grasp(degrees) {
+    if (degrees === null) return;
+    this.hold();
+    this.seek(degrees * DEGREE);
+  }
+
+  turn(name, value) {
+    this.values = { ...this.values, [name]: value };
+    this.update();
+  }
+
+  turnRim(ratio) {
+    const knob = this.spec.knobs.find((each) => each.name === "flywheel");
+    if (!knob) return;
+    const own = this.lesson.given.scene.crank.inertia;
+    this.turn("flywheel", Math.min(Math.max(ratio * own, knob.low), knob.high));
+    this.knobs.show(this.values);
+  }
+
+  /** Compute and draw; where it cannot be, keep the last good picture and say why. */
+  update() {
+    const { lesson: { given, turner }, made, values } = this;
+    try {
+      const scene = made.scene ? made.scene(turner, values, given) : turner.scene(values);
+      this.cycle = cycleOf(this.quick, scene, given.endings, { warm: this.cycle });
+      this.say("");
+    } catch (refused) {
+      if (!(refused instanceof Refused)) throw refused;
+      this.say(refused.message);
+      return;
+    }
+    clearTimeout(this.later);
+    this.later = setTimeout(() => this.refine(), LATER);
+    this.redraw();
+  }
+
+  /** The second pass, with cells cut until they are good. */
+  refine() {
+    const { cycle, lesson: { given } } = this;
+    const warm = cycle;
+    this.cycle = cycleOf(this.careful, cycle.scene, given.endings, { fine: true, warm });
+    this.redraw();
+    this.root.dataset.passes = "2";
+  }
+
+  redraw() {
+    const { cycle, spec, lesson, made } = this;
+    this.root.dataset.passes = "1";
+    const k = Math.min(spec.cylinder, cycle.train.cylinders.length) - 1;
+    const own = lesson.given.scene.crank.inertia;
+    const ratio = own > 0 ? cycle.scene.crank.inertia / own : 1;
+    const heavy = spec.knobs.some((each) => each.name === "flywheel");
+    this.stage?.show(cycle, { k, body: spec.forces, ratio, heavy });
+    if (made.levels) this.drawLevels(made.levels(cycle));
+    const marks = deadCentreMarks(cycle, k, deadCentres(cycle.train.shape));
+    const shapes = made.shapes(cycle, this.values, lesson.given);
+    this.plots.forEach((plot, n) => plot.draw(shapes[n], marks));
+    this.player.slower = Player.fitting(cycle.duration);
+    this.speak();
+    const { low, high } = spanOf(cycle);
+    const angle = this.find(".angle");
+    if (angle) Object.assign(angle, { min: low, max: high });
+    const first = spec.angle === null ? tellingPose(cycle) : spec.angle * DEGREE;
+    this.seek(this.theta ?? first);
+  }
+
+  /** Write what follows the sliders into the words around, { name: text }. */
+  speak() {
+    const { made, cycle, values, root, lesson } = this;
+    if (!made.says) return;
+    for (const [name, text] of Object.entries(made.says(cycle, values, lesson.given))) {
+      for (const place of document.querySelectorAll(`[data-say="${root.id}.${name}"]`)) {
+        place.textContent = text;
+      }
+    }
+  }
+
+  /** Dashed lines across the first cylinder at piston positions, each [m, name]. */
+  drawLevels(levels) {
+    const { stage } = this;
+    this.levels?.remove();
+    this.levels = add(stage.root, "g", { class: "levels" });
+    const half = 650 * stage.sizes.width;
+    const middle = -1000 * stage.train.shape.offset;
+    for (const [x, name] of levels) {
+      const y = -1000 * x;
+      add(this.levels, "line", { x1: middle - half, x2: middle + half, y1: y, y2: y });
+      const at = { x: middle + 1.05 * half, y: y + 0.3 * stage.type, "font-size": stage.type };
+      add(this.levels, "text", at, name);
+    }
+  }
+
+  /** Turn to a crank angle [rad], back into the cycle that is shown. */
+  seek(theta) {
+    const { from, to } = this.cycle;
+    const [low, period] = [Math.min(from, to), Math.abs(to - from)];
+    const outside = theta > low + period + 1e-9 || theta < low - 1e-9;
+    this.pose(outside ? theta - Math.floor((theta - low) / period) * period : theta);
+    this.player.seek(this.theta);
+  }
+
+  pose(theta) {
+    this.theta = theta;
+    const degrees = theta / DEGREE;
+    this.stage?.pose(theta);
+    if (this.size) this.made.draw(this.find(".drawing"), this.cycle, theta, this.size);
+    for (const plot of this.plots) plot.place(degrees);
+    const lead = this.find(".lead");
+    if (lead) lead.textContent = this.spec.ring ? this.stage.leadInWords(theta) : "";
+    const angle = this.find(".angle");
+    if (!angle) return;
+    angle.value = degrees;
+    const text = `${degrees.toFixed(0)}°`;
+    angle.setAttribute("aria-valuetext", text);
+    this.find(".degrees").textContent = text;
+  }
+
+  say(sentence) {
+    const message = this.find(".message");
+    message.textContent = sentence;
+    message.hidden = sentence === "";
+  }
+}

@@ -1,0 +1,141 @@
+/** Velocity and acceleration: the least acceleration leaves bottom dead centre. */
+import { readable } from "./format.js";
+import { begun } from "./lesson.js";
+import { diagram, overAngle, spread } from "./shapes.js";
+
+const DEGREE = Math.PI / 180;
+const LIMIT = (Math.sqrt(21) - 3) / 6; // of the rod ratio: above it the minimum leaves
+
+export function start() {
+  return begun({ motion: MOTION, valley: VALLEY, fork: FORK });
+}
+
+const MOTION = {
+  shapes: (cycle) => [velocity(cycle), acceleration(cycle)],
+};
+
+const VALLEY = {
+  shapes: (cycle) => [valley(cycle)],
+  says: (cycle) => {
+    const at = leastAngle(ratioOf(cycle)) / DEGREE;
+    const places = at > 179.995 ? "at 180°" : `at ${readable(at, 2)}° and ${readable(360 - at, 2)}°`;
+    return { least: places };
+  },
+};
+
+const FORK = {
+  shapes: (cycle) => [fork(cycle)],
+  says: (cycle) => ({ ratio: readable(ratioOf(cycle), 4), limit: readable(LIMIT, 4) }),
+};
+
+function ratioOf({ train: { shape } }) {
+  return shape.radius / shape.length;
+}
+
+/** The crank angle of the least acceleration [rad], up to bottom dead centre: where the third
+ * derivative of the displacement is zero, found by halving. */
+function leastAngle(ratio) {
+  if (ratio <= LIMIT) return Math.PI;
+  let [low, high] = [Math.PI / 2, Math.PI - 1e-9];
+  for (let n = 0; n < 60; n++) {
+    const middle = 0.5 * (low + high);
+    if (third(middle, ratio) < 0) low = middle;
+    else high = middle;
+  }
+  return low;
+}
+
+/** The third derivative of the displacement over the crank radius: that of
+ * cos phi + lambda (cos 2 phi + lambda^2 sin^4 phi) / cos^3 beta. */
+function third(phi, ratio) {
+  const [s, c] = [Math.sin(phi), Math.cos(phi)];
+  const root = Math.sqrt(1 - (ratio * s) ** 2);
+  const u = s * c; // s'' holds lambda (cos 2 phi + lambda^2 sin^4 phi) / root^3
+  const inner = c * c - s * s + ratio ** 2 * s ** 4;
+  const slope = -4 * u + 4 * ratio ** 2 * s ** 3 * c;
+  return -s + ratio * (slope / root ** 3 + (3 * ratio ** 2 * u * inner) / root ** 5);
+}
+
+function velocity(cycle) {
+  const { radius: r } = cycle.train.shape;
+  const ratio = ratioOf(cycle);
+  const curves = [
+    { name: "piston", of: (v) => v.cylinders[0].piston_velocity / (r * v.crank_speed) },
+    {
+      name: "two harmonics",
+      style: "exact",
+      of: ({ crank_angle: phi }) => Math.sin(phi) + 0.5 * ratio * Math.sin(2 * phi),
+    },
+  ];
+  return overAngle(cycle, { title: "velocity over rω", unit: "", curves, holds: { y: [-1.2, 1.2] } });
+}
+
+function acceleration(cycle, about = { holds: { y: [-1.1, 1.6] } }) {
+  const { radius: r } = cycle.train.shape;
+  const ratio = ratioOf(cycle);
+  const curves = [
+    { name: "piston", of: (v) => v.cylinders[0].piston_acceleration / (r * v.crank_speed ** 2) },
+    {
+      name: "two harmonics",
+      style: "exact",
+      of: ({ crank_angle: phi }) => Math.cos(phi) + ratio * Math.cos(2 * phi),
+    },
+  ];
+  return overAngle(cycle, { title: "acceleration over rω²", unit: "", curves, ...about });
+}
+
+/** The acceleration near bottom dead centre, enlarged, as a diagram over the angle. */
+function valley(cycle) {
+  const { radius: r } = cycle.train.shape;
+  const ratio = ratioOf(cycle);
+  const angles = spread(110, 250, 140);
+  const scaled = (theta) => {
+    const v = cycle.at(theta);
+    return v.cylinders[0].piston_acceleration / (r * v.crank_speed ** 2);
+  };
+  const within = (theta) => Math.min(Math.max(theta / DEGREE, 110), 250);
+  const least = leastAngle(ratio) / DEGREE;
+  const lowest = [least, 360 - least].map((at) => [at, scaled(at * DEGREE)]);
+  return diagram({
+    title: "acceleration near bottom dead centre",
+    right: { text: "angle after top dead centre", unit: "degrees" },
+    up: { text: "acceleration over rω²", unit: "" },
+    curves: [
+      { name: "piston", x: angles, y: angles.map((at) => scaled(at * DEGREE)) },
+      {
+        name: "two harmonics",
+        style: "exact",
+        x: angles,
+        y: angles.map((at) => Math.cos(at * DEGREE) + ratio * Math.cos(2 * at * DEGREE)),
+      },
+      ...lowest.map(([x, y], n) => ({
+        name: n ? "" : "lowest", style: n ? "dots unnamed" : "dots", x: [x, x], y: [y, y + 1e-6],
+      })),
+    ],
+    of: (theta) => [within(theta), scaled(within(theta) * DEGREE)],
+    holds: { y: [-0.9, -0.45] },
+  });
+}
+
+/** Where the acceleration is least, over the rod ratio: a fork. */
+function fork(cycle) {
+  const ratios = spread(0.15, 0.45, 300);
+  const series = (ratio) => (ratio <= 0.25 ? Math.PI : Math.acos(-0.25 / ratio));
+  const degrees = (of) => ratios.map((ratio) => of(ratio) / DEGREE);
+  const other = (values) => values.map((each) => 360 - each);
+  const [exact, truncated] = [degrees(leastAngle), degrees(series)];
+  const at = ratioOf(cycle);
+  return diagram({
+    title: "crank angle of the least acceleration",
+    right: { text: "rod ratio r/l", unit: "" },
+    up: { text: "crank angle of the least acceleration", unit: "degrees" },
+    curves: [
+      { name: "exact", x: ratios, y: exact },
+      { name: "truncated formula", style: "exact", x: ratios, y: truncated },
+      { name: "", style: "simulated unnamed", x: ratios, y: other(exact) },
+      { name: "", style: "exact unnamed", x: ratios, y: other(truncated) },
+    ],
+    of: () => [at, leastAngle(at) / DEGREE],
+    holds: { y: [110, 250] },
+  });
+}

@@ -1,0 +1,167 @@
+/** Several cylinders: which orders of force, couple and torque are left. */
+import { readable } from "./format.js";
+import { begun } from "./lesson.js";
+import { drawRow } from "./row.js";
+import { diagram, overAngle } from "./shapes.js";
+
+const KN = 1e3;
+const HIGHEST = 6; // order shown
+
+export function start() {
+  return begun({ shake: SHAKE, couple: COUPLE, torque: TORQUE, twin: TWIN });
+}
+
+const SHAKE = {
+  scene: (turner, values) => shaken(turner.scene(values)),
+  shapes: (cycle) => {
+    const { scene: { piston, crank, rod }, mean } = cycle;
+    const unit = (cylinders) => (piston.mass * crank.radius * mean ** 2 * cylinders) / KN;
+    const ratio = crank.radius / rod.length;
+    const order = (n, size) => ({ crank_angle: theta }) => -unit(1) * size *
+      cycle.train.cylinders.reduce((sum, { phase }) => sum + Math.cos(n * (theta + phase)), 0);
+    const curves = [
+      { name: "simulated", of: (v) => -v.frame_force_x / KN },
+      { name: "first order", style: "exact", of: order(1, 1) },
+      { name: "second order", style: "second", of: order(2, ratio) },
+    ];
+    const most = unit(1) * 1.4;
+    const title = "force on the frame, towards the crank";
+    const over = overAngle(cycle, { title, unit: "kN", curves, holds: { y: [-most, most] } });
+    return [over, sticks(cycle, over.curves[0].y, "kN", most)];
+  },
+  says: (cycle) => {
+    const amplitudes = ordersOf(cycle, cycle.samples.map((v) => v.frame_force_x / KN));
+    const at = (order) => amplitudes.find((each) => Math.abs(each.order - order) < 1e-6).size;
+    return { first: `${readable(at(1), 2)} kN`, second: `${readable(at(2), 2)} kN` };
+  },
+};
+
+const COUPLE = {
+  scene: (turner, values, { spacing }) => {
+    const scene = shaken(turner.scene(values));
+    const middle = 0.5 * (scene.cylinders.length - 1);
+    return { ...scene, levers: scene.cylinders.map((_, k) => (k - middle) * spacing) };
+  },
+  shapes: (cycle) => {
+    const curves = [{ name: "couple", of: (v) => v.rocking_moment_y }];
+    const { scene: { piston, crank }, mean, train: { levers } } = cycle;
+    const far = levers[levers.length - 1] || 0;
+    const most = 2.2 * far * piston.mass * crank.radius * mean ** 2;
+    return [overAngle(cycle, {
+      title: "rocking couple about Y", unit: "N m", curves, holds: { y: [-most, most] },
+    })];
+  },
+  says: (cycle) => {
+    const values = cycle.samples.map((v) => Math.abs(v.rocking_moment_y));
+    return { most: `${readable(Math.max(...values), 0)} N m` };
+  },
+  draw: drawRow,
+};
+
+const TORQUE = {
+  shapes: (cycle) => {
+    const of = (v) => v.cylinders.reduce((sum, each) => sum + each.crank_torque, 0);
+    const values = cycle.samples.map(of);
+    const mean = values.slice(1).reduce((sum, each) => sum + each, 0) / (values.length - 1);
+    const curves = [
+      { name: "all cylinders", of },
+      { name: "mean", style: "plain", of: () => mean },
+    ];
+    const over = overAngle(cycle, { title: "torque on the crank", unit: "N m", curves });
+    return [over, sticks(cycle, over.curves[0].y, "N m", 0)];
+  },
+  says: (cycle) => {
+    const half = 0.5 * cycle.train.cylinders.length;
+    return { orders: [1, 2, 3].map((n) => readable(n * half, half % 1 ? 1 : 0)).join(", ") };
+  },
+};
+
+const TWIN = {
+  scene: (turner, { bank, weight }) => {
+    const scene = shaken(turner.scene({}));
+    const half = (bank * Math.PI) / 360;
+    const cylinders = [{ phase: half, bank: -half }, { phase: -half, bank: half }];
+    const mass = (weight / 100) * scene.piston.mass;
+    const crank = { ...scene.crank, mass, center_of_mass: -scene.crank.radius, inertia: 1 };
+    return { ...scene, cylinders, crank };
+  },
+  shapes: (cycle) => {
+    const { scene: { piston, crank }, mean } = cycle;
+    const force = (v) => [v.frame_force_y / KN, v.frame_force_x / KN];
+    const points = cycle.samples.map(force);
+    const first = [0, 1].map((axis) => partOf(cycle, points.map((each) => each[axis]), 1));
+    const most = (2.1 * piston.mass * crank.radius * mean ** 2) / KN;
+    return [diagram({
+      title: "force of both pistons and the weight on the frame",
+      equal: true,
+      right: { text: "force along Y", unit: "kN" },
+      up: { text: "force along X", unit: "kN" },
+      curves: [
+        { name: "simulated", x: points.map(([x]) => x), y: points.map(([, y]) => y) },
+        { name: "its first order", style: "exact", x: first[0], y: first[1] },
+      ],
+      of: (theta) => force(cycle.at(theta)),
+      holds: { x: [-most, most], y: [-most, most] },
+    })];
+  },
+  says: (cycle) => {
+    const { samples } = cycle;
+    const of = (axis) => ordersOf(cycle, samples.map((v) => v[`frame_force_${axis}`] / KN))
+      .find(({ order }) => Math.abs(order - 1) < 1e-6).size;
+    return { first: `${readable(Math.max(of("x"), of("y")), 2)} kN` };
+  },
+};
+
+/** A machine of which only what goes to and fro shakes: no gas, the rod as its share of mass. */
+function shaken(scene) {
+  const { rod, piston, crank } = scene;
+  const mass = piston.mass + (rod.mass * rod.center_of_mass) / rod.length;
+  return {
+    ...scene,
+    gas: null,
+    fuel: null,
+    gravity: null,
+    rod: { ...rod, mass: 0, inertia: 0 },
+    piston: { ...piston, mass },
+    crank: { ...crank, mass: 0, center_of_mass: 0 },
+  };
+}
+
+/** The amplitudes of the orders of values at a cycle's samples, { order, size, cos, sin }. */
+function ordersOf({ from, to, angles }, values) {
+  const count = values.length - 1;
+  const turns = Math.abs(to - from) / (2 * Math.PI);
+  return Array.from({ length: Math.round(HIGHEST * turns) }, (_, n) => {
+    const order = (n + 1) / turns;
+    let [cos, sin] = [0, 0];
+    for (let k = 0; k < count; k++) {
+      cos += (2 / count) * values[k] * Math.cos(order * angles[k]);
+      sin += (2 / count) * values[k] * Math.sin(order * angles[k]);
+    }
+    return { order, size: Math.hypot(cos, sin), cos, sin };
+  });
+}
+
+/** One order of values, at the samples. */
+function partOf(cycle, values, wanted) {
+  const part = ordersOf(cycle, values).find(({ order }) => Math.abs(order - wanted) < 1e-6);
+  return cycle.angles.map((theta) =>
+    part.cos * Math.cos(wanted * theta) + part.sin * Math.sin(wanted * theta));
+}
+
+/** Orders as sticks on a line. */
+function sticks(cycle, values, unit, most) {
+  const orders = ordersOf(cycle, values);
+  return diagram({
+    title: "orders",
+    right: { text: "order", unit: "per turn" },
+    up: { text: "amplitude", unit },
+    curves: [{
+      name: "amplitude",
+      x: [0, ...orders.flatMap(({ order }) => [order, order, order]), HIGHEST],
+      y: [0, ...orders.flatMap(({ size }) => [0, size, 0]), 0],
+    }],
+    of: () => [0, 0],
+    holds: { y: [0, most] },
+  });
+}

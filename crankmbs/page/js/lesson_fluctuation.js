@@ -1,0 +1,98 @@
+/** Constant speed or not: what a flywheel lets through, and what it costs a formula. */
+import { cycleOf } from "./cycle.js";
+import { Engine } from "./engine.js";
+import { readable } from "./format.js";
+import { LECTURES, lecturedAt } from "./lecture.js";
+import { begun } from "./lesson.js";
+import { diagram, overAngle, spread } from "./shapes.js";
+
+const RPM = Math.PI / 30;
+const COUNT = 24; // flywheels of the curve
+const EXACT = LECTURES["untruncated lecture"];
+const QUANTITIES = {
+  "piston acceleration": { unit: "m/s²", si: 1, of: (f) => f.cylinders[0]["piston acceleration"] },
+  "side thrust": { unit: "kN", si: 1e3, of: (f) => f.cylinders[0]["side thrust"] },
+  "crank pin force, axial": { unit: "kN", si: 1e3, of: (f) => f.cylinders[0]["crank pin force x"] },
+  "torque of the cylinder": { unit: "N m", si: 1, of: (f) => f.cylinders[0].torque },
+};
+
+export function start() {
+  return begun({ swing: SWING, fall: new Fall(), cost: COST });
+}
+
+const SWING = {
+  shapes: (cycle) => {
+    const curves = [
+      { name: "simulated", of: (v) => v.crank_speed / RPM },
+      { name: "constant speed", style: "plain", of: () => cycle.mean / RPM },
+    ];
+    const mean = Math.abs(cycle.mean) / RPM;
+    const holds = { y: [0.94 * mean, 1.06 * mean] };
+    return [overAngle(cycle, { title: "crank speed", unit: "rpm", curves, holds })];
+  },
+  says: (cycle) => ({
+    delta: `${readable(100 * cycle.fluctuation, 2)} %`,
+    mean: `${readable(cycle.mean / RPM, 1)} rpm`,
+  }),
+};
+
+/** The fluctuation over the flywheel, from one settled run for each, and by the textbook. */
+class Fall {
+  shapes(cycle, { flywheel }, given) {
+    this.curve ??= this.curveOf(cycle, given);
+    const { inertias, runs, work, moving } = this.curve;
+    const textbook = inertias.map((inertia) => (100 * work) / ((inertia + moving) * cycle.mean ** 2));
+    return [diagram({
+      title: "coefficient of fluctuation",
+      right: { text: "inertia of crank and flywheel", unit: "kg m²" },
+      up: { text: "coefficient of fluctuation", unit: "%" },
+      curves: [
+        { name: "simulated", x: inertias, y: runs },
+        { name: "W / (J ω²)", style: "exact", x: inertias, y: textbook },
+      ],
+      of: () => [flywheel, 100 * cycle.fluctuation],
+      holds: { y: [0] },
+    })];
+  }
+
+  says(cycle) {
+    return { delta: `${readable(100 * cycle.fluctuation, 2)} %` };
+  }
+
+  curveOf({ scene }, given) {
+    const engine = new Engine(given.rules);
+    const { low, high } = given.figures.find(({ name }) => name === "fall").knobs[0];
+    const inertias = spread(0, 1, COUNT).map((part) => low * (high / low) ** part);
+    let warm = null;
+    const runs = inertias.map((inertia) => {
+      const heavier = { ...scene, crank: { ...scene.crank, inertia } };
+      warm = cycleOf(engine, heavier, given.endings, { warm });
+      return 100 * warm.fluctuation;
+    });
+    return { inertias, runs, work: given.textbook.work, moving: given.textbook.moving };
+  }
+}
+
+const COST = {
+  shapes: (cycle, { quantity }) => {
+    const { unit, si, of } = QUANTITIES[quantity];
+    const at = (row) => of(lecturedAt(cycle.train, EXACT, row)) / si;
+    const even = cycle.rows.map((row) => at({ ...row, omega: cycle.mean, alpha: 0 }));
+    const curves = [
+      { name: "as it swings", of: (v) => at(rowOf(cycle, v)) },
+      { name: "constant speed", style: "exact", y: even },
+    ];
+    const apart = [["as it swings − constant speed", 0, 1]];
+    return [overAngle(cycle, { title: quantity, unit, curves, apart })];
+  },
+  says: (cycle, { quantity }) => {
+    const [{ curves: [{ y }], differences: [{ y: off }] }] = COST.shapes(cycle, { quantity });
+    const largest = (values) => Math.max(...values.map(Math.abs));
+    return { share: `${readable((100 * largest(off)) / largest(y), 2)} %` };
+  },
+};
+
+/** What the lecture's formulas take of a sample. */
+function rowOf(cycle, { crank_angle: theta }) {
+  return cycle.motion.at(theta);
+}

@@ -1,0 +1,106 @@
+/** Reading a bearing polar: every point is a force, its direction and its size. */
+import { readable } from "./format.js";
+import { begun } from "./lesson.js";
+import { drawn } from "./quantities.js";
+import { diagram, overAngle } from "./shapes.js";
+
+const KN = 1e3;
+const DIRECTIONS = 180; // at which the load of the pin's surface is looked at
+const WIDE = Math.PI / 3; // rad to either side: how far a load presses on the surface
+
+export function start() {
+  return begun({ bearing: BEARING, pin: PIN, turning: TURNING });
+}
+
+const BEARING = {
+  shapes: (cycle) => {
+    const size = (v) => Math.hypot(v.main_bearing_force_x, v.main_bearing_force_y) / KN;
+    const curves = [{ name: "size", of: size }];
+    const over = overAngle(cycle, { title: "size of the force", unit: "kN", curves });
+    return [run("main bearing, polar", cycle), over];
+  },
+  says: (cycle) => {
+    const most = largest(cycle, "main bearing", (v) =>
+      [v.main_bearing_force_x, v.main_bearing_force_y]);
+    return { peak: `${readable(most.size / KN, 2)} kN`, angle: `${readable(most.degrees, 0)}°` };
+  },
+};
+
+const PIN = {
+  shapes: (cycle) => [run("crank pin, polar", cycle)],
+  says: (cycle) => {
+    const most = largest(cycle, "crank pin", (v) =>
+      [v.cylinders[0].crank_pin_force_x, v.cylinders[0].crank_pin_force_y]);
+    return { peak: `${readable(most.size / KN, 2)} kN`, angle: `${readable(most.degrees, 0)}°` };
+  },
+};
+
+const TURNING = {
+  shapes: (cycle) => {
+    const { phase } = cycle.train.cylinders[0];
+    const force = (v) => onPin(v, phase).map((each) => each / KN).reverse();
+    const points = cycle.samples.map(force);
+    const { x, y } = outline(cycle, points);
+    return [diagram({
+      title: "force of the rod on the pin, as the pin feels it",
+      equal: true,
+      right: { text: "across the crank", unit: "kN" },
+      up: { text: "outwards along the crank", unit: "kN" },
+      curves: [
+        { name: "force on the pin", x: points.map(([a]) => a), y: points.map(([, b]) => b) },
+        { name: "where it is loaded least", style: "second", x, y },
+      ],
+      of: (theta) => force(cycle.at(theta)),
+    })];
+  },
+  says: (cycle) => {
+    const { phase } = cycle.train.cylinders[0];
+    const { angle } = leastLoaded(cycle.samples.map((v) => onPin(v, phase)));
+    return { hole: `${readable((angle * 180) / Math.PI, 0)}°` };
+  },
+};
+
+/** The simulated curve of a diagram alone. */
+function run(name, cycle) {
+  const shape = drawn(name, cycle, 0);
+  return { ...shape, curves: shape.curves.slice(0, 1) };
+}
+
+/** The largest force of a cycle in a joint, and at which crank angle; in the quick pass that of the
+ * samples. */
+function largest({ samples, angles, measures }, joint, of) {
+  const found = measures?.joints.find((each) => each.joint === joint);
+  if (found) return { size: found.peak, degrees: (found.crank_angle * 180) / Math.PI };
+  const sizes = samples.map((v) => Math.hypot(...of(v)));
+  const n = sizes.reduce((best, size, k) => (size > sizes[best] ? k : best), 0);
+  return { size: sizes[n], degrees: (angles[n] * 180) / Math.PI };
+}
+
+/** The force of the rod on the pin [N]: outwards along the crank, and across it. */
+function onPin({ crank_angle: theta, cylinders: [at] }, phase) {
+  const [sin, cos] = [Math.sin(theta + phase), Math.cos(theta + phase)];
+  const [x, y] = [-at.crank_pin_force_x, -at.crank_pin_force_y];
+  return [x * cos + y * sin, y * cos - x * sin];
+}
+
+/** Where on its surface the pin is pressed least over a cycle, an angle from outwards [rad]: a
+ * force presses on the side from which it comes, and on what lies within 60 degrees of that. */
+function leastLoaded(forces) {
+  const found = Array.from({ length: DIRECTIONS }, (_, n) => {
+    const angle = -Math.PI + (2 * Math.PI * n) / DIRECTIONS;
+    let load = 0;
+    for (const [along, across] of forces) {
+      const off = Math.cos(Math.atan2(-across, -along) - angle);
+      if (off >= Math.cos(WIDE)) load += Math.hypot(along, across) * off;
+    }
+    return { angle, load };
+  });
+  return found.reduce((best, each) => (each.load < best.load ? each : best));
+}
+
+/** A ray from the middle to where the pin is loaded least. */
+function outline({ samples, train: { cylinders: [{ phase }] } }, points) {
+  const { angle } = leastLoaded(samples.map((v) => onPin(v, phase)));
+  const far = 0.8 * Math.max(...points.map(([x, y]) => Math.hypot(x, y)));
+  return { x: [0, far * Math.sin(angle)], y: [0, far * Math.cos(angle)] };
+}

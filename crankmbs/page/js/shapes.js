@@ -1,0 +1,38 @@
+/** What the plots of lessons draw: shapes as `quantities.drawn` gives them. */
+
+const DEGREE = Math.PI / 180;
+
+/** Curves over the crank angle, each { name, style, of(variables) } in `unit`, or but for the first
+ * with values y at the samples in place of `of`.
+ *
+ * apart : [name, n, m] of differences of curves that stand below; holds, holdsBelow : values in the
+ * range of the axes
+ */
+export function overAngle(cycle, { title, unit, curves, apart = [], ...about }) {
+  const x = cycle.angles.map((theta) => theta / DEGREE);
+  const drawn = curves.map(({ name, style, of, y }) =>
+    ({ name, style, x, y: y ?? cycle.samples.map(of) }));
+  const differences = apart.map(([name, n, m]) => ({
+    name, x, y: drawn[n].y.map((value, i) => value - drawn[m].y[i]),
+  }));
+  return {
+    title,
+    up: { text: title, unit },
+    right: { text: "crank angle", unit: "°" },
+    curves: drawn,
+    differences,
+    of: (theta) => curves[0].of(cycle.at(theta)),
+    ...about,
+  };
+}
+
+/** Curves { name, style, x, y } of one quantity over another, each axis { text, unit }; of : where
+ * the dot stands at a crank angle [rad], [x, y] */
+export function diagram({ title, right, up, curves, of, ...about }) {
+  return { title, right, up, curves, differences: [], of, ...about };
+}
+
+/** So many values from one to another. */
+export function spread(low, high, count) {
+  return Array.from({ length: count + 1 }, (_, k) => low + ((high - low) * k) / count);
+}
