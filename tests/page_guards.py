@@ -11,7 +11,7 @@ from crankmbs.scene.drives import Motion, Oscillation, Ramp, SpeedFile, Start
 from crankmbs.scene.fuel import Fuel, Misfire
 from crankmbs.scene.gas import Polytrope
 from crankmbs.scene.loads import AngleTable, Constant, Quadratic, SpeedTable, TimeTable, Viscous
-from crankmbs.scene.parts import Cylinder, Gravity, Layout
+from crankmbs.scene.parts import Cylinder, Friction, Gravity, Layout
 from crankmbs.scene.scene import Extent
 from crankmbs.scene.tables import Table
 
@@ -88,6 +88,13 @@ def braked():
     return running("yi_diesel_free", "settled", gas=None, torque=loads)
 
 
+RUBBING = Friction(ring_force=30.0, ring_pressure=0.03, viscous=20.0)
+
+
+def rubbing(name, until, friction, **changes):
+    return replace(running(name, until, **changes), friction=friction)
+
+
 def driven(speed):
     scene = running("yi_diesel", Extent(value=1.5, unit="cycle"), **MACHINE)
     return replace(scene, motion=Motion(speed=speed, angle=0.2))
@@ -102,15 +109,23 @@ SWING = Oscillation(mean=300.0, amplitude=60.0, order=1.5, phase=0.4)
 RISE = Ramp(start=250.0, to=330.0, over=0.02)
 MEASURED_SPEED = SpeedFile(file=Table((0.0, 0.02, 0.05, 0.2), (280.0, 300.0, 260.0, 300.0)))
 
+ROWS = Table((0.013, 2.0, 3.3, 5.1, 0.013 + math.tau), (300.0, 380.0, 180.0, 270.0, 300.0))
+OVER_ANGLE = SpeedFile(file=ROWS, kind="angle_table", interpolation="cubic")
+
 GUARDS = {
     "swinging": driven(SWING),
     "rising": misfiring(driven(RISE)),
     "measured speed": driven(MEASURED_SPEED),
+    "over the angle": driven(OVER_ANGLE),
     "settling": settling(),
     "backwards": backwards(),
     "short rod": short_rod(),
     "affine": running("v_twin", "settled"),
-    "started": started(),
+    "rings": rubbing("v_twin", "settled", replace(RUBBING, viscous=0.0), **MACHINE),
+    "rubbing": rubbing("propeller", Extent(value=1.2, unit="cycle"), RUBBING),
+    "rubbing driven": replace(misfiring(driven(RISE)), friction=RUBBING),
+    "rubbing backwards": replace(backwards(), friction=replace(RUBBING, ring_pressure=0.0)),
+    "started": replace(started(), friction=RUBBING),
 }
 
 

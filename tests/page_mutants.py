@@ -1,6 +1,82 @@
 """Mutants of the page's engine by module: the text as it is, and as the mutant has it."""
 
 MUTANTS = {
+    "friction": [
+        (
+            "Math.abs(gas[k] + (shares.length ?",
+            "(gas[k] + (shares.length ?",
+        ),
+        (
+            "friction.ring_force * rise + friction.ring_pressure * pressed",
+            "friction.ring_pressure * pressed",
+        ),
+        (
+            "Math.abs(tables.gas[k][i] + burning)",
+            "Math.abs(tables.gas[k][i])",
+        ),
+        (
+            "friction.ring_force * tables.rise[i] + friction.ring_pressure * pressed",
+            "friction.ring_force * tables.rise[i]",
+        ),
+        (
+            "const behind = wrapped(phi + sense * KNOT - top, TURN);",
+            "const behind = wrapped(phi - sense * KNOT, TURN);",
+        ),
+        (
+            "behind < bottom - top ? sense : -sense",
+            "behind < bottom - top ? 1 : -1",
+        ),
+        (
+            "friction.ring_pressure * Math.abs(gasForce)",
+            "friction.ring_pressure * gasForce",
+        ),
+        (
+            "-towards * limit + friction.viscous * x1 * omega",
+            "-towards * limit - friction.viscous * x1 * omega",
+        ),
+        (
+            "found.push(wrapped(top + turn - phase, period), wrapped(",
+            "found.push(wrapped(0.3 + top + turn - phase, period), wrapped(",
+        ),
+        (
+            "if (value(low) * value(high) < 0)",
+            "if (value(low) * value(high) > 0)",
+        ),
+        (
+            "const rises = value(low) < 0;",
+            "const rises = false;",
+        ),
+    ],
+    "over_angle": [
+        (
+            "const turns = repeats ? Math.floor(aim / whole) : 0;",
+            "const turns = 0;",
+        ),
+        (
+            "omega, slope * omega];",
+            "omega, slope];",
+        ),
+        (
+            "turns * elapsed[elapsed.length - 1] + elapsed[k]",
+            "elapsed[k]",
+        ),
+        (
+            "weights[j] / Math.abs(",
+            "weights[j] * Math.abs(",
+        ),
+        (
+            "const behind = lead[k] + x;",
+            "const behind = x;",
+        ),
+        (
+            "x - late * Math.abs(this.speedIn(k, x)[0])",
+            "low",
+        ),
+        (
+            "(3 * a * behind + 2 * b) * behind + c",
+            "(3 * a * behind + 2 * b) * behind",
+        ),
+    ],
     "rebalance": [
         (
             "energy *= (1 + late) ** 2;",
@@ -191,6 +267,14 @@ MUTANTS = {
     ],
     "tables": [
         (
+            "given - sense * rings - friction.viscous * of.square * omega",
+            "given - rings - friction.viscous * of.square * omega",
+        ),
+        (
+            "- friction.viscous * of.square * omega",
+            "",
+        ),
+        (
             "piston.mass * at.x1 * at.x1 + rod",
             "2 * piston.mass * at.x1 * at.x1 + rod",
         ),
@@ -239,8 +323,8 @@ MUTANTS = {
             "valuesAlong(cycle, angles, 0)",
         ),
         (
-            "torque -= piston.area * valueAt(pressure[k], phi)",
-            "torque -= 0",
+            "torque += gas[k] ?? 0;",
+            "",
         ),
         (
             "burning.push(-piston.area",
@@ -309,8 +393,16 @@ MUTANTS = {
     ],
     "cell": [
         (
-            "(branch.c1 + 2 * branch.c2 * omega) / (inertia[j] * omega);",
+            "(branch.c1 + 2 * branch.c2 * omega - drag[j]) / (inertia[j] * omega);",
             "1e9;",
+        ),
+        (
+            "torqueOf(branch, t, omega) - drag[j] * omega;",
+            "torqueOf(branch, t, omega);",
+        ),
+        (
+            "given -= sense * ringTorqueIn(friction, tables, i, shares);\n        this",
+            "this",
         ),
         (
             "grown += width * rule.weights[j] * rate[j] * right[j];",
@@ -401,6 +493,14 @@ MUTANTS = {
     ],
     "reactions": [
         (
+            "const pinX = piston.mass * felt + gas + rubs;",
+            "const pinX = piston.mass * felt + gas;",
+        ),
+        (
+            "e * (gas + rubs)",
+            "e * gas",
+        ),
+        (
             "const feltX = g.x2 * square + g.x1 * alpha - gx;",
             "const feltX = g.x2 * square;",
         ),
@@ -413,8 +513,8 @@ MUTANTS = {
             "const felt = pistonX;",
         ),
         (
-            "const pinX = piston.mass * felt + gas;",
-            "const pinX = piston.mass * felt - gas;",
+            "piston.mass * felt + gas + rubs;",
+            "piston.mass * felt - gas + rubs;",
         ),
         (
             "rod.mass * (at.cosBeta * feltY + at.sinBeta * feltX)",
@@ -441,7 +541,7 @@ MUTANTS = {
             "r * at.sinPhi * throwX",
         ),
         (
-            "moment: -at.x * side - e * gas,",
+            "moment: -at.x * side - e * (gas + rubs),",
             "moment: -at.x * side,",
         ),
         (

@@ -1,5 +1,6 @@
 """The page under hands: dragging, keys, playing, pinning, and how it stands on every screen."""
 
+import dataclasses
 import math
 import re
 
@@ -9,7 +10,7 @@ from browser import chromium
 from page_visit import opened
 from playwright.sync_api import sync_playwright
 
-from crankmbs import load_scene
+from crankmbs import flywheel, load_scene
 
 SCENE = load_scene("propeller")
 LAPTOP, PHONE, LARGE = (1366, 641), (390, 844), (1920, 1080)
@@ -74,6 +75,24 @@ def test_a_dragged_rim_makes_the_flywheel_heavier(page):
     assert inertia == pytest.approx(1.15**4 * SCENE.crank.inertia, rel=0.06)
     assert page.curve() != speed
     assert f"flywheel={inertia!r}"[:14] in page.address
+
+
+def test_a_flywheel_is_found_for_a_fluctuation(page):
+    page.page.fill("#fluctuation", "5")
+    page.page.press("#fluctuation", "Enter")
+    assert "5.000 %" in page.settle().text("#numbers")
+    settled = dataclasses.replace(SCENE, run=dataclasses.replace(SCENE.run, until="settled"))
+    inertia = float(page.page.input_value("#knob-flywheel"))
+    assert inertia == pytest.approx(flywheel(settled, 0.05).inertia.value, rel=1e-6)
+
+
+def test_a_fluctuation_out_of_reach_keeps_the_picture_and_says_what_could_be(page):
+    good = page.curve()
+    page.page.fill("#fluctuation", "0.01")
+    page.page.press("#fluctuation", "Enter")
+    assert page.message.startswith("fluctuation: the least is 3.")
+    assert page.message.endswith("flywheel of 0.08 kg m^2 at the end of its knob; 0.01 came")
+    assert page.curve() == good
 
 
 def test_a_dragged_cursor_turns_the_crank_and_hovering_reads_values(page):

@@ -28,7 +28,7 @@ def turned(scene: Scene, values: Values) -> Scene:
     Parameters
     ----------
     values : knob -> its value, in the knob's unit; besides, "rod" -> "rigid" or "two-mass",
-        "cylinders" -> "as given" or a key of `FIRING_ORDERS`, "speed_is" -> "free" or "prescribed";
+        "cylinders" -> "given" or a key of `FIRING_ORDERS`, "speed_is" -> "free" or "prescribed";
         what is missing stays
 
     Raises

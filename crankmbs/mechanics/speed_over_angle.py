@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 from crankmbs.numerics.arrays import Array, Index
 from crankmbs.numerics.roots import invert_monotone
 
-__all__ = ["AngleLaw"]
+__all__ = ["AngleLaw", "Panels"]
 
 _NODES, _FEWER = 12, 8  # of Gauss on a panel: it is narrow enough where both give the same
 _EPSILON = float(np.finfo(float).eps)
@@ -30,16 +30,22 @@ class AngleLaw:
 
     knots, coefficients : as in `scipy.interpolate.PPoly`, angles [rad] and speeds [rad/s]
     start : crank angle [rad] at time 0; repeats : whether the pieces are one period of many
+    panels : on which the quadrature is exact, of the nodes and weights of ``rule``
     """
 
     def __init__(self, knots: Array, coefficients: Array, start: float, *, repeats: bool) -> None:
         self._knots, self._coefficients = knots, coefficients
         self._repeats, self._start = repeats, start
         self._sense = math.copysign(1.0, float(coefficients[-1, 0]))
-        self._panels = self._halved()
+        self.panels = self._halved()
         self._period = float(knots[-1] - knots[0])
-        self._elapsed = np.append(0.0, np.cumsum(self._panels.times))
+        self._elapsed = np.append(0.0, np.cumsum(self.panels.times))
         self._begun = self._slowly(np.asarray(start))
+
+    @property
+    def rule(self) -> tuple[Array, Array]:
+        """Nodes and weights of Gauss's rule on the unit interval."""
+        return _GAUSS[_NODES]
 
     @property
     def turning_times(self) -> tuple[float, ...]:
@@ -68,7 +74,7 @@ class AngleLaw:
         inside = np.clip(aim - turns * whole, 0.0, whole)
         beyond = aim - turns * whole - inside  # where the rows end it goes on as it was
         k = self._panel(self._elapsed, inside)
-        width = self._panels.width[k]
+        width = self.panels.width[k]
 
         def elapsed(x: Array) -> tuple[Array, Array]:
             return self._within(flat, x), 1.0 / np.abs(self._speed(flat, x)[0])
@@ -77,7 +83,7 @@ class AngleLaw:
         aims = (inside - self._elapsed[k]).ravel()
         x = invert_monotone(elapsed, aims, np.zeros(flat.shape), width.ravel()).reshape(k.shape)
         omega, slope = self._speed(k, x)
-        theta = self._panels.begin[k] + x + turns * self._period + beyond * np.abs(omega)
+        theta = self.panels.begin[k] + x + turns * self._period + beyond * np.abs(omega)
         return np.asarray(theta), omega, slope * omega
 
     def time_at(self, theta: ArrayLike, begin: float, end: float) -> Array:
@@ -98,13 +104,13 @@ class AngleLaw:
         ahead = theta - self._knots[0]
         turns = np.floor(ahead / self._period) if self._repeats else np.zeros_like(ahead)
         inside = np.clip(ahead - turns * self._period, 0.0, self._period)
-        k = self._panel(self._panels.begin - self._knots[0], inside)
-        x = inside - (self._panels.begin[k] - self._knots[0])
+        k = self._panel(self.panels.begin - self._knots[0], inside)
+        x = inside - (self.panels.begin[k] - self._knots[0])
         return np.asarray(turns * self._elapsed[-1] + self._elapsed[k] + self._within(k, x))
 
     def _panel(self, edges: Array, at: Array) -> Index:
         k = np.searchsorted(edges, at, side="right") - 1
-        return np.asarray(np.clip(k, 0, len(self._panels.begin) - 1))
+        return np.asarray(np.clip(k, 0, len(self.panels.begin) - 1))
 
     def _within(self, k: Index, x: Array, count: int = _NODES) -> Array:
         """int d theta / |omega| over the first x [rad] of panels k [s]."""
@@ -114,18 +120,18 @@ class AngleLaw:
 
     def _speed(self, k: Index, x: Array) -> tuple[Array, Array]:
         """omega and d omega / d theta at x [rad] from the beginning of panels k."""
-        piece = self._panels.piece[k]
-        x = x + self._panels.lead[k]
+        piece = self.panels.piece[k]
+        x = x + self.panels.lead[k]
         a, b, c, d = self._coefficients[:, piece]
         return np.asarray(((a * x + b) * x + c) * x + d), np.asarray((3 * a * x + 2 * b) * x + c)
 
-    def _halved(self) -> _Panels:
+    def _halved(self) -> Panels:
         """Panels on which the quadrature is exact but for rounding."""
         knots, speeds = self._knots, np.abs(self._coefficients[-1])
         largest = np.maximum(speeds, np.roll(speeds, -1))
         piece, lead, width = np.arange(len(speeds)), np.zeros(len(speeds)), np.diff(knots)
         for _ in range(_HALVINGS):
-            self._panels = _Panels(knots[piece] + lead, width, piece, lead, np.empty(0))
+            self.panels = Panels(knots[piece] + lead, width, piece, lead, np.empty(0))
             every = np.arange(len(piece))
             coarse, fine = (self._within(every, width, count) for count in (_FEWER, _NODES))
             slowest = np.minimum(*(np.abs(self._speed(every, x)[0]) for x in (0.0 * width, width)))
@@ -137,10 +143,10 @@ class AngleLaw:
             second = np.append(False, piece[1:] == piece[:-1]) & np.repeat(wide, parts)
             second &= np.arange(len(piece)) > np.repeat(np.cumsum(parts) - parts, parts)
             lead = np.repeat(lead, parts) + np.where(second, width, 0.0)
-        return self._panels._replace(times=fine)
+        return self.panels._replace(times=fine)
 
 
-class _Panels(NamedTuple):
+class Panels(NamedTuple):
     """Panels of a quadrature, shape (n,) each.
 
     begin, width [rad] : where they lie; piece, lead [rad] : in which piece, how far behind its

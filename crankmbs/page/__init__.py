@@ -1,4 +1,5 @@
-"""The page that computes in the browser: its modules in JavaScript, and a scene as they take it.
+"""The page that computes in the browser: its document, its modules in JavaScript, and a scene as
+they take it.
 
 What only Python can run is named in refusals, with the command that does.
 """

@@ -15,7 +15,7 @@ from crankmbs.errors import InputError
 from crankmbs.mechanics.variables import EVERY
 from crankmbs.motion.ending import Ending
 from crankmbs.page.export import encoded, exported, rules
-from crankmbs.page.knobs import AS_GIVEN, FIRING_ORDERS, Choice, choices_of, knobs_of
+from crankmbs.page.knobs import FIRING_ORDERS, Choice, choices_of, knobs_of
 from crankmbs.page.refusals import refusals
 from crankmbs.page.script import joined
 from crankmbs.scene.parts import LIGHT_CRANK
@@ -37,6 +37,11 @@ _ENDINGS = {
     "held": f"a jump of the loads holds the speed from both sides; {_ON}",
 }
 _FOLD = f"fold: the rod folds onto the crank, where the motion is not determined; {_ON}"
+
+_FLUCTUATION = (
+    "fluctuation: the {what} is {percent:.4g} %, with the flywheel of {end:g} kg m^2 at the end of "
+    "its knob; {came:g} came"
+)
 
 
 def page_of(scene: Scene, stem: str) -> str:
@@ -70,6 +75,7 @@ def page_of(scene: Scene, stem: str) -> str:
     return environment.get_template("page.html").render(
         scene=scene,
         stem=stem,
+        heavy=scene.start is not None,
         choices={choice.name: choice for choice in choices},
         policy=policy(script, style),
         script=Markup(script),
@@ -104,7 +110,6 @@ def _given(scene: Scene, stem: str, choices: tuple[Choice, ...]) -> dict[str, An
         "words": [{"name": choice.name, "words": choice.words} for choice in choices],
         "own": {choice.name: choice.own for choice in choices},
         "compression": None if indicator is None else indicator.compression_ratio,
-        "as_given": AS_GIVEN,
         "units": {name: variable.units for name, variable in EVERY.items()},
     }
 
@@ -125,6 +130,7 @@ def given_of(scene: Scene) -> dict[str, Any]:
             "open_loop": OPEN_LOOP,
             "light_crank": LIGHT_CRANK,
             "fold": _FOLD,
+            "fluctuation": _FLUCTUATION,
             **{kind: RULES[kind] for kind in _NUMBERS},
         },
     }

@@ -14,20 +14,23 @@ from typing import Any
 import numpy as np
 
 from crankmbs.mechanics.speed import speed_pieces
+from crankmbs.mechanics.speed_over_angle import AngleLaw
 from crankmbs.mechanics.train import CrankTrain, crank_train
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.collocation import gauss
 from crankmbs.numerics.cycle import Cycle
 from crankmbs.numerics.piecewise import Piecewise
 from crankmbs.page.gas import exported_gas
-from crankmbs.scene.drives import Motion, Oscillation
+from crankmbs.scene.drives import Motion, Oscillation, SpeedFile
 from crankmbs.scene.fuel import Fuel, Misfire
 from crankmbs.scene.scene import Scene
+from crankmbs.scene.speed_rows import over_angle, repeats
 from crankmbs.scene.torque import Torque
 
 __all__ = ["encoded", "exported", "rules"]
 
 _STAGES = range(3, 10)  # of the Gauss rules that the passes take, and those that check them
+_FRICTION = ("ring_force", "ring_pressure", "viscous")
 _WINDOW = ("after", "until", "from_speed", "until_speed")
 
 
@@ -92,6 +95,7 @@ def encoded(value: object) -> str:
 
 def _machine(scene: Scene) -> dict[str, Any]:
     crank, rod, piston, gravity = scene.crank, scene.rod, scene.piston, scene.gravity
+    friction = scene.friction
     return {
         "crank": {
             "inertia": crank.moment_of_inertia,
@@ -103,6 +107,7 @@ def _machine(scene: Scene) -> dict[str, Any]:
         },
         "piston": {"area": piston.gas_area, **_fields(piston, "mass", "offset")},
         "gravity": None if gravity is None else _fields(gravity, "acceleration", "angle"),
+        "friction": None if friction is None else _fields(friction, *_FRICTION),
         "cylinders": [_fields(cylinder, "phase", "bank") for cylinder in scene.cylinders],
         "levers": None if scene.levers is None else list(scene.levers),
     }
@@ -151,6 +156,8 @@ def _motion(motion: Motion) -> dict[str, Any]:
     if isinstance(speed, Oscillation):
         swing = _fields(speed, "mean", "amplitude", "order", "phase")
         return {"kind": "oscillation", "angle": motion.angle, **swing}
+    if isinstance(speed, SpeedFile) and speed.kind == "angle_table":
+        return _over_angle(motion.angle, speed)
     pieces = speed_pieces(speed)
     cubics = np.zeros((4, pieces.c.shape[1]))
     cubics[4 - len(pieces.c) :] = pieces.c
@@ -159,6 +166,22 @@ def _motion(motion: Motion) -> dict[str, Any]:
         "angle": motion.angle,
         "knots": pieces.x,
         "coefficients": cubics.ravel(),
+    }
+
+
+def _over_angle(start: float, speed: SpeedFile) -> dict[str, Any]:
+    knots, coefficients = over_angle(speed.file, speed.interpolation)
+    law = AngleLaw(knots, coefficients, start, repeats=repeats(speed.file))
+    nodes, weights = law.rule
+    return {
+        "kind": "over_angle",
+        "angle": start,
+        "repeats": repeats(speed.file),
+        "knots": knots,
+        "coefficients": coefficients.ravel(),
+        "nodes": nodes,
+        "weights": weights,
+        **law.panels._asdict(),
     }
 
 

@@ -12,7 +12,7 @@ from crankmbs.scene.units import RPM
 
 __all__ = ["AS_GIVEN", "FIRING_ORDERS", "Choice", "Knob", "choices_of", "knobs_of"]
 
-AS_GIVEN = "as given"
+AS_GIVEN = "given"
 FIRING_ORDERS = {
     "1": (1,),
     "2": (1, 2),
@@ -52,8 +52,8 @@ class Choice:
 def knobs_of(scene: Scene) -> tuple[Knob, ...]:
     """The sliders that mean something for a scene; the scene's value lies between their ends.
 
-    >>> [knob.name for knob in knobs_of(load_scene("coasting"))]
-    ['speed', 'flywheel', 'rod_ratio', 'offset', 'rod_mass']
+    >>> [knob.name for knob in knobs_of(load_scene("grega_lecture"))]
+    ['speed', 'pressure', 'rod_ratio', 'offset', 'rod_mass']
     """
     return (*_drive(scene), *_machine(scene))
 

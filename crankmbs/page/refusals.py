@@ -6,7 +6,6 @@ from collections.abc import Iterator
 
 from crankmbs.mechanics.speed import speed_law
 from crankmbs.motion.plan import plan_of
-from crankmbs.scene.drives import Motion, SpeedFile
 from crankmbs.scene.scene import Scene
 
 __all__ = ["refusals"]
@@ -30,16 +29,7 @@ def _reasons(scene: Scene) -> Iterator[str]:
         yield "multibody: asked for by name, and the page solves one rotation"
     if any(load.parts.function is not None for load in scene.torque):
         yield "function: a load is a function of Python"
-    if scene.fuel is not None and scene.fuel.governor is not None:
-        yield "governor: it decides each share of the fuel anew"
-    if scene.fuel is not None and scene.fuel.scatter > 0.0:
-        yield "random firing: scatter draws each share of the fuel from Python's random numbers"
-    if scene.fuel is not None and scene.settles:
-        yield "settled fuel: the page settles what burns alike in every cycle"
-    if scene.friction is not None:
-        yield "friction: the page has none yet on its pistons"
-    if scene.motion is not None and _over_angle(scene.motion):
-        yield "speed over the angle: the page knows prescribed speeds over time"
+    yield from _of_fuel(scene)
     if any(abs(fold) < float("inf") for fold in plan_of(scene).folds):
         yield "fold: the rod folds onto the crank, where the motion is not determined"
     if scene.start is not None and scene.start.speed == 0.0:
@@ -48,8 +38,15 @@ def _reasons(scene: Scene) -> Iterator[str]:
         yield "reversal: the prescribed speed comes to rest or turns back"
 
 
-def _over_angle(motion: Motion) -> bool:
-    return isinstance(motion.speed, SpeedFile) and motion.speed.kind == "angle_table"
+def _of_fuel(scene: Scene) -> Iterator[str]:
+    if scene.fuel is None:
+        return
+    if scene.settles:
+        yield "settled fuel: the page settles what burns alike in every cycle"
+    if scene.fuel.governor is not None:
+        yield "governor: it decides each share of the fuel anew"
+    if scene.fuel.scatter > 0.0:
+        yield "random firing: scatter draws each share of the fuel from Python's random numbers"
 
 
 def _turns_back(scene: Scene) -> bool:

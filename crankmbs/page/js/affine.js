@@ -5,6 +5,7 @@
  * and once its fixed point is known the motion is one sweep without any solving.
  */
 import { Sum, eliminate } from "./arrays.js";
+import { ringTorqueIn } from "./friction.js";
 import { torqueOverAngle } from "./loads.js";
 import { Path } from "./path.js";
 
@@ -31,7 +32,9 @@ export class AffinePeriod {
   fill() {
     const { section, branch, stages: s, count } = this;
     const { train, grid, sense, phases, first } = section;
-    const { inertia, torque, angles } = grid.tables;
+    const { friction } = train;
+    const { tables } = grid;
+    const { inertia, torque, angles } = tables;
     const overAngle = train.loads.some((load) => load.over_angle !== null);
     for (let c = 0; c < count; c++) {
       const number = (first + count + (sense > 0 ? c : -1 - c)) % count;
@@ -42,6 +45,7 @@ export class AffinePeriod {
         this.inertia[to] = train.crank.inertia + inertia[i];
         this.push[to] = torque[i] + branch.c0;
         if (overAngle) this.push[to] += torqueOverAngle(train.loads, phases, angles[i]);
+        if (friction !== null) this.push[to] -= sense * ringTorqueIn(friction, tables, i, []);
         this.rate[to] = (2 * branch.c2) / this.inertia[to];
       }
     }

@@ -33,7 +33,7 @@ export function drawAxes(group, { box, right, up, x, y }, about) {
 }
 
 function ordinate(group, box, up, { y, type }) {
-  const count = Math.max((box.bottom - box.top) / (2.1 * type), 1.5);
+  const count = Math.max((box.bottom - box.top) / (1.3 * type), 2);
   const { ticks, step } = roundTicks(y.low, y.high, count);
   for (const tick of ticks) {
     const at = up(tick);

@@ -2,7 +2,8 @@
 import { eliminate } from "./arrays.js";
 import { torqueOf, torqueOverAngle } from "./loads.js";
 import { integralTo } from "./rule.js";
-import { burnt, reduceAt } from "./tables.js";
+import { ringTorqueIn } from "./friction.js";
+import { givenAt, reduceAt } from "./tables.js";
 
 const SLOW = Math.PI / 360; // rad: where the energy would be gone within this angle, it is refused
 const SETTLED = 1e-15; // relative change of the energy in Newton's last step
@@ -15,7 +16,7 @@ export class Stepper {
     const s = rule.nodes.length;
     this.rule = rule;
     this.places = [0, ...rule.nodes, 1];
-    for (const name of ["inertia", "given", "energy", "torque", "slowness", "rate"]) {
+    for (const name of ["inertia", "given", "energy", "torque", "slowness", "rate", "drag"]) {
       this[name] = new Float64Array(s);
     }
     this.right = new Float64Array(s);
@@ -27,22 +28,28 @@ export class Stepper {
   load({ train, phases, firing }, { tables }, number, sense) {
     const s = this.given.length;
     const { shares } = firing;
+    const { friction } = train;
     for (let j = 0; j < s; j++) {
       const i = number * s + (sense > 0 ? j : s - 1 - j);
       this.inertia[j] = train.crank.inertia + tables.inertia[i];
       let given = tables.torque[i] + torqueOverAngle(train.loads, phases, tables.angles[i]);
       for (let c = 0; c < shares.length; c++) given += shares[c] * tables.combustion[c][i];
+      if (friction !== null) {
+        given -= sense * ringTorqueIn(friction, tables, i, shares);
+        this.drag[j] = friction.viscous * tables.square[i];
+      }
       this.given[j] = given;
     }
   }
 
   /** The same from where a motion is to an angle. */
-  tabulate({ train, phases, firing, theta }, target) {
+  tabulate({ train, phases, firing, theta, sense }, target) {
     this.rule.nodes.forEach((node, j) => {
       const angle = theta + (target - theta) * node;
       const of = reduceAt(train, angle);
       this.inertia[j] = of.inertia;
-      this.given[j] = of.torque + burnt(of.combustion, firing.shares);
+      this.given[j] = givenAt(train, of, firing.shares, sense, 0);
+      this.drag[j] = (train.friction?.viscous ?? 0) * of.square;
       this.given[j] += torqueOverAngle(train.loads, phases, angle);
     });
   }
@@ -77,7 +84,7 @@ export class Stepper {
 
   /** Slowness, torque and its rate of change with the energy, at the energies of the nodes. */
   evaluate(branch, time, sense, width) {
-    const { rule, given, inertia, energy, slowness, torque, rate } = this;
+    const { rule, given, inertia, energy, slowness, torque, rate, drag } = this;
     const s = given.length;
     for (let j = 0; j < s; j++) {
       slowness[j] = energy[j] > 0 ? Math.sqrt((0.5 * inertia[j]) / energy[j]) : NaN;
@@ -88,8 +95,8 @@ export class Stepper {
       if (branch.ct !== 0) {
         for (let i = 0; i < s; i++) t += Math.abs(width) * rule.matrix[j * s + i] * slowness[i];
       }
-      torque[j] = given[j] + torqueOf(branch, t, omega);
-      rate[j] = (branch.c1 + 2 * branch.c2 * omega) / (inertia[j] * omega);
+      torque[j] = given[j] + torqueOf(branch, t, omega) - drag[j] * omega;
+      rate[j] = (branch.c1 + 2 * branch.c2 * omega - drag[j]) / (inertia[j] * omega);
     }
   }
 

@@ -1,5 +1,6 @@
 /** The page's choices and words: selects, slow motion, measures, badge. */
 import { Player } from "./player.js";
+import { choices } from "./quantities.js";
 import { spanOf } from "./view.js";
 import { badgeOf, numbersOf } from "./words.js";
 
@@ -7,6 +8,14 @@ let shownAs = ""; // the choices that stand there, as text
 
 export function find(id) {
   return document.getElementById(id);
+}
+
+/** What a plot can show of a scene, as options. */
+export function fillChoices(select, scene) {
+  for (const [label, names] of Object.entries(choices(scene))) {
+    const group = select.appendChild(document.createElement("optgroup"));
+    Object.assign(group, { label }).append(...names.map((each) => new Option(each, each)));
+  }
 }
 
 /** Listen to the choices; chosen(name, value), undefined for what the scene has itself. */
@@ -68,4 +77,16 @@ function options(select, count) {
   if (select.options.length === count) return;
   const names = Array.from({ length: count }, (_, n) => String(n + 1));
   select.replaceChildren(...names.map((name) => new Option(`cylinder ${name}`, name)));
+}
+
+/** The knobs that change nothing at present. */
+export function unused(cycle, given, values) {
+  if (cycle.prescribed && given.scene.motion === null) return ["flywheel", "load"];
+  return values.load_is === "rebalanced" ? ["load"] : [];
+}
+
+/** Large type for a projector, or no longer. */
+export function enlarge({ target }) {
+  const on = document.documentElement.classList.toggle("projector");
+  target.setAttribute("aria-pressed", String(on));
 }

@@ -76,9 +76,9 @@ class Cycle {
     return (Math.max(...speeds) - Math.min(...speeds)) / Math.abs(this.mean);
   }
 
-  /** What the speed gains in a cycle [rpm]. */
+  /** What the speed gains in a cycle, in its own sense [rpm]. */
   get gain() {
-    return this.drift / RPM;
+    return (this.drift * this.sense) / RPM;
   }
 
   /** What a lecture, by its name, says at the samples at the mean speed. */

@@ -8,8 +8,8 @@ import { bottomPosition, topPosition } from "./geometry.js";
 const CROWN = 0.4; // of the piston's width, above its pin
 const SKIRT = 0.3;
 const CLEARANCE = 1 / 14; // of the stroke
-const RIM = 1.75; // of the crank radius: the flywheel's rim, at the inertia that the scene has
-const WIDEST = 2.45;
+const RIM = 1.65; // of the crank radius: the flywheel's rim, at the inertia that the scene has
+const WIDEST = 2.5;
 const ROOM = 0.7; // of the crank radius
 
 /** The proportions of a machine [m]. ratio : of the flywheel's inertia to that of the scene */

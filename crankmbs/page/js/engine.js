@@ -5,6 +5,7 @@
  */
 import { remembering } from "./arrays.js";
 import { knotsOver } from "./cubics.js";
+import { frictionMarks } from "./friction.js";
 import { Firing, decisionAngles } from "./fuel.js";
 import { Loop } from "./geometry.js";
 import { DIAGRAM, SEEN, pressuresOf } from "./gas.js";
@@ -35,6 +36,7 @@ export class Engine {
     // a stronger load has the knots that it had
     this.marks = remembering(marksOf);
     this.edges = remembering(edgesOf);
+    this.bends = remembering(frictionMarks);
     this.strong = remembering(strongOf);
   }
 
@@ -42,13 +44,15 @@ export class Engine {
    *
    * quick : diagrams of polytropes are fitted to what a screen shows */
   train(scene, quick = false) {
-    const { crank, rod, piston, cylinders, levers, gravity, loads, fuel, period } = scene;
+    const { crank, rod, piston, cylinders, levers } = scene;
     const shape = this.shape(crank.radius, rod.length, piston.offset);
     const loops = this.loops(shape, cylinders.length);
     const machine = { shape, loop: loops[0], loops, crank, rod, piston, cylinders, levers };
     const pressures = quick ? this.pressures.quick : this.pressures.fine;
     const { pressure, combustion } = pressures(scene.gas, shape, quick ? SEEN : DIAGRAM);
-    return { ...machine, gravity, loads, fuel, period, pressure, combustion };
+    const { gravity, friction, loads, fuel, period } = scene;
+    const outside = { gravity, friction, loads, fuel, period };
+    return { ...machine, ...outside, pressure, combustion };
   }
 
   /** The motion of a scene; its cells are cut until they err by no more than a tolerance, relative,
@@ -88,8 +92,9 @@ export class Engine {
     const decisions = decisionAngles(fuel, cylinders, train.period);
     const knots = (quick ? strongOf(tables) : tables).map((cycle) => cycle.knots);
     const marks = this.marks(knots, decisions, train.period, period);
+    const bends = this.bends(train.friction, shape, cylinders, pressure, combustion, period);
     const cycles = quick ? this.strong([...pressure, ...combustion]) : pressure;
-    return this.edges(shape, cylinders, cycles, marks, period);
+    return this.edges(shape, cylinders, cycles, [...marks, bends], period);
   }
 
   grid(train, edges, stages, tables) {
@@ -221,7 +226,7 @@ class Prescribed {
   smoothBetween(from, to) {
     const period = this.edges[this.edges.length - 1];
     const [low, high] = [Math.min(from, to), Math.max(from, to)];
-    const angles = this.law.corners.map((time) => this.law.at(time)[0]);
+    const angles = this.law.bendsBetween(low, high);
     for (let turn = Math.floor(low / period); turn * period < high; turn++) {
       for (const edge of this.edges) angles.push(edge + turn * period);
     }

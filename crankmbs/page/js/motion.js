@@ -10,7 +10,7 @@ import { Stepper } from "./cell.js";
 import { Firing } from "./fuel.js";
 import { branchAt, firstPhases, laterPhases, torqueOf, torqueOverAngle } from "./loads.js";
 import { Path } from "./path.js";
-import { burnt, reduceAt } from "./tables.js";
+import { givenAt, reduceAt } from "./tables.js";
 
 const SLIVER = 1e-12; // rad
 const LANDINGS = 12;
@@ -44,7 +44,7 @@ export class Travel {
   enter(omega) {
     const { train, theta, time, phases } = this;
     const of = reduceAt(train, theta);
-    const given = of.torque + burnt(of.combustion, this.firing.shares);
+    const given = givenAt(train, of, this.firing.shares, this.sense, omega);
     const rest = given + torqueOverAngle(train.loads, phases, theta) - 0.5 * of.slope * omega ** 2;
     this.branch = branchAt(train.loads, phases, time, omega, rest);
     if (this.branch === null) {
@@ -180,7 +180,7 @@ export class Travel {
     const speed = this.sense * Math.sqrt((2 * end) / of.inertia);
     const t = this.time + Math.abs(width) * stepper.spent;
     if (time !== null) return speed * (time - t);
-    const given = of.torque + burnt(of.combustion, this.firing.shares);
+    const given = givenAt(this.train, of, this.firing.shares, this.sense, speed);
     const outside = torqueOf(this.branch, t, speed);
     const over = torqueOverAngle(this.train.loads, this.phases, at);
     const alpha = (given + outside + over - 0.5 * of.slope * speed * speed) / of.inertia;
@@ -210,7 +210,7 @@ export class Travel {
   accelerated(omega) {
     const { train, theta, time, branch, phases } = this;
     const of = reduceAt(train, theta);
-    const given = of.torque + burnt(of.combustion, this.firing.shares);
+    const given = givenAt(train, of, this.firing.shares, this.sense, omega);
     const outside = torqueOf(branch, time, omega) + torqueOverAngle(train.loads, phases, theta);
     return given + outside - 0.5 * of.slope * omega * omega;
   }

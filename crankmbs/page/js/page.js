@@ -1,17 +1,19 @@
 /** The page: knobs, mechanism and plots of one scene, and what happens between them. */
 import { decoded } from "./answers.js";
-import { find, listenToChoices, showChoices, showSlower, showWords } from "./controls.js";
+import { fillChoices, find, listenToChoices, showChoices, showSlower } from "./controls.js";
+import { enlarge, showWords, unused } from "./controls.js";
 import { cycleOf } from "./cycle.js";
 import { dragged } from "./drag.js";
 import { Engine } from "./engine.js";
+import { inertiaFor } from "./flywheel.js";
 import { deadCentres } from "./geometry.js";
 import { Knobs } from "./knobs.js";
 import { Player } from "./player.js";
 import { Plot } from "./plot.js";
-import { choices, drawn } from "./quantities.js";
+import { drawn } from "./quantities.js";
 import { Refused } from "./refused.js";
 import { Stage } from "./stage.js";
-import { Address } from "./state.js";
+import { Address, numberOf } from "./state.js";
 import { dataFile, save, sceneFile } from "./taken.js";
 import { Turner } from "./turned.js";
 import { firstView, keysOf, tellingPose } from "./view.js";
@@ -50,6 +52,7 @@ class Page {
       release: () => this.release(),
       refuse: (sentence) => this.say(sentence),
     });
+    find("fluctuation")?.addEventListener("change", ({ target }) => this.even(target.value));
     dragged(this.stage, {
       theta: () => this.theta,
       turn: (theta) => this.seek(theta),
@@ -67,10 +70,7 @@ class Page {
     this.press("reset", () => this.reset());
     this.press("toml", () => save(...sceneFile(given, this.values, this.cycle)));
     this.press("csv", () => save(...dataFile(given, this.cycle)));
-    this.press("large", () => {
-      const on = document.documentElement.classList.toggle("projector");
-      find("large").setAttribute("aria-pressed", String(on));
-    });
+    this.press("large", enlarge);
     find("angle").addEventListener("input", (event) => {
       this.play(false);
       this.seek(Number(event.target.value) * DEGREE);
@@ -91,11 +91,7 @@ class Page {
       this.play(false);
       return this.seek(degrees * DEGREE);
     });
-    const select = root.querySelector("select");
-    for (const [label, names] of Object.entries(choices(this.given.scene))) {
-      const group = select.appendChild(document.createElement("optgroup"));
-      Object.assign(group, { label }).append(...names.map((each) => new Option(each, each)));
-    }
+    fillChoices(root.querySelector("select"), this.given.scene);
     const pin = root.querySelector(".pin");
     pin.addEventListener("click", () => pin.setAttribute("aria-pressed", String(plot.pin())));
     return plot;
@@ -142,10 +138,30 @@ class Page {
 
   turnRim(ratio) {
     const knob = this.given.knobs.find((each) => each.name === "flywheel");
-    if (!knob) return;
-    const value = Math.min(Math.max(ratio * knob.value, knob.low), knob.high);
-    this.turn("flywheel", value);
+    this.turn("flywheel", Math.min(Math.max(ratio * knob.value, knob.low), knob.high));
     this.knobs.show(this.values);
+  }
+
+  /** Take the flywheel with which the speed fluctuates by so many percent. */
+  even(text) {
+    const { given, values } = this;
+    const knob = given.knobs.find((each) => each.name === "flywheel");
+    const present = { ...knob, value: values.flywheel ?? knob.value };
+    try {
+      const limits = { name: "fluctuation", low: 0, high: 100 };
+      const wanted = numberOf(text, limits, given.sentences) / 100;
+      const at = (flywheel) => {
+        const turned = { ...values, flywheel };
+        const asked = this.turner.scene(turned);
+        return this.pass(this.careful, asked, turned, { fine: true }).fluctuation;
+      };
+      this.turn("flywheel", inertiaFor(wanted, at, present, given.sentences.fluctuation));
+      this.knobs.show(this.values);
+      this.release();
+    } catch (refused) {
+      if (!(refused instanceof Refused)) throw refused;
+      this.say(refused.message);
+    }
   }
 
   reset() {
@@ -275,10 +291,4 @@ class Page {
     find("message").textContent = sentence;
     find("message").hidden = sentence === "";
   }
-}
-
-/** The knobs that change nothing at present. */
-function unused(cycle, given, values) {
-  if (cycle.prescribed && given.scene.motion === null) return ["flywheel", "load"];
-  return values.load_is === "rebalanced" ? ["load"] : [];
 }

@@ -2,7 +2,7 @@
 import { countUpTo } from "./arrays.js";
 import { torqueOf, torqueOverAngle } from "./loads.js";
 import { integralTo } from "./rule.js";
-import { burnt, reduceAt } from "./tables.js";
+import { givenAt, reduceAt } from "./tables.js";
 
 /** Solved cells, each from `from` over `width` [rad, signed] on one branch of the loads; torque and
  * slowness at its nodes stand in their arrays from number `first` on. */
@@ -42,7 +42,7 @@ export function readCell(train, rule, cell, theta) {
   const of = reduceAt(train, theta);
   const omega = sense * Math.sqrt((2 * Math.max(kinetic, 0)) / of.inertia);
   const outside = torqueOf(branch, t, omega) + torqueOverAngle(train.loads, phases, theta);
-  const given = of.torque + burnt(of.combustion, shares);
+  const given = givenAt(train, of, shares, sense, omega);
   const alpha = (given + outside - 0.5 * of.slope * omega * omega) / of.inertia;
   return { time: t, theta, omega, alpha, external_torque: outside, shares };
 }

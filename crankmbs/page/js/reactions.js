@@ -6,6 +6,7 @@
  * from outside. Names, signs and frames are those of a result.
  */
 import { valueAt } from "./cubics.js";
+import { frictionForce } from "./friction.js";
 import { topPosition } from "./geometry.js";
 import { gravityVector, rodCentre } from "./tables.js";
 
@@ -34,7 +35,7 @@ export function reactionsAt(train, sample) {
 
 /** The variables of one cylinder, and what it adds to the balance of crank and frame. */
 function cylinderAt(train, { theta, omega, alpha, shares }, number) {
-  const { rod, piston, gravity, cylinders, shape } = train;
+  const { rod, piston, gravity, cylinders, shape, friction } = train;
   const { phase, bank } = cylinders[number];
   const { radius: r, length: l, offset: e } = shape;
   const area = piston.area ?? 0;
@@ -45,12 +46,13 @@ function cylinderAt(train, { theta, omega, alpha, shares }, number) {
   const square = omega * omega;
   const pressure = pressureAt(train, shares, number, phi);
   const gas = pressure * area;
+  const rubs = friction === null ? 0 : frictionForce(friction, shape, at, omega, gas);
   const pistonX = at.x2 * square + at.x1 * alpha;
   const rodTurn = at.beta2 * square + at.beta1 * alpha;
   const feltX = g.x2 * square + g.x1 * alpha - gx; // the rod's acceleration minus gravity
   const feltY = g.y2 * square + g.y1 * alpha - gy;
   const felt = pistonX - gx; // the piston's, along the cylinder
-  const pinX = piston.mass * felt + gas;
+  const pinX = piston.mass * felt + gas + rubs;
   const weight = rod.mass * (at.cosBeta * feltY + at.sinBeta * feltX);
   const moment = (rod.inertia * rodTurn - rod.center_of_mass * weight) / l;
   const pinY = (moment - pinX * at.sinBeta) / at.cosBeta;
@@ -77,11 +79,12 @@ function cylinderAt(train, { theta, omega, alpha, shares }, number) {
     crank_torque: r * (at.sinPhi * throwX - at.cosPhi * throwY),
   };
   if (train.fuel !== null) variables.fuel = shares[number];
+  if (friction !== null) variables.friction_force = rubs;
   return {
     variables,
     pull: turned(bank, throwX, throwY),
     shake: turned(bank, ...shaking),
-    moment: -at.x * side - e * gas,
+    moment: -at.x * side - e * (gas + rubs),
     kinetic: 0.5 * (inertia + rod.inertia * at.beta1 ** 2) * square,
   };
 }

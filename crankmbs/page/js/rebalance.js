@@ -1,4 +1,4 @@
-/** Loads scaled so that a motion settles to a wanted mean speed, as a brake that is turned up or down
+/** Loads scaled so that a motion settles to a wanted mean speed, as a brake is turned up or down
  * until the speed is what it was before a knob moved.
  *
  * Those loads are scaled, all by one share, that take work at that speed; where none does, those
@@ -11,7 +11,7 @@ import { Section } from "./settled.js";
 
 const ROUNDS = 40;
 
-/** { ending, share, scene } : the scene with its loads scaled by the share settles to the mean speed
+/** { ending, share, scene } : the scene, its loads scaled by the share, settles to the mean speed
  * [rad/s]; ending "complete", "unbalanced" where no share will do, or what ends the period.
  *
  * closeness : relative, of mean speed and share

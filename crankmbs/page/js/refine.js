@@ -1,4 +1,5 @@
 /** What cells err, and which must be cut: a finer Gauss rule along the solution. */
+import { ringTorqueIn } from "./friction.js";
 import { torqueOf, torqueOverAngle } from "./loads.js";
 import { integralTo } from "./rule.js";
 
@@ -47,6 +48,7 @@ function errorsOf(train, rule, finer, cell) {
 /** Torque and slowness that the solution of a cell asks for at the nodes of the finer rule. */
 function alongFiner(train, rule, { rule: fine, tables }, cell) {
   const { sense, branch, phases, shares, number, width } = cell;
+  const { friction } = train;
   const s = fine.nodes.length;
   const torque = [];
   const slowness = [];
@@ -60,6 +62,10 @@ function alongFiner(train, rule, { rule: fine, tables }, cell) {
     shares.forEach((share, c) => {
       given += share * tables.combustion[c][i];
     });
+    if (friction !== null) {
+      given -= sense * ringTorqueIn(friction, tables, i, shares);
+      given -= friction.viscous * tables.square[i] * omega;
+    }
     torque.push(given + torqueOf(branch, time, omega));
     slowness.push(sense / omega);
   });

@@ -9,7 +9,7 @@ import { AffinePeriod } from "./affine.js";
 import { countUpTo } from "./arrays.js";
 import { branchAt, firstPhases, isAffine, torqueOverAngle } from "./loads.js";
 import { Travel } from "./motion.js";
-import { reduceAt } from "./tables.js";
+import { givenAt, reduceAt } from "./tables.js";
 
 const SLOW = Math.PI / 360; // rad: where the energy would be gone within this angle, it is refused
 const NONE = 1e-11; // of the energy: nothing but rounding
@@ -57,14 +57,15 @@ export class Section {
     const { train, phases } = this;
     const of = reduceAt(train, this.theta);
     const over = torqueOverAngle(train.loads, phases, this.theta);
-    const rest = of.torque + over - 0.5 * of.slope * omega * omega;
+    const rest = givenAt(train, of, [], this.sense, omega) + over - 0.5 * of.slope * omega * omega;
     return branchAt(train.loads, phases, 0, omega, rest);
   }
 
   /** The branch at a speed if under it every cell is affine, at whatever speed; else null. */
   affineBranch(omega) {
     const branch = this.branch(omega);
-    if (branch === null || !isAffine(branch)) return null;
+    const drags = this.train.friction !== null && this.train.friction.viscous > 0;
+    if (branch === null || !isAffine(branch) || drags) return null;
     const ends = (limit) => this.sense * limit > 0 && Number.isFinite(limit);
     return ends(branch.low) || ends(branch.high) ? null : branch;
   }

@@ -2,20 +2,21 @@
  *
  * A law is { kind: "polynomial", knots, coefficients, angle }, omega(t) of cubics between times of
  * which the last may be infinite; or { kind: "oscillation", mean, amplitude, order, phase, angle },
- * omega = mean + amplitude cos(order theta + phase).
+ * omega = mean + amplitude cos(order theta + phase); or one "over_angle".
  */
 import { countUpTo } from "./arrays.js";
+import { OverAngle } from "./over_angle.js";
 
-/** The law as an object with `at(time)` -> [theta, omega, alpha], `timeAt(theta)` and the times
- * of its `corners`. */
+/** The law as an object with `at(time)` -> [theta, omega, alpha], `timeAt(theta)` and the crank
+ * angles at which it bends, `bendsBetween(low, high)`. */
 export function speedLaw(law) {
+  if (law.kind === "over_angle") return new OverAngle(law);
   return law.kind === "oscillation" ? new Oscillation(law) : new Polynomial(law);
 }
 
 class Polynomial {
   constructor({ knots, coefficients, angle }) {
     this.knots = knots;
-    this.corners = Array.from(knots).slice(1).filter(Number.isFinite);
     const n = knots.length - 1;
     this.cubics = Array.from({ length: n }, (_, k) =>
       [0, 1, 2, 3].map((power) => coefficients[power * n + k]));
@@ -56,6 +57,10 @@ class Polynomial {
     return knots[k] + x;
   }
 
+  bendsBetween() {
+    return Array.from(this.knots).slice(1).filter(Number.isFinite).map((time) => this.at(time)[0]);
+  }
+
   /** Time [s] that an endless piece, of constant speed, takes to an angle. */
   least(k, theta) {
     return Math.abs((theta - this.angles[k]) / this.cubics[k][3]) + 1e-9;
@@ -73,7 +78,6 @@ class Oscillation {
   constructor(law) {
     const { mean: m, amplitude: a, order } = law;
     Object.assign(this, law);
-    this.corners = [];
     this.kappa = Math.sqrt((m - a) / (m + a));
     this.rate = Math.sign(m) * order * Math.sqrt((m - a) * (m + a));
     this.begin = this.even(order * law.angle + law.phase);
@@ -89,6 +93,10 @@ class Oscillation {
 
   timeAt(theta) {
     return (this.even(this.order * theta + this.phase) - this.begin) / this.rate;
+  }
+
+  bendsBetween() {
+    return [];
   }
 
   even(psi) {

@@ -9,6 +9,7 @@
  */
 import { distinct, remembering, wrapped } from "./arrays.js";
 import { knotsOver, valueAt, valuesAlong } from "./cubics.js";
+import { ringTorque } from "./friction.js";
 import { Loop } from "./geometry.js";
 import { nodesBetween } from "./rule.js";
 
@@ -23,9 +24,13 @@ export function gravityVector(gravity, bank) {
 }
 
 /** The crank train at one crank angle [rad]: inertia J [kg m2] with the crank's, slope dJ/dtheta,
- * torque of gas and weights [N m], and what the combustion of each cylinder adds to it. */
+ * torque of gas and weights [N m], what the combustion of each cylinder adds to it, and what
+ * friction depends on: torque of each cylinder's gas, sums of |x1| and of x1^2. */
 export function reduceAt(train, theta) {
   const { crank, rod, piston, cylinders, gravity, pressure, combustion, loops } = train;
+  const gas = [];
+  let rise = 0;
+  let square = 0;
   let inertia = crank.inertia;
   let slope = 0;
   let torque = crankWeight(crank, gravity, theta);
@@ -42,10 +47,22 @@ export function reduceAt(train, theta) {
       const [ax, ay] = gravityVector(gravity, cylinders[k].bank);
       torque += piston.mass * ax * at.x1 + rod.mass * (ax * g.x1 + ay * g.y1);
     }
-    if (pressure.length) torque -= piston.area * valueAt(pressure[k], phi) * at.x1;
+    if (pressure.length) gas.push(-piston.area * valueAt(pressure[k], phi) * at.x1);
+    torque += gas[k] ?? 0;
+    rise += Math.abs(at.x1);
+    square += at.x1 * at.x1;
     if (combustion.length) burning.push(-piston.area * valueAt(combustion[k], phi) * at.x1);
   }
-  return { inertia, slope, torque, combustion: burning };
+  return { inertia, slope, torque, combustion: burning, gas, rise, square };
+}
+
+/** Torque of gas, weights and friction [N m] at an angle that is reduced, with these shares of the
+ * combustion, in a sense of rotation at a speed. */
+export function givenAt({ friction }, of, shares, sense, omega) {
+  const given = of.torque + burnt(of.combustion, shares);
+  if (friction === null) return given;
+  const rings = ringTorque(friction, of.rise, of.gas, of.combustion, shares);
+  return given - sense * rings - friction.viscous * of.square * omega;
 }
 
 /** Torque of the crank's own weight at a crank angle [N m]. */
@@ -56,7 +73,7 @@ function crankWeight(crank, gravity, theta) {
 }
 
 /** What the combustion adds with these shares [N m]. */
-export function burnt(combustion, shares) {
+function burnt(combustion, shares) {
   return combustion.reduce((sum, each, k) => sum + shares[k] * each, 0);
 }
 
@@ -147,6 +164,9 @@ export class Tables {
       inertia: this.inertia(loops, piston.mass, rod.mass, rod.inertia),
       torque: this.total([weights, ...gas]),
       combustion: burning,
+      gas,
+      rise: loops.rise,
+      square: loops.squares.piston,
     };
   }
 }
@@ -163,6 +183,7 @@ function loopsAt(shape, center, cylinders, angles) {
   const loop = new Loop(shape);
   const empty = () => new Float64Array(angles.length);
   const squares = { piston: empty(), rod: empty(), turn: empty() };
+  const rise = empty();
   const each = cylinders.map(({ phase }) => {
     const own = { x1: empty(), gx1: empty(), gy1: empty() };
     for (let i = 0; i < angles.length; i++) {
@@ -172,13 +193,14 @@ function loopsAt(shape, center, cylinders, angles) {
       own.x1[i] = at.x1;
       own.gx1[i] = gx1;
       own.gy1[i] = gy1;
+      rise[i] += Math.abs(at.x1);
       squares.piston[i] += at.x1 * at.x1;
       squares.rod[i] += gx1 * gx1 + gy1 * gy1;
       squares.turn[i] += at.beta1 * at.beta1;
     }
     return own;
   });
-  return { squares, each };
+  return { squares, rise, each };
 }
 
 function inertiaOf({ squares }, pistonMass, rodMass, rodInertia) {

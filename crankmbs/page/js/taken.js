@@ -119,10 +119,13 @@ function prescribe({ toml, scene }) {
 }
 
 function putDrive({ toml, files, given, scene, balance }, values) {
-  const faster = "speed" in values ? speedOf(scene) / speedOf(given.scene) : 1;
-  const speed = `"${speedOf(scene)} rad/s"`;
-  if (faster !== 1 && scene.motion === null) toml.put("[start]", "speed", speed);
-  if (faster !== 1 && scene.motion !== null) putMotion(toml, scene.motion, speed);
+  let faster = 1;
+  if ("speed" in values) {
+    faster = speedOf(scene) / speedOf(given.scene);
+    const speed = `"${speedOf(scene)} rad/s"`;
+    if (scene.motion === null) toml.put("[start]", "speed", speed);
+    else putMotion(toml, scene.motion, speed);
+  }
   if (scene.motion !== null) return;
   const more = scene.cylinders.length / given.scene.cylinders.length;
   const share = ((values.load ?? 100) / 100) * more * balance;

@@ -1,0 +1,107 @@
+/** Friction of the pistons on their walls, { ring_force, ring_pressure, viscous } or null:
+ *
+ *     friction_force = -sign(v) (ring_force + ring_pressure |gas_force|) - viscous v
+ *
+ * with the piston's velocity v = -x1 omega. On the crank it is, with the torque of each cylinder's
+ * gas, -sign(omega) (ring_force sum |x1| + ring_pressure sum |gas|) - viscous omega sum x1^2: all
+ * but the last is a function of the angle, smooth between dead centres and changes of the gas's
+ * sign.
+ */
+import { wrapped } from "./arrays.js";
+import { deadCentres } from "./geometry.js";
+
+const KNOT = 1e-9; // rad: at a dead centre the value after it counts
+const TURN = 2 * Math.PI;
+
+/** What rings oppose to either sense of rotation [N m].
+ *
+ * rise : sum of |x1| [m]; gas, combustion : torques of each cylinder [N m]
+ */
+export function ringTorque(friction, rise, gas, combustion, shares) {
+  let pressed = 0;
+  for (let k = 0; k < gas.length; k++) {
+    pressed += Math.abs(gas[k] + (shares.length ? shares[k] * combustion[k] : 0));
+  }
+  return friction.ring_force * rise + friction.ring_pressure * pressed;
+}
+
+/** The same at node i of tables. */
+export function ringTorqueIn(friction, tables, i, shares) {
+  let pressed = 0;
+  for (let k = 0; k < tables.gas.length; k++) {
+    const burning = shares.length ? shares[k] * tables.combustion[k][i] : 0;
+    pressed += Math.abs(tables.gas[k][i] + burning);
+  }
+  return friction.ring_force * tables.rise[i] + friction.ring_pressure * pressed;
+}
+
+/** Friction on a piston [N], positive towards the crank, at a cycle angle of the closed loop. */
+export function frictionForce(friction, shape, { phi, x1 }, omega, gasForce) {
+  const { top, bottom } = deadCentres(shape);
+  const sense = omega < 0 ? -1 : 1;
+  const behind = wrapped(phi + sense * KNOT - top, TURN);
+  const towards = behind < bottom - top ? sense : -sense;
+  const limit = friction.ring_force + friction.ring_pressure * Math.abs(gasForce);
+  return -towards * limit + friction.viscous * x1 * omega;
+}
+
+/** Crank angles of a period at which friction bends [rad]: dead centres, and where the gas on a
+ * piston changes its sign, with its combustion and without. */
+export function frictionMarks(friction, shape, cylinders, pressure, combustion, period) {
+  if (friction === null) return [];
+  const { top, bottom } = deadCentres(shape);
+  const found = [];
+  cylinders.forEach(({ phase }, k) => {
+    for (let turn = 0; turn < period - 1; turn += TURN) {
+      found.push(wrapped(top + turn - phase, period), wrapped(bottom + turn - phase, period));
+    }
+    if (friction.ring_pressure === 0 || !pressure.length) return;
+    const { knots, coefficients } = pressure[k];
+    const own = knots[knots.length - 1] - knots[0];
+    const roots = signChanges(knots, coefficients);
+    if (combustion.length) {
+      const burning = coefficients.map((each, i) => each + combustion[k].coefficients[i]);
+      roots.push(...signChanges(knots, burning));
+    }
+    for (let turn = 0; turn < period - 1; turn += own) {
+      found.push(...roots.map((angle) => wrapped(angle + turn - phase, period)));
+    }
+  });
+  return found;
+}
+
+/** Where piecewise cubics change their sign between knots. */
+function signChanges(knots, coefficients) {
+  const n = knots.length - 1;
+  const found = [];
+  for (let k = 0; k < n; k++) {
+    const [a, b, c, d] = [0, 1, 2, 3].map((power) => coefficients[power * n + k]);
+    const value = (x) => ((a * x + b) * x + c) * x + d;
+    const width = knots[k + 1] - knots[k];
+    const turns = turningPoints(3 * a, 2 * b, c).filter((x) => x > 0 && x < width);
+    const places = [0, ...turns.sort((x, y) => x - y), width];
+    for (let j = 0; j + 1 < places.length; j++) {
+      const [low, high] = [places[j], places[j + 1]];
+      if (value(low) * value(high) < 0) found.push(knots[k] + bisected(value, low, high));
+    }
+  }
+  return found;
+}
+
+/** The roots of a parabola. */
+function turningPoints(a, b, c) {
+  const root = Math.sqrt(b * b - 4 * a * c);
+  if (!(root >= 0)) return [];
+  const sum = -0.5 * (b + (b < 0 ? -root : root));
+  return [sum / a, c / sum].filter(Number.isFinite);
+}
+
+function bisected(value, low, high) {
+  const rises = value(low) < 0;
+  for (let n = 0; n < 60; n++) {
+    const middle = 0.5 * (low + high);
+    if (value(middle) < 0 === rises) low = middle;
+    else high = middle;
+  }
+  return high;
+}
