@@ -2,6 +2,7 @@
 
 import math
 import re
+from dataclasses import replace
 from importlib import import_module
 
 import numpy as np
@@ -11,6 +12,8 @@ from playwright.sync_api import sync_playwright
 
 from crankmbs import load_scene, simulate
 from crankmbs.lessons import LESSONS, write_lesson
+from crankmbs.lessons.shaking import reciprocating
+from crankmbs.scene.parts import Layout
 
 PASSES = "() => [...document.querySelectorAll('figure')].every((f) => f.dataset.passes === '2')"
 PHONE, LAPTOP, LARGE = (390, 844), (1366, 641), (1920, 1080)
@@ -209,14 +212,9 @@ def test_words_that_follow_a_figure_say_what_python_has(lesson, name, place, num
 
 
 def test_cylinders_in_a_row_rock_as_python_has_it(lesson):
-    from crankmbs.lessons.shaking import reciprocating
-    from crankmbs.scene.parts import Layout
-
     opened = lesson("balance")
     bare = reciprocating(load_scene("grega_lecture"))
     for word, order in (("3", (1, 3, 2)), ("2", (1, 2)), ("4", (1, 3, 4, 2))):
-        from dataclasses import replace
-
         scene = replace(bare, layout=Layout(firing_order=order, spacing=0.088))
         most = np.abs(simulate(scene).data["rocking_moment_y"].values).max()
         opened.choose("couple", "cylinders", word)
@@ -282,3 +280,35 @@ def test_a_number_that_cannot_be_keeps_the_picture_and_says_why(lesson):
         opened.page.inner_text("#half .message")
     )
     assert opened.curve("half") == before
+
+
+def test_print_shows_figures_and_answers_and_no_controls(lesson):
+    opened = lesson("displacement")
+    opened.page.emulate_media(media="print")
+    assert opened.page.locator("#half .stage").is_visible()
+    assert opened.page.locator("#ask_lead details p").bounding_box()["height"] > 10.0
+    assert not opened.page.locator("#half .player").is_visible()
+    assert not opened.page.locator("#ask_lead .typed").is_visible()
+
+
+def contrast(one, other):
+    """The ratio of two colours' luminance, as the accessibility guidelines count it."""
+
+    def luminance(text):
+        parts = [int(text[k : k + 2], 16) / 255.0 for k in (1, 3, 5)]
+        linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in parts]
+        return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+    high, low = sorted((luminance(one), luminance(other)), reverse=True)
+    return (high + 0.05) / (low + 0.05)
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_text_and_lines_stand_out(lesson, scheme):
+    opened = lesson("forces", color_scheme=scheme)
+    value = "(name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim()"
+    ground = opened.page.evaluate(value, "--ground")
+    for name in ("text", "soft", "accent", "run", "good", "bad"):
+        assert contrast(opened.page.evaluate(value, f"--{name}"), ground) >= 4.5, name
+    for name in ("line", "exact", "lecture", "wallarrow", "bearing", "gasarrow", "web"):
+        assert contrast(opened.page.evaluate(value, f"--{name}"), ground) >= 3.0, name

@@ -50,7 +50,7 @@ def named(scene: Scene) -> str:
     """What a scene is called on the pages.
 
     >>> named(load_scene("propeller"))
-    'single-cylinder petrol engine with a propeller, free speed'
+    'benchmark B: fired four-stroke cylinder against a propeller load'
     """
     return scene.title or "the scene"
 
