@@ -166,9 +166,10 @@ def test_states_that_cannot_be_are_refused_in_pythons_words(browser, tmp_path, n
             visited.go(address_of(values))
             visited.page.wait_for_function("() => !document.getElementById('message').hidden")
             assert visited.message == str(caught.value).removeprefix("crank: ")
-            assert visited.curve() == good
+            assert visited.draws(good)
             visited.go("#")
-            visited.shows(good)
+            visited.page.wait_for_function("() => document.getElementById('message').hidden")
+        assert visited.settle().draws(good)
 
 
 NUMBERS = [
@@ -192,7 +193,7 @@ def test_a_number_that_cannot_be_is_refused_as_a_key_of_a_scene_would_be(page, n
     page.go(f"#{name}={text}")
     page.page.wait_for_function("() => !document.getElementById('message').hidden")
     assert page.message == sentence
-    assert page.curve() == good
+    assert page.draws(good)
 
 
 def refused_number(knob, text):

@@ -92,7 +92,7 @@ def test_a_fluctuation_out_of_reach_keeps_the_picture_and_says_what_could_be(pag
     page.page.press("#fluctuation", "Enter")
     assert page.message.startswith("fluctuation: the least is 3.")
     assert page.message.endswith("flywheel of 0.08 kg m^2 at the end of its knob; 0.01 came")
-    assert page.curve() == good
+    assert page.draws(good)
 
 
 def test_a_dragged_cursor_turns_the_crank_and_hovering_reads_values(page):
