@@ -65,7 +65,8 @@ export class Figure {
       this.stopped = this.player.playing;
       this.play(!this.player.playing);
     });
-    this.find(".angle")?.addEventListener("input", (event) => this.grasp(Number(event.target.value)));
+    const grasp = (event) => this.grasp(Number(event.target.value));
+    this.find(".angle")?.addEventListener("input", grasp);
   }
 
   listenToStage() {

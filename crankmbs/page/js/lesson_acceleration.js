@@ -18,7 +18,8 @@ const VALLEY = {
   shapes: (cycle) => [valley(cycle)],
   says: (cycle) => {
     const at = leastAngle(ratioOf(cycle)) / DEGREE;
-    const places = at > 179.995 ? "at 180°" : `at ${readable(at, 2)}° and ${readable(360 - at, 2)}°`;
+    const both = `at ${readable(at, 2)}° and ${readable(360 - at, 2)}°`;
+    const places = at > 179.995 ? "at 180°" : both;
     return { least: places };
   },
 };
@@ -67,7 +68,8 @@ function velocity(cycle) {
       of: ({ crank_angle: phi }) => Math.sin(phi) + 0.5 * ratio * Math.sin(2 * phi),
     },
   ];
-  return overAngle(cycle, { title: "velocity over rω", unit: "", curves, holds: { y: [-1.2, 1.2] } });
+  const holds = { y: [-1.2, 1.2] };
+  return overAngle(cycle, { title: "velocity over rω", unit: "", curves, holds });
 }
 
 function acceleration(cycle, about = { holds: { y: [-1.1, 1.6] } }) {

@@ -40,7 +40,8 @@ const SERIES = {
 function piston(cycle, others, about = {}) {
   const of = (v) => v.cylinders[0].piston_displacement / MM;
   const curves = [{ name: "piston", of }, ...others];
-  return overAngle(cycle, { title: "displacement from top dead centre", unit: "mm", curves, ...about });
+  const title = "displacement from top dead centre";
+  return overAngle(cycle, { title, unit: "mm", curves, ...about });
 }
 
 function endless(cycle) {

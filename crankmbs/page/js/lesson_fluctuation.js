@@ -41,7 +41,8 @@ class Fall {
   shapes(cycle, { flywheel }, given) {
     this.curve ??= this.curveOf(cycle, given);
     const { inertias, runs, work, moving } = this.curve;
-    const textbook = inertias.map((inertia) => (100 * work) / ((inertia + moving) * cycle.mean ** 2));
+    const squared = cycle.mean ** 2;
+    const textbook = inertias.map((inertia) => (100 * work) / ((inertia + moving) * squared));
     return [diagram({
       title: "coefficient of fluctuation",
       right: { text: "inertia of crank and flywheel", unit: "kg m²" },

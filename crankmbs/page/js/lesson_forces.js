@@ -39,7 +39,8 @@ const SIDE = {
     return { ...scene, rod: { ...scene.rod, inertia: share * twoMasses(scene.rod) } };
   },
   shapes: (cycle) => {
-    const lectured = cycle.lectured(TWO_MASSES).map((each) => each.cylinders[0]["side thrust"] / KN);
+    const said = cycle.lectured(TWO_MASSES);
+    const lectured = said.map((each) => each.cylinders[0]["side thrust"] / KN);
     const curves = [
       { name: "rigid rod", of: (v) => v.cylinders[0].side_force / KN },
       { name: "two masses", style: "exact", y: lectured },

@@ -9,7 +9,9 @@ const NUMBER = /^([+-]?(?:\d+[.,]?\d*|[.,]\d+)(?:e[+-]?\d+)?)\s*(.*)$/i;
  */
 export function judged(typed, { value, unit, tolerance, units, hint }) {
   const match = NUMBER.exec(typed.trim().replace(/[\u2212\u2013]/g, "-"));
-  if (!match) return { verdict: "unclear", text: `A number with its unit, please, such as 1.5 ${unit}.` };
+  if (!match) {
+    return { verdict: "unclear", text: `A number with its unit, please, such as 1.5 ${unit}.` };
+  }
   const factor = units[plain(match[2])];
   if (factor === undefined) {
     const came = match[2] ? `“${match[2]}” is no unit of it` : "The unit is missing";

@@ -21,12 +21,15 @@ export function drawRow(svg, cycle, theta, { width, height, type }) {
     const x = train.levers[k] * UNITS;
     const { piston_position: pin, piston_acceleration: acceleration } = v.cylinders[k];
     const [throwAt, pinAt] = [-r * Math.cos(theta + phase), -pin * UNITS];
-    add(svg, "line", { x1: x, x2: x, y1: throwAt, y2: pinAt, class: "bar", "stroke-width": 0.2 * r });
-    add(svg, "line", { x1: x, x2: x, y1: 0, y2: throwAt, class: "throw", "stroke-width": 0.3 * r });
+    const line = (y1, y2, kind, width) =>
+      add(svg, "line", { x1: x, x2: x, y1, y2, class: kind, "stroke-width": width * r });
+    line(throwAt, pinAt, "bar", 0.2);
+    line(0, throwAt, "throw", 0.3);
     const crown = pinAt - 0.35 * wide;
     const box = { x: x - 0.42 * wide, y: crown, width: 0.84 * wide, height: 0.6 * wide };
     add(svg, "rect", { ...box, class: "body", "stroke-width": 0.05 * r });
-    const force = longest * train.piston.mass * acceleration; // inertia pulls where it slows upwards
+    // inertia pulls where it slows upwards
+    const force = longest * train.piston.mass * acceleration;
     const [from, to] = force > 0 ? [crown, crown - force] : [crown + force, crown];
     add(svg, "path", { d: arrow(x, from, to, r), class: "push", "stroke-width": 0.09 * r });
   });
