@@ -24,7 +24,8 @@ SHORTENED = [case for case in CASES if case.mutant.until is not None]
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
 def test_a_shifted_parameter_turns_the_claim_red(case):
-    assert judge(replace(case, mutated=True, shortened=True)).word == "fails"
+    verdict = judge(replace(case, mutated=True, shortened=True))
+    assert verdict.word == "fails", verdict.outcome.detail
 
 
 @pytest.mark.parametrize("case", SHORTENED, ids=lambda case: case.name)
