@@ -7,8 +7,11 @@ import pytest
 from page_engine import differences, engine
 from page_guards import GUARDS, tasks
 from page_mutants import MUTANTS
+from page_shown import CASES, probe, shown_script, wrong
+from page_shown_mutants import DRAWING, SHOWN
+from playwright.sync_api import Error
 
-from crankmbs import simulate
+from crankmbs import InputError, load_scene, simulate
 from crankmbs.page import joined
 from crankmbs.page.export import encoded, rules
 from crankmbs.page.script import FOLDER
@@ -116,7 +119,47 @@ def test_a_broken_law_shows_in_the_numbers(page, asked, unbroken, module):
     assert survivors == []
 
 
-def test_every_module_has_mutants():
+@pytest.fixture(scope="module")
+def read(tmp_path_factory):
+    """Reads a scene that the page hands out."""
+
+    def take(files):
+        folder = tmp_path_factory.mktemp("scene")
+        for name, text in files.items():
+            (folder / name).write_text(text, encoding="utf-8")
+        return load_scene(folder / "mine.toml")
+
+    return take
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_what_is_shown_is_true(page, read, case):
+    assert wrong(case, probe(page.page, shown_script(), case), read) == []
+
+
+@pytest.mark.parametrize("module", SHOWN)
+def test_what_is_shown_wrongly_is_seen(page, read, module):
+    source = (FOLDER / f"{module}.js").read_text(encoding="utf-8")
+    script = shown_script()
+    survivors = []
+    for find, replace, case in SHOWN[module]:
+        assert source.count(find) == 1, f"{find!r} stands {source.count(find)} times"
+        assert script.count(find) == 1, f"{find!r} stands in another module too"
+        if not seen(page, read, script.replace(find, replace), case):
+            survivors.append((find, replace))
+    assert survivors == []
+
+
+def seen(page, read, script, case):
+    """Whether a mutant breaks a guard or ends in an error, but not as it is no script."""
+    try:
+        return wrong(case, probe(page.page, script, case), read) != []
+    except (Error, InputError) as error:
+        return "SyntaxError" not in str(error)
+
+
+def test_every_module_has_mutants_or_only_draws():
     helpers = {"answers"}
     modules = {path.stem for path in FOLDER.glob("*.js")} - helpers
-    assert modules == MUTANTS.keys()
+    groups = [MUTANTS.keys(), SHOWN.keys(), DRAWING.keys()]
+    assert sorted(modules) == sorted(name for group in groups for name in group)

@@ -1,8 +1,8 @@
 /** A prescribed speed that is known over the crank angle: t = int d theta / omega, and back.
  *
  * omega is a cubic between knots [rad]; the integral is Gauss quadrature on panels so narrow that
- * it is exact but for rounding. Knots, panels { begin, width, lead, piece, times } and the rule come
- * from Python; lead [rad] : how far a panel begins behind the knot of its piece.
+ * it is exact but for rounding. Knots, panels { begin, width, lead, piece, times } and the rule
+ * come from Python; lead [rad] : how far a panel begins behind the knot of its piece.
  */
 import { countUpTo } from "./arrays.js";
 

@@ -5,7 +5,7 @@
  */
 import { drawAxes, frameOf } from "./axis.js";
 import { decimalsFor, readable } from "./format.js";
-import { add, pathOf, set, watched } from "./svg.js";
+import { add, lineOf, set, watched } from "./svg.js";
 
 const STRIP = 0.3; // of the height, for the differences
 const NOTHING = 1e-9; // of the largest value: a difference that is none
@@ -23,7 +23,7 @@ export class Plot {
     this.hover = null;
     this.size = null;
     this.axes = { upper: add(this.svg, "g"), lower: add(this.svg, "g") };
-    this.lines = add(this.svg, "g");
+    this.lines = add(this.svg, "g", { transform: "scale(0.1)" });
     this.cursor = add(this.svg, "g", { class: "cursor" });
     watched(this.svg, (size) => {
       this.size = size;
@@ -37,7 +37,10 @@ export class Plot {
   /** Draw other curves: { shape, marks } with the shape of `quantities.drawn`. */
   draw(shape, marks) {
     this.shape = shape;
+    this.seen = visible(shape);
+    this.most = sizeOf(shape.curves[0]);
     this.marks = marks;
+    this.root.classList.toggle("diagram", isDiagram(shape));
     if (this.ghost && this.ghost.title !== shape.title) this.ghost = null;
     this.redraw();
   }
@@ -55,7 +58,7 @@ export class Plot {
     const { width, height, type } = size;
     set(svg, { viewBox: `0 0 ${width} ${height}`, "aria-label": this.described() });
     this.type = type;
-    const seen = this.visible();
+    const { seen } = this;
     const strip = shape.differences.length > 0;
     const overAngle = !isDiagram(shape);
     const foot = height - (overAngle ? 1.5 : 2.6) * type;
@@ -94,18 +97,10 @@ export class Plot {
   drawLines(lines) {
     const { lines: group } = this;
     while (group.children.length > lines.length) group.lastChild.remove();
-    lines.forEach(([{ right, up }, { x, y }, style], n) => {
-      const d = pathOf(x.map((each, k) => [right(each), up(y[k])]));
-      set(group.children[n] ?? add(group, "path"), { d, class: `curve ${style}` });
+    lines.forEach(([frame, curve, style], n) => {
+      const line = group.children[n] ?? add(group, "path");
+      set(line, { d: lineOf(curve, frame), class: `curve ${style}` });
     });
-  }
-
-  /** The differences that are more than rounding. */
-  visible() {
-    const { curves, differences } = this.shape;
-    const size = Math.max(...curves.flatMap(({ y }) => y.map(Math.abs)));
-    const styled = differences.map((each, n) => ({ ...each, style: `difference${n}` }));
-    return styled.filter(({ y }) => y.some((value) => Math.abs(value) > NOTHING * size));
   }
 
   /** Put the cursor at a crank angle [deg]. */
@@ -155,15 +150,14 @@ export class Plot {
   values(degrees) {
     const { curves, differences } = this.shape;
     const run = this.shape.of((degrees * Math.PI) / 180);
-    const decimals = decimalsFor(Math.max(...curves[0].y.map(Math.abs)));
+    const decimals = decimalsFor(this.most);
     const styled = curves.map((curve, n) => {
       const value = n === 0 ? run : between(curve, degrees);
       return [curve.name, styleOf(curve, n), readable(value, decimals)];
     });
     if (!differences.length) return styled;
-    const seen = this.visible().map((each) => {
-      const size = Math.max(...each.y.map(Math.abs));
-      return [each.name, each.style, readable(between(each, degrees), decimalsFor(size))];
+    const seen = this.seen.map((each) => {
+      return [each.name, each.style, readable(between(each, degrees), decimalsFor(each.size))];
     });
     return seen.length ? [...styled, ...seen] : [...styled, ["no difference but rounding", "", ""]];
   }
@@ -208,10 +202,24 @@ export class Plot {
   described() {
     const { shape } = this;
     const ys = shape.curves[0].y;
-    const decimals = decimalsFor(Math.max(...ys.map(Math.abs)));
+    const decimals = decimalsFor(this.most);
     const [low, high] = [Math.min(...ys), Math.max(...ys)].map((y) => readable(y, decimals));
     return `${shape.title}: ${low} to ${high} ${shape.up.unit}, over the ${shape.right.text}`;
   }
+}
+
+/** The differences that are more than rounding, each with its style and size. */
+function visible({ curves, differences }) {
+  const size = Math.max(...curves.map(sizeOf));
+  const sized = differences.map((each, n) =>
+    ({ ...each, style: `difference${n}`, size: sizeOf(each) }));
+  return sized.filter((each) => each.size > NOTHING * size);
+}
+
+function sizeOf({ y }) {
+  let size = 0;
+  for (const value of y) size = Math.max(size, Math.abs(value));
+  return size;
 }
 
 function entry() {

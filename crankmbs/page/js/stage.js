@@ -3,7 +3,7 @@
 import { proportions, turnedBy } from "./drawing.js";
 import { BODIES, forcesOn } from "./forces.js";
 import { general, readable, roundBelow } from "./format.js";
-import { add, set, watched } from "./svg.js";
+import { Pen, add, set, watched } from "./svg.js";
 
 const REACH = 1.2; // of the crank radius: the longest arrow
 const LEAD = (14 * Math.PI) / 180; // the ring's magnified lead, at most
@@ -215,9 +215,9 @@ export class Stage {
 
   poseArrows(v) {
     const { arrows, force, train, k, body, sizes } = this;
-    arrows.replaceChildren();
-    if (!force) return;
-    for (const { name, kind, at, force: [fx, fy], onCrown } of forcesOn(body, train, v, k)) {
+    const pen = new Pen(arrows);
+    const acting = force ? forcesOn(body, train, v, k) : [];
+    for (const { name, kind, at, force: [fx, fy], onCrown } of acting) {
       const [dx, dy] = onScreen([fx * force * UNITS, fy * force * UNITS]);
       const long = Math.hypot(dx, dy);
       if (long < 0.02 * sizes.r * UNITS) continue;
@@ -228,12 +228,12 @@ export class Stage {
         pushes = dx * ux + dy * uy < 0; // then its tip is on the crown
         [x, y] = pushes ? [x + ux - dx, y + uy - dy] : [x + ux, y + uy];
       }
-      add(arrows, "path", { d: arrowOf(x, y, dx, dy, 0.055 * sizes.r * UNITS), class: kind });
+      pen.add("path", { d: arrowOf(x, y, dx, dy, 0.055 * sizes.r * UNITS), class: kind });
       const [ex, ey] = pushes ? [-0.02 * dx, -0.02 * dy] : [dx, dy]; // whence its name
-      const label = { "font-size": this.type, class: kind };
-      const text = add(arrows, "text", label, name);
-      set(text, placed(ex, ey, this.type, { x: x + ex, y: y + ey }));
+      const place = placed(ex, ey, this.type, { x: x + ex, y: y + ey });
+      pen.add("text", { "font-size": this.type, class: kind, ...place }, name);
     }
+    pen.end();
   }
 }
 
