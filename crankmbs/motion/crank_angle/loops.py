@@ -1,4 +1,7 @@
-"""Loops over cells of the crank angle, compiled by numba (`crankmbs.numerics.kernels`)."""
+"""Loops over cells of the crank angle, compiled by numba (`crankmbs.numerics.kernels`).
+
+Kernels of one file call none of another, so that they stand together here, over 300 lines.
+"""
 
 from __future__ import annotations
 
