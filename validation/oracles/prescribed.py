@@ -138,21 +138,41 @@ class _Reciprocal:
     def __init__(self, coefficients: list[Any]) -> None:
         while len(coefficients) > 1 and coefficients[-1] == 0:
             coefficients = coefficients[:-1]
-        self._falling = coefficients[::-1]
-        roots = mpmath.polyroots(self._falling, maxsteps=200, extraprec=200)
-        self._roots = [(r, self.slope(r)) for r in roots]
+        self._coefficients = coefficients
+        self._roots = [(r, self.slope(r)) for r in _roots(coefficients)]
 
     def value(self, x: Any) -> Any:
-        return mpmath.polyval(self._falling, x)
+        return _horner(self._coefficients, x)
 
     def slope(self, x: Any) -> Any:
-        return mpmath.polyval(self._falling, x, derivative=1)[1]
+        return _horner([k * c for k, c in enumerate(self._coefficients)][1:], x)
 
     def integral(self, begin: Any, end: Any) -> Any:
         if not self._roots:
-            return (end - begin) / self._falling[0]
+            return (end - begin) / self._coefficients[0]
         parts = (mpmath.log((end - r) / (begin - r)) / slope for r, slope in self._roots)
         return mpmath.re(mpmath.fsum(parts))
+
+
+def _roots(rising: list[Any]) -> list[Any]:
+    """Roots of a polynomial as the eigenvalues of its companion matrix, with digits to spare."""
+    degree = len(rising) - 1
+    if degree == 0:
+        return []
+    with mpmath.extradps(DIGITS):
+        companion = mpmath.zeros(degree)
+        for k in range(degree):
+            companion[k, degree - 1] = -rising[k] / rising[degree]
+            if k:
+                companion[k, k - 1] = 1
+        return list(mpmath.eig(companion, left=False, right=False))
+
+
+def _horner(rising: list[Any], x: Any) -> Any:
+    total = mpmath.mpf(0)
+    for coefficient in reversed(rising):
+        total = total * x + coefficient
+    return total
 
 
 def _passage(pieces: list[_Reciprocal], knots: list[Any], period: Any, begin: Any, end: Any) -> Any:
