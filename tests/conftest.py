@@ -1,6 +1,7 @@
 """Fixtures of several test files."""
 
 import pytest
+from page_engine import engine
 from scene_texts import GAS
 
 from crankmbs.errors import SceneError
@@ -19,3 +20,10 @@ def read(tmp_path):
             raise SceneError(str(error).replace(f"{tmp_path}/", "")) from None
 
     return parse
+
+
+@pytest.fixture(scope="module")
+def page():
+    """The page's engine in a browser."""
+    with engine() as opened:
+        yield opened

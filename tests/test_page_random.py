@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from page_engine import differences, engine, sizes, unlike
+from page_engine import differences, sizes, unlike
 
 from crankmbs import simulate
 from crankmbs.measures import measure
@@ -17,12 +17,6 @@ from validation.random_page import random_page
 SEEDS = range(2000, 2200)
 MEASURED = SEEDS[1::10]
 GIVEN_UP = {2084}  # within rounding of its fixed point the search of Python finds no end
-
-
-@pytest.fixture(scope="module")
-def page():
-    with engine() as opened:
-        yield opened
 
 
 @pytest.mark.parametrize("seed", SEEDS)

@@ -1,0 +1,43 @@
+"""Scenes that tests of the page share: shortened, settled, altered, fuelled."""
+
+import math
+from dataclasses import replace
+
+from crankmbs import load_scene
+from crankmbs.scene.fuel import Fuel, Misfire
+from crankmbs.scene.gas import Polytrope
+from crankmbs.scene.run import Extent
+
+SETTLING = ("propeller", "v_twin", "yi_diesel_free")
+
+
+def shortened(scene, cycles=3.0):
+    """A run that shows all of it in a fraction of the time."""
+    until = Extent(value=cycles, unit="cycle")
+    return replace(scene, run=replace(scene.run, until=until))
+
+
+def sampled(scene, degrees):
+    every = Extent(value=math.radians(degrees), unit="rad")
+    return replace(scene, run=replace(scene.run, every=every))
+
+
+def settled(name):
+    scene = load_scene(name)
+    return replace(scene, run=replace(scene.run, until="settled"))
+
+
+def altered(scene, length=1.0, offset=0.0, radius=1.0):
+    crank = replace(scene.crank, radius=scene.crank.radius * radius)
+    piston = replace(scene.piston, offset=scene.piston.offset + offset)
+    rod = replace(scene.rod, length=scene.rod.length * length)
+    return replace(scene, crank=crank, rod=rod, piston=piston)
+
+
+def fuelled(name, **gas):
+    scene = load_scene(name)
+    return replace(scene, gas=replace(scene.gas, **gas), fuel=Fuel(misfire=(MISFIRE,)))
+
+
+MISFIRE = Misfire(cylinder=1, cycles="every 3")
+POLYTROPE = Polytrope(polytrope=1.32, closes=math.radians(-20.0), compression_ratio=18.0)

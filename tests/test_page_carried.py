@@ -1,0 +1,68 @@
+"""Pressures carried over to another geometry in the page, as in Python, and what it shows while a
+knob moves."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from page_engine import differences
+from page_scenes import MISFIRE, POLYTROPE, SETTLING, altered, fuelled, settled
+
+from crankmbs import load_scene, simulate
+from crankmbs.mechanics.carried import carried_over
+from crankmbs.mechanics.train import crank_train
+from crankmbs.page import exported
+from crankmbs.scene.fuel import Fuel
+
+
+@pytest.mark.parametrize(
+    "change", [{"length": 0.75}, {"offset": 0.011}, {"offset": -0.007, "radius": 0.9}], ids=str
+)
+@pytest.mark.parametrize("interpolation", ["step", "linear", "pchip", "cubic"])
+def test_pressures_are_carried_over_as_in_python(page, interpolation, change):
+    for name in ("propeller", "yi_diesel"):
+        scene = load_scene(name)
+        scene = replace(scene, gas=replace(scene.gas, interpolation=interpolation))
+        assert_carried(page, scene, altered(scene, **change))
+
+
+@pytest.mark.parametrize("change", [{"length": 0.75}, {"offset": 0.011}], ids=str)
+def test_diagrams_and_combustion_are_carried_over_too(page, change):
+    diagram = load_scene("v_twin")
+    late = replace(diagram.gas.indicator, pre_expansion=1.3)
+    fired = replace(
+        diagram, gas=replace(diagram.gas, indicator=late), fuel=Fuel(misfire=(MISFIRE,))
+    )
+    for scene in (diagram, fired, fuelled("yi_diesel_free", motored=POLYTROPE)):
+        assert_carried(page, scene, altered(scene, **change))
+
+
+def assert_carried(page, before, scene):
+    train = crank_train(carried_over(scene, before))
+    shape = {
+        "radius": scene.crank.radius,
+        "length": scene.rod.length,
+        "offset": scene.piston.offset,
+    }
+    found = page.ask("carried", scene=exported(before), shape=shape)
+    for name, expected in (("pressure", train.pressure), ("combustion", train.combustion or ())):
+        assert len(found[name]) == len(expected)
+        for (knots, coefficients), one in zip(found[name], expected, strict=True):
+            phi = 0.5 * (one.knots[1:] + one.knots[:-1])
+            cubics = np.reshape(coefficients, (4, -1))
+            size = np.abs(train.pressure[0].coefficients[3]).max()
+            np.testing.assert_allclose(knots, one.knots, rtol=0.0, atol=1e-11)
+            moved = type(one)(np.array(knots), cubics)
+            np.testing.assert_allclose(moved(phi), one(phi), rtol=0.0, atol=1e-11 * size)
+
+
+@pytest.mark.parametrize("change", [{}, {"length": 1.08, "offset": 0.004}], ids=["", "geometry"])
+@pytest.mark.parametrize("name", SETTLING)
+def test_what_is_shown_while_a_knob_moves_is_right_to_less_than_a_pixel(page, name, change):
+    before = settled(name)
+    scene = altered(before, **change)
+    result = simulate(carried_over(scene, before), rtol=1e-10)
+    moved = {**exported(scene), "gas": exported(before)["gas"]}
+    found = page.ask("dragged", scene=moved, angles=result.data["crank_angle"].values)
+    worst = differences(result, found)
+    assert max(worst.values()) < 1e-3, max(worst.items(), key=lambda one: one[1])
