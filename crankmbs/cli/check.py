@@ -19,7 +19,7 @@ from crankmbs.scene.scene import Scene
 from crankmbs.scene.speed_rows import repeats
 from crankmbs.scene.tables import CylinderTable, Table
 from crankmbs.scene.torque import Torque
-from crankmbs.scene.units import RPM
+from crankmbs.scene.units import BAR, RPM
 
 __all__ = ["describe"]
 
@@ -116,7 +116,7 @@ def _gas(scene: Scene) -> str:
     if gas.indicator is not None:
         origin = f"indicator diagram, compression ratio {gas.indicator.compression_ratio:.6g}"
     elif isinstance(gas.pressure, float):
-        origin = f"constant pressure of {gas.pressure / 1e5:.6g} bar"
+        origin = f"constant pressure of {gas.pressure / BAR:.6g} bar"
     else:
         origin = f"{_tables(gas)}, {gas.interpolation}"
     return f"{gas.stroke}-stroke, {origin}"
@@ -140,10 +140,10 @@ def _tables(gas: Gas) -> str:
 def _pressure(scene: Scene, pressure: PeriodicPressure) -> str:
     assert scene.gas is not None
     ambient = scene.gas.ambient
-    given = "gauge" if ambient is None else f"absolute, ambient {ambient / 1e5:.6g} bar subtracted"
+    given = "gauge" if ambient is None else f"absolute, ambient {ambient / BAR:.6g} bar subtracted"
     angle, peak = pressure.peak
     return (
-        f"{given}; at most {peak / 1e5:.6g} bar across the piston, at a cycle angle of "
+        f"{given}; at most {peak / BAR:.6g} bar across the piston, at a cycle angle of "
         f"{math.degrees(angle):.6g} deg"
     )
 

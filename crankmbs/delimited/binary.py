@@ -46,7 +46,7 @@ _ENDINGS = {
     ".d7d": "a data file of a recorder",
     ".open": "a data file of an indicating system",
 }
-_PROBE = 65_536
+_PROBE = 65_536  # bytes: more than any header before the first row of numbers
 _MARKS = (b"\xff\xfe", b"\xfe\xff", b"\x00\x00\xfe\xff")
 _CONTROLS = bytes(set(range(32)) - set(b"\t\n\r\x0c\x1a\x1b\x00"))
 

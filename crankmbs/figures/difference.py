@@ -15,7 +15,7 @@ from crankmbs.result import Result
 
 __all__ = ["difference_figure"]
 
-_COLUMNS = 3
+_COLUMNS = 3  # panels side by side
 _ROUNDING = 1e-17  # of the peak: nothing below it is shown
 
 

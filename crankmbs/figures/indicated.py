@@ -11,10 +11,9 @@ from matplotlib.figure import Figure
 
 from crankmbs.figures.style import COLOURS, STYLE, caption, legend, line_of, panels
 from crankmbs.indicated import CylinderPressure, Indicated
+from crankmbs.scene.units import BAR
 
 __all__ = ["pressure_figure", "scatter_figure", "volume_figure"]
-
-_BAR = 1e5
 
 
 @rc_context(STYLE)
@@ -25,8 +24,8 @@ def pressure_figure(found: Indicated) -> Figure:
         line = line_of(k)
         if len(each.pressure) > 1:
             low, high = np.min(each.pressure, axis=0), np.max(each.pressure, axis=0)
-            ax.fill_between(each.angle, low / _BAR, high / _BAR, color=line["color"], alpha=0.25)
-        ax.plot(each.angle, each.mean / _BAR, **line, label=_name(each))
+            ax.fill_between(each.angle, low / BAR, high / BAR, color=line["color"], alpha=0.25)
+        ax.plot(each.angle, each.mean / BAR, **line, label=_name(each))
     ax.axvline(0.0, color="0.55", linewidth=1.0, linestyle=(0, (6, 4)), zorder=1)
     half = 90 * found.stroke
     ax.set_xticks(np.arange(-half, half + 1, 90))
@@ -49,8 +48,8 @@ def volume_figure(found: Indicated) -> Figure:
     for k, each in enumerate(found.cylinders):
         assert each.imep is not None
         angle = np.radians(np.append(each.angle, each.angle[0]))
-        mean = np.append(each.mean, each.mean[0]) / _BAR
-        label = f"{_name(each)}, imep {np.mean(each.imep) / _BAR:.4g} bar"
+        mean = np.append(each.mean, each.mean[0]) / BAR
+        label = f"{_name(each)}, imep {np.mean(each.imep) / BAR:.4g} bar"
         axes[0].plot(shape.travel(angle), mean, **line_of(k), label=label)
         if with_log:
             axes[1].loglog(shape.volume(angle), np.maximum(mean, 1e-3), **line_of(k))
@@ -73,10 +72,10 @@ def scatter_figure(found: Indicated) -> Figure:
     for k, each in enumerate(found.cylinders):
         number = np.arange(1, len(each.pressure) + 1)
         colour = COLOURS[k % len(COLOURS)]
-        axes[0].plot(number, each.peaks / _BAR, ".-", color=colour, lw=0.8, label=_name(each))
+        axes[0].plot(number, each.peaks / BAR, ".-", color=colour, lw=0.8, label=_name(each))
         if with_imep:
             assert each.imep is not None
-            axes[1].plot(number, each.imep / _BAR, ".-", color=colour, lw=0.8)
+            axes[1].plot(number, each.imep / BAR, ".-", color=colour, lw=0.8)
     axes[0].set_ylabel("peak pressure [bar]")
     if with_imep:
         axes[1].set_ylabel("indicated mean\neffective pressure [bar]")

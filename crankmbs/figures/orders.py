@@ -13,7 +13,7 @@ from crankmbs.result import Result
 
 __all__ = ["orders_figure"]
 
-_WIDTH = 0.18
+_WIDTH = 0.18  # of an order: two bars side by side leave a gap to the next half order
 
 
 @rc_context(STYLE)

@@ -16,7 +16,7 @@ from crankmbs.work_precision import END, MOTION, WorkPrecision
 
 __all__ = ["save_figure", "work_precision_figure"]
 
-_COLUMNS = 3
+_COLUMNS = 3  # panels side by side
 _TITLES = {END: "state at the end", MOTION: "motion over the run"}
 _OWN = {"crank_angle": "#D55E00", "minimal": "#0072B2", "multibody": "#009E73"}
 _PEERS = ("black", "0.45", "#56B4E9", "#CC79A7", "#E69F00", "#7A5230", "#8A8AC0", "#5B8C5A")

@@ -28,7 +28,7 @@ _PRESSURE_NAME = re.compile(
     r"|cyl[ _]?press\w*|cylpr|p[ _]?cylinder|cycle|cyc|zyklus)[ _.#(\[-]*[0-9]*([ _.#(\[-].*)?",
     re.IGNORECASE,
 )
-_MOST_CYLINDERS = 24
+_MOST_CYLINDERS = 24  # of one engine: more columns alike are its cycles
 
 
 class Column(NamedTuple):

@@ -25,6 +25,7 @@ from crankmbs.indicated.tabulate import table_of
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.content import content_of
 from crankmbs.scene.scene import Scene
+from crankmbs.scene.units import BAR
 
 __all__ = ["read_pressure"]
 
@@ -217,7 +218,7 @@ def _check_sign(channel: Channel, mean: Array, where: str) -> None:
     if middle - np.min(mean) > 1.5 * (np.max(mean) - middle):
         raise InputError(
             f"{where}: {channel.name} stands upside down: its largest excursion goes down, to "
-            f"{np.min(mean) / 1e5:.4g} bar; give invert=True, or choose another column"
+            f"{np.min(mean) / BAR:.4g} bar; give invert=True, or choose another column"
         )
 
 

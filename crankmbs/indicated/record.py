@@ -19,6 +19,7 @@ from crankmbs.indicated.channels import Column, angle_column, columns_of
 from crankmbs.indicated.options import Options
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.headings import PRESSURE_UNITS, Heading, angle_factor, headings_of
+from crankmbs.scene.units import BAR
 
 __all__ = ["Channel", "Record", "record_of"]
 
@@ -123,7 +124,7 @@ class _Axis:
         if closing:
             self._said.append(
                 f"the closing rows, {period:g} degrees behind the first, are dropped; they lie up "
-                f"to {apart / 1e5:.3g} bar from it"
+                f"to {apart / BAR:.3g} bar from it"
             )
         apart_in_columns = any(len(columns) > 1 for columns in grouped.values())
         consecutive = len(begins) > 1 or apart_in_columns

@@ -12,12 +12,12 @@ from crankmbs.indicated.options import REFERENCES, Options, Reference
 from crankmbs.indicated.reference import at_inlet, by_inlet, by_polytrope, offset_range
 from crankmbs.indicated.shape import Shape
 from crankmbs.numerics.arrays import Array
+from crankmbs.scene.units import BAR
 
 __all__ = ["Raw", "decide", "refer"]
 
-_BAR = 1e5
 _NEAR = 0.15e5  # Pa: so near 0, or the ambient, an offset has to lie
-_AMBIENT = 1.0e5
+_AMBIENT = 1.0e5  # Pa, near enough at any site: `_NEAR` is wider than weather and height
 
 
 class Raw(NamedTuple):
@@ -50,13 +50,13 @@ def decide(
         return options.reference, f"as given{though}"
     if len(said) == 1 and "" not in said:
         return Reference(said.pop()), "as the unit says"
-    levels = ", ".join(f"{np.mean(_low(raw, period)) / _BAR:.3g}" for raw in raws)
+    levels = ", ".join(f"{np.mean(_low(raw, period)) / BAR:.3g}" for raw in raws)
     seen = f"the gas exchange lies at {levels} bar"
     if shape is not None and shape.ratio is not None:
         ranges = [offset_range(raw.phi, raw.pressure.mean(axis=0), shape) for raw in raws]
         low, high = min(r[0] for r in ranges), max(r[1] for r in ranges)
         least, most = max(r[0] for r in ranges), min(r[1] for r in ranges)
-        interval = f"{low / _BAR:.2f} to {high / _BAR:.2f}"
+        interval = f"{low / BAR:.2f} to {high / BAR:.2f}"
         zero = all(r[0] - _NEAR <= 0.0 <= r[1] + _NEAR for r in ranges)
         one = all(r[0] - _NEAR <= _AMBIENT <= r[1] + _NEAR for r in ranges)
         if zero != one and high - low < 2.0 * _AMBIENT and least <= most + 2.0 * _NEAR:
@@ -90,7 +90,7 @@ def refer(
         return (
             np.full(cycles, value),
             True,
-            f"the pressures are gauge; {value / _BAR:g} bar are added",
+            f"the pressures are gauge; {value / BAR:g} bar are added",
         )
     if kind == "polytrope":
         if shape is None or shape.ratio is None:
@@ -109,20 +109,20 @@ def refer(
         )
     if value is not None:
         added = by_inlet(raw.phi, raw.pressure, period, value)
-        rest = f"the inlet's {value / _BAR:g} bar"
+        rest = f"the inlet's {value / BAR:g} bar"
     else:
         assert raw.intake is not None
         inlet = float(np.mean(raw.intake[_at(raw, period)]))
         added = by_inlet(raw.phi, raw.pressure, period, inlet)
-        rest = f"the {inlet / _BAR:.4g} bar of the intake's column"
+        rest = f"the {inlet / BAR:.4g} bar of the intake's column"
     return added, True, _of_cycles(added, f"{rest} stand within 10 degrees of the bottom")
 
 
 def _of_cycles(added: Array, why: str) -> str:
     spread = ""
     if len(added) > 1:
-        spread = f", cycle by cycle, from {np.min(added) / _BAR:.4g} to {np.max(added) / _BAR:.4g}"
-    return f"{np.mean(added) / _BAR:.4g} bar are added{spread}, so that {why}"
+        spread = f", cycle by cycle, from {np.min(added) / BAR:.4g} to {np.max(added) / BAR:.4g}"
+    return f"{np.mean(added) / BAR:.4g} bar are added{spread}, so that {why}"
 
 
 def _at(raw: Raw, period: float) -> np.ndarray:

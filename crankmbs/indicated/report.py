@@ -9,13 +9,13 @@ import numpy as np
 
 from crankmbs.indicated.found import CylinderPressure
 from crankmbs.indicated.shape import Shape
+from crankmbs.scene.units import BAR
 
 __all__ = ["said_of"]
 
-_BAR = 1e5
 _LATE = -0.5  # degrees: a fired cycle that peaks before this burns too early, or is out of phase
 _EARLY = -3.0  # degrees: no loss of heat brings a motored peak so far
-_EPSILON = 1e-9
+_EPSILON = 1e-9  # of the range: less is the rounding of digits, no noise
 _MOVED = 0.01  # of the range: how far a cycle may miss the next one's beginning
 
 
@@ -30,9 +30,9 @@ def said_of(cylinder: CylinderPressure, shape: Shape | None, referenced: bool) -
     yield from _suspicions(cylinder, who, referenced)
     if cylinder.moved is not None:
         peak, angle, imep = cylinder.moved
-        work = "" if math.isnan(imep) else f" and the imep by {imep / _BAR:+.2g} bar"
+        work = "" if math.isnan(imep) else f" and the imep by {imep / BAR:+.2g} bar"
         yield (
-            f"{who}: smoothing moves the peak of the mean cycle by {peak / _BAR:+.3g} bar and "
+            f"{who}: smoothing moves the peak of the mean cycle by {peak / BAR:+.3g} bar and "
             f"{angle:+.2g} degrees{work}"
         )
 
@@ -43,12 +43,12 @@ def _size(cylinder: CylinderPressure, who: str) -> str:
     burns = {True: "fired", False: "motored", None: "fired or motored, which is not clear"}
     work = ""
     if cylinder.imep is not None:
-        work = f"; imep {np.mean(cylinder.imep) / _BAR:.4g} bar"
+        work = f"; imep {np.mean(cylinder.imep) / BAR:.4g} bar"
     side = "behind" if at >= 0.0 else "before"
     named = "" if cylinder.name == who else f"{cylinder.name}, "
     return (
         f"{who}: {named}{burns[cylinder.fired]}; the mean cycle goes from "
-        f"{np.min(mean) / _BAR:.4g} to {np.max(mean) / _BAR:.5g} bar, its peak {abs(at):.4g} "
+        f"{np.min(mean) / BAR:.4g} to {np.max(mean) / BAR:.5g} bar, its peak {abs(at):.4g} "
         f"degrees {side} the firing dead centre, {cylinder.firing:g} degrees of the file{work}"
     )
 
@@ -56,20 +56,20 @@ def _size(cylinder: CylinderPressure, who: str) -> str:
 def _scatter(cylinder: CylinderPressure, who: str) -> str:
     peaks = cylinder.peaks
     text = (
-        f"{who}: over {len(peaks)} cycles the peak scatters by {np.std(peaks, ddof=1) / _BAR:.3g} "
+        f"{who}: over {len(peaks)} cycles the peak scatters by {np.std(peaks, ddof=1) / BAR:.3g} "
         f"bar (standard deviation)"
     )
     if cylinder.imep is not None:
         share = np.std(cylinder.imep, ddof=1) / abs(np.mean(cylinder.imep))
         text += f", the imep by {100.0 * share:.3g} %"
-    return f"{text}; the mean cycle's peak is {cylinder.lowered / _BAR:.3g} bar below their mean"
+    return f"{text}; the mean cycle's peak is {cylinder.lowered / BAR:.3g} bar below their mean"
 
 
 def _noise(cylinder: CylinderPressure, who: str) -> str:
     text = f"{who}: no noise is seen"
     if cylinder.noise > _EPSILON * np.ptp(cylinder.mean):
-        text = f"{who}: noise of a row {cylinder.noise / _BAR:.2g} bar (standard deviation)"
-    return f"{text}; a cycle ends {cylinder.closure / _BAR:.2g} bar from where the next one begins"
+        text = f"{who}: noise of a row {cylinder.noise / BAR:.2g} bar (standard deviation)"
+    return f"{text}; a cycle ends {cylinder.closure / BAR:.2g} bar from where the next one begins"
 
 
 def _dead_centre(cylinder: CylinderPressure, who: str, shape: Shape | None) -> Iterator[str]:
@@ -124,16 +124,16 @@ def _suspicions(cylinder: CylinderPressure, who: str, referenced: bool) -> Itera
                 else ("motored, and the gas gives work to")
             )
             yield (
-                f"warning: {who}: {sense} the piston, imep {work / _BAR:.3g} bar: check the dead "
+                f"warning: {who}: {sense} the piston, imep {work / BAR:.3g} bar: check the dead "
                 "centre, and the sense in which the angle counts"
             )
     if referenced and np.min(mean) < 0.0:
         yield (
-            f"warning: {who}: an absolute pressure falls to {np.min(mean) / _BAR:.3g} bar: check "
+            f"warning: {who}: an absolute pressure falls to {np.min(mean) / BAR:.3g} bar: check "
             "the reference"
         )
     if abs(cylinder.closure) > _MOVED * np.ptp(mean) + 5.0 * cylinder.noise:
         yield (
-            f"warning: {who}: a cycle ends {cylinder.closure / _BAR:.2g} bar from where the next "
+            f"warning: {who}: a cycle ends {cylinder.closure / BAR:.2g} bar from where the next "
             "begins, over 1 % of its range: the signal drifts, or rows are missing"
         )

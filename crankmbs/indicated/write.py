@@ -11,6 +11,7 @@ import numpy as np
 from crankmbs.errors import InputError
 from crankmbs.indicated.found import Indicated
 from crankmbs.scene.tables import CylinderTable
+from crankmbs.scene.units import BAR
 from crankmbs.storage.files import text_in_one_move
 
 __all__ = ["gas_lines", "write_table"]
@@ -38,10 +39,10 @@ def write_table(found: Indicated, path: Path) -> Path:
     columns = [np.degrees(table.x)]
     if isinstance(table, CylinderTable):
         names = [f"pressure_bar_{k}" for k in range(1, len(table.y) + 1)]
-        columns += [np.array(each) / 1e5 for each in table.y]
+        columns += [np.array(each) / BAR for each in table.y]
     else:
         names = ["pressure_bar"]
-        columns.append(np.array(table.y) / 1e5)
+        columns.append(np.array(table.y) / BAR)
     head = [*_wrapped(found), "as [gas] of a scene:", *gas_lines(found, path.name)]
     stream = io.StringIO()
     stream.writelines(f"# {line}\n" for line in head)

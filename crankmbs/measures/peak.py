@@ -15,7 +15,7 @@ Indices = NDArray[np.intp]
 
 _MOST = 12  # candidates for one quantity's maximum
 _ROUNDS = 12  # each looks sixteen times closer
-_AROUND = np.linspace(-1.0, 1.0, 33)
+_AROUND = np.linspace(-1.0, 1.0, 33)  # a sixteenth of the reach apart
 
 _T = np.linspace(-0.25, 1.25, 601)  # across one interval, and a little on either side
 _JUMP = 10.0  # a difference so many times its neighbour is a jump

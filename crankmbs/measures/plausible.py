@@ -16,11 +16,11 @@ from crankmbs.mechanics.geometry import close_loop, dead_centres, top_position
 from crankmbs.mechanics.pressure import PeriodicPressure, pressures_of
 from crankmbs.scene.gas import Gas
 from crankmbs.scene.scene import Scene
+from crankmbs.scene.units import BAR
 
 __all__ = ["warnings"]
 
 _STEEL = 7850.0  # kg/m3
-_BAR = 1e5
 
 
 class _Sized(NamedTuple):
@@ -121,7 +121,7 @@ def _rod(machine: _Sized) -> Iterator[str]:
 
 
 # 0.3 bar is the air on Mount Everest; refrigerating compressors have crankcases of up to 35 bar.
-_AMBIENT = 0.2 * _BAR, 50.0 * _BAR
+_AMBIENT = 0.2 * BAR, 50.0 * BAR
 
 
 def _ambient(machine: _Sized) -> Iterator[str]:
@@ -131,15 +131,15 @@ def _ambient(machine: _Sized) -> Iterator[str]:
     least, most = _AMBIENT
     if not least <= gas.ambient <= most:
         yield (
-            f"gas.ambient: {gas.ambient / _BAR:.3g} bar is outside {least / _BAR:g} to "
-            f"{most / _BAR:g} bar, where crankcases lie; a bare number is in Pa"
+            f"gas.ambient: {gas.ambient / BAR:.3g} bar is outside {least / BAR:g} to "
+            f"{most / BAR:g} bar, where crankcases lie; a bare number is in Pa"
         )
 
 
 # Engines fire below 300 bar. A four-stroke engine that is only turned over, throttled, compresses
 # to several bar.
-_HIGHEST = 350.0 * _BAR
-_LOWEST_FOUR_STROKE = 2.0 * _BAR
+_HIGHEST = 350.0 * BAR
+_LOWEST_FOUR_STROKE = 2.0 * BAR
 # Engines peak 5 to 20 degrees behind the firing dead centre, late diesels 30; a compressor delivers
 # up to it: what counts is the nearest angle with all but 2 % of the peak.
 _FAR = math.radians(45.0)
@@ -160,12 +160,12 @@ def _peak_of(gas: Gas, pressure: PeriodicPressure) -> Iterator[str]:
     angle, peak = pressure.peak
     if peak > _HIGHEST:
         yield (
-            f"the pressure peaks at {peak / _BAR:.4g} bar, and engines fire below 300; check "
+            f"the pressure peaks at {peak / BAR:.4g} bar, and engines fire below 300; check "
             "its unit, such as MPa for bar"
         )
     if gas.stroke == 4 and peak < _LOWEST_FOUR_STROKE:
         yield (
-            f"the pressure of a four-stroke cycle peaks at {peak / _BAR:.3g} bar above "
+            f"the pressure of a four-stroke cycle peaks at {peak / BAR:.3g} bar above "
             "ambient; even turned over it reaches several bar; check its unit"
         )
     fired = gas.period / 2.0 if gas.stroke == 4 else 0.0

@@ -23,6 +23,7 @@ from crankmbs.scene.gas import Gas, Polytrope, PressureGiven, tables_of
 from crankmbs.scene.pressure_rows import closing_row, interpolate, overshoot
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.tables import Table
+from crankmbs.scene.units import BAR
 
 __all__ = [
     "KNOT",
@@ -255,7 +256,7 @@ def _remarks(gas: Gas, table: Table) -> Iterator[str]:
     apart = closing_row(table, cycles_in(table, gas.period) * gas.period)
     if apart:
         yield (
-            f"{table.source}: the closing row, {apart / 1e5:.3g} bar from the first one, is dropped"
+            f"{table.source}: the closing row, {apart / BAR:.3g} bar from the first one, is dropped"
         )
     knots, coefficients = interpolate(rows_of_table(gas, table), gas.interpolation)
     beyond, *between = overshoot(knots, coefficients)

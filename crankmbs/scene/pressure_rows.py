@@ -17,13 +17,12 @@ from crankmbs.errors import InputError
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.cycles import SAME_ANGLE, check_whole, cycles_in
 from crankmbs.scene.tables import Table
-from crankmbs.scene.units import DEGREE
+from crankmbs.scene.units import BAR, DEGREE
 
 __all__ = ["Period", "check_rows", "close", "closing_row", "interpolate", "overshoot"]
 
 
 _CLOSING = 0.01  # of the range of the pressures: so far a measured cycle may miss its beginning
-_BAR = 1e5
 
 
 class Period(NamedTuple):
@@ -179,8 +178,8 @@ def _check_closing(table: Table, period: float, closing: float | None) -> None:
         at, whose = table.x[-1] / DEGREE, "1 % of the range" if closing is None else "closing"
         raise InputError(
             f"{table.source}: the closing row, at {at:g} degrees, must equal the first one, as the "
-            f"pressure is periodic; it lies {apart / _BAR:.3g} bar from it, more than "
-            f"{allowed / _BAR:.3g} bar ({whose}); drop the row, raise closing, or give two rows at "
+            f"pressure is periodic; it lies {apart / BAR:.3g} bar from it, more than "
+            f"{allowed / BAR:.3g} bar ({whose}); drop the row, raise closing, or give two rows at "
             f"{at:g} degrees for a jump"
         )
 

@@ -13,8 +13,9 @@ from functools import cache
 
 from crankmbs.errors import InputError, shown
 
-__all__ = ["DEGREE", "EXAMPLES", "RPM", "check_size", "extent", "quantity"]
+__all__ = ["BAR", "DEGREE", "EXAMPLES", "RPM", "check_size", "extent", "quantity"]
 
+BAR = 1e5  # Pa
 DEGREE = math.pi / 180.0  # rad
 RPM = math.pi / 30.0  # rad/s
 

@@ -13,7 +13,7 @@ from crankmbs.work_precision.trace import differences
 
 __all__ = ["Row", "play"]
 
-_ROUNDS = 5
+_ROUNDS = 5  # the median of so many
 _PATIENCE = 2.0  # s: a setting is not repeated beyond this
 _LONGEST = 10.0  # s: what takes longer is the last setting of its contender
 _RESOLVED = 5e-3  # s: what is shorter is repeated within a round

@@ -24,7 +24,7 @@ from crankmbs.numerics.cycle import NEAR
 
 __all__ = ["Stepped", "coarsest_step", "model_of", "solve"]
 
-_ENDLESS = 1_000_000_000
+_ENDLESS = 1_000_000_000  # steps: the run ends by its time or its cost long before
 _STEPS_PER_TURN = 125  # of the coarsest run
 _STEPS = 125  # of the coarsest run, at least
 _STUCK = 1e-9  # rad/s2
