@@ -63,6 +63,25 @@ def test_nothing_is_extrapolated_over_jumps_within_a_step() -> None:
     assert stated >= 0.5 * np.max(np.abs(runs[1]["crank_speed"] - runs[0]["crank_speed"]))
 
 
+def over_bends(places: np.ndarray, *, bent: bool) -> float:
+    """True over stated error of an acceleration whose samples lie on bends, as their steps do."""
+    convergence, runs = Convergence(2, bent=bent), []
+    for step in (0.2 / 2**k for k in range(5)):
+        x = (np.resize(places, 50) / step) % 1.0  # a line over a bend misses x (1 - x) of a step
+        runs.append(
+            run(np.full(50, step**2)) | {"crank_acceleration": EXACT + x * (1.0 - x) * step}
+        )
+        answer, errors = convergence.answer(runs[-3:])
+    true = float(np.max(np.abs(answer["crank_acceleration"] - EXACT)))
+    return true / errors["crank_acceleration"]
+
+
+def test_accelerations_err_by_the_first_power_of_the_step_over_bends() -> None:
+    places = np.random.default_rng(3).uniform(0.0, 3.0, (301, 3))[1:]
+    blind, seen = (max(over_bends(each, bent=bent) for each in places) for bent in (False, True))
+    assert seen < 1.0 < 2.0 < blind
+
+
 def test_of_one_run_alone_the_error_is_unknown_and_of_two_stated_with_care() -> None:
     (_, one), (true, two) = after_each([at(h, np.cos(X)) for h in (0.2, 0.1)], SMOOTH)
     assert one == math.inf

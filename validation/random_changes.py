@@ -44,7 +44,7 @@ class _Draw:
         base = replace(base, rod=replace(base.rod, length=max(base.rod.length, least)))
         start = base.start
         assert start is not None
-        self.speed = abs(start.speed) or 20.0
+        self.speed, self.at_rest = abs(start.speed) or 20.0, start.speed == 0.0
         fires = kind in ("fuel", "all")
         sense = 1.0 if fires or self.chance(0.7) else -1.0
         begin = replace(start, speed=0.0 if self.chance(0.05) else sense * self.speed)
@@ -56,8 +56,8 @@ class _Draw:
     def scene(self) -> Scene:
         kind, base = self.kind, self.base
         gas, fuel = base.gas, None
-        if gas is not None and gas.indicator is not None:
-            gas = None
+        if gas is not None and (gas.indicator is not None or self.at_rest):
+            gas = None  # at rest, as it was drawn for a speed that is not known
         if kind in ("pressures", "fuel", "all"):
             gas = self.gas(fires=kind != "pressures")
         if kind in ("fuel", "all"):

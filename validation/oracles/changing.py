@@ -26,6 +26,7 @@ Floats = NDArray[np.float64]
 
 _STUCK = 40  # events at one time
 _AT_ONCE = 1e-9  # s: so near a change over time either value is right
+_FAR = 9.0  # rad: beyond any stretch
 _BESIDE = 1e-6  # of an angle [rad] or a speed: so near a knot either value is right
 
 
@@ -59,7 +60,7 @@ def changing_motion(changes: Changes, theta: float, omega: float, times: Floats)
     ------
     ArithmeticError : a speed that is held at a knot of the loads, events without end, overflow
     """
-    with np.errstate(over="raise", invalid="raise"):
+    with np.errstate(over="ignore", invalid="ignore"):
         return _Walk(changes, theta, omega).samples(times)
 
 
@@ -228,25 +229,23 @@ class _Walk:
         start, y = self.state.time, np.array(self.state[1:])
 
         def slopes(t: float, y: Floats) -> list[float]:
+            if not abs(y[0] - self.state.theta) < _FAR:  # a step that is too wide is taken back
+                return [math.nan, math.nan]
             return [float(y[1]), at.alpha(t, float(y[0]), float(y[1]))]
 
         def passes(_: float, y: Floats) -> float:
             return float(sense * (y[0] - bound))
 
-        bounds = {-1.0: at.slow, 1.0: at.fast}
-        if sense > 0.0:
-            bounds[-1.0] = max(at.slow, 0.0)
-        else:
-            bounds[1.0] = min(at.fast, 0.0)
+        slow, fast = (max(at.slow, 0.0), at.fast) if sense > 0.0 else (at.slow, min(at.fast, 0.0))
+        bounds = {-1.0: slow, 1.0: fast}
         events: list[Any] = [passes, *(_meets(speed, way) for way, speed in bounds.items())]
         passes.terminal, passes.direction = True, 1.0  # type: ignore[attr-defined]
         scale = abs(float(y[1])) + abs(slopes(start, y)[1]) * (end - start) + 1e-9
-        options: dict[str, Any] = {
-            "method": "DOP853",
-            "rtol": 1e-13,
-            "atol": [1e-15, 1e-14 * scale],
-        }
+        options: dict[str, Any] = {"method": "DOP853", "rtol": 1e-13}
+        options["atol"] = [1e-15, 1e-14 * scale]
         found = solve_ivp(slopes, (start, end), y, events=events, **options)
+        if found.status < 0:
+            raise ArithmeticError(found.message)
         last = found.y[:, -1]
         if found.status != 1:
             self.side = math.copysign(1.0, slopes(end, last)[1])

@@ -89,12 +89,15 @@ class Stretch:
 
     def friction(self, theta: float, omega: float) -> list[float]:
         """On every piston [N], towards the crank."""
-        places = self.places(theta)
         if self.changes.rings is None:
-            return [0.0] * len(places)
+            return [0.0] * len(self.slides)
+        return self._rubbed(omega, self.places(theta), self.forces(theta))
+
+    def _rubbed(self, omega: float, places: list[Place], forces: list[float]) -> list[float]:
+        assert self.changes.rings is not None
         ring, pressed, viscous = self.changes.rings
         signs = self.pressed or [0.0] * len(places)
-        of_each = zip(self.slides, signs, self.forces(theta), places, strict=True)
+        of_each = zip(self.slides, signs, forces, places, strict=True)
         return [
             -slides * (ring + pressed * sign * force) + viscous * place.x_1 * omega
             for slides, sign, force, place in of_each
@@ -106,11 +109,11 @@ class Stretch:
 
     def alpha(self, t: float, theta: float, omega: float) -> float:
         """The acceleration [rad/s2]."""
-        both = self.forces(theta)
+        places, both = self.places(theta), self.forces(theta)
         if self.changes.rings is not None:
-            both = [a + b for a, b in zip(both, self.friction(theta, omega), strict=True)]
-        machine = self.changes.machine
-        inertia, slope, torque = inertia_and_torque(machine, theta, self.places(theta), both)
+            rubbed = self._rubbed(omega, places, both)
+            both = [a + b for a, b in zip(both, rubbed, strict=True)]
+        inertia, slope, torque = inertia_and_torque(self.changes.machine, theta, places, both)
         return (torque + self.external(t, theta, omega) - 0.5 * slope * omega * omega) / inertia
 
 

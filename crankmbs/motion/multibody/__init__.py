@@ -32,6 +32,7 @@ from crankmbs.motion.base import Samples, Solution
 from crankmbs.motion.multibody.beside import errors_beside_jumps
 from crankmbs.motion.multibody.error import Convergence
 from crankmbs.motion.multibody.halvings import Halvings
+from crankmbs.motion.multibody.problem import order_over_angle
 from crankmbs.motion.multibody.samples import Sampled, aligned_variables
 from crankmbs.motion.multibody.seen import account_of_runs
 from crankmbs.numerics.arrays import Array
@@ -53,7 +54,7 @@ def run(train: CrankTrain, rtol: float, cost_cap: float) -> Solution:
     runs = Halvings(train, cost_cap)
     try:
         status, message = runs.first()
-        convergence = Convergence(runs.erratic_order)
+        convergence = Convergence(runs.erratic_order, bent=order_over_angle(runs.problem) < 3)
         sampled = [Sampled(runs.problem, runs.paths[-1])]
         answer: dict[str, Array] = {}
         worst = latest = before = math.inf

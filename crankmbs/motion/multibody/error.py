@@ -19,6 +19,7 @@ _SHARE = 1.0 / 8.0  # of what is usual beside it: what changes less does so by c
 _BENT = 1.0 / 32.0  # of D, what bends within the steps leave in a first correction
 _ROUNDING = 5e-13  # of a variable's peak: what Newton's method and the interpolation leave
 _OF_ANGLE = ("rod_angle", "piston_position", "piston_displacement")
+_WITH_ACCELERATION = {"rad/s^2", "m/s^2", "N", "N m"}  # units of what a bend of a load bends
 _FAST = 32.0  # a halving that gains more: at a given angle these err by their interpolation alone
 
 Runs = Sequence[Mapping[str, Array]]
@@ -33,10 +34,12 @@ class Convergence:
 
     order : power of the step with which the erratic part of an error goes at least: 1 where loads
         jump within a step, 2 where they bend, else 3
+    bent : whether loads over the angle bend within the steps: accelerations, and forces with them,
+        are then interpolated over the bend, and err by the first power
     """
 
-    def __init__(self, order: int) -> None:
-        self._shrinks = 2.0**order
+    def __init__(self, order: int, *, bent: bool = False) -> None:
+        self._shrinks, self._bent = 2.0**order, bent
         self._changes: dict[str, list[float]] = {}
         self._corrections: dict[str, list[float]] = {}
 
@@ -84,7 +87,11 @@ class Convergence:
                 self._corrections.setdefault(name, []).append(correction)
 
     def _is_clean(self, name: str) -> bool:
-        return self._shrinks > 2.0 and 3.0 * self._corrections[name][-1] <= self._changes[name][-1]
+        agree = 3.0 * self._corrections[name][-1] <= self._changes[name][-1]
+        return agree and self._shrinks > 2.0 and not self._bends(name)
+
+    def _bends(self, name: str) -> bool:
+        return self._bent and name in EVERY and EVERY[name].units in _WITH_ACCELERATION
 
     def _usual_change(self, run: Mapping[str, Array]) -> float:
         """D over the peak of the variables, the median: they all come from one motion."""
@@ -116,6 +123,8 @@ class Convergence:
         before, last = changes[-2:]
         if name in _OF_ANGLE and _FAST * last < before:
             return last / 8.0
+        if self._bends(name):  # erratic: what the halvings before leave is as likely as the last
+            return max(change / 2.0**k for k, change in enumerate(reversed(changes)))
         shrinks = min(self._shrinks, 4.0)
         return _largest(changes, shrinks, 4.0, 0.55 * shrinks)
 

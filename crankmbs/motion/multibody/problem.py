@@ -15,7 +15,14 @@ from crankmbs.motion.prescribed import monotone_stretches
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 
-__all__ = ["Problem", "erratic_order", "jump_times", "kink_times", "problem_of"]
+__all__ = [
+    "Problem",
+    "erratic_order",
+    "jump_times",
+    "kink_times",
+    "order_over_angle",
+    "problem_of",
+]
 
 _MOST_KINKS = 12  # in a run; each costs a run-up, and a table of more is run over as it is
 
@@ -100,11 +107,16 @@ def erratic_order(problem: Problem) -> int:
     if problem.law is not None:
         corners = _corners(problem.law, problem.end).tolist()
         return 2 if set(corners) - set(jump_times(problem)) else 3
-    parts = (load.parts.over_angle for load in problem.scene.torque)
-    over_angle = min((part.order for part in parts if part is not None), default=3)
+    over_angle = order_over_angle(problem)
     if any(load.parts.function is not None for load in problem.scene.torque):
         return 1  # nobody says whether it jumps
     return min(problem.gas.order, over_angle, 2 if len(_row_times(problem)) > _MOST_KINKS else 3)
+
+
+def order_over_angle(problem: Problem) -> int:
+    """The same of the loads over the angle alone."""
+    parts = (load.parts.over_angle for load in problem.scene.torque)
+    return min((part.order for part in parts if part is not None), default=3)
 
 
 def _corners(law: SpeedLaw, end: float) -> Array:
