@@ -205,7 +205,8 @@ def _given(scene: Scene, gas: Gas, source: PressureGiven) -> tuple[PeriodicPress
         value = np.array([[0.0], [0.0], [0.0], [source - (gas.ambient or 0.0)]])
         return (PeriodicPressure(np.array([0.0, gas.period]), value),) * len(cylinders)
     rows = rows_of(scene, gas, source)
-    once = {id(one): PeriodicPressure(*interpolate(one, gas.interpolation)) for one in rows}
+    each = {id(one): one for one in rows}
+    once = {k: PeriodicPressure(*interpolate(one, gas.interpolation)) for k, one in each.items()}
     return tuple(once[id(one)] for one in rows)
 
 

@@ -15,7 +15,7 @@ from crankmbs.numerics.kernels import kernel
 _SETTLED, _GOOD = 1e-14, 1e-11  # relative change of the energy in Newton's last step
 
 
-__all__ = ["affine", "fire", "fired", "newton"]
+__all__ = ["affine", "along", "fire", "fire_each", "fired", "missed", "newton"]
 
 Loads = tuple[Array, Array, Array, Array]  # the tables of a course of `crankmbs.mechanics.torque`
 Solved = tuple[Array, Array, Array, Array]  # edges, time, torque and slowness of cells, filled
@@ -304,6 +304,100 @@ def fire(torque: Array, combustion: Array, rubbed: Array, against: float, shares
             for i in range(rubbed.shape[2]):
                 more -= against * abs(rubbed[k, j, i] + combustion[k, j, i] * shares[i])
             torque[k, j] += more
+
+
+@kernel
+def fire_each(
+    torque: Array, of_gas: tuple[Array, Array, float], modes: tuple[Index, Array]
+) -> None:
+    """The same where other shares hold from some cells on: the cells' numbers, and the shares."""
+    (combustion, rubbed, against), (begins, shares) = of_gas, modes
+    for n in range(len(begins)):
+        low, high = begins[n], begins[n + 1] if n + 1 < len(begins) else len(torque)
+        fire(torque[low:high], combustion[low:high], rubbed[low:high], against, shares[n])
+
+
+@kernel
+def along(
+    sense: float,
+    inside: Array,
+    cells: tuple[Array, Array],
+    solved: Solved,
+    found: tuple[Array, Array],
+) -> None:
+    """Fill time and slowness at places in solved cells.
+
+    inside : shape (s, n), integrals up to the places of the nodes' polynomials; cells : width, and
+    inertia at the places
+    """
+    (width, inertia), (edges, time, torque, slowness), (t, slow) = cells, solved, found
+    gained, spent = np.empty((2, inside.shape[1]))
+    for k in range(len(width)):
+        gained[:] = 0.0
+        spent[:] = 0.0
+        for j in range(len(inside)):
+            for i in range(inside.shape[1]):
+                gained[i] += torque[k, j] * inside[j, i]
+                spent[i] += slowness[k, j] * inside[j, i]
+        for i in range(inside.shape[1]):
+            energy = edges[k] + sense * width[k] * gained[i]
+            t[k, i] = time[k] + width[k] * spent[i]
+            slow[k, i] = math.sqrt(0.5 * inertia[k, i] / max(energy, 0.0))
+
+
+@kernel
+def missed(
+    loads: Loads,
+    sense: float,
+    rules: tuple[Array, Array],
+    cells: tuple[Array, Array, Array, Array, Array],
+    finer: tuple[Array, Array, Array, Array],
+    found: tuple[Array, Array, Array],
+) -> None:
+    """Fill what solved cells miss of the energy they gain, and the worst of energy and time,
+    relative, at their ends and inside: at the nodes of a finer rule, by the loads there.
+
+    rules : integrals up to the finer nodes and the end of the nodes' polynomials, of the rule and
+    the finer one; cells : width, and as `Solved`; finer : torque over the angle, drag, if there is
+    any, time and slowness at the finer nodes
+    """
+    (width, edges, time, torque, slowness), (rest, drag, t, slow) = cells, finer
+    (own, to_nodes), (energy, at_end, inside) = rules, found
+    stages, f, g, drags = len(to_nodes), 0, 0, drag.shape[1] > 0
+    gained, less, late, early = np.empty((4, stages + 1))
+    for k in range(len(width)):
+        slowest = math.inf
+        gained[:], less[:], late[:], early[:] = 0.0, 0.0, 0.0, 0.0
+        for j in range(len(own)):
+            slowest = min(slowest, 1.0 / slowness[k, j])
+            for i in range(stages + 1):
+                less[i] += torque[k, j] * own[j, i]
+                early[i] += slowness[k, j] * own[j, i]
+        for j in range(stages):
+            omega = sense / slow[k, j]
+            load, f, g = _loaded(loads, t[k, j], omega, (f, g))
+            push = rest[k, j] + load - (drag[k, j] * omega if drags else 0.0)
+            for i in range(stages + 1):
+                gained[i] += push * to_nodes[j, i]
+                late[i] += slow[k, j] * to_nodes[j, i]
+        inside[k] = both = 0.0
+        per_time = max(slowest, 1.0 / time[k + 1])
+        for i in range(stages + 1):
+            energy[k] = sense * width[k] * (gained[i] - less[i])
+            both = abs(energy[k]) / edges[k + 1] + abs(width[k] * (late[i] - early[i])) * per_time
+            inside[k] = inside[k] if both <= inside[k] or inside[k] != inside[k] else both
+        at_end[k] = both
+
+
+@kernel
+def _loaded(
+    loads: Loads, time: float, omega: float, near: tuple[int, int]
+) -> tuple[float, int, int]:
+    """The loads' torque at a time and a speed, and the rows in use there, sought from near ones."""
+    (times, in_time, speeds, in_speed), (f, g) = loads, near
+    f, g = _row(times, time, f), _row(speeds, omega, g)
+    load = in_time[f, 0] + in_time[f, 1] * time
+    return load + in_speed[g, 0] + (in_speed[g, 2] * omega + in_speed[g, 1]) * omega, f, g
 
 
 @kernel

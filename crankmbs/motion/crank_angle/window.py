@@ -13,9 +13,10 @@ from crankmbs.mechanics.friction import friction_forces, friction_torque
 from crankmbs.mechanics.inertia import fired_torque, inertia_alone, reduce
 from crankmbs.mechanics.torque import Branch, Course
 from crankmbs.motion.base import NOWHERE, Nodes, Points, Samples, State
-from crankmbs.motion.crank_angle import loops, readout
+from crankmbs.motion.crank_angle import readout
 from crankmbs.motion.crank_angle.crossing import crossing
-from crankmbs.motion.crank_angle.grid import Grid, Strip, largest_of_row
+from crankmbs.motion.crank_angle.errors import Errors, errors_of
+from crankmbs.motion.crank_angle.grid import Grid, Strip
 from crankmbs.motion.mode import Mode, decided
 from crankmbs.motion.plan import Wanted
 from crankmbs.numerics.arrays import Array, Index
@@ -55,7 +56,8 @@ class Window:
         m, rule = self.stop[0] + (self.stop[1] == 1.0), self.grid.rule
         strip = self.strip.first(m)
         width, slowness = strip.width[:, None], self.slowness[:m]
-        time = self.time[:m, None] + width * (slowness @ rule.matrix.T)
+        spent = np.einsum("kj,ij->ki", slowness, rule.matrix)  # BLAS would wake a second thread
+        time = self.time[:m, None] + width * spent
         theta = strip.angles(self.begin.theta, self.sense, rule)
         turned = self.sense * width * rule.weights
         speeds = self.speeds_at(np.arange(m + 1))
@@ -116,31 +118,9 @@ class Window:
         return tuple(State(t, angle, speed, math.nan, mode) for t, angle, speed, mode in found)
 
     @cached_property
-    def errors(self) -> tuple[Array, Array]:
-        """Errors of the energy [J] and the time [s] gained in each cell, shape (m, s + 3) each:
-        what a finer Gauss rule along the solution gives, at its nodes and at the cell's end."""
-        rule, finer = self.grid.rule, self.grid.finer.rule
-        strip = self.grid.finer.same(self.strip, self.begin.theta, self.sense)
-        torque = strip.torque.copy()
-        ends = [*(k for k, _ in self.modes[1:]), len(torque)]
-        for (k, mode), end in zip(self.modes, ends, strict=False):
-            loops.fire(torque[k:end], *strip.part(k, end).of_gas, np.array(mode.shares))
-        inside = rule.integrals(finer.nodes).T
-        to_nodes = np.vstack([finer.matrix, finer.weights]).T
-        own = np.column_stack([inside, rule.weights])
-        width = self.strip.width[:, None]
-        energy = self.energy[:-1, None] + self.sense * width * (self.torque @ inside)
-        t = self.time[:-1, None] + width * (self.slowness @ inside)
-        with np.errstate(divide="ignore"):
-            slowness = np.sqrt(0.5 * strip.inertia / np.maximum(energy, 0.0))
-            torque += self.branch(t, self.sense / slowness)
-            if strip.drags:
-                torque -= strip.drag * self.sense / slowness
-            theta = strip.angles(self.begin.theta, self.sense, finer)
-            for function in self.branch.functions:
-                torque = torque + function(t, theta, self.sense / slowness)
-        gained = self.sense * width * (torque @ to_nodes - self.torque @ own)
-        return gained, width * (slowness @ to_nodes - self.slowness @ own)
+    def errors(self) -> Errors:
+        """What a finer Gauss rule along the solution gives, at its nodes and at the cell's end."""
+        return errors_of(self)
 
     @cached_property
     def missed(self) -> Array:
@@ -148,15 +128,7 @@ class Window:
         known, and 0, on a grid that itself checks another."""
         if self.grid.checks:
             return np.zeros_like(self.edges)
-        return np.concatenate([[0.0], np.cumsum(self.errors[0][:, -1])])
-
-    @property
-    def relative_errors(self) -> tuple[Array, Array]:
-        """Worst of energy and time in each cell, relative, at its end and inside, shape (m,)."""
-        energy, late = (np.abs(error) for error in self.errors)
-        per_time = np.maximum(1.0 / largest_of_row(self.slowness), 1.0 / self.time[1:])
-        both = energy / self.energy[1:, None] + late * per_time[:, None]
-        return both[:, -1], largest_of_row(both)
+        return np.concatenate([[0.0], np.cumsum(self.errors.energy)])
 
     def cut(self, t_end: float, bound: float) -> Window:
         """End where time, speed or angle leaves its bounds, whichever comes first."""

@@ -148,5 +148,5 @@ def _sticks(scene: Scene) -> bool:
 
 def _note(worst: Array, window: Window) -> None:
     """Keep the largest errors so far of a window's cells."""
-    for row, error in zip(worst, window.relative_errors, strict=True):
+    for row, error in zip(worst, window.errors[1:], strict=True):
         np.maximum.at(row, window.strip.cell, error)
