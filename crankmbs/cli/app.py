@@ -14,7 +14,6 @@ from typer.core import TyperGroup
 from crankmbs.choose import choose
 from crankmbs.cli.animate import animate_scene
 from crankmbs.cli.balance import balance_scene
-from crankmbs.cli.check import describe
 from crankmbs.cli.ending import ending
 from crankmbs.cli.flywheel import size_flywheel
 from crankmbs.cli.lesson import list_lessons, make_lesson
@@ -24,6 +23,7 @@ from crankmbs.cli.run import Wanted, run_scene
 from crankmbs.cli.validate import validate_scene
 from crankmbs.cli.work_precision import measure_scene
 from crankmbs.errors import InputError, OutputError
+from crankmbs.report.machine import describe
 from crankmbs.scene.read import load_scene, scene_path, shipped_scenes
 from crankmbs.storage.files import text_in_one_move
 
