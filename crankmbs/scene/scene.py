@@ -12,7 +12,8 @@ from typing import Annotated
 
 from pydantic import Strict
 
-from crankmbs.errors import shown
+from crankmbs.errors import InputError, shown
+from crankmbs.scene.change import changed
 from crankmbs.scene.cycles import cycles_in
 from crankmbs.scene.drives import Motion, Start
 from crankmbs.scene.fuel import Fuel
@@ -103,6 +104,27 @@ class Scene:
             return None
         middle = 0.5 * (min(places) + max(places))
         return tuple(place - middle for place in places)
+
+    def with_(self, *unnamed: object, **values: object) -> Scene:
+        """The scene with other values, each named by where it stands, with ``__`` between.
+
+        Lists count from 1, as in every message: ``torque__1__coefficient``,
+        ``layout__cylinders__2__phase``. A number is in SI units, or text with its unit, as in a
+        file; a whole part may be given, or None. All values change at once.
+
+        Raises
+        ------
+        InputError : no such place, or a value that cannot be; begins with the name as given
+
+        >>> load_scene("propeller").with_(rod__length="160 mm", crank__inertia=0.2).rod.length
+        0.16
+        """
+        if unnamed:
+            raise InputError(
+                'with_ takes its values by name, such as with_(rod__length="160 mm"); '
+                f"{shown(unnamed[0])} came without"
+            )
+        return changed(self, values)
 
     def __repr__(self) -> str:
         count = len(self.cylinders)
