@@ -18,6 +18,7 @@ from crankmbs.errors import (
     SceneError,
     UndecidedError,
 )
+from crankmbs.export import export
 from crankmbs.indicated import CylinderPressure, Indicated, read_pressure
 from crankmbs.lecture.accumulated_torque import accumulated_torque
 from crankmbs.measures import (
@@ -104,6 +105,7 @@ __all__ = [
     "choose",
     "compare",
     "engine_orders",
+    "export",
     "flywheel",
     "load_scene",
     "orders",

@@ -15,6 +15,7 @@ from crankmbs.choose import choose
 from crankmbs.cli.animate import animate_scene
 from crankmbs.cli.balance import balance_scene
 from crankmbs.cli.ending import ending
+from crankmbs.cli.export import export_scene
 from crankmbs.cli.flywheel import size_flywheel
 from crankmbs.cli.lesson import list_lessons, make_lesson
 from crankmbs.cli.page import demonstrate, write_page
@@ -242,6 +243,20 @@ def new(
     text = template(path.stem)
     text_in_one_move(path, text)
     typer.echo(f"wrote {path}; check it with: crankmbs check {path}")
+
+
+@app.command()
+def export(
+    scene: _Scene,
+    to: Annotated[str, typer.Option(help="toml, matlab or exudyn.")],
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", "-o", metavar="FILE", help="Default NAME.toml, NAME.mat or NAME.py."),
+    ] = None,
+) -> None:
+    """Write a scene as TOML, its result for MATLAB, or its bodies as a script for exudyn."""
+    if not export_scene(scene, to, out=out):
+        raise typer.Exit(3)
 
 
 @app.command()
