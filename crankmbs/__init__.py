@@ -4,6 +4,9 @@
 >>> result = crankmbs.simulate(crankmbs.load_scene("yi_diesel"))
 """
 
+import importlib
+import types
+
 from crankmbs.choose import Choice, choose
 from crankmbs.compare import AtAngle, Budget, Comparison, Reading, at_angle, budget, compare
 from crankmbs.design import Balance, Flywheel, balance, flywheel
@@ -15,9 +18,18 @@ from crankmbs.errors import (
     SceneError,
     UndecidedError,
 )
+from crankmbs.export import export
 from crankmbs.indicated import CylinderPressure, Indicated, read_pressure
 from crankmbs.lecture.accumulated_torque import accumulated_torque
-from crankmbs.measures import EngineOrders, Orders, engine_orders, orders
+from crankmbs.measures import (
+    EngineOrders,
+    Estimate,
+    JointForce,
+    Measures,
+    Orders,
+    engine_orders,
+    orders,
+)
 from crankmbs.motion.base import Decay
 from crankmbs.result import Cost, Error, Result
 from crankmbs.scene.drives import Motion, Oscillation, Ramp, SpeedFile, Start
@@ -49,6 +61,7 @@ __all__ = [
     "Decay",
     "EngineOrders",
     "Error",
+    "Estimate",
     "Extent",
     "Flywheel",
     "FormulationError",
@@ -59,8 +72,10 @@ __all__ = [
     "Indicated",
     "Indicator",
     "InputError",
+    "JointForce",
     "Layout",
     "Load",
+    "Measures",
     "Misfire",
     "Motion",
     "Orders",
@@ -90,6 +105,7 @@ __all__ = [
     "choose",
     "compare",
     "engine_orders",
+    "export",
     "flywheel",
     "load_scene",
     "orders",
@@ -97,3 +113,10 @@ __all__ = [
     "shipped_scenes",
     "simulate",
 ]
+
+
+def __getattr__(name: str) -> types.ModuleType:
+    """``crankmbs.figures`` without an import of its own; matplotlib is loaded with it alone."""
+    if name == "figures":
+        return importlib.import_module("crankmbs.figures")
+    raise AttributeError(f"module 'crankmbs' has no attribute {name!r}")

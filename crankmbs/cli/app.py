@@ -14,8 +14,8 @@ from typer.core import TyperGroup
 from crankmbs.choose import choose
 from crankmbs.cli.animate import animate_scene
 from crankmbs.cli.balance import balance_scene
-from crankmbs.cli.check import describe
 from crankmbs.cli.ending import ending
+from crankmbs.cli.export import export_scene
 from crankmbs.cli.flywheel import size_flywheel
 from crankmbs.cli.lesson import list_lessons, make_lesson
 from crankmbs.cli.page import demonstrate, write_page
@@ -24,6 +24,7 @@ from crankmbs.cli.run import Wanted, run_scene
 from crankmbs.cli.validate import validate_scene
 from crankmbs.cli.work_precision import measure_scene
 from crankmbs.errors import InputError, OutputError
+from crankmbs.report.machine import describe
 from crankmbs.scene.read import load_scene, scene_path, shipped_scenes
 from crankmbs.storage.files import text_in_one_move
 
@@ -242,6 +243,20 @@ def new(
     text = template(path.stem)
     text_in_one_move(path, text)
     typer.echo(f"wrote {path}; check it with: crankmbs check {path}")
+
+
+@app.command()
+def export(
+    scene: _Scene,
+    to: Annotated[str, typer.Option(help="toml, matlab or exudyn.")],
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", "-o", metavar="FILE", help="Default NAME.toml, NAME.mat or NAME.py."),
+    ] = None,
+) -> None:
+    """Write a scene as TOML, its result for MATLAB, or its bodies as a script for exudyn."""
+    if not export_scene(scene, to, out=out):
+        raise typer.Exit(3)
 
 
 @app.command()

@@ -10,8 +10,9 @@ import numpy as np
 from crankmbs.cli.text import table
 from crankmbs.compare.confirm import Difference
 from crankmbs.digits import digits, error_digits
-from crankmbs.measures import Estimate, JointForce, Measures
+from crankmbs.measures import Measures
 from crankmbs.measures.plausible import warnings
+from crankmbs.report.rows import FORCE_HEADINGS, degrees_within, force_rows, measure_rows
 from crankmbs.result import Result
 from crankmbs.scene.units import RPM
 
@@ -27,10 +28,11 @@ def report(name: str, result: Result, measures: Measures) -> str:
         *(f"{'warning':<12} {said}" for said in warnings(result.scene)),
         "",
         table(
-            [f"over the {measures.window.kind}", "value, to 6 digits", "error"], _values(measures)
+            [f"over the {measures.window.kind}", "value, to 6 digits", "error"],
+            measure_rows(measures),
         ),
         "",
-        table(_FORCE_HEADINGS, [_force(result, joint) for joint in measures.joints]),
+        table(FORCE_HEADINGS, force_rows(measures, result.scene.period)),
     ]
     return "\n".join(parts)
 
@@ -50,7 +52,7 @@ def comparison(result: Result, check: Result, rows: Sequence[Difference]) -> str
     for row in rows:
         largest, sample, column = row.largest
         cylinder = f" {column + 1}" if several and row.size.shape[1] > 1 else ""
-        where = _degrees(float(row.crank_angle[sample]), result.scene.period)
+        where = degrees_within(float(row.crank_angle[sample]), result.scene.period)
         errors = [error_digits(error) for error in row.errors]
         share = f"{row.share:.2g}"
         size = error_digits(largest)
@@ -76,15 +78,6 @@ def comparison(result: Result, check: Result, rows: Sequence[Difference]) -> str
 
 
 _FIRST = 5  # events that are printed
-_FORCE_HEADINGS = [
-    "joint force [N]",
-    "peak",
-    "error",
-    "at crank angle [deg]",
-    "cycle angle [deg]",
-    "mean",
-    "error",
-]
 
 
 def _about(result: Result, measures: Measures) -> str:
@@ -143,50 +136,3 @@ def _cost_line(result: Result) -> str:
         f"{'cost':<12} {digits(cost.wall_time, most=2)} s of computing, "
         f"{cost.evaluations} evaluations, {cost.steps} steps"
     )
-
-
-def _values(measures: Measures) -> list[list[str]]:
-    rows = [
-        _value("mean speed [rpm]", measures.mean_speed, 1.0 / RPM),
-        _value("coefficient of fluctuation, (max - min)/mean [1]", measures.fluctuation),
-        _value("speed at its end less that at its beginning [rpm]", measures.speed_gain, 1.0 / RPM),
-        _value("mean torque of the rods on the crank [N m]", measures.crank_torque),
-        _value("mean torque from outside [N m]", measures.external_torque),
-    ]
-    if measures.indicated_power is not None:
-        rows.append(_value("indicated power [kW]", measures.indicated_power, 1e-3))
-    if measures.friction_power is not None:
-        rows.append(_value("power of the pistons' friction [kW]", measures.friction_power, 1e-3))
-    if measures.mechanical_efficiency is not None:
-        rows.append(_value("mechanical efficiency [1]", measures.mechanical_efficiency))
-    pressures = measures.imep or ()
-    for number, imep in enumerate(pressures, start=1):
-        whose = f", cylinder {number}" if len(pressures) > 1 else ""
-        rows.append(_value(f"indicated mean effective pressure{whose} [bar]", imep, 1e-5))
-    return rows
-
-
-def _value(name: str, estimate: Estimate, scale: float = 1.0) -> list[str]:
-    value, error = estimate.value * scale, estimate.error * scale
-    return [name, digits(value, error), error_digits(error)]
-
-
-def _force(result: Result, joint: JointForce) -> list[str]:
-    period = result.scene.period
-    several = result.data.sizes["cylinder"] > 1
-    name = f"{joint.joint} {joint.cylinder}" if several and joint.cylinder else joint.joint
-    cycle = "" if joint.cycle_angle is None else _degrees(joint.cycle_angle, period)
-    return [
-        name,
-        digits(*joint.peak),
-        error_digits(joint.peak.error),
-        _degrees(joint.crank_angle, period),
-        cycle,
-        digits(*joint.mean),
-        error_digits(joint.mean.error),
-    ]
-
-
-def _degrees(angle: float, period: float) -> str:
-    """An angle within one period, in degrees."""
-    return f"{round(math.degrees(angle), 3) % round(math.degrees(period)):.6g}"

@@ -1,5 +1,12 @@
 """Figures of a result, drawn with matplotlib and without its global state.
 
+`plot` draws one of a result's figures by its kind, which is what ``result.plot(kind)`` gives; the
+functions below draw each from a `last_view`, its last cycle with angles in degrees. All return a
+matplotlib figure, to be changed and saved as any other:
+
+>>> figure = plot(simulate(load_scene("propeller")), "polar")
+>>> _ = figure.axes[0].set_title("my crank pin")
+
 What is drawn is computed elsewhere: in measures, compare and mechanics; here are axes and labels.
 """
 
@@ -12,11 +19,13 @@ from matplotlib.figure import Figure
 
 from crankmbs.compare.confirm import Difference
 from crankmbs.design import Balance
+from crankmbs.errors import InputError, shown
 from crankmbs.figures.balance import balance_figure
 from crankmbs.figures.compare import budget_figure, comparison_figure, save_validation
 from crankmbs.figures.cycles import FEWEST_CYCLES, cycles_figure
 from crankmbs.figures.difference import difference_figure
 from crankmbs.figures.indicated import pressure_figure, scatter_figure, volume_figure
+from crankmbs.figures.machine import machine_figure
 from crankmbs.figures.orders import orders_figure
 from crankmbs.figures.polar import crank_pin_figure, main_bearing_figure, piston_pin_figure
 from crankmbs.figures.strips import (
@@ -25,10 +34,12 @@ from crankmbs.figures.strips import (
     speed_figure,
     torque_figure,
 )
+from crankmbs.figures.style import png
 from crankmbs.figures.view import View, last_view
 from crankmbs.indicated import Indicated
-from crankmbs.measures import EngineOrders
+from crankmbs.measures import EngineOrders, engine_orders
 from crankmbs.result import Result
+from crankmbs.scene.sentences import did_you_mean
 from crankmbs.storage.files import together, write_in_one_move
 
 __all__ = [
@@ -40,10 +51,13 @@ __all__ = [
     "difference_figure",
     "forces_figure",
     "last_view",
+    "machine_figure",
     "main_bearing_figure",
     "orders_figure",
     "piston_motion_figure",
     "piston_pin_figure",
+    "plot",
+    "png",
     "pressure_figure",
     "save_balance_figure",
     "save_differences",
@@ -66,6 +80,55 @@ _FIGURES: dict[str, Callable[[View], Figure]] = {
     "piston_pin": piston_pin_figure,
     "torque": torque_figure,
 }
+
+_KINDS: dict[str, Callable[[Result], Figure]] = {
+    "speed": lambda result: speed_figure(last_view(result)),
+    "motion": lambda result: piston_motion_figure(last_view(result)),
+    "forces": lambda result: forces_figure(last_view(result)),
+    "torque": lambda result: torque_figure(last_view(result)),
+    "orders": lambda result: orders_figure(result, engine_orders(result)),
+    "cycles": lambda result: _cycles(result),
+}
+_POLAR = {name: _FIGURES[name] for name in ("main_bearing", "crank_pin", "piston_pin")}
+
+
+def plot(result: Result, kind: str = "speed", joint: str = "crank_pin") -> Figure:
+    """One of the figures that ``crankmbs run`` writes.
+
+    Parameters
+    ----------
+    kind : "speed", "motion" of the pistons, "forces" along and across the cylinders, "polar" load,
+        "torque", "orders" of torque and frame force, or "cycles"
+    joint : of a "polar" load: "main_bearing", "crank_pin" or "piston_pin"
+
+    Raises
+    ------
+    InputError : another kind or joint; no orders without a whole cycle, no cycles kept
+
+    >>> len(plot(simulate(load_scene("propeller")), "motion").axes)
+    3
+    """
+    _check_word("kind", kind, [*_KINDS, "polar"])
+    _check_word("joint", joint, list(_POLAR))
+    return _POLAR[joint](last_view(result)) if kind == "polar" else _KINDS[kind](result)
+
+
+def _check_word(what: str, word: str, known: list[str]) -> None:
+    if word in known:
+        return
+    near = did_you_mean(word, known) if isinstance(word, str) else ""
+    *most, last = map(shown, known)
+    raise InputError(f"{what} must be {', '.join(most)} or {last}; {shown(word)} came{near}")
+
+
+def _cycles(result: Result) -> Figure:
+    count = result.cycles.sizes["cycle"]
+    if count < FEWEST_CYCLES:
+        raise InputError(
+            f"cycles are drawn from {FEWEST_CYCLES} on, and this run has {count}; result.cycles "
+            "has what there is of them"
+        )
+    return cycles_figure(result)
 
 
 def save_figures(result: Result, folder: Path) -> list[Path]:

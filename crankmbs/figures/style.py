@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import io
 import math
 import textwrap
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -27,6 +28,7 @@ __all__ = [
     "mark_points",
     "name_of",
     "panels",
+    "png",
 ]
 
 # Okabe and Ito's palette without its yellow, which is too pale on white
@@ -54,6 +56,20 @@ STYLE: Any = {
 }
 
 
+class _Shown(Figure):
+    """A figure that a notebook shows, also without pyplot and its global state."""
+
+    def _repr_png_(self) -> bytes:
+        return png(self)
+
+
+def png(figure: Figure, dpi: float | Literal["figure"] = "figure") -> bytes:
+    """The figure as the bytes of a PNG file, by default with its own dots per inch."""
+    file = io.BytesIO()
+    figure.savefig(file, format="png", dpi=dpi)
+    return file.getvalue()
+
+
 def panels(
     rows: int, columns: int, width: float, height: float, ratios: tuple[float, ...] | None = None
 ) -> tuple[Figure, list[Axes]]:
@@ -61,7 +77,7 @@ def panels(
 
     ratios : widths of the columns to one another; None: all alike
     """
-    figure = Figure(figsize=(width, height), layout="constrained")
+    figure = _Shown(figsize=(width, height), layout="constrained")
     FigureCanvasAgg(figure)
     grid = figure.subplots(rows, columns, squeeze=False, width_ratios=ratios)
     return figure, [axes for row in grid for axes in row]

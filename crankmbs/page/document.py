@@ -19,8 +19,9 @@ from crankmbs.page.knobs import FIRING_ORDERS, Choice, choices_of, knobs_of
 from crankmbs.page.refusals import early_end, refusals, settling
 from crankmbs.page.script import joined
 from crankmbs.scene.parts import LIGHT_CRANK
-from crankmbs.scene.scene import OPEN_LOOP, Scene
+from crankmbs.scene.scene import Scene
 from crankmbs.scene.sentences import RULES
+from crankmbs.scene.whole import OPEN_LOOP
 from crankmbs.scene.write import scene_files
 
 __all__ = ["given_of", "page_of", "policy", "shown_scene"]

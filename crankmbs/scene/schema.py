@@ -8,10 +8,12 @@ a TOML file, its folder, and for a scene that was saved with a result.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from numbers import Real
 from pathlib import Path
 from typing import Annotated, Any, TypeVar, dataclass_transform
 
+import numpy as np
 import pydantic
 from pydantic import BeforeValidator, ConfigDict, Strict, ValidationError, ValidationInfo
 
@@ -89,7 +91,11 @@ def _converted(value: Any, dimension: str, info: ValidationInfo) -> float:
         return quantity(value, dimension)
     if isinstance(value, bool) or not isinstance(value, Real):
         rule = _WITH_UNIT if of_file(info) else "a number in SI units, or text"
-        raise InputError(f"must be {rule} such as {EXAMPLES[dimension]}; {shown(value)} came")
+        several = isinstance(value, Sequence | np.ndarray) and not of_file(info)
+        raise InputError(
+            f"must be {rule} such as {EXAMPLES[dimension]}; {shown(value)} came"
+            f"{'; several values take a scene for each' if several else ''}"
+        )
     if of_file(info) and dimension in {"angle", "angular speed"}:
         raise InputError(f"needs a unit, such as {EXAMPLES[dimension]}; {shown(value)} came")
     try:

@@ -57,6 +57,7 @@ class Model:
     torque : torque [N m] on a free crank over time [s], crank angle [rad] and speed [rad/s]
     angle : crank angle [rad] of a prescribed motion over the number of the step
     stiff : whether Newton's method shall know how the loads change; 2.7 times as slow
+    begun : where the last `run` started, and its step [s]
     """
 
     def __init__(self, scene: Scene, reference: Start, *, gas: bool, free: bool) -> None:
@@ -64,6 +65,7 @@ class Model:
         self.torque: Load = lambda time, theta, omega: 0.0
         self.angle: Callable[[int], float] = lambda step: 0.0
         self.stiff = False
+        self.begun: tuple[Start, float] | None = None
         self._settings = _settings()
         self._container = exu.SystemContainer()
         self._system = self._container.AddSystem()
@@ -110,6 +112,7 @@ class Model:
         proceed(crank angle, speed) : asked before every step but the first ``lead``; False ends it.
             None leaves out two of some thirty microseconds a step
         """
+        self.begun = start, step
         self._set(start, begin, step)
         self._system.SetPreStepUserFunction(0)
         if proceed is not None:

@@ -1,4 +1,4 @@
-"""What ``check`` prints: the machine as it was understood, and how it would be solved."""
+"""The machine of a scene as it was understood, in words, and how it would be solved."""
 
 from __future__ import annotations
 
@@ -21,14 +21,29 @@ from crankmbs.scene.tables import CylinderTable, Table
 from crankmbs.scene.torque import Torque
 from crankmbs.scene.units import BAR, RPM
 
-__all__ = ["describe"]
+__all__ = ["describe", "machine_rows"]
 
 
 def describe(path: str, scene: Scene, choice: Choice) -> str:
     """The scene in a few lines."""
-    pressures = dict.fromkeys(pressures_of(scene) or ())
     rows = [
         ("scene", path),
+        *machine_rows(scene),
+        ("formulation", choice.formulation),
+        *(("", reason) for reason in choice.reasons),
+        *(("warning", said) for said in warnings(scene)),
+    ]
+    return "\n".join(f"{name:<12} {text}" for name, text in rows)
+
+
+def machine_rows(scene: Scene) -> list[tuple[str, str]]:
+    """What each part of a scene is, by its name; a part in several rows is named once.
+
+    >>> [name for name, _ in machine_rows(load_scene("coasting"))][1:4]
+    ['crank', 'rod', 'piston']
+    """
+    pressures = dict.fromkeys(pressures_of(scene) or ())
+    rows = [
         ("title", scene.title),
         ("source", scene.source),
         ("crank", _crank(scene)),
@@ -44,11 +59,8 @@ def describe(path: str, scene: Scene, choice: Choice) -> str:
         *(("", said) for said in speed_remarks(scene)),
         *((f"torque[{k}]", _load(scene, load)) for k, load in enumerate(scene.torque, start=1)),
         ("run", _run(scene)),
-        ("formulation", choice.formulation),
-        *(("", reason) for reason in choice.reasons),
-        *(("warning", said) for said in warnings(scene)),
     ]
-    return "\n".join(f"{name:<12} {text}" for name, text in rows if text)
+    return [(name, text) for name, text in rows if text]
 
 
 def _crank(scene: Scene) -> str:

@@ -1,0 +1,76 @@
+"""The one verb: a scene or a result into the file of another program."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from crankmbs.errors import InputError, OutputError, shown
+from crankmbs.export.exudyn import exudyn_script
+from crankmbs.export.matlab import write_matlab
+from crankmbs.result import Result
+from crankmbs.scene.scene import Scene
+from crankmbs.scene.sentences import did_you_mean
+from crankmbs.scene.write import scene_files
+from crankmbs.simulate import simulate
+from crankmbs.storage.files import text_in_one_move, together, write_in_one_move
+
+__all__ = ["SUFFIXES", "export"]
+
+SUFFIXES = {"toml": ".toml", "matlab": ".mat", "exudyn": ".py"}
+"""What can be written, and how the file's name ends."""
+
+
+def export(what: Scene | Result, to: str, file: str | Path) -> tuple[Path, ...]:
+    """Write a scene, or a result, for another program.
+
+    Parameters
+    ----------
+    what : the scene, or a result, whose scene it is; for "matlab" a scene is run first
+    to : "toml", the scene as it stands, with its tables as CSV beside it; "matlab", the samples
+        with their names, units and errors; "exudyn", a script of the same bodies, joints and loads
+        that needs numpy and exudyn alone
+    file : its name ends in .toml, .mat or .py
+
+    Returns
+    -------
+    the files written, the one asked for first
+
+    Raises
+    ------
+    InputError : none of these, another ending; what a file or a script cannot express
+    OutputError : the file cannot be written, or for "toml" one of the files is there already
+
+    >>> [file.name for file in export(load_scene("torque_driven"), "toml", "mine.toml")]
+    ['mine.toml']
+    """
+    if not isinstance(what, Scene | Result):
+        raise InputError(f"export takes a Scene or a Result; {shown(what)} came")
+    if not isinstance(to, str) or to not in SUFFIXES:
+        near = did_you_mean(to, list(SUFFIXES)) if isinstance(to, str) else ""
+        raise InputError(f'to must be "toml", "matlab" or "exudyn"; {shown(to)} came{near}')
+    target = Path(file)
+    if target.suffix != SUFFIXES[to]:
+        raise InputError(
+            f'{target}: the name of a file for "{to}" ends in {SUFFIXES[to]}; '
+            f"{target.suffix or 'no ending'} came"
+        )
+    scene = what.scene if isinstance(what, Result) else what
+    if to == "toml":
+        return _toml(scene, target)
+    if to == "matlab":
+        result = what if isinstance(what, Result) else simulate(what)
+        write_in_one_move(target, lambda part: write_matlab(result, part))
+    else:
+        text_in_one_move(target, exudyn_script(scene, target.stem))
+    return (target,)
+
+
+def _toml(scene: Scene, target: Path) -> tuple[Path, ...]:
+    files = scene_files(scene, target.stem)
+    there = [target.parent / name for name in files if (target.parent / name).exists()]
+    if there:  # it may be the very scene, with its comments
+        raise OutputError(f"{there[0]}: exists already and is not overwritten; name another file")
+    with together(target.parent) as part:
+        for name, text in files.items():
+            (part / name).write_text(text, encoding="utf-8")
+    return tuple(target.parent / name for name in files)

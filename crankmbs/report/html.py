@@ -1,0 +1,97 @@
+"""A result and a scene as HTML, for a notebook: tables and a figure. Text is never markup."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Sequence
+
+from markupsafe import Markup
+
+from crankmbs.choose import choose
+from crankmbs.errors import CrankmbsError
+from crankmbs.figures import last_view, machine_figure, png, speed_figure
+from crankmbs.measures import measure
+from crankmbs.measures.plausible import warnings
+from crankmbs.report.machine import machine_rows
+from crankmbs.report.rows import FORCE_HEADINGS, force_rows, measure_rows
+from crankmbs.result import Result
+from crankmbs.scene.scene import Scene
+
+__all__ = ["result_html", "scene_html"]
+
+_LEFT, _RIGHT = (Markup(f' style="text-align: {side}"') for side in ("left", "right"))
+_DPI = 100  # enough on a screen, and a notebook that is saved stays small
+
+
+def result_html(result: Result) -> str:
+    """How a run ended, its measures and joint forces with their errors, and its speed drawn.
+
+    >>> result_html(simulate(load_scene("propeller"))).count("<table>")
+    3
+    """
+    measures = measure(result)
+    error = result.error
+    about = [
+        ("formulation", result.formulation),
+        *(("", reason) for reason in result.reasons),
+        ("end", result.message),
+        ("error", f"{error.estimated:.1e} relative, {error.asked:.0e} asked for"),
+        *(("warning", said) for said in warnings(result.scene)),
+    ]
+    headings = [f"over the {measures.window.kind}", "value", "error"]
+    parts = [
+        _head(result.scene, f"status {result.status}"),
+        _table([], about),
+        _table(headings, measure_rows(measures)),
+        _table(FORCE_HEADINGS, force_rows(measures, result.scene.period)),
+        _picture(png(speed_figure(last_view(result)), _DPI), "crank speed over the crank angle"),
+    ]
+    return str(Markup("<div>{}</div>").format(Markup("\n").join(parts)))
+
+
+def scene_html(scene: Scene) -> str:
+    """The machine as understood, how it would be run, and the machine drawn to scale.
+
+    >>> scene_html(load_scene("propeller")).count("<img")
+    1
+    """
+    try:
+        choice = choose(scene, scene.run.formulation)
+        how = [choice.formulation, *choice.reasons]
+    except CrankmbsError as error:
+        how = [str(error)]
+    rows = [
+        *(row for row in machine_rows(scene) if row[0] != "title"),
+        *(("formulation" if k == 0 else "", text) for k, text in enumerate(how)),
+        *(("warning", said) for said in warnings(scene)),
+    ]
+    picture = _picture(png(machine_figure(scene), _DPI), "the machine, to scale")
+    parts = [_head(scene, "scene"), _table([], rows), picture]
+    return str(Markup("<div>{}</div>").format(Markup("\n").join(parts)))
+
+
+def _head(scene: Scene, what: str) -> Markup:
+    return Markup("<p><b>{}</b>, {}</p>").format(scene.title or "a scene without a title", what)
+
+
+def _table(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Markup:
+    lines = [_line("th", headings)] if headings else []
+    lines += [_line("td", row, words=not headings) for row in rows]
+    return Markup("<table>{}</table>").format(Markup("\n").join(lines))
+
+
+def _line(tag: str, cells: Sequence[str], words: bool = False) -> Markup:
+    """A row: its first cell flush left, the others too where they are words."""
+    made = [
+        Markup("<{}{}>{}</{}>").format(tag, _LEFT if words or k == 0 else _RIGHT, cell, tag)
+        for k, cell in enumerate(cells)
+    ]
+    return Markup("<tr>{}</tr>").format(Markup("").join(made))
+
+
+def _picture(image: bytes, words: str) -> Markup:
+    """A picture that stands in the text itself and needs no file."""
+    data = base64.b64encode(image).decode("ascii")
+    return Markup('<img style="max-width: 100%; width: 48em" alt="{}" src="{}">').format(
+        words, f"data:image/png;base64,{data}"
+    )

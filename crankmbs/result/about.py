@@ -1,0 +1,126 @@
+"""What is written down of a result beside its data: cost, error, and all that a file keeps."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+from pydantic import TypeAdapter
+
+from crankmbs.errors import OutputError, shown
+from crankmbs.kept import DIMS, account_in, with_account
+from crankmbs.mechanics.variables import VARIABLES, variables_of
+from crankmbs.motion.account import Account, Keep
+from crankmbs.motion.base import Decay
+from crankmbs.scene.scene import Scene
+from crankmbs.scene.schema import SAVED
+from crankmbs.storage.netcdf import read_netcdf, write_netcdf
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["Cost", "Error", "read_saved", "write_saved"]
+
+
+@dataclass(frozen=True)
+class Cost:
+    """wall_time [s], evaluations of the equation of motion, steps."""
+
+    wall_time: float
+    evaluations: int
+    steps: int
+
+
+@dataclass(frozen=True)
+class Error:
+    """Relative global error: asked for, and estimated (the worst variable of the motion)."""
+
+    asked: float
+    estimated: float
+
+
+@dataclass(frozen=True)
+class _About:
+    """What is saved of a result beside its data."""
+
+    scene: Scene
+    formulation: str
+    reasons: tuple[str, ...]
+    status: Literal[-1, 0, 1]
+    message: str
+    cost: Cost
+    error: Error
+    decay: Decay | None = None
+    left_out: tuple[int, int] | None = None
+
+
+def write_saved(
+    given: Mapping[str, Any], data: xr.Dataset, account: Account | None, file: Path
+) -> None:
+    """Write result.nc: the data, the account of the way where there is one, and the fields of a
+    result by name."""
+    about: dict[str, Any] = {one.name: given.get(one.name) for one in fields(_About)}
+    if account is not None:
+        about["left_out"] = tuple(rows.left_out for rows in account)
+        data = with_account(data, account)
+    text = json.dumps(_ABOUT.dump_python(_About(**about), mode="json"))
+    write_netcdf(data.assign_attrs(crankmbs=text), file)
+
+
+def read_saved(path: str | Path) -> dict[str, Any]:
+    """The fields of a saved result, by name: from its folder, or its result.nc.
+
+    Raises
+    ------
+    OutputError : there is no such result, or the file is none
+    """
+    if not isinstance(path, str | Path):
+        raise OutputError(f"a saved result is named by its folder or file; {shown(path)} came")
+    file = Path(path)
+    file = file / "result.nc" if file.is_dir() else file
+    if not file.is_file():
+        raise OutputError(f"{file}: no such result; save writes one, and so does crankmbs run")
+    try:
+        data = read_netcdf(file, {**_DIMS, **DIMS})
+        about = _ABOUT.validate_python(json.loads(data.attrs.pop("crankmbs")), context=SAVED)
+        keep: Keep | None = None
+        if about.left_out is not None:
+            account, data = account_in(data, about.scene, about.left_out)
+            keep = partial(_itself, account)
+        _check_labels(data, about.scene)
+    except _NO_RESULT:  # HDF5's own words name its inner calls
+        raise OutputError(
+            f"{file}: no readable result of crankmbs; give the result.nc that save wrote"
+        ) from None
+    given = {name: value for name, value in vars(about).items() if name != "left_out"}
+    return {**given, "data": data, "keep": keep}
+
+
+def _check_labels(data: xr.Dataset, scene: Scene) -> None:
+    """Raise ValueError unless the data are of the scene's cylinders, each with unit and error."""
+    if data.sizes["cylinder"] != len(scene.cylinders) or data.sizes["time"] == 0:
+        raise ValueError("not the samples of this scene")
+    for name, about in variables_of(scene).items():
+        attrs = data[name].attrs
+        if (
+            data[name].dims != about.dims
+            or attrs["units"] != about.units
+            or not isinstance(attrs["error_estimate"], float)
+        ):
+            raise ValueError(f"{name}: no unit or no error")
+
+
+def _itself(account: Account) -> Account:
+    return account
+
+
+_ABOUT = TypeAdapter(_About)
+_DIMS = {name: about.dims for name, about in VARIABLES.items()}
+_NO_RESULT = (  # what readers raise on a foreign file; RecursionError is a RuntimeError
+    *(ArithmeticError, AttributeError, LookupError, OSError),
+    *(RuntimeError, TypeError, ValueError),
+)

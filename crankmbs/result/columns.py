@@ -1,0 +1,71 @@
+"""The samples of a run as columns: one for each variable, or for each of its cylinders."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from crankmbs.numerics.arrays import Array
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+
+__all__ = ["data_frame", "write_csv"]
+
+
+class _Column(NamedTuple):
+    name: str
+    units: str
+    values: Array
+    error: float
+
+    @property
+    def heading(self) -> str:
+        return f"{self.name} [{self.units}]"
+
+
+def write_csv(data: xr.Dataset, file: Path) -> None:
+    """Write time, crank angle and every variable as CSV, in SI units."""
+    columns = _columns(data)
+    table = np.column_stack([one.values for one in columns])
+    header = ",".join(one.heading for one in columns)
+    np.savetxt(file, table, fmt="%.12g", delimiter=",", header=header, comments="")
+
+
+def data_frame(data: xr.Dataset) -> pd.DataFrame:
+    """The columns of `write_csv` over the crank angle, all angles in degrees."""
+    import pandas as pd
+
+    columns = [_in_degrees(one) for one in _columns(data)]
+    angle = columns.pop(1)
+    frame = pd.DataFrame(
+        {one.heading: one.values for one in columns},
+        index=pd.Index(angle.values, name=angle.heading),
+    )
+    frame.attrs["error_estimate"] = {one.heading: one.error for one in (angle, *columns)}
+    return frame
+
+
+def _columns(data: xr.Dataset) -> list[_Column]:
+    """Time, crank angle, then the variables in their order."""
+    found = []
+    for name in ("time", "crank_angle", *map(str, data.data_vars)):
+        one = data[name]
+        units, error = one.attrs["units"], float(one.attrs["error_estimate"])
+        if "cylinder" in one.dims:
+            for number, values in zip(data["cylinder"].values, one.values.T, strict=True):
+                found.append(_Column(f"{name} {number}", units, values, error))
+        else:
+            found.append(_Column(name, units, one.values, error))
+    return found
+
+
+def _in_degrees(one: _Column) -> _Column:
+    if not one.units.startswith("rad"):
+        return one
+    per = math.degrees(1.0)
+    return _Column(one.name, f"deg{one.units[3:]}", one.values * per, one.error * per)

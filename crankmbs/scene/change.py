@@ -1,0 +1,135 @@
+"""A scene with some of its values changed, each named by where it stands."""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from crankmbs.errors import InputError, shown
+from crankmbs.scene.sentences import did_you_mean
+
+if TYPE_CHECKING:
+    from crankmbs.scene.scene import Scene
+
+__all__ = ["changed"]
+
+_STEP = re.compile(r"__|\.|\[|\]\.|\]__|\]$")
+_BARE = re.compile(r"[A-Za-z_]\w*(?:(?:\.|__)\w+|\[\d+\])*")
+_OF_ONE = re.compile(r"(\w+)((?:[.\[][^:]*)?): ")
+_Changes = dict[str, Any]  # by the first step of their names, what lies below as _Changes again
+
+
+class _Leaf:
+    """A new value, and what the caller named it by."""
+
+    def __init__(self, name: str, value: Any) -> None:
+        self.name, self.value = name, value
+
+
+def changed(scene: Scene, values: Mapping[str, Any]) -> Scene:
+    """The scene with other values, all at once, so that none has to fit the old ones.
+
+    Parameters
+    ----------
+    values : by where they stand, "rod.length" or "rod__length"; in a list by number from 1, as in
+        every message: "torque[2].coefficient" or "torque__2__coefficient". Numbers in SI units, or
+        text with a unit; or a whole part
+
+    Raises
+    ------
+    InputError : no such place, or a value that cannot be; begins with the name as it was given
+
+    >>> changed(load_scene("propeller"), {"rod.length": "160 mm"}).rod.length
+    0.16
+    """
+    tree: _Changes = {}
+    for name, value in values.items():
+        *above, last = _steps(name)
+        branch = tree
+        for step in above:
+            branch = branch.setdefault(step, {})
+            if isinstance(branch, _Leaf):
+                raise InputError(_twice(branch.name, name))
+        if last in branch:
+            raise InputError(_twice(_names(branch[last])[0], name))
+        branch[last] = _Leaf(name, value)
+    new: Scene = _rebuilt(scene, tree, ())
+    return new
+
+
+def _steps(name: str) -> list[str]:
+    if not _BARE.fullmatch(name):
+        raise InputError(
+            f"{shown(name)} names no value of a scene; write it as rod__length or torque__1__torque"
+        )
+    return [step for step in _STEP.split(name) if step]
+
+
+def _twice(one: str, other: str) -> str:
+    return f"{one} and {other} change the same part of the scene; give one of them"
+
+
+def _names(branch: _Leaf | _Changes) -> list[str]:
+    """What the caller named the values of a branch by."""
+    if isinstance(branch, _Leaf):
+        return [branch.name]
+    return [name for below in branch.values() for name in _names(below)]
+
+
+def _rebuilt(old: Any, changes: _Changes, place: tuple[str, ...]) -> Any:
+    """A part or a list of parts, made anew from its old values and the changed ones."""
+    if isinstance(old, tuple):
+        return _list(old, changes, place)
+    fields = type(old).__pydantic_fields__
+    known = {field.validation_alias or name: name for name, field in fields.items()}  # "from"
+    new, given = {}, {}
+    for key, below in changes.items():
+        name = known.get(key, key)
+        if name not in fields:
+            near = did_you_mean(key, list(known)) or f"; known are {', '.join(known)}"
+            raise InputError(f"{_names(below)[0]}: {_called(old)} has no {shown(key)}{near}")
+        new[name] = _below(getattr(old, name), below, (*place, key))
+        given[name] = _names(below)
+    try:
+        return dataclasses.replace(old, **new)
+    except InputError as error:
+        raise InputError(_in_given_names(str(error), given)) from None
+
+
+def _list(old: tuple[Any, ...], changes: _Changes, place: tuple[str, ...]) -> tuple[Any, ...]:
+    new = list(old)
+    for step, below in changes.items():
+        if not step.isdigit() or not 1 <= int(step) <= len(old):
+            raise InputError(
+                f"{_names(below)[0]}: {shown(step)} is none of the numbers 1 to {len(old)} of a "
+                "list; its first is 1"
+            )
+        new[int(step) - 1] = _below(old[int(step) - 1], below, (*place, step))
+    return tuple(new)
+
+
+def _below(old: Any, change: _Leaf | _Changes, place: tuple[str, ...]) -> Any:
+    if isinstance(change, _Leaf):
+        return change.value
+    if hasattr(type(old), "__pydantic_fields__") or (isinstance(old, tuple) and old):
+        return _rebuilt(old, change, place)
+    name, part = _names(change)[0], "__".join(place)
+    there = f"is one value, {shown(old)}" if old not in (None, ()) else "is not there"
+    raise InputError(f"{name}: in this scene {part} {there}; give {part} as a whole")
+
+
+def _called(part: Any) -> str:
+    return "a scene" if type(part).__name__ == "Scene" else f"a {type(part).__name__}"
+
+
+def _in_given_names(text: str, given: Mapping[str, list[str]]) -> str:
+    """The sentence of a refusal with the name that the caller gave where it names a value so."""
+    named = _OF_ONE.match(text)
+    if named and named[1] in given and len(given[named[1]]) == 1:
+        return f"{given[named[1]][0]}{named[2]}: {text[named.end() :]}"
+    names = [name for several in given.values() for name in several]
+    if any(text.startswith(name) for name in names):
+        return text
+    return f"{' and '.join(names)}: {text}"

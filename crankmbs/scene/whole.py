@@ -1,0 +1,226 @@
+"""What must hold between the parts of a scene."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from crankmbs.errors import InputError
+from crankmbs.scene.cover import check_angles, check_times
+from crankmbs.scene.drives import SpeedFile
+from crankmbs.scene.fuel import Fuel
+from crankmbs.scene.gas import tables_of
+from crankmbs.scene.speed_rows import repeats
+from crankmbs.scene.tables import CylinderTable
+from crankmbs.scene.torque import Torque
+from crankmbs.scene.units import EXAMPLES
+
+if TYPE_CHECKING:
+    from crankmbs.scene.scene import Scene
+
+__all__ = ["OPEN_LOOP", "check_whole"]
+
+OPEN_LOOP = (
+    "rod.length must be at least crank.radius + |piston.offset| = {least:.12g} m, or the crank "
+    "cannot turn; {came:.12g} m came"
+)
+
+_FARTHEST = 1e9  # rad: its last digit is 1e-7
+_MOST_SAMPLES = 2e7  # the memory of a machine may hold less: `crankmbs.motion.memory`
+
+
+def check_whole(scene: Scene) -> None:
+    """Refuse parts that each may be, but not together.
+
+    Raises
+    ------
+    InputError : the rule, what came and the way out
+    """
+    for check in (
+        _check_loop,
+        _check_gas,
+        _check_friction,
+        _check_motion,
+        _check_settled,
+        _check_tables,
+        _check_size,
+    ):
+        check(scene)
+
+
+def _passing(load: Torque) -> str:
+    """What in a load happens once or depends on time, so that nothing settles under it, if any."""
+    if load.has_window:
+        return f"a {load.kind} with a window acts once"
+    return "" if load.is_steady else f"a {load.kind} depends on time"
+
+
+def _uneven(fuel: Fuel) -> str:
+    """What in the fuel happens once or at random, so that nothing settles with it, if any."""
+    if fuel.scatter > 0.0:
+        return "scatter makes every share another"
+    if fuel.after > 0.0 or (fuel.until, fuel.from_speed, fuel.until_speed) != (None, None, None):
+        return "a window acts once"
+    if any(misfire.every is None for misfire in fuel.misfire or ()):
+        return "a listed misfire happens once"
+    return ""
+
+
+def _check_loop(scene: Scene) -> None:
+    least = scene.crank.radius + abs(scene.piston.offset)
+    if scene.rod.length < least * (1.0 - 1e-15):
+        raise InputError(OPEN_LOOP.format(least=least, came=scene.rod.length))
+    if scene.rod.moment_of_inertia < 0.0:  # after its length, which may be what is wrong
+        raise InputError(
+            'rod: the inertia "two-mass" needs a center_of_mass between the pins, 0 to '
+            f"{scene.rod.length:.6g} m; {scene.rod.center_of_mass:.6g} m came"
+        )
+    if scene.gas is not None and scene.piston.gas_area is None:
+        raise InputError(
+            "piston.bore: with [gas] the piston needs its bore, or its area; neither came"
+        )
+
+
+def _check_gas(scene: Scene) -> None:
+    """Refuse as many pressures as there are not cylinders, and fuel that cannot burn."""
+    gas, cylinders = scene.gas, len(scene.cylinders)
+    for key, source in (("pressure", gas and gas.pressure), ("motored", gas and gas.motored)):
+        if isinstance(source, CylinderTable | tuple):
+            count = len(tables_of(source))
+            given = "columns" if isinstance(source, CylinderTable) else "files"
+            if count != cylinders:
+                raise InputError(
+                    f"gas.{key}: as many {given} as cylinders are needed, {cylinders}, or one "
+                    f"for all; {count} came"
+                )
+    if scene.fuel is None:
+        return
+    if gas is None:
+        raise InputError("fuel: without [gas] nothing burns; add [gas], or remove [fuel]")
+    if gas.indicator is None and gas.motored is None:
+        raise InputError(
+            "gas.motored: with [fuel] the pressure without combustion is needed, of which a "
+            'firing takes its share; give motored = "motored.csv", or an indicator'
+        )
+    if scene.motion is not None and scene.fuel.governor is not None:
+        raise InputError(
+            "fuel.governor: with [motion] the speed is prescribed, and there is nothing to "
+            "govern; remove the governor, or free the crank with [start]"
+        )
+    for number, misfire in enumerate(scene.fuel.misfire or (), start=1):
+        if misfire.cylinder > cylinders:
+            raise InputError(
+                f"fuel.misfire[{number}].cylinder: must be from 1 to {cylinders}; "
+                f"{misfire.cylinder} came"
+            )
+
+
+def _check_friction(scene: Scene) -> None:
+    if scene.gas is None and scene.friction is not None and scene.friction.ring_pressure > 0.0:
+        raise InputError(
+            "friction.ring_pressure: without [gas] there is no gas force to press the rings; "
+            f"leave it out, or add [gas]; {scene.friction.ring_pressure:g} came"
+        )
+
+
+def _check_motion(scene: Scene) -> None:
+    if (scene.motion is None) == (scene.start is None):
+        came = "neither" if scene.motion is None else "both"
+        raise InputError(
+            "give [motion] (the speed is prescribed) or [start] (the crank is free), "
+            f"exactly one of the two; {came} came"
+        )
+    if scene.motion is not None and scene.torque:
+        raise InputError(
+            "torque: with [motion] the drive is an answer, not a load; remove [[torque]], or "
+            "free the crank with [start]"
+        )
+    if scene.motion is not None and scene.motion.speed == 0.0 and not scene.end[1]:
+        raise InputError("motion.speed: at speed 0 no angle is ever reached; until must be a time")
+    rod_turns = scene.rod.moment_of_inertia > 0.0 or (
+        scene.rod.mass > 0.0 and scene.rod.center_of_mass != scene.rod.length
+    )
+    if scene.start is not None and scene.crank.inertia is None:
+        raise InputError(
+            "crank.inertia: this key is missing; a free crank needs it, only a prescribed "
+            "speed, [motion], does without"
+        )
+    if scene.start is not None and scene.crank.inertia == 0.0 and not rod_turns:
+        raise InputError(
+            "crank.inertia: a free crank needs an inertia above 0, or nothing resists it at "
+            "the dead centres; 0 came"
+        )
+
+
+def _check_settled(scene: Scene) -> None:
+    if not scene.settles:
+        return
+    if scene.motion is not None:
+        raise InputError(
+            'run.until: "settled" is the periodic motion that a free crank comes to; with '
+            '[motion] give an end such as "2 cycles", or free the crank with [start]'
+        )
+    if scene.fuel is not None and _uneven(scene.fuel):
+        raise InputError(
+            f'run.until: "settled" needs firings that are alike in every cycle, and in [fuel], '
+            f"{_uneven(scene.fuel)}; give an end such as {EXAMPLES['extent']}, or remove [fuel]"
+        )
+    for number, load in enumerate(scene.torque, start=1):
+        if _passing(load):
+            raise InputError(
+                f'run.until: "settled" needs loads that act alike in every cycle, and '
+                f"torque[{number}], {_passing(load)}; give an end such as "
+                f"{EXAMPLES['extent']}, or another load"
+            )
+
+
+def _check_tables(scene: Scene) -> None:
+    until, until_time = scene.end
+    end = until if until_time else 0.0
+    if scene.motion is not None and isinstance(scene.motion.speed, SpeedFile):
+        _check_speed(scene, scene.motion.speed, end)
+    for load in scene.torque:
+        if load.table_over_time is None:
+            continue
+        if load.until_speed is None and (load.after or 0.0) < end:
+            last = end if load.until is None else min(end, load.until)
+        else:
+            last = 0.0  # where it ends shows on the way
+        what = "its window" if load.has_window else "the run"
+        begin = load.after or 0.0
+        check_times(load.table_over_time, begin, max(begin, last), what)
+
+
+def _check_speed(scene: Scene, speed: SpeedFile, end: float) -> None:
+    """Refuse a speed that does not cover the run, to a time [s] or to its end in angle."""
+    assert scene.motion is not None
+    table, begin = speed.file, scene.motion.angle
+    if speed.kind == "time_table":
+        check_times(table, 0.0, end, "the run")
+    elif not repeats(table):
+        until, until_time = scene.end
+        reach = 0.0 if until_time else math.copysign(until, table.y[0])
+        check_angles(table, *sorted((begin, begin + reach)))
+
+
+def _check_size(scene: Scene) -> None:
+    """Refuse what no memory holds and what double precision cannot tell apart."""
+    until, until_time = scene.end
+    if not until_time and until > _FARTHEST:
+        raise InputError(
+            f"run.until: beyond {_FARTHEST / (2 * math.pi):.2g} rev an angle has too few "
+            f"digits left; {until / (2 * math.pi):.3g} rev came"
+        )
+    if scene.run.every is None:
+        return
+    every, in_time = scene.run.every.resolve(scene.period)
+    if in_time == until_time:
+        _check_count(until / every)
+
+
+def _check_count(samples: float) -> None:
+    if samples > _MOST_SAMPLES:
+        raise InputError(
+            f"run.every: {samples:.3g} samples came, more than {_MOST_SAMPLES:.0e}; give a wider "
+            'spacing, or every = "none" to keep the last cycle alone'
+        )

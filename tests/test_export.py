@@ -1,0 +1,176 @@
+"""What other programs are given: a scene that reads back, arrays with their units and errors, and a
+script for exudyn that gives the bits of the multibody model's own run."""
+
+import runpy
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from command_line import crankmbs_, names, refused
+from scipy.io import loadmat
+
+import crankmbs
+from crankmbs import Constant, InputError, Load, OutputError, export, load_scene, simulate
+from crankmbs.mechanics.train import crank_train
+from crankmbs.motion.multibody.single import single_run
+
+TORQUE_DRIVEN = load_scene("torque_driven").with_(run__until="0.3 s")
+SCENES = {
+    "torque_driven": TORQUE_DRIVEN,
+    "propeller": load_scene("propeller").with_(run__until="0.7 cycles"),
+    "coasting": load_scene("coasting").with_(run__until="0.03 s"),
+    "yi_diesel": load_scene("yi_diesel").with_(run__until="0.5 rev"),
+    "banks": load_scene("torque_driven").with_(
+        run__until="0.1 s",
+        layout=crankmbs.Layout(
+            cylinders=(
+                crankmbs.Cylinder(bank="-30 deg"),
+                crankmbs.Cylinder(bank="30 deg", phase="200 deg"),
+            )
+        ),
+    ),
+}
+
+
+def script(scene, folder):
+    (file,) = export(scene, "exudyn", folder / "mine.py")
+    return runpy.run_path(str(file))["run"]()
+
+
+def of_cylinder(rows, heading):
+    """The same column of a run's rows."""
+    name, _, number = heading.split(" [")[0].partition(" ")
+    values = rows[name]
+    return values[:, int(number) - 1] if number else values
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_the_script_gives_the_run_of_the_multibody_model(name, tmp_path):
+    found, single = script(SCENES[name], tmp_path), single_run(crank_train(SCENES[name]))
+    columns = {heading: values for heading, values in found.items() if heading != "time [s]"}
+    assert len(columns) >= 10
+    for heading, values in columns.items():
+        rows = of_cylinder(single.rows, heading)
+        size = 1e-12 * max(np.max(np.abs(single.rows[heading.split("[")[0].split(" ")[0]])), 1e-6)
+        np.testing.assert_allclose(values, rows, rtol=0.0, atol=size, err_msg=heading)
+
+
+@pytest.mark.parametrize("name", ["torque_driven", "propeller", "coasting", "banks"])
+def test_the_true_motion_lies_within_the_stated_error(name, tmp_path):
+    scene = SCENES[name]
+    found, single = script(scene, tmp_path), single_run(crank_train(scene))
+    result = simulate(scene.with_(run__every=f"{single.step!r} s"), formulation="crank_angle")
+    data = {name: one.values for name, one in result.data.variables.items()}
+    for heading, values in found.items():
+        stated = single.errors.get(heading.split("[")[0].split(" ")[0])
+        if stated is not None:
+            true = of_cylinder(data, heading)[:-1]  # the last lies at the end of the run
+            missed = np.max(np.abs(values[: len(true)] - true))
+            assert 0.1 * stated < missed < stated, heading
+
+
+def test_the_script_says_its_error_and_needs_no_crankmbs(tmp_path):
+    (file,) = export(TORQUE_DRIVEN, "exudyn", tmp_path / "mine.py")
+    text = file.read_text(encoding="utf-8")
+    stated = single_run(crank_train(TORQUE_DRIVEN)).errors["crank_angle"]
+    assert f"#     {stated:<10.1e} crank angle [rad]\n" in text
+    code = (
+        "import sys, runpy; sys.modules.update(crankmbs=None, scipy=None);"
+        f"runpy.run_path({str(file)!r}, run_name='__main__')"
+    )
+    run = subprocess.run(
+        [sys.executable, "-c", code], cwd=tmp_path, check=True, capture_output=True, text=True
+    )
+    assert run.stdout.endswith("wrote mine.csv\n")
+    rows = np.loadtxt(tmp_path / "mine.csv", delimiter=",", skiprows=1)
+    assert rows[-1, 0] == pytest.approx(0.3)
+    with (tmp_path / "mine.csv").open() as lines:
+        assert next(lines).startswith("time [s],crank_angle [rad],crank_speed [rad/s],")
+
+
+def test_a_hostile_title_stays_a_comment(tmp_path):
+    titled = TORQUE_DRIVEN.with_(title='x\n"""\nraise SystemExit(1)\r\u2028import os \N{SNOWMAN}')
+    assert len(script(titled, tmp_path)["time [s]"]) > 10
+
+
+@pytest.mark.parametrize(
+    ("scene", "said"),
+    [
+        (load_scene("misfire"), "cannot express [fuel], whose shares are decided on the way"),
+        (load_scene("friction"), "cannot express [friction], which jumps where a piston turns"),
+        (load_scene("turning_moment"), "torque[1], a angle_table; give constant, viscous or"),
+        (
+            TORQUE_DRIVEN.with_(torque=(Load(lambda t, theta, omega: 1.0),)),
+            "torque[1], a function of Python; give constant",
+        ),
+        (
+            TORQUE_DRIVEN.with_(torque=(Constant(torque=1.0, after=0.1),)),
+            "the window of torque[1]; leave out when it sets in",
+        ),
+        (load_scene("yi_diesel_free").with_(run__until="settled"), 'until = "settled", which is'),
+        (
+            load_scene("yi_diesel").with_(
+                motion__speed=crankmbs.Oscillation(mean=300.0, amplitude=3.0, order=2.0)
+            ),
+            "a prescribed speed that changes; give one constant speed",
+        ),
+        (load_scene("v_twin"), "its multibody run is cut where forces or loads jump"),
+        (TORQUE_DRIVEN.with_(torque=(), start__angle=0.0), "nothing moves the crank"),
+    ],
+)
+def test_what_a_script_cannot_express_is_refused(scene, said, tmp_path):
+    with pytest.raises(InputError) as caught:
+        export(scene, "exudyn", tmp_path / "mine.py")
+    assert said in str(caught.value)
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_mat_file_has_names_units_and_errors(tmp_path):
+    result = simulate(load_scene("v_twin").with_(run__until="1 rev"))
+    (file,) = export(result, "matlab", tmp_path / "mine.mat")
+    found = loadmat(file, simplify_cells=True)
+    for name in ("time", "crank_angle", *result.data.data_vars):
+        np.testing.assert_array_equal(found[name], result.data[name].values)
+        assert found["units"][name] == result.data[name].attrs["units"]
+        assert found["error_estimate"][name] == result.data[name].attrs["error_estimate"]
+        assert found["long_name"][name] == result.data[name].attrs["long_name"]
+    assert found["about"]["status"] == 0
+
+
+def test_toml_is_the_same_scene_and_overwrites_nothing(tmp_path):
+    scene = load_scene("yi_diesel_free").with_(crank__inertia=0.2)
+    first, *tables = export(scene, "toml", tmp_path / "mine.toml")
+    assert tables
+    again = load_scene(first)
+    assert again.crank == scene.crank
+    np.testing.assert_array_equal(again.gas.pressure.y, scene.gas.pressure.y)
+    with pytest.raises(OutputError, match=r"mine\.toml: exists already and is not overwritten"):
+        export(scene, "toml", first)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ((TORQUE_DRIVEN, "matlap", "x.mat"), '"matlab" or "exudyn"; "matlap" came; did you mean'),
+        ((TORQUE_DRIVEN, "matlab", "x.py"), 'a file for "matlab" ends in .mat; .py came'),
+        ((TORQUE_DRIVEN, "toml", "x"), "ends in .toml; no ending came"),
+        (("propeller", "toml", "x.toml"), 'takes a Scene or a Result; "propeller" came'),
+    ],
+)
+def test_what_cannot_be_written_is_refused(arguments, said):
+    with pytest.raises(InputError) as caught:
+        export(*arguments)
+    assert said in str(caught.value)
+
+
+def test_the_command_writes_what_it_says(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for to, file in (("toml", "torque_driven.toml"), ("matlab", "x.mat"), ("exudyn", "x.py")):
+        out = () if to == "toml" else ("-o", file)
+        said = crankmbs_("export", "torque_driven", "--to", to, *out)
+        assert said.exit_code == 0
+        assert said.stdout == f"wrote {file}\n"
+    assert names(".") == {"torque_driven.toml", "x.mat", "x.py"}
+    assert "exists already" in refused("export", "torque_driven.toml", "--to", "toml")
+    assert '"toml", "matlab" or "exudyn"' in refused("export", "torque_driven", "--to", "fmu")

@@ -1,0 +1,189 @@
+"""What a result and a scene show of themselves, and what can be asked of a result by a method."""
+
+import dataclasses
+import subprocess
+import sys
+from html.parser import HTMLParser
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+import crankmbs
+from crankmbs import InputError, Motion, Run, load_scene, simulate
+from crankmbs.digits import digits
+from crankmbs.measures import measure
+
+FIRED = load_scene("propeller")
+SHORT = dataclasses.replace(FIRED, run=Run(until="2 cycles"))
+HOSTILE = '</td><script>alert("&")</script><img src=x onerror=alert(1)>'
+
+
+@pytest.fixture(scope="module")
+def short():
+    return simulate(SHORT)
+
+
+class Markup(HTMLParser):
+    """Collects tags and text; what does not close is told."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.tags, self.open, self.text = [], [], []
+        self.feed(text)
+        self.close()
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.append(tag)
+        if tag != "img":
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        self.text.append(data)
+
+
+ALLOWED = {"div", "p", "b", "table", "tr", "th", "td", "img"}
+
+
+def shown(thing):
+    found = Markup(thing._repr_html_())
+    assert not found.open
+    assert set(found.tags) <= ALLOWED
+    assert found.tags.count("img") == 1
+    return " ".join(found.text)
+
+
+def test_a_result_shows_its_measures_with_errors_and_a_figure(short):
+    text, speed = shown(short), short.measures().mean_speed
+    assert "reached the end of the run" in text
+    assert "mean speed [rpm]" in text
+    assert digits(speed.value * 30.0 / np.pi) in text
+    assert "piston pin" in text
+
+
+def test_the_text_of_a_scene_is_never_markup():
+    scene = dataclasses.replace(SHORT, title=HOSTILE, source=HOSTILE)
+    for thing in (scene, simulate(scene)):
+        assert HOSTILE in shown(thing)  # as text, once parsed
+
+
+@pytest.mark.parametrize(
+    "name", ["yi_diesel_free", "v_twin", "torque_driven", "run_up", "friction"]
+)
+def test_a_scene_shows_its_machine(name):
+    scene = load_scene(name)
+    text = shown(scene)
+    assert "crank" in text
+    assert scene.title in text
+    assert f"until {scene.run.until.value:g}" in text
+
+
+@pytest.mark.parametrize(
+    ("parts", "status"),
+    [
+        ({"run": Run(until="0.1 deg", every="0.1 deg")}, 0),
+        ({"run": Run(until="3 rev", every="none")}, 0),
+        ({"start": None, "torque": (), "motion": Motion(speed=0.0), "run": Run(until="1 s")}, 0),
+        ({"start": crankmbs.Start(angle=0.0, speed=0.0), "torque": (), "gas": None}, 1),
+    ],
+)
+def test_every_result_shows_itself(parts, status):
+    result = simulate(dataclasses.replace(FIRED, **parts))
+    assert result.status == status
+    assert f"status {status}" in shown(result)
+    assert f"status {status}" in repr(result)
+
+
+def test_a_repr_is_one_short_line(short):
+    wordy = dataclasses.replace(SHORT, title="line\n" * 1000)
+    for thing in (short, SHORT, simulate(wordy), wordy):
+        assert len(repr(thing)) < 250
+        assert "\n" not in repr(thing)
+
+
+def test_a_method_gives_what_the_function_gives(short):
+    assert short.measures() == measure(short)
+    assert short.at("60 deg") == crankmbs.at_angle(short, "60 deg")
+
+
+def test_a_dataframe_is_the_samples_in_degrees(short):
+    frame = short.to_dataframe()
+    assert frame.index.name == "crank_angle [deg]"
+    np.testing.assert_array_equal(frame.index, np.degrees(short.data["crank_angle"].values))
+    np.testing.assert_array_equal(frame["time [s]"], short.data["time"].values)
+    rate = np.degrees(short.data["rod_angular_speed"].values[:, 0])
+    np.testing.assert_allclose(frame["rod_angular_speed 1 [deg/s]"], rate, rtol=1e-15)
+    assert not [heading for heading in frame.columns if "rad" in heading]
+    error = short.data["crank_speed"].attrs["error_estimate"]
+    stated = frame.attrs["error_estimate"]
+    assert stated["crank_speed [deg/s]"] == pytest.approx(np.degrees(error))
+    assert set(stated) == {frame.index.name, *frame.columns}
+
+
+def test_a_dataframe_has_a_column_for_each_cylinder():
+    scene = dataclasses.replace(load_scene("yi_diesel_free"), run=Run(until="10 deg"))
+    result = simulate(scene)
+    frame = result.to_dataframe()
+    for k in range(4):
+        np.testing.assert_array_equal(
+            frame[f"side_force {k + 1} [N]"], result.data["side_force"][:, k]
+        )
+
+
+@pytest.mark.parametrize("kind", ["speed", "motion", "forces", "polar", "torque", "orders"])
+def test_a_plot_is_a_figure_that_a_notebook_shows(short, kind):
+    figure = short.plot(kind)
+    assert isinstance(figure, Figure)
+    assert figure._repr_png_()[:4] == b"\x89PNG"
+
+
+def test_a_polar_plot_is_of_the_joint_asked_for(short):
+    titles = [
+        short.plot("polar", joint).axes[0].get_title() for joint in ("main_bearing", "piston_pin")
+    ]
+    assert titles[0].startswith("main bearing")
+    assert titles[1].startswith("piston pin")
+
+
+def test_cycles_are_drawn_from_four_on(short):
+    with pytest.raises(InputError, match="drawn from 4 on, and this run has 2;"):
+        short.plot("cycles")
+    longer = simulate(dataclasses.replace(FIRED, run=Run(until="4 cycles", every="5 deg")))
+    assert longer.plot("cycles").axes[-1].get_xlabel() == "cycle"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("sped",), 'or "polar"; "sped" came; did you mean "speed"?'),
+        (("polar", "crankpin"), '"piston_pin"; "crankpin" came; did you mean "crank_pin"?'),
+        ((["speed"],), 'or "polar"; \\["speed"\\] came'),
+    ],
+)
+def test_a_plot_that_there_is_not_is_refused(short, arguments, said):
+    with pytest.raises(InputError, match=said):
+        short.plot(*arguments)
+
+
+def test_nothing_that_draws_is_loaded_before_it_is_asked_for():
+    code = (
+        "import sys, crankmbs; crankmbs.simulate(crankmbs.load_scene('torque_driven'));"
+        "assert 'matplotlib' not in sys.modules; crankmbs.figures.plot;"
+        "assert 'matplotlib' in sys.modules"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_the_floors_above_a_result_are_imported_by_its_methods_alone():
+    code = (
+        "import sys, types; package = types.ModuleType('crankmbs'); "
+        f"package.__path__ = [{crankmbs.__path__[0]!r}]; sys.modules['crankmbs'] = package;"
+        "import crankmbs.result;"
+        "above = {'measures', 'compare', 'figures', 'report', 'simulate'};"
+        "loaded = {name.split('.')[1] for name in sys.modules if name.startswith('crankmbs.')};"
+        "assert 'result' in loaded and not loaded & above"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)
