@@ -236,7 +236,7 @@ def wrong(name, said, read):
     return [guard for guard, holds in guards.items() if not holds()]
 
 
-_HELD = {}
+_HELD: dict[str, dict[str, str]] = {}
 
 
 def files_hold(said, name, read):
@@ -257,7 +257,7 @@ def data_hold(text, data):
     names = text.splitlines()[0].split(",")
     rows = np.loadtxt(io.StringIO(text), delimiter=",", skiprows=1)
     columns = dict(zip(names, rows.T, strict=True))
-    largest = {}
+    largest: dict[str, float] = {}
     variables = [v for v in data.variables if v not in ("cylinder", "energy_residual")]
     for variable in variables:
         unit = EVERY[variable].units
@@ -380,11 +380,11 @@ def polars_hold(said, scene, data, k):
     volume = area(scene) * 1e6 * of_cylinder(data["piston_displacement"].values, k)
     pressure = 1e-5 * of_cylinder(data["gas_pressure"].values, k)
     (curve,) = found["curves"]
-    units = [found[axis]["unit"] for axis in ("right", "up")]
+    shown = [found[axis]["unit"] for axis in ("right", "up")]
     return (
         same(curve["x"], volume)
         and same(curve["y"], pressure, near=1e-8)
-        and units == ["cm³", "bar"]
+        and shown == ["cm³", "bar"]
     )
 
 
