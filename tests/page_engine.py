@@ -79,6 +79,9 @@ def unlike(measures, found, size):
     }
     if measures.indicated_power is not None:
         pairs["indicated_power"] = (found["indicated_power"], measures.indicated_power)
+    for name in ("friction_power", "mechanical_efficiency"):
+        if (one := getattr(measures, name)) is not None:
+            pairs[name] = (found[name], one)
     for k, one in enumerate(measures.imep or ()):
         pairs[f"imep {k}"] = (found["imep"][k], one)
     for own, one in zip(found["joints"], measures.joints, strict=True):
@@ -105,6 +108,8 @@ def sizes(result, measures):
         "crank_torque": torque,
         "external_torque": torque,
         "indicated_power": torque * speed,
+        "friction_power": torque * speed,
+        "mechanical_efficiency": 1.0,
         "imep": peak(result.data["gas_pressure"].values),
         "force": max(one.peak.value for one in measures.joints),
     }

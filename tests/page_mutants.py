@@ -621,8 +621,8 @@ MUTANTS = {
             "(along + ratio * Math.cos(2 * phi) - skew",
         ),
         (
-            "radial: rod * Math.cos(phi + beta)",
-            "radial: rod * Math.cos(phi)",
+            "radial: rod * (along * cosine - across * sine)",
+            "radial: rod * along",
         ),
         (
             "rod: net * (1 + (ratio ** 2 / 4) * second),",

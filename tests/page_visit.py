@@ -54,8 +54,9 @@ class Opened:
 
     def draws(self, curve):
         """Whether the upper plot has a curve, at whatever height a message leaves it."""
-        one, other = (unit_square(text) for text in (self.curve(), curve))
-        return len(one) == len(other) and np.allclose(one, other, atol=0.02)
+        across = np.linspace(0.0, 1.0, 361)
+        one, other = (unit_square(text).T for text in (self.curve(), curve))
+        return np.allclose(np.interp(across, *one), np.interp(across, *other), atol=0.02)
 
     def type(self, knob, text):
         """A number typed into a knob."""
@@ -91,8 +92,9 @@ class Opened:
 
 
 def unit_square(curve):
-    """The points of a path, in the square from 0 to 1."""
-    points = np.array(re.findall(r"-?[\d.]+", curve), dtype=float).reshape(-1, 2)
+    """The points of a path of one begin and relative steps, in the square from 0 to 1."""
+    steps = np.array(re.findall(r"-?[\d.]+", curve), dtype=float).reshape(-1, 2)
+    points = steps.cumsum(axis=0)
     return (points - points.min(axis=0)) / np.ptp(points, axis=0)
 
 

@@ -15,7 +15,7 @@ import crankmbs.figures.frames
 from crankmbs import Cylinder, Layout, Motion, Oscillation, Ramp, Run, load_scene, simulate
 from crankmbs.cli import app
 from crankmbs.errors import InputError, OutputError
-from crankmbs.figures.animation import check_format, save_animation
+from crankmbs.figures.animation import Filming, check_format, save_animation
 from crankmbs.figures.frames import frames_of
 from crankmbs.figures.mechanism import Drawing, slices
 from crankmbs.figures.outline import mechanism
@@ -194,4 +194,35 @@ def test_command_refuses_a_wrong_ending_before_it_runs(tmp_path, monkeypatch):
     result = CliRunner().invoke(app, ["animate", "yi_diesel", "-o", "here/film.mov"])
     assert result.exit_code == 2
     assert ".mov came" in result.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_film_of_another_length_width_and_one_cylinder(tmp_path):
+    scene = dataclasses.replace(SWINGING, layout=Layout(firing_order=(1, 3, 2)))
+    filming = Filming(length=1.5, width=640, cylinder=2)
+    file = save_animation(simulate(scene), tmp_path / "two.gif", filming)
+    with Image.open(file) as film:
+        assert film.size == (640, 360)
+        assert film.n_frames / 20.0 == pytest.approx(1.5, rel=0.1)
+        pixels = np.asarray(film.convert("RGB"), dtype=int)
+    near = {
+        name: (np.abs(pixels - colour).sum(axis=-1) < 40)[:, :240].sum()
+        for name, colour in {"1": (0, 114, 178), "2": (213, 94, 0), "3": (0, 158, 115)}.items()
+    }
+    assert near["2"] > 50 > near["1"] + near["3"]
+
+
+@pytest.mark.parametrize(
+    ("option", "value", "rule"),
+    [
+        ("--length", "0.1", "length must be from 0.5 to 120 s; 0.1 came"),
+        ("--width", "1000", "width must be a multiple of 32 from 320 to 3840; 1000 came"),
+        ("--cylinder", "5", "cylinder: the scene has 1 cylinder; 5 came"),
+    ],
+)
+def test_command_refuses_a_film_that_cannot_be(tmp_path, monkeypatch, option, value, rule):
+    monkeypatch.chdir(tmp_path)
+    result = CliRunner().invoke(app, ["animate", "yi_diesel", option, value])
+    assert result.exit_code == 2
+    assert rule in " ".join(result.stderr.split())
     assert list(tmp_path.iterdir()) == []

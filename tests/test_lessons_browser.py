@@ -240,6 +240,17 @@ def test_half_the_step_is_worth_the_order(lesson, method, order):
     assert opened.said("stated.ratio") == pytest.approx(1.0, abs=0.4)
 
 
+def test_steps_feel_friction_as_the_exact_run_does(browser, tmp_path):
+    rings = load_scene("friction").friction
+    rubbed = replace(load_scene("yi_diesel_free"), friction=rings)
+    file = write_lesson("trust", tmp_path, rubbed)
+    with visiting(browser, size=LAPTOP, offline=True) as visit:
+        opened = Opened(visit, file)
+        opened.choose("order", "method", "Runge-Kutta")
+        opened.type("order", "size", 0.5)
+        assert opened.said("order.digits") > 4.0
+
+
 ANSWERS = [
     ("5.84 mm", "right", "Right"),
     ("0,584 cm", "right", "Right"),

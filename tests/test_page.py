@@ -14,7 +14,7 @@ from page_visit import assert_same, expected, opened
 from playwright.sync_api import sync_playwright
 from turned import turned
 
-from crankmbs import InputError, load_scene, shipped_scenes, simulate
+from crankmbs import Fuel, InputError, Misfire, load_scene, shipped_scenes, simulate
 from crankmbs.page import page_of, refusals
 from crankmbs.page.knobs import knobs_of
 from crankmbs.page.refusals import early_end
@@ -120,6 +120,15 @@ def test_a_load_that_settles_nothing_is_said_to_drift(page):
     assert f"gains {gain:.0f} rpm a cycle" in page.text("#badge")
     scene = turned(load_scene("propeller"), {"load": 0.0})
     np.testing.assert_allclose(speed, one_cycle(scene), rtol=1e-9)
+
+
+def test_misfires_that_come_again_are_not_called_a_drift(browser, tmp_path):
+    fuel = Fuel(misfire=(Misfire(cylinder=3, cycles="every 2"),))
+    scene = dataclasses.replace(load_scene("misfire"), fuel=fuel)
+    with opened(browser, tmp_path, scene) as visited:
+        badge = visited.settle().text("#badge")
+    assert badge.startswith("one of several cycles, of which the last ")
+    assert "crankmbs run --until settled" in badge
 
 
 def test_a_coasting_crank_keeps_its_mean_speed_and_says_that_any_would_do(browser, tmp_path):

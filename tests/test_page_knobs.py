@@ -53,6 +53,8 @@ def test_only_choices_that_mean_something_are_there():
     assert [c.name for c in choices_of(load_scene("yi_diesel"))] == ["rod", "cylinders"]
     of_each = dataclasses.replace(DIESEL.gas, pressure=(DIESEL.gas.pressure,) * 4)
     assert "cylinders" not in {c.name for c in choices_of(dataclasses.replace(DIESEL, gas=of_each))}
+    of_all = load_scene("turning_moment")
+    assert "cylinders" not in {c.name for c in choices_of(of_all)}  # its table is that of three
     assert next(c.own for c in choices_of(load_scene("grega_lecture"))) == "two-mass"
 
 

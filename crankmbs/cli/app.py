@@ -266,9 +266,14 @@ def animate(
         Path | None,
         typer.Option("--out", "-o", metavar="FILE", help=".gif or .mp4; default NAME.gif."),
     ] = None,
+    length: Annotated[float | None, typer.Option(help="Seconds of a cycle; default 6.")] = None,
+    width: Annotated[int | None, typer.Option(help="Pixels, a multiple of 32.")] = None,
+    cylinder: Annotated[int | None, typer.Option(help="The one shown alone; default all.")] = None,
 ) -> None:
     """Film the mechanism and its speed over the last cycle, for slides."""
-    if not animate_scene(scene, out):
+    from crankmbs.figures.animation import Filming  # matplotlib only here
+
+    if not animate_scene(scene, out, Filming(length, width, cylinder)):
         raise typer.Exit(3)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import math
 import subprocess
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -25,10 +26,11 @@ from crankmbs.figures.style import STYLE, crank_axis, footer, line_of
 from crankmbs.figures.view import View, last_view
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
+from crankmbs.scene.scene import Scene
 from crankmbs.scene.units import RPM
 from crankmbs.storage.files import write_in_one_move
 
-__all__ = ["check_format", "save_animation"]
+__all__ = ["AS_USUAL", "Filming", "check_filming", "check_format", "save_animation"]
 
 
 _RATES = {".gif": 20, ".mp4": 25}  # frames per second; whole hundredths of a second a frame
@@ -44,6 +46,25 @@ _RING: Any = {
     "zorder": 30,
 }
 _HOTTEST = 0.9  # opacity of the gas at the highest pressure
+_LENGTHS = (0.5, 120.0)  # s
+_WIDTHS = (320, 3840, 32)  # pixels: from, to, in steps that leave the height even
+
+
+@dataclass(frozen=True)
+class Filming:
+    """How a film is made.
+
+    length [s] : of a cycle on the screen, about; None: six
+    width [pixels] : its height is 9/16 of it; None: 800 of a .gif, 1280 of an .mp4
+    cylinder : number, from 1, of the one that is shown alone; None: all are
+    """
+
+    length: float | None = None
+    width: int | None = None
+    cylinder: int | None = None
+
+
+AS_USUAL = Filming()
 
 
 def check_format(file: Path) -> None:
@@ -66,19 +87,42 @@ def check_format(file: Path) -> None:
         )
 
 
+def check_filming(filming: Filming, scene: Scene) -> None:
+    """Refuse a length, a width or a cylinder that cannot be, before anything runs.
+
+    Raises
+    ------
+    InputError : which, its rule, and what came
+    """
+    length, width, cylinder = filming.length, filming.width, filming.cylinder
+    least, most = _LENGTHS
+    if length is not None and not least <= length <= most:
+        raise InputError(f"length must be from {least:g} to {most:g} s; {length:g} came")
+    low, high, step = _WIDTHS
+    if width is not None and not (low <= width <= high and width % step == 0):
+        raise InputError(f"width must be a multiple of {step} from {low} to {high}; {width} came")
+    count = len(scene.cylinders)
+    if cylinder is not None and not 1 <= cylinder <= count:
+        ending = "s" if count > 1 else ""
+        raise InputError(f"cylinder: the scene has {count} cylinder{ending}; {cylinder} came")
+
+
 @rc_context(STYLE)
-def save_animation(result: Result, file: Path) -> Path:
+def save_animation(result: Result, file: Path, filming: Filming = AS_USUAL) -> Path:
     """Film the last cycle into a .gif or .mp4 file, replaced in one move.
 
     Raises
     ------
-    InputError : another ending, no ffmpeg for .mp4, or nothing that moves
+    InputError : another ending, no ffmpeg for .mp4, a film that cannot be, or nothing that moves
     OutputError : the file cannot be written
     """
     check_format(file)
+    check_filming(filming, result.scene)
     suffix = file.suffix.lower()
-    frames = frames_of(result, _RATES[suffix])
-    film = _Film(result, frames, _DPI[suffix])
+    frames = frames_of(result, _RATES[suffix], filming.length)
+    dpi = _DPI[suffix] if filming.width is None else filming.width / _SIZE[0]
+    cuts = slices(result.scene) if filming.cylinder is None else [[filming.cylinder - 1]]
+    film = _Film(result, frames, cuts, dpi)
     writer = (PillowWriter if suffix == ".gif" else FFMpegWriter)(fps=_RATES[suffix])
     write_in_one_move(file, lambda part: film.write(writer, part))
     return file
@@ -87,11 +131,10 @@ def save_animation(result: Result, file: Path) -> Path:
 class _Film:
     """The figure whose frames are filmed."""
 
-    def __init__(self, result: Result, frames: Frames, dpi: float) -> None:
+    def __init__(self, result: Result, frames: Frames, cuts: list[list[int]], dpi: float) -> None:
         self._frames, self._dpi = frames, dpi
         self._figure = Figure(figsize=_SIZE, dpi=dpi, layout="constrained")
         FigureCanvasAgg(self._figure)
-        cuts = slices(result.scene)
         machines, trace = _places(self._figure, len(cuts))
         view = last_view(result)
         self._shift = float(view.degrees[0]) - math.degrees(float(view.data["crank_angle"][0]))

@@ -42,8 +42,9 @@ class Frames:
         return f"{digits(times, most=2)} times {what} than the machine"
 
 
-def frames_of(result: Result, rate: float) -> Frames:
-    """The last cycle at ``rate`` frames a second, slowed down to last about six seconds.
+def frames_of(result: Result, rate: float, length: float | None = None) -> Frames:
+    """The last cycle at ``rate`` frames a second, slowed down to last about so long [s]; None: six
+    seconds.
 
     Between samples the angle is the cubic through their angles and speeds; exact to fourth order
     in the spacing.
@@ -55,7 +56,7 @@ def frames_of(result: Result, rate: float) -> Frames:
     window = last_span(result)
     if window.duration <= 0.0:
         raise InputError(f"nothing moves that could be animated: {result.message}")
-    slower = float(f"{_LASTS / window.duration:.2g}")
+    slower = float(f"{(_LASTS if length is None else length) / window.duration:.2g}")
     count = max(2, round(window.duration * slower * rate))
     data = result.data.isel(time=slice(window.first, None))
     time, angle, speed = (data[name].values for name in ("time", "crank_angle", "crank_speed"))

@@ -34,6 +34,10 @@ _ENDINGS = {
     "decays": Ending.STALLS.value[1].removeprefix("does not settle: "),
     "unbalanced": "no share of the loads makes the crank settle to this mean speed",
     "wanders": "the search for the motion that repeats itself finds none",
+    "uneven": (
+        "misfires make cycles differ, and the motion that repeats itself is one of several cycles: "
+        "crankmbs run --until settled shows it"
+    ),
     "slow": f"the crank comes near rest, where time must be the variable; {_ON}",
     "held": f"a jump of the loads holds the speed from both sides; {_ON}",
 }

@@ -124,7 +124,10 @@ def _machine(scene: Scene) -> list[Knob]:
 
 
 def _is_of_any_number(scene: Scene) -> bool:
-    """Whether other cylinders than the scene's can have its pressure and fuel."""
+    """Whether other cylinders than the scene's can have its pressure, fuel and loads: a table over
+    the crank angle is of the cylinders that it was made of."""
+    if any(load.parts.over_angle is not None for load in scene.torque):
+        return False
     gas = scene.gas
     if scene.fuel is not None or gas is None:
         return scene.fuel is None

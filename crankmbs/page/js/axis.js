@@ -1,21 +1,21 @@
 /** Axes of a plot: maps of values to pixels, with grid, ticks and names. */
 import { readable, roundTicks } from "./format.js";
-import { add } from "./svg.js";
+import { Pen } from "./svg.js";
 
 const QUARTERS = [45, 90, 180, 360, 720]; // degrees between ticks of the crank angle
 
 /** How curves { x, y } are put into a box: { box, right, up, x, y }, maps of values to pixels and
  * the ranges shown. holds : values { x, y } that the ranges hold besides, or none */
 export function frameOf(box, curves, { shape, overAngle, holds = {} }) {
-  const y = rangeOf([...curves.flatMap((curve) => curve.y), ...(holds.y ?? [])]);
   const across = () => [...curves.flatMap((curve) => curve.x), ...(holds.x ?? [])];
-  const x = overAngle ? ends(shape.curves[0].x) : rangeOf(across());
-  const bounds = shape.equal ? squared(box, x, y) : box;
-  const [from, to] = shape.equal ? [bounds.right, bounds.left] : [bounds.left, bounds.right];
+  let y = rangeOf([...curves.flatMap((curve) => curve.y), ...(holds.y ?? [])]);
+  let x = overAngle ? ends(shape.curves[0].x) : rangeOf(across());
+  if (shape.equal) [x, y] = squared(box, x, y);
+  const [from, to] = shape.equal ? [box.right, box.left] : [box.left, box.right];
   const right = (value) => from + ((value - x.low) / (x.high - x.low)) * (to - from);
   const up = (value) =>
-    bounds.bottom - ((value - y.low) / (y.high - y.low)) * (bounds.bottom - bounds.top);
-  return { box: bounds, right, up, x, y };
+    box.bottom - ((value - y.low) / (y.high - y.low)) * (box.bottom - box.top);
+  return { box, right, up, x, y };
 }
 
 /** Draw the axes of a frame into a group.
@@ -24,57 +24,58 @@ export function frameOf(box, curves, { shape, overAngle, holds = {} }) {
  * below, name, left where it stands }
  */
 export function drawAxes(group, { box, right, up, x, y }, about) {
-  group.replaceChildren();
-  ordinate(group, box, up, { y, type: about.type });
-  if (about.overAngle) angles(group, box, right, { x, ...about });
-  else abscissa(group, box, right, { x, ...about });
+  const pen = new Pen(group);
+  ordinate(pen, box, up, { y, type: about.type });
+  if (about.overAngle) angles(pen, box, right, { x, ...about });
+  else abscissa(pen, box, right, { x, ...about });
   const at = { x: about.left, y: box.top - 0.35 * about.type, class: "name" };
-  add(group, "text", at, about.name);
+  pen.add("text", at, about.name);
+  pen.end();
 }
 
-function ordinate(group, box, up, { y, type }) {
+function ordinate(pen, box, up, { y, type }) {
   const count = Math.max((box.bottom - box.top) / (1.3 * type), 2);
   const { ticks, step } = roundTicks(y.low, y.high, count);
   for (const tick of ticks) {
     const at = up(tick);
     const style = Math.abs(tick) < 1e-9 * step ? "zero" : "grid";
-    add(group, "line", { x1: box.left, x2: box.right, y1: at, y2: at, class: style });
+    pen.add("line", { x1: box.left, x2: box.right, y1: at, y2: at, class: style });
     const place = { x: box.left - 0.4 * type, y: at + 0.35 * type, class: "tick end" };
-    add(group, "text", place, readable(tick, digitsOf(step)));
+    pen.add("text", place, readable(tick, digitsOf(step)));
   }
 }
 
 /** The crank angle, with the dead centres. */
-function angles(group, box, right, { x, type, marks, last }) {
+function angles(pen, box, right, { x, type, marks, last }) {
   const wide = (box.right - box.left) / (3.6 * type);
   const step = QUARTERS.find((each) => (x.high - x.low) / each <= wide) ?? 720;
   for (let k = Math.ceil(x.low / step - 1e-9); k * step <= x.high + 1e-6; k++) {
-    upright(group, box, right(k * step), "grid");
+    upright(pen, box, right(k * step), "grid");
     const place = { x: right(k * step), y: box.bottom + 1.15 * type, class: "tick" };
-    if (last) add(group, "text", place, `${readable(k * step, 0)}°`);
+    if (last) pen.add("text", place, `${readable(k * step, 0)}°`);
   }
   for (const { degrees, name } of marks) {
-    upright(group, box, right(degrees), `dead ${name}`);
+    upright(pen, box, right(degrees), `dead ${name}`);
   }
 }
 
 /** Another quantity to the right. */
-function abscissa(group, box, right, { x, type, shape }) {
+function abscissa(pen, box, right, { x, type, shape }) {
   const count = Math.max((box.right - box.left) / (5 * type), 2);
   const { ticks, step } = roundTicks(x.low, x.high, count);
   for (const tick of ticks) {
-    upright(group, box, right(tick), Math.abs(tick) < 1e-9 * step ? "zero" : "grid");
+    upright(pen, box, right(tick), Math.abs(tick) < 1e-9 * step ? "zero" : "grid");
     const place = { x: right(tick), y: box.bottom + 1.15 * type, class: "tick" };
-    add(group, "text", place, readable(tick, digitsOf(step)));
+    pen.add("text", place, readable(tick, digitsOf(step)));
   }
   const middle = { x: 0.5 * (box.left + box.right), y: box.bottom + 2.3 * type };
   const { text: name, unit } = shape.right;
   const text = unit ? `${name} [${unit}]` : name;
-  add(group, "text", { ...middle, class: "name mid" }, text);
+  pen.add("text", { ...middle, class: "name mid" }, text);
 }
 
-function upright(group, box, at, style) {
-  add(group, "line", { x1: at, x2: at, y1: box.top, y2: box.bottom, class: style });
+function upright(pen, box, at, style) {
+  pen.add("line", { x1: at, x2: at, y1: box.top, y2: box.bottom, class: style });
 }
 
 function digitsOf(step) {
@@ -100,11 +101,14 @@ function rangeOf(values) {
   };
 }
 
-/** The part of a box in which both axes have one scale. */
+/** The ranges with which both axes have one scale: that which has room to spare is widened. */
 function squared(box, x, y) {
-  const [wide, high] = [x.high - x.low, y.high - y.low];
-  const scale = Math.min((box.right - box.left) / wide, (box.bottom - box.top) / high);
-  const middle = 0.5 * (box.left + box.right);
-  const half = 0.5 * scale * wide;
-  return { ...box, left: middle - half, right: middle + half, top: box.bottom - scale * high };
+  const [wide, high] = [box.right - box.left, box.bottom - box.top];
+  const scale = Math.min(wide / (x.high - x.low), high / (y.high - y.low));
+  return [widened(x, wide / scale), widened(y, high / scale)];
+}
+
+function widened({ low, high }, size) {
+  const middle = 0.5 * (low + high);
+  return { low: middle - 0.5 * size, high: middle + 0.5 * size };
 }

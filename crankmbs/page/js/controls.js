@@ -58,19 +58,26 @@ export function showSlower(cycle, changed) {
 
 /** Measures, badge, and whether the pressure was carried over. error : of the quick pass */
 export function showWords(given, cycle, error) {
-  const items = numbersOf(cycle, error).map(([name, value]) => {
-    const item = document.createElement("div");
-    item.appendChild(document.createElement("dt")).textContent = name;
-    item.appendChild(document.createElement("dd")).textContent = value;
-    return item;
+  const all = numbersOf(cycle, error);
+  const list = find("numbers");
+  while (list.children.length > all.length) list.lastChild.remove();
+  all.forEach(([name, value], n) => {
+    const item = list.children[n] ?? list.appendChild(measure());
+    item.children[0].textContent = name;
+    item.children[1].textContent = value;
   });
-  find("numbers").replaceChildren(...items);
   const { text, good } = badgeOf(cycle, given.endings);
   find("badge").textContent = text;
   find("badge").className = good ? "good" : "drifts";
   const [shape, own] = [cycle.train.shape, given.scene.gas?.shape];
   const moved = own && ["radius", "length", "offset"].some((key) => shape[key] !== own[key]);
   find("carried").hidden = !moved;
+}
+
+function measure() {
+  const item = document.createElement("div");
+  item.append(document.createElement("dt"), document.createElement("dd"));
+  return item;
 }
 
 function options(select, count) {

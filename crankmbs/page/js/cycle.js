@@ -1,5 +1,5 @@
 /** One cycle of a scene as the page shows it: the settled one, or one that says how it drifts. */
-import { LECTURES, lecturedAt } from "./lecture.js";
+import { LECTURES, cylinderLectured, lecturedAt } from "./lecture.js";
 import { lastSpan, measuresOf } from "./measures.js";
 import { reactionsAt } from "./reactions.js";
 import { Refused } from "./refused.js";
@@ -81,14 +81,19 @@ class Cycle {
     return (this.drift * this.sense) / RPM;
   }
 
-  /** What a lecture, by its name, says at the samples at the mean speed. */
-  lectured(name) {
-    if (!this.answers.has(name)) {
-      const say = (row) =>
-        lecturedAt(this.train, LECTURES[name], { ...row, omega: this.mean, alpha: 0 });
-      this.answers.set(name, this.rows.map(say));
+  /** What a lecture, by its name, says at the samples at the mean speed; of cylinder k alone, or
+   * of all and the main bearing. */
+  lectured(name, k = null) {
+    const key = `${name}, ${k}`;
+    if (!this.answers.has(key)) {
+      const { train, mean } = this;
+      const say = (sample) => (k === null
+        ? lecturedAt(train, LECTURES[name], sample)
+        : { cylinders: { [k]: cylinderLectured(train, LECTURES[name], sample, k) } });
+      const at = ({ theta, shares }) => say({ theta, shares, omega: mean, alpha: 0 });
+      this.answers.set(key, this.rows.map(at));
     }
-    return this.answers.get(name);
+    return this.answers.get(key);
   }
 
   /** All variables at any angle of the cycle. */

@@ -1,6 +1,6 @@
 /** Explicit one-step methods over the crank angle, as one would write them oneself. */
 import { branchAt, firstPhases, torqueOf, torqueOverAngle } from "./loads.js";
-import { reduceAt } from "./tables.js";
+import { givenAt, reduceAt } from "./tables.js";
 
 /** By name: the order, and a step of dE/dtheta = Q(theta, E) by h. */
 export const METHODS = {
@@ -42,13 +42,15 @@ export function stepped(cycle, name, count) {
   return found;
 }
 
-/** The torque of gas, weights and loads [N m] at a crank angle and a kinetic energy. */
-function torqueOn({ train, sense, samples: [first] }) {
+/** The torque of gas, weights, friction and loads [N m] at a crank angle and a kinetic energy; of a
+ * load that jumps at this very speed that above the jump. */
+function torqueOn({ train, sense, samples: [first], rows: [{ shares }] }) {
   const phases = firstPhases(train.loads, first.crank_speed);
-  const branch = branchAt(train.loads, phases, 0, first.crank_speed, 0);
   return (theta, energy) => {
-    const { inertia, torque } = reduceAt(train, theta);
-    const omega = sense * Math.sqrt(Math.max(2 * energy, 0) / inertia);
-    return torque + torqueOf(branch, 0, omega) + torqueOverAngle(train.loads, phases, theta);
+    const of = reduceAt(train, theta);
+    const omega = sense * Math.sqrt(Math.max(2 * energy, 0) / of.inertia);
+    const given = givenAt(train, of, shares, sense, omega);
+    const branch = branchAt(train.loads, phases, 0, omega, Infinity);
+    return given + torqueOf(branch, 0, omega) + torqueOverAngle(train.loads, phases, theta);
   };
 }

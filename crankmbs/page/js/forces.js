@@ -4,7 +4,8 @@ import { turnedBy } from "./drawing.js";
 /** The bodies that one can look at. */
 export const BODIES = ["piston", "rod", "crank"];
 
-/** The forces on a body at a sample, in the engine's frame: { name, kind, at: [x, y], force }.
+/** The forces on a body at a sample, in the engine's frame: { name, kind, at: [x, y], force }. With
+ * onCrown one is drawn on the piston's crown, with onSide on its side towards Y (1) or away.
  *
  * v : variables; k : number of the cylinder
  */
@@ -23,6 +24,10 @@ function onPiston(train, v, k) {
     arrow("wall on piston", "wall", pin, place(0, at.side_force)),
     arrow("rod on piston", "pin", pin, place(at.piston_pin_force_x, at.piston_pin_force_y)),
   ];
+  if (train.friction !== null) {
+    const friction = arrow("friction on piston", "bearing", pin, place(-at.friction_force, 0));
+    found.push({ ...friction, onSide: at.side_force > 0 ? -1 : 1 });
+  }
   if (train.pressure.length) {
     found.push({ ...arrow("gas on piston", "gas", pin, place(-at.gas_force, 0)), onCrown: true });
   }

@@ -41,10 +41,14 @@ function truncatedMotion(phi, { radius: r, length: l, offset: e }, omega) {
 function exactForces(phi, { radius: r, length: l, offset: e }, net) {
   const sine = (r * Math.sin(phi) - e) / l;
   const cosine = Math.sqrt((1 - sine) * (1 + sine));
-  const beta = Math.asin(sine);
   const rod = net / cosine;
-  const side = (net * sine) / cosine;
-  return { side, rod, tangential: rod * Math.sin(phi + beta), radial: rod * Math.cos(phi + beta) };
+  const [across, along] = [Math.sin(phi), Math.cos(phi)];
+  return {
+    side: rod * sine,
+    rod,
+    tangential: rod * (across * cosine + along * sine), // sin(phi + beta)
+    radial: rod * (along * cosine - across * sine),
+  };
 }
 
 /** The same truncated. */
@@ -75,7 +79,7 @@ export const LECTURES = {
  */
 export function lecturedAt(train, lecture, sample) {
   const { theta, omega, alpha } = sample;
-  const cylinders = train.cylinders.map((_, k) => cylinderBy(train, lecture, sample, k));
+  const cylinders = train.cylinders.map((_, k) => cylinderLectured(train, lecture, sample, k));
   const { crank, shape } = train;
   const web = (crank.mass * crank.center_of_mass) / shape.radius;
   let [x, y] = inertiaAtThrow(web, shape.radius, theta, omega, alpha);
@@ -87,8 +91,10 @@ export function lecturedAt(train, lecture, sample) {
   return { "main bearing force x": x, "main bearing force y": y, cylinders };
 }
 
-function cylinderBy(train, { motion, forces }, { theta, omega, alpha, shares }, number) {
+/** Those of one cylinder, from number 0. */
+export function cylinderLectured(train, { motion, forces }, sample, number) {
   const { rod, piston, shape, cylinders } = train;
+  const { theta, omega, alpha, shares } = sample;
   const r = shape.radius;
   const phi = theta + cylinders[number].phase;
   const atPistonPin = (rod.mass * rod.center_of_mass) / shape.length;

@@ -47,8 +47,9 @@ export function measuresOf(motion, rule, span) {
     return { joint, cylinder, ...peaks[k], mean: means[k] };
   });
   const [fastest, slowest] = peaks.slice(-2).map((each) => each.peak);
-  const [rods, outside, ...gas] = means.slice(places.length);
+  const [rods, outside, rubbed, ...gas] = means.slice(places.length);
   const work = gas.map((each) => each * duration);
+  const { indicated_power: gained, imep } = indicated(train, span.kind, work, duration);
   return {
     window: span.kind,
     mean_speed: speed,
@@ -57,7 +58,10 @@ export function measuresOf(motion, rule, span) {
     joints,
     crank_torque: rods / speed,
     external_torque: outside / speed,
-    ...indicated(train, span.kind, work, duration),
+    indicated_power: gained,
+    imep,
+    friction_power: train.friction === null ? null : -rubbed,
+    mechanical_efficiency: train.friction === null ? null : efficiency(gained, -rubbed),
   };
 }
 
@@ -68,6 +72,13 @@ function indicated({ pressure, piston, shape }, kind, work, duration) {
   const volume = piston.area * (topPosition(shape) - bottomPosition(shape));
   const imep = kind === "last cycle" ? work.map((each) => each / volume) : null;
   return { indicated_power: total / duration, imep };
+}
+
+/** Of indicated power I and friction's R: (I - R) / I of an engine, I / (I - R) of a driven one. */
+function efficiency(gained, rubbed) {
+  if (!gained) return null;
+  const left = gained - rubbed;
+  return gained > 0 ? left / gained : gained / left;
 }
 
 /** What has a peak: every joint's force, the speed and the negative speed. */
@@ -82,13 +93,15 @@ function placesOf({ cylinders }) {
   return [...places, { size: (v) => v.crank_speed }, { size: (v) => -v.crank_speed }];
 }
 
-/** The sizes of all places, the power of the rods and from outside, and that of the gas by
- * cylinder, at a sample. */
+/** The sizes of all places, the power of the rods, from outside and of friction, and that of the
+ * gas by cylinder, at a sample. */
 function rowOf(train, places, sample) {
   const v = reactionsAt(train, sample);
   const rods = v.cylinders.reduce((sum, each) => sum + each.crank_torque, 0);
   const gas = v.cylinders.map((each) => each.gas_force * each.piston_velocity);
-  const power = [rods * v.crank_speed, v.external_torque * v.crank_speed, ...gas];
+  const rubs = v.cylinders.reduce(
+    (sum, each) => sum + (each.friction_force ?? 0) * each.piston_velocity, 0);
+  const power = [rods * v.crank_speed, v.external_torque * v.crank_speed, rubs, ...gas];
   return [...places.map(({ size }) => size(v)), ...power];
 }
 

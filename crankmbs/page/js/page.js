@@ -25,8 +25,7 @@ const PLOTS = ["upper", "lower"];
 
 /** Begin with what Python wrote into the page. */
 export function start() {
-  const given = decoded(JSON.parse(document.getElementById("given").textContent));
-  return new Page(given);
+  return new Page(decoded(JSON.parse(document.getElementById("given").textContent)));
 }
 
 class Page {
@@ -56,7 +55,7 @@ class Page {
     dragged(this.stage, {
       theta: () => this.theta,
       turn: (theta) => this.seek(theta),
-      rim: (ratio) => this.turnRim(ratio),
+      rim: (ratio) => this.turnBy("flywheel", (own) => ratio * own),
       grip: (kind) => kind !== "rim" && this.play(false),
       release: () => this.release(),
     });
@@ -90,7 +89,7 @@ class Page {
       if (degrees === null) return this.release();
       this.play(false);
       return this.seek(degrees * DEGREE);
-    });
+    }, (wanted, present) => this.turnPeak(wanted, present));
     fillChoices(root.querySelector("select"), this.given.scene);
     const pin = root.querySelector(".pin");
     pin.addEventListener("click", () => pin.setAttribute("aria-pressed", String(plot.pin())));
@@ -136,10 +135,17 @@ class Page {
     this.update();
   }
 
-  turnRim(ratio) {
-    const knob = this.given.knobs.find((each) => each.name === "flywheel");
-    this.turn("flywheel", Math.min(Math.max(ratio * knob.value, knob.low), knob.high));
+  /** Give a knob the value that a hand makes of its own and its present one, between its ends. */
+  turnBy(name, made) {
+    const { low, high, value } = this.given.knobs.find((each) => each.name === name);
+    this.turn(name, Math.min(Math.max(made(value, this.values[name] ?? value), low), high));
     this.knobs.show(this.values);
+  }
+
+  /** Scale pressures, which are absolute, so that the highest, above ambient, is another [bar]. */
+  turnPeak(wanted, present) {
+    const ambient = this.given.scene.gas.ambient / 1e5;
+    this.turnBy("pressure", (_, now) => (now * (wanted + ambient)) / (present + ambient));
   }
 
   /** Take the flywheel with which the speed fluctuates by so many percent. */

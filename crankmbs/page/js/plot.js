@@ -5,15 +5,19 @@
  */
 import { drawAxes, frameOf } from "./axis.js";
 import { decimalsFor, readable } from "./format.js";
-import { add, pathOf, set, watched } from "./svg.js";
+import { add, lineOf, set, watched } from "./svg.js";
 
 const STRIP = 0.3; // of the height, for the differences
+const PEAKED = "gas pressure"; // the curve of which the peak can be dragged
 const NOTHING = 1e-9; // of the largest value: a difference that is none
 
 export class Plot {
-  /** root : a figure with .legend and svg; onMove : of the crank angle [deg] that is asked for */
-  constructor(root, onMove) {
+  /** root : a figure with .legend and svg; onMove : of the crank angle [deg] that is asked for, null
+   * where a hand lets go; onPeak : of the highest gas pressure that is asked for, and the present
+   * one, or null where it cannot be dragged */
+  constructor(root, onMove, onPeak = null) {
     this.root = root;
+    this.onPeak = onPeak;
     this.svg = root.querySelector("svg");
     this.legend = root.querySelector(".legend");
     this.onMove = onMove;
@@ -22,8 +26,9 @@ export class Plot {
     this.degrees = 0;
     this.hover = null;
     this.size = null;
+    this.held = this.peak = null;
     this.axes = { upper: add(this.svg, "g"), lower: add(this.svg, "g") };
-    this.lines = add(this.svg, "g");
+    this.lines = add(this.svg, "g", { transform: "scale(0.1)" });
     this.cursor = add(this.svg, "g", { class: "cursor" });
     watched(this.svg, (size) => {
       this.size = size;
@@ -38,7 +43,10 @@ export class Plot {
    * values in the range of its axes, `holds` and `holdsBelow`, and its curves have a style. */
   draw(shape, marks) {
     this.shape = shape;
+    this.seen = visible(shape);
+    this.most = sizeOf(shape.curves[0]);
     this.marks = marks;
+    this.root.classList.toggle("diagram", isDiagram(shape));
     if (this.ghost && this.ghost.title !== shape.title) this.ghost = null;
     this.redraw();
   }
@@ -56,7 +64,7 @@ export class Plot {
     const { width, height, type } = size;
     set(svg, { viewBox: `0 0 ${width} ${height}`, "aria-label": this.described() });
     this.type = type;
-    const seen = this.visible();
+    const { seen } = this;
     const strip = shape.differences.length > 0;
     const overAngle = !isDiagram(shape);
     const foot = height - (overAngle ? 1.5 : 2.6) * type;
@@ -96,18 +104,10 @@ export class Plot {
   drawLines(lines) {
     const { lines: group } = this;
     while (group.children.length > lines.length) group.lastChild.remove();
-    lines.forEach(([{ right, up }, { x, y }, style], n) => {
-      const d = pathOf(x.map((each, k) => [right(each), up(y[k])]));
-      set(group.children[n] ?? add(group, "path"), { d, class: `curve ${style}` });
+    lines.forEach(([frame, curve, style], n) => {
+      const line = group.children[n] ?? add(group, "path");
+      set(line, { d: lineOf(curve, frame), class: `curve ${style}` });
     });
-  }
-
-  /** The differences that are more than rounding. */
-  visible() {
-    const { curves, differences } = this.shape;
-    const size = Math.max(...curves.flatMap(({ y }) => y.map(Math.abs)));
-    const styled = differences.map((each, n) => ({ ...each, style: `difference${n}` }));
-    return styled.filter(({ y }) => y.some((value) => Math.abs(value) > NOTHING * size));
   }
 
   /** Put the cursor at a crank angle [deg]. */
@@ -126,12 +126,25 @@ export class Plot {
       add(cursor, "line", { x1: x, x2: x, y1: upper.box.top, y2: bottom });
       const value = shape.of((degrees * Math.PI) / 180);
       add(cursor, "circle", { cx: x, cy: upper.up(value), r: 0.3 * this.type });
+      if (this.hasPeak()) this.drawPeak(shape.curves[0]);
       if (this.hover !== null) {
         const h = upper.right(at);
         add(cursor, "line", { x1: h, x2: h, y1: upper.box.top, y2: bottom, class: "hover" });
       }
     }
     this.read(at);
+  }
+
+  hasPeak() {
+    return this.onPeak !== null && this.shape.title === PEAKED;
+  }
+
+  /** A handle on the highest point of a curve. */
+  drawPeak({ x, y }) {
+    const n = y.indexOf(Math.max(...y));
+    const { right, up } = this.upper;
+    const at = { cx: right(x[n]), cy: up(y[n]), r: 0.45 * this.type };
+    add(add(this.cursor, "circle", { ...at, class: "peak" }), "title", {}, "drag the peak");
   }
 
   /** Write the values at an angle [deg] into the legend. */
@@ -157,15 +170,14 @@ export class Plot {
   values(degrees) {
     const { curves, differences } = this.shape;
     const run = this.shape.of((degrees * Math.PI) / 180);
-    const decimals = decimalsFor(Math.max(...curves[0].y.map(Math.abs)));
+    const decimals = decimalsFor(this.most);
     const styled = curves.map((curve, n) => {
       const value = n === 0 ? run : between(curve, degrees);
       return [curve.name, styleOf(curve, n), readable(value, decimals)];
     });
     if (!differences.length) return styled;
-    const seen = this.visible().map((each) => {
-      const size = Math.max(...each.y.map(Math.abs));
-      return [each.name, each.style, readable(between(each, degrees), decimalsFor(size))];
+    const seen = this.seen.map((each) => {
+      return [each.name, each.style, readable(between(each, degrees), decimalsFor(each.size))];
     });
     return seen.length ? [...styled, ...seen] : [...styled, ["no difference but rounding", "", ""]];
   }
@@ -182,8 +194,9 @@ export class Plot {
     event.preventDefault();
     this.svg.setPointerCapture?.(event.pointerId);
     this.held = event.pointerId;
+    this.peak = event.target.closest(".peak") && this.upper; // its scale stays while it is held
     const release = () => {
-      this.held = null;
+      this.held = this.peak = null;
       this.onMove(null);
     };
     this.svg.addEventListener("pointerup", release, { once: true });
@@ -194,7 +207,9 @@ export class Plot {
   move(event) {
     if (!this.shape || !this.upper || isDiagram(this.shape)) return;
     const degrees = this.degreesAt(event);
-    if (this.held === event.pointerId) {
+    if (this.held === event.pointerId && this.peak) {
+      this.onPeak(valueAt(event, this.svg, this.peak), Math.max(...this.shape.curves[0].y));
+    } else if (this.held === event.pointerId) {
       this.hover = null;
       this.onMove(degrees);
     } else {
@@ -210,10 +225,30 @@ export class Plot {
   described() {
     const { shape } = this;
     const ys = shape.curves[0].y;
-    const decimals = decimalsFor(Math.max(...ys.map(Math.abs)));
+    const decimals = decimalsFor(this.most);
     const [low, high] = [Math.min(...ys), Math.max(...ys)].map((y) => readable(y, decimals));
     return `${shape.title}: ${low} to ${high} ${shape.up.unit}, over the ${shape.right.text}`;
   }
+}
+
+/** The value of a frame's axis at a pointer. */
+function valueAt({ clientY }, svg, { box, y }) {
+  const part = (box.bottom - clientY + svg.getBoundingClientRect().top) / (box.bottom - box.top);
+  return y.low + part * (y.high - y.low);
+}
+
+/** The differences that are more than rounding, each with its style and size. */
+function visible({ curves, differences }) {
+  const size = Math.max(...curves.map(sizeOf));
+  const sized = differences.map((each, n) =>
+    ({ ...each, style: `difference${n}`, size: sizeOf(each) }));
+  return sized.filter((each) => each.size > NOTHING * size);
+}
+
+function sizeOf({ y }) {
+  let size = 0;
+  for (const value of y) size = Math.max(size, Math.abs(value));
+  return size;
 }
 
 function entry() {

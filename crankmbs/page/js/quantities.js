@@ -47,7 +47,10 @@ const DIAGRAMS = {
     up: ["gas pressure", "bar", 1e5, (v, k) => v.cylinders[k].gas_pressure],
   },
   "main bearing, polar": polar("main bearing force", (v) => v, (f) => f),
-  "crank pin, polar": polar("crank pin force", (v, k) => v.cylinders[k], (f, k) => f.cylinders[k]),
+  "crank pin, polar": {
+    ...polar("crank pin force", (v, k) => v.cylinders[k], (f, k) => f.cylinders[k]),
+    cylinder: true,
+  },
   "frame force, polar": {
     equal: true,
     right: ["frame force Y", "N", 1, (v) => v.frame_force_y],
@@ -122,7 +125,8 @@ function curvesOf(quantity, cycle, k) {
   if (!quantity.said) return found;
   const datum = quantity.datum ? quantity.datum(cycle.train.shape) : 0;
   [EXACT, LECTURE].forEach((lecture, n) => {
-    const y = cycle.lectured(lecture).map((each) => quantity.said(each, k) - datum);
+    const only = quantity.cylinder ? k : null;
+    const y = cycle.lectured(lecture, only).map((each) => quantity.said(each, k) - datum);
     found.push({ name: CURVES[n + 1], y });
   });
   return found;
@@ -141,10 +145,10 @@ function differencesOf(curves) {
 }
 
 function diagram(name, cycle, k) {
-  const { right, up, equal = false } = DIAGRAMS[name];
+  const { right, up, equal = false, cylinder = false } = DIAGRAMS[name];
   const pairs = [{ name: CURVES[0], ...along(cycle.samples, right[3], up[3], k, cycle) }];
   if (right[4]) {
-    const says = cycle.lectured(LECTURE);
+    const says = cycle.lectured(LECTURE, cylinder ? k : null);
     pairs.push({ name: CURVES[2], ...along(says, right[4], up[4], k, cycle) });
   }
   const size = Math.max(...pairs.flatMap(({ y }) => y.map(Math.abs)));

@@ -3,12 +3,14 @@
 import { proportions, turnedBy } from "./drawing.js";
 import { BODIES, forcesOn } from "./forces.js";
 import { general, readable, roundBelow } from "./format.js";
-import { add, set, watched } from "./svg.js";
+import { Pen, add, set, watched } from "./svg.js";
 
 const REACH = 1.2; // of the crank radius: the longest arrow
 const LEAD = (14 * Math.PI) / 180; // the ring's magnified lead, at most
 const TICKS = 24;
 const UNITS = 1000; // of the drawing per metre
+const SMALL = 0.85; // of the page's type: letters in the drawing
+const LETTER = 0.62; // of the type: how wide a bold letter is
 
 export class Stage {
   /** root : its svg; compression : the ratio that the scene has, or null; resized : called when its
@@ -60,7 +62,11 @@ export class Stage {
     const { left, top, width, height } = scaledBox(sizes.bounds);
     set(root, { viewBox: `${left} ${top} ${width} ${height}` });
     root.replaceChildren();
-    this.type = this.letters(width, height);
+    const scale = Math.min(this.size.width / width, this.size.height / height) || 1;
+    this.type = (SMALL * this.size.type) / scale;
+    const middle = left + 0.5 * width; // what is wider than the drawing is room beside it
+    const half = (0.5 * this.size.width) / scale;
+    this.edge = { left: middle - half, right: middle + half };
     const flywheel = add(root, "g", { class: "flywheel" });
     this.discs = [add(flywheel, "circle", { class: "disc" })];
     this.mark = add(flywheel, "path", { class: "mark" });
@@ -75,12 +81,6 @@ export class Stage {
     this.buildRing();
     this.arrows = add(root, "g", { class: "arrows" });
     this.bar = add(root, "g", { class: "scale" });
-  }
-
-  /** The size of letters in the drawing's units: on the screen that of the page's small type. */
-  letters(width, height) {
-    const scale = Math.min(this.size.width / width, this.size.height / height) || 1;
-    return (0.85 * this.size.type) / scale;
   }
 
   /** Ticks of the ring at mean speed, and its pointer. */
@@ -215,9 +215,9 @@ export class Stage {
 
   poseArrows(v) {
     const { arrows, force, train, k, body, sizes } = this;
-    arrows.replaceChildren();
-    if (!force) return;
-    for (const { name, kind, at, force: [fx, fy], onCrown } of forcesOn(body, train, v, k)) {
+    const pen = new Pen(arrows);
+    const acting = force ? forcesOn(body, train, v, k) : [];
+    for (const { name, kind, at, force: [fx, fy], onCrown, onSide } of acting) {
       const [dx, dy] = onScreen([fx * force * UNITS, fy * force * UNITS]);
       const long = Math.hypot(dx, dy);
       if (long < 0.02 * sizes.r * UNITS) continue;
@@ -228,12 +228,30 @@ export class Stage {
         pushes = dx * ux + dy * uy < 0; // then its tip is on the crown
         [x, y] = pushes ? [x + ux - dx, y + uy - dy] : [x + ux, y + uy];
       }
-      add(arrows, "path", { d: arrowOf(x, y, dx, dy, 0.055 * sizes.r * UNITS), class: kind });
+      if (onSide) {
+        const half = 0.5 * onSide * sizes.width * UNITS;
+        const [ux, uy] = onScreen(turnedBy(train.cylinders[k].bank, 0, half));
+        [x, y] = [x + ux, y + uy];
+      }
+      pen.add("path", { d: arrowOf(x, y, dx, dy, 0.055 * sizes.r * UNITS), class: kind });
       const [ex, ey] = pushes ? [-0.02 * dx, -0.02 * dy] : [dx, dy]; // whence its name
-      const label = { "font-size": this.type, class: kind };
-      const text = add(arrows, "text", label, name);
-      set(text, placed(ex, ey, this.type, { x: x + ex, y: y + ey }));
+      const place = this.placed(ex, ey, { x: x + ex, y: y + ey, name });
+      pen.add("text", { "font-size": this.type, class: kind, ...place }, name);
     }
+    pen.end();
+  }
+
+  /** Where an arrow's name stands: beyond its tip, but within the drawing. */
+  placed(dx, dy, { x, y, name }) {
+    const { type, edge } = this;
+    const long = Math.hypot(dx, dy);
+    const side = Math.abs(dx) < 0.35 * long ? 1 : Math.sign(dx);
+    const wide = LETTER * type * name.length;
+    const beyond = x + 0.35 * side * type;
+    const [anchor, near] = side > 0
+      ? ["start", Math.min(beyond, edge.right - wide)]
+      : ["end", Math.max(beyond, edge.left + wide)];
+    return { "text-anchor": anchor, x: near, y: y + (0.7 * dy * type) / long };
   }
 }
 
@@ -243,14 +261,6 @@ function onScreen([x, y]) {
 
 function scaledBox({ left, top, width, height }) {
   return { left: left * UNITS, top: top * UNITS, width: width * UNITS, height: height * UNITS };
-}
-
-/** Where an arrow's name stands: beyond its tip. */
-function placed(dx, dy, type, { x, y }) {
-  const long = Math.hypot(dx, dy);
-  const side = Math.abs(dx) < 0.35 * long ? 1 : Math.sign(dx);
-  const anchor = side > 0 ? "start" : "end";
-  return { "text-anchor": anchor, x: x + 0.35 * side * type, y: y + (0.7 * dy * type) / long };
 }
 
 function arrowOf(x, y, dx, dy, half) {

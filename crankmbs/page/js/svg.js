@@ -11,24 +11,72 @@ export function add(parent, tag, attributes = {}, text = null) {
   return made;
 }
 
+/** Set attributes; those that are so already are let alone, as others would be parsed anew. */
 export function set(element, attributes) {
-  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
+  for (const name in attributes) {
+    const value = String(attributes[name]);
+    if (element.getAttribute(name) !== value) element.setAttribute(name, value);
+  }
   return element;
 }
 
-/** The d of a line through points [x, y]; where one is no number the line is broken. */
-export function pathOf(points, closed = false) {
+/** Draws into a group over what it drew there before. */
+export class Pen {
+  constructor(group) {
+    this.group = group;
+    this.count = 0;
+  }
+
+  /** The next element; one of a tag has always the same attributes. */
+  add(tag, attributes, text = null) {
+    let each = this.group.children[this.count++];
+    if (each?.tagName !== tag) {
+      const made = document.createElementNS(SPACE, tag);
+      if (each) each.replaceWith(made);
+      else this.group.append(made);
+      each = made;
+    }
+    if (text !== null && each.textContent !== text) each.textContent = text;
+    return set(each, attributes);
+  }
+
+  /** Take away what was drawn there before and is no more. */
+  end() {
+    while (this.group.children.length > this.count) this.group.lastChild.remove();
+  }
+}
+
+/** The d of a line through { x, y } in tenths of a pixel, right and up being maps to pixels: steps
+ * in whole numbers, which are short and so quickly read. It leaves out points that lie on the line
+ * to within two tenths; where one is no number the line is broken. */
+export function lineOf({ x, y }, { right, up }) {
   let d = "";
-  let pen = "M";
-  for (const [x, y] of points) {
-    if (Number.isFinite(x) && Number.isFinite(y)) {
-      d += `${pen}${Math.round(10 * x) / 10} ${Math.round(10 * y) / 10}`;
-      pen = "L";
+  let [fromX, fromY] = [NaN, NaN]; // the last point drawn
+  let [lastX, lastY] = [NaN, NaN]; // the last point seen
+  let [low, high] = [-Infinity, Infinity]; // slopes on which all points since are met
+  const draw = () => {
+    const begun = Number.isFinite(fromX + fromY);
+    if (Number.isFinite(lastX + lastY)) {
+      d += begun ? `l${lastX - fromX} ${lastY - fromY}` : `M${lastX} ${lastY}`;
+    }
+    [fromX, fromY, low, high] = [lastX, lastY, -Infinity, Infinity];
+  };
+  for (let k = 0; k < x.length; k++) {
+    const atX = Math.round(10 * right(x[k]));
+    const atY = Math.round(10 * up(y[k]));
+    const slope = (atY - fromY) / (atX - fromX);
+    if (!(atX > lastX && slope >= low && slope <= high) && k > 0) draw();
+    [lastX, lastY] = [atX, atY];
+    const wide = lastX - fromX;
+    if (wide > 0) {
+      low = Math.max(low, (lastY - 2 - fromY) / wide);
+      high = Math.min(high, (lastY + 2 - fromY) / wide);
     } else {
-      pen = "M";
+      low = Infinity; // straight up or back: whatever comes next is another line
     }
   }
-  return closed ? `${d}Z` : d;
+  draw();
+  return d;
 }
 
 /** Call with the size of an element [px] and of its letters, now and whenever it changes. */

@@ -18,6 +18,13 @@ export function numbersOf(cycle, error) {
       found.push(["indicated power", `${readable(measures.indicated_power / 1e3, 2)} kW`]);
     }
   }
+  if (measures && measures.friction_power !== null) {
+    found.push(["friction power", `${readable(measures.friction_power / 1e3, 2)} kW`]);
+    if (measures.mechanical_efficiency !== null) {
+      const left = readable(100 * measures.mechanical_efficiency, 1);
+      found.push(["mechanical efficiency", `${left} %`]);
+    }
+  }
   if (cycle.share !== 1) found.push(["load, rebalanced", `${readable(100 * cycle.share, 1)} %`]);
   const cells = train.cylinders.length > 1 ? [["cylinders", `${train.cylinders.length}`]] : [];
   const trust = error === null ? "…" : `${general(Math.max(error, 1e-15), 1)}`;
@@ -36,6 +43,10 @@ export function badgeOf(cycle, endings) {
     return said("settled at any speed: the mean speed of the start is kept", true);
   }
   if (cycle.settled) return said("settled cycle: it repeats itself", true);
+  if (cycle.train.fuel?.misfire.some(({ every }) => every)) {
+    const once = drifts.replace(/ a cycle$/, "");
+    return said(`one of several cycles, of which the last ${once}; ${endings.uneven}`, false);
+  }
   const why = cycle.why === null ? "" : `; ${endings[cycle.why]}`;
   const which = cycle.scene.run.settled ? "first" : "last";
   return said(`not settled: the ${which} cycle ${drifts}${why}`, false);
