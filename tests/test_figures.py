@@ -8,7 +8,18 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from crankmbs import Cylinder, Layout, Motion, Oscillation, Ramp, Run, load_scene, simulate
+from crankmbs import (
+    Cylinder,
+    Fuel,
+    Layout,
+    Misfire,
+    Motion,
+    Oscillation,
+    Ramp,
+    Run,
+    load_scene,
+    simulate,
+)
 from crankmbs.compare.confirm import differences
 from crankmbs.errors import InputError, OutputError
 from crankmbs.figures import (
@@ -253,3 +264,11 @@ def test_ticks_beyond_a_cycle_start_again():
     assert labels[360.0] == "360"
     assert labels[720.0] == "720"
     assert labels[810.0] == "90"
+
+
+def test_a_firing_without_combustion_is_not_said_to_fire():
+    gas = dataclasses.replace(FIRED.gas, motored=2e5)
+    for misfires, labels in (("1", {"BDC", "TDC"}), ("2", {"BDC", "TDC", "firing TDC"})):
+        fuel = Fuel(misfire=[Misfire(cylinder=1, cycles=misfires)])
+        result = simulate(driven(gas=gas, fuel=fuel, until="725 deg"))
+        assert set(last_view(result).dead_centre_labels().values()) == labels

@@ -16,8 +16,12 @@ from crankmbs import (
     Result,
     Run,
     Viscous,
+    engine_orders,
+    orders,
     simulate,
 )
+from crankmbs.cli.orders import orders_report
+from crankmbs.figures import save_figures
 from crankmbs.measures import measure
 
 MISFIRE = Misfire(cylinder=1, cycles="every 2")
@@ -148,3 +152,26 @@ def test_it_is_kept(tmp_path):
     again = Result.load(found.save(tmp_path))
     assert again.decay == found.decay
     assert again.decay.factor < inf
+
+
+def test_orders_are_over_the_whole_period():
+    """Quarters of an order, against the sum over evenly spaced samples of the period."""
+    scene = settled(FUELS["every 2"])
+    found = simulate(replace(scene, run=replace(scene.run, every="1 deg")))
+    speed, angle = (found.data[name].values[:-1] for name in ("crank_speed", "crank_angle"))
+    assert angle[-1] - angle[0] == pytest.approx(np.radians(1439.0))
+    split = orders(found, "crank_speed", 4.0)
+    np.testing.assert_array_equal(split.order, np.arange(1, 17) / 4.0)
+    waves = np.exp(-1j * np.outer(split.order, angle)) @ speed * 2.0 / len(speed)
+    apart = np.abs(split.amplitude * np.exp(1j * split.phase) - waves)
+    assert apart.max() <= 1e-6 * np.abs(waves).max()
+    assert split.mean == pytest.approx(speed.mean(), rel=1e-8)  # rows at each degree: an alias
+    assert np.abs(waves[0]) > 0.1 * np.abs(waves).max()  # the misfire's own order, of two cycles
+    engine = engine_orders(found, 4.0)
+    assert engine.window.kind == "settled period"
+    assert "orders over the settled period" in orders_report(engine)
+
+
+def test_the_cycles_of_a_settled_period_are_drawn(tmp_path):
+    save_figures(simulate(settled(FUELS["every 2"])), tmp_path)
+    assert (tmp_path / "cycles.png").exists()

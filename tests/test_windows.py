@@ -202,3 +202,20 @@ def test_a_reader_is_told():
     load = Constant(torque=1.0, after=0.5, until_speed=10 * math.pi)
     assert load.window_words == ", after 0.5 s, until 300 rpm"
     assert Constant(torque=1.0).window_words == ""
+
+
+JUMPS = TimeTable(file=Table([0.0, 0.2, 0.2, 1.0], [0.0, 0.0, 4.0, 4.0]))
+
+
+@pytest.mark.parametrize("formulation", [*FREE, "multibody"])
+def test_a_sample_at_a_jump_in_time_has_the_value_after_it(formulation):
+    """Also where rounding puts the sample beside it: 3 * 0.1 lies above 0.3."""
+    off = Constant(torque=-2.0, after=0.3, until=0.7 + 1e-12)
+    loads = (off, Constant(torque=1.0, until=0.5), JUMPS)
+    every, until = Extent(value=0.1, unit="s"), Extent(value=0.8, unit="s")
+    scene = replace(load_scene("coasting"), torque=loads, run=Run(until=until, every=every))
+    data = simulate(scene, formulation=formulation, cost_cap=600.0).data
+    torque = [1.0, 1.0, 5.0, 3.0, 3.0, 2.0, 2.0, 4.0, 4.0]
+    np.testing.assert_allclose(data["external_torque"], torque, rtol=0.0, atol=1e-4)
+    apart = data["external_torque"].attrs["error_estimate"]
+    assert apart <= (1e-3 if formulation == "multibody" else 1e-9)

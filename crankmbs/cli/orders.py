@@ -21,7 +21,13 @@ _SMALL = 1e-6  # of the largest amplitude: not printed, but written
 def orders_report(found: EngineOrders) -> str:
     """The orders as one table, those that are not rounding beside the largest."""
     rows = [line for row in found.rows for line in _lines(row)]
-    headings = ["orders over the last cycle", "order", "amplitude", "error", "phase [deg]"]
+    headings = [
+        f"orders over the {found.window.kind}",
+        "order",
+        "amplitude",
+        "error",
+        "phase [deg]",
+    ]
     speed = digits(found.speed.value / RPM, found.speed.error / RPM, most=8)
     return "\n".join(
         [

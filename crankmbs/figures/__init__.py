@@ -133,7 +133,7 @@ def _cycles(result: Result) -> Figure:
 
 def save_figures(result: Result, folder: Path) -> list[Path]:
     """Draw every figure of a result into PNG files, which appear together; the cycles where there
-    are more than three.
+    are more than three, or several in a settled period.
 
     Raises
     ------
@@ -144,7 +144,8 @@ def save_figures(result: Result, folder: Path) -> list[Path]:
         for name, draw in _FIGURES.items():
             _save(draw(view), part / f"{name}.png")
         names = list(_FIGURES)
-        if result.keep is not None and result.cycles.sizes["cycle"] >= FEWEST_CYCLES:
+        fewest = 2 if result.scene.settles else FEWEST_CYCLES  # what differs in a settled period
+        if result.keep is not None and result.cycles.sizes["cycle"] >= fewest:
             _save(cycles_figure(result), part / "cycles.png")
             names.append("cycles")
     return [folder / f"{name}.png" for name in names]

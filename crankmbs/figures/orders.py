@@ -37,5 +37,5 @@ def orders_figure(result: Result, found: EngineOrders) -> Figure:
     legend(figure, axes[-1])
     figure.align_ylabels(axes)
     nothing = f"; {', '.join(sorted(zero))}: none" if zero else ""
-    footer(figure, result, f"orders over the last cycle{nothing}")
+    footer(figure, result, f"orders over the {found.window.kind}{nothing}")
     return figure

@@ -57,7 +57,7 @@ class View:
         """Crank angles [deg] of the dead centres that are shown, and what they are.
 
         A single cylinder shows both; several show the top ones, named by cylinder number, and which
-        of a four-stroke's fires.
+        of a four-stroke's fires; one that misfires, or gets no fuel, does not.
         """
         crank, rod, piston = self.scene.crank, self.scene.rod, self.scene.piston
         top, bottom = dead_centres(crank.radius, rod.length, piston.offset)
@@ -66,10 +66,10 @@ class View:
             phase = cylinders[0].phase
             labels = dict.fromkeys(self._passes(bottom - phase), "BDC")
             for at in self._passes(top - phase):
-                labels[at] = "firing TDC" if self._fires(at, phase) else "TDC"
+                labels[at] = "firing TDC" if self._fires(at, 0) else "TDC"
             return labels
         passes = sorted(
-            (at, number, self._fires(at, cylinder.phase))
+            (at, number, self._fires(at, number - 1))
             for number, cylinder in enumerate(cylinders, start=1)
             for at in self._passes(top - cylinder.phase)
         )
@@ -87,11 +87,15 @@ class View:
         )
         return [float(at) for at in first + 360.0 * k]
 
-    def _fires(self, at: float, phase: float) -> bool:
-        gas = self.scene.gas
-        if gas is None or gas.stroke == 2:
+    def _fires(self, at: float, cylinder: int) -> bool:
+        """Whether a four-stroke's cylinder has combustion at a top dead centre [deg]."""
+        gas, phase = self.scene.gas, math.degrees(self.scene.cylinders[cylinder].phase)
+        if gas is None or gas.stroke == 2 or not 180.0 < (at + phase) % 720.0 < 540.0:
             return False
-        return 180.0 < (at + math.degrees(phase)) % 720.0 < 540.0
+        if "fuel" not in self.data:
+            return True
+        nearest = int(np.argmin(np.abs(self.degrees - at)))
+        return float(self.values("fuel")[nearest, cylinder]) > 0.0
 
 
 def _top_centres(fires: dict[int, bool]) -> str:

@@ -9,7 +9,7 @@ import numpy as np
 
 from crankmbs.measures.joints import Estimate, stated
 from crankmbs.measures.orders import Harmonics, Orders
-from crankmbs.measures.span import last_span
+from crankmbs.measures.span import Span
 from crankmbs.measures.summary import mean_speed
 from crankmbs.mechanics.harmonics import Waves, closed_orders
 from crankmbs.mechanics.inertia import reduce
@@ -36,14 +36,18 @@ class EngineOrder:
 
 @dataclass(frozen=True)
 class EngineOrders:
-    """The orders of an engine; speed [rad/s] : the mean, which the closed forms are taken at."""
+    """The orders of an engine over a stretch of its run.
 
+    speed [rad/s] : the mean, which the closed forms are taken at
+    """
+
+    window: Span
     speed: Estimate
     rows: tuple[EngineOrder, ...]
 
 
 def engine_orders(result: Result, highest: float = 12.0) -> EngineOrders:
-    """Orders of torque and frame force over the last whole cycle of a run.
+    """Orders of torque and frame force over the last whole cycle of a run, or its settled period.
 
     "torque" is that of all rods on the crank; "inertia torque" what of it is neither the gas's nor
     that of the weights of rods and pistons. Closed forms are `crankmbs.mechanics.harmonics` at the
@@ -70,7 +74,9 @@ def engine_orders(result: Result, highest: float = 12.0) -> EngineOrders:
         return waves
 
     torque = harmonics.split(lambda v: v["crank_torque"].sum(axis=1), of_torque)
-    inertia = harmonics.split(_inertia_torque(result), of_torque + _of_gas(result))
+    inertia = harmonics.split(
+        _inertia_torque(result), of_torque + _of_gas(result, harmonics.window)
+    )
     rows = [
         EngineOrder("torque", "N m", torque, None),
         EngineOrder("inertia torque", "N m", inertia, at_mean("torque")),
@@ -78,7 +84,7 @@ def engine_orders(result: Result, highest: float = 12.0) -> EngineOrders:
     for axis in "xy":
         name = f"frame_force_{axis}"
         rows.append(EngineOrder(f"frame force {axis}", "N", harmonics.of(name), at_mean(name)))
-    return EngineOrders(speed, tuple(rows))
+    return EngineOrders(harmonics.window, speed, tuple(rows))
 
 
 def _inertia_torque(result: Result) -> Callable[[Mapping[str, Array]], Array]:
@@ -95,12 +101,12 @@ def _inertia_torque(result: Result) -> Callable[[Mapping[str, Array]], Array]:
     return torque
 
 
-def _of_gas(result: Result) -> float:
+def _of_gas(result: Result, window: Span) -> float:
     """What the stated errors of gas force and piston velocity leave of the gas's torque [N m]."""
     force, velocity, speed = (
         np.abs(result.data[name].values) for name in ("gas_force", "piston_velocity", "crank_speed")
     )
     power = float(force.max()) * stated(result, "piston_velocity")
     power += float(velocity.max()) * stated(result, "gas_force")
-    slowest = float(speed[last_span(result).first :].min())
+    slowest = float(speed[window.first :].min())
     return float(len(result.scene.cylinders) * power / slowest)

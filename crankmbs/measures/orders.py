@@ -1,4 +1,4 @@
-"""Orders: the harmonics of a quantity over one cycle, taken from the motion by quadrature."""
+"""Orders: the harmonics of a quantity over one period, taken from the motion by quadrature."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 from crankmbs.errors import InputError
 from crankmbs.measures.between import Between, refined
 from crankmbs.measures.joints import stated
-from crankmbs.measures.span import Span, last_span
+from crankmbs.measures.span import Span, measured_span
 from crankmbs.mechanics.pressure import repeat
 from crankmbs.mechanics.speed import speed_law
 from crankmbs.mechanics.train import crank_angle_knots, crank_train
@@ -30,9 +30,10 @@ _NODES = (5, 6)  # of Gauss on a panel: the difference is the quadrature's error
 
 @dataclass(frozen=True)
 class Orders:
-    """A quantity as mean + sum of amplitude cos(order angle + phase) over one cycle.
+    """A quantity as mean + sum of amplitude cos(order angle + phase) over one period.
 
-    order : shape (n,), per revolution of the crank; a four-stroke cycle gives halves
+    order : shape (n,), per revolution of the crank; a four-stroke cycle gives halves, a settled
+        period of n of them multiples of 1 / 2n
     amplitude : shape (n,) or (n, cylinders) [unit of the quantity]; phase [rad] alike
     mean : over the angle [unit]; shape () or (cylinders,)
     error : estimate of the error of every amplitude and of the mean [unit]; that of a phase is
@@ -47,7 +48,7 @@ class Orders:
 
 
 def orders(result: Result, name: str, highest: float = 12.0) -> Orders:
-    """Split a variable into its orders over the last whole cycle.
+    """Split a variable into its orders over the last whole cycle; of a settled motion, its period.
 
     c_k = (2 / P) int f exp(-i k angle) d(angle) over the period P, of the motion between the
     samples (`crankmbs.measures.between.refined`), by Gauss quadrature on panels that end at the
@@ -73,7 +74,8 @@ def orders(result: Result, name: str, highest: float = 12.0) -> Orders:
 
 
 class Harmonics:
-    """The last whole cycle of a run at the nodes of a quadrature, made once for many quantities.
+    """The last whole cycle of a run, or its settled period, at the nodes of a quadrature, made once
+    for many quantities.
 
     Raises
     ------
@@ -81,19 +83,19 @@ class Harmonics:
     """
 
     def __init__(self, result: Result, highest: float = 12.0) -> None:
-        window = last_span(result)
-        if window.kind != "last cycle":
+        window = measured_span(result)
+        if window.kind not in ("last cycle", "settled period"):
             raise InputError("orders need one whole cycle; let the run last longer")
         angle = result.data["crank_angle"].values[window.first :] * math.copysign(1.0, window.angle)
         if np.any(np.diff(angle) <= 0.0):
             raise InputError(
                 "orders need a crank that turns one way; it reverses in the last cycle"
             )
-        per_revolution = 2.0 * math.pi / result.scene.period
-        if not per_revolution <= highest <= _HIGHEST:
+        revolutions = round(abs(window.angle) / (2.0 * math.pi))
+        if not 1.0 / revolutions <= highest <= _HIGHEST:
             raise InputError(
-                f"highest must be an order from {per_revolution:g} to {_HIGHEST:g}; {highest:g} "
-                "came"
+                f"highest must be an order from {1.0 / revolutions:g} to {_HIGHEST:g}; "
+                f"{highest:g} came"
             )
         motions = refined(result, window.first)
         if not motions:
@@ -102,7 +104,7 @@ class Harmonics:
                 "give a narrower run.every"
             )
         self.window, self._result = window, result
-        self.order = per_revolution * np.arange(1, int(highest / per_revolution + 1e-9) + 1.0)
+        self.order = np.arange(1, int(highest * revolutions + 1e-9) + 1.0) / revolutions
         edges = _edges(result, window, highest)
         at_edges = [_times(motion, edges) for motion in motions]
         sets = [(m, t, _NODES[1]) for m, t in zip(motions, at_edges, strict=True)]
@@ -163,7 +165,8 @@ def _edges(result: Result, window: Span, highest: float) -> Array:
     end = float(result.data["crank_angle"].values[-1])
     low, high = sorted((end - window.angle, end))
     count = math.ceil((high - low) / min(_PANEL, _OF_ORDER / highest))
-    knots = repeat(crank_angle_knots(crank_train(result.scene)), result.scene.period, low, high)
+    train = crank_train(result.scene)
+    knots = repeat(crank_angle_knots(train), train.period, low, high)
     parts = [np.linspace(low, high, count + 1), knots]
     if result.scene.motion is not None:
         law, time = speed_law(result.scene.motion), result.data["time"].values

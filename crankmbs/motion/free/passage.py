@@ -11,7 +11,7 @@ import numpy as np
 
 from crankmbs.motion.base import Piece, Samples, State
 from crankmbs.motion.ending import Ending
-from crankmbs.motion.plan import Plan
+from crankmbs.motion.plan import Chosen, Plan
 
 __all__ = ["Passage", "Watch"]
 
@@ -82,6 +82,8 @@ class Passage:
                 self._farthest, self._since = reach, 0
             self._since += 1
         if math.isinf(self._plan.last):
+            if self._tail and self._plan.in_time:
+                self._blocks[-1] = self._begun_by(piece, self._blocks[-1])
             self._blocks.append(piece.sample(self._plan))
             self._count += len(self._blocks[-1].time)
             self._plan.room.check(self._count)
@@ -90,6 +92,15 @@ class Passage:
         while abs(piece.end.theta - self._tail[0].end.theta) > self._plan.last:
             self._tail.popleft()
             self._blocks = []  # the sample at the start lies before what is kept
+
+    def _begun_by(self, piece: Piece, before: Samples) -> Samples:
+        """Samples up to the time at which a piece begins: one there has its values, as a load that
+        sets in, ends or jumps does so between the two."""
+        at = before.time[-1:]
+        if len(at) == 0 or abs(at[0] - piece.begin.time) > self._plan.hair:
+            return before
+        after = piece.sample(Chosen(at, in_time=True))
+        return Samples.joined([before.select(slice(-1)), after])
 
     def _swings(self) -> bool:
         """Whether an end in angle is not coming nearer, reversal by reversal."""
