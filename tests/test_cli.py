@@ -12,6 +12,7 @@ from command_line import SCENE, crankmbs_, names, refused
 
 import crankmbs.cli.run
 import crankmbs.figures
+import crankmbs.result.record
 from crankmbs import Result, simulate
 from crankmbs.scene.read import models_folder
 
@@ -174,12 +175,12 @@ def test_a_run_that_is_refused_leaves_no_folder_but_those_that_were_there():
     assert names("there") == set()
 
 
-@pytest.mark.parametrize("where", ["simulate", "_write_netcdf", "_write_csv", "torque_figure"])
+@pytest.mark.parametrize("where", ["simulate", "write_saved", "write_csv", "torque_figure"])
 def test_an_interrupt_exits_with_130_and_leaves_no_file_of_the_run(where, monkeypatch):
     def interrupt(*_, **__):
         raise KeyboardInterrupt
 
-    owner = crankmbs.cli.run if where == "simulate" else Result
+    owner = crankmbs.cli.run if where == "simulate" else crankmbs.result.record
     if where == "torque_figure":
         monkeypatch.setitem(crankmbs.figures._FIGURES, "torque", interrupt)
     else:

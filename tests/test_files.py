@@ -13,6 +13,7 @@ import pytest
 from command_line import names
 
 from crankmbs import OutputError, Result, Run, load_scene, simulate
+from crankmbs.result import record
 from crankmbs.storage.files import together, write_in_one_move
 
 SHORT = dataclasses.replace(load_scene("coasting"), run=Run(until="30 deg"))
@@ -36,17 +37,17 @@ def assert_one_run(folder, result):
     assert len(table) == len(loaded)
 
 
-@pytest.mark.parametrize("step", ["_write_netcdf", "_write_csv"])
+@pytest.mark.parametrize("step", ["write_saved", "write_csv"])
 def test_two_runs_into_one_folder_do_not_mix(step, tmp_path, monkeypatch):
     """The second comes while the first one writes."""
-    plain, order = getattr(Result, step), [SECOND]
+    plain, order = getattr(record, step), [SECOND]
 
-    def interrupted(result, file):
-        plain(result, file)
+    def interrupted(*given):
+        plain(*given)
         if order:
             order.pop().save(tmp_path)
 
-    monkeypatch.setattr(Result, step, interrupted)
+    monkeypatch.setattr(record, step, interrupted)
     FIRST.save(tmp_path)
     assert_one_run(tmp_path, FIRST)
     assert names(tmp_path) == {"result.nc", "motion.csv"}
@@ -79,7 +80,7 @@ def test_files_are_moved_while_no_other_run_moves_its_own(tmp_path, monkeypatch)
 def test_what_fails_leaves_the_files_of_the_run_before(tmp_path, monkeypatch):
     FIRST.save(tmp_path)
     full = OSError(28, "No space left on device")
-    monkeypatch.setattr(Result, "_write_csv", lambda *_: (_ for _ in ()).throw(full))
+    monkeypatch.setattr(record, "write_csv", lambda *_: (_ for _ in ()).throw(full))
     with pytest.raises(OutputError) as caught:
         SECOND.save(tmp_path)
     assert str(caught.value) == f"{tmp_path}: cannot be written (No space left on device); {ELSE}"
@@ -114,6 +115,7 @@ def test_a_block_in_a_block_joins_it(tmp_path):
 KILLED = """
 import os, signal, sys
 from pathlib import Path
+from crankmbs.result import record
 from crankmbs.storage.files import together
 with together(Path(sys.argv[1])) as part:
     (part / "result.nc").write_text("half")

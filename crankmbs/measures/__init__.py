@@ -5,6 +5,7 @@ Differences from formulas or other runs belong in compare.
 """
 
 from crankmbs.measures.engine_orders import EngineOrder, EngineOrders, engine_orders
+from crankmbs.measures.interpolate import interp
 from crankmbs.measures.joints import Estimate, JointForce
 from crankmbs.measures.orders import Orders, orders
 from crankmbs.measures.span import Span, last_span
@@ -20,6 +21,7 @@ __all__ = [
     "Span",
     "engine_orders",
     "fluctuation",
+    "interp",
     "last_span",
     "mean_speed",
     "measure",

@@ -25,7 +25,7 @@ from crankmbs.scene.units import DEGREE
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["Between", "refined"]
+__all__ = ["Between", "refined", "sampled"]
 
 State = tuple[Array, Array, Array]
 
@@ -84,13 +84,13 @@ def refined(result: Result, first: int) -> tuple[Between, ...]:
     if result.scene.motion is not None:
         law = speed_law(result.scene.motion)
         time = _joined(_cut(data["time"].values, 2 * parts))
-        return (Between(_sampled(result, data, time, *law.at_time(time)), law.at_time),)
+        return (Between(sampled(result, data, time, *law.at_time(time)), law.at_time),)
     free = _Free(result.scene, data)
     coarse, fine = (free.motion(parts * k, _PASSES * k) for k in (1, 2))
     if coarse is None or fine is None:
         return ()
     return tuple(
-        Between(_sampled(result, data, *motion), free.between(*motion)) for motion in (coarse, fine)
+        Between(sampled(result, data, *motion), free.between(*motion)) for motion in (coarse, fine)
     )
 
 
@@ -213,7 +213,7 @@ def _running(values: Array, width: Array) -> Array:
     return np.concatenate([np.zeros((len(values), 1)), gained], axis=1)
 
 
-def _sampled(
+def sampled(
     result: Result, data: xr.Dataset, time: Array, theta: Array, omega: Array, alpha: Array
 ) -> Result:
     """The result at these samples: every variable but the energy residual. Where one is larger than

@@ -39,7 +39,7 @@ def describe(path: str, scene: Scene, choice: Choice) -> str:
 def machine_rows(scene: Scene) -> list[tuple[str, str]]:
     """What each part of a scene is, by its name; a part in several rows is named once.
 
-    >>> [name for name, _ in machine_rows(load_scene("coasting"))][1:4]
+    >>> [name for name, _ in machine_rows(load_scene("coasting"))][2:5]
     ['crank', 'rod', 'piston']
     """
     pressures = dict.fromkeys(pressures_of(scene) or ())

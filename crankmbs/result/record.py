@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from crankmbs.errors import InputError, shown
 from crankmbs.kept import write_rows
@@ -143,6 +144,26 @@ class Result:
         from crankmbs.compare import at_angle
 
         return at_angle(self, angle, cost_cap=cost_cap)
+
+    def interp(
+        self, time: ArrayLike | None = None, crank_angle: ArrayLike | None = None
+    ) -> xr.Dataset:
+        """Every variable but the energy residual between the samples: at times [s], or at crank
+        angles [rad], unwrapped, each with its error.
+
+        As `crankmbs.measures.interp`: by the equation of motion, not by lines; also of a loaded
+        result, and without running anything again.
+
+        Raises
+        ------
+        InputError : outside the samples; where these do not tell what lies between them
+
+        >>> simulate(load_scene("coasting")).interp(time=0.1234).sizes["time"]
+        1
+        """
+        from crankmbs.measures import interp
+
+        return interp(self, time, crank_angle)
 
     def plot(self, kind: str = "speed", joint: str = "crank_pin") -> Figure:
         """One of the figures that ``crankmbs run`` writes, as matplotlib's: of the last cycle.
