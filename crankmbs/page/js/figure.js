@@ -137,6 +137,7 @@ export class Figure {
     }
     clearTimeout(this.later);
     this.later = setTimeout(() => this.refine(), LATER);
+    this.root.dataset.passes = "1";
     this.redraw();
   }
 
@@ -151,7 +152,6 @@ export class Figure {
 
   redraw() {
     const { cycle, spec, lesson, made } = this;
-    this.root.dataset.passes = "1";
     const k = Math.min(spec.cylinder, cycle.train.cylinders.length) - 1;
     const own = lesson.given.scene.crank.inertia;
     const ratio = own > 0 ? cycle.scene.crank.inertia / own : 1;

@@ -12,9 +12,9 @@ const PEAKED = "gas pressure"; // the curve of which the peak can be dragged
 const NOTHING = 1e-9; // of the largest value: a difference that is none
 
 export class Plot {
-  /** root : a figure with .legend and svg; onMove : of the crank angle [deg] that is asked for, null
-   * where a hand lets go; onPeak : of the highest gas pressure that is asked for, and the present
-   * one, or null where it cannot be dragged */
+  /** root : a figure with .legend and svg; onMove : of the crank angle [deg] that is asked for, or
+   * null where a hand lets go; onPeak : of the highest gas pressure that is asked for, and the
+   * present one, or null where it cannot be dragged */
   constructor(root, onMove, onPeak = null) {
     this.root = root;
     this.onPeak = onPeak;
