@@ -12,6 +12,7 @@ import numpy as np
 
 from crankmbs import Load, Scene
 from crankmbs.mechanics.inertia import inertia_alone
+from crankmbs.mechanics.train import crank_train
 from crankmbs.scene.fuel import Fuel, Governor, Misfire
 from crankmbs.scene.gas import Gas
 from crankmbs.scene.loads import Constant, Quadratic, SpeedTable, TimeTable, Viscous
@@ -27,6 +28,8 @@ __all__ = ["KINDS", "function_with", "random_changes"]
 KINDS = ("windows", "pressures", "fuel", "functions", "all")
 
 _SPARE = 1.1  # times the shortest rod: the oracle would need too many steps beside a fold
+_HEAVY = 5.0  # times the energy at the start: more work than this the gas does not do in a stroke
+_LOOKS = 2000
 _INTERPOLATIONS: tuple[Literal["pchip", "linear", "cubic", "step"], ...]
 _INTERPOLATIONS = ("pchip", "linear", "cubic", "step")
 
@@ -44,7 +47,7 @@ class _Draw:
         base = replace(base, rod=replace(base.rod, length=max(base.rod.length, least)))
         start = base.start
         assert start is not None
-        self.speed, self.at_rest = abs(start.speed) or 20.0, start.speed == 0.0
+        self.speed = abs(start.speed) or 20.0
         fires = kind in ("fuel", "all")
         sense = 1.0 if fires or self.chance(0.7) else -1.0
         begin = replace(start, speed=0.0 if self.chance(0.05) else sense * self.speed)
@@ -56,8 +59,8 @@ class _Draw:
     def scene(self) -> Scene:
         kind, base = self.kind, self.base
         gas, fuel = base.gas, None
-        if gas is not None and (gas.indicator is not None or self.at_rest):
-            gas = None  # at rest, as it was drawn for a speed that is not known
+        if gas is not None and (gas.indicator is not None or self.swings_under(gas)):
+            gas = None
         if kind in ("pressures", "fuel", "all"):
             gas = self.gas(fires=kind != "pressures")
         if kind in ("fuel", "all"):
@@ -74,6 +77,16 @@ class _Draw:
         )
         rings = self.friction() if kind == "all" and self.chance(0.5) else None
         return replace(base, gas=gas, fuel=fuel, torque=tuple(loads), friction=rings, run=run)
+
+    def swings_under(self, gas: Gas) -> bool:
+        """Whether a pressure, drawn for another speed or a cubic through two rows that nearly meet,
+        would turn the crank so often that the oracle takes minutes."""
+        assert self.base.piston.area is not None
+        train = crank_train(replace(self.base, gas=gas))
+        assert train.pressure is not None
+        found = train.pressure[0](np.linspace(0.0, gas.period, _LOOKS))
+        most = float(np.max(np.abs(found))) * self.base.piston.area
+        return most * self.base.crank.radius > _HEAVY * self.energy
 
     def gas(self, *, fires: bool) -> Gas:
         """A table for each cylinder or one for all, of one cycle or several, or a constant."""

@@ -18,7 +18,7 @@ from scipy.integrate import solve_ivp
 
 from validation.oracles.changes import Changes, Curve, Pull, marks
 from validation.oracles.deciding import Decider
-from validation.oracles.stretch import NEAR, Acting, GasPiece, Stretch, piece_at, press
+from validation.oracles.stretch import NEAR, Acting, GasPiece, Stretch, meets, piece_at, press
 
 __all__ = ["Changed", "changing_motion"]
 
@@ -26,6 +26,7 @@ Floats = NDArray[np.float64]
 
 _STUCK = 40  # events at one time
 _AT_ONCE = 1e-9  # s: so near a change over time either value is right
+_FINER = 50.0  # steps in a stretch in which the speed turns beside a bound
 _FAR = 9.0  # rad: beyond any stretch
 _BESIDE = 1e-6  # of an angle [rad] or a speed: so near a knot either value is right
 
@@ -238,12 +239,15 @@ class _Walk:
 
         slow, fast = (max(at.slow, 0.0), at.fast) if sense > 0.0 else (at.slow, min(at.fast, 0.0))
         bounds = {-1.0: slow, 1.0: fast}
-        events: list[Any] = [passes, *(_meets(speed, way) for way, speed in bounds.items())]
+        events: list[Any] = [passes, *(meets(speed, way) for way, speed in bounds.items())]
         passes.terminal, passes.direction = True, 1.0  # type: ignore[attr-defined]
         scale = abs(float(y[1])) + abs(slopes(start, y)[1]) * (end - start) + 1e-9
         options: dict[str, Any] = {"method": "DOP853", "rtol": 1e-13}
         options["atol"] = [1e-15, 1e-14 * scale]
         found = solve_ivp(slopes, (start, end), y, events=events, **options)
+        if at.may_touch(found.t, found.y):
+            options["max_step"] = (float(found.t[-1]) - start) / _FINER
+            found = solve_ivp(slopes, (start, end), y, events=events, **options)
         if found.status < 0:
             raise ArithmeticError(found.message)
         last = found.y[:, -1]
@@ -287,13 +291,3 @@ class _Walk:
         clear = clear and edges and speeds and min(times) > _AT_ONCE
         forces, rubbed = at.forces(theta), at.friction(theta, omega)
         return theta, omega, alpha, at.external(*self.state), forces, rubbed, shares, clear
-
-
-def _meets(speed: float, way: float) -> Any:
-    """An event where the speed comes to a bound, growing or falling."""
-
-    def event(_: float, y: Floats) -> float:
-        return float(y[1] - speed) if math.isfinite(speed) else -way
-
-    event.terminal, event.direction = True, way  # type: ignore[attr-defined]
-    return event

@@ -5,15 +5,18 @@ from __future__ import annotations
 import math
 from bisect import bisect_left, bisect_right
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from validation.oracles.changes import Changes, Line, Pull, Smooth
 from validation.oracles.pythagoras import Place, cylinder_at, inertia_and_torque
 
-__all__ = ["NEAR", "Acting", "GasPiece", "Stretch", "piece_at", "press"]
+__all__ = ["NEAR", "Acting", "GasPiece", "Stretch", "meets", "piece_at", "press"]
+
+Floats = NDArray[np.float64]
 
 NEAR = 1e-11
 """A knot so near [rad] is here."""
@@ -70,6 +73,15 @@ class Stretch:
     loads: list[Acting]
     slides: list[float]
     pressed: list[float]
+
+    def may_touch(self, t: Floats, y: Floats) -> bool:
+        """Whether in a step of a solution, states of shape (2, n) at times (n,), the speed turns so
+        near to a bound that it may have met it twice."""
+        rate = np.array([self.alpha(*state) for state in zip(t.tolist(), *y.tolist(), strict=True)])
+        turns = rate[1:] * rate[:-1] < 0.0
+        reach = np.maximum(np.abs(rate[1:]), np.abs(rate[:-1])) * np.diff(t)
+        near = np.minimum(y[1] - self.slow, self.fast - y[1])
+        return bool(np.any(turns & (np.minimum(near[1:], near[:-1]) < reach)))
 
     def places(self, theta: float) -> list[Place]:
         """Of every cylinder."""
@@ -141,3 +153,13 @@ def piece_at(line: Line | None, x: float, side: float) -> Smooth | None:
         return None
     find = bisect_right if side > 0.0 else bisect_left
     return line.pieces[find(line.knots, x)]
+
+
+def meets(speed: float, way: float) -> Any:
+    """An event where the speed comes to a bound, growing or falling."""
+
+    def event(_: float, y: Floats) -> float:
+        return float(y[1] - speed) if math.isfinite(speed) else -way
+
+    event.terminal, event.direction = True, way  # type: ignore[attr-defined]
+    return event
