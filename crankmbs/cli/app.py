@@ -18,15 +18,14 @@ from crankmbs.cli.ending import ending
 from crankmbs.cli.export import export_scene
 from crankmbs.cli.flywheel import size_flywheel
 from crankmbs.cli.lesson import list_lessons, make_lesson
+from crankmbs.cli.new import new_scene
 from crankmbs.cli.page import demonstrate, write_page
 from crankmbs.cli.pressure import pressure
 from crankmbs.cli.run import Wanted, run_scene
 from crankmbs.cli.validate import validate_scene
 from crankmbs.cli.work_precision import measure_scene
-from crankmbs.errors import InputError, OutputError
 from crankmbs.report.machine import describe
 from crankmbs.scene.read import load_scene, scene_path, shipped_scenes
-from crankmbs.storage.files import text_in_one_move
 
 __all__ = ["app", "main"]
 
@@ -186,9 +185,7 @@ def work_precision(
 
 @app.command()
 def demo(
-    scene: Annotated[
-        str, typer.Argument(metavar="SCENE", help="A scene file, or the name of a shipped scene.")
-    ] = "propeller",
+    scene: _Scene = "propeller",
     no_browser: Annotated[
         bool, typer.Option("--no-browser", help="Write the file only, open no browser.")
     ] = False,
@@ -233,16 +230,7 @@ def new(
     name: Annotated[str, typer.Argument(metavar="NAME", help="Name or path of the new scene.")],
 ) -> None:
     """Write a commented scene to start from."""
-    from crankmbs.scene.template import template
-
-    path = Path(name if name.endswith(".toml") else f"{name}.toml")
-    if path.name == ".toml":
-        raise InputError(f"NAME: a scene needs a name, such as my_engine; {name!r} came")
-    if path.exists():
-        raise OutputError(f"{path}: exists already and is not overwritten; choose another name")
-    text = template(path.stem)
-    text_in_one_move(path, text)
-    typer.echo(f"wrote {path}; check it with: crankmbs check {path}")
+    new_scene(name)
 
 
 @app.command()
