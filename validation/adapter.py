@@ -10,30 +10,19 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from crankmbs.mechanics.pressure import PeriodicPressure, pressures_of
+from crankmbs.mechanics.pressure import pressures_of
 from crankmbs.motion.plan import plan_of
 from crankmbs.result import Result
 from crankmbs.scene.drives import Motion as Prescribed
 from crankmbs.scene.drives import Oscillation, Ramp, SpeedFile
-from crankmbs.scene.gas import Gas
-from crankmbs.scene.loads import AngleTable, Constant, Quadratic, SpeedTable, TimeTable, Viscous
 from crankmbs.scene.scene import Scene
-from crankmbs.scene.tables import CylinderTable, Table
-from crankmbs.scene.torque import Torque
 from validation.oracles.arithmetic import LONG, Arithmetic, Array
 from validation.oracles.energy import kinetic_energy
 from validation.oracles.frame import frame_loads
 from validation.oracles.free_motion import Motion, series_path
 from validation.oracles.indicator import Diagram
 from validation.oracles.loads import torque_at
-from validation.oracles.machine import (
-    Loads,
-    LoadTable,
-    Machine,
-    Pressure,
-    PressurePieces,
-    PressureTable,
-)
+from validation.oracles.machine import Machine, PressureTable
 from validation.oracles.newton_euler import newton_euler
 from validation.oracles.path import Path
 from validation.oracles.prescribed import (
@@ -44,6 +33,7 @@ from validation.oracles.prescribed import (
     spline,
 )
 from validation.oracles.pressure import pressure_pieces
+from validation.rows import SAME_ANGLE, loads_of, pressure_of
 
 __all__ = [
     "at_jumps",
@@ -52,11 +42,9 @@ __all__ = [
     "machine_of",
     "reference_motion",
     "reference_variables",
-    "turns_of",
 ]
 
 _TOWARDS_CRANK = ("piston_velocity", "piston_acceleration")  # the oracle's point away from it
-_SAME_ANGLE = 1e-9
 _SLIGHT = 0.1  # so much of the speed at most may change on the way to a sample's angle
 _SAME_PRESSURE = 1e-9
 
@@ -82,9 +70,9 @@ def machine_of(scene: Scene) -> Machine:
         offset=piston.offset,
         cylinders=tuple((c.phase, c.bank) for c in scene.cylinders),
         levers=scene.levers or (),
-        pressure=_pressure(scene),
+        pressure=pressure_of(scene),
         gravity=(gx, gy),
-        loads=_loads(scene.torque),
+        loads=loads_of(scene.torque),
     )
 
 
@@ -158,7 +146,7 @@ def reference_variables(
 def load_torque(scene: Scene, motion: Motion, arithmetic: Arithmetic = LONG) -> Array:
     """The torque of all loads on a free crank. Inverse dynamics give it too, but with a heavy
     flywheel or near a fold as the small difference of large numbers."""
-    loads = _loads(scene.torque)
+    loads = loads_of(scene.torque)
     return torque_at(loads, motion.time, motion.theta, motion.omega, arithmetic)
 
 
@@ -187,7 +175,7 @@ def at_jumps(scene: Scene, theta: Array) -> NDArray[np.bool_]:
     on = np.zeros(len(theta), dtype=bool)
     for load in scene.torque:
         if load.parts.over_angle is not None:
-            beside = _SAME_ANGLE * np.array([[-3.0], [3.0]])
+            beside = SAME_ANGLE * np.array([[-3.0], [3.0]])
             below, above = load.parts.over_angle(np.asarray(theta, dtype=np.float64) + beside)
             on |= np.abs(above - below) > 1e-6 * load.parts.over_angle.largest
     for cylinder, pressure in zip(scene.cylinders, pressures_of(scene) or (), strict=False):
@@ -197,7 +185,7 @@ def at_jumps(scene: Scene, theta: Array) -> NDArray[np.bool_]:
         jumps = np.abs(after - before) > _SAME_PRESSURE * np.abs(after).max()
         for knot in pressure.knots[:-1][jumps]:
             beside = (np.asarray(theta, dtype=np.float64) + cylinder.phase - knot) % pressure.period
-            on |= np.minimum(beside, pressure.period - beside) < _SAME_ANGLE
+            on |= np.minimum(beside, pressure.period - beside) < SAME_ANGLE
     return on
 
 
@@ -227,7 +215,7 @@ def _over_angle(angles: NDArray[np.float64], speed: SpeedFile) -> Motion:
     out."""
     x, y = speed.file.x, speed.file.y
     turns = round((x[-1] - x[0]) / (2.0 * math.pi))
-    whole = turns in (1, 2) and abs(x[-1] - x[0] - 2.0 * math.pi * turns) < _SAME_ANGLE
+    whole = turns in (1, 2) and abs(x[-1] - x[0] - 2.0 * math.pi * turns) < SAME_ANGLE
     if whole and abs(y[-1] - y[0]) <= 0.01 * (max(y) - min(y)):
         period = 2.0 * math.pi * turns
         cycle = pressure_pieces(PressureTable(x[:-1], y[:-1], period, speed.interpolation))
@@ -241,94 +229,3 @@ def _first(motion: Motion) -> Motion:
     return Motion(
         motion.time[:1], motion.theta[:1], motion.omega[:1], motion.alpha[:1], motion.steps
     )
-
-
-def _pressure(scene: Scene) -> Pressure | tuple[Pressure, ...] | None:
-    """One for all cylinders, or one for each."""
-    gas, cylinders = scene.gas, scene.cylinders
-    if gas is None:
-        return None
-    if isinstance(gas.pressure, float):
-        rows = Table((0.0, gas.period / 3.0, gas.period / 1.5), (gas.pressure,) * 3)
-        return _table(gas, rows)
-    if isinstance(gas.pressure, Table):
-        return _table(gas, gas.pressure)
-    if gas.pressure is None:
-        return _pieces((pressures_of(scene) or ())[0])
-    first = cylinders[0].phase
-    instants = isinstance(gas.pressure, CylinderTable) and not gas.aligned
-    lags = [cylinder.phase - first if instants else 0.0 for cylinder in cylinders]
-    return tuple(
-        _table(gas, Table(tuple(angle + lag for angle in rows.x), rows.y))
-        for rows, lag in zip(gas.tables, lags, strict=True)
-    )
-
-
-def _pieces(pieces: PeriodicPressure) -> PressurePieces:
-    coefficients = tuple(map(tuple, pieces.coefficients[::-1].T.tolist()))
-    return PressurePieces(tuple(pieces.knots[:-1].tolist()), coefficients, pieces.period)
-
-
-def _table(gas: Gas, rows: Table) -> PressureTable:
-    angles, values, period = rows.x, rows.y, gas.period
-    cycles = math.ceil((angles[-1] - angles[0] - _SAME_ANGLE) / period)
-    if cycles > 1 and gas.cycles == "mean":
-        angles, values = _mean(angles, values, period, cycles)
-    elif cycles > 1:
-        period *= cycles
-    closing = sum(angle - angles[0] > period - _SAME_ANGLE for angle in angles)
-    before = [values[-2]] if closing == 2 and angles[1] > angles[0] else []
-    count = len(angles) - closing
-    angles, values = (*angles[: len(before)], *angles[:count]), (*before, *values[:count])
-    if gas.zero == "firing_tdc" and gas.stroke == 4:
-        angles = tuple(angle + 2.0 * math.pi for angle in angles)
-    gauge = tuple(value - (gas.ambient or 0.0) for value in values)
-    return PressureTable(angles, gauge, period, gas.interpolation)
-
-
-def _mean(
-    angles: tuple[float, ...], values: tuple[float, ...], period: float, cycles: int
-) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """The mean of cycles whose rows, without jumps at their ends, stand at the same angles."""
-    rows = len(angles) - (angles[-1] - angles[0] > cycles * period - _SAME_ANGLE)
-    one = rows // cycles
-    return angles[:one], tuple(math.fsum(values[k:rows:one]) / cycles for k in range(one))
-
-
-def _loads(torques: tuple[Torque, ...]) -> Loads:
-    constant = viscous = quadratic = 0.0
-    time_tables: list[LoadTable] = []
-    speed_tables: list[LoadTable] = []
-    angle_tables: list[PressureTable] = []
-    for load in torques:
-        match load:
-            case Constant():
-                constant += load.torque
-            case Viscous():
-                viscous += load.coefficient
-            case Quadratic():
-                quadratic += load.coefficient
-            case TimeTable():
-                time_tables.append(LoadTable(load.file.x, load.file.y))
-            case SpeedTable():
-                speed_tables.append(LoadTable(load.file.x, load.file.y))
-            case AngleTable():
-                angle_tables.append(turns_of(load))
-    tables = tuple(time_tables), tuple(speed_tables), tuple(angle_tables)
-    return Loads(constant, viscous, quadratic, *tables)
-
-
-def turns_of(load: AngleTable) -> PressureTable:
-    """Rows that span at most one turn repeat after one, else after two; a closing row that is like
-    the first is left out, an other one is the value before a jump."""
-    x, y = load.file.x, load.file.y
-    turns = 1 if x[-1] - x[0] <= 2.0 * math.pi + _SAME_ANGLE else 2
-    period = 2.0 * math.pi * turns
-    opening = 2 if x[1] == x[0] else 1
-    closing = sum(angle - x[0] > period - _SAME_ANGLE for angle in x)
-    inner = slice(opening - 1, len(x) - closing)
-    before = y[len(x) - closing] if closing else y[0]
-    jump = before != y[opening - 1]
-    angles = (*((x[0],) if jump else ()), *x[inner])
-    torques = (*((before,) if jump else ()), *y[inner])
-    return PressureTable(angles, torques, period, load.interpolation)

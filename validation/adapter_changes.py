@@ -17,7 +17,7 @@ from crankmbs.scene.loads import AngleTable, Constant, Quadratic, SpeedTable, Ti
 from crankmbs.scene.python_load import Load
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.torque import Torque
-from validation.adapter import machine_of, turns_of
+from validation.adapter import machine_of
 from validation.oracles.changes import (
     Changes,
     Curve,
@@ -29,6 +29,7 @@ from validation.oracles.changes import (
     line_through,
 )
 from validation.oracles.firings import Governor
+from validation.rows import turns_of
 
 __all__ = ["changes_of"]
 
