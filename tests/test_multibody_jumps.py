@@ -58,9 +58,8 @@ def driven(scene: Scene, angle: float, *rows: tuple[float, float]) -> Scene:
 
 def both(scene: Scene) -> tuple[Result, Result]:
     """The scene by multibody, and exactly."""
-    return simulate(scene, formulation="multibody", rtol=1e-5, cost_cap=60.0), simulate(
-        scene, rtol=1e-11
-    )
+    found = simulate(scene, formulation="multibody", rtol=1e-4, cost_cap=60.0)
+    return found, simulate(scene, rtol=1e-11)
 
 
 @pytest.mark.parametrize("angle", [0.0, 180.0, -360.0])

@@ -20,7 +20,7 @@ def test_errors_are_honest(seed):
         assert ratio <= 2.0, said
 
 
-@pytest.mark.parametrize("seed", SEEDS[:8])
+@pytest.mark.parametrize("seed", SEEDS[2:10])  # of 1001 the oracle takes half a minute
 def test_those_of_minimal_too(seed):
     scene = random_settled(seed)
     result = simulate(scene, formulation="minimal")

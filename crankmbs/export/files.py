@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 from crankmbs.errors import InputError, OutputError, shown
-from crankmbs.export.exudyn import exudyn_script
 from crankmbs.export.matlab import write_matlab
 from crankmbs.result import Result
 from crankmbs.scene.scene import Scene
@@ -61,6 +60,8 @@ def export(what: Scene | Result, to: str, file: str | Path) -> tuple[Path, ...]:
         result = what if isinstance(what, Result) else simulate(what)
         write_in_one_move(target, lambda part: write_matlab(result, part))
     else:
+        from crankmbs.export.exudyn import exudyn_script  # exudyn only here
+
         text_in_one_move(target, exudyn_script(scene, target.stem))
     return (target,)
 

@@ -87,12 +87,13 @@ def advance(
             return Ending.FAILED
         stretch = Stretch.of(equation, track, state)
         yield stretch
-        state, h, most = stretch.end, track.next_step, track.most
+        begin, state, h, most = state, stretch.end, track.next_step, track.most
         evaluations, room = evaluations + track.evaluations, min(2 * room, _MOST_STEPS)
         if state.time >= plan.time_bound or state.theta in plan.angle_bounds:
             return Ending.COMPLETE
         kinetic = equation.kinetic(state.theta, state.omega)
-        if kinetic <= tolerance**2 * most and equation.is_balanced(state, scale):
+        dead = equation.is_stuck(begin, state) or equation.is_balanced(state, scale)
+        if kinetic <= tolerance**2 * most and dead:
             return Ending.REST
         if is_fast(state, equation.branch):
             return None

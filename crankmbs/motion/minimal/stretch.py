@@ -76,11 +76,21 @@ class Equation:
         strong = damping * 5.0 * DEGREE > 1e3 * abs(state.omega)
         return strong and abs(self.pull(state)) < 0.01 * inertia * damping * abs(state.omega)
 
+    @property
+    def changes(self) -> bool:
+        """Whether the torque at one angle and speed may be another later."""
+        later = self.branch.ct != 0.0 or math.isfinite(self.branch.t_end)
+        return later or bool(self.branch.functions)
+
     def is_balanced(self, state: State, scale: float) -> bool:
         """Whether no torque acts on a crank at rest here, now or later."""
-        changes = self.branch.ct != 0.0 or math.isfinite(self.branch.t_end)
-        changes |= bool(self.branch.functions)
-        return not changes and abs(self.pull(state._replace(omega=0.0))) <= BALANCED * scale
+        return not self.changes and abs(self.pull(state._replace(omega=0.0))) <= BALANCED * scale
+
+    def is_stuck(self, begin: State, end: State) -> bool:
+        """Whether a torque is left, so small that a step leads from rest to rest at the same angle:
+        so does every other."""
+        at_rest = begin.omega == end.omega == 0.0 and begin.theta == end.theta
+        return at_rest and not self.changes
 
     def pull(self, state: State) -> float:
         """Torque of gas, gravity, friction and loads at a state [N m]."""

@@ -20,6 +20,7 @@ _BENT = 1.0 / 32.0  # of D, what bends within the steps leave in a first correct
 _ROUNDING = 5e-13  # of a variable's peak: what Newton's method and the interpolation leave
 _OF_ANGLE = ("rod_angle", "piston_position", "piston_displacement")
 _WITH_ACCELERATION = {"rad/s^2", "m/s^2", "N", "N m"}  # units of what a bend of a load bends
+_AT_AN_ANGLE = ("external_torque", "gas_force")  # but these err as the angle does
 _FAST = 32.0  # a halving that gains more: at a given angle these err by their interpolation alone
 
 Runs = Sequence[Mapping[str, Array]]
@@ -91,7 +92,9 @@ class Convergence:
         return agree and self._shrinks > 2.0 and not self._bends(name)
 
     def _bends(self, name: str) -> bool:
-        return self._bent and name in EVERY and EVERY[name].units in _WITH_ACCELERATION
+        if not self._bent or name not in EVERY or name in _AT_AN_ANGLE:
+            return False
+        return EVERY[name].units in _WITH_ACCELERATION
 
     def _usual_change(self, run: Mapping[str, Array]) -> float:
         """D over the peak of the variables, the median: they all come from one motion."""
