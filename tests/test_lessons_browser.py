@@ -107,14 +107,14 @@ def test_a_lesson_fits_every_screen(lesson, name, size):
 @pytest.mark.parametrize("name", LESSONS)
 def test_formulas_are_set_in_the_font_that_is_embedded(lesson, name):
     opened = lesson(name)
-    session = opened.page.context.new_cdp_session(opened.page)
-    session.send("DOM.enable")
-    session.send("CSS.enable")
-    root = session.send("DOM.getDocument")["root"]["nodeId"]
-    found = session.send("DOM.querySelectorAll", {"nodeId": root, "selector": "math"})["nodeIds"]
+    devtools = opened.page.context.new_cdp_session(opened.page)
+    devtools.send("DOM.enable")
+    devtools.send("CSS.enable")
+    root = devtools.send("DOM.getDocument")["root"]["nodeId"]
+    found = devtools.send("DOM.querySelectorAll", {"nodeId": root, "selector": "math"})["nodeIds"]
     assert found
     for node in found:
-        fonts = session.send("CSS.getPlatformFontsForNode", {"nodeId": node})["fonts"]
+        fonts = devtools.send("CSS.getPlatformFontsForNode", {"nodeId": node})["fonts"]
         assert all(font["isCustomFont"] for font in fonts), fonts
 
 

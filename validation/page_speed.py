@@ -101,9 +101,9 @@ def _print_drawn(browser: Browser, name: str) -> None:
         file.write_text(page_of(load_scene(name), name), encoding="utf-8")
         page.goto(file.as_uri())
     page.wait_for_selector("#upper path.simulated")
-    session = context.new_cdp_session(page)
+    devtools = context.new_cdp_session(page)
     for times in (1, _THROTTLED):
-        session.send("Emulation.setCPUThrottlingRate", {"rate": times})
+        devtools.send("Emulation.setCPUThrottlingRate", {"rate": times})
         for knob in ("flywheel", "offset"):
             median, most = page.evaluate(_DRAWN, knob)
             load = os.getloadavg()[0]
