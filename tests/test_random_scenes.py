@@ -91,11 +91,11 @@ def test_a_scene_that_raises_is_red(monkeypatch):
     assert (judgement.ratio, judgement.said) == (inf, "raises ZeroDivisionError: no")
 
 
-@pytest.mark.parametrize("seed", list(EXACT)[:15])
+@pytest.mark.parametrize("seed", list(EXACT)[:15:3])
 def test_errors_of_multibody_are_honest_too(seed):
     """Also of what it reaches within a few seconds, where loads jump and bend as elsewhere."""
     status, samples, exact = EXACT[seed]
-    result = simulate(random_scene(seed), formulation="multibody", rtol=1e-4, cost_cap=20.0)
+    result = simulate(random_scene(seed), formulation="multibody", rtol=1e-4, cost_cap=10.0)
     assert result.status == status, result.message
     ratios = {name: error.ratio for name, error in true_errors(result, exact, samples).items()}
     assert max(ratios.values()) <= 2.0, (max(ratios, key=ratios.get), ratios)

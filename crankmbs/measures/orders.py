@@ -12,7 +12,7 @@ from crankmbs.errors import InputError
 from crankmbs.measures.between import Between, refined
 from crankmbs.measures.joints import stated
 from crankmbs.measures.span import Span, measured_span
-from crankmbs.mechanics.pressure import repeat
+from crankmbs.mechanics.knots import repeat
 from crankmbs.mechanics.speed import speed_law
 from crankmbs.mechanics.train import crank_angle_knots, crank_train
 from crankmbs.numerics.arrays import Array

@@ -26,7 +26,8 @@ from scipy.interpolate import PPoly
 
 from crankmbs.mechanics.geometry import close_loop, dead_centres
 from crankmbs.mechanics.inertia import fired_torque
-from crankmbs.mechanics.pressure import KNOT, PeriodicPressure
+from crankmbs.mechanics.knots import KNOT, apart
+from crankmbs.mechanics.pressure import PeriodicPressure
 from crankmbs.mechanics.train import CrankTrain, merged_knots
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.periodic import one_period
@@ -188,8 +189,7 @@ def friction_knots(train: CrankTrain) -> Array:
     angles = [np.add.outer(turns, np.array(centres) - c.phase).ravel() for c in scene.cylinders]
     if train.combustion is None:
         angles.append(sign_changes(train))
-    knots = np.unique(np.mod(np.concatenate(angles), train.period))
-    return np.asarray(knots[np.append(True, np.diff(knots) > KNOT)])
+    return apart(np.mod(np.concatenate(angles), train.period))
 
 
 def sign_changes(train: CrankTrain, shares: Sequence[float] = ()) -> Array:

@@ -16,6 +16,7 @@ from itertools import pairwise
 import numpy as np
 
 from crankmbs.mechanics.geometry import close_loop, dead_centres, top_position
+from crankmbs.mechanics.knots import KNOT, apart
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.gas import Gas, Indicator
 from crankmbs.scene.scene import Scene
@@ -25,6 +26,8 @@ __all__ = ["INDICATOR_RTOL", "fit", "indicator_pieces", "relative_volume"]
 Stroke = tuple[float, float, Callable[[Array], Array]]
 
 INDICATOR_RTOL = 1e-9  # of the absolute pressure
+
+_NONE = np.empty(0)
 
 _SUPPORT = np.array([0.0, 0.25, 0.75, 1.0])  # Chebyshev's extrema: the ends are met exactly
 _BETWEEN = np.array([0.1, 0.5, 0.9])  # where a cubic through the support errs most
@@ -125,14 +128,19 @@ def _downstroke_angle(x: float, radius: float, rod_length: float, offset: float)
     return math.atan2(offset, x) + lead
 
 
-def fit(begin: float, end: float, pressure: Callable[[Array], Array]) -> tuple[Array, Array]:
+def fit(
+    begin: float, end: float, pressure: Callable[[Array], Array], shared: Array = _NONE
+) -> tuple[Array, Array]:
     """(left knots, cubics) of one stroke: pieces are halved until each is good enough.
 
-    Quarter turns are knots from the start: a rod no longer than radius + offset folds there.
+    Quarter turns are knots from the start: a rod no longer than radius + offset folds there. So are
+    those [rad] ``shared`` with another pressure: the solvers step from knot to knot of both.
     """
     quarter = 0.5 * math.pi
     quarters = np.arange(math.ceil(begin / quarter), math.ceil(end / quarter)) * quarter
-    edges = np.unique(np.concatenate([[begin], quarters, [end]]))
+    inner = apart(np.concatenate([quarters, shared]))
+    inner = inner[(inner > begin + KNOT) & (inner < end - KNOT)]
+    edges = np.concatenate([[begin], inner, [end]])
     pieces = np.array(list(pairwise(edges)))
     lefts: list[Array] = []
     cubics: list[Array] = []

@@ -17,6 +17,7 @@ from scipy.interpolate import PPoly
 
 from crankmbs.mechanics.cycle_rows import rows_of, rows_of_table
 from crankmbs.mechanics.indicator import INDICATOR_RTOL, fit, indicator_pieces, relative_volume
+from crankmbs.mechanics.knots import KNOT, apart, repeat
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.cycles import cycles_in
 from crankmbs.scene.gas import Gas, Polytrope, PressureGiven, tables_of
@@ -26,18 +27,14 @@ from crankmbs.scene.tables import Table
 from crankmbs.scene.units import BAR
 
 __all__ = [
-    "KNOT",
     "PeriodicPressure",
     "combustion_of",
     "motored_of",
     "pressures_of",
     "remarks",
-    "repeat",
 ]
 
 
-KNOT = 1e-9  # rad: an angle this close below a knot counts as on it, so rounding does not
-# decide the side of a pressure step
 _OVERSHOOT = 0.05  # of the range: a sine in rows 45 degrees apart is overshot by 0.04
 
 _WORTH = (0.5, 1 / 12, 0.0081, 1 / 720)  # max |B| / (m + 1)! of `PeriodicPressure.bends`
@@ -146,8 +143,7 @@ def combustion_of(
     period = math.lcm(*(round(each.period / one) for each in (fired, motored))) * one
     first = float(fired.knots[0])
     inner = [repeat(p.knots[:-1], p.period, first, first + period) for p in (fired, motored)]
-    knots = np.unique(np.concatenate([[first], *inner]))
-    knots = knots[np.append(True, np.diff(knots) > KNOT)]
+    knots = apart(np.concatenate([[first], *inner]))
     knots = np.append(knots[knots < first + period - KNOT], first + period)
     without, whole = motored.on(knots), fired.on(knots)
     missed = None
@@ -227,7 +223,8 @@ def _continued(
             volume = relative_volume(scene, ratio, angle)
             return np.asarray(pressed * (size / volume) ** polytrope.polytrope)
 
-        left, cubics = fit(at, at + end - begin, pressure)
+        rows = repeat(fired.knots[:-1], fired.period, at, at + end - begin)
+        left, cubics = fit(at, at + end - begin, pressure, rows)
         cubics[-1] -= ambient
         inner = repeat(fired.knots[:-1], fired.period, at + end - begin, at + gas.period)
         rest = np.concatenate([[at + end - begin], inner, [at + gas.period]])
@@ -271,13 +268,3 @@ def _remarks(gas: Gas, table: Table) -> Iterator[str]:
             'that of the spline, not of the machine; use interpolation = "pchip", or give two rows '
             "at one angle for a jump"
         )
-
-
-def repeat(knots: Array, period: float, low: float, high: float) -> Array:
-    """The knots of one period [rad], repeated over the open interval from ``low`` to ``high``."""
-    if len(knots) == 0:
-        return knots
-    first = math.floor((low - float(knots.max())) / period)
-    last = math.ceil((high - float(knots.min())) / period)
-    tiled = (np.arange(first, last + 1)[:, None] * period + knots).ravel()
-    return np.asarray(tiled[(tiled > low) & (tiled < high)])

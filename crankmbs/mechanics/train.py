@@ -9,13 +9,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from crankmbs.mechanics.firing import FuelLaw
-from crankmbs.mechanics.pressure import (
-    KNOT,
-    PeriodicPressure,
-    combustion_of,
-    motored_of,
-    pressures_of,
-)
+from crankmbs.mechanics.knots import KNOT, apart
+from crankmbs.mechanics.pressure import PeriodicPressure, combustion_of, motored_of, pressures_of
 from crankmbs.mechanics.speed import speed_law
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
@@ -102,13 +97,10 @@ def merged_knots(train: CrankTrain, knots: Sequence[Array]) -> Array:
             knots, train.pressure or (), train.scene.cylinders, strict=False
         )
     ]
-    merged = np.unique(np.concatenate([np.empty(0), *angles]))
-    if len(merged) == 0:
-        return merged
-    merged = merged[np.append(True, np.diff(merged) > KNOT)]
-    if period - merged[-1] + merged[0] <= KNOT:
+    merged = apart(np.concatenate([np.empty(0), *angles]))
+    if len(merged) and period - merged[-1] + merged[0] <= KNOT:
         merged = merged[:-1]
-    return np.asarray(merged)
+    return merged
 
 
 def _repeated(knots: Array, own: float, period: float) -> Array:

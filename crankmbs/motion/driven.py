@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from crankmbs.mechanics.pressure import repeat
+from crankmbs.mechanics.knots import repeat
 from crankmbs.mechanics.speed import SpeedLaw
 from crankmbs.mechanics.train import CrankTrain, crank_angle_knots
 from crankmbs.motion.base import Nodes, Points, Samples, State

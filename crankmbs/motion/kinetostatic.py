@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from crankmbs.mechanics.friction import friction_knots, sign_changes
 from crankmbs.mechanics.inertia import inertia_alone, reduce
-from crankmbs.mechanics.pressure import repeat
+from crankmbs.mechanics.knots import repeat
 from crankmbs.mechanics.reactions import reactions
 from crankmbs.mechanics.speed import SpeedLaw, speed_law
 from crankmbs.mechanics.train import CrankTrain, crank_angle_knots

@@ -162,15 +162,17 @@ function relativeVolume(ratio, shape) {
 
 /** The left knots and cubics of a smooth pressure: pieces are halved until each is good enough.
  *
- * Quarter turns are knots from the start: a rod no longer than radius + offset folds there.
+ * Quarter turns are knots from the start: a rod no longer than radius + offset folds there. So are
+ * those shared with another pressure.
  */
-function fitted(closeness, begin, end, pressure) {
+function fitted(closeness, begin, end, pressure, shared = []) {
   const quarter = 0.5 * Math.PI;
-  const edges = [begin, end];
+  const edges = [...shared];
   for (let k = Math.ceil(begin / quarter); k < Math.ceil(end / quarter); k++) {
     edges.push(k * quarter);
   }
-  const marks = distinct(edges, 0);
+  const inner = distinct(edges, KNOT).filter((each) => each > begin + KNOT && each < end - KNOT);
+  const marks = [begin, ...inner, end];
   const open = [];
   for (let k = marks.length - 1; k > 0; k--) open.push([marks[k - 1], marks[k]]);
   const lefts = [];
@@ -217,8 +219,9 @@ function continued(gas, source, shape, fired) {
   for (let at = first; at < first + period - 1e-6; at += gas.period) {
     const pressed = valueAt(fired, at) + gas.ambient;
     const size = volume(at);
-    const part = fitted(gas.closeness, at, at + length, (phi) =>
-      pressed * Math.pow(size / volume(phi), source.polytrope));
+    const rows = knotsBetween(fired, at, at + length);
+    const pressure = (phi) => pressed * Math.pow(size / volume(phi), source.polytrope);
+    const part = fitted(gas.closeness, at, at + length, pressure, rows);
     knots.push(...part.lefts);
     cubics.push(...part.cubics.map(([a, b, c, d]) => [a, b, c, d - gas.ambient]));
     const rest = knotsBetween(fired, at + length, at + gas.period);
