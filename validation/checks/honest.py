@@ -68,11 +68,14 @@ def true_errors(
 
 
 def scales(peaks: dict[str, float]) -> dict[str, float]:
-    """For every variable the highest of the peaks of those with its unit."""
+    """For every variable the highest of the peaks of those with its unit; angular accelerations
+    that are all zero have the square of the angular speed, of which they are differences."""
     largest: dict[str, float] = {}
     for name, peak in peaks.items():
         unit = VARIABLES[name].units
         largest[unit] = max(peak, largest.get(unit, 0.0))
+    if largest.get("rad/s^2") == 0.0:
+        largest["rad/s^2"] = largest["rad/s"] ** 2
     return {name: largest[VARIABLES[name].units] for name in peaks}
 
 
