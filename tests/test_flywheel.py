@@ -26,6 +26,7 @@ from crankmbs import (
     simulate,
 )
 from crankmbs.measures import measure
+from crankmbs.scene.parts import Friction
 
 DIESEL, ONE = load_scene("yi_diesel_free"), load_scene("yi_diesel")
 
@@ -48,6 +49,19 @@ def test_its_error_is_honest():
     rough, fine = (flywheel(replace(DIESEL, run=Run(until="1 s", rtol=r))) for r in (1e-5, 1e-11))
     apart = abs(rough.inertia.value - fine.inertia.value)
     assert apart <= 2.0 * (rough.inertia.error + fine.inertia.error)
+
+
+def test_its_error_counts_the_inertia_of_the_rods():
+    """A crank that is lighter than what hangs on it, against a search by halves."""
+    found = flywheel(DIESEL, 0.25)
+
+    def off(inertia):
+        crank, run = replace(DIESEL.crank, inertia=inertia), Run(until="settled", rtol=1e-12)
+        return measure(simulate(replace(DIESEL, crank=crank, run=run))).fluctuation.value - 0.25
+
+    value, error = found.inertia
+    exact = brentq(off, 0.999 * value, 1.001 * value, xtol=1e-16, rtol=1e-14)
+    assert abs(value - exact) <= 2.0 * error < 1e-5 * value
 
 
 TURNS = AngleTable(file=Table(np.radians([0, 60, 60, 200, 300]), (-30.0, 80.0, 10.0, -60.0, -9.0)))
@@ -103,14 +117,19 @@ def test_settled_under_a_turning_moment_is_the_run_of_many_cycles():
     assert limit == pytest.approx(late, rel=1e-10)
 
 
+RINGS = Friction(ring_force=60.0, ring_pressure=0.02)
+
+
 @pytest.mark.parametrize(
     "scene",
     [
         ONE,
         replace(ONE, motion=Motion(speed=Oscillation(mean="3200 rpm", amplitude=5.0, order=2))),
         replace(DIESEL, torque=(), start=Start(angle=1.0, speed="-3200 rpm")),
+        replace(ONE, friction=RINGS),
+        replace(DIESEL, torque=(), start=Start(angle=1.0, speed="-3200 rpm"), friction=RINGS),
     ],
-    ids=["motion", "oscillation", "free"],
+    ids=["motion", "oscillation", "free", "rings", "rings backwards"],
 )
 def test_without_a_load_the_mean_is_the_one_given(scene):
     found = flywheel(scene, 0.01)
