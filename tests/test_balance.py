@@ -12,6 +12,7 @@ from crankmbs import (
     Cylinder,
     Layout,
     Motion,
+    Oscillation,
     Piston,
     Rod,
     Run,
@@ -90,9 +91,12 @@ def test_rocking_of_three_in_line_and_its_counterweights():
     assert max(left(found, "frame force", 1.0)[1]) < 1e-9
 
 
-def test_a_crank_that_has_the_counterweight_is_what_is_left():
+@pytest.mark.parametrize(
+    "speed", [SPEED, Oscillation(mean=SPEED, amplitude=30.0, order=2)], ids=["even", "uneven"]
+)
+def test_a_crank_that_has_the_counterweight_is_what_is_left(speed):
     """Of one cylinder the counterweight can be put on the crank itself, and the scene run again."""
-    scene = replace(load_scene("yi_diesel"), gravity=None)
+    scene = replace(load_scene("yi_diesel"), gravity=None, motion=Motion(speed=speed))
     plain = replace(scene, crank=replace(scene.crank, mass=0.0, center_of_mass=0.0))
     found = balance(plain, 0.4)
     crank = replace(plain.crank, inertia=1.0, mass=10.0, center_of_mass=-found.per_throw / 10.0)
