@@ -22,6 +22,8 @@ myst_heading_anchors = 3
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"
 
+numfig = True
+
 html_theme = "furo"
 html_title = "crankmbs"
 html_math_renderer = "mathml"

@@ -42,7 +42,7 @@ def test_what_a_page_shows_can_be_wrong(tmp_path, monkeypatch, capsys):
 
 @pytest.mark.parametrize("page", PAGES)
 def test_an_option_that_is_named_is_there(page):
-    theirs = {"--quick", "--long", "--only"}  # of python -m validation
+    theirs = {"--no-project", "--quick", "--long", "--only"}  # of uv, and of python -m validation
     group = get_command(app)
     ours = {name for command in group.commands.values() for p in command.params for name in p.opts}
     named = re.findall(r"(?<![-|\w])(--[a-z][a-z-]*)", PAGES[page])
