@@ -50,7 +50,7 @@ def test_an_option_that_is_named_is_there(page):
 
 
 def test_every_table_and_key_of_a_shipped_scene_has_its_row():
-    rows = {}
+    rows: dict[str, set[str]] = {}
     for path, part in keys.sections():
         rows.setdefault(path, set()).update(key.name for key in keys.keys_of(part))
     for file in shipped_scenes().values():

@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from numbers import Real
 from pathlib import Path
-from typing import Annotated, Any, NamedTuple, TypeVar, dataclass_transform
+from typing import Annotated, Any, TypeVar, dataclass_transform
 
 import numpy as np
 import pydantic
@@ -74,7 +75,8 @@ def _by_name(made: Any, count: int) -> str:
     )
 
 
-class Quantity(NamedTuple):
+@dataclass(frozen=True)
+class Quantity:
     """Converts a quantity of this dimension; whoever describes a key asks it for that."""
 
     dimension: str
@@ -127,7 +129,8 @@ def dumped(value: object, info: ValidationInfo) -> bool:
     return isinstance(value, dict) and not of_file(info)
 
 
-class CsvFile(NamedTuple):
+@dataclass(frozen=True)
+class CsvFile:
     """Reads a CSV file with a column of each of these; factors to SI by the columns' names.
 
     columns : what a caller from Python puts into such a table

@@ -43,7 +43,7 @@ class Key(NamedTuple):
 
 def keys_of(part: type) -> list[Key]:
     """The keys of a part of a scene, in their order."""
-    fields = part.__pydantic_fields__  # type: ignore[attr-defined]
+    fields = part.__pydantic_fields__
     by_columns = part is SpeedFile  # its columns say of what kind it is
     return [_key(n, field) for n, field in fields.items() if not (by_columns and n == "kind")]
 
@@ -152,7 +152,7 @@ class _Found:
             number = _PLAIN[float]
             self.values = [EXAMPLES[check.dimension] if v == number else v for v in self.values]
         elif isinstance(check, CsvFile):
-            names = [" or ".join(f"`{n}`" for n in side) for side in check[:2]]
+            names = [" or ".join(f"`{n}`" for n in side) for side in (check.x_units, check.y_units)]
             self.rules.append(f"columns {' and '.join(names)}")
         elif isinstance(one, Len):
             self.rules.append(f"at least {one.min_length}")

@@ -43,8 +43,8 @@ def _make(app: Sphinx) -> None:
     for name, text in _PAGES.items():
         (made / f"{name}.md").write_text(text(), encoding="utf-8")
     for name in _VALIDATION:
-        text = (made.parents[1] / "validation" / f"{name}.md").read_text(encoding="utf-8")
-        (made / f"{name}.md").write_text(_linked(text), encoding="utf-8")
+        page = (made.parents[1] / "validation" / f"{name}.md").read_text(encoding="utf-8")
+        (made / f"{name}.md").write_text(_linked(page), encoding="utf-8")
     mpl.use("agg")
     for name, (scene, until, kind) in _FIGURES.items():
         result = crankmbs.simulate(crankmbs.load_scene(scene).with_(run__until=until))
