@@ -33,7 +33,6 @@ _FIGURES = {  # scene, its end, kind of the figure
     "speed": ("yi_diesel_free", "4 cycles", "speed"),
     "polar": ("yi_diesel", "1 cycle", "polar"),
     "cycles": ("misfire", "8 cycles", "cycles"),
-    "torque": ("yi_diesel_free", "4 cycles", "torque"),
 }
 
 
