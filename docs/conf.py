@@ -13,7 +13,7 @@ sys.path[:0] = [str(_HERE / "_ext"), str(_HERE.parent)]
 project = "crankmbs"
 copyright = "the crankmbs founders, MIT license"
 extensions = ["myst_parser", "sphinx.ext.autodoc", "docstrings", "mathml", "made"]
-exclude_patterns = ["_build", "_made", "README.md"]
+exclude_patterns = ["_build", "_made"]
 smartquotes = False
 
 myst_enable_extensions = ["dollarmath", "colon_fence", "html_image"]

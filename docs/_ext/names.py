@@ -73,12 +73,12 @@ def python_page() -> str:
     by_room: dict[str, list[str]] = defaultdict(list)
     for name in crankmbs.__all__:
         room = getattr(crankmbs, name).__module__.split(".")[1]
-        by_room[_ROOMS[room]].append(f"crankmbs.{name}")
+        by_room[_ROOMS.get(room, room.capitalize())].append(f"crankmbs.{name}")
     for module in ("crankmbs.lecture", "crankmbs.figures"):
         title = "Lecture formulas" if module.endswith("lecture") else "Figures"
         by_room[title] += [f"{module}.{n}" for n in importlib.import_module(module).__all__]
     lines = []
-    for title in dict.fromkeys([*_ROOMS.values(), "Figures"]):
+    for title in dict.fromkeys([*_ROOMS.values(), *by_room]):
         lines += [f"## {title}", "", "```{eval-rst}"]
         lines += [line for name in by_room[title] for line in _autodoc(name)]
         lines += ["```", ""]
