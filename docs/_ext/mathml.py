@@ -21,14 +21,14 @@ _CLOSE = re.compile(r"(?<=[\w})])\s*(?=\\(?:sin|cos|tan)\b)")  # a factor before
 
 
 def _inline(self: HTML5Translator, node: nodes.math) -> None:
-    self.body.append(_accented(prose(f"${_spaced(node)}$")))
+    self.body.append(prose(f"${_spaced(node)}$"))
     raise nodes.SkipNode
 
 
 def _block(self: HTML5Translator, node: nodes.math_block) -> None:
     label = "".join(f' id="{escape(one)}"' for one in node["ids"][:1])
     number = f"({get_node_equation_number(self, node)})" if node["number"] else ""
-    shown = f'{_accented(formula(_spaced(node)))}<span class="eqno">{number}</span>'
+    shown = f'{formula(_spaced(node))}<span class="eqno">{number}</span>'
     self.body.append(f'<div class="formula"{label}>{shown}</div>\n')
     raise nodes.SkipNode
 
@@ -36,11 +36,6 @@ def _block(self: HTML5Translator, node: nodes.math_block) -> None:
 def _spaced(node: nodes.Node) -> str:
     """Its TeX with a gap before sin, cos and tan, where browsers leave none."""
     return _CLOSE.sub(r"\\,", node.astext())
-
-
-def _accented(mathml: str) -> str:
-    """With dots over a letter as accents, which are not made smaller."""
-    return mathml.replace("<mover>", '<mover accent="true">')
 
 
 def setup(app: Sphinx) -> dict[str, Any]:
