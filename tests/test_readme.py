@@ -1,54 +1,43 @@
-"""What README prints runs as printed: its Python, its scene, its commands."""
+"""README is one screen and what changed: its two lines run in CI, what it points at is there."""
 
 import re
-import runpy
-import shutil
 from pathlib import Path
 
 import pytest
 from typer.main import get_command
 
-from crankmbs import load_scene
 from crankmbs.cli import app
-from crankmbs.scene.read import models_folder
+from crankmbs.scene.read import shipped_scenes
 
-README = (Path(__file__).parent.parent / "README.md").read_text(encoding="utf-8")
-
-
-def block(language):
-    """The one code block in a language."""
-    (code,) = re.findall(rf"^```{language}\n(.*?)^```$", README, re.MULTILINE | re.DOTALL)
-    return code
+ROOT = Path(__file__).parent.parent
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+SCREEN = README.partition("## Changelog")[0]
+LINES = re.findall(r"^```sh\n(.*?)^```$", README, re.MULTILINE | re.DOTALL)
 
 
-def test_the_python_block_runs(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    script = tmp_path / "readme.py"
-    script.write_text(block("python"), encoding="utf-8")
-    runpy.run_path(str(script))
-    assert "four-cylinder diesel engine" in capsys.readouterr().out
-    assert (tmp_path / "results" / "from_python" / "result.nc").is_file()
+def test_it_is_one_screen():
+    assert len(SCREEN.splitlines()) < 60
 
 
-def test_the_scene_is_one(tmp_path):
-    shutil.copytree(models_folder() / "pressure", tmp_path / "pressure")
-    shutil.copy(tmp_path / "pressure" / "yi_diesel.csv", tmp_path / "pressure" / "diesel.csv")
-    scene = tmp_path / "scene.toml"
-    scene.write_text(block("toml"), encoding="utf-8")
-    assert len(load_scene(scene).cylinders) == 4
+@pytest.mark.parametrize("line", LINES)
+def test_a_line_is_run_in_ci(line):
+    assert f"grep -m1 -F '{line.strip()}' README.md" in (ROOT / ".ci" / "run").read_text()
 
 
-def test_the_table_has_every_command_and_no_other():
-    shown = re.findall(r"^\| `crankmbs ([a-z-]+)", README, re.MULTILINE)
-    commands = set(get_command(app).commands)
-    assert {"lessons"} == commands - set(shown)  # in the row of lesson
-    assert set(shown) <= commands
-    assert "`crankmbs lessons`" in README
+def test_its_lines_are_the_two():
+    assert len(LINES) == 2
+    (name,) = re.findall(r"crankmbs run (\w+)", SCREEN)
+    assert name in shipped_scenes()
 
 
-@pytest.mark.parametrize("option", sorted(set(re.findall(r"(?<![-|])(--[a-z][a-z-]*)", README))))
+@pytest.mark.parametrize("target", re.findall(r"\]\((?!https?:)([^)]+)\)", SCREEN))
+def test_what_it_points_at_is_there(target):
+    assert (ROOT / target).is_file()
+
+
+@pytest.mark.parametrize("option", sorted(set(re.findall(r"(?<![-|\w])(--[a-z][a-z-]*)", README))))
 def test_an_option_that_is_named_is_there(option):
-    theirs = {"--no-project", "--quick", "--long"}  # of uv, and of python -m validation
+    theirs = {"--quick", "--long"}  # of python -m validation
     group = get_command(app)
     ours = {name for command in group.commands.values() for p in command.params for name in p.opts}
     assert option in ours | theirs

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from numbers import Real
 from pathlib import Path
 from typing import Annotated, Any, TypeVar, dataclass_transform
@@ -22,7 +23,19 @@ from crankmbs.scene.sentences import sentence
 from crankmbs.scene.tables import Table, read_table
 from crankmbs.scene.units import EXAMPLES, check_size, quantity
 
-__all__ = ["SAVED", "Float", "dumped", "folder_of", "from_file", "of_file", "part", "si", "to_si"]
+__all__ = [
+    "SAVED",
+    "CsvFile",
+    "Float",
+    "Quantity",
+    "dumped",
+    "folder_of",
+    "from_file",
+    "of_file",
+    "part",
+    "si",
+    "to_si",
+]
 
 T = TypeVar("T")
 _CONFIG = ConfigDict(
@@ -62,16 +75,23 @@ def _by_name(made: Any, count: int) -> str:
     )
 
 
+@dataclass(frozen=True)
+class Quantity:
+    """Converts a quantity of this dimension; whoever describes a key asks it for that."""
+
+    dimension: str
+
+    def __call__(self, value: Any, info: ValidationInfo) -> float:
+        """The SI value of what came for a key."""
+        return to_si(value, self.dimension, info)
+
+
 def si(dimension: str) -> BeforeValidator:
     """Accept a quantity string of this dimension, or a bare SI number.
 
     In a file an angle or an angular speed needs its unit: 90 could mean degrees.
     """
-
-    def convert(value: Any, info: ValidationInfo) -> float:
-        return to_si(value, dimension, info)
-
-    return BeforeValidator(convert)
+    return BeforeValidator(Quantity(dimension))
 
 
 def to_si(value: Any, dimension: str, info: ValidationInfo) -> float:
@@ -109,25 +129,34 @@ def dumped(value: object, info: ValidationInfo) -> bool:
     return isinstance(value, dict) and not of_file(info)
 
 
-def from_file(
-    x_units: dict[str, float], y_units: dict[str, float], columns: str
-) -> BeforeValidator:
-    """Accept the path of a CSV file (relative to the scene file), or a `Table` in SI units.
+@dataclass(frozen=True)
+class CsvFile:
+    """Reads a CSV file with a column of each of these; factors to SI by the columns' names.
 
     columns : what a caller from Python puts into such a table
     """
 
-    def convert(value: Any, info: ValidationInfo) -> Any:
+    x_units: dict[str, float]
+    y_units: dict[str, float]
+    columns: str
+
+    def __call__(self, value: Any, info: ValidationInfo) -> Any:
+        """The table of what came for a key."""
         if isinstance(value, Table) or dumped(value, info):
             return value
         if info.context is SAVED:
             raise InputError(f"must hold its rows in a saved scene; {shown(value)} came")
         if not isinstance(value, str | Path):
-            table = f" or a Table({columns})" if info.context is None else ""
+            table = f" or a Table({self.columns})" if info.context is None else ""
             raise InputError(f"must be the name of a CSV file{table}; {shown(value)} came")
-        return read_table(folder_of(info) / value, x_units, y_units)
+        return read_table(folder_of(info) / value, self.x_units, self.y_units)
 
-    return BeforeValidator(convert)
+
+def from_file(
+    x_units: dict[str, float], y_units: dict[str, float], columns: str
+) -> BeforeValidator:
+    """Accept the path of a CSV file (relative to the scene file), or a `Table` in SI units."""
+    return BeforeValidator(CsvFile(x_units, y_units, columns))
 
 
 def folder_of(info: ValidationInfo) -> Path:

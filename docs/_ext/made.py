@@ -1,0 +1,65 @@
+"""What the manual shows of the project is made from it while it is built: tables of keys, commands
+and names, figures of shipped scenes, the lessons and a page that computes."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import matplotlib as mpl
+from keys import keys_page
+from names import commands_page, python_page, variables_page
+
+import crankmbs
+from crankmbs.lessons import write_lessons
+from crankmbs.page import page_of
+from crankmbs.storage.files import text_in_one_move
+
+if TYPE_CHECKING:
+    from sphinx.application import Sphinx
+
+__all__ = ["setup"]
+
+_PAGES = {
+    "keys": keys_page,
+    "commands": commands_page,
+    "variables": variables_page,
+    "python": python_page,
+}
+_VALIDATION = ("REPORT", "ERRATA", "MUTANTS", "BIBLIOGRAPHY")
+_ANCHOR = re.compile(r'^(#+ )<a id="([^"]+)"></a>', re.MULTILINE)
+_FIGURES = {  # scene, its end, kind of the figure
+    "speed": ("yi_diesel_free", "4 cycles", "speed"),
+    "polar": ("yi_diesel", "1 cycle", "polar"),
+    "cycles": ("misfire", "8 cycles", "cycles"),
+}
+
+
+def _make(app: Sphinx) -> None:
+    made = Path(app.srcdir) / "_made"
+    made.mkdir(exist_ok=True)
+    for name, text in _PAGES.items():
+        (made / f"{name}.md").write_text(text(), encoding="utf-8")
+    for name in _VALIDATION:
+        page = (made.parents[1] / "validation" / f"{name}.md").read_text(encoding="utf-8")
+        (made / f"{name}.md").write_text(_linked(page), encoding="utf-8")
+    mpl.use("agg")
+    for name, (scene, until, kind) in _FIGURES.items():
+        result = crankmbs.simulate(crankmbs.load_scene(scene).with_(run__until=until))
+        result.plot(kind).savefig(made / f"{name}.png", dpi=110)
+    write_lessons(made / "pages" / "lessons")
+    demo = page_of(crankmbs.load_scene("yi_diesel_free"), "yi_diesel_free")
+    text_in_one_move(made / "pages" / "demo.html", demo)
+
+
+def _linked(text: str) -> str:
+    """A page of validation whose anchors, figures and headings are where Sphinx looks for them."""
+    text = _ANCHOR.sub(r"(\2)=\n\1", text).replace("](figures/", "](../../validation/figures/")
+    return text.replace("\n### ", "\n## ") if "\n## " not in text else text
+
+
+def setup(app: Sphinx) -> dict[str, Any]:
+    """Make all of it before Sphinx reads a page."""
+    app.connect("builder-inited", _make)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -1,0 +1,108 @@
+"""The manual: its blocks run and print what it shows, its tables are complete."""
+
+import re
+import sys
+import tomllib
+
+import matplotlib as mpl
+import pytest
+from manual import DOCS, Reader, blocks, pages
+from typer.main import get_command
+
+import crankmbs
+from crankmbs.cli import app
+from crankmbs.mechanics.variables import EVERY
+from crankmbs.scene.read import shipped_scenes
+
+sys.path.insert(0, str(DOCS / "_ext"))
+import docstrings
+import keys
+import names
+
+PAGES = {str(page): (DOCS / page).read_text(encoding="utf-8") for page in pages()}
+
+
+@pytest.mark.parametrize("page", [page for page, text in PAGES.items() if blocks(text)])
+def test_a_page_runs_as_printed(page, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    mpl.use("agg")
+    reader = Reader(capsys)
+    for block in blocks(PAGES[page]):
+        reader.follow(block)
+
+
+def test_what_a_page_shows_can_be_wrong(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    reader = Reader(capsys)
+    code, shown = blocks("```python\nprint(1 + 1)\n```\n\n```text\n3\n```\n")
+    reader.follow(code)
+    with pytest.raises(AssertionError, match="what came is\n2"):
+        reader.follow(shown)
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_an_option_that_is_named_is_there(page):
+    theirs = {"--no-project", "--quick", "--long", "--only"}  # of uv, and of python -m validation
+    group = get_command(app)
+    ours = {name for command in group.commands.values() for p in command.params for name in p.opts}
+    named = re.findall(r"(?<![-|\w])(--[a-z][a-z-]*)", PAGES[page])
+    assert set(named) <= ours | theirs
+
+
+def test_every_table_and_key_of_a_shipped_scene_has_its_row():
+    rows: dict[str, set[str]] = {}
+    for path, part in keys.sections():
+        rows.setdefault(path, set()).update(key.name for key in keys.keys_of(part))
+    for file in shipped_scenes().values():
+        scene = tomllib.loads(file.read_text(encoding="utf-8"))
+        for name, value in scene.items():
+            if isinstance(value, list):
+                assert set().union(*value) <= rows["[[torque]]"]
+            elif isinstance(value, dict):
+                assert value.keys() <= rows[f"[{name}]"]
+                for inner, table in value.items():
+                    for one in table if isinstance(table, list) else [table]:
+                        if isinstance(one, dict):
+                            assert one.keys() <= rows[f"[{name}] {inner}"]
+
+
+def key_of(part, name):
+    return next(key for key in keys.keys_of(part) if key.name == name)
+
+
+def test_a_key_has_its_unit_default_and_rule():
+    assert key_of(crankmbs.Crank, "radius")[1:4] == (('"46 mm"',), "needed", ("above 0",))
+    assert key_of(crankmbs.Gravity, "angle").default == "180 deg"
+    assert key_of(crankmbs.Polytrope, "closes").rules == ("at least -180 deg", "at most 0")
+    assert key_of(crankmbs.Rod, "inertia").values == ('"0.15 kg m^2"', '`"two-mass"`')
+    assert key_of(crankmbs.Ramp, "from").values == ('"3200 rpm"',)
+    assert key_of(crankmbs.Gas, "pressure").values[1:] == ("file name", "list of file names")
+    assert key_of(crankmbs.Run, "every").values[-1] == '`"none"`'
+    assert key_of(crankmbs.TimeTable, "file").rules == ("columns `time_s` and `torque_Nm`",)
+    assert "kind" not in {key.name for key in keys.keys_of(crankmbs.SpeedFile)}
+
+
+def test_every_command_variable_and_public_name_has_its_place():
+    commands = set(re.findall(r"^## `crankmbs (\S+)`$", names.commands_page(), re.MULTILINE))
+    assert commands == set(get_command(app).commands)
+    assert re.findall(r"^\| `(\w+)`", names.variables_page(), re.MULTILINE) == list(EVERY)
+    shown = set(re.findall(r"^\.\. auto\w+:: crankmbs\.(\w+)$", names.python_page(), re.MULTILINE))
+    assert shown == set(crankmbs.__all__)
+
+
+def test_a_docstring_becomes_lists_formulas_and_sentences():
+    lines = [
+        "Least |x| of `f_`.",
+        "",
+        "    y = x_1",
+        "",
+        "Parameters",
+        "----------",
+        "x : shape (n,) [m]",
+        "    or one",
+    ]
+    assert docstrings.restructured(lines) == [
+        *("Least \\|x\\| of ``f_``.", ""),
+        *("::", "", "    y = x_1", ""),
+        *(".. rubric:: Parameters", "", "", "* **x**: shape (n,) [m]", "  or one", ""),
+    ]
