@@ -43,6 +43,7 @@ from crankmbs.scene.run import Extent, Run
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.tables import CylinderTable, Table
 from crankmbs.simulate import simulate
+from crankmbs.sweep import Sample, load_sweep, sweep
 
 __all__ = [
     "AngleTable",
@@ -89,6 +90,7 @@ __all__ = [
     "Result",
     "Rod",
     "Run",
+    "Sample",
     "Scene",
     "SceneError",
     "SpeedFile",
@@ -108,10 +110,12 @@ __all__ = [
     "export",
     "flywheel",
     "load_scene",
+    "load_sweep",
     "orders",
     "read_pressure",
     "shipped_scenes",
     "simulate",
+    "sweep",
 ]
 
 

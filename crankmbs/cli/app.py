@@ -22,6 +22,7 @@ from crankmbs.cli.new import new_scene
 from crankmbs.cli.page import demonstrate, write_page
 from crankmbs.cli.pressure import pressure
 from crankmbs.cli.run import Wanted, run_scene
+from crankmbs.cli.sweep import sweep
 from crankmbs.cli.validate import validate_scene
 from crankmbs.cli.work_precision import measure_scene
 from crankmbs.report.machine import describe
@@ -206,6 +207,7 @@ def page(
 
 
 app.command()(pressure)
+app.command()(sweep)
 
 
 @app.command()
@@ -285,10 +287,7 @@ def lesson(
     make_lesson(name, out, scene)
 
 
-@app.command()
-def lessons() -> None:
-    """List the lessons."""
-    list_lessons()
+app.command("lessons", help="List the lessons.")(list_lessons)
 
 
 def main() -> None:

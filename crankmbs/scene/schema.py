@@ -8,7 +8,8 @@ a TOML file, its folder, and for a scene that was saved with a result.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+import typing
+from collections.abc import Iterator, Sequence
 from numbers import Real
 from pathlib import Path
 from typing import Annotated, Any, TypeVar, dataclass_transform
@@ -22,7 +23,18 @@ from crankmbs.scene.sentences import sentence
 from crankmbs.scene.tables import Table, read_table
 from crankmbs.scene.units import EXAMPLES, check_size, quantity
 
-__all__ = ["SAVED", "Float", "dumped", "folder_of", "from_file", "of_file", "part", "si", "to_si"]
+__all__ = [
+    "SAVED",
+    "Float",
+    "dimension_of",
+    "dumped",
+    "folder_of",
+    "from_file",
+    "of_file",
+    "part",
+    "si",
+    "to_si",
+]
 
 T = TypeVar("T")
 _CONFIG = ConfigDict(
@@ -67,11 +79,35 @@ def si(dimension: str) -> BeforeValidator:
 
     In a file an angle or an angular speed needs its unit: 90 could mean degrees.
     """
+    return BeforeValidator(_ToSI(dimension))
 
-    def convert(value: Any, info: ValidationInfo) -> float:
-        return to_si(value, dimension, info)
 
-    return BeforeValidator(convert)
+class _ToSI:
+    """The conversion of a field, which can be asked for its dimension."""
+
+    def __init__(self, dimension: str) -> None:
+        self.dimension = dimension
+
+    def __call__(self, value: Any, info: ValidationInfo) -> float:
+        return to_si(value, self.dimension, info)
+
+
+def dimension_of(owner: type[Any], name: str) -> str | None:
+    """The dimension of a field of a part; None where it is no quantity.
+
+    >>> from crankmbs import Crank
+    >>> dimension_of(Crank, "inertia")
+    'inertia'
+    """
+    field = owner.__pydantic_fields__[name]
+    return next(_dimensions([field.annotation, *field.metadata]), None)
+
+
+def _dimensions(annotations: Sequence[Any]) -> Iterator[str]:
+    for one in annotations:
+        if isinstance(one, BeforeValidator) and isinstance(one.func, _ToSI):
+            yield one.func.dimension
+        yield from _dimensions(typing.get_args(one))
 
 
 def to_si(value: Any, dimension: str, info: ValidationInfo) -> float:

@@ -1,0 +1,11 @@
+"""Many scenes that differ in some of their numbers: what is varied, where it is computed, the store
+that holds what comes out.
+
+What one scene amounts to belongs in measures and compare.
+"""
+
+from crankmbs.sweep.cases import Sample
+from crankmbs.sweep.run import sweep
+from crankmbs.sweep.store import load_sweep
+
+__all__ = ["Sample", "load_sweep", "sweep"]
