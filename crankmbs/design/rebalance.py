@@ -38,17 +38,17 @@ def rebalanced(scene: Scene, mean_speed: float) -> Scene:
     """
     if scene.start is None:
         raise InputError(
-            "mean_speed: loads give the mean speed of a free crank; under [motion] vary "
+            "settled_speed: loads give the mean speed of a free crank; under [motion] vary "
             "motion.speed instead"
         )
     if not any(load.parts.over_speed or load.parts.function for load in scene.torque):
         raise InputError(
-            "mean_speed: no load of the scene depends on the speed, so that none gives it its mean "
-            "speed; add one, such as a quadratic one"
+            "settled_speed: no load of the scene depends on the speed, so that none gives it a mean; "
+            "add one, such as a quadratic one"
         )
     if not mean_speed * scene.start.speed > 0.0:
         raise InputError(
-            f"mean_speed: must be a speed in the sense of start.speed; {mean_speed:g} rad/s came"
+            f"settled_speed: must be a speed in the sense of start.speed; {mean_speed:g} rad/s came"
         )
     free = replace(
         scene,
@@ -74,7 +74,7 @@ def _share(scene: Scene, wanted: float) -> float:
             break
         share -= max(min(off / slope, math.log(_FARTHEST)), -math.log(_FARTHEST))
     raise InputError(
-        f"mean_speed: no share of the loads was found with which the motion settles to "
+        f"settled_speed: no share of the loads was found with which the motion settles to "
         f"{wanted:.6g} rad/s; give loads that grow with the speed"
     )
 
@@ -82,7 +82,7 @@ def _share(scene: Scene, wanted: float) -> float:
 def _mean(scene: Scene) -> float:
     result = simulate(scene)
     if result.status != 0:
-        raise InputError(f"mean_speed: with other loads {result.message}")
+        raise InputError(f"settled_speed: with other loads {result.message}")
     time = result.data["time"].values
     return scene.settled_period / float(time[-1] - time[0])
 

@@ -84,11 +84,21 @@ def joined(parts: list[Block]) -> Block:
 def _one(job: Job, values: tuple[object, ...], samples: int | None) -> tuple[Row, int, str]:
     try:
         result = simulate(scene_of(job.scene, job.names, values))
+    except CrankmbsError as error:
+        return {}, IMPOSSIBLE, str(error)
+    except Exception as error:  # of a limit nobody knew: the other cases go on
+        return {}, -1, _broke_off(error)
+    try:
         return row_of(result, samples), result.status, result.message
     except CrankmbsError as error:
         return {}, IMPOSSIBLE, str(error)
-    except Exception as error:  # a load in Python, or a limit nobody knew: the others go on
-        return {}, -1, f"broke off: {type(error).__name__}: {error}"
+    except Exception as error:  # as where a load failed before there was a sample
+        ended = result.status != 0
+        return {}, result.status or -1, result.message if ended else _broke_off(error)
+
+
+def _broke_off(error: Exception) -> str:
+    return f"broke off: {type(error).__name__}: {error}"
 
 
 def _block(job: Job, ended: list[tuple[Row, int, str]]) -> Block:

@@ -22,7 +22,7 @@ from crankmbs.scene.units import quantity, unit_of
 
 __all__ = ["DERIVED", "Interval", "Knob", "interval_of", "knob_of"]
 
-DERIVED = {"rod_ratio": None, "mean_speed": "angular speed"}
+DERIVED = {"rod_ratio": None, "settled_speed": "angular speed"}
 """Knobs that are no value of a scene, and their dimensions."""
 
 _NUMBER = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
@@ -170,7 +170,9 @@ def _spaced(kind: _Kind, given: str) -> Knob:
             f"{kind.name}: a range needs how many values it has, from 2 to {_MOST}, then perhaps "
             f"log; {shown(given)} came; {_GRAMMAR}"
         )
-    if kind.dimension is None and match[3]:  # of a unit that only the field knows
+    if (
+        kind.dimension is None and match[3] and kind.name not in DERIVED
+    ):  # of a unit that only the field knows
         space = np.geomspace if way else np.linspace
         numbers = space(float(match[1]), float(match[2]), number).tolist()
         return Knob(kind.name, "", tuple(f"{value:.12g} {match[3]}" for value in numbers))

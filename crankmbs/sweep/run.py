@@ -35,7 +35,7 @@ def sweep(
 
     With another crank radius, rod length or offset the gas is carried over the volume. Beside the
     scene's own numbers there are "rod_ratio", r / l at the same stroke, where the rod keeps mass
-    and shape, and "mean_speed", to which the loads are scaled.
+    and shape, and "settled_speed", to which the loads are scaled.
 
     Parameters
     ----------

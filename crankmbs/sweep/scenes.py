@@ -23,7 +23,7 @@ def scene_of(scene: Scene, names: Sequence[str], values: Sequence[object]) -> Sc
     stroke the pressure stays a function of the swept fraction (`crankmbs.mechanics.carried`).
     "rod_ratio" gives the rod the length r / ratio, at the same stroke; it keeps its mass, the place
     of its centre of mass and its shape, so that its inertia goes with the length squared.
-    "mean_speed" scales the loads so that the motion settles to it.
+    "settled_speed" scales the loads so that the motion settles to it.
 
     Raises
     ------
@@ -43,7 +43,7 @@ def scene_of(scene: Scene, names: Sequence[str], values: Sequence[object]) -> Sc
             f"layout: a sweep keeps the number of cylinders, {len(scene.cylinders)}; "
             f"{len(new.cylinders)} came"
         )
-    return rebalanced(new, _number("mean_speed", given)) if "mean_speed" in given else new
+    return rebalanced(new, _number("settled_speed", given)) if "settled_speed" in given else new
 
 
 def _stretched(scene: Scene, _ratio: object) -> Rod:

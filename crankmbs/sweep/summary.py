@@ -56,7 +56,7 @@ def summary(path: Path) -> Summary:
         values, errors = columns[name][:], columns[f"{name}_error"][:]
         if np.all(np.isnan(values)):
             continue
-        words = (str(columns[name].attrs[which]) for which in ("long_name", "units"))
+        words, units = (str(columns[name].attrs[which]) for which in ("long_name", "units"))
         size = float(np.nanmin(values)), float(np.nanmax(values)), float(np.nanmax(errors))
-        bounds.append(Bounds(name, *words, *size))
+        bounds.append(Bounds(name, words, units, *size))
     return Summary(ended, tuple(bounds))
