@@ -43,7 +43,7 @@ from crankmbs.scene.run import Extent, Run
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.tables import CylinderTable, Table
 from crankmbs.simulate import simulate
-from crankmbs.sweep import Sample, load_sweep, sweep
+from crankmbs.sweep import Minimum, Sample, Solved, load_sweep, minimize, solve, sweep
 
 __all__ = [
     "AngleTable",
@@ -77,6 +77,7 @@ __all__ = [
     "Layout",
     "Load",
     "Measures",
+    "Minimum",
     "Misfire",
     "Motion",
     "Orders",
@@ -93,6 +94,7 @@ __all__ = [
     "Sample",
     "Scene",
     "SceneError",
+    "Solved",
     "SpeedFile",
     "SpeedTable",
     "Start",
@@ -111,10 +113,12 @@ __all__ = [
     "flywheel",
     "load_scene",
     "load_sweep",
+    "minimize",
     "orders",
     "read_pressure",
     "shipped_scenes",
     "simulate",
+    "solve",
     "sweep",
 ]
 

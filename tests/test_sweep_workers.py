@@ -26,6 +26,7 @@ from crankmbs.sweep.workers import workers_of
 SCENE = load_scene("yi_diesel").with_(run__until="1 cycles")
 GRID = {"rod.length": "0.15..0.2 m:12"}
 COASTING = load_scene("coasting").with_(run__until="0.01 s")
+DEADLY = "the worker that computed this case ended, again and again"
 COMMAND = "import sys; from crankmbs.cli import main; sys.argv[0] = 'crankmbs'; main()"
 PLAIN = ["sweep", "yi_diesel", "--workers", "1", "--vary", "rod.length=0.15..0.2 m:60"]
 
@@ -188,7 +189,7 @@ def test_a_case_that_ends_its_worker_twice_is_a_row(tmp_path):
     speeds = [50.0, 60.0, 95.0, 70.0, 80.0, 85.0]
     found = sweep(scene, {"start.speed": speeds}, executor=2)
     assert found["status"].values.tolist() == [0, 0, -2, 0, 0, 0]
-    assert str(found["message"].values[2]) == "the worker that computed this case ended twice"
+    assert str(found["message"].values[2]) == DEADLY
     assert np.isfinite(found["mean_speed"].values).tolist() == [True, True, False] + [True] * 3
 
 

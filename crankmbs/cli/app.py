@@ -20,8 +20,10 @@ from crankmbs.cli.flywheel import size_flywheel
 from crankmbs.cli.lesson import list_lessons, make_lesson
 from crankmbs.cli.new import new_scene
 from crankmbs.cli.page import demonstrate, write_page
+from crankmbs.cli.plot import plot
 from crankmbs.cli.pressure import pressure
 from crankmbs.cli.run import Wanted, run_scene
+from crankmbs.cli.solve import solve
 from crankmbs.cli.sweep import sweep
 from crankmbs.cli.validate import validate_scene
 from crankmbs.cli.work_precision import measure_scene
@@ -206,8 +208,8 @@ def page(
     write_page(scene, out=out)
 
 
-app.command()(pressure)
-app.command()(sweep)
+for command in (pressure, sweep, plot, solve):
+    app.command()(command)
 
 
 @app.command()

@@ -30,7 +30,7 @@ _ENDED = {
     1: "ended before it",
     -1: "broke off",
     2: "are of scenes that cannot be",
-    -2: "ended their worker twice",
+    -2: "ended their worker",
 }
 _OPTIONS = {"method": "--sample", "n": "--n", "seed": "--seed", "keep": "--keep"}
 _OPTIONS |= {"executor": "--workers"}

@@ -43,7 +43,7 @@ def rebalanced(scene: Scene, mean_speed: float) -> Scene:
         )
     if not any(load.parts.over_speed or load.parts.function for load in scene.torque):
         raise InputError(
-            "settled_speed: no load of the scene depends on the speed, so that none gives it a mean; "
+            "settled_speed: no load of the scene depends on the speed, so that none settles it; "
             "add one, such as a quadratic one"
         )
     if not mean_speed * scene.start.speed > 0.0:

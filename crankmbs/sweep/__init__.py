@@ -5,7 +5,9 @@ What one scene amounts to belongs in measures and compare.
 """
 
 from crankmbs.sweep.cases import Sample
+from crankmbs.sweep.minimize import Minimum, minimize
 from crankmbs.sweep.run import sweep
+from crankmbs.sweep.solve import Solved, solve
 from crankmbs.sweep.store import load_sweep
 
-__all__ = ["Sample", "load_sweep", "sweep"]
+__all__ = ["Minimum", "Sample", "Solved", "load_sweep", "minimize", "solve", "sweep"]

@@ -44,4 +44,4 @@ def cluster_executor(address: str) -> Iterator[Executor]:
             raise InputError(
                 f'{address}: this scheduler has no workers; start some with "dask worker {address}"'
             )
-        yield client.get_executor()
+        yield client.get_executor(pure=False)

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 __all__ = ["fill", "sweep"]
 
-_DEADLY = "the worker that computed this case ended twice"
+_DEADLY = "the worker that computed this case ended, again and again"
 
 
 def sweep(
@@ -151,10 +151,12 @@ class _Filling:
         self._workers.renew()
         for number in numbers:
             job = self._store.plan.job(number)
-            block = self._tried(job, 1)
+            block = self._tried(job, 1) if self._workers.tries > 1 else None
             if block is None:
                 cases = [job.only(k) for k in range(len(job.values))]
-                block = joined([self._tried(one, 2) or broken(one, _DEADLY) for one in cases])
+                block = joined(
+                    [self._tried(one, self._workers.tries) or broken(one, _DEADLY) for one in cases]
+                )
             self._write(number, block)
 
     def _tried(self, job: Job, times: int) -> Block | None:

@@ -32,7 +32,7 @@ _DIMS = "_ARRAY_DIMENSIONS"  # by which xarray knows them
 _NOT_RUN = -128
 _STATUS = (
     "0 reached its end, 1 ended before it, -1 broke off, 2 a scene that cannot be, -2 ended its "
-    "worker twice"
+    "worker"
 )
 _WORDS = {
     "version": "by another version of crankmbs",

@@ -30,9 +30,11 @@ class Workers(Protocol):
     """What computes blocks.
 
     at_once : how many blocks may be under way
+    tries : how often a case may end its worker; once where that means that it did so several times
     """
 
     at_once: int
+    tries: int
 
     def submit(self, job: Job) -> Future[Block]:
         """Have a block computed."""
@@ -47,7 +49,7 @@ class Workers(Protocol):
 class _Here:
     """In the calling process, one block after the other."""
 
-    at_once = 1
+    at_once, tries = 1, 1
 
     def submit(self, job: Job) -> Future[Block]:
         future: Future[Block] = Future()
@@ -63,6 +65,8 @@ class _Here:
 
 class _Processes:
     """Processes of this machine, started anew, each with one thread."""
+
+    tries = 2
 
     def __init__(self, count: int) -> None:
         self.at_once = 2 * count  # one waits while one is computed
@@ -93,7 +97,9 @@ class _Processes:
 
 
 class _Given:
-    """An executor that is given."""
+    """An executor that is given; Dask's tries again by itself."""
+
+    tries = 1
 
     def __init__(self, executor: Executor) -> None:
         self._executor = executor
@@ -128,7 +134,11 @@ def workers_of(executor: Executor | int | None, job: Job, blocks: int) -> Iterat
     if isinstance(executor, Executor):
         if isinstance(executor, ProcessPoolExecutor):
             _check_sendable(job)
-        _check_ready(executor.submit(_ready))
+        try:
+            ready = executor.submit(_ready)
+        except RuntimeError as error:
+            raise InputError(f"executor: it takes no work: {error}; give a new one") from None
+        _check_ready(ready)
         yield _Given(executor)
         return
     if executor is not None and (
