@@ -34,13 +34,13 @@ def plot(
     folder = writable(Path("results", sweep.stem) if out is None else out)
     from crankmbs.figures import sweep_figure  # matplotlib only here
 
-    names = []
+    drawn = {}
+    for words in show or ["fluctuation"]:
+        try:
+            drawn[f"{'_'.join(words.split())}.png"] = sweep_figure(data, words, limit)
+        except InputError as error:
+            raise InputError(f"--show {words}: {error}") from None
     with together(folder) as part:
-        for words in show or ["fluctuation"]:
-            try:
-                figure = sweep_figure(data, words, limit)
-            except InputError as error:
-                raise InputError(f"--show {words}: {error}") from None
-            names.append(f"{'_'.join(words.split())}.png")
-            figure.savefig(part / names[-1], format="png")
-    typer.echo(wrote(folder, names))
+        for name, figure in drawn.items():
+            figure.savefig(part / name, format="png")
+    typer.echo(wrote(folder, [*drawn]))

@@ -124,7 +124,7 @@ class _Descent:
         kept = NonlinearConstraint(self._missed, -np.inf, 0.0)
         options: Any = {"maxfev": _MOST * count}
         options |= {"initial_tr_radius": _FIRST, "final_tr_radius": _LAST}
-        ended = polished(
+        ended = polished(  # type: ignore[call-overload]
             lambda share: self._least(share) / scale,
             start,
             method="COBYQA",

@@ -12,7 +12,7 @@ from crankmbs.scene.scene import Scene
 from crankmbs.sweep.block import Block, Job, broken, joined
 from crankmbs.sweep.plan import Plan, check_possible, plan_of
 from crankmbs.sweep.store import Store, load_sweep, opened
-from crankmbs.sweep.workers import Workers, workers_of
+from crankmbs.sweep.workers import Workers, check_executor, workers_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -87,6 +87,7 @@ def fill(
     InputError : another sweep is there, or workers that cannot start
     OutputError : it cannot be written; what is finished is kept
     """
+    check_executor(executor)
     store = opened(path, plan)
     missing = [number for number in range(plan.blocks) if number not in store.done]
     report(plan.cases.count - sum(len(plan.rows(number)) for number in missing))

@@ -15,7 +15,7 @@ from typing import Protocol
 from crankmbs.errors import InputError, OutputError, shown
 from crankmbs.sweep.block import Block, Job, solved
 
-__all__ = ["Workers", "workers_of"]
+__all__ = ["Workers", "check_executor", "workers_of"]
 
 _THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS", "NUMBA_NUM_THREADS")
 _LARGEST = 512
@@ -122,6 +122,22 @@ class _Given:
         return isinstance(error, BrokenExecutor) or type(error).__name__ == "KilledWorker"
 
 
+def check_executor(executor: object) -> None:
+    """Refuse what computes nothing.
+
+    Raises
+    ------
+    InputError : neither an executor nor a number of processes
+    """
+    if executor is None or isinstance(executor, Executor):
+        return
+    if isinstance(executor, bool) or not isinstance(executor, int) or not 1 <= executor <= _LARGEST:
+        raise InputError(
+            f"executor must be a number of workers from 1 to {_LARGEST}, or an Executor of "
+            f"concurrent.futures; {shown(executor)} came"
+        )
+
+
 @contextmanager
 def workers_of(executor: Executor | int | None, job: Job, blocks: int) -> Iterator[Workers]:
     """What computes so many blocks such as this one: an executor, or so many processes; 1 is the
@@ -129,7 +145,7 @@ def workers_of(executor: Executor | int | None, job: Job, blocks: int) -> Iterat
 
     Raises
     ------
-    InputError : neither, workers that cannot start, or a scene that cannot be sent to them
+    InputError : workers that cannot start, or a scene that cannot be sent to them
     """
     if isinstance(executor, Executor):
         if isinstance(executor, ProcessPoolExecutor):
@@ -141,13 +157,6 @@ def workers_of(executor: Executor | int | None, job: Job, blocks: int) -> Iterat
         _check_ready(ready)
         yield _Given(executor)
         return
-    if executor is not None and (
-        isinstance(executor, bool) or not isinstance(executor, int) or not 1 <= executor <= _LARGEST
-    ):
-        raise InputError(
-            f"executor must be a number of workers from 1 to {_LARGEST}, or an Executor of "
-            f"concurrent.futures; {shown(executor)} came"
-        )
     few = executor is None and blocks < _FEW
     count = 1 if few else min(executor or os.cpu_count() or 1, blocks)
     if count <= 1:
