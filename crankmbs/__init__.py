@@ -43,7 +43,17 @@ from crankmbs.scene.run import Extent, Run
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.tables import CylinderTable, Table
 from crankmbs.simulate import simulate
-from crankmbs.sweep import Minimum, Sample, Solved, load_sweep, minimize, solve, sweep
+from crankmbs.sweep import (
+    Minimum,
+    Sample,
+    Sensitivity,
+    Solved,
+    load_sweep,
+    minimize,
+    sensitivity,
+    solve,
+    sweep,
+)
 
 __all__ = [
     "AngleTable",
@@ -94,6 +104,7 @@ __all__ = [
     "Sample",
     "Scene",
     "SceneError",
+    "Sensitivity",
     "Solved",
     "SpeedFile",
     "SpeedTable",
@@ -116,6 +127,7 @@ __all__ = [
     "minimize",
     "orders",
     "read_pressure",
+    "sensitivity",
     "shipped_scenes",
     "simulate",
     "solve",

@@ -7,10 +7,21 @@ import pytest
 from command_line import crankmbs_, names, refused
 from matplotlib.contour import QuadContourSet
 
-from crankmbs import InputError, Sample, flywheel, load_scene, minimize, solve, sweep
+from crankmbs import (
+    Estimate,
+    InputError,
+    Sample,
+    flywheel,
+    load_scene,
+    minimize,
+    sensitivity,
+    solve,
+    sweep,
+)
 from crankmbs.figures import png, sweep_figure
 from crankmbs.sweep.columns import columns_of
 from crankmbs.sweep.reading import reading_of
+from crankmbs.sweep.solve import Asked
 
 SCENE = load_scene("propeller").with_(run__until="settled")
 SMOOTH = load_scene("yi_diesel").with_(run__until="1 cycles", gas=None, gravity=None)
@@ -71,6 +82,41 @@ def test_conditions_that_nothing_fulfils_are_said():
     assert found.values["crank.inertia"] == pytest.approx(0.4, rel=1e-5)
 
 
+def test_a_sensitivity_is_the_derivative():
+    """Without a rod's mass, gas and weight the side force is in proportion to the piston's mass,
+    and to the square of the speed."""
+    light = SMOOTH.with_(rod__mass=0.0, rod__center_of_mass=0.0, rod__inertia=0.0)
+    for name, power in (("piston.mass", 1.0), ("motion.speed", 2.0)):
+        found = sensitivity(light, name, "peak side force")
+        exact = power * found.reached.value / found.value
+        assert abs(found.derivative.value - exact) <= found.derivative.error
+        assert found.derivative.error < 1e-6 * exact
+        assert found.elasticity == pytest.approx(power, rel=1e-9)
+
+
+def test_a_sensitivity_is_the_slope_at_a_root():
+    vary = {"crank.inertia": "0.2..0.4 kg m^2"}
+    less, more = (
+        solve(SCENE, vary, f"fluctuation = {wanted}").roots[0].value.value
+        for wanted in (0.009999, 0.010001)
+    )
+    at = SCENE.with_(crank__inertia=0.5 * (less + more))
+    slope = sensitivity(at, "crank.inertia", "fluctuation").derivative
+    assert slope.value == pytest.approx(2e-6 / (more - less), rel=2e-4)
+
+
+def test_where_a_peak_bends_a_sensitivity_knows_nothing(monkeypatch):
+    value = SCENE.rod.length
+
+    def bent(_, values, __):
+        return (Estimate(abs(values[0] - value), 0.0),)
+
+    monkeypatch.setattr(Asked, "at", bent)
+    found = sensitivity(SCENE, "rod.length", "fluctuation").derivative
+    assert abs(found.value) < 1e-9
+    assert found.error >= 1.0
+
+
 @pytest.mark.parametrize(
     ("call", "said"),
     [
@@ -98,6 +144,9 @@ def test_conditions_that_nothing_fulfils_are_said():
             "fuel.seed: is a whole number",
         ),
         (lambda: minimize(SCENE, {}, "fluctuation"), "vary: needs ranges of numbers"),
+        (lambda: sensitivity(SCENE, "piston.offset", "fluctuation"), "is 0 in this scene"),
+        (lambda: sensitivity(SCENE, "settled_speed", "fluctuation"), "must be a number that a"),
+        (lambda: sensitivity(SCENE, "rod.lenght", "fluctuation"), 'did you mean "length"?'),
         (
             lambda: minimize(SCENE, {"rod.length": "1..2 m"}, "fluctuation", ["mean speed = 3"]),
             '"mean speed = 3" is no condition: write one such as "fluctuation <= 1 %"',
@@ -135,10 +184,10 @@ def grid():
 
 
 def test_one_knob_is_a_curve(grid):
-    one = grid.isel({"rod_ratio": 0})
+    one = grid.isel({"rod_ratio": [0]})
     figure = sweep_figure(one, "fluctuation", "1 %")
     curve, limit = figure.axes[0].lines
-    np.testing.assert_allclose(curve.get_ydata(), 100.0 * one["fluctuation"])
+    np.testing.assert_allclose(curve.get_ydata(), 100.0 * one["fluctuation"][0])
     np.testing.assert_array_equal(limit.get_ydata(), [1.0, 1.0])
     assert figure.axes[0].get_xscale() == "log"
 

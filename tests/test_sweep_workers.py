@@ -6,7 +6,7 @@ import signal
 import subprocess
 import sys
 import time
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from dataclasses import replace
 from importlib import metadata
 from pathlib import Path
@@ -18,6 +18,7 @@ from command_line import crankmbs_, refused
 from deadly import braking, deadly
 
 from crankmbs import InputError, Load, OutputError, load_scene, load_sweep, sweep
+from crankmbs.sweep import workers
 from crankmbs.sweep.cluster import cluster_executor
 from crankmbs.sweep.plan import plan_of
 from crankmbs.sweep.run import fill
@@ -193,6 +194,30 @@ def test_a_case_that_ends_its_worker_twice_is_a_row(tmp_path):
     assert np.isfinite(found["mean_speed"].values).tolist() == [True, True, False] + [True] * 3
 
 
+class KilledWorker(Exception):
+    """What Dask says of a task that ended several workers."""
+
+
+class Deadly(Executor):
+    """Ends the worker of every block with this speed, as a cluster that starts it anew."""
+
+    def submit(self, work, *given):
+        future = Future()
+        if given and (95.0,) in given[0].values:
+            future.set_exception(KilledWorker())
+        else:
+            future.set_result(work(*given))
+        return future
+
+
+def test_a_case_that_ends_the_workers_of_a_cluster_is_a_row(monkeypatch):
+    monkeypatch.setattr(workers, "_ready", lambda: None)
+    speeds = [50.0, 60.0, 95.0, 70.0, 80.0]
+    found = sweep(COASTING, {"start.speed": speeds}, executor=Deadly())
+    assert found["status"].values.tolist() == [0, 0, -2, 0, 0]
+    assert str(found["message"].values[2]) == DEADLY
+
+
 def test_a_load_of_a_module_is_computed_in_processes():
     scene = replace(load_scene("propeller").with_(run__until="1 cycles"), torque=(Load(braking),))
     vary = {"crank.inertia": [0.2 + 0.01 * k for k in range(8)]}
@@ -271,5 +296,5 @@ def test_metadata_says_what_a_store_is_of(alone):
 
 def test_few_blocks_are_computed_where_they_are_asked_for():
     job = plan_of(SCENE, GRID, "measures").job(0)
-    with workers_of(None, job, 3) as workers:
-        assert workers.at_once == 1
+    with workers_of(None, job, 3) as here:
+        assert here.at_once == 1

@@ -76,8 +76,8 @@ class _Axis(NamedTuple):
 def sweep_figure(data: xr.Dataset, show: str, limit: str | None = None) -> Figure:
     """A measure of a sweep over what was varied.
 
-    One knob of a grid gives a curve, two filled contours, more a panel of contours for each
-    combination of the others; a sample or list of cases gives points over each knob.
+    One knob of a grid with several values gives a curve, two filled contours, more a panel of
+    contours for each combination of the others; a sample or list of cases points over each knob.
 
     Parameters
     ----------
@@ -89,6 +89,7 @@ def sweep_figure(data: xr.Dataset, show: str, limit: str | None = None) -> Figur
     ------
     InputError : no such measure, no case that has it, a limit of another unit, too many panels
     """
+    data = _varied(data)
     columns = {
         str(name): Column(one.attrs["units"], one.attrs["long_name"])
         for name, one in data.data_vars.items()
@@ -109,6 +110,13 @@ def sweep_figure(data: xr.Dataset, show: str, limit: str | None = None) -> Figur
     lines[1] += f"; {missing} have none and are left white" if missing else ""
     caption(figure, [line for line in lines if line])
     return figure
+
+
+def _varied(data: xr.Dataset) -> xr.Dataset:
+    """The data without the knobs of a grid that have one value only."""
+    knobs = [dim for dim in data["status"].dims if dim != "case"]
+    alone = [dim for dim in knobs if data.sizes[dim] == 1]
+    return data.squeeze(alone if len(alone) < len(knobs) else alone[1:], drop=True)
 
 
 def _over(data: xr.Dataset, drawn: _Drawn, knobs: list[str]) -> Figure:

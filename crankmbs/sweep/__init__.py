@@ -7,7 +7,18 @@ What one scene amounts to belongs in measures and compare.
 from crankmbs.sweep.cases import Sample
 from crankmbs.sweep.minimize import Minimum, minimize
 from crankmbs.sweep.run import sweep
+from crankmbs.sweep.sensitivity import Sensitivity, sensitivity
 from crankmbs.sweep.solve import Solved, solve
 from crankmbs.sweep.store import load_sweep
 
-__all__ = ["Minimum", "Sample", "Solved", "load_sweep", "minimize", "solve", "sweep"]
+__all__ = [
+    "Minimum",
+    "Sample",
+    "Sensitivity",
+    "Solved",
+    "load_sweep",
+    "minimize",
+    "sensitivity",
+    "solve",
+    "sweep",
+]

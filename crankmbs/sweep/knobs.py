@@ -20,7 +20,7 @@ from crankmbs.scene.sentences import did_you_mean
 from crankmbs.scene.tables import CylinderTable, Table
 from crankmbs.scene.units import quantity, unit_of
 
-__all__ = ["DERIVED", "Interval", "Knob", "interval_of", "knob_of"]
+__all__ = ["DERIVED", "Interval", "Knob", "interval_of", "knob_of", "number_at"]
 
 DERIVED = {"rod_ratio": None, "settled_speed": "angular speed"}
 """Knobs that are no value of a scene, and their dimensions."""
@@ -134,6 +134,27 @@ def interval_of(scene: Scene, name: str, given: object) -> Interval:
             f"{shown(given)} came"
         )
     return _interval(kind, match, match[4] is not None)
+
+
+def number_at(scene: Scene, name: str) -> tuple[Knob, float]:
+    """A knob, and the number that the scene has there.
+
+    Raises
+    ------
+    InputError : no such name, or no number there
+
+    >>> from crankmbs import load_scene
+    >>> number_at(load_scene("propeller"), "crank.radius")[1]
+    0.046
+    """
+    kind = _kind(scene, name)
+    value: object = scene.crank.radius / scene.rod.length
+    if kind.name != "rod_ratio":
+        value = None if kind.name in DERIVED else _at(scene, kind.name)
+    if kind.whole or isinstance(value, bool) or not isinstance(value, float):
+        raise InputError(f"{name}: must be a number that a little can be added to; it is no such")
+    unit = unit_of(kind.dimension) if kind.dimension else ""
+    return Knob(kind.name, unit, ()), value
 
 
 def _kind(scene: Scene, name: str) -> _Kind:

@@ -18,7 +18,7 @@ from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 from crankmbs.sweep.cases import Sample
 from crankmbs.sweep.columns import columns_of
-from crankmbs.sweep.knobs import interval_of
+from crankmbs.sweep.knobs import Interval, interval_of
 from crankmbs.sweep.reading import Reading, reading_of
 from crankmbs.sweep.solve import Asked, asked_of
 
@@ -98,20 +98,25 @@ def minimize(
         raise InputError("vary: needs ranges of numbers that are not whole; sweep compares others")
     reading = reading_of(measure, columns_of(scene, series=False))
     conditions = [asked_of(scene, text, "<= >= < >") for text in subject_to]
-    return _Descent(Asked(scene, knobs), reading, conditions).found()
+    return _Descent(scene, knobs, reading, conditions).found()
 
 
 class _Descent:
     """A measure and its conditions over shares of the ranges; each point is computed once."""
 
     def __init__(
-        self, asked: Asked, reading: Reading, conditions: list[tuple[Reading, str, float]]
+        self,
+        scene: Scene,
+        knobs: tuple[Interval, ...],
+        reading: Reading,
+        conditions: list[tuple[Reading, str, float]],
     ) -> None:
-        self._asked, self._reading, self._conditions = asked, reading, conditions
+        self._asked, self._knobs = Asked(scene, tuple(knob.name for knob in knobs)), knobs
+        self._reading, self._conditions = reading, conditions
         self._known: dict[tuple[float, ...], tuple[Estimate, ...]] = {}
 
     def found(self) -> Minimum:
-        count = len(self._asked.knobs)
+        count = len(self._knobs)
         points = qmc.Sobol(count, rng=1).random_base2(math.ceil(math.log2(_POINTS * count)))
         values = np.array([self._least(point) for point in points])
         missed = np.array([self._missed(point).max(initial=0.0) for point in points])
@@ -150,7 +155,7 @@ class _Descent:
     def _answer(self, share: Array, status: int, message: str) -> Minimum:
         reached, *others = self._estimates(share)
         values = self._values(share)
-        knobs = self._asked.knobs
+        knobs = self._knobs
         return Minimum(
             values={knob.name: value for knob, value in zip(knobs, values, strict=True)},
             units={knob.name: knob.units for knob in knobs},
@@ -183,5 +188,5 @@ class _Descent:
         return self._known[key]
 
     def _values(self, share: Array) -> tuple[float, ...]:
-        pairs = zip(self._asked.knobs, share.tolist(), strict=True)
+        pairs = zip(self._knobs, share.tolist(), strict=True)
         return tuple(float(knob.at(np.array(one))) for knob, one in pairs)

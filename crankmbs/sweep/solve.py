@@ -64,12 +64,11 @@ class Asked:
     """One number of each case of a scene, asked for value by value."""
 
     scene: Scene
-    knobs: tuple[Interval, ...]
+    names: tuple[str, ...]
 
     def at(self, values: tuple[float, ...], readings: tuple[Reading, ...]) -> tuple[Estimate, ...]:
         """What is read of a case; NaN where it does not reach its end."""
-        names = tuple(knob.name for knob in self.knobs)
-        block = solved(Job(self.scene, names, (values,), False))
+        block = solved(Job(self.scene, self.names, (values,), False))
         if block.status[0] != 0:
             return (Estimate(math.nan, math.nan),) * len(readings)
         row = {name: column[0] for name, column in block.rows.items()}
@@ -137,15 +136,15 @@ def solve(scene: Scene, vary: dict[str, str], wanted: str) -> Solved:
     if knob.whole:
         raise InputError(f"{knob.name}: is a whole number, and sweep finds the best of those")
     reading, _, amount = asked_of(scene, wanted, "=")
-    return _Search(Asked(scene, (knob,)), reading, amount).found()
+    return _Search(Asked(scene, (knob.name,)), knob, reading, amount).found()
 
 
 class _Search:
     """Where a measure of one knob is what is wanted; shares of the way stand for its values."""
 
-    def __init__(self, asked: Asked, reading: Reading, wanted: float) -> None:
-        self._asked, self._reading, self._wanted = asked, reading, wanted
-        (self._knob,) = asked.knobs
+    def __init__(self, asked: Asked, knob: Interval, reading: Reading, wanted: float) -> None:
+        self._asked, self._knob = asked, knob
+        self._reading, self._wanted = reading, wanted
 
     def found(self) -> Solved:
         shares = np.linspace(0.0, 1.0, _POINTS)
