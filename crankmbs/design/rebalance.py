@@ -33,8 +33,8 @@ def rebalanced(scene: Scene, mean_speed: float) -> Scene:
     InputError : a prescribed speed, no load that depends on the speed, or no share that will do
 
     >>> brake = rebalanced(load_scene("propeller"), 300.0).torque[0]
-    >>> print(f"{brake.coefficient:.3e}")
-    2
+    >>> print(f"{brake.coefficient:.3e} N m s^2")
+    1.175e-04 N m s^2
     """
     if scene.start is None:
         raise InputError(

@@ -124,7 +124,7 @@ def samples_of(scene: Scene) -> int:
     InputError : that shows only on the way
 
     >>> samples_of(load_scene("yi_diesel"))
-    1442
+    722
     """
     end, in_time = scene.end
     if scene.run.every is None:

@@ -122,7 +122,7 @@ def solve(scene: Scene, vary: dict[str, str], wanted: str) -> Solved:
     >>> scene = load_scene("propeller").with_(run__until="settled")
     >>> found = solve(scene, {"crank.inertia": "0.2..0.4 kg m^2"}, "fluctuation = 1 %")
     >>> print(f"{found.roots[0].value.value:.4f} {found.units}")
-    0.2996 kg m^2
+    0.2994 kg m^2
     """
     if not isinstance(scene, Scene):
         raise InputError(f"scene must be a Scene, such as load_scene reads; {shown(scene)} came")
