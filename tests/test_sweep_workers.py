@@ -1,6 +1,5 @@
 """A sweep is the same wherever it is computed, and what is finished survives what ends it."""
 
-import json
 import os
 import signal
 import subprocess
@@ -286,12 +285,6 @@ def test_an_unreachable_scheduler_is_one_sentence(tmp_path):
     assert said.startswith("tcp://127.0.0.1:1: no scheduler answers; start one with")
     assert not list(tmp_path.iterdir())
     assert "both say where" in refused(*PLAIN, "-o", "s", "--cluster", "tcp://127.0.0.1:1")
-
-
-def test_metadata_says_what_a_store_is_of(alone):
-    about = json.loads((alone / ".zattrs").read_text())
-    assert about["knobs"] == ["rod.length"]
-    assert about["grid"] == [12]
 
 
 def test_few_blocks_are_computed_where_they_are_asked_for():
