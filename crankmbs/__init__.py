@@ -43,6 +43,17 @@ from crankmbs.scene.run import Extent, Run
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.tables import CylinderTable, Table
 from crankmbs.simulate import simulate
+from crankmbs.sweep import (
+    Minimum,
+    Sample,
+    Sensitivity,
+    Solved,
+    load_sweep,
+    minimize,
+    sensitivity,
+    solve,
+    sweep,
+)
 
 __all__ = [
     "AngleTable",
@@ -76,6 +87,7 @@ __all__ = [
     "Layout",
     "Load",
     "Measures",
+    "Minimum",
     "Misfire",
     "Motion",
     "Orders",
@@ -89,8 +101,11 @@ __all__ = [
     "Result",
     "Rod",
     "Run",
+    "Sample",
     "Scene",
     "SceneError",
+    "Sensitivity",
+    "Solved",
     "SpeedFile",
     "SpeedTable",
     "Start",
@@ -108,10 +123,15 @@ __all__ = [
     "export",
     "flywheel",
     "load_scene",
+    "load_sweep",
+    "minimize",
     "orders",
     "read_pressure",
+    "sensitivity",
     "shipped_scenes",
     "simulate",
+    "solve",
+    "sweep",
 ]
 
 

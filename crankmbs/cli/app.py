@@ -20,8 +20,11 @@ from crankmbs.cli.flywheel import size_flywheel
 from crankmbs.cli.lesson import list_lessons, make_lesson
 from crankmbs.cli.new import new_scene
 from crankmbs.cli.page import demonstrate, write_page
+from crankmbs.cli.plot import plot
 from crankmbs.cli.pressure import pressure
 from crankmbs.cli.run import Wanted, run_scene
+from crankmbs.cli.solve import solve
+from crankmbs.cli.sweep import sweep
 from crankmbs.cli.validate import validate_scene
 from crankmbs.cli.work_precision import measure_scene
 from crankmbs.report.machine import describe
@@ -205,7 +208,8 @@ def page(
     write_page(scene, out=out)
 
 
-app.command()(pressure)
+for command in (pressure, sweep, plot, solve):
+    app.command()(command)
 
 
 @app.command()
@@ -285,10 +289,7 @@ def lesson(
     make_lesson(name, out, scene)
 
 
-@app.command()
-def lessons() -> None:
-    """List the lessons."""
-    list_lessons()
+app.command("lessons", help="List the lessons.")(list_lessons)
 
 
 def main() -> None:

@@ -35,6 +35,7 @@ from crankmbs.figures.strips import (
     torque_figure,
 )
 from crankmbs.figures.style import png
+from crankmbs.figures.sweep import sweep_figure
 from crankmbs.figures.view import View, last_view
 from crankmbs.indicated import Indicated
 from crankmbs.measures import EngineOrders, engine_orders
@@ -67,6 +68,7 @@ __all__ = [
     "save_validation",
     "scatter_figure",
     "speed_figure",
+    "sweep_figure",
     "torque_figure",
     "volume_figure",
 ]

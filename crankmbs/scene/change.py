@@ -13,7 +13,7 @@ from crankmbs.scene.sentences import did_you_mean
 if TYPE_CHECKING:
     from crankmbs.scene.scene import Scene
 
-__all__ = ["changed"]
+__all__ = ["changed", "field_at"]
 
 _STEP = re.compile(r"__|\.|\[|\]\.|\]__|\]$")
 _BARE = re.compile(r"[A-Za-z_]\w*(?:(?:\.|__)\w+|\[\d+\])*")
@@ -59,6 +59,43 @@ def changed(scene: Scene, values: Mapping[str, Any]) -> Scene:
     return new
 
 
+def field_at(scene: Scene, name: str) -> tuple[type[Any], str] | None:
+    """The class of the part in which a value stands, and its field there; None for an entry of a
+    list.
+
+    Raises
+    ------
+    InputError : no such place; begins with the name as it was given
+
+    >>> field_at(load_scene("propeller"), "rod.length")[1]
+    'length'
+    """
+    *above, last = _steps(name)
+    part: Any = scene
+    for step in above:
+        part = _entry(part, step) if isinstance(part, tuple) else _attribute(part, step)
+    if isinstance(part, tuple) and _entry(part, last) is not None:
+        return None
+    known = _fields(part)
+    if last not in known and last not in known.values():
+        changed(scene, {name: None})  # which says what is wrong with the name
+    return type(part), known.get(last, last)
+
+
+def _attribute(part: Any, step: str) -> Any:
+    return getattr(part, _fields(part).get(step, step), None)
+
+
+def _entry(parts: tuple[Any, ...], step: str) -> Any:
+    return parts[int(step) - 1] if step.isdigit() and 1 <= int(step) <= len(parts) else None
+
+
+def _fields(part: Any) -> dict[str, str]:
+    """Names of the fields of a part by what a file calls them, such as "from"."""
+    fields = getattr(type(part), "__pydantic_fields__", {})
+    return {field.validation_alias or name: name for name, field in fields.items()}
+
+
 def _steps(name: str) -> list[str]:
     if not _BARE.fullmatch(name):
         raise InputError(
@@ -82,12 +119,11 @@ def _rebuilt(old: Any, changes: _Changes, place: tuple[str, ...]) -> Any:
     """A part or a list of parts, made anew from its old values and the changed ones."""
     if isinstance(old, tuple):
         return _list(old, changes, place)
-    fields = type(old).__pydantic_fields__
-    known = {field.validation_alias or name: name for name, field in fields.items()}  # "from"
+    known = _fields(old)
     new, given = {}, {}
     for key, below in changes.items():
         name = known.get(key, key)
-        if name not in fields:
+        if name not in known.values():
             near = did_you_mean(key, list(known)) or f"; known are {', '.join(known)}"
             raise InputError(f"{_names(below)[0]}: {_called(old)} has no {shown(key)}{near}")
         new[name] = _below(getattr(old, name), below, (*place, key))

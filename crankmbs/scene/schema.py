@@ -8,7 +8,8 @@ a TOML file, its folder, and for a scene that was saved with a result.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+import typing
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from numbers import Real
 from pathlib import Path
@@ -28,6 +29,7 @@ __all__ = [
     "CsvFile",
     "Float",
     "Quantity",
+    "dimension_of",
     "dumped",
     "folder_of",
     "from_file",
@@ -92,6 +94,24 @@ def si(dimension: str) -> BeforeValidator:
     In a file an angle or an angular speed needs its unit: 90 could mean degrees.
     """
     return BeforeValidator(Quantity(dimension))
+
+
+def dimension_of(owner: type[Any], name: str) -> str | None:
+    """The dimension of a field of a part; None where it is no quantity.
+
+    >>> from crankmbs import Crank
+    >>> dimension_of(Crank, "inertia")
+    'inertia'
+    """
+    field = owner.__pydantic_fields__[name]
+    return next(_dimensions([field.annotation, *field.metadata]), None)
+
+
+def _dimensions(annotations: Sequence[Any]) -> Iterator[str]:
+    for one in annotations:
+        if isinstance(one, BeforeValidator) and isinstance(one.func, Quantity):
+            yield one.func.dimension
+        yield from _dimensions(typing.get_args(one))
 
 
 def to_si(value: Any, dimension: str, info: ValidationInfo) -> float:

@@ -13,7 +13,7 @@ from functools import cache
 
 from crankmbs.errors import InputError, shown
 
-__all__ = ["BAR", "DEGREE", "EXAMPLES", "RPM", "check_size", "extent", "quantity"]
+__all__ = ["BAR", "DEGREE", "EXAMPLES", "RPM", "check_size", "extent", "quantity", "unit_of"]
 
 BAR = 1e5  # Pa
 DEGREE = math.pi / 180.0  # rad
@@ -34,6 +34,7 @@ _SI = {
     "integral gain": "1/rad",
     "length": "m",
     "mass": "kg",
+    "power": "W",
     "pressure": "Pa",
     "proportional gain": "s/rad",
     "quadratic coefficient": "N m s^2",
@@ -62,6 +63,7 @@ EXAMPLES = {
     "integral gain": '"0.02 1/rad"',
     "length": '"46 mm"',
     "mass": '"1.14 kg"',
+    "power": '"20 kW"',
     "pressure": '"1 bar"',
     "proportional gain": '"0.004 s/rad"',
     "quadratic coefficient": '"7.8e-4 N m s^2"',
@@ -118,6 +120,15 @@ def extent(text: str) -> tuple[float, str]:
     return number * factor, "s"
 
 
+def unit_of(dimension: str) -> str:
+    """The SI unit of a dimension.
+
+    >>> unit_of("angular speed")
+    'rad/s'
+    """
+    return {"angle": "rad", "angular speed": "rad/s"}.get(dimension) or _SI[dimension]
+
+
 def check_size(value: float, dimension: str, came: object) -> None:
     """Refuse a finite SI value whose products double precision does not hold.
 
@@ -128,7 +139,7 @@ def check_size(value: float, dimension: str, came: object) -> None:
     >>> check_size(0.046, "length", "46 mm")
     """
     if math.isfinite(value) and value != 0.0 and not _SMALLEST <= abs(value) <= _LARGEST:
-        unit = {"angle": "rad", "angular speed": "rad/s"}.get(dimension) or _SI[dimension]
+        unit = unit_of(dimension)
         raise InputError(
             f"must be 0, or from {_SMALLEST:g} to {_LARGEST:g} {unit} in size, or calculating with "
             f"it overflows; {shown(came)} came"

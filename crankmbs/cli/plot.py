@@ -1,0 +1,46 @@
+"""The command ``plot``: measures of a sweep, drawn over what was varied."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from crankmbs.cli.folder import writable, wrote
+from crankmbs.errors import InputError
+from crankmbs.storage.files import together
+from crankmbs.sweep.store import load_sweep
+
+__all__ = ["plot"]
+
+
+def plot(
+    sweep: Annotated[Path, typer.Argument(metavar="SWEEP", help="The folder that sweep wrote.")],
+    show: Annotated[
+        list[str] | None,
+        typer.Option(help='Such as "peak crank pin force" or "side thrust by S1"; often.'),
+    ] = None,
+    limit: Annotated[
+        str | None, typer.Option(help='Of what is shown, "1 %" or "20 kN": a line is drawn there.')
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option("-o", "--out", help="Folder of the figures; default results/NAME."),
+    ] = None,
+) -> None:
+    """Draw measures of a sweep over what was varied: curves, contours or small multiples."""
+    data = load_sweep(sweep)
+    folder = writable(Path("results", sweep.stem) if out is None else out)
+    from crankmbs.figures import sweep_figure  # matplotlib only here
+
+    drawn = {}
+    for words in show or ["fluctuation"]:
+        try:
+            drawn[f"{'_'.join(words.split())}.png"] = sweep_figure(data, words, limit)
+        except InputError as error:
+            raise InputError(f"--show {words}: {error}") from None
+    with together(folder) as part:
+        for name, figure in drawn.items():
+            figure.savefig(part / name, format="png")
+    typer.echo(wrote(folder, [*drawn]))

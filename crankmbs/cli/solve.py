@@ -1,0 +1,95 @@
+"""The command ``solve``: what a knob has to be so that a measure is what is wanted, or least."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from crankmbs.cli.progress import progress
+from crankmbs.cli.sweep import varied
+from crankmbs.cli.text import table
+from crankmbs.digits import digits, error_digits
+from crankmbs.errors import InputError
+from crankmbs.measures import Estimate
+from crankmbs.scene.read import load_scene, scene_path
+from crankmbs.sweep.minimize import Minimum, minimize
+from crankmbs.sweep.reading import Reading
+from crankmbs.sweep.solve import Solved
+from crankmbs.sweep.solve import solve as solved
+
+__all__ = ["solve"]
+
+
+def solve(
+    scene: Annotated[
+        str, typer.Argument(metavar="SCENE", help="A scene file, or the name of a shipped scene.")
+    ],
+    vary: Annotated[
+        list[str],
+        typer.Option(metavar="NAME=RANGE", help='Such as "crank.inertia=0.05..0.5 kg m^2".'),
+    ],
+    wanted: Annotated[
+        str | None, typer.Option("--for", metavar="CONDITION", help='"fluctuation = 1 %".')
+    ] = None,
+    least: Annotated[
+        str | None, typer.Option("--minimize", metavar="MEASURE", help='"peak crank pin force".')
+    ] = None,
+    subject_to: Annotated[
+        list[str] | None,
+        typer.Option(metavar="CONDITION", help='With --minimize, "fluctuation <= 2 %"; often.'),
+    ] = None,
+) -> None:
+    """Find the value with which a measure is what is wanted, or values with which it is least."""
+    if (wanted is None) == (least is None) or (subject_to and least is None):
+        raise InputError(
+            'give --for "fluctuation = 1 %" or --minimize "peak crank pin force", the latter '
+            'perhaps with --subject-to "fluctuation <= 2 %"'
+        )
+    path = scene_path(scene)
+    loaded, ranges = load_scene(path), varied(vary)
+    title = f"{path.stem}: {loaded.title}" if loaded.title else path.stem
+    with progress("solving"):
+        if wanted is not None:
+            one = solved(loaded, ranges, wanted)
+            status, said = one.status, _roots(one)
+        else:
+            lowest = minimize(loaded, ranges, str(least), subject_to or [])
+            status, said = lowest.status, _minimum(lowest)
+    typer.echo(f"{title}\n\n{said}")
+    if status != 0:
+        raise typer.Exit(3)
+
+
+def _roots(found: Solved) -> str:
+    heading = [_with_unit(found.knob, found.units), "error", found.measure.words, "error"]
+    roots = found.roots or ((found.nearest,) if found.nearest else ())
+    rows = [[*_cells(root.value), *_cells(root.reached)] for root in roots]
+    said = found.message if found.roots else f"{found.message}; the nearest in the scan"
+    return f"{said}\n\n{table(heading, rows)}" if rows else found.message
+
+
+def _minimum(found: Minimum) -> str:
+    rows = [
+        [_with_unit(name, found.units[name]), digits(value), "", ""]
+        for name, value in found.values.items()
+    ]
+    rows.append([_named(found.measure), *_cells(found.reached), ""])
+    rows += [
+        [_named(one.measure), *_cells(one.reached), f"{one.sign} {one.bound:.6g}"]
+        for one in found.conditions
+    ]
+    said = f"{found.message}, in {found.evaluations} runs"
+    return f"{said}\n\n{table(['least of ' + found.measure.words, 'value', 'error', ''], rows)}"
+
+
+def _cells(one: Estimate) -> list[str]:
+    return [digits(*one), error_digits(one.error)]
+
+
+def _named(reading: Reading) -> str:
+    return _with_unit(reading.words, reading.about.units)
+
+
+def _with_unit(name: str, units: str) -> str:
+    return f"{name} [{units}]" if units else name

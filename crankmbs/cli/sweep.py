@@ -1,0 +1,218 @@
+"""The command ``sweep``: a scene with some of its numbers varied."""
+
+from __future__ import annotations
+
+import math
+import shlex
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from crankmbs.cli.text import table
+from crankmbs.digits import digits, error_digits
+from crankmbs.errors import InputError, shown
+from crankmbs.scene.read import load_scene, scene_path
+from crankmbs.sweep.cases import Sample
+from crankmbs.sweep.cluster import cluster_executor
+from crankmbs.sweep.plan import Plan, check_possible, plan_of
+from crankmbs.sweep.run import fill
+from crankmbs.sweep.store import unfinished
+from crankmbs.sweep.summary import Summary, summary
+
+__all__ = ["sweep", "varied"]
+
+_ENDED = {
+    0: "reached their end",
+    1: "ended before it",
+    -1: "broke off",
+    2: "are of scenes that cannot be",
+    -2: "ended their worker",
+}
+_OPTIONS = {"method": "--sample", "n": "--n", "seed": "--seed", "keep": "--keep"}
+_OPTIONS |= {"executor": "--workers"}
+_RANGE = '"crank.inertia=0.05..0.5 kg m^2:40"'
+
+
+def sweep(
+    scene: Annotated[
+        str, typer.Argument(metavar="SCENE", help="A scene file, or the name of a shipped scene.")
+    ],
+    out: Annotated[Path, typer.Option("-o", "--out", metavar="FOLDER", help="Such as sweep.zarr.")],
+    vary: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME=VALUES", help=f"Such as {_RANGE}; may be given often."),
+    ] = None,
+    sample: Annotated[
+        str | None, typer.Option(help="sobol or latin: cases spread over the ranges.")
+    ] = None,
+    n: Annotated[int, typer.Option("--n", help="How many cases a sample has.")] = 1024,
+    seed: Annotated[int, typer.Option(help="From which a sample is drawn.")] = 1,
+    cases: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="A CSV file with a row for each case.")
+    ] = None,
+    keep: Annotated[str, typer.Option(help="measures, or series: every sample too.")] = "measures",
+    strict: Annotated[
+        bool, typer.Option("--strict", help="Refuse scenes that cannot be before anything runs.")
+    ] = False,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Go on with what was interrupted.")
+    ] = False,
+    workers: Annotated[
+        int | None, typer.Option(help="Processes; default one for each processor.")
+    ] = None,
+    cluster: Annotated[
+        str | None,
+        typer.Option(metavar="ADDRESS", help='A Dask scheduler, such as "tcp://host:8786".'),
+    ] = None,
+) -> None:
+    """Run a scene with some of its numbers varied; keep the measures of each case."""
+    path = scene_path(scene)
+    wanted = _wanted(vary or [], cases, (sample, n, seed))
+    with _as_options():
+        plan = plan_of(load_scene(path), wanted(), keep)
+    if workers is not None and cluster is not None:
+        raise InputError("--workers and --cluster both say where cases are computed; give one")
+    _check_free(out, resume)
+    if strict:
+        check_possible(plan)
+    if plan.series:
+        typer.echo(f"series of {plan.cases.count} cases take {_bytes(plan.bytes)} before packing")
+    with ExitStack() as stack:
+        there = stack.enter_context(cluster_executor(cluster)) if cluster else workers
+        report = stack.enter_context(_progress(plan.cases.count))
+        stack.enter_context(_as_options())
+        stack.enter_context(_kept(out))
+        fill(plan, out, there, report)
+    title = f"{path.stem}: {plan.scene.title}" if plan.scene.title else path.stem
+    typer.echo(f"{title}\n\n{_report(plan, summary(out))}\n\nwrote {out}")
+
+
+def varied(given: list[str]) -> dict[str, str]:
+    """Names and their values, as the option --vary has them.
+
+    Raises
+    ------
+    InputError : no name, or one twice
+
+    >>> varied(["rod.length=0.14..0.2 m:25"])
+    {'rod.length': '0.14..0.2 m:25'}
+    """
+    found: dict[str, str] = {}
+    for one in given:
+        name, sign, values = one.partition("=")
+        name = name.strip()
+        if not sign or not name or not values.strip():
+            raise InputError(
+                f"--vary: must be a name and its values, as {_RANGE}; {shown(one)} came"
+            )
+        if name in found:
+            raise InputError(f"--vary: {name} is varied twice; give it once")
+        found[name] = values.strip()
+    return found
+
+
+def _wanted(
+    vary: list[str], cases: Path | None, drawn: tuple[str | None, int, int]
+) -> Callable[[], object]:
+    """What makes the cases from the options."""
+    ranges, (method, n, seed) = varied(vary), drawn
+    if (cases is None) == (not ranges):
+        came = "neither" if cases is None else "both"
+        raise InputError(
+            f"--vary says what is varied, as {_RANGE}, or --cases a file of cases; {came} came"
+        )
+    if method is None:
+        return lambda: ranges or cases
+    if cases is not None:
+        raise InputError("--sample spreads cases over ranges of --vary; a file has its own")
+    return lambda: Sample(ranges, n, method, seed)
+
+
+def _check_free(out: Path, resume: bool) -> None:
+    if resume and not out.exists():
+        raise InputError(f"--resume: there is no {out} to go on with; leave it out")
+    if not resume and unfinished(out):
+        raise InputError(
+            f"{out}: is there already; give --resume to go on with a sweep that was interrupted, "
+            "or another folder with -o"
+        )
+
+
+@contextmanager
+def _as_options() -> Iterator[None]:
+    """Sentences that begin with an argument of Python begin with the option."""
+    try:
+        yield
+    except InputError as error:
+        word, _, rest = str(error).partition(" ")
+        option = _OPTIONS.get(word.rstrip(":"))
+        raise InputError(f"{option}: {rest}" if option else str(error)) from None
+
+
+@contextmanager
+def _kept(out: Path) -> Iterator[None]:
+    """Say after an interrupt how to go on."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        typer.echo(f"{shlex.quote(str(out))} keeps what is finished; --resume goes on", err=True)
+        raise
+
+
+@contextmanager
+def _progress(count: int) -> Iterator[Callable[[int], None]]:
+    """How many cases are there, how many a second, and the time left, on a terminal's stderr."""
+    if not sys.stderr.isatty():
+        yield lambda _: None
+        return
+    from rich.console import Console
+    from rich.progress import (
+        BarColumn,
+        MofNCompleteColumn,
+        Progress,
+        ProgressColumn,
+        Task,
+        TextColumn,
+        TimeRemainingColumn,
+    )
+    from rich.text import Text
+
+    class Rate(ProgressColumn):
+        """Cases a second."""
+
+        def render(self, task: Task) -> Text:
+            return Text(f"{task.speed:.3g}/s" if task.speed else "")
+
+    columns = (TextColumn("cases"), BarColumn(), MofNCompleteColumn(), Rate())
+    console = Console(stderr=True)
+    with Progress(*columns, TimeRemainingColumn(), console=console, transient=True) as bar:
+        task = bar.add_task("", total=count)
+        yield lambda more: bar.advance(task, more)
+
+
+def _report(plan: Plan, found: Summary) -> str:
+    lines = [f"{plan.cases.count} cases over {', '.join(plan.cases.names)}"]
+    for status, (count, said) in sorted(found.ended.items(), key=lambda one: one[0] != 0):
+        first = "" if status == 0 else f"; the first: {said}"
+        lines.append(f"{count} {_ENDED[status]}{first}")
+    rows = [
+        [
+            f"{one.long_name} [{one.units}]",
+            *(digits(size, one.error) for size in (one.least, one.largest)),
+            error_digits(one.error),
+        ]
+        for one in found.bounds
+    ]
+    if rows:
+        lines += ["", table(["over all cases", "least", "largest", "error at most"], rows)]
+    return "\n".join(lines)
+
+
+def _bytes(size: float) -> str:
+    units = ("B", "kB", "MB", "GB", "TB")
+    power = min(int(math.log10(size) // 3), len(units) - 1)
+    return f"{size / 1000.0**power:.3g} {units[power]}"

@@ -1,0 +1,232 @@
+"""A measure over what was varied: curves, filled contours, or small multiples of them."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+
+from crankmbs.digits import digits, error_digits
+from crankmbs.errors import InputError
+from crankmbs.figures.style import COLOURS, STYLE, caption, panels
+from crankmbs.numerics.arrays import Array
+from crankmbs.scene.units import BAR, DEGREE, RPM
+from crankmbs.sweep.columns import Column
+from crankmbs.sweep.reading import amount_of, reading_of
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["sweep_figure"]
+
+_SHOWN = {
+    "rad/s": (RPM, "rpm"),
+    "rad": (DEGREE, "deg"),
+    "Pa": (BAR, "bar"),
+    "1": (0.01, "%"),
+    "N": (1e3, "kN"),
+    "W": (1e3, "kW"),
+    "m": (1e-3, "mm"),
+}
+_MOST = 12  # panels
+_COLUMNS = 3
+_LEVELS = 12
+
+
+class _Drawn(NamedTuple):
+    """What is drawn of a sweep, in the units shown.
+
+    values : over the knobs of a grid, or over the cases; limit : where a line is drawn
+    """
+
+    values: xr.DataArray
+    label: str
+    limit: float | None
+
+
+class _Axis(NamedTuple):
+    """A knob as an axis: where its values stand, and their words where they are no numbers."""
+
+    label: str
+    at: Array
+    words: list[str]
+    log: bool
+
+    def along_x(self, ax: Axes) -> None:
+        ax.set_xlabel(self.label)
+        if self.words:
+            ax.set_xticks(self.at, self.words)
+        elif self.log:
+            ax.set_xscale("log")
+
+    def along_y(self, ax: Axes) -> None:
+        ax.set_ylabel(self.label)
+        if self.words:
+            ax.set_yticks(self.at, self.words)
+        elif self.log:
+            ax.set_yscale("log")
+
+
+@rc_context(STYLE)
+def sweep_figure(data: xr.Dataset, show: str, limit: str | None = None) -> Figure:
+    """A measure of a sweep over what was varied.
+
+    One knob of a grid with several values gives a curve, two filled contours, more a panel of
+    contours for each combination of the others; a sample or list of cases points over each knob.
+
+    Parameters
+    ----------
+    data : as `crankmbs.load_sweep` reads it
+    show : a measure in words, "fluctuation" or "peak crank pin force", or "side thrust by S1"
+    limit : of it, "1 %" or "20 kN", where a line is drawn
+
+    Raises
+    ------
+    InputError : no such measure, no case that has it, a limit of another unit, too many panels
+    """
+    data = _varied(data)
+    columns = {
+        str(name): Column(one.attrs["units"], one.attrs["long_name"])
+        for name, one in data.data_vars.items()
+        if "units" in one.attrs
+    }
+    reading = reading_of(show, columns)
+    values, error = reading.of_sweep(data)
+    if not np.isfinite(values.values).any():
+        raise InputError(f"{show}: no case of this sweep has it")
+    scale, unit = _SHOWN.get(reading.about.units, (1.0, reading.about.units))
+    at = None if limit is None else amount_of(limit, reading) / scale
+    drawn = _Drawn(values / scale, f"{reading.words} [{unit}]", at)
+    knobs = [str(name) for name in values.dims if name in data.coords]
+    figure = _over_cases(data, drawn) if values.dims == ("case",) else _over(data, drawn, knobs)
+    missing = int(np.count_nonzero(np.isnan(values.values)))
+    lines = [str(data.attrs.get("title", "")), f"{values.size} cases; error at most "]
+    lines[1] += f"{error_digits(error / scale)} {unit}"
+    lines[1] += f"; {missing} have none and are left white" if missing else ""
+    caption(figure, [line for line in lines if line])
+    return figure
+
+
+def _varied(data: xr.Dataset) -> xr.Dataset:
+    """The data without the knobs of a grid that have one value only."""
+    knobs = [dim for dim in data["status"].dims if dim != "case"]
+    alone = [dim for dim in knobs if data.sizes[dim] == 1]
+    return data.squeeze(alone if len(alone) < len(knobs) else alone[1:], drop=True)
+
+
+def _over(data: xr.Dataset, drawn: _Drawn, knobs: list[str]) -> Figure:
+    if len(knobs) == 1:
+        return _curve(_axis(data, knobs[0]), drawn)
+    y, x, *others = knobs
+    rest = drawn.values.stack(panel=others).transpose("panel", y, x) if others else None
+    count = 1 if rest is None else rest.sizes["panel"]
+    if count > _MOST:
+        raise InputError(
+            f"{', '.join(others)}: {count} panels are too many; at most {_MOST} are drawn, vary "
+            "fewer values beside the first two"
+        )
+    columns = min(count, _COLUMNS)
+    rows = -(-count // columns)
+    figure, axes = panels(rows, columns, max(4.6 * columns, 9.0), max(4.2 * rows, 6.5))
+    levels = _levels(drawn.values.values)
+    for k, ax in enumerate(axes):
+        ax.set_visible(k < count)
+        if k >= count:
+            continue
+        table = drawn.values.values if rest is None else rest.values[k]
+        filled = _contours(ax, (_axis(data, x), _axis(data, y)), table, levels, drawn.limit)
+        if rest is not None:
+            ax.set_title(_where(data, others, rest["panel"].values[k]), fontsize=11)
+    figure.colorbar(filled, ax=axes)
+    figure.suptitle(drawn.label, fontsize=14)
+    return figure
+
+
+def _curve(axis: _Axis, drawn: _Drawn) -> Figure:
+    figure, (ax,) = panels(1, 1, 9.0, 5.5)
+    marker = "o" if len(axis.at) < 40 else ""
+    line = "" if axis.words else "-"
+    ax.plot(axis.at, drawn.values, color=COLOURS[0], marker=marker or None, linestyle=line)
+    axis.along_x(ax)
+    figure.suptitle(drawn.label, fontsize=14)
+    if drawn.limit is not None:
+        ax.axhline(drawn.limit, color=COLOURS[1], linestyle=(0, (6, 3)))
+    return figure
+
+
+def _contours(
+    ax: Axes, at: tuple[_Axis, _Axis], table: Array, levels: Array, limit: float | None
+) -> Any:
+    x, y = at
+    ax.set_facecolor("white")
+    ax.grid(visible=False)
+    filled = ax.contourf(x.at, y.at, np.ma.masked_invalid(table), levels, cmap="viridis")
+    if limit is not None and levels[0] < limit < levels[-1]:
+        line = ax.contour(x.at, y.at, np.ma.masked_invalid(table), [limit], colors=COLOURS[1])
+        ax.clabel(line, fmt=lambda value: digits(value, most=3), fontsize=12, inline_spacing=2)
+    x.along_x(ax)
+    y.along_y(ax)
+    return filled
+
+
+def _over_cases(data: xr.Dataset, drawn: _Drawn) -> Figure:
+    names = [str(name) for name in data.coords if data[name].dims == ("case",)]
+    columns = min(len(names), _COLUMNS)
+    rows = -(-len(names) // columns)
+    figure, axes = panels(rows, columns, max(4.6 * columns, 8.0), max(4.0 * rows, 5.0))
+    for ax, name in zip(axes, names, strict=False):
+        axis = _axis(data, name)
+        ax.plot(axis.at, drawn.values, ".", color=COLOURS[0], markersize=4)
+        axis.along_x(ax)
+        if drawn.limit is not None:
+            ax.axhline(drawn.limit, color=COLOURS[1], linestyle=(0, (6, 3)))
+    for ax in axes[len(names) :]:
+        ax.set_visible(False)
+    figure.suptitle(drawn.label, fontsize=14)
+    return figure
+
+
+def _axis(data: xr.Dataset, name: str) -> _Axis:
+    values = data[name].values
+    scale, unit = _SHOWN.get(str(data[name].attrs.get("units", "")), (1.0, ""))
+    unit = unit or str(data[name].attrs.get("units", ""))
+    if values.dtype.kind != "f":
+        words, at = np.unique(values, return_inverse=True)
+        return _Axis(name, at.astype(np.float64), [str(w) for w in words], log=False)
+    label = f"{name} [{unit}]" if unit else name.replace("_", " ")
+    return _Axis(label, values / scale, [], log=_is_log(values))
+
+
+def _is_log(values: Array) -> bool:
+    """Whether neighbours are farther apart by a factor than by a difference, on the whole."""
+    ends = np.sort(values)[[0, len(values) // 2, -1]]
+    if len(values) < 3 or ends[0] <= 0.0 or ends[2] < 3.0 * ends[0]:
+        return False
+    even, by_factor = 0.5 * (ends[0] + ends[2]), math.sqrt(ends[0] * ends[2])
+    return bool(abs(ends[1] - by_factor) < abs(ends[1] - even))
+
+
+def _levels(values: Array) -> Array:
+    low, high = float(np.nanmin(values)), float(np.nanmax(values))
+    if high - low <= 1e-12 * max(abs(low), abs(high)):
+        half = 0.5 * abs(high) or 0.5
+        return np.array([low - half, high + half])
+    return np.asarray(MaxNLocator(_LEVELS).tick_values(low, high))
+
+
+def _where(data: xr.Dataset, names: list[str], values: Any) -> str:
+    several = values if isinstance(values, tuple) else (values,)
+    return ", ".join(_said(data, *pair) for pair in zip(names, several, strict=True))
+
+
+def _said(data: xr.Dataset, name: str, value: Any) -> str:
+    units = str(data[name].attrs.get("units", ""))
+    if isinstance(value, str):
+        return f"{name} {value}"
+    scale, unit = _SHOWN.get(units, (1.0, units))
+    return f"{name} {digits(float(value) / scale, most=4)} {unit}".rstrip()

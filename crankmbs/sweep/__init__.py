@@ -1,0 +1,24 @@
+"""Many scenes that differ in some of their numbers: what is varied, where it is computed, the store
+that holds what comes out.
+
+What one scene amounts to belongs in measures and compare.
+"""
+
+from crankmbs.sweep.cases import Sample
+from crankmbs.sweep.minimize import Minimum, minimize
+from crankmbs.sweep.run import sweep
+from crankmbs.sweep.sensitivity import Sensitivity, sensitivity
+from crankmbs.sweep.solve import Solved, solve
+from crankmbs.sweep.store import load_sweep
+
+__all__ = [
+    "Minimum",
+    "Sample",
+    "Sensitivity",
+    "Solved",
+    "load_sweep",
+    "minimize",
+    "sensitivity",
+    "solve",
+    "sweep",
+]

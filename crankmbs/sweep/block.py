@@ -1,0 +1,114 @@
+"""A block of cases, computed one after the other wherever a worker takes it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import ceil
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crankmbs.errors import CrankmbsError
+from crankmbs.numerics.arrays import Array
+from crankmbs.scene.scene import Scene
+from crankmbs.simulate import simulate
+from crankmbs.sweep.columns import Row, columns_of, dims_of, row_of, samples_of
+from crankmbs.sweep.scenes import scene_of
+
+__all__ = ["BROKEN", "IMPOSSIBLE", "Block", "Job", "block_size", "broken", "joined", "solved"]
+
+IMPOSSIBLE, BROKEN = 2, -2  # status of a case whose scene is refused; that ended its worker
+_FEWEST, _MOST, _BLOCKS = 4, 256, 128
+
+
+@dataclass(frozen=True)
+class Job:
+    """What a worker has to know: the scene, the names that are varied, their values by case."""
+
+    scene: Scene
+    names: tuple[str, ...]
+    values: tuple[tuple[object, ...], ...]
+    series: bool
+
+    def only(self, number: int) -> Job:
+        """One of its cases alone."""
+        return Job(self.scene, self.names, self.values[number : number + 1], self.series)
+
+
+@dataclass(frozen=True)
+class Block:
+    """What came of a job's cases.
+
+    rows : by column, shape (cases, ...), NaN where a case has none
+    status : shape (cases,): of the run, or IMPOSSIBLE or BROKEN; message : the sentences
+    """
+
+    rows: dict[str, Array]
+    status: NDArray[np.int8]
+    message: tuple[str, ...]
+
+
+def block_size(count: int) -> int:
+    """How many of so many cases make a block, whoever computes them.
+
+    >>> block_size(1000), block_size(10**6)
+    (8, 256)
+    """
+    return min(max(ceil(count / _BLOCKS), _FEWEST), _MOST)
+
+
+def solved(job: Job) -> Block:
+    """Compute the cases of a job; a case that fails is a row with its status and sentence.
+
+    >>> job = Job(load_scene("yi_diesel"), ("rod.length",), ((0.16,), (0.01,)), False)
+    >>> print(solved(job).status)
+    [0 2]
+    """
+    samples = samples_of(job.scene) if job.series else None
+    ended = [_one(job, values, samples) for values in job.values]
+    return _block(job, ended)
+
+
+def broken(job: Job, message: str) -> Block:
+    """What is left of cases that end their worker."""
+    return _block(job, [({}, BROKEN, message)] * len(job.values))
+
+
+def joined(parts: list[Block]) -> Block:
+    """The blocks of single cases as one."""
+    rows = {name: np.concatenate([one.rows[name] for one in parts]) for name in parts[0].rows}
+    status = np.concatenate([one.status for one in parts])
+    return Block(rows, status, tuple(text for one in parts for text in one.message))
+
+
+def _one(job: Job, values: tuple[object, ...], samples: int | None) -> tuple[Row, int, str]:
+    try:
+        result = simulate(scene_of(job.scene, job.names, values))
+    except CrankmbsError as error:
+        return {}, IMPOSSIBLE, str(error)
+    except Exception as error:  # of a limit nobody knew: the other cases go on
+        return {}, -1, _broke_off(error)
+    try:
+        return row_of(result, samples), result.status, result.message
+    except CrankmbsError as error:
+        return {}, IMPOSSIBLE, str(error)
+    except Exception as error:  # as where a load failed before there was a sample
+        ended = result.status != 0
+        return {}, result.status or -1, result.message if ended else _broke_off(error)
+
+
+def _broke_off(error: Exception) -> str:
+    return f"broke off: {type(error).__name__}: {error}"
+
+
+def _block(job: Job, ended: list[tuple[Row, int, str]]) -> Block:
+    sizes = {dim: len(at) for dim, at in dims_of(job.scene, series=job.series).items()}
+    rows = {}
+    for name, column in columns_of(job.scene, series=job.series).items():
+        shape = tuple(sizes[dim] for dim in column.dims)
+        rows[name] = np.full((len(ended), *shape), np.nan)
+        for k, (row, _, _) in enumerate(ended):
+            if name in row:
+                rows[name][k] = row[name]
+    status = np.array([status for _, status, _ in ended], dtype=np.int8)
+    return Block(rows, status, tuple(message for _, _, message in ended))

@@ -1,0 +1,205 @@
+"""What is kept of each case by name, with its error: measures, the errors of the lectures'
+formulas, and where they are wanted its samples."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from crankmbs.compare import LECTURES, QUANTITIES, compare
+from crankmbs.errors import InputError
+from crankmbs.measures import Estimate, JointForce, Measures, measure
+from crankmbs.measures.peak import rise
+from crankmbs.mechanics.variables import variables_of
+from crankmbs.numerics.arrays import Array
+from crankmbs.result import Result
+from crankmbs.scene.scene import Scene
+
+__all__ = ["Column", "Row", "columns_of", "dims_of", "row_of", "samples_of"]
+
+Row = dict[str, Array]
+_ERROR = "_error"
+_CYLINDER = ("cylinder",)
+_FORMULAS = ("lecture", "quantity")
+
+
+class Column(NamedTuple):
+    """units, long_name; dims : beyond the case."""
+
+    units: str
+    long_name: str
+    dims: tuple[str, ...] = ()
+
+
+_MEASURES = {
+    "mean_speed": Column("rad/s", "mean speed"),
+    "fluctuation": Column("1", "coefficient of fluctuation, (max - min) / mean speed"),
+    "speed_gain": Column("rad/s", "speed at the end less that at the beginning of the window"),
+    "crank_torque": Column("N m", "mean moment of all rods on the crank"),
+    "external_torque": Column("N m", "mean torque from outside"),
+    "indicated_power": Column("W", "indicated power"),
+    "imep": Column("Pa", "indicated mean effective pressure", _CYLINDER),
+    "friction_power": Column("W", "friction power"),
+    "mechanical_efficiency": Column("1", "mechanical efficiency"),
+}
+_JOINTS = ("main_bearing", "crank_pin", "piston_pin", "side_force")
+_LECTURE = Column("1", "largest deviation of the lecture at the samples, over the peak", _FORMULAS)
+
+
+def columns_of(scene: Scene, *, series: bool) -> dict[str, Column]:
+    """The columns of a sweep of a scene by name; the error of ``name`` is ``name_error``.
+
+    >>> "fluctuation_error" in columns_of(load_scene("propeller"), series=False)
+    True
+    """
+    found = {
+        name: column
+        for name, column in _MEASURES.items()
+        if (scene.gas is not None or name not in ("indicated_power", "imep"))
+        and (scene.friction is not None or name not in ("friction_power", "mechanical_efficiency"))
+    }
+    for joint in _JOINTS:
+        words, dims = joint.replace("_", " "), () if joint == "main_bearing" else _CYLINDER
+        force = "side force" if joint == "side_force" else f"{words} force"
+        found[f"{joint}_peak"] = Column("N", f"largest {force}", dims)
+        found[f"{joint}_mean"] = Column("N", f"mean {force} over time", dims)
+    if scene.fuel is None:  # the lectures know one pressure for all firings
+        found["lecture_deviation"] = _LECTURE
+    if series:
+        found |= _series(scene)
+    errors = {
+        f"{name}{_ERROR}": Column(
+            one.units,
+            f"error of {one.long_name}",
+            tuple(dim for dim in one.dims if not (dim == "sample" or name.startswith("series_"))),
+        )
+        for name, one in found.items()
+    }
+    for joint in _JOINTS:
+        dims = () if joint == "main_bearing" else _CYLINDER
+        angle = "crank angle" if joint == "main_bearing" else "cycle angle"
+        words = joint.replace("_", " ")
+        errors[f"{joint}_peak_angle"] = Column("rad", f"{angle} of the largest {words}", dims)
+    errors["energy_closure"] = Column("1", "largest energy residual over peak kinetic energy")
+    errors["relative_error"] = Column("1", "relative global error, estimated")
+    return found | errors
+
+
+def dims_of(scene: Scene, *, series: bool) -> dict[str, tuple[str, ...] | tuple[int, ...]]:
+    """The coordinates of the dimensions beyond the case."""
+    found: dict[str, tuple[str, ...] | tuple[int, ...]] = {
+        "cylinder": tuple(range(1, len(scene.cylinders) + 1))
+    }
+    if scene.fuel is None:
+        found |= {"lecture": tuple(LECTURES), "quantity": tuple(QUANTITIES)}
+    if series:
+        found["sample"] = tuple(range(samples_of(scene)))
+    return found
+
+
+def row_of(result: Result, samples: int | None) -> Row:
+    """The columns of one run that it has, with series so many samples of them; what it has not is
+    NaN.
+
+    Raises
+    ------
+    InputError : more samples
+    """
+    row = _measured(measure(result), result.scene)
+    row["relative_error"] = np.array(result.error.estimated)
+    if result.scene.fuel is None:
+        row |= _lectured(result)
+    if samples is not None:
+        row |= _sampled(result, samples)
+    return row
+
+
+def samples_of(scene: Scene) -> int:
+    """How many samples a run of a scene has at most.
+
+    Raises
+    ------
+    InputError : that shows only on the way
+
+    >>> samples_of(load_scene("yi_diesel"))
+    722
+    """
+    end, in_time = scene.end
+    if scene.run.every is None:
+        return math.ceil(math.degrees(scene.period)) + 3
+    every, every_in_time = scene.run.every.resolve(scene.period)
+    if every_in_time != in_time:
+        raise InputError(
+            "run.every: series of all cases are kept where run.every and run.until are both angles "
+            "or both times, or the number of samples is not known beforehand; change one of them"
+        )
+    return math.floor(end / every) + 2
+
+
+def _measured(measures: Measures, scene: Scene) -> Row:
+    row: Row = {"energy_closure": np.array(measures.energy_closure)}
+    for name in _MEASURES:
+        _put(row, name, getattr(measures, name))
+    for joint in _JOINTS:
+        of_one = [one for one in measures.joints if one.joint.replace(" ", "_") == joint]
+        single = of_one[0].cylinder is None
+        for what in ("peak", "mean"):
+            found = tuple(getattr(one, what) for one in of_one)
+            _put(row, f"{joint}_{what}", found[0] if single else found)
+        angles = np.array([_angle(one, scene.period) for one in of_one])
+        row[f"{joint}_peak_angle"] = angles[0] if single else angles
+    return row
+
+
+def _put(row: Row, name: str, found: Estimate | tuple[Estimate, ...] | None) -> None:
+    if found is not None:
+        value, error = np.array(found, dtype=np.float64).T
+        row[name], row[f"{name}{_ERROR}"] = value, error
+
+
+def _angle(joint: JointForce, period: float) -> float:
+    return joint.crank_angle % period if joint.cycle_angle is None else joint.cycle_angle
+
+
+def _lectured(result: Result) -> Row:
+    """Errors of the lectures in cylinder 1, over the peak of the run; their own error is how far
+    they may rise between samples, and the run's."""
+    value, error = np.full((2, len(LECTURES), len(QUANTITIES)), np.nan)
+    try:
+        found = compare(result)
+    except InputError:  # folded all the time
+        return {}
+    for row in found.rows:
+        if row.reference not in LECTURES or row.peak == 0.0:
+            continue
+        at = list(LECTURES).index(row.reference), list(QUANTITIES).index(row.quantity)
+        size = np.abs(row.error)
+        value[at] = row.size.largest / row.peak
+        error[at] = rise(size, int(np.argmax(size))) / row.peak + result.error.estimated
+    return {"lecture_deviation": value, f"lecture_deviation{_ERROR}": error}
+
+
+def _series(scene: Scene) -> dict[str, Column]:
+    sampled = {"time": Column("s", "time", ("sample",))}
+    sampled["crank_angle"] = Column("rad", "crank angle", ("sample",))
+    for name, about in variables_of(scene).items():
+        dims = ("sample", *_CYLINDER) if about.per_cylinder else ("sample",)
+        sampled[name] = Column(about.units, about.long_name, dims)
+    return {f"series_{name}": one for name, one in sampled.items()}
+
+
+def _sampled(result: Result, most: int) -> Row:
+    came, row = result.data.sizes["time"], {}
+    if came > most:
+        raise InputError(
+            f"run: series of all cases are kept in {most} samples, those of the scene that is "
+            f"varied; {came} came; give that scene the longest run"
+        )
+    for name in _series(result.scene):
+        variable = result.data[name.removeprefix("series_")]
+        rest = np.full((most - came, *variable.shape[1:]), np.nan)
+        row[name] = np.concatenate([variable.values, rest])
+        row[f"{name}{_ERROR}"] = np.array(variable.attrs["error_estimate"])
+    return row

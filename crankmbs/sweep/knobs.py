@@ -1,0 +1,253 @@
+"""What is varied of a scene, by name, over which values."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from numbers import Real
+from typing import NamedTuple
+
+import numpy as np
+
+from crankmbs.errors import InputError, shown
+from crankmbs.numerics.arrays import Array
+from crankmbs.scene.change import changed, field_at
+from crankmbs.scene.scene import Scene
+from crankmbs.scene.schema import dimension_of
+from crankmbs.scene.sentences import did_you_mean
+from crankmbs.scene.tables import CylinderTable, Table
+from crankmbs.scene.units import quantity, unit_of
+
+__all__ = ["DERIVED", "Interval", "Knob", "interval_of", "knob_of", "number_at"]
+
+DERIVED = {"rod_ratio": None, "settled_speed": "angular speed"}
+"""Knobs that are no value of a scene, and their dimensions."""
+
+_NUMBER = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
+_RANGE = re.compile(rf"\s*({_NUMBER})\s*\.\.\s*({_NUMBER})\s*([^:]*?)\s*(:.*)?")
+_PLAIN = re.compile(rf"\s*({_NUMBER})\s*")
+_MOST = 100_000  # values of one knob
+_GRAMMAR = 'write values as "0.05..0.5 kg m^2:40", "0.14..0.2 m:25:log", or a list "100 mm, 120 mm"'
+
+
+@dataclass(frozen=True)
+class Knob:
+    """A value of a scene, and what it is set to.
+
+    name : as `Scene.with_` takes it with dots, or of `DERIVED`
+    units : of numbers; empty for words
+    values : what a scene takes, numbers in SI units
+    """
+
+    name: str
+    units: str
+    values: tuple[object, ...]
+
+    @property
+    def labels(self) -> Array:
+        """The values as a coordinate: numbers, or what tells words, tables and parts apart."""
+        if all(isinstance(value, Real) for value in self.values):
+            return np.array(self.values, dtype=np.float64)
+        return np.array([_label(value) for value in self.values], dtype=object)
+
+
+class Interval(NamedTuple):
+    """A value of a scene between two bounds, in SI units."""
+
+    name: str
+    units: str
+    low: float
+    high: float
+    log: bool
+    whole: bool
+
+    def at(self, share: Array) -> Array:
+        """The values at shares of the way, shape (n,); on a logarithmic way where asked."""
+        if self.log:
+            return np.asarray(self.low * (self.high / self.low) ** share)
+        if self.whole:
+            return np.asarray(np.minimum(self.low + np.floor(share * self._count), self.high))
+        return np.asarray(self.low + share * (self.high - self.low))
+
+    def taken(self, values: Array) -> Knob:
+        """The knob at some of these values."""
+        numbers = values.tolist()
+        return Knob(self.name, self.units, tuple(map(int, numbers) if self.whole else numbers))
+
+    @property
+    def _count(self) -> float:
+        return self.high - self.low + 1.0
+
+
+class _Kind(NamedTuple):
+    """What values a knob takes."""
+
+    name: str
+    dimension: str | None
+    whole: bool
+
+
+def knob_of(scene: Scene, name: str, given: object) -> Knob:
+    """A knob from a text such as "0.05..0.5 kg m^2:40", or from a sequence of values.
+
+    Raises
+    ------
+    InputError : no such name in the scene, or values that cannot be; begins with the name
+
+    >>> from crankmbs import load_scene
+    >>> knob_of(load_scene("propeller"), "rod.length", "0.14..0.2 m:3").values
+    (0.14, 0.17, 0.2)
+    """
+    kind = _kind(scene, name)
+    if isinstance(given, str):
+        if _RANGE.fullmatch(given):
+            return _spaced(kind, given)
+        items: Sequence[object] = [item.strip() for item in given.split(",")]
+    elif isinstance(given, Sequence | np.ndarray):
+        items = given.tolist() if isinstance(given, np.ndarray) else given
+    else:
+        raise InputError(f"{name}: must be a text or a sequence of values; {shown(given)} came")
+    if not 1 <= len(items) <= _MOST:
+        raise InputError(f"{name}: must have from 1 to {_MOST} values; {len(items)} came")
+    unit = unit_of(kind.dimension) if kind.dimension else ""
+    return Knob(kind.name, unit, tuple(_value(scene, kind, item) for item in items))
+
+
+def interval_of(scene: Scene, name: str, given: object) -> Interval:
+    """The bounds of a knob, from a text such as "0.05..0.5 kg m^2" or "0.05..0.5 kg m^2:log".
+
+    Raises
+    ------
+    InputError : no such name in the scene, or no bounds; begins with the name
+
+    >>> from crankmbs import load_scene
+    >>> interval_of(load_scene("propeller"), "rod.length", "140..200 mm").high
+    0.2
+    """
+    kind = _kind(scene, name)
+    match = _RANGE.fullmatch(given) if isinstance(given, str) else None
+    if match is None or match[4] not in (None, ":log"):
+        raise InputError(
+            f'{name}: must be two bounds, such as "0.05..0.5 kg m^2" or "0.05..0.5 kg m^2:log"; '
+            f"{shown(given)} came"
+        )
+    return _interval(kind, match, match[4] is not None)
+
+
+def number_at(scene: Scene, name: str) -> tuple[Knob, float]:
+    """A knob, and the number that the scene has there.
+
+    Raises
+    ------
+    InputError : no such name, or no number there
+
+    >>> from crankmbs import load_scene
+    >>> number_at(load_scene("propeller"), "crank.radius")[1]
+    0.046
+    """
+    kind = _kind(scene, name)
+    value: object = scene.crank.radius / scene.rod.length
+    if kind.name != "rod_ratio":
+        value = None if kind.name in DERIVED else _at(scene, kind.name)
+    if kind.whole or isinstance(value, bool) or not isinstance(value, float):
+        raise InputError(f"{name}: must be a number that a little can be added to; it is no such")
+    unit = unit_of(kind.dimension) if kind.dimension else ""
+    return Knob(kind.name, unit, ()), value
+
+
+def _kind(scene: Scene, name: str) -> _Kind:
+    if name in DERIVED:
+        return _Kind(name, DERIVED[name], False)
+    dotted = re.sub(r"\[(\d+)\]", r".\1", name).replace("__", ".")
+    try:
+        place = field_at(scene, name)
+    except InputError as error:
+        near = did_you_mean(name, list(DERIVED))
+        raise InputError(f"{error}{near}" if near else str(error)) from None
+    if place is None:
+        return _Kind(dotted, None, False)
+    whole = place[0].__pydantic_fields__[place[1]].annotation is int
+    return _Kind(dotted, dimension_of(*place), whole)
+
+
+def _interval(kind: _Kind, match: re.Match[str], log: bool) -> Interval:
+    low, high = (_number(kind, match[k], match[3]) for k in (1, 2))
+    if low == high or (log and not low * high > 0.0):
+        rule = "of one sign, not 0, for steps by a factor" if log else "apart"
+        raise InputError(f"{kind.name}: both bounds must be {rule}; {shown(match[0].strip())} came")
+    unit = unit_of(kind.dimension) if kind.dimension else ""
+    return Interval(kind.name, unit, low, high, log, kind.whole)
+
+
+def _spaced(kind: _Kind, given: str) -> Knob:
+    match = _RANGE.fullmatch(given)
+    assert match is not None
+    count, _, way = (match[4] or ":")[1:].partition(":")
+    number = int(count) if count.isdecimal() and len(count) < 9 else 0
+    if not 2 <= number <= _MOST or way not in ("", "log"):
+        raise InputError(
+            f"{kind.name}: a range needs how many values it has, from 2 to {_MOST}, then perhaps "
+            f"log; {shown(given)} came; {_GRAMMAR}"
+        )
+    if (
+        kind.dimension is None and match[3] and kind.name not in DERIVED
+    ):  # of a unit that only the field knows
+        space = np.geomspace if way else np.linspace
+        numbers = space(float(match[1]), float(match[2]), number).tolist()
+        return Knob(kind.name, "", tuple(f"{value:.12g} {match[3]}" for value in numbers))
+    between = _interval(kind, match, way == "log")
+    if kind.whole:
+        values = np.round(np.linspace(between.low, between.high, number))
+        return between.taken(np.unique(values))
+    values = between.at(np.linspace(0.0, 1.0, number))
+    values[-1] = between.high
+    return between.taken(values)
+
+
+def _number(kind: _Kind, number: str, unit: str) -> float:
+    """A bound in SI units; only numbers without a dimension, and bare SI numbers, have no unit."""
+    if unit and kind.dimension is None:
+        raise InputError(f"{kind.name}: takes numbers without a unit; {shown(unit)} came")
+    if unit or kind.dimension in ("angle", "angular speed"):
+        return _quantity(kind, f"{number} {unit}")
+    value = float(number)
+    if not math.isfinite(value) or (kind.whole and not value.is_integer()):
+        rule = "whole numbers" if kind.whole else "finite numbers"
+        raise InputError(f"{kind.name}: takes {rule}; {shown(number)} came")
+    return value
+
+
+def _quantity(kind: _Kind, text: str) -> float:
+    assert kind.dimension is not None
+    try:
+        return quantity(text, kind.dimension)
+    except InputError as error:
+        raise InputError(f"{kind.name}: {error}") from None
+
+
+def _value(scene: Scene, kind: _Kind, item: object) -> object:
+    """One value as a scene takes it: a file is read here, once for all cases."""
+    if not isinstance(item, str):
+        whole = kind.whole and isinstance(item, float) and item.is_integer()
+        return int(item) if whole else item  # type: ignore[call-overload]
+    plain = _PLAIN.fullmatch(item)
+    if plain:
+        number = _number(kind, plain[1], "")
+        return int(number) if kind.whole else number
+    if kind.dimension is not None and not item[:1].isalpha():
+        return _quantity(kind, item)
+    if kind.name in DERIVED:
+        raise InputError(f"{kind.name}: {shown(item)} is no number; {_GRAMMAR}")
+    return _at(changed(scene, {kind.name: item}), kind.name)
+
+
+def _at(scene: object, name: str) -> object:
+    for step in name.split("."):
+        scene = scene[int(step) - 1] if isinstance(scene, tuple) else getattr(scene, step)
+    return scene
+
+
+def _label(value: object) -> str:
+    return value.source if isinstance(value, Table | CylinderTable) else shown(value).strip('"')

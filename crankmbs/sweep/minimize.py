@@ -1,0 +1,192 @@
+"""The values of knobs with which a measure is least: a scan, then a polish without derivatives."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy.optimize import Bounds, NonlinearConstraint
+from scipy.optimize import minimize as polished
+from scipy.stats import qmc
+
+from crankmbs.errors import InputError, shown
+from crankmbs.measures import Estimate
+from crankmbs.numerics.arrays import Array
+from crankmbs.scene.scene import Scene
+from crankmbs.sweep.cases import Sample
+from crankmbs.sweep.columns import columns_of
+from crankmbs.sweep.knobs import Interval, interval_of
+from crankmbs.sweep.reading import Reading, reading_of
+from crankmbs.sweep.solve import Asked, asked_of
+
+__all__ = ["Condition", "Minimum", "minimize"]
+
+_POINTS = 16  # of the scan for each knob
+_MOST = 60  # evaluations of the polish for each knob
+_FIRST, _LAST = 0.05, 1e-6  # steps of the polish, shares of a range
+_SLACK = 1e-6  # of a bound: so far a condition may be missed
+
+
+@dataclass(frozen=True)
+class Condition:
+    """measure : what is bounded; sign : "<=" or ">="; bound : in SI units; reached : there."""
+
+    measure: Reading
+    sign: str
+    bound: float
+    reached: Estimate
+
+
+@dataclass(frozen=True)
+class Minimum:
+    """Where a measure is least.
+
+    values, units : knob -> value in SI units, and its unit; known to 1e-6 of the range where the
+        measure is not flat
+    measure, reached : what is least, and how much it is
+    conditions : what had to hold
+    evaluations : runs
+    status, message : 0 found; 1 where nothing fulfils the conditions
+    """
+
+    values: dict[str, float]
+    units: dict[str, str]
+    measure: Reading
+    reached: Estimate
+    conditions: tuple[Condition, ...]
+    evaluations: int
+    status: int
+    message: str
+
+
+def minimize(
+    scene: Scene, vary: dict[str, str], measure: str, subject_to: Sequence[str] = ()
+) -> Minimum:
+    """Find the values of some knobs with which a measure is least.
+
+    16 points a knob of a Sobol sequence are looked at, and the best of them that fulfils the
+    conditions is polished by COBYQA, which takes steps of quadratic models without derivatives:
+    peaks are not smooth. What is found is the least near there.
+
+    Parameters
+    ----------
+    vary : knobs and their ranges, {"crank.center_of_mass": "-30..0 mm"}
+    measure : "peak main bearing force", "fluctuation"
+    subject_to : conditions that must hold, "fluctuation <= 2 %"
+
+    Returns
+    -------
+    Minimum : status 1 with the point nearest to the conditions where none fulfils them
+
+    Raises
+    ------
+    InputError : no scene, no range, no such measure
+
+    >>> scene = load_scene("yi_diesel").with_(run__until="1 cycles", gas=None, gravity=None)
+    >>> found = minimize(scene, {"piston.offset": "-8..5 mm"}, "peak side force")
+    >>> print(abs(found.values["piston.offset"]) < 1e-5)
+    True
+    """
+    if not isinstance(scene, Scene):
+        raise InputError(f"scene must be a Scene, such as load_scene reads; {shown(scene)} came")
+    drawn = Sample(vary, n=1)  # refuses no ranges
+    knobs = tuple(interval_of(scene, *item) for item in drawn.vary.items())
+    if not knobs or any(knob.whole for knob in knobs):
+        raise InputError("vary: needs ranges of numbers that are not whole; sweep compares others")
+    reading = reading_of(measure, columns_of(scene, series=False))
+    conditions = [asked_of(scene, text, "<= >= < >") for text in subject_to]
+    return _Descent(scene, knobs, reading, conditions).found()
+
+
+class _Descent:
+    """A measure and its conditions over shares of the ranges; each point is computed once."""
+
+    def __init__(
+        self,
+        scene: Scene,
+        knobs: tuple[Interval, ...],
+        reading: Reading,
+        conditions: list[tuple[Reading, str, float]],
+    ) -> None:
+        self._asked, self._knobs = Asked(scene, tuple(knob.name for knob in knobs)), knobs
+        self._reading, self._conditions = reading, conditions
+        self._known: dict[tuple[float, ...], tuple[Estimate, ...]] = {}
+
+    def found(self) -> Minimum:
+        count = len(self._knobs)
+        points = qmc.Sobol(count, rng=1).random_base2(math.ceil(math.log2(_POINTS * count)))
+        values = np.array([self._least(point) for point in points])
+        missed = np.array([self._missed(point).max(initial=0.0) for point in points])
+        runs = np.isfinite(values)
+        if not runs.any():
+            return self._answer(points[0], 1, "no case in the ranges has the measure")
+        missed[~runs] = math.inf
+        start = points[np.lexsort((values, missed))[0]]
+        scale = float(np.nanmax(np.abs(values))) or 1.0
+        kept = NonlinearConstraint(self._missed, -np.inf, 0.0)
+        options: Any = {"maxfev": _MOST * count}
+        options |= {"initial_tr_radius": _FIRST, "final_tr_radius": _LAST}
+        ended = polished(  # type: ignore[call-overload]
+            lambda share: self._least(share) / scale,
+            start,
+            method="COBYQA",
+            bounds=Bounds(np.zeros(count), np.ones(count)),
+            constraints=[kept] if self._conditions else [],
+            options=options,
+        )
+        best = self._best(np.clip(ended.x, 0.0, 1.0))
+        if self._missed(best).max(initial=0.0) > _SLACK:
+            return self._answer(best, 1, "nothing in the ranges fulfils the conditions")
+        return self._answer(best, 0, "found")
+
+    def _best(self, end: Array) -> Array:
+        """The best point known that fulfils the conditions; without one the end of the polish."""
+        self._least(end)
+        fit = [
+            np.array(share)
+            for share, (one, *_) in self._known.items()
+            if math.isfinite(one.value) and self._missed(np.array(share)).max(initial=0.0) <= _SLACK
+        ]
+        return min(fit, key=self._least, default=end)
+
+    def _answer(self, share: Array, status: int, message: str) -> Minimum:
+        reached, *others = self._estimates(share)
+        values = self._values(share)
+        knobs = self._knobs
+        return Minimum(
+            values={knob.name: value for knob, value in zip(knobs, values, strict=True)},
+            units={knob.name: knob.units for knob in knobs},
+            measure=self._reading,
+            reached=reached,
+            conditions=tuple(
+                Condition(*given, one) for given, one in zip(self._conditions, others, strict=True)
+            ),
+            evaluations=len(self._known),
+            status=status,
+            message=message,
+        )
+
+    def _least(self, share: Array) -> float:
+        return self._estimates(share)[0].value
+
+    def _missed(self, share: Array) -> Array:
+        """How far each condition is from being fulfilled, over its bound; at most 0 where it is."""
+        missed = []
+        for (_, sign, bound), one in zip(self._conditions, self._estimates(share)[1:], strict=True):
+            beyond = (one.value - bound) / (abs(bound) or 1.0)
+            missed.append(beyond if sign.startswith("<") else -beyond)
+        return np.array(missed)
+
+    def _estimates(self, share: Array) -> tuple[Estimate, ...]:
+        key = tuple(np.clip(share, 0.0, 1.0).tolist())
+        if key not in self._known:
+            readings = (self._reading, *(reading for reading, _, _ in self._conditions))
+            self._known[key] = self._asked.at(self._values(np.array(key)), readings)
+        return self._known[key]
+
+    def _values(self, share: Array) -> tuple[float, ...]:
+        pairs = zip(self._knobs, share.tolist(), strict=True)
+        return tuple(float(knob.at(np.array(one))) for knob, one in pairs)

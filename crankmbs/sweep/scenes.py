@@ -1,0 +1,64 @@
+"""The scene of one case: numbers set, and what has to follow them so that it keeps its sense."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Sequence
+
+from crankmbs.design.rebalance import rebalanced
+from crankmbs.errors import InputError, shown
+from crankmbs.mechanics.carried import carried_over
+from crankmbs.scene.change import changed
+from crankmbs.scene.parts import Rod
+from crankmbs.scene.scene import Scene
+from crankmbs.sweep.knobs import DERIVED
+
+__all__ = ["scene_of"]
+
+
+def scene_of(scene: Scene, names: Sequence[str], values: Sequence[object]) -> Scene:
+    """The scene with other values, all at once.
+
+    With another crank radius, rod length or offset the gas is carried over the volume: within each
+    stroke the pressure stays a function of the swept fraction (`crankmbs.mechanics.carried`).
+    "rod_ratio" gives the rod the length r / ratio, at the same stroke; it keeps its mass, the place
+    of its centre of mass and its shape, so that its inertia goes with the length squared.
+    "settled_speed" scales the loads so that the motion settles to it.
+
+    Raises
+    ------
+    InputError : a scene that cannot be
+
+    >>> scene_of(load_scene("propeller"), ["rod_ratio"], [0.25]).rod.length
+    0.184
+    """
+    given = dict(zip(names, values, strict=True))
+    plain = {name: value for name, value in given.items() if name not in DERIVED}
+    new = changed(scene, plain)
+    if "rod_ratio" in given:
+        new = dataclasses.replace(new, rod=_stretched(new, given["rod_ratio"]))
+    new = carried_over(new, scene)
+    if len(new.cylinders) != len(scene.cylinders):
+        raise InputError(
+            f"layout: a sweep keeps the number of cylinders, {len(scene.cylinders)}; "
+            f"{len(new.cylinders)} came"
+        )
+    return rebalanced(new, _number("settled_speed", given)) if "settled_speed" in given else new
+
+
+def _stretched(scene: Scene, _ratio: object) -> Rod:
+    ratio = _number("rod_ratio", {"rod_ratio": _ratio})
+    if not 0.0 < ratio <= 1.0:
+        raise InputError(f"rod_ratio: must be above 0 and at most 1; {ratio:g} came")
+    rod, length = scene.rod, scene.crank.radius / ratio
+    stretch = length / rod.length
+    inertia = rod.inertia if rod.inertia == "two-mass" else rod.inertia * stretch**2
+    center = rod.center_of_mass * stretch
+    return dataclasses.replace(rod, length=length, center_of_mass=center, inertia=inertia)
+
+
+def _number(name: str, given: dict[str, object]) -> float:
+    value = given[name]
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise InputError(f"{name}: must be a number in SI units; {shown(value)} came")
+    return float(value)

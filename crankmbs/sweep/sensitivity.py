@@ -1,0 +1,86 @@
+"""How much a measure changes with a number of a scene: a derivative with its error."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from crankmbs.errors import InputError, shown
+from crankmbs.measures import Estimate
+from crankmbs.scene.scene import Scene
+from crankmbs.sweep.columns import columns_of
+from crankmbs.sweep.knobs import number_at
+from crankmbs.sweep.reading import Reading, reading_of
+from crankmbs.sweep.solve import Asked
+
+__all__ = ["Sensitivity", "sensitivity"]
+
+_STEP = 2e-3  # of the number: the error of a difference is small, and so is rounding over the step
+
+
+@dataclass(frozen=True)
+class Sensitivity:
+    """How a measure changes.
+
+    knob, units, value : what is changed, in SI units, and the number that the scene has
+    measure, reached : what changes, and its value there
+    derivative : in the measure's unit over the knob's; NaN where a case beside has none
+    """
+
+    knob: str
+    units: str
+    value: float
+    measure: Reading
+    reached: Estimate
+    derivative: Estimate
+
+    @property
+    def elasticity(self) -> float:
+        """Percent by which the measure changes for one percent of the number."""
+        return self.derivative.value * self.value / self.reached.value
+
+
+def sensitivity(scene: Scene, name: str, measure: str) -> Sensitivity:
+    """The derivative of a measure with respect to a number of a scene.
+
+    Central differences D(h) and D(2 h), h = 0.2 % of the number, give (4 D(h) - D(2 h)) / 3. The
+    error is the step's, |that - D(h)|; what the measure's own error is worth over h; and where a
+    peak bends, so that slopes on both sides do not come nearer as h does, half their difference.
+
+    Parameters
+    ----------
+    name : any number of the scene that is not 0, or "rod_ratio"
+    measure : "fluctuation", "peak crank pin force", "side thrust by S1"
+
+    Raises
+    ------
+    InputError : no scene, no such number or measure, or a number that is 0
+
+    >>> scene = load_scene("propeller").with_(run__until="settled", crank__inertia=0.3)
+    >>> print(f"{sensitivity(scene, 'crank.inertia', 'fluctuation').elasticity:.3f}")
+    -0.993
+    """
+    if not isinstance(scene, Scene):
+        raise InputError(f"scene must be a Scene, such as load_scene reads; {shown(scene)} came")
+    knob, value = number_at(scene, name)
+    if value == 0.0:
+        raise InputError(f"{name}: is 0 in this scene, and steps are a share of it; give it a size")
+    reading, step = reading_of(measure, columns_of(scene, series=False)), _STEP * abs(value)
+    asked = Asked(scene, (knob.name,))
+    cases = [asked.at((value + k * step,), (reading,))[0] for k in (-2, -1, 0, 1, 2)]
+    far_low, low, here, high, far_high = (one.value for one in cases)
+    near, far = (high - low) / (2.0 * step), (far_high - far_low) / (4.0 * step)
+    derivative = (4.0 * near - far) / 3.0
+    bend, far_bend = (high - 2.0 * here + low) / step, (far_high - 2.0 * here + far_low) / step
+    bent = abs(2.0 * bend - 0.5 * far_bend)  # 0 of a parabola, else the jump of the slope
+    own = max(one.error for one in cases) / step
+    error = abs(derivative - near) + 0.5 * bent + 2.0 * own
+    return Sensitivity(
+        knob=knob.name,
+        units=knob.units,
+        value=value,
+        measure=reading,
+        reached=cases[2],
+        derivative=Estimate(float(derivative), float(np.nan_to_num(error, nan=np.inf))),
+    )
