@@ -129,7 +129,7 @@ def _own(
             left_out.append(LeftOut(name, formula.label, reason))
             continue
         if name not in ideal.closed_form:
-            left_out.append(LeftOut(name, f"causes, {formula.label}", _OF_MOTION))
+            left_out.append(LeftOut(name, f"the budget of {formula.label}", _OF_MOTION))
             continue
         under = formula.idealized | {"series", "solver"} | ({"datum"} if from_datum else set())
         values = formula.curve(ideal.excerpt)

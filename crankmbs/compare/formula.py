@@ -26,6 +26,11 @@ CLOSED_FORM = "closed form"
 
 _SHORT = {name.removeprefix("piston "): name for name in OBSERVABLES if name.startswith("piston ")}
 _NAMES = _SHORT | {name: name for name in (*OBSERVABLES, *NUMBERS)}
+_ELSEWHERE = {
+    "crank_angle": "theta, or for phi, of the cylinder compared",
+    "crank_speed": "omega",
+    "crank_acceleration": "alpha",
+}  # what a result calls otherwise
 _LISTED = f"{', '.join((*QUANTITIES, *NUMBERS))}, and the variables of a result"
 _TAKEN = ("run", "lecture", CLOSED_FORM, *LECTURES)
 _KNOWS = {
@@ -70,7 +75,7 @@ class Formula:
                 f"{self.label}: must give {n} numbers, one for each sample, or a single one; an "
                 f"array of shape {answer.shape} came"
                 + (
-                    "; take every word's values together, such as np.sum(..., axis=1)"
+                    "; take every cylinder's values together, such as np.sum(..., axis=1)"
                     if answer.shape[:1] == (n,)
                     else ""
                 )
@@ -187,13 +192,20 @@ def _words(label: str, function: Callable[..., Any]) -> tuple[str, ...]:
         if each.name in WORDS and each.kind != each.POSITIONAL_ONLY:
             words.append(each.name)
         elif each.default is each.empty:
-            rule = "must be given by name" if each.name in WORDS else "is nothing it can be given"
-            known = did_you_mean(each.name, list(WORDS)) or f"; there are {', '.join(WORDS)}"
             raise InputError(
-                f"{label}: the parameter {each.name} of {named(function)} {rule}"
-                + (known if each.name not in WORDS else "; leave out the / behind it")
+                f"{label}: the parameter {each.name} of {named(function)} {_no_word(each.name)}"
             )
     return tuple(words)
+
+
+def _no_word(name: str) -> str:
+    """Why a parameter can be given nothing, and the way out."""
+    if name in WORDS:
+        return "must be given by name; leave out the / behind it"
+    if name in _ELSEWHERE:
+        return f"is nothing it can be given; ask for {_ELSEWHERE[name]}"
+    near = did_you_mean(name, list(WORDS)) or f"; there are {', '.join(WORDS)}"
+    return f"is nothing it can be given{near}"
 
 
 def _quantity(text: str) -> str | None:

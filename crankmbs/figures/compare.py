@@ -45,12 +45,11 @@ _UNSEEN = 1e-3  # of the largest of a panel's causes: no line can be told from z
 _STYLES: dict[str, dict[str, Any]] = {
     "run": {"color": "black", "linewidth": 2.5},
     "lecture": {"color": "0.5", "linestyle": (0, (4, 2))},
-    "formula": {"color": "0.5", "linestyle": (0, (4, 2))},
     "sum of the causes": {"color": "0.65", "linewidth": 5.0},
     **{name: line_of(k) for k, name in enumerate((CLOSED_FORM, *LECTURES))},
     **{name: line_of(k) for k, name in enumerate((*CAUSES, REST))},
 }
-_OWN = 1 + len(LECTURES)  # the first line that is free for formulas of one's own
+_OWN = 5  # the first line for formulas of one's own: dashed, of a colour that no reference has
 
 
 def save_validation(comparison: Comparison, budget: Budget, folder: Path) -> list[Path]:
@@ -124,14 +123,14 @@ def budget_figure(
     columns = [
         (
             split.quantity,
-            {"run": split.simulated, whose: split.values},
+            {"run": split.simulated, reference or "lecture": split.values},
             {"sum of the causes": split.total.curve, **_seen(split)},
         )
         for split in splits
     ]
     drawn = {label for _, _, errors in columns for label in errors}
     unseen = [cause.name for cause in splits[0].causes if cause.name not in drawn]
-    about = f"error budget of {reference or 'the lecture'}"
+    about = f"error budget of the {whose}"
     if unseen:
         about += f" (too small to be seen: {', '.join(unseen)})"
     return _figure(budget.excerpt, columns, f"{whose} minus run", about)
@@ -194,7 +193,9 @@ def _panel(
     scale, unit = _SHOWN.get(units, (1.0, units))
     if units == "N":
         scale, unit = force_scale(*curves.values())
-    ax.axhline(0.0, color="0.55", linewidth=1.0)
+    low, high = (find(find(curve) for curve in curves.values()) for find in (min, max))
+    if 2.0 * low - high <= 0.0 <= 2.0 * high - low:  # else the swing of a speed could not be seen
+        ax.axhline(0.0, color="0.55", linewidth=1.0)
     for label, curve in curves.items():
         ax.plot(degrees, curve / scale, **styles[label], label=label)
     ax.set_ylabel(f"[{unit}]")
