@@ -2,14 +2,17 @@
 
 import re
 import runpy
+import shlex
 import shutil
 from pathlib import Path
 
 import pytest
 from typer.main import get_command
+from typer.testing import CliRunner
 
-from crankmbs import load_scene
+from crankmbs import compare, load_scene, simulate
 from crankmbs.cli import app
+from crankmbs.compare import WORDS
 from crankmbs.scene.read import models_folder
 
 README = (Path(__file__).parent.parent / "README.md").read_text(encoding="utf-8")
@@ -36,6 +39,43 @@ def test_the_scene_is_one(tmp_path):
     scene = tmp_path / "scene.toml"
     scene.write_text(block("toml"), encoding="utf-8")
     assert len(load_scene(scene).cylinders) == 4
+
+
+def test_the_formula_of_one_s_own_says_what_is_printed(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mine.py").write_text(block("py"), encoding="utf-8")
+    ((command, printed),) = re.findall(
+        r"^`crankmbs (validate [^`]*)`:\n\n((?:> piston acc.*\n)(?:> .*\n)*)", README, re.MULTILINE
+    )
+    options = ["--formulation", "auto", "--no-figures"]
+    outcome = CliRunner().invoke(app, [*shlex.split(command), *options])
+    assert outcome.exit_code == 0, outcome.output
+    said = outcome.stdout.splitlines()[0].replace(" by piston_acceleration_series of mine.py", "")
+    assert said == " ".join(printed.replace("> ", "").split())
+
+
+def test_the_perturbation_is_off_by_what_is_printed():
+    own = {}
+    exec(block("py"), own)
+    (shares,) = re.findall(r"it is off by ([\d., and]+) % of the fluctuation", README)
+    (inertias,) = re.findall(r"the flywheel\ngoes from ([\d., overandto]+) kg m\^2", README)
+    pairs = zip(re.findall(r"[\d.]+", shares), re.findall(r"[\d.]+", inertias), strict=True)
+    for share, inertia in pairs:
+        scene = load_scene("yi_diesel_free").with_(
+            run__until="settled", crank__inertia=inertia + " kg m^2"
+        )
+        (row,) = compare(simulate(scene), {"mine": own["fluctuation_first_order"]}).numbers
+        assert f"{row.percent:.2g}" == share
+
+
+def test_every_word_of_a_formula_is_listed_with_its_unit():
+    (listed,) = re.findall(r"- \*\*The words\*\*, in SI units: (.*?\[1\])\.", README, re.DOTALL)
+    found = {
+        name: unit
+        for names, unit in re.findall(r"((?:`\w+`,?\s+)+)\[([^]]+)\]", listed)
+        for name in re.findall(r"`(\w+)`", names)
+    }
+    assert found == {name: word.units for name, word in WORDS.items()}
 
 
 def test_the_table_has_every_command_and_no_other():
