@@ -77,8 +77,8 @@ def test_the_totals_are_those_of_the_comparison(swinging):
 def test_what_a_cause_is_worth_depends_on_what_still_stands(swinging):
     """The series at the run's own speed is another than at its mean; a weight is the same."""
     usual = budget(swinging).split("side thrust")
-    turned = budget(swinging, chain=["gravity", "constant speed", "series", "two-mass rod"])
-    turned = turned.split("side thrust")
+    order = ["gravity", "constant speed", "series", "two-mass rod"]
+    turned = budget(swinging, chain=order).split("side thrust")
     worth = {
         name: turned.cause(name).curve - usual.cause(name).curve
         for name in ("gravity", "series", "constant speed", "two-mass rod")

@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -97,7 +98,7 @@ def test_the_equation_of_motion_gives_the_run_s_own_acceleration(coasting):
 
 
 def test_a_formula_of_the_whole_engine_sees_every_cylinder(four):
-    shapes = {}
+    shapes: dict[str, tuple[tuple[int, ...], ...]] = {}
 
     def torque_from_gas(phi, gas_force, theta, gravity_x):
         shapes["one"] = (phi.shape, gas_force.shape, theta.shape)
@@ -131,14 +132,14 @@ def test_a_formula_of_the_whole_engine_sees_every_cylinder(four):
     ],
 )
 def test_a_word_is_the_scene_s_number(four, word, value):
-    scope = {}
+    scope: dict[str, Any] = {}
     exec(f"def torque({word}): return {word}", scope)
     values = compare(four, {"mine": scope["torque"]}).row("torque", "mine").values
     assert values == pytest.approx(np.full(len(values), value), rel=1e-6, abs=1e-12)
 
 
 def test_every_word_has_a_value(four):
-    scope = {}
+    scope: dict[str, Any] = {}
     exec(f"def frame_force_x({', '.join(WORDS)}): return theta", scope)
     assert formulated("mine", scope["frame_force_x"]).words == tuple(WORDS)
     assert compare(four, {"mine": scope["frame_force_x"]}).row("frame force x", "mine")

@@ -5,6 +5,7 @@ import runpy
 import shlex
 import shutil
 from pathlib import Path
+from typing import Any
 
 import pytest
 from typer.main import get_command
@@ -55,7 +56,7 @@ def test_the_formula_of_one_s_own_says_what_is_printed(tmp_path, monkeypatch):
 
 
 def test_the_perturbation_is_off_by_what_is_printed():
-    own = {}
+    own: dict[str, Any] = {}
     exec(block("py"), own)
     (shares,) = re.findall(r"it is off by ([\d., and]+) % of the fluctuation", README)
     (inertias,) = re.findall(r"the flywheel\ngoes from ([\d., overandto]+) kg m\^2", README)

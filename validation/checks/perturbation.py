@@ -38,7 +38,8 @@ def crank_speed(
     torque = generalized_force - reduced_slope * start_omega**2 / 2
     work = CubicSpline(theta, torque).antiderivative()(theta)
     work -= work[-1] * (theta - theta[0]) / (theta[-1] - theta[0])
-    return start_omega * (1.0 + (work - work[:-1].mean()) / (crank_inertia * start_omega**2))
+    swing = (work - work[:-1].mean()) / (crank_inertia * start_omega**2)
+    return np.asarray(start_omega * (1.0 + swing))
 
 
 def fluctuation(

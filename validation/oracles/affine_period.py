@@ -31,7 +31,7 @@ class Periodic:
         flat = self.angles.ravel()
         own = machine.crank_inertia
         self.rods = self._tabulated(turning.inertia(flat)) - own
-        self.rods_at_edges = np.float64(turning.inertia(edges)) - own
+        self.rods_at_edges = np.asarray(turning.inertia(edges), dtype=np.float64) - own
         self.push = self._tabulated(turning.push(flat, 0 * flat))
         self.turning = turning
 
@@ -41,7 +41,7 @@ class Periodic:
         decay, factor = self._summed(2 * self.turning.machine.loads.quadratic / inertia)
         gained, _ = self._summed(np.exp(factor) * self.push)
         energy = np.exp(-decay) * (gained[-1] / np.expm1(decay[-1]) + gained)
-        return np.sqrt(2 * energy / (self.rods_at_edges + flywheel))
+        return np.asarray(np.sqrt(2 * energy / (self.rods_at_edges + flywheel)))
 
     def work(self, speed: float) -> Array:
         """Work of gas, weights and rods at a constant speed beyond its mean, at the edges [J]."""
@@ -52,7 +52,7 @@ class Periodic:
         return np.asarray(done - done[-1] * turned)
 
     def _tabulated(self, values: Array) -> Array:
-        return np.float64(values).reshape(self.angles.shape)
+        return np.asarray(values, dtype=np.float64).reshape(self.angles.shape)
 
     def _summed(self, values: Array) -> tuple[Array, Array]:
         """Integral of values at the nodes, from the first edge to every edge and to every node."""
