@@ -72,4 +72,4 @@ class Reader:
         with Path(name).open("a" if appended else "w", encoding="utf-8") as file:
             file.write(f"\n{text}" if appended else text)
 
-    _csv = _toml
+    _csv = _py = _toml

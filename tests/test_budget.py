@@ -68,7 +68,7 @@ def test_the_causes_add_up_to_the_lecture_minus_the_run(name):
     for split in found.splits:
         assert [cause.name for cause in split.causes] == expected
         total = sum(cause.curve for cause in split.causes)
-        error = split.lecture - split.simulated
+        error = split.values - split.simulated
         assert np.array_equal(split.total.curve, error)
         assert np.max(np.abs(total - error)) <= 1e-15 * len(CAUSES) * split.peak
 
@@ -245,12 +245,12 @@ def test_the_causes_in_the_file_add_up(curves, quantity, swinging):
     here = curves["quantity"] == quantity
     part = {
         name: curves[name][here].astype(float)
-        for name in (*WITHOUT_FRICTION, "run", "lecture", "total")
+        for name in (*WITHOUT_FRICTION, "run", "formula", "total")
     }
     added = sum(part[name] for name in WITHOUT_FRICTION)
     peak = np.max(np.abs(part["run"]))
     assert np.max(np.abs(added - part["total"])) <= 1e-13 * peak
-    assert np.max(np.abs(part["lecture"] - part["run"] - part["total"])) <= 1e-13 * peak
+    assert np.max(np.abs(part["formula"] - part["run"] - part["total"])) <= 1e-13 * peak
     assert part["run"] == pytest.approx(budget(swinging).split(quantity).simulated, rel=1e-14)
 
 

@@ -179,7 +179,7 @@ def curves(ax):
 
 
 def test_a_comparison_figure_has_curves_above_and_errors_below(four):
-    comparison = compare(four, 2)
+    comparison = compare(four, cylinder=2)
     figure = comparison_figure(comparison, ("piston displacement", "side thrust"))
     tops, bottoms = figure.axes[:2], figure.axes[2:]
     s1 = list(LECTURES)[-1]
@@ -239,8 +239,8 @@ def test_the_curves_of_a_budget_figure_add_up_to_the_thick_one(four):
 def test_a_force_of_all_cylinders_is_not_said_to_be_of_one(four):
     names = ("main bearing force x", "main bearing force y")
     for figure in (
-        comparison_figure(compare(four, 2), names),
-        budget_figure(budget(four, 2), names),
+        comparison_figure(compare(four, cylinder=2), names),
+        budget_figure(budget(four, cylinder=2), names),
     ):
         assert "cylinder" not in figure.get_supxlabel().removeprefix(four.scene.title)
 

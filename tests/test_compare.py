@@ -67,7 +67,7 @@ def multibody(coasting):
 @pytest.mark.parametrize("name", ENGINES)
 def test_under_the_lectures_assumptions_the_lectures_are_exact(name):
     scene = lecture_engine(name)
-    comparison = compare(simulate(scene, formulation="kinetostatic"), len(scene.cylinders))
+    comparison = compare(simulate(scene, formulation="kinetostatic"), cylinder=len(scene.cylinders))
     found = shares(comparison, UNTRUNCATED)
     gas = {"gas torque"} if scene.gas is None else set()
     assert set(found) == set(QUANTITIES) - gas
@@ -156,8 +156,8 @@ def test_s0_has_the_gas_torque_exact_and_s1_truncates_it(yi):
 
 def test_the_error_is_formula_minus_run_and_the_angle_is_the_cylinders_own():
     result = simulate(lecture_engine("grega_lecture", rod=load_scene("grega_lecture").rod))
-    first, third = (compare(result, number).row("side thrust", S1) for number in (1, 3))
-    comparison = compare(result, 3)
+    first, third = (compare(result, cylinder=number).row("side thrust", S1) for number in (1, 3))
+    comparison = compare(result, cylinder=3)
     assert np.array_equal(third.error, third.values - comparison.simulated["side thrust"])
     assert third.size == pytest.approx(first.size, rel=1e-9)  # cylinders differ in phase alone
     assert int(np.argmax(np.abs(first.error))) != int(np.argmax(np.abs(third.error)))
@@ -217,7 +217,7 @@ def test_a_crank_at_rest_is_compared_but_for_what_is_zero():
 
 def test_what_does_not_exist_is_named(yi):
     with pytest.raises(InputError, match="cylinder must be from 1 to 1; 2 came"):
-        compare(yi, 2)
+        compare(yi, cylinder=2)
     with pytest.raises(InputError, match="no 'thrust' against 'closed form' here; quantities"):
         compare(yi).row("thrust")
 

@@ -3,6 +3,7 @@
 import re
 import sys
 import tomllib
+from typing import Any
 
 import matplotlib as mpl
 import pytest
@@ -11,6 +12,7 @@ from typer.main import get_command
 
 import crankmbs
 from crankmbs.cli import app
+from crankmbs.compare import WORDS
 from crankmbs.mechanics.variables import EVERY
 from crankmbs.scene.read import shipped_scenes
 
@@ -88,6 +90,35 @@ def test_every_command_variable_and_public_name_has_its_place():
     assert re.findall(r"^\| `(\w+)`", names.variables_page(), re.MULTILINE) == list(EVERY)
     shown = set(re.findall(r"^\.\. auto\w+:: crankmbs\.(\w+)$", names.python_page(), re.MULTILINE))
     assert shown == set(crankmbs.__all__)
+
+
+OWN = PAGES["howto/own_formula.md"]
+
+
+def test_the_perturbation_is_off_by_what_is_printed():
+    own: dict[str, Any] = {}
+    (file,) = [text for language, text in blocks(OWN) if language == "py"]
+    exec(file, own)
+    (shares,) = re.findall(r"it is off by ([\d., and]+) % of the fluctuation", OWN)
+    (inertias,) = re.findall(r"the flywheel\s+goes from ([\d., overandto]+) kg m\^2", OWN)
+    pairs = zip(re.findall(r"[\d.]+", shares), re.findall(r"[\d.]+", inertias), strict=True)
+    for share, inertia in pairs:
+        scene = crankmbs.load_scene("yi_diesel_free").with_(
+            run__until="settled", crank__inertia=inertia + " kg m^2"
+        )
+        result = crankmbs.simulate(scene)
+        (row,) = crankmbs.compare(result, {"mine": own["fluctuation_first_order"]}).numbers
+        assert f"{row.percent:.2g}" == share
+
+
+def test_every_word_of_a_formula_is_listed_with_its_unit():
+    (listed,) = re.findall(r"- \*\*The words\*\*, in SI units: (.*?\[1\])\.", OWN, re.DOTALL)
+    found = {
+        name: unit
+        for names, unit in re.findall(r"((?:`\w+`,?\s+)+)\[([^]]+)\]", listed)
+        for name in re.findall(r"`(\w+)`", names)
+    }
+    assert found == {name: word.units for name, word in WORDS.items()}
 
 
 def test_a_docstring_becomes_lists_formulas_and_sentences():

@@ -19,13 +19,14 @@ from crankmbs.cli.export import export_scene
 from crankmbs.cli.flywheel import size_flywheel
 from crankmbs.cli.lesson import list_lessons, make_lesson
 from crankmbs.cli.new import new_scene
+from crankmbs.cli.options import CostCap, NoFigures, Out, Rtol, SceneName, Until
 from crankmbs.cli.page import demonstrate, write_page
 from crankmbs.cli.plot import plot
 from crankmbs.cli.pressure import pressure
 from crankmbs.cli.run import Wanted, run_scene
 from crankmbs.cli.solve import solve
 from crankmbs.cli.sweep import sweep
-from crankmbs.cli.validate import validate_scene
+from crankmbs.cli.validate import validate
 from crankmbs.cli.work_precision import measure_scene
 from crankmbs.report.machine import describe
 from crankmbs.scene.read import load_scene, scene_path, shipped_scenes
@@ -53,21 +54,6 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 
-_Scene = Annotated[
-    str, typer.Argument(metavar="SCENE", help="A scene file, or the name of a shipped scene.")
-]
-
-_CostCap = Annotated[
-    float, typer.Option(help="Seconds at which multibody stops refining, minimal gives up.")
-]
-
-_Rtol = Annotated[float | None, typer.Option(help="Relative global error asked for.")]
-_Until = Annotated[
-    str | None, typer.Option(help='End: "20 cycles", "10 rev", "0.75 s" or "settled".')
-]
-_Out = Annotated[Path | None, typer.Option(help="Folder of the results; default results/NAME.")]
-_NoFigures = Annotated[bool, typer.Option("--no-figures", help="Draw no figures.")]
-
 
 def _version(wanted: bool) -> None:
     if wanted:
@@ -86,18 +72,18 @@ def crankmbs(
 
 @app.command()
 def run(
-    scene: _Scene,
+    scene: SceneName,
     formulation: Annotated[
         str | None,
         typer.Option(help="auto, kinetostatic, crank_angle, minimal or multibody."),
     ] = None,
-    rtol: _Rtol = None,
-    until: _Until = None,
+    rtol: Rtol = None,
+    until: Until = None,
     every: Annotated[
         str | None, typer.Option(help='Output spacing: "1 deg", "0.1 ms" or "none".')
     ] = None,
-    out: _Out = None,
-    no_figures: _NoFigures = False,
+    out: Out = None,
+    no_figures: NoFigures = False,
     confirm: Annotated[
         bool,
         typer.Option("--confirm", help="Run the multibody model too and show the difference."),
@@ -109,7 +95,7 @@ def run(
         list[str] | None,
         typer.Option(help='Every quantity at a crank angle, "60 deg"; may be given often.'),
     ] = None,
-    cost_cap: _CostCap = 10.0,
+    cost_cap: CostCap = 10.0,
 ) -> None:
     """Run a scene: print its measures, write data and figures."""
     options = {"formulation": formulation, "rtol": rtol, "until": until, "every": every}
@@ -120,44 +106,18 @@ def run(
         raise typer.Exit(3)
 
 
-@app.command()
-def validate(
-    scene: _Scene,
-    formulation: Annotated[
-        str, typer.Option(help="Which run is compared; only multibody is independent.")
-    ] = "multibody",
-    rtol: _Rtol = None,
-    until: _Until = None,
-    cost_cap: _CostCap = 10.0,
-    cylinder: Annotated[int, typer.Option(help="Number of the cylinder compared.")] = 1,
-    out: _Out = None,
-    no_figures: _NoFigures = False,
-) -> None:
-    """Compare a run with closed form and lectures; split the lectures' error into its causes."""
-    options = {"rtol": rtol, "until": until}
-    given = {name: value for name, value in options.items() if value is not None}
-    complete = validate_scene(
-        scene,
-        given,
-        formulation=formulation,
-        cost_cap=cost_cap,
-        cylinder=cylinder,
-        out=out,
-        figures=not no_figures,
-    )
-    if not complete:
-        raise typer.Exit(3)
+app.command()(validate)
 
 
 @app.command()
 def balance(
-    scene: _Scene,
+    scene: SceneName,
     share: Annotated[
         str, typer.Option(help="Share of the reciprocating mass that is balanced.")
     ] = "50%",
-    cost_cap: _CostCap = 10.0,
-    out: _Out = None,
-    no_figures: _NoFigures = False,
+    cost_cap: CostCap = 10.0,
+    out: Out = None,
+    no_figures: NoFigures = False,
 ) -> None:
     """Find counterweights; show what is left of first and second order, before and after."""
     if not balance_scene(scene, share, out=out, figures=not no_figures, cost_cap=cost_cap):
@@ -166,7 +126,7 @@ def balance(
 
 @app.command()
 def flywheel(
-    scene: _Scene,
+    scene: SceneName,
     fluctuation: Annotated[
         str, typer.Option(help='Wanted (max - min)/mean of the speed, as "1 %" or 0.01.')
     ] = "1 %",
@@ -178,8 +138,8 @@ def flywheel(
 
 @app.command("work-precision")
 def work_precision(
-    scene: _Scene,
-    out: _Out = None,
+    scene: SceneName,
+    out: Out = None,
 ) -> None:
     """Measure speed against error of every formulation that serves the scene."""
     if not measure_scene(scene, out=out):
@@ -188,7 +148,7 @@ def work_precision(
 
 @app.command()
 def demo(
-    scene: _Scene = "propeller",
+    scene: SceneName = "propeller",
     no_browser: Annotated[
         bool, typer.Option("--no-browser", help="Write the file only, open no browser.")
     ] = False,
@@ -199,7 +159,7 @@ def demo(
 
 @app.command()
 def page(
-    scene: _Scene,
+    scene: SceneName,
     out: Annotated[
         Path | None, typer.Option("-o", "--out", help="The file; default NAME.html.")
     ] = None,
@@ -213,7 +173,7 @@ for command in (pressure, sweep, plot, solve):
 
 
 @app.command()
-def check(scene: _Scene) -> None:
+def check(scene: SceneName) -> None:
     """Read a scene and say how it would be run; run nothing."""
     path = scene_path(scene)
     loaded = load_scene(path)
@@ -239,7 +199,7 @@ def new(
 
 @app.command()
 def export(
-    scene: _Scene,
+    scene: SceneName,
     to: Annotated[str, typer.Option(help="toml, matlab or exudyn.")],
     out: Annotated[
         Path | None,
@@ -253,7 +213,7 @@ def export(
 
 @app.command()
 def animate(
-    scene: _Scene,
+    scene: SceneName,
     out: Annotated[
         Path | None,
         typer.Option("--out", "-o", metavar="FILE", help=".gif or .mp4; default NAME.gif."),

@@ -1,174 +1,92 @@
-"""The command ``validate``: a run against closed form and lectures, and the error budget."""
+"""The command ``validate``: a run against closed form, lectures and one's own formulas, and the
+error budget."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Annotated
 
 import typer
 
 from crankmbs.cli.folder import writable, wrote
+from crankmbs.cli.formulas import named_formulas
+from crankmbs.cli.options import CostCap, NoFigures, Out, Rtol, SceneName, Until
 from crankmbs.cli.progress import progress
 from crankmbs.cli.run import override
-from crankmbs.cli.text import table
+from crankmbs.cli.validate_report import validation_report
 from crankmbs.compare import (
-    CAUSES,
-    CLOSED_FORM,
-    QUANTITIES,
     Budget,
     Comparison,
-    Excerpt,
-    LeftOut,
     budget,
     check_cylinder,
+    checked_chain,
     compare,
-    percent,
     save_budget,
     save_budget_peaks,
     save_comparison,
+    save_numbers,
 )
-from crankmbs.digits import digits
 from crankmbs.scene.read import load_scene, scene_path
-from crankmbs.scene.units import RPM
 from crankmbs.simulate import simulate
 from crankmbs.storage.files import together
 
-__all__ = ["validate_scene"]
-
-_ADDED = (
-    "The peaks of the causes lie at different angles and do not add; at each angle the causes do:\n"
-    "budget.csv has them all, budget_peaks.csv this table."
-)
+__all__ = ["validate"]
 
 
-def validate_scene(
-    name: str,
-    options: Mapping[str, Any],
-    *,
-    formulation: str,
-    cost_cap: float,
-    cylinder: int,
-    out: Path | None,
-    figures: bool,
-) -> bool:
-    """Run a scene, print and write how far formulas are from it; return whether it reached its end.
-
-    Parameters
-    ----------
-    options : those of [run] that the command line overrides; rtol among them is also asked of
-        "multibody", which else is content with 1e-5
-    out : folder of the results; None: results/NAME
-
-    Raises
-    ------
-    CrankmbsError : bad scene, option or folder; before anything runs
-    """
-    path = scene_path(name)
-    scene = override(load_scene(path), options)
-    check_cylinder(scene, cylinder)
+def validate(
+    scene: SceneName,
+    formulation: Annotated[
+        str, typer.Option(help="Which run is compared; only multibody is independent.")
+    ] = "multibody",
+    rtol: Rtol = None,
+    until: Until = None,
+    cost_cap: CostCap = 10.0,
+    cylinder: Annotated[int, typer.Option(help="Number of the cylinder compared.")] = 1,
+    formula: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="FILE:NAME",
+            help="A function of your own to compare, mine.py:torque_series; may be given often.",
+        ),
+    ] = None,
+    causes: Annotated[
+        str | None,
+        typer.Option(help='Order of the causes, "series, constant speed, solver"; the rest last.'),
+    ] = None,
+    out: Out = None,
+    no_figures: NoFigures = False,
+) -> None:
+    """Compare a run with closed form, lectures and your formulas; split errors into causes."""
+    path = scene_path(scene)
+    given = {"rtol": rtol, "until": until}
+    options = {name: value for name, value in given.items() if value is not None}
+    loaded = override(load_scene(path), options)
+    check_cylinder(loaded, cylinder)
+    chain = None if causes is None else [name.strip() for name in causes.split(",")]
+    checked_chain(chain, loaded)
+    formulas = named_formulas(formula or ())
     folder = writable(Path("results", path.stem) if out is None else out)
-    with progress(formulation):
-        result = simulate(
-            scene, formulation=formulation, rtol=options.get("rtol"), cost_cap=cost_cap
-        )
-    comparison, split = compare(result, cylinder), budget(result, cylinder)
-    with together(folder) as part:  # before anything is printed: a screen may fail
+    with progress(formulation):  # rtol is also asked of multibody, which else is content with 1e-5
+        result = simulate(loaded, formulation=formulation, rtol=rtol, cost_cap=cost_cap)
+    comparison = compare(result, formulas, cylinder=cylinder)
+    split = budget(result, formulas, cylinder=cylinder, chain=chain)
+    written = _written(comparison, split, folder, figures=not no_figures)
+    typer.echo(validation_report(comparison, split))
+    typer.echo(f"\n{wrote(folder, [file.name for file in written])}")
+    if result.status != 0:
+        raise typer.Exit(3)
+
+
+def _written(comparison: Comparison, split: Budget, folder: Path, *, figures: bool) -> list[Path]:
+    """The files, before anything is printed: a screen may fail."""
+    with together(folder) as part:
         written = [save(split, part) for save in (save_budget, save_budget_peaks)]
         written.append(save_comparison(comparison, part))
+        if comparison.numbers:
+            written.append(save_numbers(comparison, part))
         if figures:
             from crankmbs.figures import save_validation  # matplotlib only when it is used
 
             with progress("figures"):
                 written += save_validation(comparison, split, part)
-    typer.echo(f"{_first(comparison, split)}\n\n{result}\n\n{_about(comparison.excerpt)}\n")
-    typer.echo(f"{_causes(split)}\n\n{_ADDED}\n\n{_words(split)}\n")
-    for reference in comparison.references:
-        typer.echo(f"{_against(comparison, reference)}\n")
-    for line in _left_out((*comparison.left_out, *split.left_out)):
-        typer.echo(line)
-    typer.echo(f"\n{wrote(folder, [file.name for file in written])}")
-    return result.status == 0
-
-
-def _about(excerpt: Excerpt) -> str:
-    count = len(excerpt.result.scene.cylinders)
-    rpm = excerpt.mean_speed / RPM
-    inside = excerpt.result.data.sizes["time"] - excerpt.window.inside
-    folded = len(excerpt.samples) < inside
-    return (
-        f"over the {excerpt.window.kind}"
-        f"{' but for where the rod folds onto the crank' if folded else ''}, "
-        f"cylinder {excerpt.cylinder} of {count}, mean speed {digits(rpm)} rpm\n"
-        "angles: cycle angle of the cylinder, for the main bearing the crank angle\n"
-        "peak: the largest magnitude in the run\n"
-        "lectures: S0 is Grega's, S1 that of Yi, Win and Htay; the budget splits the error of S1"
-    )
-
-
-def _first(comparison: Comparison, split: Budget) -> str:
-    """What matters most: the lecture's largest error, and how far to believe the run."""
-    lines = []
-    if split.splits:
-        lines.append(f"the lecture is most wrong about the {split.ranked[0].sentence()}")
-    shares = [
-        (percent(row.size.largest, row.peak), row.quantity)
-        for row in comparison.rows
-        if row.reference == CLOSED_FORM and row.peak > 0.0
-    ]
-    if comparison.excerpt.result.formulation != "multibody":
-        lines.append("the run takes its forces from the closed form; multibody has its own")
-    elif shares:
-        share, quantity = max(shares)
-        lines.append(f"the run itself is within {_share(share)} % of the closed form ({quantity})")
-    return "\n".join(lines)
-
-
-def _against(comparison: Comparison, reference: str) -> str:
-    headings = [f"against: {reference}", "peak", "max", "% of peak", "at [deg]", "rms", "% of peak"]
-    rows = [
-        [
-            f"{row.quantity} [{QUANTITIES[row.quantity].units}]",
-            digits(row.peak),
-            digits(row.size.largest, most=4),
-            _share(percent(row.size.largest, row.peak)),
-            f"{math.degrees(row.size.angle):.1f}",
-            digits(row.size.rms, most=4),
-            _share(percent(row.size.rms, row.peak)),
-        ]
-        for row in comparison.rows
-        if row.reference == reference
-    ]
-    return table(headings, rows)
-
-
-def _causes(split: Budget) -> str:
-    """Every cause's peak in percent of the quantity's in the run."""
-    rubs = split.excerpt.result.scene.friction is not None
-    named = [name for name in (*CAUSES, "total") if rubs or name != "friction"]
-    headings = ["error budget, peaks in %", *named]
-    rows = []
-    for row in split.splits:
-        shares = {cause.name: row.share(cause) for cause in (*row.causes, row.total)}
-        rows.append([row.quantity, *(_share(shares.get(name, math.nan)) for name in named)])
-    return table(headings, rows)
-
-
-def _words(split: Budget) -> str:
-    return "\n".join(row.sentence() for row in split.ranked)
-
-
-def _left_out(entries: Sequence[LeftOut]) -> list[str]:
-    """One line for each reason, naming its quantities."""
-    grouped: dict[tuple[str, str], list[str]] = {}
-    for entry in dict.fromkeys(entries):
-        grouped.setdefault((entry.what, entry.reason), []).append(entry.quantity)
-    return [
-        f"left out{f' of {what!r}' if what else ''}: {', '.join(quantities)}: {reason}"
-        for (what, reason), quantities in grouped.items()
-    ]
-
-
-def _share(percentage: float) -> str:
-    return digits(percentage, most=3)
+    return written

@@ -1,40 +1,55 @@
-"""Simulation against exact and against lecture formula, the error budget of the latter, and two
-runs of one scene beside each other.
+"""Simulation against exact and lecture formula and against one's own, the error budget of formulas,
+and two runs of one scene beside each other.
 
 The formulas themselves belong in lecture and mechanics, what a run amounts to in measures.
 """
 
-from crankmbs.compare.against import CLOSED_FORM, Comparison, Deviation, compare
+from crankmbs.compare.against import Comparison, Deviation, compare
 from crankmbs.compare.at import AtAngle, Reading, at_angle
-from crankmbs.compare.causes import CAUSES, Budget, Cause, Split, budget
+from crankmbs.compare.causes import budget
+from crankmbs.compare.chain import CAUSES, REST, checked_chain
 from crankmbs.compare.excerpt import Excerpt, LeftOut, check_cylinder
-from crankmbs.compare.files import save_budget, save_budget_peaks, save_comparison
+from crankmbs.compare.files import save_budget, save_budget_peaks, save_comparison, save_numbers
+from crankmbs.compare.formula import CLOSED_FORM, Formula, formulas_of
 from crankmbs.compare.lectured import LECTURES
-from crankmbs.compare.quantities import QUANTITIES, Quantity
+from crankmbs.compare.numbers import NUMBERS, Number
+from crankmbs.compare.quantities import OBSERVABLES, QUANTITIES, Quantity
 from crankmbs.compare.size import Size, percent
+from crankmbs.compare.split import Budget, Cause, Split
+from crankmbs.compare.words import WORDS, Word
 
 __all__ = [
     "CAUSES",
     "CLOSED_FORM",
     "LECTURES",
+    "NUMBERS",
+    "OBSERVABLES",
     "QUANTITIES",
+    "REST",
+    "WORDS",
     "AtAngle",
     "Budget",
     "Cause",
     "Comparison",
     "Deviation",
     "Excerpt",
+    "Formula",
     "LeftOut",
+    "Number",
     "Quantity",
     "Reading",
     "Size",
     "Split",
+    "Word",
     "at_angle",
     "budget",
     "check_cylinder",
+    "checked_chain",
     "compare",
+    "formulas_of",
     "percent",
     "save_budget",
     "save_budget_peaks",
     "save_comparison",
+    "save_numbers",
 ]

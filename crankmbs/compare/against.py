@@ -1,22 +1,24 @@
-"""A run against the exact closed form and against the lectures' formulas."""
+"""A run against the exact closed form, against the lectures' formulas and against one's own."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from crankmbs.compare.excerpt import Answer, Excerpt, LeftOut, excerpt_of, vanishing
+from crankmbs.compare.formula import CLOSED_FORM, Formula, formulas_of
 from crankmbs.compare.lectured import LECTURES
+from crankmbs.compare.numbers import NUMBERS, Number
+from crankmbs.compare.quantities import QUANTITIES
 from crankmbs.compare.size import Size
 from crankmbs.errors import InputError
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 
-__all__ = ["CLOSED_FORM", "Comparison", "Deviation", "compare"]
-
-
-CLOSED_FORM = "closed form"
+__all__ = ["Comparison", "Deviation", "compare"]
 
 
 @dataclass(frozen=True)
@@ -42,12 +44,14 @@ class Comparison:
     """A run against every reference.
 
     simulated : quantity -> shape (n,), the run's own values in SI units
-    rows : reference by reference; left_out : what could not be compared, and why
+    rows : reference by reference; numbers : of formulas that stand for one number of the run
+    left_out : what could not be compared, and why
     """
 
     excerpt: Excerpt
     simulated: Answer
     rows: tuple[Deviation, ...]
+    numbers: tuple[Number, ...]
     left_out: tuple[LeftOut, ...]
 
     @property
@@ -71,8 +75,14 @@ class Comparison:
         )
 
 
-def compare(result: Result, cylinder: int = 1) -> Comparison:
-    """Compare a run with the closed form and with the lectures, over its last whole cycle.
+def compare(
+    result: Result,
+    formulas: Mapping[str, Callable[..., Any]] | None = None,
+    *,
+    cylinder: int = 1,
+) -> Comparison:
+    """Compare a run with the closed form, with the lectures and with formulas of one's own, over
+    its last whole cycle.
 
     Every reference is evaluated at the run's own crank angles. "closed form" is Newton-Euler at
     the run's own theta, omega and alpha, with the rigid rod and gravity: exact, so that the error
@@ -83,9 +93,18 @@ def compare(result: Result, cylinder: int = 1) -> Comparison:
     Only "multibody" has joint forces of its own; other formulations take them from the closed form
     and agree with it to rounding.
 
+    A formula of one's own is a function that asks, by the names of its parameters, for what it
+    needs of `crankmbs.compare.WORDS`: theta, phi, omega, alpha, gas_force, crank_radius,
+    rod_length, ..., in SI units, curves of shape (n,); for a quantity of the whole engine phi and
+    what acts on the pistons have shape (n, cylinders). It stands for the quantity that its name
+    begins with, such as piston_acceleration_series, or else its label: one of
+    `crankmbs.compare.OBSERVABLES`, a piston's also without "piston", or of
+    `crankmbs.compare.NUMBERS`. It answers n numbers, or a single one.
+
     Parameters
     ----------
     result : any formulation; cylinder : number of the one compared, the main bearing carries all
+    formulas : functions by the labels under which they are shown
 
     Returns
     -------
@@ -93,21 +112,38 @@ def compare(result: Result, cylinder: int = 1) -> Comparison:
 
     Raises
     ------
-    InputError : no such cylinder
+    InputError : no such cylinder; a formula that names no quantity, asks for what there is not,
+        raises, or answers anything but finite numbers
 
     >>> comparison = compare(simulate(load_scene("yi_diesel")))
     >>> comparison.row("side thrust", "untruncated lecture").size.largest > 290.0
     True
+
+    >>> def piston_acceleration_harmonic(phi, omega, crank_radius):
+    ...     return crank_radius * omega**2 * np.cos(phi)
+    >>> mine = compare(simulate(load_scene("yi_diesel")), {"mine": piston_acceleration_harmonic})
+    >>> row = mine.row("piston acceleration", "mine")
+    >>> f"{100.0 * row.size.largest / row.peak:.1f} %"
+    '24.9 %'
     """
-    excerpt = excerpt_of(result, cylinder)
+    own = formulas_of(formulas)
+    curves = [formula for formula in own if not formula.is_number]
+    others = tuple(dict.fromkeys(f.quantity for f in curves if f.quantity not in QUANTITIES))
+    excerpt = excerpt_of(result, cylinder, others)
     simulated = excerpt.simulated()
     references = {CLOSED_FORM: excerpt.newton_euler(result.scene)}
     left_out = [LeftOut(name, "", reason) for name, reason in excerpt.left_out().items()]
-    for reference, formulas in LECTURES.items():
+    for reference, truncation in LECTURES.items():
         try:
-            references[reference] = excerpt.lecture(formulas, constant_speed=True)
+            references[reference] = excerpt.lecture(truncation, constant_speed=True)
         except InputError as error:
-            left_out += [LeftOut(name, reference, str(error)) for name in simulated]
+            left_out += [LeftOut(n, reference, str(error)) for n in simulated if n in QUANTITIES]
+    for formula in curves:
+        if formula.quantity in simulated:
+            references[formula.label] = {formula.quantity: formula.curve(excerpt)}
+        else:
+            reason = excerpt.left_out().get(formula.quantity, "the run has none")
+            left_out.append(LeftOut(formula.quantity, formula.label, reason))
     nothing = vanishing([simulated, *references.values()])
     left_out += [LeftOut(name, "", reason) for name, reason in nothing.items()]
     kept = {name: curve for name, curve in simulated.items() if name not in nothing}
@@ -115,8 +151,28 @@ def compare(result: Result, cylinder: int = 1) -> Comparison:
         _deviation(excerpt, reference, name, curve, answer[name])
         for reference, answer in references.items()
         for name, curve in kept.items()
+        if name in answer
     )
-    return Comparison(excerpt, kept, rows, tuple(left_out))
+    numbers = _numbers([formula for formula in own if formula.is_number], excerpt, left_out)
+    return Comparison(excerpt, kept, rows, numbers, tuple(left_out))
+
+
+def _numbers(
+    formulas: list[Formula], excerpt: Excerpt, left_out: list[LeftOut]
+) -> tuple[Number, ...]:
+    """What formulas say of single numbers of the run; those that it lacks are left out."""
+    if not formulas:
+        return ()
+    found, measures = [], excerpt.result.measures()
+    for formula in formulas:
+        about = NUMBERS[formula.quantity]
+        simulated = about.found(measures, excerpt.cylinder)
+        if simulated is None:
+            left_out.append(LeftOut(formula.quantity, formula.label, about.lacking))
+        else:
+            value = formula.number(excerpt)
+            found.append(Number(formula.quantity, formula.label, value, simulated))
+    return tuple(found)
 
 
 def _deviation(

@@ -1,142 +1,52 @@
-"""The error budget: what a lecture's answer is wrong by, split into causes that add up to it."""
+"""The error budget: what a formula's answer is wrong by, split into causes that add up to it."""
 
 from __future__ import annotations
 
-import dataclasses
-import math
-from dataclasses import dataclass
-from itertools import pairwise
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from crankmbs import lecture
-from crankmbs.compare.excerpt import Answer, Excerpt, LeftOut, excerpt_of, vanishing
-from crankmbs.compare.lectured import S1, UNTRUNCATED
-from crankmbs.compare.size import Size, percent
-from crankmbs.digits import digits
+from crankmbs.compare.chain import Idealized, checked_chain, steps
+from crankmbs.compare.excerpt import Answer, LeftOut, excerpt_of, vanishing
+from crankmbs.compare.formula import Formula, formulas_of
+from crankmbs.compare.lectured import LECTURES, S1
+from crankmbs.compare.quantities import QUANTITIES
+from crankmbs.compare.split import Budget, Cause, Split
 from crankmbs.errors import InputError
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 
-__all__ = ["CAUSES", "Budget", "Cause", "Split", "budget"]
+__all__ = ["budget"]
+
+_UNTRUNCATED, _, _TRUNCATED = LECTURES
+_OF_MOTION = "the causes are of forces and of the piston's motion at the run's own speed"
 
 
-CAUSES = {
-    "series": "the truncated series",
-    "datum": "the datum",
-    "constant speed": "the constant speed",
-    "two-mass rod": "the two-mass rod",
-    "gravity": "gravity",
-    "friction": "friction",
-    "solver": "the solver",
-}
-"""The causes in their order, and how a sentence names them."""
+class _Answered(NamedTuple):
+    """What is split: a formula's values by quantity, and what it idealizes.
 
-_NOTHING = 1e-12  # of the larger of lecture and run: rounding, and no cause
-_ABSENT = 1e-9  # of the lecture: a run's peak so small has no percent
-
-
-@dataclass(frozen=True)
-class Cause:
-    """curve : shape (n,) [unit], what the cause adds to the lecture's answer; size : of it."""
-
-    name: str
-    curve: Array
-    size: Size
-
-
-@dataclass(frozen=True)
-class Split:
-    """The error of one quantity, cause by cause.
-
-    lecture, simulated : shape (n,) [unit]; their difference is `total`, the sum of the causes
-    peak [unit] : largest magnitude in the run
+    errors : what it is wrong by under these idealizations, at the constant speed (True) and at the
+        run's own; nothing where it is the closed form
     """
 
-    quantity: str
-    lecture: Array
-    simulated: Array
-    causes: tuple[Cause, ...]
-    total: Cause
-    peak: float
-
-    def cause(self, name: str) -> Cause:
-        """One of the causes.
-
-        Raises
-        ------
-        InputError : there is none of this name
-        """
-        for cause in self.causes:
-            if cause.name == name:
-                return cause
-        raise InputError(
-            f"no cause {name!r} here: {', '.join(cause.name for cause in self.causes)}"
-        )
-
-    def share(self, cause: Cause) -> float:
-        """The peak of a cause in percent of the run's; 0 where it is but rounding, not a number
-        where the run's is, beside the lecture's."""
-        answered = float(np.max(np.abs(self.lecture)))
-        if cause.size.largest <= _NOTHING * max(answered, self.peak):
-            return 0.0
-        return percent(cause.size.largest, self.peak if self.peak > _ABSENT * answered else 0.0)
-
-    def sentence(self) -> str:
-        """How far the lecture is off, and what its causes are worth, the largest first.
-
-        The peaks of causes lie at different angles: they do not add up to that of the error.
-        """
-        total = self.share(self.total)
-        if math.isnan(total):
-            return f"{self.quantity}: the run has none, the lecture has"
-        worth = [cause for cause in self.causes if self.share(cause) > 0.0]
-        worth.sort(key=self.share, reverse=True)
-        parts: list[str] = []
-        for cause in worth:
-            up_to = "" if parts else "is worth up to "
-            parts.append(
-                f"{CAUSES[cause.name]} {up_to}{_readable(self.share(cause))} %, {_where(cause)}"
-            )
-        if len(worth) < len(self.causes):
-            nothing = [CAUSES[c.name] for c in self.causes if self.share(c) == 0.0]
-            parts.append(f"nothing comes from {_listed(nothing)}")
-        off = f"off by up to {_readable(total)} % of the peak, {_where(self.total)}"
-        return f"{self.quantity}: {off if total else 'right but for rounding'}: {'; '.join(parts)}"
+    reference: str
+    values: Answer
+    idealized: frozenset[str]
+    errors: dict[bool, Answer]
 
 
-@dataclass(frozen=True)
-class Budget:
-    """The error of every quantity; left_out : quantity, missing cause (or all) and reason."""
+def budget(
+    result: Result,
+    formulas: Mapping[str, Callable[..., Any]] | None = None,
+    *,
+    cylinder: int = 1,
+    chain: Sequence[str] | None = None,
+) -> Budget:
+    """Split the error of the lectures' truncated formulas (S1's), and of others, into named causes.
 
-    excerpt: Excerpt
-    splits: tuple[Split, ...]
-    left_out: tuple[LeftOut, ...]
-
-    @property
-    def ranked(self) -> tuple[Split, ...]:
-        """The splits, the largest error in percent of its quantity's peak first."""
-        return tuple(sorted(self.splits, key=lambda split: -(split.share(split.total) or 0.0)))
-
-    def split(self, quantity: str) -> Split:
-        """The split of one quantity.
-
-        Raises
-        ------
-        InputError : there is none
-        """
-        for split in self.splits:
-            if split.quantity == quantity:
-                return split
-        raise InputError(
-            f"no {quantity!r} here; quantities: {', '.join(s.quantity for s in self.splits)}"
-        )
-
-
-def budget(result: Result, cylinder: int = 1) -> Budget:
-    """Split the error of the lectures' truncated formulas (S1's) into named causes.
-
-    At every sample of the run's last whole cycle, each cause is the difference of two neighbours:
+    At every sample of the run's last whole cycle, each cause is the difference of two neighbours.
+    In the order that is taken unless ``chain`` gives another:
 
         truncated formula
             series          exact closed form, lecture's datum, mean speed, two-mass rod
@@ -149,85 +59,107 @@ def budget(result: Result, cylinder: int = 1) -> Budget:
 
     so that they add up to formula minus run, to rounding. The mean speed is the time mean.
 
+    A formula of one's own idealizes what it does not ask for: the constant speed without omega and
+    alpha, the two-mass rod without rod_inertia (or the reduced inertia, or its slope), gravity
+    without gravity_x and gravity_y (or the generalized force), friction without friction_force;
+    the datum where ``chain`` names it. Its "series" is what it differs by from the closed form
+    under just these idealizations.
+
     Parameters
     ----------
     result : any formulation; cylinder : number of the one looked at, the main bearing carries all
+    formulas : as in `compare`; those that stand for a single number have no budget
+    chain : the causes in the order in which they are lifted, each at most once; what it does not
+        name is lifted last, together, as "rest"
 
     Returns
     -------
     Budget : in SI units, shares in percent of the run's peak, as in `compare`; with a rod ratio of
-        1 it starts from the closed form, without "series"
+        1 the lectures' starts from their closed form, without "series"
 
     Raises
     ------
-    InputError : no such cylinder
+    InputError : no such cylinder or cause; a formula that cannot be, as in `compare`
 
     >>> split = budget(simulate(load_scene("yi_diesel"))).split("side thrust")
     >>> f"{split.share(split.cause('two-mass rod')):.1f} % of the peak"
     '17.7 % of the peak'
     """
-    excerpt = excerpt_of(result, cylinder)
-    answers: dict[str, Answer] = {}
+    own = [formula for formula in formulas_of(formulas) if not formula.is_number]
+    causes = checked_chain(chain, result.scene)
+    others = tuple(dict.fromkeys(f.quantity for f in own if f.quantity not in QUANTITIES))
+    excerpt = excerpt_of(result, cylinder, others)
+    ideal = Idealized(excerpt)
     left_out = [LeftOut(name, "", reason) for name, reason in excerpt.left_out().items()]
-    simulated = excerpt.simulated()
-    try:
-        answers["series"] = excerpt.lecture(S1, constant_speed=True)
-    except InputError as error:
-        left_out += [LeftOut(name, "series", str(error)) for name in simulated]
-    scene = result.scene
-    answers["datum"] = excerpt.lecture(UNTRUNCATED, constant_speed=True)
-    answers["constant speed"] = _from_top(excerpt, answers["datum"])
-    own_motion = excerpt.lecture(UNTRUNCATED, constant_speed=False)
-    answers["two-mass rod"] = _from_top(excerpt, own_motion)
-    smooth = dataclasses.replace(scene, friction=None)
-    answers["gravity"] = excerpt.newton_euler(dataclasses.replace(smooth, gravity=None))
-    if scene.friction is not None:
-        answers["friction"] = excerpt.newton_euler(smooth)
-    answers["solver"] = excerpt.newton_euler(scene)
-    nothing = vanishing([*answers.values(), simulated])
+    lecture = _lecture(ideal, left_out)
+    answered = [lecture, *_own(own, ideal, "datum" in (chain or ()), left_out)]
+    nothing = vanishing([ideal.run, ideal.closed_form, *(each.values for each in answered)])
     left_out += [LeftOut(name, "", reason) for name, reason in nothing.items()]
     splits = tuple(
-        _split(excerpt, name, {cause: answers[cause][name] for cause in answers}, simulated[name])
-        for name in simulated
+        _split(ideal, causes, each, name)
+        for each in answered
+        for name in each.values
         if name not in nothing
     )
-    return Budget(excerpt, splits, tuple(left_out))
+    return Budget(excerpt, causes, splits, tuple(dict.fromkeys(left_out)))
 
 
-def _from_top(excerpt: Excerpt, answer: Answer) -> Answer:
-    """The answer with its displacement counted from the true top dead centre."""
-    scene = excerpt.result.scene
-    shift = lecture.datum_shift(
-        crank_radius=scene.crank.radius, rod_length=scene.rod.length, offset=scene.piston.offset
-    )
-    return {**answer, "piston displacement": answer["piston displacement"] - shift}
+def _lecture(ideal: Idealized, left_out: list[LeftOut]) -> _Answered:
+    """S1's formulas; where their series diverge the lectures' closed form, which is said."""
+    names = [name for name in ideal.run if name in QUANTITIES]
+    try:
+        values = ideal.excerpt.lecture(S1, constant_speed=True)
+        return _Answered(_TRUNCATED, values, ideal.all, ideal.truncated)
+    except InputError as error:
+        left_out += [LeftOut(name, "series", str(error)) for name in names]
+    under = ideal.all - {"series"}
+    exact = ideal.exact(under)
+    return _Answered(_UNTRUNCATED, {name: exact[name] for name in names}, under, {})
 
 
-def _split(excerpt: Excerpt, quantity: str, before: Answer, simulated: Array) -> Split:
-    """``before`` holds, by cause, the answer that the cause still spoils."""
-    chain = [*before.values(), simulated]
-    curves = [a - b for a, b in pairwise(chain)]
+def _own(
+    formulas: Sequence[Formula], ideal: Idealized, from_datum: bool, left_out: list[LeftOut]
+) -> list[_Answered]:
+    """One's own formulas, those that the closed form answers too."""
+    found = []
+    for formula in formulas:
+        name = formula.quantity
+        if name not in ideal.run:
+            reason = ideal.excerpt.left_out().get(name, "the run has none")
+            left_out.append(LeftOut(name, formula.label, reason))
+            continue
+        if name not in ideal.closed_form:
+            left_out.append(LeftOut(name, f"the budget of {formula.label}", _OF_MOTION))
+            continue
+        under = formula.idealized | {"series", "solver"} | ({"datum"} if from_datum else set())
+        values = formula.curve(ideal.excerpt)
+        error = {name: values - ideal.exact(under)[name]}  # as it is, whatever the speed
+        own = _Answered(
+            formula.label, {name: values}, under & ideal.all, {True: error, False: error}
+        )
+        found.append(own)
+    return found
+
+
+def _split(ideal: Idealized, chain: Sequence[str], answered: _Answered, name: str) -> Split:
+    reference, values, idealized, errors = answered
+    simulated = ideal.run[name]
+
+    def answer(under: frozenset[str]) -> Array:
+        exact = ideal.exact(under)[name]
+        return exact + errors["constant speed" in under][name] if "series" in under else exact
+
+    if not errors:
+        chain = [cause for cause in chain if cause != "series"]
+    curves = steps(chain, values[name], idealized, answer, simulated)
+    total = values[name] - simulated
+    size = ideal.excerpt.size
     return Split(
-        quantity=quantity,
-        lecture=chain[0],
+        quantity=name,
+        reference=reference,
+        values=values[name],
         simulated=simulated,
-        causes=tuple(
-            Cause(name, curve, excerpt.size(quantity, curve))
-            for name, curve in zip(before, curves, strict=True)
-        ),
-        total=Cause("total", chain[0] - simulated, excerpt.size(quantity, chain[0] - simulated)),
+        causes=tuple(Cause(cause, curve, size(name, curve)) for cause, curve in curves.items()),
+        total=Cause("total", total, size(name, total)),
         peak=float(np.max(np.abs(simulated))),
     )
-
-
-def _where(cause: Cause) -> str:
-    return f"at {round(math.degrees(cause.size.angle), 1):g} degrees"
-
-
-def _readable(share: float) -> str:
-    return digits(share, most=3) if share >= 1e-3 else f"{share:.0e}"
-
-
-def _listed(words: list[str]) -> str:
-    *most, last = words
-    return f"{', '.join(most)} or {last}" if most else last

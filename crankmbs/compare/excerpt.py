@@ -10,14 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crankmbs.compare.lectured import Formulas, lectured
-from crankmbs.compare.quantities import QUANTITIES, observed
+from crankmbs.compare.quantities import OBSERVABLES, observed
 from crankmbs.compare.size import Size, size_of
 from crankmbs.errors import InputError
 from crankmbs.measures import Span, last_span
 from crankmbs.mechanics.peaks import negligible
 from crankmbs.mechanics.reactions import reactions
 from crankmbs.mechanics.train import CrankTrain, crank_train
-from crankmbs.mechanics.variables import VARIABLES
+from crankmbs.mechanics.variables import EVERY
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 from crankmbs.scene.scene import Scene
@@ -46,6 +46,7 @@ class Excerpt:
     theta, omega, alpha : shape (n,) [rad, rad/s, rad/s2], the run's own
     mean_speed [rad/s] : over time
     cylinder : number of the one that is compared
+    others : variables of the result that are compared too, by their names in OBSERVABLES
     """
 
     result: Result
@@ -57,31 +58,28 @@ class Excerpt:
     alpha: Array
     mean_speed: float
     train: CrankTrain
+    others: tuple[str, ...] = ()
 
     def simulated(self) -> Answer:
         """What the run says, in the lectures' quantities."""
         data = self.result.data.isel(time=self.samples)
-        return self._of({name: data[name].values for name in VARIABLES if name in data})
+        own = {name: data[name].values for name in EVERY if name in data}
+        return self._of(own, self.omega, self.alpha)
 
-    def newton_euler(self, scene: Scene) -> Answer:
-        """The exact closed form at the run's own theta, omega, alpha; ``scene`` may differ."""
-        return self._of(
-            reactions(replace(self.train, scene=scene), self.theta, self.omega, self.alpha)
-        )
+    def newton_euler(self, scene: Scene, *, constant_speed: bool = False) -> Answer:
+        """The exact closed form at the run's own theta, at its own or its mean speed; ``scene`` may
+        differ."""
+        speed, rate = self._speeds(constant_speed)
+        found = reactions(replace(self.train, scene=scene), self.theta, speed, rate)
+        return self._of(found, speed, rate)
 
     def lecture(self, formulas: Formulas, *, constant_speed: bool) -> Answer:
         """The lectures' formulas at the run's own theta, at its mean or its own speed."""
-        still = np.zeros_like(self.alpha)
-        speed = still + self.mean_speed if constant_speed else self.omega
-        rate = still if constant_speed else self.alpha
-        scene = self.result.scene
-        return self._seen(
-            lectured(formulas, replace(self.train, scene=scene), self.theta, speed, rate)
-        )
+        return self._seen(lectured(formulas, self.train, self.theta, *self._speeds(constant_speed)))
 
     def angles(self, quantity: str) -> Array:
         """Cycle angle of the cylinder, for the whole engine's quantities the crank angle [rad]."""
-        if not QUANTITIES[quantity].per_cylinder:
+        if not OBSERVABLES[quantity].per_cylinder:
             return self.theta
         return self.theta + self.result.scene.cylinders[self.cylinder - 1].phase
 
@@ -89,16 +87,23 @@ class Excerpt:
         """Measure a curve of this excerpt."""
         return size_of(curve, self.angles(quantity), self.result.scene.period)
 
-    def _of(self, variables: dict[str, Array]) -> Answer:
-        return self._seen(
-            observed(self.result.scene, variables, self.theta, self.omega, self.alpha)
-        )
+    def _speeds(self, constant_speed: bool) -> tuple[Array, Array]:
+        """omega and alpha: the run's own, or those of its mean speed."""
+        if not constant_speed:
+            return self.omega, self.alpha
+        still = np.zeros_like(self.alpha)
+        return still + self.mean_speed, still
+
+    def _of(self, variables: dict[str, Array], omega: Array, alpha: Array) -> Answer:
+        answer = observed(self.result.scene, variables, self.theta, omega, alpha)
+        more = {name: variables.get(name.replace(" ", "_")) for name in self.others}
+        return self._seen(answer | {name: v for name, v in more.items() if v is not None})
 
     def _seen(self, answer: Answer) -> Answer:
         """The curves of the one cylinder and of the whole engine, without those left out."""
         missing = self.left_out()
         return {
-            name: curve[:, self.cylinder - 1] if QUANTITIES[name].per_cylinder else curve
+            name: curve[:, self.cylinder - 1] if OBSERVABLES[name].per_cylinder else curve
             for name, curve in answer.items()
             if name not in missing
         }
@@ -118,7 +123,7 @@ def vanishing(answers: Iterable[Answer]) -> dict[str, str]:
     for answer in answers:
         for name, curve in answer.items():
             peaks[name] = max(peaks.get(name, 0.0), float(np.max(np.abs(curve))))
-    units = {name: QUANTITIES[name].units for name in peaks}
+    units = {name: OBSERVABLES[name].units for name in peaks}
     return dict.fromkeys(negligible(peaks, units), "it is zero but for rounding")
 
 
@@ -129,8 +134,8 @@ def check_cylinder(scene: Scene, cylinder: int) -> None:
         raise InputError(f"cylinder must be from 1 to {count}; {cylinder} came")
 
 
-def excerpt_of(result: Result, cylinder: int) -> Excerpt:
-    """The last cycle of a run, seen from a cylinder, counted from 1.
+def excerpt_of(result: Result, cylinder: int, others: tuple[str, ...] = ()) -> Excerpt:
+    """The last cycle of a run, seen from a cylinder, counted from 1; ``others`` as in `Excerpt`.
 
     Raises
     ------
@@ -153,4 +158,4 @@ def excerpt_of(result: Result, cylinder: int) -> Excerpt:
     )
     mean = window.angle / window.duration if window.duration > 0.0 else float(omega[-1])
     train = crank_train(result.scene)
-    return Excerpt(result, window, cylinder, samples, theta, omega, alpha, mean, train)
+    return Excerpt(result, window, cylinder, samples, theta, omega, alpha, mean, train, others)

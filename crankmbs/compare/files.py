@@ -10,13 +10,13 @@ from pathlib import Path
 import numpy as np
 
 from crankmbs.compare.against import Comparison
-from crankmbs.compare.causes import Budget, Split
 from crankmbs.compare.excerpt import Excerpt
-from crankmbs.compare.quantities import QUANTITIES
+from crankmbs.compare.quantities import OBSERVABLES
 from crankmbs.compare.size import Size, percent, within
+from crankmbs.compare.split import Budget, Split
 from crankmbs.storage.files import write_in_one_move
 
-__all__ = ["save_budget", "save_budget_peaks", "save_comparison"]
+__all__ = ["save_budget", "save_budget_peaks", "save_comparison", "save_numbers"]
 
 _SIZE = ["peak", "max", "rms", "max_percent", "rms_percent", "angle_deg"]
 
@@ -39,49 +39,75 @@ def save_comparison(comparison: Comparison, folder: Path) -> Path:
 def save_budget(budget: Budget, folder: Path) -> Path:
     """Write budget.csv: every cause over the angle, so that they can be added up.
 
-    A line for each quantity and sample, in SI units and degrees; the causes of a line add up to
-    "total", which is "lecture" minus "run". crank_angle_deg is the run's own; angle_deg lies within
-    one cycle, of the cylinder, for the main bearing of the crank.
+    A line for each formula, quantity and sample, in SI units and degrees; the causes of a line add
+    up to "total", which is "formula" minus "run". crank_angle_deg is the run's own; angle_deg lies
+    within one cycle, of the cylinder, for the main bearing of the crank.
 
     Raises
     ------
     OutputError : the folder cannot be made or written
     """
-    causes = [cause.name for cause in budget.splits[0].causes] if budget.splits else []
-    heading = ["quantity", "unit", "cylinder", "crank_angle_deg", "angle_deg"]
-    lines = (line for split in budget.splits for line in _curves(budget.excerpt, split))
-    heading += ["run", "lecture", "total", *causes]
+    heading = ["reference", "quantity", "unit", "cylinder", "crank_angle_deg", "angle_deg"]
+    lines = (line for split in budget.splits for line in _curves(budget, split))
+    heading += ["run", "formula", "total", *budget.chain]
     return _write(folder / "budget.csv", heading, lines)
 
 
 def save_budget_peaks(budget: Budget, folder: Path) -> Path:
-    """Write budget_peaks.csv: a line for each quantity and cause, and for the total of the causes.
+    """Write budget_peaks.csv: a line for each formula, quantity and cause, and for the total.
 
     Raises
     ------
     OutputError : the folder cannot be made or written
     """
     lines = (
-        [*_whose(budget.excerpt, split.quantity), cause.name, *_cells(cause.size, split.peak)]
+        [
+            split.reference,
+            *_whose(budget.excerpt, split.quantity),
+            cause.name,
+            *_cells(cause.size, split.peak),
+        ]
         for split in budget.splits
         for cause in (*split.causes, split.total)
     )
-    heading = ["quantity", "unit", "cylinder", "cause", *_SIZE]
+    heading = ["reference", "quantity", "unit", "cylinder", "cause", *_SIZE]
     return _write(folder / "budget_peaks.csv", heading, lines)
 
 
-def _curves(excerpt: Excerpt, split: Split) -> Iterator[list[str]]:
-    """The lines of a quantity, sample by sample."""
-    about = _whose(excerpt, split.quantity)
+def save_numbers(comparison: Comparison, folder: Path) -> Path:
+    """Write numbers.csv: a line for each formula that stands for one number of the run.
+
+    Raises
+    ------
+    OutputError : the folder cannot be made or written
+    """
+    lines = (
+        [
+            row.reference,
+            row.quantity,
+            row.units,
+            *(f"{value:.12g}" for value in (row.value, *row.simulated, row.error, row.percent)),
+        ]
+        for row in comparison.numbers
+    )
+    heading = ["reference", "quantity", "unit", "formula", "run", "run_error", "error", "percent"]
+    return _write(folder / "numbers.csv", heading, lines)
+
+
+def _curves(budget: Budget, split: Split) -> Iterator[list[str]]:
+    """The lines of a quantity, sample by sample; causes that it has not are 0."""
+    excerpt = budget.excerpt
+    about = [split.reference, *_whose(excerpt, split.quantity)]
     angle = within(excerpt.angles(split.quantity), excerpt.result.scene.period)
-    curves = [np.degrees(excerpt.theta), np.degrees(angle), split.simulated, split.lecture]
-    curves += [cause.curve for cause in (split.total, *split.causes)]
+    causes = {cause.name: cause.curve for cause in split.causes}
+    curves = [np.degrees(excerpt.theta), np.degrees(angle), split.simulated, split.values]
+    curves += [split.total.curve, *(causes.get(n, 0.0 * angle) for n in budget.chain)]
     for row in np.transpose(curves).tolist():
         yield [*about, *(f"{value:.15g}" for value in row)]
 
 
 def _whose(excerpt: Excerpt, quantity: str) -> list[str]:
-    about = QUANTITIES[quantity]
+    about = OBSERVABLES[quantity]
     return [quantity, about.units, str(excerpt.cylinder) if about.per_cylinder else "all"]
 
 

@@ -1,4 +1,5 @@
-"""What is compared: the lectures' quantities, and how they follow from a run's own variables.
+"""What is compared: the lectures' quantities, how they follow from a run's own variables, and these
+variables themselves.
 
 The lectures' net force, rod force, tangential and radial force belong to a rod without mass. A
 rod of any inertia has them too: they are what is left of the crank pin force when the inertia
@@ -13,10 +14,11 @@ from typing import NamedTuple
 import numpy as np
 
 from crankmbs.lecture import two_mass_rod
+from crankmbs.mechanics.variables import EVERY
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 
-__all__ = ["QUANTITIES", "Quantity", "cycle_angles", "observed"]
+__all__ = ["OBSERVABLES", "QUANTITIES", "Quantity", "cycle_angles", "observed"]
 
 
 class Quantity(NamedTuple):
@@ -45,6 +47,13 @@ QUANTITIES = {
     "main bearing force x": Quantity("N", per_cylinder=False),
     "main bearing force y": Quantity("N", per_cylinder=False),
 }
+
+OBSERVABLES = {
+    name.replace("_", " "): Quantity(about.units, per_cylinder=about.per_cylinder)
+    for name, about in EVERY.items()
+    if name not in ("time", "crank_angle", "fuel")
+} | QUANTITIES
+"""What a formula may stand for: the lectures' quantities, and the variables of a result."""
 
 
 def cycle_angles(scene: Scene, theta: Array) -> Array:

@@ -1,4 +1,4 @@
-"""A run against its references, and the causes of the lectures' errors, over the crank angle."""
+"""A run against its references, and the causes of the formulas' errors, over the crank angle."""
 
 from __future__ import annotations
 
@@ -13,7 +13,9 @@ from crankmbs.compare import (
     CAUSES,
     CLOSED_FORM,
     LECTURES,
+    OBSERVABLES,
     QUANTITIES,
+    REST,
     Budget,
     Comparison,
     Excerpt,
@@ -45,74 +47,93 @@ _STYLES: dict[str, dict[str, Any]] = {
     "lecture": {"color": "0.5", "linestyle": (0, (4, 2))},
     "sum of the causes": {"color": "0.65", "linewidth": 5.0},
     **{name: line_of(k) for k, name in enumerate((CLOSED_FORM, *LECTURES))},
-    **{name: line_of(k) for k, name in enumerate(CAUSES)},
+    **{name: line_of(k) for k, name in enumerate((*CAUSES, REST))},
 }
+_OWN = 5  # the first line for formulas of one's own: dashed, of a colour that no reference has
 
 
 def save_validation(comparison: Comparison, budget: Budget, folder: Path) -> list[Path]:
-    """Draw comparison and budget of every family into PNG files, which appear together.
+    """Draw comparison and budget of every family into PNG files, which appear together; what only
+    formulas of one's own stand for into comparison_formulas.png, their budgets into
+    budget_formula_1.png, ... in their order.
 
     Raises
     ------
     OutputError : the folder cannot be made or written
     """
+    drawn = {}
+    for family, quantities in FAMILIES.items():
+        drawn[f"comparison_{family}.png"] = comparison_figure(comparison, quantities)
+        drawn[f"budget_{family}.png"] = budget_figure(budget, quantities)
+    others = tuple(name for name in comparison.simulated if name not in QUANTITIES)
+    drawn["comparison_formulas.png"] = comparison_figure(comparison, others)
+    own = [split for split in budget.splits if not split.is_lecture]
+    for k, split in enumerate(own, start=1):
+        figure = budget_figure(budget, (split.quantity,), split.reference)
+        drawn[f"budget_formula_{k}.png"] = figure
     files = []
     with together(folder) as part:
-        for family, quantities in FAMILIES.items():
-            drawn = {
-                f"comparison_{family}.png": comparison_figure(comparison, quantities),
-                f"budget_{family}.png": budget_figure(budget, quantities),
-            }
-            for name, figure in drawn.items():
-                if figure is not None:
-                    figure.savefig(part / name, format="png")
-                    files.append(folder / name)
+        for name, figure in drawn.items():
+            if figure is not None:
+                figure.savefig(part / name, format="png")
+                files.append(folder / name)
     return files
 
 
 @rc_context(STYLE)
 def comparison_figure(comparison: Comparison, quantities: tuple[str, ...]) -> Figure | None:
-    """Run, closed form and truncated lecture above, the error of every reference below.
+    """Run, closed form, truncated lecture and one's own formulas above, every error below.
 
     None where none of the quantities could be compared.
     """
     shown = [name for name in quantities if name in comparison.simulated]
     if not shown:
         return None
-    drawn = {CLOSED_FORM, comparison.references[-1]}  # the last lecture truncates most
+    lectures = [name for name in LECTURES if name in comparison.references]
+    hidden = set(lectures[:-1])  # the last lecture truncates most
     columns = []
     for name in shown:
-        rows = [comparison.row(name, reference) for reference in comparison.references]
-        above = {row.reference: row.values for row in rows if row.reference in drawn}
+        rows = [row for row in comparison.rows if row.quantity == name]
+        above = {row.reference: row.values for row in rows if row.reference not in hidden}
         errors = {row.reference: row.error for row in rows}
         columns.append((name, {"run": comparison.simulated[name], **above}, errors))
     return _figure(comparison.excerpt, columns, "formula minus run", "run against formulas")
 
 
 @rc_context(STYLE)
-def budget_figure(budget: Budget, quantities: tuple[str, ...]) -> Figure | None:
-    """Truncated lecture and run above, below their difference and the causes it is made of.
+def budget_figure(
+    budget: Budget, quantities: tuple[str, ...], reference: str | None = None
+) -> Figure | None:
+    """Formula and run above, below their difference and the causes it is made of.
+
+    reference : the label of a formula of one's own; by default the truncated lecture is drawn
 
     A cause that could not be told from zero is not drawn; the footer names those that no panel has.
     None where none of the quantities could be split.
     """
-    splits = [split for split in budget.splits if split.quantity in quantities]
+    splits = [
+        split
+        for split in budget.splits
+        if split.quantity in quantities
+        and (split.is_lecture if reference is None else split.reference == reference)
+    ]
     if not splits:
         return None
+    whose = "lecture" if reference is None else "formula"
     columns = [
         (
             split.quantity,
-            {"run": split.simulated, "lecture": split.lecture},
+            {"run": split.simulated, reference or "lecture": split.values},
             {"sum of the causes": split.total.curve, **_seen(split)},
         )
         for split in splits
     ]
     drawn = {label for _, _, errors in columns for label in errors}
     unseen = [cause.name for cause in splits[0].causes if cause.name not in drawn]
-    about = "error budget of the lecture"
+    about = f"error budget of the {whose}"
     if unseen:
         about += f" (too small to be seen: {', '.join(unseen)})"
-    return _figure(budget.excerpt, columns, "lecture minus run", about)
+    return _figure(budget.excerpt, columns, f"{whose} minus run", about)
 
 
 def _seen(split: Split) -> dict[str, Array]:
@@ -133,19 +154,23 @@ def _figure(
     view = last_view(excerpt.result)
     degrees = view.degrees[excerpt.samples - excerpt.window.first]
     several = len(excerpt.result.scene.cylinders) > 1
-    of_one = several and any(QUANTITIES[name].per_cylinder for name, _, _ in columns)
+    of_one = several and any(OBSERVABLES[name].per_cylinder for name, _, _ in columns)
+    labels = dict.fromkeys(label for _, *both in columns for lines in both for label in lines)
+    own = [label for label in labels if label not in _STYLES]
+    styles = _STYLES | {label: line_of(_OWN + k) for k, label in enumerate(own)}
     for k, (name, curves, errors) in enumerate(columns):
         top, bottom = axes[k], axes[n + k]
-        _panel(top, name, degrees, curves, "")
-        _panel(bottom, name, degrees, errors, f"{below} ")
+        _panel(top, name, degrees, curves, styles)
+        _panel(bottom, name, degrees, errors, styles)
+        bottom.set_ylabel(f"{below} {bottom.get_ylabel()}")
         lines = crank_axis([top, bottom], view)
-        symbol = QUANTITIES[name].symbol
+        symbol = OBSERVABLES[name].symbol
         top.set_title(f"{name} ${symbol}$" if symbol else name, loc="left", pad=8.0 + 16.0 * lines)
     handles = {
         str(line.get_label()): line
         for ax in axes
         for line in ax.lines
-        if str(line.get_label()) in _STYLES
+        if str(line.get_label()) in styles
     }
     figure.legend(
         list(handles.values()),
@@ -157,12 +182,20 @@ def _figure(
     return figure
 
 
-def _panel(ax: Axes, quantity: str, degrees: Array, curves: dict[str, Array], what: str) -> None:
-    units = QUANTITIES[quantity].units
+def _panel(
+    ax: Axes,
+    quantity: str,
+    degrees: Array,
+    curves: dict[str, Array],
+    styles: dict[str, dict[str, Any]],
+) -> None:
+    units = OBSERVABLES[quantity].units
     scale, unit = _SHOWN.get(units, (1.0, units))
     if units == "N":
         scale, unit = force_scale(*curves.values())
-    ax.axhline(0.0, color="0.55", linewidth=1.0)
+    low, high = (find(find(curve) for curve in curves.values()) for find in (min, max))
+    if 2.0 * low - high <= 0.0 <= 2.0 * high - low:  # else the swing of a speed could not be seen
+        ax.axhline(0.0, color="0.55", linewidth=1.0)
     for label, curve in curves.items():
-        ax.plot(degrees, curve / scale, **_STYLES[label], label=label)
-    ax.set_ylabel(f"{what}[{unit}]")
+        ax.plot(degrees, curve / scale, **styles[label], label=label)
+    ax.set_ylabel(f"[{unit}]")

@@ -174,7 +174,7 @@ def legend(figure: Figure, *axes: Axes) -> None:
 def footer(figure: Figure, result: Result, about: str) -> None:
     """Say under the figure which run it shows."""
     lines = textwrap.wrap(result.scene.title, 80, max_lines=2, placeholder=" ...")
-    lines.append(f"{about} ({result.formulation})")
+    lines += textwrap.wrap(f"{about} ({result.formulation})", 105)
     caption(figure, lines)
 
 

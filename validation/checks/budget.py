@@ -41,7 +41,7 @@ def causes(case: Case) -> Outcome:
         for what, ours, exact in (
             ("two-mass rod", found.cause("two-mass rod").curve, rod),
             ("gravity", found.cause("gravity").curve, gravity),
-            ("sum", added, found.lecture - found.simulated),
+            ("sum", added, found.values - found.simulated),
         ):
             errors[f"{quantity}, {what}"] = float(np.max(np.abs(ours - exact))) / found.peak
     worst = max(errors, key=lambda name: errors[name])

@@ -1,0 +1,26 @@
+"""Arguments and options that several commands share."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+__all__ = ["CostCap", "NoFigures", "Out", "Rtol", "SceneName", "Until"]
+
+
+SceneName = Annotated[
+    str, typer.Argument(metavar="SCENE", help="A scene file, or the name of a shipped scene.")
+]
+
+CostCap = Annotated[
+    float, typer.Option(help="Seconds at which multibody stops refining, minimal gives up.")
+]
+
+Rtol = Annotated[float | None, typer.Option(help="Relative global error asked for.")]
+Until = Annotated[
+    str | None, typer.Option(help='End: "20 cycles", "10 rev", "0.75 s" or "settled".')
+]
+Out = Annotated[Path | None, typer.Option(help="Folder of the results; default results/NAME.")]
+NoFigures = Annotated[bool, typer.Option("--no-figures", help="Draw no figures.")]

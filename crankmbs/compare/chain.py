@@ -1,0 +1,156 @@
+"""The chain of causes: a formula's idealizations, lifted one after the other up to the run."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Sequence
+from functools import cached_property
+
+from crankmbs import lecture
+from crankmbs.compare.excerpt import Answer, Excerpt
+from crankmbs.compare.lectured import S1
+from crankmbs.errors import InputError, shown
+from crankmbs.numerics.arrays import Array
+from crankmbs.scene.scene import Scene
+from crankmbs.scene.sentences import did_you_mean
+
+__all__ = ["CAUSES", "REST", "Idealized", "checked_chain", "steps"]
+
+
+CAUSES = {
+    "series": "the truncated series",
+    "datum": "the datum",
+    "constant speed": "the constant speed",
+    "two-mass rod": "the two-mass rod",
+    "gravity": "gravity",
+    "friction": "friction",
+    "solver": "the solver",
+}
+"""The causes in their order unless told otherwise, and how a sentence names them."""
+
+REST = "rest"  # what a chain does not name, together
+
+
+def checked_chain(chain: Sequence[str] | None, scene: Scene) -> tuple[str, ...]:
+    """The causes in the order in which they are lifted; REST last where some are not named.
+
+    Raises
+    ------
+    InputError : no such cause, one that comes twice, none at all
+    """
+    all_there = tuple(name for name in CAUSES if scene.friction is not None or name != "friction")
+    if chain is None:
+        return all_there
+    if isinstance(chain, str) or not isinstance(chain, Sequence) or not chain:
+        raise InputError(
+            f'chain must be a list of causes, such as ["series", "solver"]; {shown(chain)} came'
+        )
+    for k, name in enumerate(chain):
+        if name not in CAUSES:
+            near = did_you_mean(name, list(CAUSES)) if isinstance(name, str) else ""
+            raise InputError(f"chain: a cause is {', '.join(CAUSES)}; {shown(name)} came{near}")
+        if name in chain[:k]:
+            raise InputError(f"chain: each cause once; {shown(name)} came twice; leave one out")
+    return (*chain, *([] if set(all_there) <= set(chain) else [REST]))
+
+
+class Idealized:
+    """The answers under idealizations, each made once.
+
+    An idealization is named like the cause that lifts it. With "series" a formula's own error
+    is in the answer, without "solver" that of the run.
+    """
+
+    def __init__(self, excerpt: Excerpt) -> None:
+        self.excerpt = excerpt
+        self._exact: dict[frozenset[str], Answer] = {}
+
+    @property
+    def all(self) -> frozenset[str]:
+        """Every idealization of what the scene has."""
+        return frozenset(checked_chain(None, self.excerpt.result.scene))
+
+    @cached_property
+    def run(self) -> Answer:
+        """The run."""
+        return self.excerpt.simulated()
+
+    @cached_property
+    def closed_form(self) -> Answer:
+        """The exact closed form at the run's own motion."""
+        return self.excerpt.newton_euler(self.excerpt.result.scene)
+
+    def exact(self, under: frozenset[str]) -> Answer:
+        """The closed form under all of these but "series", and that of the run without "solver"."""
+        under = (under - {"series"}) & self.all
+        if under not in self._exact:
+            self._exact[under] = self._made(under)
+        return self._exact[under]
+
+    @cached_property
+    def truncated(self) -> dict[bool, Answer]:
+        """What S1's formulas are wrong by under all its idealizations, at the constant speed (True)
+        and at the run's own.
+
+        Raises
+        ------
+        InputError : the series diverge
+        """
+        errors = {}
+        for constant in (True, False):
+            formula = self.excerpt.lecture(S1, constant_speed=constant)
+            exact = self.exact(self.all if constant else self.all - {"constant speed"})
+            errors[constant] = {name: formula[name] - exact[name] for name in formula}
+        return errors
+
+    def _made(self, under: frozenset[str]) -> Answer:
+        scene = self.excerpt.result.scene
+        if "gravity" in under:
+            scene = dataclasses.replace(scene, gravity=None)
+        if "friction" in under:
+            scene = dataclasses.replace(scene, friction=None)
+        if "two-mass rod" in under:
+            scene = dataclasses.replace(
+                scene, rod=dataclasses.replace(scene.rod, inertia="two-mass")
+            )
+        answer = dict(self.excerpt.newton_euler(scene, constant_speed="constant speed" in under))
+        if "gas torque" in answer:  # of every speed, also where the mean is 0
+            answer["gas torque"] = self.closed_form["gas torque"]
+        if "datum" in under:
+            answer["piston displacement"] = answer["piston displacement"] + _shift(scene)
+        if "solver" not in under:
+            answer = {name: answer[name] + self._solver[name] for name in answer}
+        return answer
+
+    @cached_property
+    def _solver(self) -> Answer:
+        """Run minus closed form, at the run's own motion."""
+        return {name: self.run[name] - self.closed_form[name] for name in self.closed_form}
+
+
+def steps(
+    chain: Sequence[str],
+    values: Array,
+    idealized: frozenset[str],
+    answer: Callable[[frozenset[str]], Array],
+    simulated: Array,
+) -> dict[str, Array]:
+    """What each cause of a chain adds, from a formula's values to the run: they add up to formula
+    minus run, to rounding, whatever their order.
+
+    idealized : what the formula idealizes; answer : under fewer idealizations than these
+    """
+    under, before, found = idealized, values, {}
+    for cause in chain:
+        lifted = frozenset[str]() if cause == REST else under - {cause}
+        after = before if lifted == under else answer(lifted) if lifted else simulated
+        found[cause] = before - after
+        under, before = lifted, after
+    return found
+
+
+def _shift(scene: Scene) -> Array | float:
+    """Of the lectures' datum, l + r, from the true top dead centre [m]."""
+    return lecture.datum_shift(
+        crank_radius=scene.crank.radius, rod_length=scene.rod.length, offset=scene.piston.offset
+    )

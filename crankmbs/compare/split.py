@@ -1,0 +1,153 @@
+"""An error budget: of every quantity the formula, the run and the causes of their difference."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from crankmbs.compare.chain import CAUSES, REST
+from crankmbs.compare.excerpt import Excerpt, LeftOut
+from crankmbs.compare.lectured import LECTURES
+from crankmbs.compare.size import Size, percent
+from crankmbs.digits import digits
+from crankmbs.errors import InputError
+from crankmbs.numerics.arrays import Array
+
+__all__ = ["Budget", "Cause", "Split"]
+
+_NOTHING = 1e-12  # of the larger of formula and run: rounding, and no cause
+_ABSENT = 1e-9  # of the formula: a run's peak so small has no percent
+
+
+@dataclass(frozen=True)
+class Cause:
+    """curve : shape (n,) [unit], what the cause adds to the formula's answer; size : of it."""
+
+    name: str
+    curve: Array
+    size: Size
+
+
+@dataclass(frozen=True)
+class Split:
+    """The error of one quantity, cause by cause.
+
+    reference : the formula, as in `crankmbs.compare.Deviation`
+    values, simulated : shape (n,) [unit], of formula and run; their difference is `total`, the sum
+        of the causes
+    peak [unit] : largest magnitude in the run
+    """
+
+    quantity: str
+    reference: str
+    values: Array
+    simulated: Array
+    causes: tuple[Cause, ...]
+    total: Cause
+    peak: float
+
+    def cause(self, name: str) -> Cause:
+        """One of the causes.
+
+        Raises
+        ------
+        InputError : there is none of this name
+        """
+        for cause in self.causes:
+            if cause.name == name:
+                return cause
+        raise InputError(
+            f"no cause {name!r} here: {', '.join(cause.name for cause in self.causes)}"
+        )
+
+    def share(self, cause: Cause) -> float:
+        """The peak of a cause in percent of the run's; 0 where it is but rounding, not a number
+        where the run's is, beside the formula's."""
+        answered = float(np.max(np.abs(self.values)))
+        if cause.size.largest <= _NOTHING * max(answered, self.peak):
+            return 0.0
+        return percent(cause.size.largest, self.peak if self.peak > _ABSENT * answered else 0.0)
+
+    def sentence(self) -> str:
+        """How far the formula is off, and what its causes are worth, the largest first.
+
+        The peaks of causes lie at different angles: they do not add up to that of the error.
+        """
+        total = self.share(self.total)
+        about = self.quantity if self.is_lecture else f"{self.quantity} by {self.reference}"
+        if math.isnan(total):
+            whose = "lecture" if self.is_lecture else "formula"
+            return f"{about}: the run has none, the {whose} has"
+        worth = [cause for cause in self.causes if self.share(cause) > 0.0]
+        worth.sort(key=self.share, reverse=True)
+        parts: list[str] = []
+        for cause in worth:
+            up_to = "" if parts else "is worth up to "
+            parts.append(
+                f"{self._named(cause)} {up_to}{_readable(self.share(cause))} %, {_where(cause)}"
+            )
+        if len(worth) < len(self.causes):
+            nothing = [self._named(c) for c in self.causes if self.share(c) == 0.0]
+            parts.append(f"nothing comes from {_listed(nothing)}")
+        off = f"off by up to {_readable(total)} % of the peak, {_where(self.total)}"
+        return f"{about}: {off if total else 'right but for rounding'}: {'; '.join(parts)}"
+
+    @property
+    def is_lecture(self) -> bool:
+        """Whether the formula is the lectures'."""
+        return self.reference in LECTURES
+
+    def _named(self, cause: Cause) -> str:
+        if cause.name == "series" and not self.is_lecture:
+            return "the formula itself"
+        return "the rest" if cause.name == REST else CAUSES[cause.name]
+
+
+@dataclass(frozen=True)
+class Budget:
+    """The error of every quantity by the lectures' formulas, and of every other formula's; chain :
+    the causes in their order; left_out : quantity, missing cause (or all) and reason."""
+
+    excerpt: Excerpt
+    chain: tuple[str, ...]
+    splits: tuple[Split, ...]
+    left_out: tuple[LeftOut, ...]
+
+    @property
+    def ranked(self) -> tuple[Split, ...]:
+        """The splits, the largest error in percent of its quantity's peak first."""
+        return tuple(sorted(self.splits, key=lambda split: -(split.share(split.total) or 0.0)))
+
+    def split(self, quantity: str, reference: str | None = None) -> Split:
+        """The split of one quantity by the lectures' formulas, or by that of a label.
+
+        Raises
+        ------
+        InputError : there is none
+        """
+        for split in self.splits:
+            fits = split.is_lecture if reference is None else split.reference == reference
+            if split.quantity == quantity and fits:
+                return split
+        by = "" if reference is None else f" by {reference!r}"
+        quantities = dict.fromkeys(split.quantity for split in self.splits)
+        references = dict.fromkeys(split.reference for split in self.splits)
+        raise InputError(
+            f"no {quantity!r}{by} here; quantities: {', '.join(quantities)}; formulas: "
+            f"{', '.join(references)}"
+        )
+
+
+def _where(cause: Cause) -> str:
+    return f"at {round(math.degrees(cause.size.angle), 1):g} degrees"
+
+
+def _readable(share: float) -> str:
+    return digits(share, most=3) if share >= 1e-3 else f"{share:.0e}"
+
+
+def _listed(words: list[str]) -> str:
+    *most, last = words
+    return f"{', '.join(most)} or {last}" if most else last

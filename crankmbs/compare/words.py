@@ -1,0 +1,148 @@
+"""What a formula may ask for: the names of its parameters, and what each is given."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from crankmbs import lecture
+from crankmbs.compare.excerpt import Excerpt
+from crankmbs.compare.quantities import cycle_angles
+from crankmbs.errors import InputError
+from crankmbs.lecture import TwoMassRod
+from crankmbs.mechanics.inertia import gravity_vector, reduce
+from crankmbs.numerics.arrays import Array
+
+__all__ = ["WORDS", "Word", "Words"]
+
+
+class Words:
+    """The values of the words on a stretch of a run.
+
+    one : of the cylinder compared, shape (n,), or of every cylinder, shape (n, cylinders), for a
+        quantity of the whole engine
+    """
+
+    def __init__(self, excerpt: Excerpt, *, one: bool) -> None:
+        self._excerpt, self._one = excerpt, one
+        self.scene, self.theta = excerpt.result.scene, excerpt.theta
+        self.omega, self.alpha, self.mean = excerpt.omega, excerpt.alpha, excerpt.mean_speed
+        self.reduced = reduce(excerpt.train, self.theta)
+
+    def seen(self, curves: Array) -> Array:
+        """The columns of what every cylinder has that are looked at."""
+        return curves[:, self._excerpt.cylinder - 1] if self._one else curves
+
+    def of_run(self, name: str) -> Array:
+        """A variable of the run, of every cylinder; zero where the scene has none of the kind."""
+        data = self._excerpt.result.data
+        nothing = np.zeros((len(self.theta), len(self.scene.cylinders)))
+        return self.seen(data[name].values[self._excerpt.samples] if name in data else nothing)
+
+    @property
+    def masses(self) -> TwoMassRod:
+        """The rod as two masses."""
+        rod = self.scene.rod
+        return lecture.two_mass_rod(
+            rod_mass=rod.mass, rod_length=rod.length, center_of_mass=rod.center_of_mass
+        )
+
+    def gravity(self, axis: int) -> float:
+        """Gravity along X (0) or Y (1), of the cylinder or, for the whole engine, of the engine."""
+        cylinder = self.scene.cylinders[self._excerpt.cylinder - 1]
+        return gravity_vector(self.scene, cylinder.bank if self._one else 0.0)[axis]
+
+    def __getitem__(self, name: str) -> Array | float:
+        """The value of a word.
+
+        Raises
+        ------
+        InputError : the scene has no such number
+        """
+        value = WORDS[name].value(self)
+        if value is None:
+            raise InputError(
+                f"{name}: {WORDS[name].lacking}, so that no formula can ask for it; give the "
+                "number itself in the formula"
+            )
+        return value
+
+
+class Word(NamedTuple):
+    """units, meaning, value; lacking : why a scene may not have it."""
+
+    units: str
+    meaning: str
+    value: Callable[[Words], Array | float | None]
+    lacking: str = ""
+
+
+WORDS = {
+    "theta": Word("rad", "crank angle, unwrapped", lambda w: w.theta),
+    "phi": Word("rad", "cycle angle", lambda w: w.seen(cycle_angles(w.scene, w.theta))),
+    "omega": Word("rad/s", "the run's crank speed", lambda w: w.omega),
+    "alpha": Word("rad/s^2", "the run's crank acceleration", lambda w: w.alpha),
+    "mean_omega": Word("rad/s", "mean of the crank speed over time", lambda w: w.mean),
+    "start_omega": Word(
+        "rad/s",
+        "crank speed of [start]",
+        lambda w: None if w.scene.start is None else w.scene.start.speed,
+        "the scene has no [start]",
+    ),
+    "gas_pressure": Word(
+        "Pa", "pressure difference across the piston", lambda w: w.of_run("gas_pressure")
+    ),
+    "gas_force": Word(
+        "N", "gas force on the piston towards the crank", lambda w: w.of_run("gas_force")
+    ),
+    "friction_force": Word(
+        "N", "wall's friction on the piston towards the crank", lambda w: w.of_run("friction_force")
+    ),
+    "reduced_inertia": Word(
+        "kg m^2", "J(theta), of the whole crank train", lambda w: w.reduced.inertia
+    ),
+    "reduced_slope": Word("kg m^2/rad", "dJ/dtheta", lambda w: w.reduced.slope),
+    "generalized_force": Word("N m", "of gas and weights on the crank", lambda w: w.reduced.torque),
+    "crank_radius": Word("m", "r", lambda w: w.scene.crank.radius),
+    "crank_inertia": Word(
+        "kg m^2",
+        "about the crank axis, with the flywheel",
+        lambda w: w.scene.crank.moment_of_inertia,
+    ),
+    "crank_mass": Word("kg", "of the crank", lambda w: w.scene.crank.mass),
+    "crank_center_of_mass": Word(
+        "m", "of the crank, from its axis", lambda w: w.scene.crank.center_of_mass
+    ),
+    "rod_length": Word("m", "l", lambda w: w.scene.rod.length),
+    "rod_ratio": Word("1", "lambda = r/l", lambda w: w.scene.crank.radius / w.scene.rod.length),
+    "rod_mass": Word("kg", "of the rod", lambda w: w.scene.rod.mass),
+    "rod_center_of_mass": Word(
+        "m", "of the rod, from the crank pin", lambda w: w.scene.rod.center_of_mass
+    ),
+    "rod_inertia": Word(
+        "kg m^2", "about the rod's centre of mass", lambda w: w.scene.rod.moment_of_inertia
+    ),
+    "piston_mass": Word("kg", "of the piston", lambda w: w.scene.piston.mass),
+    "piston_area": Word(
+        "m^2",
+        "of the piston",
+        lambda w: w.scene.piston.gas_area,
+        "the scene has neither piston.bore nor piston.area",
+    ),
+    "offset": Word("m", "e, of the cylinder axis in +Y", lambda w: w.scene.piston.offset),
+    "reciprocating_mass": Word(
+        "kg",
+        "piston, and the rod's mass at its pin",
+        lambda w: w.scene.piston.mass + float(w.masses.piston_pin),
+    ),
+    "rod_crank_pin_mass": Word(
+        "kg", "the rod's mass at the crank pin", lambda w: float(w.masses.crank_pin)
+    ),
+    "gravity_x": Word("m/s^2", "gravity along X", lambda w: w.gravity(0)),
+    "gravity_y": Word("m/s^2", "gravity along Y", lambda w: w.gravity(1)),
+    "cylinders": Word("1", "how many there are", lambda w: len(w.scene.cylinders)),
+}
+"""The words by name; SI units, all angles in rad. Curves are of shape (n,), one value a sample; of
+phi, gas and friction a formula of the whole engine gets shape (n, cylinders)."""
