@@ -43,6 +43,7 @@ from crankmbs.scene.run import Extent, Run
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.tables import CylinderTable, Table
 from crankmbs.simulate import simulate
+from crankmbs.stepper import Snapshot, Stepper, StepperState
 
 __all__ = [
     "AngleTable",
@@ -91,9 +92,12 @@ __all__ = [
     "Run",
     "Scene",
     "SceneError",
+    "Snapshot",
     "SpeedFile",
     "SpeedTable",
     "Start",
+    "Stepper",
+    "StepperState",
     "Table",
     "TimeTable",
     "UndecidedError",

@@ -67,6 +67,11 @@ class Ending(Enum):
         "stopped at {angle:.6g} degrees: to follow the motion over time beyond it takes more than "
         "the {allowed} evaluations that the cost cap allows; raise it or ask for less",
     )
+    LABOURS = (
+        -1,
+        "stopped at {angle:.6g} degrees: this step takes more than {allowed} evaluations of the "
+        "motion over time; take shorter ones",
+    )
     FAILED = -1, "stopped at {angle:.6g} degrees: no step over time is short enough there"
     PARTED = (
         -1,
