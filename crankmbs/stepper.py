@@ -35,7 +35,8 @@ class StepperState(NamedTuple):
 
     time [s], crank_angle [rad], crank_speed [rad/s], crank_acceleration [rad/s2]
     crank_angle_error, crank_speed_error : estimates of their largest errors since the start
-    status, message : 0 the step came to its time; 1 a physical end before it; -1 a numerical one
+    status, message : of the last step. 0: it came to its time; 1: a physical end came before; -1:
+        a numerical one, and it was not taken
     """
 
     time: float
@@ -111,8 +112,8 @@ class Stepper:
 
         Returns
         -------
-        StepperState : with status 1 or -1 it stands before the time that was asked for, the next
-            step begins there, and its sentence says why; a crank that rests goes on resting
+        StepperState : with status 1 or -1 it stands before the time that was asked for, its
+            sentence says why, and the next step begins there; a crank that rests goes on resting
 
         Raises
         ------

@@ -15,26 +15,41 @@ from crankmbs.scene.read import models_folder
 README = (Path(__file__).parent.parent / "README.md").read_text(encoding="utf-8")
 
 
-def block(language):
-    """The one code block in a language."""
-    (code,) = re.findall(rf"^```{language}\n(.*?)^```$", README, re.MULTILINE | re.DOTALL)
-    return code
+def blocks(language):
+    """The code blocks in a language."""
+    return re.findall(rf"^```{language}\n(.*?)^```$", README, re.MULTILINE | re.DOTALL)
+
+
+def run_python(number, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    script = tmp_path / "readme.py"
+    script.write_text(blocks("python")[number], encoding="utf-8")
+    return runpy.run_path(str(script))
 
 
 def test_the_python_block_runs(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    script = tmp_path / "readme.py"
-    script.write_text(block("python"), encoding="utf-8")
-    runpy.run_path(str(script))
+    run_python(0, tmp_path, monkeypatch)
     assert "four-cylinder diesel engine" in capsys.readouterr().out
     assert (tmp_path / "results" / "from_python" / "result.nc").is_file()
+
+
+def test_the_coupled_model_runs(tmp_path, monkeypatch, capsys):
+    left = run_python(1, tmp_path, monkeypatch)
+    assert left["state"].status == 0
+    assert 0.0 < left["car"] < left["state"].crank_speed
+    assert left["engine"].state.time == 0.0
+    assert "bearing on crank, engine's X" in capsys.readouterr().out
+
+
+def test_every_python_block_has_its_test():
+    assert len(blocks("python")) == 2
 
 
 def test_the_scene_is_one(tmp_path):
     shutil.copytree(models_folder() / "pressure", tmp_path / "pressure")
     shutil.copy(tmp_path / "pressure" / "yi_diesel.csv", tmp_path / "pressure" / "diesel.csv")
     scene = tmp_path / "scene.toml"
-    scene.write_text(block("toml"), encoding="utf-8")
+    scene.write_text(blocks("toml")[0], encoding="utf-8")
     assert len(load_scene(scene).cylinders) == 4
 
 

@@ -69,8 +69,8 @@ class Ending(Enum):
     )
     LABOURS = (
         -1,
-        "stopped at {angle:.6g} degrees: this step takes more than {allowed} evaluations of the "
-        "motion over time; take shorter ones",
+        "the step is not taken: the {allowed} evaluations of the motion that it may take lead to "
+        "{angle:.6g} degrees; take shorter ones",
     )
     FAILED = -1, "stopped at {angle:.6g} degrees: no step over time is short enough there"
     PARTED = (

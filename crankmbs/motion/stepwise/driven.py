@@ -48,7 +48,7 @@ class Prescribed:
         """
         state = commanded(standing.states[0], torque, share)
         if self._plan.folds_at(state.theta):
-            return standing._replace(ending=Ending.FOLD)
+            return standing._replace(ending=Ending.FOLD, where=state.theta)
         stretches, _ = monotone_stretches(replace(self._plan, until=until), self._law)
         for _, end in stretches:
             if end > state.time:
@@ -57,7 +57,7 @@ class Prescribed:
         ahead = max(standing.ahead, abs(theta - state.theta))
         faster = max(standing.faster, abs(omega - state.omega))
         ending = Ending.COMPLETE if state.time == until else Ending.FOLD
-        return Standing((state,), ahead, faster, ending)
+        return Standing((state,), ahead, faster, ending, state.theta)
 
     def _carried(self, first: State, time: float) -> State:
         """The state at a later time, up to which the crank turns one way or rests."""

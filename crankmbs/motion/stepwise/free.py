@@ -75,12 +75,16 @@ class Free:
             for one, state in zip(self._passes, standing.states, strict=True)
         ]
         (one, other), endings = zip(*found, strict=True)
+        for state, ending in found:
+            if ending.value[0] < 0:
+                return standing._replace(ending=ending, where=state.theta)
         ahead = other.theta - one.theta - one.omega * (other.time - one.time)
         return Standing(
             (one, other),
             max(standing.ahead, abs(ahead)),
             max(standing.faster, abs(other.omega - one.omega)),
             _worse(*endings),
+            one.theta,
         )
 
     def _carried(self, one: _Pass, state: State, until: float) -> tuple[State, Ending]:
@@ -156,10 +160,6 @@ class Free:
 
 
 def _worse(one: Ending, other: Ending) -> Ending:
-    """Of the endings of both passes the one that tells more: a broken one, then one that stands
-    before the time that was asked for."""
-    for ending in (one, other):
-        if ending.value[0] < 0:
-            return ending
+    """Of the endings of both passes one that stands before the time that was asked for, if any."""
     stops = Ending.FOLD, Ending.HELD
     return other if other in stops and one is Ending.COMPLETE else one

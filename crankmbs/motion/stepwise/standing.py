@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple, Protocol
 
 from crankmbs.motion.assemble import Assembled
@@ -19,13 +20,15 @@ class Standing(NamedTuple):
 
     states : of the answer, and where there is one of the better pass
     ahead [rad], faster [rad/s] : the most by which the passes have differed so far, at equal time
-    ending : of the last step; COMPLETE where it came to its time
+    ending : of the last step; COMPLETE where it came to its time. A broken one was not taken
+    where [rad] : crank angle at which it ended, or broke
     """
 
     states: tuple[State, ...]
     ahead: float = 0.0
     faster: float = 0.0
     ending: Ending = Ending.COMPLETE
+    where: float = math.nan
 
 
 class Moving(NamedTuple):
@@ -76,11 +79,11 @@ def said(standing: Standing, allowed: int = 0) -> tuple[int, str]:
 
     allowed : evaluations of a step
 
-    >>> said(Standing((State(0.0, 0.0, 0.0, 0.0),), ending=Ending.STUCK))
+    >>> said(Standing((State(0.0, 0.0, 0.0, 0.0),), ending=Ending.STUCK, where=0.0))
     (0, 'at rest at 0 degrees: no torque moves the crank from here')
     """
-    _, theta, omega, *_ = standing.states[0]
+    omega = standing.states[0].omega
     if standing.ending is Ending.COMPLETE:
         return 0, "reached the time that was asked for"
-    status, text = standing.ending.said(theta, omega, allowed=allowed)
+    status, text = standing.ending.said(standing.where, omega, allowed=allowed)
     return (0 if standing.ending in AT_REST and omega == 0.0 else status), text
