@@ -43,6 +43,7 @@ from crankmbs.scene.run import Extent, Run
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.tables import CylinderTable, Table
 from crankmbs.simulate import simulate
+from crankmbs.stepper import Snapshot, Stepper, StepperState
 from crankmbs.sweep import (
     Minimum,
     Sample,
@@ -105,10 +106,13 @@ __all__ = [
     "Scene",
     "SceneError",
     "Sensitivity",
+    "Snapshot",
     "Solved",
     "SpeedFile",
     "SpeedTable",
     "Start",
+    "Stepper",
+    "StepperState",
     "Table",
     "TimeTable",
     "UndecidedError",

@@ -10,12 +10,11 @@ from crankmbs.mechanics.pressure import remarks
 from crankmbs.mechanics.speed import speed_remarks
 from crankmbs.mechanics.train import crank_train
 from crankmbs.motion.assemble import dataset
-from crankmbs.motion.base import Solution
 from crankmbs.numerics.function import Function
 from crankmbs.result import Cost, Error, Result
 from crankmbs.scene.scene import Scene
 
-__all__ = ["simulate"]
+__all__ = ["functions_of", "simulate", "why"]
 
 
 def simulate(
@@ -53,7 +52,7 @@ def simulate(
         raise InputError(f"rtol must be from 1e-13 to 1e-2; {rtol!r} came")
     if not cost_cap > 0.0:
         raise InputError(f"cost_cap must be a time above 0 s; {cost_cap!r} came")
-    functions = _functions(scene)
+    functions = functions_of(scene)
     begin = clock.perf_counter()
     choice = choose(scene, formulation or scene.run.formulation)
     one = chosen(choice)
@@ -66,7 +65,7 @@ def simulate(
         formulation=choice.formulation,
         reasons=choice.reasons + remarks(scene) + speed_remarks(scene) + solution.reasons,
         status=solution.status,
-        message=_why(solution, functions),
+        message=why(solution.status, solution.message, functions),
         cost=Cost(clock.perf_counter() - begin, solution.evaluations, solution.steps),
         error=Error(asked, assembled.relative_error),
         decay=solution.decay,
@@ -74,7 +73,7 @@ def simulate(
     )
 
 
-def _functions(scene: Scene) -> list[tuple[int, Function]]:
+def functions_of(scene: Scene) -> list[tuple[int, Function]]:
     """The functions among the loads, each with its number, none of which has failed yet."""
     found = []
     for number, load in enumerate(scene.torque, start=1):
@@ -86,9 +85,8 @@ def _functions(scene: Scene) -> list[tuple[int, Function]]:
     return found
 
 
-def _why(solution: Solution, functions: list[tuple[int, Function]]) -> str:
-    """How a run ended; where it broke off after a function had failed, what that did."""
+def why(status: int, message: str, functions: list[tuple[int, Function]]) -> str:
+    """How a run ended, by its status and message; where it broke off after a function had failed,
+    what that did."""
     failed = [f"torque[{number}]: {one.failure}" for number, one in functions if one.failure]
-    if solution.status >= 0 or not failed:
-        return solution.message
-    return f"{solution.message}; {failed[0]}"
+    return message if status >= 0 or not failed else f"{message}; {failed[0]}"

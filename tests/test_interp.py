@@ -1,11 +1,12 @@
 """Between its samples a result is told to its stated error; where that cannot be it is refused."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from crankmbs import Constant, InputError, Result, Run, load_scene, simulate
+from crankmbs import Constant, Fuel, InputError, Result, Run, load_scene, simulate
 
 CASES = {
     "propeller": ("1 cycles", "5 deg", "0.77 deg"),
@@ -131,3 +132,12 @@ def test_an_event_between_two_samples_is_refused_there_alone(short):
     with pytest.raises(InputError, match=r"there is an event \(.*leave out that stretch"):
         result.interp(time=[0.005, inside])
     assert result.interp(time=[samples[behind] - 1e-5, samples[behind + 1]]).sizes["time"] == 2
+
+
+def test_a_share_that_is_decided_between_two_samples_errs_by_what_it_changes():
+    scene = replace(load_scene("misfire"), fuel=Fuel(scatter=0.3)).with_(run__until="1.5 cycles")
+    result = simulate(scene.with_(run__every="7 deg"))
+    true = simulate(scene.with_(run__every="0.77 deg")).data
+    found = result.interp(time=np.minimum(true["time"].values, result.data["time"].values[-1]))
+    missed = float(np.max(np.abs(found["fuel"].values - true["fuel"].values)))
+    assert 0.05 < missed <= found["fuel"].attrs["error_estimate"]

@@ -33,6 +33,7 @@ class Firing(NamedTuple):
     set_in [rad/s] : speed at the decision at which the fuel set in, None before; over : whether it
     has ended for good
     low, high [rad] : crank angles between which all is decided
+    imposed : the share that decisions take in place of the law's; None leaves it to the law
     """
 
     shares: tuple[float, ...]
@@ -43,6 +44,7 @@ class Firing(NamedTuple):
     over: bool
     low: float
     high: float
+    imposed: float | None = None
 
 
 class Ahead(NamedTuple):
@@ -168,10 +170,13 @@ class FuelLaw:
     def _decided(
         self, before: Firing, time: float, theta: float, omega: float, cycles: dict[int, int]
     ) -> Firing:
-        """cycles : of the cylinders that decide, by their number from 0."""
-        fuel, governor = self.fuel, self.fuel.governor
+        """cycles : of the cylinders that decide, by their number from 0.
+
+        While a share is imposed a governor's integral stays as it is.
+        """
+        fuel, governor, imposed = self.fuel, self.fuel.governor, before.imposed
         share, integral = 1.0, before.integral
-        if governor is not None:
+        if governor is not None and imposed is None:
             spent = time - before.time
             mean = (theta - before.theta) / spent if spent > 0.0 else omega
             share, integral = governed(governor, integral, governor.speed - mean, spent)
@@ -180,9 +185,9 @@ class FuelLaw:
             share = 0.0
         shares = list(before.shares or [0.0] * len(self.scene.cylinders))
         for k, cycle in cycles.items():
-            shares[k] = share * _part(fuel, k + 1, cycle)
+            shares[k] = share * _part(fuel, k + 1, cycle) if imposed is None else imposed
         low, high = min(theta, before.low), max(theta, before.high)
-        return Firing(tuple(shares), time, theta, integral, set_in, over, low, high)
+        return Firing(tuple(shares), time, theta, integral, set_in, over, low, high, imposed)
 
     def _window(self, before: Firing, time: float, omega: float) -> tuple[float | None, bool]:
         """The speed at which the fuel has set in, and whether it is over, judged at a decision."""

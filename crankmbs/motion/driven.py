@@ -20,7 +20,7 @@ from crankmbs.motion.plan import Wanted
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.units import DEGREE
 
-__all__ = ["Driven", "Moving", "Way", "driven", "driven_observer", "own_energy"]
+__all__ = ["Driven", "Moving", "Way", "decisions", "driven", "driven_observer", "own_energy"]
 
 
 Moving = Callable[[Array, Array | None], Samples]
@@ -101,7 +101,7 @@ def driven(way: Way, stretches: Iterable[tuple[float, float]]) -> Iterator[Drive
             continue
         for state in _apart(law, first, last, _TURNS * train.scene.period):
             first = first._replace(mode=mode)
-            found = tuple(_decisions(train, law, first, state))
+            found = tuple(decisions(train, law, first, state))
             mode = found[-1].mode if found else mode
             state = state._replace(mode=mode)
             yield Driven(way, first, state, found)
@@ -146,7 +146,7 @@ def _state(law: SpeedLaw, time: float, mode: Mode, *, turns: bool) -> State:
     return State(time, float(theta), 0.0 if turns else float(omega), 0.0, mode)
 
 
-def _decisions(train: CrankTrain, law: SpeedLaw, first: State, last: State) -> Iterator[State]:
+def decisions(train: CrankTrain, law: SpeedLaw, first: State, last: State) -> Iterator[State]:
     """The decisions on the fuel from one state to another, the end included."""
     mode = first.mode
     while True:

@@ -67,6 +67,11 @@ class Ending(Enum):
         "stopped at {angle:.6g} degrees: to follow the motion over time beyond it takes more than "
         "the {allowed} evaluations that the cost cap allows; raise it or ask for less",
     )
+    LABOURS = (
+        -1,
+        "the step is not taken: the {allowed} evaluations of the motion that it may take lead to "
+        "{angle:.6g} degrees; take shorter ones",
+    )
     FAILED = -1, "stopped at {angle:.6g} degrees: no step over time is short enough there"
     PARTED = (
         -1,

@@ -25,12 +25,14 @@ __all__ = ["Mode", "begun", "decided"]
 
 class Mode(NamedTuple):
     """loads : phase of each load's window; low, high [rad] : the crank angles, backwards and
-    forwards, at which the next decision falls; firing : what has been decided of the fuel."""
+    forwards, at which the next decision falls; firing : what has been decided of the fuel;
+    held : torque [N m] beside the scene's loads, which only `minimal` knows."""
 
     loads: Phases = ()
     low: float = -math.inf
     high: float = math.inf
     firing: Firing | None = None
+    held: float = 0.0
 
     @property
     def shares(self) -> tuple[float, ...]:

@@ -14,7 +14,7 @@ from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.units import DEGREE
 
-__all__ = ["Chosen", "Plan", "Wanted", "plan_of"]
+__all__ = ["Chosen", "Plan", "Wanted", "folds_of", "plan_of"]
 
 
 _LESS = 1.0 - 1e-6  # of a spacing: the samples that are kept beyond the last period reach so far
@@ -119,7 +119,7 @@ def plan_of(scene: Scene) -> Plan:
     start = scene.motion.angle if scene.motion is not None else 0.0
     start = scene.start.angle if scene.start is not None else start
     until, until_time = scene.end
-    folds = _folds(scene, start)
+    folds = folds_of(scene, start)
     if scene.run.every is None:
         last = scene.period + _LESS * DEGREE
         return Plan(start, DEGREE, False, until, until_time, last, folds)
@@ -131,8 +131,8 @@ def plan_of(scene: Scene) -> Plan:
     return Plan(start, every, in_time, until, until_time, folds=folds, room=room)
 
 
-def _folds(scene: Scene, start: float) -> tuple[float, float]:
-    """The nearest angles around ``start`` at which a rod folds, drawn in by a hair."""
+def folds_of(scene: Scene, start: float) -> tuple[float, float]:
+    """The nearest crank angles [rad] around ``start`` at which a rod folds, drawn in by a hair."""
     r, l, e = scene.crank.radius, scene.rod.length, scene.piston.offset
     angles = [0.5 * math.pi] * (l - r + e <= 1e-15 * l) + [1.5 * math.pi] * (l - r - e <= 1e-15 * l)
     ahead = [(a - c.phase - start) % (2 * math.pi) for a in angles for c in scene.cylinders]

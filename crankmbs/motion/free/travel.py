@@ -21,7 +21,7 @@ from crankmbs.motion.crank_angle import advance as crank_angle
 from crankmbs.motion.crank_angle.grid import Grid
 from crankmbs.motion.crank_angle.window import Window
 from crankmbs.motion.ending import Ending
-from crankmbs.motion.free.first import first_sample
+from crankmbs.motion.first import first_sample
 from crankmbs.motion.free.passage import Passage, Watch
 from crankmbs.motion.minimal import advance as minimal
 from crankmbs.motion.minimal.reduced import Reduced
@@ -95,7 +95,8 @@ def travel(
     steady = all(load.is_steady for load in scene.torque) and grid.train.law is None
     steady = steady and not _sticks(scene)
     same = first is not None and first.begin.omega[0] == state.omega
-    begin = first.begin if first and same else first_sample(grid, state)
+    of_angle = float(grid.at(state.mode.loads).outside(np.asarray(state.theta)))
+    begin = first.begin if first and same else first_sample(grid.train, state, of_angle)
     kept = plan if way.watch is None else replace(plan, last=0.0)
     path = Passage(kept, begin, can_swing=steady, allowed=way.allowed, watch=way.watch)
     if first:  # it begins a rounding ahead: so the difference knows what the motion makes of one

@@ -34,12 +34,13 @@ _RADAU = 1e-13  # finest tolerance of a step, half of it where steps are halved;
 
 
 class Effort(NamedTuple):
-    """Relative tolerance of each step, into how many it is divided then, and the evaluations that
-    are allowed."""
+    """Relative tolerance of each step, into how many it is divided then, the evaluations that are
+    allowed, and how many steps the first stretch may have."""
 
     tolerance: float
     parts: int
     allowed: int
+    room: int = 1
 
 
 def advance(
@@ -57,9 +58,9 @@ def advance(
     -------
     how the motion ends; None where the crank angle takes over
     """
-    tolerance, parts, allowed = effort
-    scale = reduced.torque_scale
-    evaluations, most, h, room = 0, 0.0, math.inf, 1
+    tolerance, parts, allowed, room = effort
+    scale = reduced.torque_scale + abs(state.mode.held)
+    evaluations, most, h = 0, 0.0, math.inf
     base = reduced
     while evaluations < allowed:
         reduced = base.at(state.mode.loads).fired(state.mode.shares)

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from crankmbs.mechanics.torque import branch_at, branch_of
+from crankmbs.mechanics.torque import Branch, branch_at, branch_of
 from crankmbs.mechanics.windows import phase_ends
 from crankmbs.motion.base import State
 from crankmbs.motion.ending import Ending
@@ -33,13 +33,16 @@ def enter(reduced: Reduced, state: State, scale: float) -> Equation | Ending:
         _, slope, torque = reduced(state.theta, between.pieces)
         torque -= reduced.drag(state.theta, between.pieces) * state.omega
         rest = torque - 0.5 * slope * state.omega**2
-        branch = branch_at(torques, state[:3], rest, phases)
-        return Ending.HELD if branch is None else Equation(reduced, between, branch)
+        branch = branch_at(torques, state[:3], rest + state.mode.held, phases)
+        if branch is None:
+            return Ending.HELD
+        return Equation(reduced, between, _with_held(branch, state))
     sides: list[Equation] = []
     resisted = False
     for sense in (1.0, -1.0):
         branch = branch_of(torques, state.time, 0.0, rising=sense > 0.0, phases=phases)
-        equation = Equation(reduced, reduced.around(state.theta, sense, state.mode.shares), branch)
+        between = reduced.around(state.theta, sense, state.mode.shares)
+        equation = Equation(reduced, between, _with_held(branch, state))
         pull = equation.pull(state)
         if pull * sense > BALANCED * scale:
             return equation
@@ -54,6 +57,12 @@ def enter(reduced: Reduced, state: State, scale: float) -> Equation | Ending:
         return Ending.STICKS if rubs else Ending.HELD
     later = sides[1] if sides[0].branch.ct < 0.0 else sides[0]  # where a load that sets in drives
     return Ending.STUCK if later.is_balanced(state, scale) else later
+
+
+def _with_held(branch: Branch, state: State) -> Branch:
+    """A branch of the scene's loads with the torque that is held beside them."""
+    held = state.mode.held
+    return replace(branch, c0=branch.c0 + held) if held else branch
 
 
 def _until(sides: list[Equation], state: State, scale: float) -> float:

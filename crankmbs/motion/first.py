@@ -1,4 +1,4 @@
-"""The one sample at the start of a free motion."""
+"""The one sample at a state of a free motion, from the state alone."""
 
 from __future__ import annotations
 
@@ -10,18 +10,21 @@ import numpy as np
 from crankmbs.mechanics.friction import friction_forces, friction_torque, held_share
 from crankmbs.mechanics.inertia import reduce
 from crankmbs.mechanics.torque import branch_at, branch_of
+from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion.base import Samples, State
-from crankmbs.motion.crank_angle.grid import Grid
 
 __all__ = ["first_sample"]
 
 
-def first_sample(grid: Grid, state: State) -> Samples:
+def first_sample(train: CrankTrain, state: State, of_angle: float) -> Samples:
     """The sample at a state. A crank at rest has the acceleration with which it sets out, and the
-    friction that resists it; where friction holds it, none, and the friction that it takes."""
-    train, shares, (time, theta, omega, *_) = grid.train, state.mode.shares, state
+    friction that resists it; where friction holds it, none, and the friction that it takes.
+
+    of_angle [N m] : what the loads give over the crank angle
+    """
+    shares, (time, theta, omega, *_) = state.mode.shares, state
     reduction = reduce(train, theta, shares)
-    of_angle = float(grid.at(state.mode.loads).outside(np.asarray(theta)))
+    of_angle += state.mode.held
     rest = float(reduction.rest(omega)) + of_angle
     torques, phases = train.scene.torque, state.mode.loads
     rub = partial(friction_torque, train, theta, omega, shares=shares or None)
@@ -46,6 +49,6 @@ def first_sample(grid: Grid, state: State) -> Samples:
         theta=np.array([theta]),
         omega=np.array([omega]),
         alpha=np.array([(rest + outside + rubbed) / float(reduction.inertia)]),
-        energy_residual=np.zeros(1),
+        energy_residual=np.array([state.residual]),
         own={"external_torque": np.array([outside + of_angle]), **own},
     )

@@ -1,0 +1,165 @@
+"""A free motion in steps over time: two passes side by side, carried by `minimal`."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from crankmbs.mechanics.train import CrankTrain
+from crankmbs.mechanics.windows import acting
+from crankmbs.motion.assemble import ANGLE_ROUNDING, Assembled, assemble
+from crankmbs.motion.base import Samples, Solution, State
+from crankmbs.motion.ending import Ending
+from crankmbs.motion.first import first_sample
+from crankmbs.motion.minimal.advance import Effort, advance
+from crankmbs.motion.minimal.entering import enter
+from crankmbs.motion.minimal.reduced import Reduced
+from crankmbs.motion.mode import begun
+from crankmbs.motion.plan import Plan, folds_of
+from crankmbs.motion.stepwise.standing import AT_REST, Moving, Standing, commanded, said
+
+__all__ = ["Free"]
+
+_STEP = 1e-2  # of rtol: what a step over time may err
+_BETTER = 1e-2  # of that: what one of the better pass may
+_FINEST = 1e-15  # what rounding leaves of a step
+_NEAR = 1e-12  # rtol: from there on rounding, in both passes alike, is most of the error
+_ROAMING = 3.0  # of a step's tolerance: what it may miss of the largest torque across knots
+_ROOM = 64  # steps of a stretch
+_ALLOWED, _OF_FUNCTIONS = 20_000_000, 300_000  # evaluations in one step; half a minute
+_ROUNDING = 64 * float(np.finfo(float).eps)  # as in `assemble`
+
+
+class _Pass(NamedTuple):
+    reduced: Reduced
+    effort: Effort
+
+
+class Free:
+    """The steps of a free crank train; the better pass takes finer ones, all of them halved."""
+
+    def __init__(self, train: CrankTrain) -> None:
+        scene = train.scene
+        assert scene.start is not None
+        self._train, self._start = train, scene.start
+        functions = any(load.parts.function is not None for load in scene.torque)
+        # as in a run: twice where rounding is left, or what functions do undeclared
+        self._share = 2.0 if functions or scene.run.rtol <= _NEAR else 1.0
+        self._allowed = _OF_FUNCTIONS if functions else _ALLOWED
+        step = max(_STEP * scene.run.rtol, _FINEST)
+        tolerances = step, max(_BETTER * step, _FINEST)
+        trains = train, train.off
+        self._passes = tuple(
+            _Pass(Reduced(one, _ROAMING * each), Effort(each, parts, self._allowed, _ROOM))
+            for one, each, parts in zip(trains, tolerances, (1, 2), strict=True)
+        )
+        folds = folds_of(scene, scene.start.angle)
+        self._plan = Plan(scene.start.angle, 1.0, True, 0.0, True, folds=folds)
+
+    def begin(self) -> Standing:
+        """Where it starts; the better pass a rounding ahead, as in a run."""
+        start = self._start
+        state = State(0.0, start.angle, start.speed, 0.0, begun(self._train))
+        ahead = math.copysign(ANGLE_ROUNDING * start.angle, start.speed)
+        return Standing((state, state._replace(theta=start.angle + ahead)), abs(ahead))
+
+    def advance(
+        self, standing: Standing, until: float, torque: float, share: float | None
+    ) -> Standing:
+        """One step of both passes; see `crankmbs.motion.stepwise.standing.Steps`."""
+        found = [
+            self._carried(one, commanded(state, torque, share), until)
+            for one, state in zip(self._passes, standing.states, strict=True)
+        ]
+        (one, other), endings = zip(*found, strict=True)
+        for state, ending in found:
+            if ending.value[0] < 0:
+                return standing._replace(ending=ending, where=state.theta)
+        ahead = other.theta - one.theta - one.omega * (other.time - one.time)
+        return Standing(
+            (one, other),
+            max(standing.ahead, abs(ahead)),
+            max(standing.faster, abs(other.omega - one.omega)),
+            _worse(*endings),
+            one.theta,
+        )
+
+    def _carried(self, one: _Pass, state: State, until: float) -> tuple[State, Ending]:
+        """A pass carried on to a time [s]; a crank at rest for good stays there."""
+        if state.time >= until:
+            return state, Ending.COMPLETE
+        if self._plan.folds_at(state.theta):
+            return state, Ending.FOLD
+        plan = replace(self._plan, until=until)
+        pieces = advance(one.reduced, state, plan, one.effort, lambda *_: False)
+        ending: Ending | None = None
+        while ending is None:
+            try:
+                state = next(pieces).end
+            except StopIteration as stop:
+                ending = stop.value
+        if ending is Ending.REST or (ending in AT_REST and state.omega == 0.0):
+            return state._replace(time=until, omega=0.0), ending
+        if ending is Ending.COMPLETE and state.time < until:
+            ending = Ending.FOLD
+        return state, Ending.LABOURS if ending is Ending.COSTLY else ending
+
+    def moving(self, standing: Standing) -> Moving:
+        """The motion of the answer, with the most that the passes have differed by."""
+        state = standing.states[0]
+        errors = (
+            self._share * (apart + _ROUNDING * abs(value))
+            for apart, value in zip(standing[1:3], state[1:3], strict=True)
+        )
+        return Moving(state.theta, state.omega, self._acceleration(state), *errors)
+
+    def _acceleration(self, state: State) -> float:
+        """With which the crank sets out from a state [rad/s2]."""
+        reduced = self._passes[0].reduced.at(state.mode.loads).fired(state.mode.shares)
+        scale = reduced.torque_scale + abs(state.mode.held)
+        equation = enter(reduced, self._known(state), scale)
+        if isinstance(equation, Ending) or equation.holds:
+            return 0.0
+        return float(equation(state.time, np.array([state.theta, state.omega, 0.0]))[1])
+
+    def said(self, standing: Standing) -> tuple[int, str]:
+        """Status and sentence of the last step."""
+        return said(standing, self._allowed)
+
+    def assembled(self, standing: Standing) -> Assembled:
+        """Every variable of the answer, beside a motion that is as far from it as the passes have
+        been, at most: that they agree here may be chance."""
+        one, other = standing.states
+        turned = math.copysign(standing.ahead, other.theta - one.theta)
+        moves = one.omega != 0.0 or other.omega != 0.0
+        faster = math.copysign(standing.faster, other.omega - one.omega) if moves else 0.0
+        beside = one._replace(theta=one.theta + turned, omega=one.omega + faster, mode=other.mode)
+        answer = self._sample(self._train, one)
+        better = self._sample(self._train.off, beside)
+        found = assemble(self._train, Solution(answer, *self.said(standing), 0, 0, better))
+        errors = {name: self._share * error for name, error in found.errors.items()}
+        return found._replace(errors=errors)
+
+    def _sample(self, train: CrankTrain, state: State) -> Samples:
+        over_angle = self._passes[0].reduced.at(state.mode.loads).over_angle
+        of_angle = float(over_angle(state.theta)) if over_angle is not None else 0.0
+        found = first_sample(train, self._known(state), of_angle)
+        return replace(found, time=np.array([state.time]))
+
+    def _known(self, state: State) -> State:
+        """A state at the very end of a load's table over time an instant before it."""
+        loads = acting(self._train.scene.torque, state.mode.loads)
+        tables = [load.table_over_time for _, load in loads]
+        end = min((float(table.x[-1]) for table in tables if table), default=math.inf)
+        if state.time < end:
+            return state
+        return state._replace(time=math.nextafter(end, 0.0))
+
+
+def _worse(one: Ending, other: Ending) -> Ending:
+    """Of the endings of both passes one that stands before the time that was asked for, if any."""
+    stops = Ending.FOLD, Ending.HELD
+    return other if other in stops and one is Ending.COMPLETE else one
