@@ -137,7 +137,8 @@ class _Film:
         FigureCanvasAgg(self._figure)
         machines, trace = _places(self._figure, len(cuts))
         view = last_view(result)
-        self._shift = float(view.degrees[0]) - math.degrees(float(view.data["crank_angle"][0]))
+        shift = float(view.degrees[0]) - math.degrees(float(view.data["crank_angle"][0]))
+        self._degrees = view.on_axis(np.degrees(frames.angle) + shift)
         _speed_axis(trace, view, frames.mean)
         if len(result.scene.cylinders) > 1:
             for ax, cut in zip(machines, cuts, strict=True):
@@ -177,9 +178,8 @@ class _Film:
 
     def _show(self, k: int) -> None:
         frames = self._frames
-        degrees = math.degrees(frames.angle[k]) + self._shift
         rpm = frames.speed[k] / RPM
-        self._cursor.set_data([degrees], [rpm])
+        self._cursor.set_data([self._degrees[k]], [rpm])
         self._now.set_text(f"{frames.time[k] * 1e3:7.2f} ms  {rpm:7.1f} rpm")
         for drawing, (ring, pin) in zip(self._drawings, self._rings, strict=True):
             drawing.move(k)
@@ -211,7 +211,7 @@ def _places(figure: Figure, cuts: int) -> tuple[list[Axes], Axes]:
 
 def _speed_axis(ax: Axes, view: View, mean: float) -> None:
     speed = view.values("crank_speed") / RPM
-    ax.plot(view.degrees, speed, **line_of(0), label="crank speed")
+    ax.plot(*view.drawn(view.degrees, speed), **line_of(0), label="crank speed")
     ax.axhline(mean / RPM, color="0.5", linestyle=(0, (4, 2)), label="mean over time")
     half = max(0.6 * float(np.ptp(speed)), _FLAT * abs(mean) / RPM) or 1.0  # rpm, at rest
     middle = 0.5 * float(speed.min() + speed.max())

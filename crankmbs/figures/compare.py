@@ -136,8 +136,9 @@ def _figure(
     of_one = several and any(QUANTITIES[name].per_cylinder for name, _, _ in columns)
     for k, (name, curves, errors) in enumerate(columns):
         top, bottom = axes[k], axes[n + k]
-        _panel(top, name, degrees, curves, "")
-        _panel(bottom, name, degrees, errors, f"{below} ")
+        for ax, drawn, what in ((top, curves, ""), (bottom, errors, f"{below} ")):
+            on_axis = {label: view.drawn(degrees, curve) for label, curve in drawn.items()}
+            _panel(ax, name, on_axis, what)
         lines = crank_axis([top, bottom], view)
         symbol = QUANTITIES[name].symbol
         top.set_title(f"{name} ${symbol}$" if symbol else name, loc="left", pad=8.0 + 16.0 * lines)
@@ -157,12 +158,12 @@ def _figure(
     return figure
 
 
-def _panel(ax: Axes, quantity: str, degrees: Array, curves: dict[str, Array], what: str) -> None:
+def _panel(ax: Axes, quantity: str, curves: dict[str, tuple[Array, Array]], what: str) -> None:
     units = QUANTITIES[quantity].units
     scale, unit = _SHOWN.get(units, (1.0, units))
     if units == "N":
-        scale, unit = force_scale(*curves.values())
+        scale, unit = force_scale(*(curve for _, curve in curves.values()))
     ax.axhline(0.0, color="0.55", linewidth=1.0)
-    for label, curve in curves.items():
+    for label, (degrees, curve) in curves.items():
         ax.plot(degrees, curve / scale, **_STYLES[label], label=label)
     ax.set_ylabel(f"{what}[{unit}]")

@@ -14,19 +14,21 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from crankmbs.figures.view import View
+from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 
 __all__ = [
     "COLOURS",
+    "FLAT",
     "STYLE",
     "caption",
     "crank_axis",
     "footer",
     "force_scale",
+    "keep_flat",
     "legend",
     "line_of",
     "mark_points",
-    "name_of",
     "panels",
     "png",
 ]
@@ -35,6 +37,7 @@ __all__ = [
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00")
 _DASHES = ("-", (0, (6, 2)), (0, (6, 2, 1.5, 2)), (0, (2.5, 1.5)))
 _GREY = "0.55"
+FLAT = 1e-6  # of the mean: what varies less is drawn as constant
 _SMALL, _LINE = 11, 14  # points: size of the text at the dead centres, and of a line of it
 
 STYLE: Any = {
@@ -91,14 +94,9 @@ def line_of(cylinder: int) -> dict[str, Any]:
     }
 
 
-def name_of(cylinder: int) -> str:
-    """Legend entry of a cylinder, counted from 0."""
-    return f"cylinder {cylinder + 1}"
-
-
 def force_scale(*forces: NDArray[np.float64]) -> tuple[float, str]:
     """Divisor and unit in which forces read well: N or kN."""
-    peak = max(float(np.max(np.abs(force), initial=0.0)) for force in forces)
+    peak = max(float(np.nanmax(np.abs(force), initial=0.0)) for force in forces)
     return (1e3, "kN") if peak >= 1e3 else (1.0, "N")
 
 
@@ -134,7 +132,8 @@ def crank_axis(axes: list[Axes], view: View) -> int:
             fontsize=_SMALL,
             color="0.35",
         )
-    axes[-1].set_xlabel(f"crank angle [deg], {view.window.kind}")
+    begun = "" if view.begun is None else f", begun at {round(view.begun, 1):g}"
+    axes[-1].set_xlabel(f"crank angle [deg], {view.window.kind}{begun}")
     return max((below[at] + text.count("\n") + 1 for at, text in labels.items()), default=0)
 
 
@@ -160,6 +159,15 @@ def mark_points(ax: Axes) -> None:
     for line in ax.lines:
         if not np.any(np.ptp(line.get_xydata(), axis=0)):
             line.set_marker("o")
+
+
+def keep_flat(ax: Axes, values: Array) -> None:
+    """Draw values, in the unit of the axis, as constant where they are but for rounding."""
+    mean = abs(float(np.nanmean(values)))
+    low, high = float(np.nanmin(values)), float(np.nanmax(values))
+    if high - low <= FLAT * mean:
+        margin = 0.01 * mean or 1.0
+        ax.set_ylim(low - margin, low + margin)
 
 
 def legend(figure: Figure, *axes: Axes) -> None:
