@@ -47,7 +47,7 @@ def cycles_figure(result: Result) -> Figure:
     at = np.interp(result.events["time"].values, begins, number, np.nan, number[-1])
     mark_events(axes[0], result, np.asarray(at))
     for ax in axes:
-        ax.xaxis.get_major_locator().set_params(integer=True)
+        ax.locator_params("x", integer=True)
     axes[-1].set_xlabel("cycle")
     legend(figure, *(axes if result.data.sizes["cylinder"] > 1 else axes[:1]))
     figure.align_ylabels(axes)
