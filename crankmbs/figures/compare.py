@@ -1,4 +1,4 @@
-"""A run against its references, and the causes of the lectures' errors, over the crank angle."""
+"""A run against its references, and the causes of the lectures' errors, as slides."""
 
 from __future__ import annotations
 
@@ -16,10 +16,13 @@ from crankmbs.compare import (
     QUANTITIES,
     Budget,
     Comparison,
+    Deviation,
     Excerpt,
     Split,
 )
-from crankmbs.figures.style import STYLE, crank_axis, footer, force_scale, line_of, panels
+from crankmbs.figures.headline import budget_headline, comparison_headline
+from crankmbs.figures.slide import SLIDE, slide, slide_legend
+from crankmbs.figures.style import crank_axis, footer, force_scale, line_of
 from crankmbs.figures.view import last_view
 from crankmbs.numerics.arrays import Array
 from crankmbs.storage.files import together
@@ -28,22 +31,24 @@ __all__ = ["FAMILIES", "budget_figure", "comparison_figure", "save_validation"]
 
 
 FAMILIES = {
-    "motion": ("piston displacement", "piston velocity", "piston acceleration"),
-    "rod": ("net force", "side thrust", "rod force"),
+    "displacement": ("piston displacement",),
+    "motion": ("piston velocity", "piston acceleration"),
+    "side_thrust": ("side thrust",),
+    "rod": ("net force", "rod force"),
     "throw": ("tangential force", "radial force"),
     "torque": ("torque", "gas torque"),
     "piston_pin": ("piston pin force x", "piston pin force y"),
     "crank_pin": ("crank pin force x", "crank pin force y"),
     "main_bearing": ("main bearing force x", "main bearing force y"),
 }
-"""The quantities that are drawn side by side, by the name of their figure."""
+"""The quantities that a slide shows, one or two side by side, by its name."""
 
 _SHOWN = {"m": (1e-3, "mm"), "m/s^2": (1.0, "m/s$^2$")}  # unit -> divisor and unit on an axis
 _UNSEEN = 1e-3  # of the largest of a panel's causes: no line can be told from zero
 _STYLES: dict[str, dict[str, Any]] = {
-    "run": {"color": "black", "linewidth": 2.5},
+    "run": {"color": "black", "linewidth": 4.0},
     "lecture": {"color": "0.5", "linestyle": (0, (4, 2))},
-    "sum of the causes": {"color": "0.65", "linewidth": 5.0},
+    "sum of the causes": {"color": "0.65", "linewidth": 7.0},
     **{name: line_of(k) for k, name in enumerate((CLOSED_FORM, *LECTURES))},
     **{name: line_of(k) for k, name in enumerate(CAUSES)},
 }
@@ -70,30 +75,37 @@ def save_validation(comparison: Comparison, budget: Budget, folder: Path) -> lis
     return files
 
 
-@rc_context(STYLE)
+@rc_context(SLIDE)
 def comparison_figure(comparison: Comparison, quantities: tuple[str, ...]) -> Figure | None:
     """Run, closed form and truncated lecture above, the error of every reference below.
 
-    None where none of the quantities could be compared.
+    The headline is the largest error of a lecture in percent of its quantity's peak. None where
+    none of the quantities could be compared.
     """
     shown = [name for name in quantities if name in comparison.simulated]
     if not shown:
         return None
     drawn = {CLOSED_FORM, comparison.references[-1]}  # the last lecture truncates most
     columns = []
+    every: list[Deviation] = []
     for name in shown:
         rows = [comparison.row(name, reference) for reference in comparison.references]
+        every += rows
         above = {row.reference: row.values for row in rows if row.reference in drawn}
         errors = {row.reference: row.error for row in rows}
         columns.append((name, {"run": comparison.simulated[name], **above}, errors))
-    return _figure(comparison.excerpt, columns, "formula minus run", "run against formulas")
+    own = comparison.excerpt.result.formulation == "multibody"
+    headline = comparison_headline(every, independent=own)
+    about = "run against formulas; error: formula minus run"
+    return _figure(comparison.excerpt, columns, headline, about)
 
 
-@rc_context(STYLE)
+@rc_context(SLIDE)
 def budget_figure(budget: Budget, quantities: tuple[str, ...]) -> Figure | None:
     """Truncated lecture and run above, below their difference and the causes it is made of.
 
-    A cause that could not be told from zero is not drawn; the footer names those that no panel has.
+    The headline is the largest error in percent of its quantity's peak, and its largest cause. A
+    cause that could not be told from zero is not drawn; the footer names those that no panel has.
     None where none of the quantities could be split.
     """
     splits = [split for split in budget.splits if split.quantity in quantities]
@@ -109,10 +121,10 @@ def budget_figure(budget: Budget, quantities: tuple[str, ...]) -> Figure | None:
     ]
     drawn = {label for _, _, errors in columns for label in errors}
     unseen = [cause.name for cause in splits[0].causes if cause.name not in drawn]
-    about = "error budget of the lecture"
+    about = "error: lecture minus run, and its causes"
     if unseen:
-        about += f" (too small to be seen: {', '.join(unseen)})"
-    return _figure(budget.excerpt, columns, "lecture minus run", about)
+        about += f" (too small: {', '.join(unseen)})"
+    return _figure(budget.excerpt, columns, budget_headline(splits), about)
 
 
 def _seen(split: Split) -> dict[str, Array]:
@@ -124,37 +136,32 @@ def _seen(split: Split) -> dict[str, Array]:
 def _figure(
     excerpt: Excerpt,
     columns: list[tuple[str, dict[str, Array], dict[str, Array]]],
-    below: str,
+    headline: tuple[str, str],
     about: str,
 ) -> Figure:
     """A column for each quantity: its curves above, its errors below, one crank-angle axis."""
     n = len(columns)
-    figure, axes = panels(2, n, max(9.0, 5.6 * n), 8.0)
+    labels = [name for name in _STYLES if any(name in {**a, **b} for _, a, b in columns)]
+    figure, axes = slide(n, headline, labels)
     view = last_view(excerpt.result)
     degrees = view.degrees[excerpt.samples - excerpt.window.first]
     several = len(excerpt.result.scene.cylinders) > 1
     of_one = several and any(QUANTITIES[name].per_cylinder for name, _, _ in columns)
     for k, (name, curves, errors) in enumerate(columns):
         top, bottom = axes[k], axes[n + k]
-        for ax, drawn, what in ((top, curves, ""), (bottom, errors, f"{below} ")):
+        for ax, drawn, what in ((top, curves, ""), (bottom, errors, "error\n")):
             on_axis = {label: view.drawn(degrees, curve) for label, curve in drawn.items()}
             _panel(ax, name, on_axis, what)
-        lines = crank_axis([top, bottom], view)
+        above = crank_axis([top, bottom], view)
         symbol = QUANTITIES[name].symbol
-        top.set_title(f"{name} ${symbol}$" if symbol else name, loc="left", pad=8.0 + 16.0 * lines)
-    handles = {
-        str(line.get_label()): line
-        for ax in axes
-        for line in ax.lines
-        if str(line.get_label()) in _STYLES
-    }
-    figure.legend(
-        list(handles.values()),
-        list(handles),
-        loc="outside upper center",
-        ncols=-(-len(handles) // -(-len(handles) // int(figure.get_figwidth() / 3.0))),
-    )
-    footer(figure, excerpt.result, f"{about}, cylinder {excerpt.cylinder}" if of_one else about)
+        if n > 1:
+            title = f"{name} ${symbol}$" if symbol else name
+            top.set_title(title, loc="left", pad=8.0 + 21.0 * above)
+    lines = {str(line.get_label()): line for ax in axes for line in ax.lines}
+    slide_legend(figure, {label: lines[label] for label in labels})
+    figure.align_ylabels(axes)
+    of = f", cylinder {excerpt.cylinder}" if of_one else ""
+    footer(figure, excerpt.result, f"{about}{of}")
     return figure
 
 

@@ -8,6 +8,7 @@ import textwrap
 from typing import Any, Literal
 
 import numpy as np
+from matplotlib import rcParams
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
@@ -38,7 +39,8 @@ COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00")
 _DASHES = ("-", (0, (6, 2)), (0, (6, 2, 1.5, 2)), (0, (2.5, 1.5)))
 _GREY = "0.55"
 FLAT = 1e-6  # of the mean: what varies less is drawn as constant
-_SMALL, _LINE = 11, 14  # points: size of the text at the dead centres, and of a line of it
+_SMALLER = 2  # points: text at the dead centres and of the caption, than the type of the figure
+_LINE = 1.27  # of its size: a line of it
 
 STYLE: Any = {
     "figure.dpi": 150,
@@ -112,7 +114,8 @@ def crank_axis(axes: list[Axes], view: View) -> int:
     ticks = np.arange(math.ceil(view.low / step) * step, view.high + 1e-6, step)
     period = round(math.degrees(view.scene.period))
     labels = view.dead_centre_labels()
-    below = _lines_below(labels, span / axes[0].get_window_extent().width)
+    size = _small()
+    below = _lines_below(labels, size, span / axes[0].get_window_extent().width)
     for ax in axes:
         mark_points(ax)
         ax.set_xlim(view.low, view.high)
@@ -125,11 +128,11 @@ def crank_axis(axes: list[Axes], view: View) -> int:
             text,
             (at, 1.0),
             xycoords=("data", "axes fraction"),
-            xytext=(0, 3 + below[at] * _LINE),
+            xytext=(0, 3 + below[at] * _LINE * size),
             textcoords="offset points",
             ha="center",
             va="bottom",
-            fontsize=_SMALL,
+            fontsize=size,
             color="0.35",
         )
     begun = "" if view.begun is None else f", begun at {round(view.begun, 1):g}"
@@ -137,13 +140,17 @@ def crank_axis(axes: list[Axes], view: View) -> int:
     return max((below[at] + text.count("\n") + 1 for at, text in labels.items()), default=0)
 
 
-def _lines_below(labels: dict[float, str], per_pixel: float) -> dict[float, int]:
+def _small() -> float:
+    return float(rcParams["font.size"]) - _SMALLER
+
+
+def _lines_below(labels: dict[float, str], size: float, per_pixel: float) -> dict[float, int]:
     """On how many lines a label has to stand, by its angle [deg]: on those of the one before, where
     it would run into it.
 
-    per_pixel : [deg]
+    size [points] : of the type; per_pixel : [deg]
     """
-    letter = 0.65 * _SMALL / 72.0 * STYLE["figure.dpi"] * per_pixel
+    letter = 0.65 * size / 72.0 * STYLE["figure.dpi"] * per_pixel
     below: dict[float, int] = {}
     end, lines = -math.inf, 0  # of the last label that stands on the panel
     for at, text in sorted(labels.items()):
@@ -182,10 +189,10 @@ def legend(figure: Figure, *axes: Axes) -> None:
 def footer(figure: Figure, result: Result, about: str) -> None:
     """Say under the figure which run it shows."""
     lines = textwrap.wrap(result.scene.title, 80, max_lines=2, placeholder=" ...")
-    lines.append(f"{about} ({result.formulation})")
+    lines += textwrap.wrap(f"{about} ({result.formulation})", 100)
     caption(figure, lines)
 
 
 def caption(figure: Figure, lines: list[str]) -> None:
     """Write lines under the figure as they are: in a title a $ is no formula."""
-    figure.supxlabel("\n".join(lines), fontsize=11, color="0.35", parse_math=False)
+    figure.supxlabel("\n".join(lines), fontsize=_small(), color="0.35", parse_math=False)
