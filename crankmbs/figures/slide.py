@@ -9,6 +9,7 @@ from typing import Any
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from crankmbs.figures.style import STYLE, panels
 
@@ -40,7 +41,7 @@ def slide(
     """
     figure, axes = panels(2, columns, *_SIZE)
     layout = figure.get_layout_engine()
-    assert layout is not None
+    assert isinstance(layout, ConstrainedLayoutEngine)
     rows, _ = _grid(labels)
     layout.set(rect=(0.0, 0.0, 1.0, _TOP - _ROW * rows))
     first, second = headline
