@@ -45,7 +45,7 @@ class Ring:
         """Turn it to where it is at a sample."""
         throw = float(self._throw[sample])
         even = throw - float(self._shown[sample])
-        angles = even + 2.0 * math.pi / _TICKS * np.arange(_TICKS)
+        angles = even + np.linspace(0.0, 2.0 * math.pi, _TICKS, endpoint=False, dtype=np.float64)
         inner = np.full((_TICKS, 1), _SHORT)
         inner[0] = _LONG
         outer = self._points(angles)
