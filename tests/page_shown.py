@@ -1,5 +1,8 @@
 """What the page says and shows as numbers and arrows, asked of its modules without its controls,
-and what must be true: Python's motion, Newton's law of every drawn body, the scene handed out."""
+and what must be true: Python's motion, Newton's law of every drawn body, the scene handed out.
+
+Over 300 lines, as it is one table: of a case what the page says, and guard by guard what must hold.
+"""
 
 import dataclasses
 import io

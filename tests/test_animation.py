@@ -218,6 +218,11 @@ def test_a_film_of_another_length_width_and_one_cylinder(tmp_path):
         ("--length", "0.1", "length must be from 0.5 to 120 s; 0.1 came"),
         ("--width", "1000", "width must be a multiple of 32 from 320 to 3840; 1000 came"),
         ("--cylinder", "5", "cylinder: the scene has 1 cylinder; 5 came"),
+        (
+            "--forces",
+            "pistn",
+            'forces: must be those on the piston, rod or crank; "pistn" came; did',
+        ),
     ],
 )
 def test_command_refuses_a_film_that_cannot_be(tmp_path, monkeypatch, option, value, rule):

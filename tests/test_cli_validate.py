@@ -2,6 +2,7 @@
 
 import csv
 import dataclasses
+import math
 import re
 
 import numpy as np
@@ -165,12 +166,12 @@ def test_figures_are_drawn_of_what_can_be_compared(tmp_path, monkeypatch):
     drawn = sorted(file.name for file in tmp_path.glob("*.png"))
     assert drawn == ["budget_torque.png", "comparison_torque.png"]
     with Image.open(tmp_path / drawn[0]) as picture:
-        assert picture.size == (1350, 1200)
+        assert picture.size == (2000, 1125)
 
 
 def test_every_quantity_has_a_figure():
     shown = [quantity for family in drawing.FAMILIES.values() for quantity in family]
-    assert shown == list(QUANTITIES)
+    assert sorted(shown) == sorted(QUANTITIES)
 
 
 def curves(ax):
@@ -196,8 +197,8 @@ def test_a_comparison_figure_has_curves_above_and_errors_below(four):
     assert [ax.get_ylabel() for ax in (*tops, *bottoms)] == [
         "[mm]",
         "[kN]",
-        "formula minus run [mm]",
-        "formula minus run [N]",
+        "error\n[mm]",
+        "error\n[N]",
     ]
     assert "cylinder 2" in figure.get_supxlabel()
     assert len(figure.legends[0].get_texts()) == 2 + len(LECTURES)
@@ -229,11 +230,52 @@ def test_the_curves_of_a_budget_figure_add_up_to_the_thick_one(four):
     assert np.allclose(sum(drawn.values()), total, rtol=0.0, atol=1e-12)
     legend = [text.get_text() for text in figure.legends[0].get_texts()]
     assert legend == ["run", "lecture", "sum of the causes", *drawn]
-    assert "too small to be seen: datum, gravity, solver" in figure.get_supxlabel()
+    assert "too small: datum, gravity, solver" in figure.get_supxlabel()
     above = {label: line.get_ydata() for label, line in curves(top).items()}
     assert np.allclose(above["lecture"] - above["run"], total, rtol=0.0, atol=1e-12)
     degrees = curves(bottom)["series"].get_xdata()
     assert (degrees[0], degrees[-1]) == pytest.approx((0.0, 720.0))
+
+
+def headline_of(figure):
+    return [text.get_text() for text in figure.texts[:2]]
+
+
+def test_a_slide_is_headed_by_its_largest_error_with_its_number(four):
+    split = budget(four)
+    worst = split.split("side thrust")
+    share, at = worst.share(worst.total), math.degrees(worst.total.size.angle)
+    assert headline_of(budget_figure(split, ("rod force", "side thrust"))) == [
+        f"Side thrust: the lecture is off by up to {share:.1f} %",
+        f"of the peak, at {at:.0f} degrees; the two-mass rod is worth up to "
+        f"{worst.share(worst.cause('two-mass rod')):.1f} %",
+    ]
+    comparison = compare(four)
+    row = max(
+        (comparison.row("side thrust", name) for name in LECTURES), key=lambda row: row.size.largest
+    )
+    share = 100.0 * row.size.largest / row.peak
+    first, second = headline_of(comparison_figure(comparison, ("rod force", "side thrust")))
+    assert first == f"Side thrust: {row.reference.split(' (')[0]} is off by up to {share:.1f} %"
+    assert second.startswith(f"of the peak, at {math.degrees(row.size.angle):.0f} degrees")
+
+
+def test_nothing_of_a_slide_covers_its_headline_or_legend(four):
+    for figure in (
+        comparison_figure(compare(four), ("torque", "gas torque")),
+        budget_figure(budget(four), ("tangential force", "radial force")),
+    ):
+        figure.draw_without_rendering()
+        legend = figure.legends[0].get_window_extent()
+        lowest = min(text.get_window_extent().y0 for text in figure.texts[:2])
+        assert legend.y1 <= lowest
+        for ax in figure.axes:
+            assert ax.get_tightbbox().y1 <= legend.y0
+        width, height = figure.get_size_inches()
+        assert width / height == pytest.approx(16.0 / 9.0)
+        texts = [text for ax in figure.axes for text in (*ax.get_xticklabels(), *ax.texts)]
+        smallest = min(text.get_fontsize() for text in texts)
+        assert smallest >= 72.0 * height / 34.0  # of the height, for a reader far off
 
 
 def test_a_force_of_all_cylinders_is_not_said_to_be_of_one(four):

@@ -1,4 +1,7 @@
-"""Lessons in a real browser, from disk and with the network off: figures, words, typed answers."""
+"""Lessons in a real browser, from disk and with the network off: figures, words, typed answers.
+
+Over 300 lines, as its tests share the browser and the lessons opened in it.
+"""
 
 import math
 import re

@@ -1,5 +1,8 @@
 """The page: one file that computes in the browser, shows what Python has, and refuses what cannot
-be in Python's words."""
+be in Python's words.
+
+Over 300 lines, as its tests share the pages and the browser that they open.
+"""
 
 import base64
 import dataclasses

@@ -20,6 +20,7 @@ from crankmbs import (
     load_scene,
     shipped_scenes,
 )
+from crankmbs.page.document import page_of
 from crankmbs.page.knobs import FIRING_ORDERS, choices_of, knobs_of
 
 SINGLE, DIESEL = load_scene("propeller"), load_scene("yi_diesel_free")
@@ -128,3 +129,9 @@ def test_pressure_scales_table_and_diagram():
 def test_a_scene_that_cannot_be_is_refused():
     with pytest.raises(InputError, match=r"rod\.length must be at least"):
         turned(SINGLE, {"rod_ratio": 0.9, "offset": 20.0})
+
+
+@pytest.mark.parametrize(("name", "said"), [("yi_diesel", True), ("propeller", False)])
+def test_a_page_without_a_free_crank_says_why(name, said):
+    text = page_of(load_scene(name), "mine")
+    assert ("There is no free crank to switch to" in text) == said

@@ -15,7 +15,8 @@ from crankmbs.scene.units import DEGREE
 from validation.random_page import random_page
 
 SEEDS = range(2000, 2200)
-MEASURED = SEEDS[1::10]
+HELD = {2037, 2041, 2065, 2097, 2113, 2156, 2184}  # friction brings these cranks to rest
+MEASURED = sorted({*SEEDS[1::10]} - HELD)
 GIVEN_UP = {2084}  # within rounding of its fixed point the search of Python finds no end
 
 
@@ -31,11 +32,21 @@ def test_motion_and_every_reaction_are_those_of_python(page, seed):
         assert max(worst.values()) < 1e-9, max(worst.items(), key=lambda one: one[1])
     elif "balance" in result.message:
         assert found["balanced"]
+    elif seed in HELD:
+        assert result.message.endswith("friction holds the crank there")
+        assert found["ending"] == "slow"
     elif result.status == 1:
         assert result.message.startswith("does not settle")
         assert found["ending"] in {"runs_away", "decays", "slow"}, result.message
     else:  # the search of Python has given up
         assert seed in GIVEN_UP, result.message
+
+
+def test_in_many_the_pistons_rub_and_in_each_way():
+    rubbing = [scene.friction for scene in map(random_page, SEEDS) if scene.friction is not None]
+    assert len(rubbing) > 60
+    for name in ("ring_force", "ring_pressure", "viscous"):
+        assert sum(getattr(friction, name) > 0.0 for friction in rubbing) > 30
 
 
 @pytest.mark.parametrize("seed", MEASURED)

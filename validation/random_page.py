@@ -13,6 +13,7 @@ from crankmbs.scene.drives import Motion, Oscillation, Ramp, SpeedFile, Start
 from crankmbs.scene.fuel import Fuel, Misfire
 from crankmbs.scene.gas import Gas
 from crankmbs.scene.loads import AngleTable, Constant, Quadratic, SpeedTable, TimeTable, Viscous
+from crankmbs.scene.parts import Friction
 from crankmbs.scene.run import Extent, Run
 from crankmbs.scene.tables import Table
 from crankmbs.scene.torque import Torque
@@ -22,11 +23,14 @@ from validation.random_settled import random_settled
 __all__ = ["random_page"]
 
 _TURN = 2.0 * math.pi
+_RUBS = 0.4  # of the scenes
 
 
 def random_page(seed: int) -> Scene:
-    """The scene of a seed: two of four settle, one starts, in one the speed is prescribed."""
+    """The scene of a seed: two of four settle, one starts, in one the speed is prescribed; in two
+    of five the pistons rub."""
     rng, base = np.random.default_rng([15, seed]), random_settled(seed)
+    base = _rubbing(np.random.default_rng([16, seed]), base)
     if seed % 4 == 2:
         return _started(rng, base)
     if seed % 4 == 3:
@@ -48,6 +52,22 @@ def _energy(scene: Scene) -> float:
     swung = scene.rod.mass * scene.crank.radius**2 + scene.piston.mass * scene.crank.radius**2
     inertia = scene.crank.moment_of_inertia + swung
     return 0.5 * inertia * scene.start.speed**2
+
+
+def _rubbing(rng: np.random.Generator, base: Scene) -> Scene:
+    """Friction of some kinds, each of which takes up to a twentieth of the energy in a cycle."""
+    if rng.random() > _RUBS:
+        return base
+    assert base.start is not None
+    share = np.exp(rng.uniform(math.log(1e-4), math.log(0.05), 3)) * (rng.random(3) < 0.7)
+    way = 8.0 * base.crank.radius * len(base.cylinders)
+    mean = 4.0 * base.crank.radius * abs(base.start.speed) / _TURN
+    friction = Friction(
+        ring_force=float(share[0]) * _energy(base) / way,
+        ring_pressure=float(share[1]) if base.gas is not None else 0.0,
+        viscous=float(share[2]) * _energy(base) / (way * mean),
+    )
+    return replace(base, friction=friction)
 
 
 def _over_angle(rng: np.random.Generator, scene: Scene) -> AngleTable:

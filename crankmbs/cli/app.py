@@ -221,11 +221,14 @@ def animate(
     length: Annotated[float | None, typer.Option(help="Seconds of a cycle; default 6.")] = None,
     width: Annotated[int | None, typer.Option(help="Pixels, a multiple of 32.")] = None,
     cylinder: Annotated[int | None, typer.Option(help="The one shown alone; default all.")] = None,
+    forces: Annotated[
+        str | None, typer.Option(help="Arrows of the forces on piston, rod or crank.")
+    ] = None,
 ) -> None:
     """Film the mechanism and its speed over the last cycle, for slides."""
     from crankmbs.figures.animation import Filming  # matplotlib only here
 
-    if not animate_scene(scene, out, Filming(length, width, cylinder)):
+    if not animate_scene(scene, out, Filming(length, width, cylinder, forces)):
         raise typer.Exit(3)
 
 

@@ -86,10 +86,10 @@ class Split:
         for cause in worth:
             up_to = "" if parts else "is worth up to "
             parts.append(
-                f"{self._named(cause)} {up_to}{_readable(self.share(cause))} %, {_where(cause)}"
+                f"{self.named(cause)} {up_to}{_readable(self.share(cause))} %, {_where(cause)}"
             )
         if len(worth) < len(self.causes):
-            nothing = [self._named(c) for c in self.causes if self.share(c) == 0.0]
+            nothing = [self.named(c) for c in self.causes if self.share(c) == 0.0]
             parts.append(f"nothing comes from {_listed(nothing)}")
         off = f"off by up to {_readable(total)} % of the peak, {_where(self.total)}"
         return f"{about}: {off if total else 'right but for rounding'}: {'; '.join(parts)}"
@@ -99,7 +99,8 @@ class Split:
         """Whether the formula is the lectures'."""
         return self.reference in LECTURES
 
-    def _named(self, cause: Cause) -> str:
+    def named(self, cause: Cause) -> str:
+        """A cause in words, as they stand in a sentence."""
         if cause.name == "series" and not self.is_lecture:
             return "the formula itself"
         return "the rest" if cause.name == REST else CAUSES[cause.name]

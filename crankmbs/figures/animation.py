@@ -5,9 +5,9 @@ from __future__ import annotations
 import io
 import math
 import subprocess
+import textwrap
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from matplotlib import rc_context
@@ -18,15 +18,18 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 from numpy.typing import NDArray
 
-from crankmbs.errors import InputError, OutputError
+from crankmbs.errors import InputError, OutputError, shown
+from crankmbs.figures.arrows import BODIES, COLOUR, Force
 from crankmbs.figures.frames import Frames, frames_of
-from crankmbs.figures.mechanism import Drawing, on_paper, slices
+from crankmbs.figures.machines import Machine, shown_forces
+from crankmbs.figures.mechanism import slices
 from crankmbs.figures.outline import mechanism
-from crankmbs.figures.style import STYLE, crank_axis, footer, line_of
+from crankmbs.figures.style import STYLE, caption, crank_axis, line_of
 from crankmbs.figures.view import View, last_view
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 from crankmbs.scene.scene import Scene
+from crankmbs.scene.sentences import did_you_mean
 from crankmbs.scene.units import RPM
 from crankmbs.storage.files import write_in_one_move
 
@@ -37,15 +40,8 @@ _RATES = {".gif": 20, ".mp4": 25}  # frames per second; whole hundredths of a se
 _DPI = {".gif": 62.5, ".mp4": 100.0}  # 800 x 450 and 1280 x 720 pixels
 _SIZE = (12.8, 7.2)  # inch
 _FLAT = 0.002  # of the mean: the least half height of the speed's axis
-_RING: Any = {
-    "marker": "o",
-    "color": "black",
-    "markerfacecolor": "none",
-    "markersize": 17,
-    "markeredgewidth": 1.8,
-    "zorder": 30,
-}
 _HOTTEST = 0.9  # opacity of the gas at the highest pressure
+_TITLE = 95  # letters of the title
 _LENGTHS = (0.5, 120.0)  # s
 _WIDTHS = (320, 3840, 32)  # pixels: from, to, in steps that leave the height even
 
@@ -57,11 +53,15 @@ class Filming:
     length [s] : of a cycle on the screen, about; None: six
     width [pixels] : its height is 9/16 of it; None: 800 of a .gif, 1280 of an .mp4
     cylinder : number, from 1, of the one that is shown alone; None: all are
+    forces : on the "piston", the "rod" or the "crank", as arrows with their scale; None: none.
+        The bearings' force on the crank is all cylinders' together, and shown where all are in one
+        drawing
     """
 
     length: float | None = None
     width: int | None = None
     cylinder: int | None = None
+    forces: str | None = None
 
 
 AS_USUAL = Filming()
@@ -88,7 +88,7 @@ def check_format(file: Path) -> None:
 
 
 def check_filming(filming: Filming, scene: Scene) -> None:
-    """Refuse a length, a width or a cylinder that cannot be, before anything runs.
+    """Refuse a length, a width, a cylinder or a body that cannot be, before anything runs.
 
     Raises
     ------
@@ -105,6 +105,11 @@ def check_filming(filming: Filming, scene: Scene) -> None:
     if cylinder is not None and not 1 <= cylinder <= count:
         ending = "s" if count > 1 else ""
         raise InputError(f"cylinder: the scene has {count} cylinder{ending}; {cylinder} came")
+    if filming.forces is not None and filming.forces not in BODIES:
+        near = did_you_mean(filming.forces, BODIES)
+        raise InputError(
+            f"forces: must be those on the piston, rod or crank; {shown(filming.forces)} came{near}"
+        )
 
 
 @rc_context(STYLE)
@@ -122,7 +127,7 @@ def save_animation(result: Result, file: Path, filming: Filming = AS_USUAL) -> P
     frames = frames_of(result, _RATES[suffix], filming.length)
     dpi = _DPI[suffix] if filming.width is None else filming.width / _SIZE[0]
     cuts = slices(result.scene) if filming.cylinder is None else [[filming.cylinder - 1]]
-    film = _Film(result, frames, cuts, dpi)
+    film = _Film(result, frames, cuts, filming.forces, dpi)
     writer = (PillowWriter if suffix == ".gif" else FFMpegWriter)(fps=_RATES[suffix])
     write_in_one_move(file, lambda part: film.write(writer, part))
     return file
@@ -131,19 +136,27 @@ def save_animation(result: Result, file: Path, filming: Filming = AS_USUAL) -> P
 class _Film:
     """The figure whose frames are filmed."""
 
-    def __init__(self, result: Result, frames: Frames, cuts: list[list[int]], dpi: float) -> None:
+    def __init__(
+        self, result: Result, frames: Frames, cuts: list[list[int]], body: str | None, dpi: float
+    ) -> None:
         self._frames, self._dpi = frames, dpi
         self._figure = Figure(figsize=_SIZE, dpi=dpi, layout="constrained")
         FigureCanvasAgg(self._figure)
         machines, trace = _places(self._figure, len(cuts))
         view = last_view(result)
-        self._shift = float(view.degrees[0]) - math.degrees(float(view.data["crank_angle"][0]))
-        _speed_axis(trace, view, frames.mean)
+        shift = float(view.degrees[0]) - math.degrees(float(view.data["crank_angle"][0]))
+        self._degrees = view.on_axis(np.degrees(frames.angle) + shift)
+        parts = mechanism(result.scene, frames.angle)
+        forces = [] if body is None else shown_forces(body, view, frames, parts, cuts)
+        _speed_axis(trace, view, frames.mean, forces)
         if len(result.scene.cylinders) > 1:
             for ax, cut in zip(machines, cuts, strict=True):
                 ax.set_title(", ".join(str(k + 1) for k in cut))
-        about = f"{view.window.kind}, {frames.pace}; ring: the crank at the mean speed"
-        footer(self._figure, result, about)
+        title = textwrap.shorten(result.scene.title, _TITLE, placeholder=" ...")
+        self._figure.suptitle(title, fontsize=16, fontweight="bold", parse_math=False)
+        caption(
+            self._figure, [f"{view.window.kind}, {frames.pace} ({result.formulation})", frames.ring]
+        )
         still = _pixels(self._figure)  # drawn once: text takes most of a frame's time
         self._figure.set_layout_engine(None)  # it stays as it is now
         for artist in (*trace.get_children(), *self._figure.findobj(Text)):
@@ -153,13 +166,9 @@ class _Film:
         self._now = trace.text(
             0.99, 0.03, "", transform=trace.transAxes, ha="right", family="monospace"
         )
-        parts, heat = mechanism(result.scene, frames.angle), _heat(view, frames)
-        even = mechanism(result.scene, frames.angle[0] + frames.mean * frames.time).crank_pin
-        self._drawings = [
-            Drawing(ax, parts, cut, heat) for ax, cut in zip(machines, cuts, strict=True)
-        ]
-        self._rings = [
-            (ax.plot([], [], **_RING)[0], even[:, cut[0]])
+        heat = _heat(view, frames)
+        self._machines = [
+            Machine(ax, parts, cut, heat, frames, forces)
             for ax, cut in zip(machines, cuts, strict=True)
         ]
 
@@ -177,13 +186,12 @@ class _Film:
 
     def _show(self, k: int) -> None:
         frames = self._frames
-        degrees = math.degrees(frames.angle[k]) + self._shift
         rpm = frames.speed[k] / RPM
-        self._cursor.set_data([degrees], [rpm])
-        self._now.set_text(f"{frames.time[k] * 1e3:7.2f} ms  {rpm:7.1f} rpm")
-        for drawing, (ring, pin) in zip(self._drawings, self._rings, strict=True):
-            drawing.move(k)
-            ring.set_data(*on_paper(pin[k : k + 1]))
+        self._cursor.set_data([self._degrees[k]], [rpm])
+        now = f"{frames.time[k] * 1e3:7.2f} ms  {rpm:7.1f} rpm"
+        self._now.set_text(f"{frames.lead_in_words(k)}\n{now}" if frames.magnified else now)
+        for machine in self._machines:
+            machine.move(k)
 
 
 def _pixels(figure: Figure) -> NDArray[np.uint8]:
@@ -209,15 +217,18 @@ def _places(figure: Figure, cuts: int) -> tuple[list[Axes], Axes]:
     return machines, trace
 
 
-def _speed_axis(ax: Axes, view: View, mean: float) -> None:
+def _speed_axis(ax: Axes, view: View, mean: float, forces: list[Force]) -> None:
+    """The speed beside its mean, and a legend that names the arrows of forces too."""
     speed = view.values("crank_speed") / RPM
-    ax.plot(view.degrees, speed, **line_of(0), label="crank speed")
+    ax.plot(*view.drawn(view.degrees, speed), **line_of(0), label="crank speed")
     ax.axhline(mean / RPM, color="0.5", linestyle=(0, (4, 2)), label="mean over time")
     half = max(0.6 * float(np.ptp(speed)), _FLAT * abs(mean) / RPM) or 1.0  # rpm, at rest
     middle = 0.5 * float(speed.min() + speed.max())
-    ax.set_ylim(middle - 1.7 * half, middle + 1.1 * half)  # room for legend and numbers below
+    ax.set_ylim(middle - 2.1 * half, middle + 1.1 * half)  # room for legend and numbers below
     ax.set_ylabel("crank speed [rpm]")
     crank_axis([ax], view)
+    for name, kind in dict.fromkeys((force.name, force.kind) for force in forces):
+        ax.plot([], [], color=COLOUR[kind], linewidth=5.0, label=name)
     ax.legend(loc="lower left", ncols=2, frameon=False)
 
 

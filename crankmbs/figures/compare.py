@@ -1,10 +1,11 @@
-"""A run against its references, and the causes of the formulas' errors, over the crank angle."""
+"""A run against its references, and the causes of the formulas' errors, as slides."""
 
 from __future__ import annotations
 
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -18,10 +19,13 @@ from crankmbs.compare import (
     REST,
     Budget,
     Comparison,
+    Deviation,
     Excerpt,
     Split,
 )
-from crankmbs.figures.style import STYLE, crank_axis, footer, force_scale, line_of, panels
+from crankmbs.figures.headline import budget_headline, comparison_headline
+from crankmbs.figures.slide import SLIDE, slide, slide_legend
+from crankmbs.figures.style import crank_axis, footer, force_scale, line_of
 from crankmbs.figures.view import last_view
 from crankmbs.numerics.arrays import Array
 from crankmbs.storage.files import together
@@ -30,22 +34,24 @@ __all__ = ["FAMILIES", "budget_figure", "comparison_figure", "save_validation"]
 
 
 FAMILIES = {
-    "motion": ("piston displacement", "piston velocity", "piston acceleration"),
-    "rod": ("net force", "side thrust", "rod force"),
+    "displacement": ("piston displacement",),
+    "motion": ("piston velocity", "piston acceleration"),
+    "side_thrust": ("side thrust",),
+    "rod": ("net force", "rod force"),
     "throw": ("tangential force", "radial force"),
     "torque": ("torque", "gas torque"),
     "piston_pin": ("piston pin force x", "piston pin force y"),
     "crank_pin": ("crank pin force x", "crank pin force y"),
     "main_bearing": ("main bearing force x", "main bearing force y"),
 }
-"""The quantities that are drawn side by side, by the name of their figure."""
+"""The quantities that a slide shows, one or two side by side, by its name."""
 
 _SHOWN = {"m": (1e-3, "mm"), "m/s^2": (1.0, "m/s$^2$")}  # unit -> divisor and unit on an axis
 _UNSEEN = 1e-3  # of the largest of a panel's causes: no line can be told from zero
 _STYLES: dict[str, dict[str, Any]] = {
-    "run": {"color": "black", "linewidth": 2.5},
+    "run": {"color": "black", "linewidth": 4.0},
     "lecture": {"color": "0.5", "linestyle": (0, (4, 2))},
-    "sum of the causes": {"color": "0.65", "linewidth": 5.0},
+    "sum of the causes": {"color": "0.65", "linewidth": 7.0},
     **{name: line_of(k) for k, name in enumerate((CLOSED_FORM, *LECTURES))},
     **{name: line_of(k) for k, name in enumerate((*CAUSES, REST))},
 }
@@ -80,11 +86,12 @@ def save_validation(comparison: Comparison, budget: Budget, folder: Path) -> lis
     return files
 
 
-@rc_context(STYLE)
+@rc_context(SLIDE)
 def comparison_figure(comparison: Comparison, quantities: tuple[str, ...]) -> Figure | None:
     """Run, closed form, truncated lecture and one's own formulas above, every error below.
 
-    None where none of the quantities could be compared.
+    The headline is the largest error of a lecture in percent of its quantity's peak. None where
+    none of the quantities could be compared.
     """
     shown = [name for name in quantities if name in comparison.simulated]
     if not shown:
@@ -92,15 +99,20 @@ def comparison_figure(comparison: Comparison, quantities: tuple[str, ...]) -> Fi
     lectures = [name for name in LECTURES if name in comparison.references]
     hidden = set(lectures[:-1])  # the last lecture truncates most
     columns = []
+    every: list[Deviation] = []
     for name in shown:
         rows = [row for row in comparison.rows if row.quantity == name]
+        every += rows
         above = {row.reference: row.values for row in rows if row.reference not in hidden}
         errors = {row.reference: row.error for row in rows}
         columns.append((name, {"run": comparison.simulated[name], **above}, errors))
-    return _figure(comparison.excerpt, columns, "formula minus run", "run against formulas")
+    own = comparison.excerpt.result.formulation == "multibody"
+    headline = comparison_headline(every, independent=own)
+    about = "run against formulas; error: formula minus run"
+    return _figure(comparison.excerpt, columns, headline, about)
 
 
-@rc_context(STYLE)
+@rc_context(SLIDE)
 def budget_figure(
     budget: Budget, quantities: tuple[str, ...], reference: str | None = None
 ) -> Figure | None:
@@ -108,7 +120,8 @@ def budget_figure(
 
     reference : the label of a formula of one's own; by default the truncated lecture is drawn
 
-    A cause that could not be told from zero is not drawn; the footer names those that no panel has.
+    The headline is the largest error in percent of its quantity's peak, and its largest cause. A
+    cause that could not be told from zero is not drawn; the footer names those that no panel has.
     None where none of the quantities could be split.
     """
     splits = [
@@ -130,10 +143,10 @@ def budget_figure(
     ]
     drawn = {label for _, _, errors in columns for label in errors}
     unseen = [cause.name for cause in splits[0].causes if cause.name not in drawn]
-    about = f"error budget of the {whose}"
+    about = f"error: {whose} minus run, and its causes"
     if unseen:
-        about += f" (too small to be seen: {', '.join(unseen)})"
-    return _figure(budget.excerpt, columns, f"{whose} minus run", about)
+        about += f" (too small: {', '.join(unseen)})"
+    return _figure(budget.excerpt, columns, budget_headline(splits), about)
 
 
 def _seen(split: Split) -> dict[str, Array]:
@@ -145,57 +158,52 @@ def _seen(split: Split) -> dict[str, Array]:
 def _figure(
     excerpt: Excerpt,
     columns: list[tuple[str, dict[str, Array], dict[str, Array]]],
-    below: str,
+    headline: tuple[str, str],
     about: str,
 ) -> Figure:
     """A column for each quantity: its curves above, its errors below, one crank-angle axis."""
     n = len(columns)
-    figure, axes = panels(2, n, max(9.0, 5.6 * n), 8.0)
+    labels = dict.fromkeys(label for _, *both in columns for lines in both for label in lines)
+    own = [label for label in labels if label not in _STYLES]
+    styles = _STYLES | {label: line_of(_OWN + k) for k, label in enumerate(own)}
+    figure, axes = slide(n, headline, [label for label in styles if label in labels])
     view = last_view(excerpt.result)
     degrees = view.degrees[excerpt.samples - excerpt.window.first]
     several = len(excerpt.result.scene.cylinders) > 1
     of_one = several and any(OBSERVABLES[name].per_cylinder for name, _, _ in columns)
-    labels = dict.fromkeys(label for _, *both in columns for lines in both for label in lines)
-    own = [label for label in labels if label not in _STYLES]
-    styles = _STYLES | {label: line_of(_OWN + k) for k, label in enumerate(own)}
     for k, (name, curves, errors) in enumerate(columns):
         top, bottom = axes[k], axes[n + k]
-        _panel(top, name, degrees, curves, styles)
-        _panel(bottom, name, degrees, errors, styles)
-        bottom.set_ylabel(f"{below} {bottom.get_ylabel()}")
-        lines = crank_axis([top, bottom], view)
+        for ax, drawn, what in ((top, curves, ""), (bottom, errors, "error\n")):
+            on_axis = {label: view.drawn(degrees, curve) for label, curve in drawn.items()}
+            _panel(ax, name, on_axis, what, styles)
+        above = crank_axis([top, bottom], view)
         symbol = OBSERVABLES[name].symbol
-        top.set_title(f"{name} ${symbol}$" if symbol else name, loc="left", pad=8.0 + 16.0 * lines)
-    handles = {
-        str(line.get_label()): line
-        for ax in axes
-        for line in ax.lines
-        if str(line.get_label()) in styles
-    }
-    figure.legend(
-        list(handles.values()),
-        list(handles),
-        loc="outside upper center",
-        ncols=-(-len(handles) // -(-len(handles) // int(figure.get_figwidth() / 3.0))),
-    )
-    footer(figure, excerpt.result, f"{about}, cylinder {excerpt.cylinder}" if of_one else about)
+        if n > 1:
+            title = f"{name} ${symbol}$" if symbol else name
+            top.set_title(title, loc="left", pad=8.0 + 21.0 * above)
+    lines = {str(line.get_label()): line for ax in axes for line in ax.lines}
+    slide_legend(figure, {label: lines[label] for label in styles if label in labels})
+    figure.align_ylabels(axes)
+    of = f", cylinder {excerpt.cylinder}" if of_one else ""
+    footer(figure, excerpt.result, f"{about}{of}")
     return figure
 
 
 def _panel(
     ax: Axes,
     quantity: str,
-    degrees: Array,
-    curves: dict[str, Array],
+    curves: dict[str, tuple[Array, Array]],
+    what: str,
     styles: dict[str, dict[str, Any]],
 ) -> None:
     units = OBSERVABLES[quantity].units
     scale, unit = _SHOWN.get(units, (1.0, units))
     if units == "N":
-        scale, unit = force_scale(*curves.values())
-    low, high = (find(find(curve) for curve in curves.values()) for find in (min, max))
+        scale, unit = force_scale(*(curve for _, curve in curves.values()))
+    low = min(np.nanmin(curve) for _, curve in curves.values())
+    high = max(np.nanmax(curve) for _, curve in curves.values())
     if 2.0 * low - high <= 0.0 <= 2.0 * high - low:  # else the swing of a speed could not be seen
         ax.axhline(0.0, color="0.55", linewidth=1.0)
-    for label, curve in curves.items():
+    for label, (degrees, curve) in curves.items():
         ax.plot(degrees, curve / scale, **styles[label], label=label)
-    ax.set_ylabel(f"[{unit}]")
+    ax.set_ylabel(f"{what}[{unit}]")

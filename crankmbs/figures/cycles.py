@@ -7,10 +7,11 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from crankmbs.figures.style import COLOURS, STYLE, footer, legend, line_of, name_of, panels
+from crankmbs.figures.cylinders import one_curve_each, whose
+from crankmbs.figures.style import COLOURS, STYLE, footer, keep_flat, legend, line_of, panels
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
-from crankmbs.scene.units import RPM
+from crankmbs.scene.units import BAR, RPM
 
 __all__ = ["FEWEST_CYCLES", "cycles_figure", "mark_events"]
 
@@ -37,12 +38,16 @@ def cycles_figure(result: Result) -> Figure:
     axes[0].plot(number, mean, color=COLOURS[0], label="mean")
     axes[0].set_ylabel("crank speed [rpm]")
     if with_gas:
-        for k, values in enumerate(cycles["imep"].values.T):
-            axes[1].plot(number, values * 1e-5, **line_of(k), label=name_of(k))
+        imep = cycles["imep"].values / BAR
+        for group in one_curve_each(imep):
+            axes[1].plot(number, imep[:, group[0]], **line_of(group[0]), label=whose(group))
+        keep_flat(axes[1], imep)
         axes[1].set_ylabel("indicated mean\neffective pressure [bar]")
     begins = cycles["time"].values
     at = np.interp(result.events["time"].values, begins, number, np.nan, number[-1])
     mark_events(axes[0], result, np.asarray(at))
+    for ax in axes:
+        ax.locator_params("x", integer=True)
     axes[-1].set_xlabel("cycle")
     legend(figure, *(axes if result.data.sizes["cylinder"] > 1 else axes[:1]))
     figure.align_ylabels(axes)

@@ -10,7 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from crankmbs.compare.confirm import Difference
-from crankmbs.figures.style import STYLE, footer, legend, line_of, name_of, panels
+from crankmbs.figures.cylinders import whose
+from crankmbs.figures.style import STYLE, footer, legend, line_of, panels
 from crankmbs.result import Result
 
 __all__ = ["difference_figure"]
@@ -43,7 +44,7 @@ def _draw(ax: Axes, row: Difference, floor: float) -> None:
     several = row.size.shape[1] > 1
     for k in range(row.size.shape[1]):
         size = np.maximum(row.size[:, k] / peak, floor)
-        label = name_of(k) if several else "difference"
+        label = whose([k]) if several else "difference"
         turned = row.crank_angle / (2.0 * math.pi)
         ax.semilogy(turned, size, **line_of(k), linewidth=1.2, label=label)
     for error, name, dashes in zip(row.errors, row.formulations, (":", "--"), strict=True):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,10 +14,12 @@ from crankmbs.measures import last_span
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 
-__all__ = ["Frames", "frames_of"]
+__all__ = ["Frames", "frames_of", "round_below"]
 
 
 _LASTS = 6.0  # s, about: one cycle on the screen
+_LEAD = math.radians(30.0)  # the lead as it is shown, at most
+_EVEN = 1e-9  # rad: a lead that is none
 
 
 @dataclass(frozen=True)
@@ -34,12 +37,51 @@ class Frames:
     slower: float
 
     @property
+    def leads(self) -> Array:
+        """By how much the crank is ahead of one that turns evenly [rad], negative where it is
+        behind; on average over the cycle not at all."""
+        ahead = self.angle - self.angle[0] - self.mean * self.time
+        leads: Array = ahead - ahead.mean()
+        return leads
+
+    @property
+    def magnified(self) -> float:
+        """How many times the lead is shown, a round number from 1; 0 where the crank turns
+        evenly."""
+        most = float(np.max(np.abs(self.leads)))
+        return max(round_below(_LEAD / most), 1.0) if most > _EVEN else 0.0
+
+    @property
+    def ring(self) -> str:
+        """What a ring at mean speed shows, in words."""
+        if self.magnified == 0.0:
+            return "ring: the crank turns evenly"
+        times = f"magnified {self.magnified:g} times" if self.magnified > 1.0 else "as it is"
+        return f"ring: the mean speed, the crank's lead {times}"
+
+    def lead_in_words(self, frame: int) -> str:
+        """By how much the crank is ahead of the mean speed or behind, in its own sense."""
+        lead = math.degrees(self.leads[frame]) * math.copysign(1.0, self.mean)
+        decimals = min(max(2 + math.floor(math.log10(self.magnified)), 1), 6)
+        return f"{abs(lead):.{decimals}f} deg {'ahead' if lead >= 0.0 else 'behind'}"
+
+    @property
     def pace(self) -> str:
         """The slow motion in words."""
         times, what = (
             (self.slower, "slower") if self.slower >= 1.0 else (1.0 / self.slower, "faster")
         )
         return f"{digits(times, most=2)} times {what} than the machine"
+
+
+def round_below(value: float) -> float:
+    """The largest of 1, 2 and 5 times a power of ten that is not above a positive value.
+
+    >>> round_below(34.0)
+    20.0
+    """
+    power = 10.0 ** math.floor(math.log10(value))
+    return max(each * power for each in (1.0, 2.0, 5.0) if each * power <= value * (1.0 + 1e-9))
 
 
 def frames_of(result: Result, rate: float, length: float | None = None) -> Frames:

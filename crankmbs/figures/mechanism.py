@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -14,11 +14,11 @@ from crankmbs.figures.style import line_of
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 
-__all__ = ["Drawing", "on_paper", "slices"]
+__all__ = ["Drawing", "Look", "on_paper", "slices"]
 
 
 _MM = 1e3
-_METAL, _EDGE, _GAS = "0.75", "0.25", "#E69F00"
+_METAL, _EDGE, _GAS, _ROD = "0.75", "0.25", "#E69F00", "0.6"
 _MARGIN = 0.06  # of the drawing's size, around it
 _STROKE_WIDTH = 0.14  # of the crank radius: rod and throw
 
@@ -36,6 +36,18 @@ def slices(scene: Scene) -> list[list[int]]:
     return [[row[j] for row in rows.values() if j < len(row)] for j in range(depth)]
 
 
+class Look(NamedTuple):
+    """Space [crank radii] that a drawing has around the crank's axis, and above its heads; whether
+    its rods are grey, for what is drawn on them."""
+
+    around: float = 1.0 + _STROKE_WIDTH
+    above: float = 0.0
+    grey: bool = False
+
+
+_PLAIN = Look()
+
+
 class Drawing:
     """Some cylinders of a machine on axes of their own, movable from sample to sample.
 
@@ -43,14 +55,20 @@ class Drawing:
     ----------
     parts : of the whole machine at every sample; cylinders : those drawn, counted from 0
     heat : shape (n, cylinders) [1], from 0 to 1, how strongly the gas is coloured; None: not
+    look : and the room left for what is drawn besides
     """
 
     def __init__(
-        self, ax: Axes, parts: Mechanism, cylinders: list[int], heat: Array | None = None
+        self,
+        ax: Axes,
+        parts: Mechanism,
+        cylinders: list[int],
+        heat: Array | None = None,
+        look: Look = _PLAIN,
     ) -> None:
         self._parts, self._cylinders, self._heat = parts, cylinders, heat
         radius = float(np.hypot(*parts.crank_pin[0, cylinders[0]])) * _MM
-        self._frame(ax, radius)
+        self._frame(ax, radius, look)
         width = self._points(ax, _STROKE_WIDTH * radius)
         throw: dict[str, Any] = {
             "color": _EDGE,
@@ -72,7 +90,7 @@ class Drawing:
             self._gases.append(gas)
             self._pistons.append(piston)
             self._throws += ax.plot([], [], **throw, zorder=5)
-            colour = line_of(k)["color"]
+            colour = _ROD if look.grey else line_of(k)["color"]
             self._rods += ax.plot(
                 [],
                 [],
@@ -99,12 +117,16 @@ class Drawing:
             if self._heat is not None:
                 self._gases[j].set_alpha(float(self._heat[sample, k]))
 
-    def _frame(self, ax: Axes, radius: float) -> None:
+    def _frame(self, ax: Axes, radius: float, look: Look) -> None:
         """Limits that hold every position of the cylinders drawn."""
         parts, chosen = self._parts, self._cylinders
-        shapes = [*parts.piston[:, chosen].reshape(-1, 2), *parts.liner[chosen].reshape(-1, 2)]
-        across, up = on_paper(np.array(shapes))
-        edge = radius * (1.0 + _STROKE_WIDTH)
+        liners = parts.liner[chosen]
+        walls = liners[:, 1:3] - liners[:, [0, 3]]  # from foot to head
+        along = walls / np.linalg.norm(walls, axis=-1, keepdims=True)
+        above = liners[:, 1:3] + look.above * radius / _MM * along
+        shapes = (parts.piston[:, chosen], liners, above)
+        across, up = on_paper(np.concatenate([shape.reshape(-1, 2) for shape in shapes]))
+        edge = radius * look.around
         left, right = min(across.min(), -edge), max(across.max(), edge)
         low, high = min(up.min(), -edge), max(up.max(), edge)
         margin = _MARGIN * max(right - left, high - low)

@@ -15,6 +15,7 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from crankmbs.figures.cylinders import one_curve_each, whose
 from crankmbs.figures.style import (
     STYLE,
     footer,
@@ -22,7 +23,6 @@ from crankmbs.figures.style import (
     legend,
     line_of,
     mark_points,
-    name_of,
     panels,
 )
 from crankmbs.figures.view import View
@@ -55,7 +55,7 @@ def main_bearing_figure(view: View) -> Figure:
     """Force of the main bearings on the crank, all cylinders, in the engine's frame."""
     figure, (ax,) = panels(1, 1, 8.0, 8.0)
     x, y = view.values("main_bearing_force_x"), view.values("main_bearing_force_y")
-    _draw(ax, [x], [y], [view.degrees], _ENGINE)
+    _draw(ax, ([x], [y]), view.degrees, [[0]], _ENGINE)
     ax.set_title("main bearing: bearing on crank, engine's frame")
     _caption(figure, view, "crank angle")
     return figure
@@ -66,12 +66,13 @@ def crank_pin_figure(view: View) -> Figure:
     """Force of the crank on the rod: in the cylinder's frame, and turning with the crank."""
     figure, (fixed, turning) = panels(1, 2, 14.0, 8.0)
     x, y, cycles = _columns(view, "crank_pin_force")
-    _draw(fixed, x, y, cycles, _CYLINDER)
+    groups = _groups(view, x, y, cycles)
+    _draw(fixed, (x, y), cycles[0], groups, _CYLINDER)
     fixed.set_title("crank pin: crank on rod, cylinder's frame")
     angle = [np.radians(cycle) for cycle in cycles]
     radial = [np.cos(a) * u + np.sin(a) * v for a, u, v in zip(angle, x, y, strict=True)]
     tangential = [np.cos(a) * v - np.sin(a) * u for a, u, v in zip(angle, x, y, strict=True)]
-    _draw(turning, radial, tangential, cycles, _THROW)
+    _draw(turning, (radial, tangential), cycles[0], groups, _THROW)
     turning.set_title("crank pin: crank on rod, turning with the crank")
     _finish(figure, fixed, view)
     return figure
@@ -82,7 +83,7 @@ def piston_pin_figure(view: View) -> Figure:
     """Force of the rod on the piston in the cylinder's frame."""
     figure, (ax,) = panels(1, 1, 8.0, 8.0)
     x, y, cycles = _columns(view, "piston_pin_force")
-    _draw(ax, x, y, cycles, _CYLINDER)
+    _draw(ax, (x, y), cycles[0], _groups(view, x, y, cycles), _CYLINDER)
     ax.set_title("piston pin: rod on piston, cylinder's frame")
     _finish(figure, ax, view)
     return figure
@@ -92,6 +93,19 @@ def _columns(view: View, name: str) -> tuple[list[Array], list[Array], list[Arra
     x, y = view.values(f"{name}_x"), view.values(f"{name}_y")
     count = x.shape[1]
     return list(x.T), list(y.T), [view.cycle_degrees(k) for k in range(count)]
+
+
+def _groups(view: View, x: list[Array], y: list[Array], cycles: list[Array]) -> list[list[int]]:
+    """Cylinders whose curves coincide: those whose forces do at the same cycle angle."""
+    if not view.whole:
+        return [[k] for k in range(len(x))]
+    period = math.degrees(view.scene.period)
+
+    def side_by_side(curves: list[Array]) -> Array:
+        pairs = zip(cycles, curves, strict=True)
+        return np.stack([np.interp(cycles[0], *pair, period=period) for pair in pairs], axis=-1)
+
+    return one_curve_each(side_by_side(x), side_by_side(y))
 
 
 def _finish(figure: Figure, ax: Axes, view: View) -> None:
@@ -114,18 +128,27 @@ def _caption(figure: Figure, view: View, angle: str) -> None:
 
 
 def _draw(
-    ax: Axes, up: list[Array], left: list[Array], degrees: list[Array], sense: tuple[str, str]
+    ax: Axes,
+    curves: tuple[list[Array], list[Array]],
+    degrees: Array,
+    groups: list[list[int]],
+    sense: tuple[str, str],
 ) -> None:
-    """Draw one curve per cylinder and mark the first one at every 90 degrees."""
+    """Draw one curve for each group of cylinders and mark the first one at every 90 degrees.
+
+    curves : upwards and to the left; degrees : of the first cylinder
+    """
+    up, left = curves
     scale, unit = force_scale(*up, *left)
-    for k, (x, y) in enumerate(zip(up, left, strict=True)):
-        ax.plot(y / scale, x / scale, **line_of(k), linewidth=1.8, label=name_of(k))
+    for group in groups:
+        k = group[0]
+        ax.plot(left[k] / scale, up[k] / scale, **line_of(k), linewidth=1.8, label=whose(group))
     mark_points(ax)
     ax.axhline(0.0, color="0.55", linewidth=1.0, zorder=1)
     ax.axvline(0.0, color="0.55", linewidth=1.0, zorder=1)
     ax.set_ylabel(f"{sense[0]} [{unit}]")
     ax.set_xlabel(f"{sense[1]} [{unit}]")
-    marks = _marks(left[0] / scale, up[0] / scale, degrees[0])
+    marks = _marks(left[0] / scale, up[0] / scale, degrees)
     _frame(ax, np.concatenate(left) / scale, np.concatenate(up) / scale, marks)
 
 

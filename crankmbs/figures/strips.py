@@ -8,15 +8,16 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from crankmbs.figures.cycles import mark_events
+from crankmbs.figures.cylinders import one_curve_each, whose
 from crankmbs.figures.style import (
     STYLE,
     crank_axis,
     footer,
     force_scale,
+    keep_flat,
     legend,
     line_of,
     mark_points,
-    name_of,
     panels,
 )
 from crankmbs.figures.view import View
@@ -24,9 +25,6 @@ from crankmbs.numerics.arrays import Array
 from crankmbs.scene.units import RPM
 
 __all__ = ["forces_figure", "piston_motion_figure", "speed_figure", "torque_figure"]
-
-
-_FLAT = 1e-6  # of the mean: a speed that varies less is drawn as constant
 
 
 @rc_context(STYLE)
@@ -49,7 +47,7 @@ def speed_figure(view: View) -> Figure:
             angle = np.degrees(events["crank_angle"].values) / 360.0
             mark_events(axes[0], view.result, events["time"].values if in_time else angle)
         mark_points(axes[0])
-    _speed(axes[-1], view.degrees, view.values("crank_speed"))
+    _speed(axes[-1], *view.drawn(view.degrees, view.values("crank_speed")))
     crank_axis(axes[-1:], view)
     footer(figure, view.result, "crank speed")
     return figure
@@ -64,8 +62,9 @@ def piston_motion_figure(view: View) -> Figure:
         ("piston_velocity", 1.0, "velocity towards\nthe crank [m/s]"),
         ("piston_acceleration", 1.0, "acceleration towards\nthe crank [m/s$^2$]"),
     )
+    groups = one_curve_each(*(view.values(name) for name, _, _ in rows))
     for ax, (name, scale, label) in zip(axes, rows, strict=True):
-        _per_cylinder(ax, view, view.values(name) * scale)
+        _per_cylinder(ax, view, view.values(name) * scale, groups)
         ax.set_ylabel(label)
     crank_axis(axes, view)
     legend(figure, axes[0])
@@ -84,9 +83,10 @@ def forces_figure(view: View) -> Figure:
     if view.scene.gas is None:
         del names["gas_force"]
     figure, axes = panels(len(names), 1, 10.0, 3.5 * len(names))
+    groups = one_curve_each(*map(view.values, names))
     for ax, (name, label) in zip(axes, names.items(), strict=True):
         scale, unit = force_scale(view.values(name))
-        _per_cylinder(ax, view, view.values(name) / scale)
+        _per_cylinder(ax, view, view.values(name) / scale, groups)
         ax.set_ylabel(f"{label} [{unit}]")
     crank_axis(axes, view)
     legend(figure, axes[0])
@@ -101,14 +101,15 @@ def torque_figure(view: View) -> Figure:
     figure, (ax,) = panels(1, 1, 10.0, 6.0)
     torque = view.values("crank_torque")
     several = torque.shape[1] > 1
-    for k in range(torque.shape[1]):
-        label = name_of(k) if several else "rod on crank"
+    degrees, drawn = view.drawn(view.degrees, torque)
+    for group in one_curve_each(torque):
+        label = whose(group) if several else "rod on crank"
         width = 1.2 if several else 2.0
-        ax.plot(view.degrees, torque[:, k], **line_of(k), linewidth=width, label=label)
+        ax.plot(degrees, drawn[:, group[0]], **line_of(group[0]), linewidth=width, label=label)
     if several:
-        ax.plot(view.degrees, torque.sum(axis=1), color="black", linewidth=2.5, label="all rods")
-    outside = view.values("external_torque")
-    ax.plot(view.degrees, outside, color="0.45", linestyle=(0, (5, 2)), label="from outside")
+        ax.plot(degrees, drawn.sum(axis=1), color="black", linewidth=2.5, label="all rods")
+    _, outside = view.drawn(view.degrees, view.values("external_torque"))
+    ax.plot(degrees, outside, color="0.45", linestyle=(0, (5, 2)), label="from outside")
     ax.set_ylabel("torque, positive in the\nsense of rotation +theta [N m]")
     crank_axis([ax], view)
     legend(figure, ax)
@@ -116,17 +117,15 @@ def torque_figure(view: View) -> Figure:
     return figure
 
 
-def _per_cylinder(ax: Axes, view: View, values: Array) -> None:
+def _per_cylinder(ax: Axes, view: View, values: Array, groups: list[list[int]]) -> None:
     ax.axhline(0.0, color="0.55", linewidth=1.0)
-    for k in range(values.shape[1]):
-        label = name_of(k) if values.shape[1] > 1 else None
-        ax.plot(view.degrees, values[:, k], **line_of(k), label=label)
+    degrees, drawn = view.drawn(view.degrees, values)
+    for group in groups:
+        label = whose(group) if values.shape[1] > 1 else None
+        ax.plot(degrees, drawn[:, group[0]], **line_of(group[0]), label=label)
 
 
 def _speed(ax: Axes, angle: Array, speed: Array) -> None:
     ax.plot(angle, speed / RPM, **line_of(0))
     ax.set_ylabel("crank speed [rpm]")
-    mean = abs(float(np.mean(speed))) / RPM
-    if np.ptp(speed) / RPM <= _FLAT * mean:  # keep rounding from being blown up to a curve
-        middle, margin = float(speed[0]) / RPM, 0.01 * mean or 1.0
-        ax.set_ylim(middle - margin, middle + margin)
+    keep_flat(ax, speed / RPM)

@@ -8,25 +8,28 @@ import textwrap
 from typing import Any, Literal
 
 import numpy as np
+from matplotlib import rcParams
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from crankmbs.figures.view import View
+from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 
 __all__ = [
     "COLOURS",
+    "FLAT",
     "STYLE",
     "caption",
     "crank_axis",
     "footer",
     "force_scale",
+    "keep_flat",
     "legend",
     "line_of",
     "mark_points",
-    "name_of",
     "panels",
     "png",
 ]
@@ -35,7 +38,9 @@ __all__ = [
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00")
 _DASHES = ("-", (0, (6, 2)), (0, (6, 2, 1.5, 2)), (0, (2.5, 1.5)))
 _GREY = "0.55"
-_SMALL, _LINE = 11, 14  # points: size of the text at the dead centres, and of a line of it
+FLAT = 1e-6  # of the mean: what varies less is drawn as constant
+_SMALLER = 2  # points: text at the dead centres and of the caption, than the type of the figure
+_LINE = 1.27  # of its size: a line of it
 
 STYLE: Any = {
     "figure.dpi": 150,
@@ -91,14 +96,9 @@ def line_of(cylinder: int) -> dict[str, Any]:
     }
 
 
-def name_of(cylinder: int) -> str:
-    """Legend entry of a cylinder, counted from 0."""
-    return f"cylinder {cylinder + 1}"
-
-
 def force_scale(*forces: NDArray[np.float64]) -> tuple[float, str]:
     """Divisor and unit in which forces read well: N or kN."""
-    peak = max(float(np.max(np.abs(force), initial=0.0)) for force in forces)
+    peak = max(float(np.nanmax(np.abs(force), initial=0.0)) for force in forces)
     return (1e3, "kN") if peak >= 1e3 else (1.0, "N")
 
 
@@ -114,7 +114,8 @@ def crank_axis(axes: list[Axes], view: View) -> int:
     ticks = np.arange(math.ceil(view.low / step) * step, view.high + 1e-6, step)
     period = round(math.degrees(view.scene.period))
     labels = view.dead_centre_labels()
-    below = _lines_below(labels, span / axes[0].get_window_extent().width)
+    size = _small()
+    below = _lines_below(labels, size, span / axes[0].get_window_extent().width)
     for ax in axes:
         mark_points(ax)
         ax.set_xlim(view.low, view.high)
@@ -127,24 +128,29 @@ def crank_axis(axes: list[Axes], view: View) -> int:
             text,
             (at, 1.0),
             xycoords=("data", "axes fraction"),
-            xytext=(0, 3 + below[at] * _LINE),
+            xytext=(0, 3 + below[at] * _LINE * size),
             textcoords="offset points",
             ha="center",
             va="bottom",
-            fontsize=_SMALL,
+            fontsize=size,
             color="0.35",
         )
-    axes[-1].set_xlabel(f"crank angle [deg], {view.window.kind}")
+    begun = "" if view.begun is None else f", begun at {round(view.begun, 1):g}"
+    axes[-1].set_xlabel(f"crank angle [deg], {view.window.kind}{begun}")
     return max((below[at] + text.count("\n") + 1 for at, text in labels.items()), default=0)
 
 
-def _lines_below(labels: dict[float, str], per_pixel: float) -> dict[float, int]:
+def _small() -> float:
+    return float(rcParams["font.size"]) - _SMALLER
+
+
+def _lines_below(labels: dict[float, str], size: float, per_pixel: float) -> dict[float, int]:
     """On how many lines a label has to stand, by its angle [deg]: on those of the one before, where
     it would run into it.
 
-    per_pixel : [deg]
+    size [points] : of the type; per_pixel : [deg]
     """
-    letter = 0.65 * _SMALL / 72.0 * STYLE["figure.dpi"] * per_pixel
+    letter = 0.65 * size / 72.0 * STYLE["figure.dpi"] * per_pixel
     below: dict[float, int] = {}
     end, lines = -math.inf, 0  # of the last label that stands on the panel
     for at, text in sorted(labels.items()):
@@ -162,6 +168,15 @@ def mark_points(ax: Axes) -> None:
             line.set_marker("o")
 
 
+def keep_flat(ax: Axes, values: Array) -> None:
+    """Draw values, in the unit of the axis, as constant where they are but for rounding."""
+    mean = abs(float(np.nanmean(values)))
+    low, high = float(np.nanmin(values)), float(np.nanmax(values))
+    if high - low <= FLAT * mean:
+        margin = 0.01 * mean or 1.0
+        ax.set_ylim(low - margin, low + margin)
+
+
 def legend(figure: Figure, *axes: Axes) -> None:
     """One legend above the panels, out of the way of the curves of these."""
     pairs = [pair for ax in axes for pair in zip(*ax.get_legend_handles_labels(), strict=True)]
@@ -174,10 +189,10 @@ def legend(figure: Figure, *axes: Axes) -> None:
 def footer(figure: Figure, result: Result, about: str) -> None:
     """Say under the figure which run it shows."""
     lines = textwrap.wrap(result.scene.title, 80, max_lines=2, placeholder=" ...")
-    lines += textwrap.wrap(f"{about} ({result.formulation})", 105)
+    lines += textwrap.wrap(f"{about} ({result.formulation})", 100)
     caption(figure, lines)
 
 
 def caption(figure: Figure, lines: list[str]) -> None:
     """Write lines under the figure as they are: in a title a $ is no formula."""
-    figure.supxlabel("\n".join(lines), fontsize=11, color="0.35", parse_math=False)
+    figure.supxlabel("\n".join(lines), fontsize=_small(), color="0.35", parse_math=False)

@@ -22,14 +22,20 @@ __all__ = ["View", "last_view"]
 
 
 _SAME = 0.5  # deg: dead centres closer than this share one line
+_THERE = 1e-6  # deg: a cycle that begins so near to where the axis does is drawn in one piece
 
 
 @dataclass(frozen=True)
 class View:
     """The last cycle of a result.
 
+    A whole cycle is shown from the cycle angle 0 of cylinder 1, the gas-exchange dead centre of a
+    four-stroke, wherever the run ends.
+
     data : its samples; degrees : shape (n,), crank angle less whole periods
     low, high [deg] : the stretch of crank angle shown
+    whole : a last cycle, turned through in one sense
+    begun [deg] : where such a cycle begins if it is cut at ``low``; None: nothing is cut
     """
 
     result: Result
@@ -38,6 +44,8 @@ class View:
     degrees: Array
     low: float
     high: float
+    whole: bool
+    begun: float | None
 
     @property
     def scene(self) -> Scene:
@@ -48,6 +56,31 @@ class View:
         """A variable over the cycle, shape (n,) or (n, cylinders)."""
         values: Array = self.data[name].values
         return values
+
+    def drawn(self, degrees: Array, values: Array) -> tuple[Array, Array]:
+        """Values over crank angles of the cycle [deg], in its order, as a line shows them.
+
+        What lies before ``low`` comes a period later, behind a gap where the run ends: one cycle
+        need not end as it began. Both pieces reach the edges of the axis or a sample beyond.
+        """
+        if self.begun is None:
+            return degrees, values
+        if degrees[0] > degrees[-1]:
+            degrees, values = degrees[::-1], values[::-1]
+        late = int(np.searchsorted(degrees, self.low, side="right"))
+        begin, end = max(late - 1, 0), late + 1
+        gap = np.full((1, *values.shape[1:]), np.nan)
+        later = degrees[:end] + (self.high - self.low)
+        return (
+            np.concatenate([degrees[begin:], [np.nan], later]),
+            np.concatenate([values[begin:], gap, values[:end]]),
+        )
+
+    def on_axis(self, degrees: Array) -> Array:
+        """Where crank angles of the cycle [deg] lie on the axis."""
+        if self.begun is None:
+            return degrees
+        return self.low + np.mod(degrees - self.low, self.high - self.low)
 
     def cycle_degrees(self, cylinder: int) -> Array:
         """Cycle angle of a cylinder, counted from 0, at the samples [deg]."""
@@ -94,7 +127,7 @@ class View:
             return False
         if "fuel" not in self.data:
             return True
-        nearest = int(np.argmin(np.abs(self.degrees - at)))
+        nearest = int(np.argmin(np.abs(self.on_axis(self.degrees) - at)))
         return float(self.values("fuel")[nearest, cylinder]) > 0.0
 
 
@@ -112,9 +145,17 @@ def last_view(result: Result) -> View:
     angle = data["crank_angle"].values
     end = float(angle[-1])
     low, high = sorted((end - window.angle, end))
-    if window.kind == "whole run":
+    in_one_sense = bool(np.all(np.diff(angle) * window.angle >= 0.0))
+    if window.kind == "whole run" or not in_one_sense:
         low, high = float(angle.min()), float(angle.max())
-    period = result.scene.period
+    whole = window.kind == "last cycle" and in_one_sense
+    period, begun = result.scene.period, None
+    if whole:
+        zero = -result.scene.cylinders[0].phase
+        begin = zero + math.ceil((low - zero) / period - math.radians(_THERE)) * period
+        if begin - low > math.radians(_THERE):
+            begun = math.degrees((low if window.angle > 0.0 else high) % period)
+            low, high = begin, begin + period
     shift = math.floor(low / period + 1e-9) * period
     if low == high:  # the crank stands still
         low, high = low - DEGREE, high + DEGREE
@@ -125,4 +166,6 @@ def last_view(result: Result) -> View:
         degrees=np.degrees(angle - shift),
         low=math.degrees(low - shift),
         high=math.degrees(high - shift),
+        whole=whole,
+        begun=begun,
     )

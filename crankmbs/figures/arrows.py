@@ -1,0 +1,138 @@
+"""The forces on one body of the mechanism as arrows, with the bar that is their scale."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from crankmbs.figures.frames import round_below
+from crankmbs.figures.mechanism import on_paper
+from crankmbs.figures.outline import Mechanism, in_engine_frame
+from crankmbs.numerics.arrays import Array
+from crankmbs.scene.scene import Scene
+
+__all__ = ["BODIES", "COLOUR", "Arrows", "Force", "draw_bar", "forces_on", "largest"]
+
+BODIES = ("piston", "rod", "crank")
+COLOUR = {"gas": "#b85400", "wall": "#00805c", "pin": "#0068a5", "bearing": "#8b3f86"}
+_REACH = 1.2  # of the crank radius: the longest arrow
+_BAR = 2.2  # the largest force is about so many times the bar, or up to twice as many
+_WIDTH = 0.15  # of the crank radius: an arrow's shaft
+
+
+@dataclass(frozen=True)
+class Force:
+    """A force on a body, in the engine's frame.
+
+    kind : of what it comes from, a colour; cylinder : from 0, or None for the whole engine's
+    at [m], force [N] : shape (n, 2); pushes : drawn with its tip where it acts, not its tail, while
+        it points against this direction, shape (n, 2), or never
+    """
+
+    name: str
+    kind: str
+    cylinder: int | None
+    at: Array
+    force: Array
+    pushes: Array | None = None
+
+
+def forces_on(body: str, scene: Scene, parts: Mechanism, data: dict[str, Array]) -> list[Force]:
+    """The forces on "piston", "rod" or "crank" of every cylinder, weights apart.
+
+    parts : at the samples; data : variables by name, shape (n,) or (n, cylinders)
+    """
+    draw = {"piston": _on_piston, "rod": _on_rod, "crank": _on_crank}[body]
+    count = len(scene.cylinders)
+    found = [force for k in range(count) for force in draw(k, scene, parts, data)]
+    if body == "crank":
+        force = np.stack([data["main_bearing_force_x"], data["main_bearing_force_y"]], axis=-1)
+        found.append(Force("bearings on crank", "bearing", None, np.zeros_like(force), force))
+    return found
+
+
+def _on_piston(k: int, scene: Scene, parts: Mechanism, data: dict[str, Array]) -> list[Force]:
+    pin, corners = parts.piston_pin[:, k], parts.piston[:, k]
+    none = np.zeros_like(data["side_force"])
+    side = in_engine_frame(scene, none, data["side_force"])[:, k]
+    found = [
+        Force("wall on piston", "wall", k, pin, side),
+        replace(_of_pin("rod on piston", k, scene, data, "piston_pin_force"), at=pin),
+    ]
+    if "friction_force" in data:
+        rubs = in_engine_frame(scene, -data["friction_force"], none)[:, k]
+        away = np.where(data["side_force"][:, k, None] > 0.0, -0.5, 0.5)
+        at = pin + away * (corners[:, 0] - corners[:, 3])  # on the side that the wall presses
+        found.append(Force("friction on piston", "bearing", k, at, rubs))
+    if "gas_force" in data:
+        gas = in_engine_frame(scene, -data["gas_force"], none)[:, k]
+        crown = 0.5 * (corners[:, 1] + corners[:, 2])
+        found.append(Force("gas on piston", "gas", k, crown, gas, pushes=crown - pin))
+    return found
+
+
+def _on_rod(k: int, scene: Scene, parts: Mechanism, data: dict[str, Array]) -> list[Force]:
+    pin = _of_pin("piston on rod", k, scene, data, "piston_pin_force")
+    big = _of_pin("crank on rod", k, scene, data, "crank_pin_force")
+    return [
+        replace(pin, at=parts.piston_pin[:, k], force=-pin.force),
+        replace(big, at=parts.crank_pin[:, k], kind="bearing"),
+    ]
+
+
+def _on_crank(k: int, scene: Scene, parts: Mechanism, data: dict[str, Array]) -> list[Force]:
+    rod = _of_pin("rod on crank", k, scene, data, "crank_pin_force")
+    return [replace(rod, at=parts.crank_pin[:, k], force=-rod.force)]
+
+
+def _of_pin(name: str, k: int, scene: Scene, data: dict[str, Array], variable: str) -> Force:
+    force = in_engine_frame(scene, data[f"{variable}_x"], data[f"{variable}_y"])[:, k]
+    return Force(name, "pin", k, np.zeros_like(force), force)
+
+
+def largest(forces: list[Force]) -> float:
+    """The largest magnitude [N] of some forces; 0 without any."""
+    return max((float(np.max(np.hypot(*each.force.T))) for each in forces), default=0.0)
+
+
+class Arrows:
+    """Arrows of some forces on axes of their own; newtons : of the longest, one crank radius and a
+    fifth; radius : of the crank, in the axes' unit."""
+
+    def __init__(self, ax: Axes, forces: list[Force], radius: float, newtons: float) -> None:
+        scale = _REACH * radius / newtons
+        self._tails: list[Array] = []
+        self._arrows: list[Array] = []
+        for each in forces:
+            vector = np.stack(on_paper(each.force), axis=-1) / 1e3 * scale  # on_paper gives mm
+            tail = np.stack(on_paper(each.at), axis=-1)
+            if each.pushes is not None:
+                against = np.sum(each.force * each.pushes, axis=-1) < 0.0
+                tail = tail - np.where(against[:, None], vector, 0.0)
+            self._tails.append(tail)
+            self._arrows.append(vector)
+        still: Any = {"angles": "xy", "scale_units": "xy", "scale": 1.0, "units": "xy"}
+        still |= {"width": _WIDTH * radius, "zorder": 25, "clip_on": False}
+        colours = [COLOUR[each.kind] for each in forces]
+        none = np.zeros(len(forces))
+        self._quiver = ax.quiver(none, none, none, none, color=colours, **still)
+
+    def move(self, sample: int) -> None:
+        """Put every arrow where it is at a sample."""
+        self._quiver.set_offsets([tail[sample] for tail in self._tails])
+        self._quiver.set_UVC(*np.array([arrow[sample] for arrow in self._arrows]).T)
+
+
+def draw_bar(ax: Axes, radius: float, newtons: float) -> None:
+    """A bar as long as a round force, in the lower left corner; arguments as of `Arrows`."""
+    force = round_below(newtons / _BAR)
+    long = _REACH * radius * force / newtons
+    notch = 0.06 * radius
+    left, low = ax.get_xlim()[0] + notch, ax.get_ylim()[0] + notch
+    x, y = [left, left, left + long, left + long], [low + notch, low, low, low + notch]
+    ax.plot(x, y, color="0.1", linewidth=2.0, clip_on=False, zorder=25)
+    size = f"{force / 1e3:g} kN" if force >= 1e3 else f"{force:g} N"
+    ax.text(left, low + 2.5 * notch, size, fontsize=15, zorder=25)

@@ -1,0 +1,81 @@
+"""What the figures of the lessons draw and say, asked of their modules without controls."""
+
+import json
+import re
+from functools import cache
+from importlib import import_module
+
+from crankmbs import load_scene
+from crankmbs.lessons import LESSONS
+from crankmbs.lessons.article import article
+from crankmbs.page import joined
+
+CHANGED = {
+    "valley": {"rod_ratio": 0.35},
+    "half": {"rod_ratio": 0.4},
+    "series": {"rod_ratio": 0.4},
+    "side": {"share": 1.3},
+    "turning": {"speed": 1500.0},
+    "twin": {"bank": 70.0, "weight": 40.0},
+    "step": {"size": 10.0, "method": "Heun"},
+    "order": {"size": 10.0},
+    "stated": {"size": 2.5, "method": "Heun"},
+}
+"""Values of a figure's knobs in place of those that it begins with, where these show less."""
+
+_PROBE = """([script, text, changed, fine]) => {
+  const { lesson, engine, cycle, turned, answers } = eval(script);
+  const given = answers.decoded(JSON.parse(text));
+  const turner = new turned.Turner(given);
+  const figures = lesson.start();
+  return JSON.stringify(Object.fromEntries(given.figures.map((spec) => {
+    const made = figures[spec.name];
+    const values = { ...spec.values, ...changed[spec.name] };
+    const scene = made.scene ? made.scene(turner, values, given) : turner.scene(values);
+    const shown = cycle.cycleOf(new engine.Engine(given.rules), scene, given.endings, { fine });
+    const shapes = made.shapes(shown, values, given);
+    return [spec.name, {
+      values, scene: { ...scene, gas: null, loads: null }, levels: made.levels?.(shown) ?? null,
+      says: made.says?.(shown, values, given) ?? {},
+      shapes: shapes.map(({ curves, differences, of }) =>
+        ({ curves, differences, now: of(shown.angles[100]) })),
+      samples: shown.samples, angles: shown.angles, mean: shown.mean, rows: shown.rows,
+      fluctuation: shown.fluctuation, textbook: given.textbook ?? null,
+    }];
+  })));
+}"""
+
+
+@cache
+def made(name):
+    """A lesson with the scene that it is about."""
+    module = import_module(f"crankmbs.lessons.{name}")
+    return module.lesson(load_scene(module.SCENE))
+
+
+@cache
+def given(name):
+    """What the page of a lesson is given."""
+    text = article(made(name), name, dict.fromkeys(LESSONS, ""), linked=False)
+    return re.search(r'id="given"[^>]*>(.*?)</script>', text, re.DOTALL)[1]
+
+
+def lesson_script(name):
+    """The script of a lesson, whose start gives its figures, with the modules that compute."""
+    script = joined(f"lesson_{name}")
+    for old, new in (
+        ("return begun(", "return ("),
+        (
+            f"return lesson_{name};\n}})()",
+            f"return {{ lesson: lesson_{name}, engine, cycle, turned, answers }};\n}})()",
+        ),
+    ):
+        assert script.count(old) == 1
+        script = script.replace(old, new)
+    return script
+
+
+def probe(page, script, name):
+    """What all figures of a lesson draw and say: figure -> what; of the lesson on errors with the
+    second pass, whose own error does not show beside those that it is about."""
+    return json.loads(page.evaluate(_PROBE, [script, given(name), CHANGED, name == "trust"]))

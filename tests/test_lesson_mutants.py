@@ -1,0 +1,37 @@
+"""Break what the lessons compute by themselves, one formula at a time: their guards see it."""
+
+import pytest
+from lesson_guards import wrong
+from lesson_mutants import MUTANTS
+from lesson_shown import lesson_script, probe
+from playwright.sync_api import Error
+
+from crankmbs.lessons import LESSONS
+
+
+@pytest.mark.parametrize("name", LESSONS)
+def test_what_a_lesson_shows_is_true(page, name):
+    assert wrong(name, probe(page.page, lesson_script(name), name)) == []
+
+
+@pytest.mark.parametrize("name", LESSONS)
+def test_a_broken_formula_of_a_lesson_is_seen(page, name):
+    head, begin, own = lesson_script(name).partition(f"const lesson_{name} = (() => {{")
+    survivors = []
+    for find, replace in MUTANTS[name]:
+        assert own.count(find) == 1, f"{find!r} stands {own.count(find)} times"
+        if not seen(page, head + begin + own.replace(find, replace), name):
+            survivors.append((find, replace))
+    assert survivors == []
+
+
+def seen(page, script, name):
+    """Whether a mutant breaks a guard or ends in an error, but not as it is no script."""
+    try:
+        return wrong(name, probe(page.page, script, name)) != []
+    except Error as error:
+        return "SyntaxError" not in str(error)
+
+
+def test_every_lesson_has_mutants():
+    assert sorted(MUTANTS) == sorted(LESSONS)
