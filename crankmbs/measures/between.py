@@ -15,7 +15,7 @@ from crankmbs.mechanics.inertia import inertia_alone, reduce
 from crankmbs.mechanics.reactions import reactions
 from crankmbs.mechanics.speed import speed_law
 from crankmbs.mechanics.torque import torque_at
-from crankmbs.mechanics.train import crank_train
+from crankmbs.mechanics.train import CrankTrain, crank_train
 from crankmbs.mechanics.windows import span
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
@@ -43,18 +43,19 @@ class Between:
     """The motion of a result between its samples.
 
     result : finely sampled
+    train : its crank train
     state : crank angle, speed and acceleration, each of shape (n,), at times of shape (n,) [s]
     """
 
     result: Result
+    train: CrankTrain
     state: Callable[[Array], State]
 
     def variables(self, time: Array) -> dict[str, Array]:
         """Every variable but the energy residual at times of shape (n,) [s]."""
-        scene = self.result.scene
         theta, omega, alpha = self.state(time)
         fuel = _fuel_at(self.result.data, time)
-        found = reactions(crank_train(scene), theta, omega, alpha, fuel)
+        found = reactions(self.train, theta, omega, alpha, fuel)
         return found | {"crank_angle": theta, "crank_speed": omega, "crank_acceleration": alpha}
 
 
@@ -76,21 +77,23 @@ def refined(result: Result, first: int) -> tuple[Between, ...]:
     >>> print(finest.result.data.sizes["time"] > 50_000)
     True
     """
-    data = result.data.isel(time=slice(first, None))
+    data, train = result.data.isel(time=slice(first, None)), crank_train(result.scene)
     if data.sizes["time"] < 2:
-        return (Between(replace(result, data=data), _alone(data)),)
+        return (Between(replace(result, data=data), train, _alone(data)),)
     spacing = float(np.mean(np.abs(np.diff(data["crank_angle"].values))))
     parts = min(max(math.ceil(spacing / _SPACING), _FEWEST), _MOST)
     if result.scene.motion is not None:
         law = speed_law(result.scene.motion)
         time = _joined(_cut(data["time"].values, 2 * parts))
-        return (Between(sampled(result, data, time, *law.at_time(time)), law.at_time),)
-    free = _Free(result.scene, data)
+        even = sampled(result, train, data, time, law.at_time(time))
+        return (Between(even, train, law.at_time),)
+    free = _Free(train, data)
     coarse, fine = (free.motion(parts * k, _PASSES * k) for k in (1, 2))
     if coarse is None or fine is None:
         return ()
     return tuple(
-        Between(sampled(result, data, *motion), free.between(*motion)) for motion in (coarse, fine)
+        Between(sampled(result, train, data, time, state), train, free.between(time, *state))
+        for time, *state in (coarse, fine)
     )
 
 
@@ -103,12 +106,13 @@ def _alone(data: xr.Dataset) -> Callable[[Array], State]:
 class _Free:
     """The equation of motion of a free crank between its samples."""
 
-    def __init__(self, scene: Scene, data: xr.Dataset) -> None:
+    def __init__(self, train: CrankTrain, data: xr.Dataset) -> None:
+        scene = train.scene
         self._time, self._outside = (data[name].values for name in ("time", "external_torque"))
         self._theta, self._omega = (data[name].values for name in _MOTION[:2])
         late, ahead = (float(data[n].attrs["error_estimate"]) for n in ("time", "crank_angle"))
         self._unsure = 2.0 * (ahead + late * float(np.max(np.abs(self._omega))))  # angle [rad]
-        self._scene, self._train, self._data = scene, crank_train(scene), data
+        self._scene, self._train, self._data = scene, train, data
         self._spans = [span(load, self._time, self._omega) for load in scene.torque]
         self._beside = self._outside - torque_at(
             scene.torque, self._time, self._theta, self._omega, self._spans
@@ -214,14 +218,13 @@ def _running(values: Array, width: Array) -> Array:
 
 
 def sampled(
-    result: Result, data: xr.Dataset, time: Array, theta: Array, omega: Array, alpha: Array
+    result: Result, train: CrankTrain, data: xr.Dataset, time: Array, state: State
 ) -> Result:
     """The result at these samples: every variable but the energy residual. Where one is larger than
     at the samples of ``data`` its error grows by as much, relatively, as the result states."""
     import xarray as xr
 
-    fuel = _fuel_at(data, time)
-    train, friction = crank_train(result.scene), None
+    (theta, omega, alpha), fuel, friction = state, _fuel_at(data, time), None
     if result.scene.friction is not None:
         friction = friction_forces(train, theta, omega, fuel)
         rests = omega == 0.0  # where it is what holds the crank

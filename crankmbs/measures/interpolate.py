@@ -64,7 +64,7 @@ def interp(
         )
     times = [wanted if unit == "s" else _passed(result, motion, wanted) for motion in motions]
     found = [
-        sampled(result, result.data, when, *motion.state(when)).data
+        sampled(result, motion.train, result.data, when, motion.state(when)).data
         for when, motion in zip(times, motions, strict=True)
     ]
     _refuse_events(result, times[-1])

@@ -55,7 +55,7 @@ def peaks(
     """
     places, data = _places(result), _values(result)
     time, values = data["time"], _rows(result, data)
-    means = [mean_over_time(result, window, size) for size in values[: len(places)]]
+    means = _means(result, window, values[: len(places)])
     time, values = time[window.inside :], values[:, window.inside :]
     at = None if between is None else lambda t: _rows(result, between.variables(t))
     if at is not None and window.first < window.inside:
@@ -137,12 +137,18 @@ def _joint(
     )
 
 
+def _means(result: Result, window: Span, rows: Array) -> list[Estimate]:
+    """Means over time of quantities at the samples, shape (q, samples)."""
+    if window.duration == 0.0:
+        return [Estimate(float(values[-1]), 0.0) for values in rows]
+    total, error = (part / window.duration for part in integral(result, window, rows.T))
+    return [Estimate(*both) for both in zip(total.tolist(), error.tolist(), strict=True)]
+
+
 def mean_over_time(result: Result, window: Span, values: Array) -> Estimate:
     """Mean over time of values at the samples, with the error of its quadrature."""
-    if window.duration == 0.0:
-        return Estimate(float(values[-1]), 0.0)
-    total, error = integral(result, window, values)
-    return Estimate(float(total) / window.duration, float(error) / window.duration)
+    (mean,) = _means(result, window, values[None])
+    return mean
 
 
 def stated(result: Result, name: str) -> float:

@@ -15,6 +15,7 @@ Indices = NDArray[np.intp]
 
 _MOST = 12  # candidates for one quantity's maximum
 _ROUNDS = 12  # each looks sixteen times closer
+_SAME, _ROUNDING = 2, 4.0 * np.finfo(float).eps  # after two rounds without a gain none follows
 _AROUND = np.linspace(-1.0, 1.0, 33)  # a sixteenth of the reach apart
 
 _T = np.linspace(-0.25, 1.25, 601)  # across one interval, and a little on either side
@@ -42,9 +43,9 @@ def highest(time: Array, values: Array, at: Callable[[Array], Array] | None) -> 
     which, k = _candidates(values)
     last = len(time) - 1
     low, middle, high = time[np.maximum(k - 1, 0)], time[k], time[np.minimum(k + 1, last)]
-    top, row = values[which, k], np.arange(len(k))
+    top, row, same = values[which, k], np.arange(len(k)), 0
     for _ in range(_ROUNDS):
-        if at is None:
+        if at is None or same == _SAME:
             break
         side = np.where(_AROUND < 0.0, (middle - low)[:, None], (high - middle)[:, None])
         t = middle[:, None] + _AROUND * side
@@ -52,7 +53,8 @@ def highest(time: Array, values: Array, at: Callable[[Array], Array] | None) -> 
         best = np.argmax(found, axis=1)
         beside = np.clip([best - 1, best + 1], 0, len(_AROUND) - 1)
         low, middle, high = t[row, beside[0]], t[row, best], t[row, beside[1]]
-        top = found[row, best]
+        before, top = top, found[row, best]
+        same = same + 1 if np.all(np.abs(top - before) <= _ROUNDING * np.abs(top)) else 0
     order = np.lexsort((-top, which))
     first = order[np.searchsorted(which[order], np.arange(len(values)))]
     return middle[first], top[first]
