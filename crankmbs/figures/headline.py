@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from crankmbs.compare import CLOSED_FORM, OBSERVABLES, Deviation, Split, percent
+from crankmbs.compare import CLOSED_FORM, LECTURES, OBSERVABLES, Deviation, Split, percent
 from crankmbs.digits import digits
 
 __all__ = ["budget_headline", "comparison_headline"]
+
+_OWN = "the formula"  # its label would leave no room for the number
 
 
 def comparison_headline(rows: Sequence[Deviation], *, independent: bool) -> tuple[str, str]:
@@ -19,12 +21,13 @@ def comparison_headline(rows: Sequence[Deviation], *, independent: bool) -> tupl
     """
     lectures = [row for row in rows if row.reference != CLOSED_FORM] or rows
     row = max(lectures, key=lambda each: _weight(_share(each)))
-    name = row.reference.partition(" (")[0]
+    lecture = row.reference in (CLOSED_FORM, *LECTURES)
+    name = row.reference.partition(" (")[0] if lecture else _OWN
     if math.isnan(_share(row)):
         size = f"{digits(row.size.largest, most=3)} {OBSERVABLES[row.quantity].units}"
         return f"{_capital(row.quantity)}: the run has none, {name} up to {size}", ""
     first = f"{_capital(row.quantity)}: {name} is off by up to {_percent(_share(row))}"
-    second = _where(row.size.angle)
+    second = _where(row.size.angle) + ("" if lecture else f": {row.reference}")
     own = [_share(each) for each in rows if each.reference == CLOSED_FORM]
     if independent and not any(map(math.isnan, own)):
         second += f"; the run is within {digits(max(own), most=2)} % of the closed form"
@@ -35,7 +38,7 @@ def budget_headline(splits: Sequence[Split]) -> tuple[str, str]:
     """The formula's largest error, and the cause that is worth most."""
     split = max(splits, key=lambda each: _weight(each.share(each.total)))
     share, quantity = split.share(split.total), _capital(split.quantity)
-    whose = "the lecture" if split.is_lecture else split.reference
+    whose = "the lecture" if split.is_lecture else _OWN
     if math.isnan(share):
         return f"{quantity}: the run has none, {whose} has", ""
     if share == 0.0:
