@@ -256,10 +256,12 @@ def _remarks(gas: Gas, table: Table) -> Iterator[str]:
         yield (
             f"{table.source}: the closing row, {apart / BAR:.3g} bar from the first one, is dropped"
         )
+    if gas.interpolation != "cubic":
+        return
     knots, coefficients = interpolate(rows_of_table(gas, table), gas.interpolation)
     beyond, *between = overshoot(knots, coefficients)
     share = beyond / ((max(table.y) - min(table.y)) or 1.0)
-    if gas.interpolation == "cubic" and share > _OVERSHOOT:
+    if share > _OVERSHOOT:
         past = np.array(between) - table.x[0]
         first, second = np.degrees(np.mod(past + KNOT, knots[-1] - knots[0]) - KNOT + table.x[0])
         yield (
