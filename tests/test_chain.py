@@ -257,4 +257,4 @@ def test_a_figure_of_a_formula_has_its_causes(swinging):
         ["run", "N"],
         ["sum of the causes", "two-mass rod", "gravity", "friction", "solver"],
     ]
-    assert "error budget of the formula (too small" in figure.get_supxlabel()
+    assert "error: formula minus run, and its causes (too small" in figure.get_supxlabel()

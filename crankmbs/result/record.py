@@ -180,7 +180,7 @@ class Result:
         ------
         InputError : another kind or joint; no orders without a whole cycle
 
-        >>> simulate(load_scene("propeller")).plot("torque").axes[0].get_xlabel()
+        >>> simulate(load_scene("yi_diesel")).plot("torque").axes[0].get_xlabel()
         'crank angle [deg], last cycle'
         """
         from crankmbs.figures import plot
