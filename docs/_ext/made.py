@@ -38,7 +38,6 @@ _FIGURES = {  # scene, its end, kind of the figure
 
 def _make(app: Sphinx) -> None:
     made = Path(app.srcdir) / "_made"
-    made.mkdir(exist_ok=True)
     for name, text in _PAGES.items():
         (made / f"{name}.md").write_text(text(), encoding="utf-8")
     for name in _VALIDATION:
@@ -60,6 +59,8 @@ def _linked(text: str) -> str:
 
 
 def setup(app: Sphinx) -> dict[str, Any]:
-    """Make all of it before Sphinx reads a page."""
+    """Make all of it before Sphinx reads a page; the folder, before Sphinx looks whether it is
+    there."""
+    (Path(app.srcdir) / "_made" / "pages").mkdir(parents=True, exist_ok=True)
     app.connect("builder-inited", _make)
     return {"parallel_read_safe": True, "parallel_write_safe": True}
