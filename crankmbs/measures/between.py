@@ -92,8 +92,8 @@ def refined(result: Result, first: int) -> tuple[Between, ...]:
     if coarse is None or fine is None:
         return ()
     return tuple(
-        Between(sampled(result, train, data, time, state), train, free.between(time, *state))
-        for time, *state in (coarse, fine)
+        Between(sampled(result, train, data, one[0], one[1:]), train, free.between(*one))
+        for one in (coarse, fine)
     )
 
 
