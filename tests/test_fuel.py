@@ -1,4 +1,7 @@
-"""Shares of the combustion: misfires, scatter, a governor, windows."""
+"""Shares of the combustion: misfires, scatter, a governor, windows.
+
+Long, as every rule of the one law is held beside the same scenes.
+"""
 
 import math
 from dataclasses import replace

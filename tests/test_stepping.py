@@ -1,4 +1,7 @@
-"""A scene in steps over time: the same motion as a run, under what another model sets."""
+"""A scene in steps over time: the same motion as a run, under what another model sets.
+
+Long, as every kind of load, rest and decision is stepped through by the same few helpers.
+"""
 
 import gc
 import math

@@ -259,7 +259,7 @@ def test_a_broken_executor_that_is_given_keeps_what_is_finished(tmp_path):
 @pytest.fixture(scope="module")
 def scheduler():
     """The address of a Dask scheduler on this machine with two workers in their own processes."""
-    distributed = pytest.importorskip("distributed")
+    distributed = pytest.importorskip("distributed", reason="of the extra cluster")
     with distributed.LocalCluster(
         n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
     ) as cluster:
