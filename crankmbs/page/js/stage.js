@@ -96,7 +96,8 @@ export class Stage {
     this.type = (SMALL * this.size.type) / scale;
     const middle = left + 0.5 * width; // what is wider than the drawing is room beside it
     const half = (0.5 * this.size.width) / scale;
-    this.edge = { left: middle - half, right: middle + half };
+    const above = top + 0.5 * (height - this.size.height / scale);
+    this.edge = { left: middle - half, right: middle + half, top: above };
     for (const part of parts) this.fitCylinder(part);
     set(axle, { r: 0.13 * sizes.r * UNITS });
     if (this.magnified) this.fitRing();
@@ -279,7 +280,8 @@ export class Stage {
     const [anchor, near] = side > 0
       ? ["start", Math.min(beyond, edge.right - wide)]
       : ["end", Math.max(beyond, edge.left + wide)];
-    return { "text-anchor": anchor, x: near, y: y + (0.7 * dy * type) / long };
+    const low = Math.max(y + (0.7 * dy * type) / long, edge.top + 1.2 * type);
+    return { "text-anchor": anchor, x: near, y: low };
   }
 }
 
