@@ -39,7 +39,10 @@ export function drawAxes(group, { box, right, up, x, y }, about) {
 function ordinate({ pen, lines }, box, up, { y, type }) {
   const count = Math.max((box.bottom - box.top) / (1.3 * type), 2);
   let { ticks, step } = roundTicks(y.low, y.high, count);
-  if (ticks.length < 2) ({ ticks, step } = roundTicks(y.low, y.high, 2 * count)); // else no scale
+  if (ticks.length < 2) { // one says nothing of the scale
+    ({ ticks, step } = roundTicks(y.low, y.high, 2 * count));
+    if (ticks.length > 3) ticks = ticks.filter((tick) => Math.round(tick / step) % 2 === 0);
+  }
   for (const tick of ticks) {
     const at = up(tick);
     lines[styleOf(tick, step)] += `M${box.left} ${at}H${box.right}`;
