@@ -163,6 +163,7 @@ DRAWING = {
     "lesson_omega": "its formulas have their mutants in `lesson_mutants`",
     "lesson_polar": "its formulas have their mutants in `lesson_mutants`",
     "lesson_trust": "its formulas have their mutants in `lesson_mutants`",
+    "outlines": "gives crank, rod and arrows their shape; arrows are measured against their bar",
     "page": "listens and hands on; tests turn every kind of knob",
     "player": "plays; tests watch it play and pause",
     "plot": "draws what `quantities` gives; tests read its legend and its cursor",

@@ -268,6 +268,29 @@ def test_difference_figure_shows_every_quantity_beside_both_errors(four):
     figure.draw_without_rendering()
 
 
+@pytest.mark.parametrize(
+    ("parts", "labels"),
+    [
+        ([1.0, 2.0, 2.0, 1.0], ["cylinders 1, 4", "cylinders 2, 3"]),
+        ([1.0, 2.0, 2.0, 1.01], ["cylinder 1", "cylinders 2, 3", "cylinder 4"]),
+    ],
+)
+def test_differences_of_cylinders_that_coincide_in_every_panel_are_one_curve(four, parts, labels):
+    other = shifted(four.result, "side_force", parts)
+    rows = differences(four.result, shifted(other, "piston_velocity", [3.0, 5.0, 5.0, 3.0]))
+    figure = difference_figure(four.result, rows)
+    for ax, row in zip(figure.axes, rows, strict=False):
+        lines = [line for line in ax.lines if not line.get_label().startswith("error")]
+        several = row.size.shape[1] > 1
+        assert [line.get_label() for line in lines] == (labels if several else ["difference"])
+        if row.quantity == "side force":
+            first = [parts[int(label.split()[1].rstrip(",")) - 1] for label in labels]
+            assert [line.get_ydata()[5] for line in lines] == pytest.approx(
+                [part / row.peak for part in first], rel=1e-9
+            )
+    assert [text.get_text() for text in figure.legends[0].texts][: len(labels)] == labels
+
+
 def test_runs_of_different_scenes_are_not_compared(one, four):
     with pytest.raises(InputError, match="one scene"):
         differences(one.result, four.result)

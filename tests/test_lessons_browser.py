@@ -107,6 +107,19 @@ def test_a_lesson_fits_every_screen(lesson, name, size):
         assert 10.0 < inner["height"] < 110.0  # built up, and not one line of letters
 
 
+@pytest.mark.parametrize(("name", "figure"), [("forces", "along"), ("omega", "moment")])
+def test_names_of_arrows_stand_within_their_drawing(lesson, name, figure):
+    opened = lesson(name, PHONE)
+    stage = opened.page.locator(f"#{figure} .stage").bounding_box()
+    names = opened.page.locator(f"#{figure} .arrows text").all()
+    assert names
+    for each in names:
+        box = each.bounding_box()
+        for along, size in (("x", "width"), ("y", "height")):
+            assert box[along] >= stage[along] - 2.0
+            assert box[along] + box[size] <= stage[along] + stage[size] + 2.0
+
+
 @pytest.mark.parametrize("name", LESSONS)
 def test_formulas_are_set_in_the_font_that_is_embedded(lesson, name):
     opened = lesson(name)

@@ -211,6 +211,20 @@ def test_nothing_scrolls_sideways_and_no_plot_is_empty(browser, tmp_path, name, 
             assert box["x"] + box["width"] <= size[0]
 
 
+@pytest.mark.parametrize("large", [False, True])
+def test_every_axis_says_its_scale_and_its_numbers_do_not_touch(page, large):
+    """Two ticks at least, also in the strip of a low plot."""
+    if large:
+        page.page.click("#large")
+        page.page.wait_for_timeout(200)
+    for plot in ("upper", "lower"):
+        for axes in page.page.locator(f"#{plot} svg > g:nth-child(-n + 2)").all():
+            boxes = [each.bounding_box() for each in axes.locator("text.end").all()]
+            assert len(boxes) >= 2
+            middles = sorted(box["y"] + 0.5 * box["height"] for box in boxes)
+            assert np.diff(middles).min() > 0.7 * boxes[0]["height"]
+
+
 def test_on_a_laptop_all_knobs_stand_above_the_fold(page):
     assert page.page.evaluate("document.documentElement.scrollHeight") <= LAPTOP[1]
     knobs = page.page.locator(".knob").all()

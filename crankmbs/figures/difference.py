@@ -10,8 +10,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from crankmbs.compare.confirm import Difference
-from crankmbs.figures.cylinders import whose
+from crankmbs.figures.cylinders import one_curve_each, whose
 from crankmbs.figures.style import STYLE, footer, legend, line_of, panels
+from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 
 __all__ = ["difference_figure"]
@@ -22,12 +23,19 @@ _ROUNDING = 1e-17  # of the peak: nothing below it is shown
 
 @rc_context(STYLE)
 def difference_figure(result: Result, differences: tuple[Difference, ...]) -> Figure:
-    """Every difference over the run, relative to the quantity's peak, on one logarithmic scale."""
+    """Every difference over the run, relative to the quantity's peak, on one logarithmic scale.
+
+    Cylinders are one curve where they coincide in every panel. What is below a thousandth of the
+    largest difference of its panel tells no two apart: near its zeros that is rounding.
+    """
     rows = -(-len(differences) // _COLUMNS)
     figure, axes = panels(rows, _COLUMNS, 15.0, 2.9 * rows)
     low, high = _limits(differences)
-    for ax, row in zip(axes, differences, strict=False):
-        _draw(ax, row, low)
+    drawn = [np.maximum(row.size / (row.peak or 1.0), low) for row in differences]
+    several = [sizes for sizes in drawn if sizes.shape[1] > 1]
+    groups = one_curve_each(*several) if several else []
+    for ax, row, sizes in zip(axes, differences, drawn, strict=False):
+        _draw(ax, row, sizes, groups)
         ax.set_ylim(low, high)
     for ax in axes[len(differences) :]:
         ax.set_visible(False)
@@ -39,14 +47,13 @@ def difference_figure(result: Result, differences: tuple[Difference, ...]) -> Fi
     return figure
 
 
-def _draw(ax: Axes, row: Difference, floor: float) -> None:
+def _draw(ax: Axes, row: Difference, sizes: Array, groups: list[list[int]]) -> None:
     peak = row.peak or 1.0
-    several = row.size.shape[1] > 1
-    for k in range(row.size.shape[1]):
-        size = np.maximum(row.size[:, k] / peak, floor)
-        label = whose([k]) if several else "difference"
-        turned = row.crank_angle / (2.0 * math.pi)
-        ax.semilogy(turned, size, **line_of(k), linewidth=1.2, label=label)
+    turned = row.crank_angle / (2.0 * math.pi)
+    several = sizes.shape[1] > 1
+    for group in groups if several else [[0]]:
+        label = whose(group) if several else "difference"
+        ax.semilogy(turned, sizes[:, group[0]], **line_of(group[0]), linewidth=1.2, label=label)
     for error, name, dashes in zip(row.errors, row.formulations, (":", "--"), strict=True):
         ax.axhline(error / peak, color="black", linestyle=dashes, label=f"error {name}")
     ax.set_title(row.quantity, loc="left")

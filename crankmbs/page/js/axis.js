@@ -1,6 +1,6 @@
 /** Axes of a plot: maps of values to pixels, with grid, ticks and names. */
 import { readable, roundTicks } from "./format.js";
-import { Pen } from "./svg.js";
+import { Pen, set } from "./svg.js";
 
 const QUARTERS = [45, 90, 180, 360, 720]; // degrees between ticks of the crank angle
 
@@ -25,46 +25,50 @@ export function frameOf(box, curves, { shape, overAngle, holds = {} }) {
  */
 export function drawAxes(group, { box, right, up, x, y }, about) {
   const pen = new Pen(group);
-  ordinate(pen, box, up, { y, type: about.type });
-  if (about.overAngle) angles(pen, box, right, { x, ...about });
-  else abscissa(pen, box, right, { x, ...about });
+  const lines = { grid: "", zero: "", "dead top": "", "dead bottom": "" };
+  const paths = Object.keys(lines).map((style) => [style, pen.add("path", { class: style })]);
+  ordinate({ pen, lines }, box, up, { y, type: about.type });
+  if (about.overAngle) angles({ pen, lines }, box, right, { x, ...about });
+  else abscissa({ pen, lines }, box, right, { x, ...about });
   const at = { x: about.left, y: box.top - 0.35 * about.type, class: "name" };
   pen.add("text", at, about.name);
   pen.end();
+  for (const [style, path] of paths) set(path, { d: lines[style] });
 }
 
-function ordinate(pen, box, up, { y, type }) {
+function ordinate({ pen, lines }, box, up, { y, type }) {
   const count = Math.max((box.bottom - box.top) / (1.3 * type), 2);
-  const { ticks, step } = roundTicks(y.low, y.high, count);
+  let { ticks, step } = roundTicks(y.low, y.high, count);
+  if (ticks.length < 2) { // one says nothing of the scale
+    ({ ticks, step } = roundTicks(y.low, y.high, 2 * count));
+    if (ticks.length > 3) ticks = ticks.filter((tick) => Math.round(tick / step) % 2 === 0);
+  }
   for (const tick of ticks) {
     const at = up(tick);
-    const style = Math.abs(tick) < 1e-9 * step ? "zero" : "grid";
-    pen.add("line", { x1: box.left, x2: box.right, y1: at, y2: at, class: style });
+    lines[styleOf(tick, step)] += `M${box.left} ${at}H${box.right}`;
     const place = { x: box.left - 0.4 * type, y: at + 0.35 * type, class: "tick end" };
     pen.add("text", place, readable(tick, digitsOf(step)));
   }
 }
 
 /** The crank angle, with the dead centres. */
-function angles(pen, box, right, { x, type, marks, last }) {
+function angles({ pen, lines }, box, right, { x, type, marks, last }) {
   const wide = (box.right - box.left) / (3.6 * type);
   const step = QUARTERS.find((each) => (x.high - x.low) / each <= wide) ?? 720;
   for (let k = Math.ceil(x.low / step - 1e-9); k * step <= x.high + 1e-6; k++) {
-    upright(pen, box, right(k * step), "grid");
+    lines.grid += upright(box, right(k * step));
     const place = { x: right(k * step), y: box.bottom + 1.15 * type, class: "tick" };
     if (last) pen.add("text", place, `${readable(k * step, 0)}°`);
   }
-  for (const { degrees, name } of marks) {
-    upright(pen, box, right(degrees), `dead ${name}`);
-  }
+  for (const { degrees, name } of marks) lines[`dead ${name}`] += upright(box, right(degrees));
 }
 
 /** Another quantity to the right. */
-function abscissa(pen, box, right, { x, type, shape }) {
+function abscissa({ pen, lines }, box, right, { x, type, shape }) {
   const count = Math.max((box.right - box.left) / (5 * type), 2);
   const { ticks, step } = roundTicks(x.low, x.high, count);
   for (const tick of ticks) {
-    upright(pen, box, right(tick), Math.abs(tick) < 1e-9 * step ? "zero" : "grid");
+    lines[styleOf(tick, step)] += upright(box, right(tick));
     const place = { x: right(tick), y: box.bottom + 1.15 * type, class: "tick" };
     pen.add("text", place, readable(tick, digitsOf(step)));
   }
@@ -74,8 +78,12 @@ function abscissa(pen, box, right, { x, type, shape }) {
   pen.add("text", { ...middle, class: "name mid" }, text);
 }
 
-function upright(pen, box, at, style) {
-  pen.add("line", { x1: at, x2: at, y1: box.top, y2: box.bottom, class: style });
+function upright(box, at) {
+  return `M${at} ${box.top}V${box.bottom}`;
+}
+
+function styleOf(tick, step) {
+  return Math.abs(tick) < 1e-9 * step ? "zero" : "grid";
 }
 
 function digitsOf(step) {

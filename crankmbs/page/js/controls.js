@@ -1,6 +1,7 @@
 /** The page's choices and words: selects, slow motion, measures, badge. */
 import { Player } from "./player.js";
 import { choices } from "./quantities.js";
+import { set, write } from "./svg.js";
 import { spanOf } from "./view.js";
 import { badgeOf, numbersOf } from "./words.js";
 
@@ -63,12 +64,12 @@ export function showWords(given, cycle, error) {
   while (list.children.length > all.length) list.lastChild.remove();
   all.forEach(([name, value], n) => {
     const item = list.children[n] ?? list.appendChild(measure());
-    item.children[0].textContent = name;
-    item.children[1].textContent = value;
+    write(item.children[0], name);
+    write(item.children[1], value);
   });
   const { text, good } = badgeOf(cycle, given.endings);
-  find("badge").textContent = text;
-  find("badge").className = good ? "good" : "drifts";
+  write(find("badge"), text);
+  set(find("badge"), { class: good ? "good" : "drifts" });
   const [shape, own] = [cycle.train.shape, given.scene.gas?.shape];
   const moved = own && ["radius", "length", "offset"].some((key) => shape[key] !== own[key]);
   find("carried").hidden = !moved;

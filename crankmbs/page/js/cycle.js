@@ -87,18 +87,26 @@ class Cycle {
     const key = `${name}, ${k}`;
     if (!this.answers.has(key)) {
       const { train, mean } = this;
-      const say = (sample) => (k === null
-        ? lecturedAt(train, LECTURES[name], sample)
-        : { cylinders: { [k]: cylinderLectured(train, LECTURES[name], sample, k) } });
+      const lecture = LECTURES[name];
+      const say = (sample) => {
+        if (k === null) return lecturedAt(train, lecture, sample);
+        const cylinders = [];
+        cylinders[k] = cylinderLectured(train, lecture, sample, k);
+        return { cylinders };
+      };
       const at = ({ theta, shares }) => say({ theta, shares, omega: mean, alpha: 0 });
       this.answers.set(key, this.rows.map(at));
     }
     return this.answers.get(key);
   }
 
-  /** All variables at any angle of the cycle. */
+  /** All variables at any angle of the cycle; whatever is drawn of one pose asks for the same. */
   at(theta) {
-    return reactionsAt(this.train, this.motion.at(theta));
+    if (theta !== this.asked) {
+      this.found = reactionsAt(this.train, this.motion.at(theta));
+      this.asked = theta;
+    }
+    return this.found;
   }
 
   /** The angle at a time counted from the cycle's begin, which starts again after it. */

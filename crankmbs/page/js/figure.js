@@ -8,7 +8,7 @@ import { Player } from "./player.js";
 import { Plot } from "./plot.js";
 import { Refused } from "./refused.js";
 import { Stage } from "./stage.js";
-import { add, watched } from "./svg.js";
+import { Pen, add, watched, write } from "./svg.js";
 import { spanOf, tellingPose } from "./view.js";
 import { deadCentreMarks } from "./words.js";
 
@@ -176,7 +176,7 @@ export class Figure {
     if (!made.says) return;
     for (const [name, text] of Object.entries(made.says(cycle, values, lesson.given))) {
       for (const place of document.querySelectorAll(`[data-say="${root.id}.${name}"]`)) {
-        place.textContent = text;
+        write(place, text);
       }
     }
   }
@@ -184,16 +184,17 @@ export class Figure {
   /** Dashed lines across the first cylinder at piston positions, each [m, name]. */
   drawLevels(levels) {
     const { stage } = this;
-    this.levels?.remove();
-    this.levels = add(stage.root, "g", { class: "levels" });
+    if (!this.levels?.isConnected) this.levels = add(stage.root, "g", { class: "levels" });
+    const pen = new Pen(this.levels);
     const half = 650 * stage.sizes.width;
     const middle = -1000 * stage.train.shape.offset;
     for (const [x, name] of levels) {
       const y = -1000 * x;
-      add(this.levels, "line", { x1: middle - half, x2: middle + half, y1: y, y2: y });
+      pen.add("line", { x1: middle - half, x2: middle + half, y1: y, y2: y });
       const at = { x: middle + 1.05 * half, y: y + 0.3 * stage.type, "font-size": stage.type };
-      add(this.levels, "text", at, name);
+      pen.add("text", at, name);
     }
+    pen.end();
   }
 
   /** Turn to a crank angle [rad], back into the cycle that is shown. */
@@ -212,13 +213,13 @@ export class Figure {
     if (this.size) this.made.draw(this.find(".drawing"), this.cycle, theta, this.size);
     for (const plot of this.plots) plot.place(degrees);
     const lead = this.find(".lead");
-    if (lead) lead.textContent = this.spec.ring ? this.stage.leadInWords(theta) : "";
+    if (lead) write(lead, this.spec.ring ? this.stage.leadInWords(theta) : "");
     const angle = this.find(".angle");
     if (!angle) return;
     angle.value = degrees;
     const text = `${degrees.toFixed(0)}°`;
     angle.setAttribute("aria-valuetext", text);
-    this.find(".degrees").textContent = text;
+    write(this.find(".degrees"), text);
   }
 
   say(sentence) {

@@ -14,6 +14,7 @@ import { drawn } from "./quantities.js";
 import { Refused } from "./refused.js";
 import { Stage } from "./stage.js";
 import { Address, numberOf } from "./state.js";
+import { write } from "./svg.js";
 import { dataFile, save, sceneFile } from "./taken.js";
 import { Turner } from "./turned.js";
 import { firstView, keysOf, tellingPose } from "./view.js";
@@ -102,8 +103,7 @@ class Page {
     if (location.hash.length > 1) this.open(location.hash);
     if (this.cycle === null) return;
     if (this.view.angle === null) this.seek(tellingPose(this.cycle));
-    const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
-    this.play(!still);
+    this.play(!matchMedia("(prefers-reduced-motion: reduce)").matches);
   }
 
   /** Show the state that an address says; what cannot be leaves the page as it is. */
@@ -257,8 +257,8 @@ class Page {
     find("angle").value = degrees;
     const text = `${degrees.toFixed(0)}°`;
     find("angle").setAttribute("aria-valuetext", text);
-    find("degrees").textContent = text;
-    find("lead").textContent = this.stage.leadInWords(theta);
+    write(find("degrees"), text);
+    write(find("lead"), this.stage.leadInWords(theta));
   }
 
   play(wanted) {

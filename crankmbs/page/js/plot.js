@@ -5,7 +5,7 @@
  */
 import { drawAxes, frameOf } from "./axis.js";
 import { decimalsFor, readable } from "./format.js";
-import { add, lineOf, set, watched } from "./svg.js";
+import { Pen, add, lineOf, set, watched, write } from "./svg.js";
 
 const STRIP = 0.3; // of the height, for the differences
 const PEAKED = "gas pressure"; // the curve of which the peak can be dragged
@@ -40,7 +40,8 @@ export class Plot {
   }
 
   /** Draw other curves: { shape, marks } with the shape of `quantities.drawn`. It may also hold
-   * values in the range of its axes, `holds` and `holdsBelow`, and its curves have a style. */
+   * values in the range of its axes, `holds` and `holdsBelow`, and its curves have a style. The
+   * cursor stands where it was until it is placed. */
   draw(shape, marks) {
     this.shape = shape;
     this.seen = visible(shape);
@@ -48,7 +49,7 @@ export class Plot {
     this.marks = marks;
     this.root.classList.toggle("diagram", isDiagram(shape));
     if (this.ghost && this.ghost.title !== shape.title) this.ghost = null;
-    this.redraw();
+    this.trace();
   }
 
   /** Keep the curve of the run as it is, or let it go. */
@@ -59,6 +60,12 @@ export class Plot {
   }
 
   redraw() {
+    this.trace();
+    this.place(this.degrees);
+  }
+
+  /** Axes and curves. */
+  trace() {
     const { svg, shape, size } = this;
     if (!shape || !size || size.width < 50 || size.height < 50) return;
     const { width, height, type } = size;
@@ -82,7 +89,6 @@ export class Plot {
     shape.curves.forEach((curve, n) => lines.push([this.upper, curve, styleOf(curve, n)]));
     if (strip) seen.forEach((each) => lines.push([this.lower, each, each.style]));
     this.drawLines(lines);
-    this.place(this.degrees);
   }
 
   /** Draw axes anew where they differ from those that stand there. */
@@ -115,23 +121,24 @@ export class Plot {
     this.degrees = degrees;
     const { shape, cursor, upper, lower } = this;
     if (!shape || !upper) return;
-    cursor.replaceChildren();
+    const pen = new Pen(cursor);
     const at = this.hover ?? degrees;
     if (isDiagram(shape)) {
       const [x, y] = shape.of((at * Math.PI) / 180);
-      add(cursor, "circle", { cx: upper.right(x), cy: upper.up(y), r: 0.35 * this.type });
+      pen.add("circle", { cx: upper.right(x), cy: upper.up(y), r: 0.35 * this.type });
     } else {
       const x = upper.right(degrees);
       const bottom = (lower ?? upper).box.bottom;
-      add(cursor, "line", { x1: x, x2: x, y1: upper.box.top, y2: bottom });
+      pen.add("line", { x1: x, x2: x, y1: upper.box.top, y2: bottom });
       const value = shape.of((degrees * Math.PI) / 180);
-      add(cursor, "circle", { cx: x, cy: upper.up(value), r: 0.3 * this.type });
-      if (this.hasPeak()) this.drawPeak(shape.curves[0]);
+      pen.add("circle", { cx: x, cy: upper.up(value), r: 0.3 * this.type });
+      if (this.hasPeak()) this.drawPeak(pen, shape.curves[0]);
       if (this.hover !== null) {
         const h = upper.right(at);
-        add(cursor, "line", { x1: h, x2: h, y1: upper.box.top, y2: bottom, class: "hover" });
+        pen.add("line", { x1: h, x2: h, y1: upper.box.top, y2: bottom, class: "hover" });
       }
     }
+    pen.end();
     this.read(at);
   }
 
@@ -140,11 +147,12 @@ export class Plot {
   }
 
   /** A handle on the highest point of a curve. */
-  drawPeak({ x, y }) {
+  drawPeak(pen, { x, y }) {
     const n = y.indexOf(Math.max(...y));
     const { right, up } = this.upper;
     const at = { cx: right(x[n]), cy: up(y[n]), r: 0.45 * this.type };
-    add(add(this.cursor, "circle", { ...at, class: "peak" }), "title", {}, "drag the peak");
+    const peak = pen.add("circle", { ...at, class: "peak" });
+    if (peak.firstChild === null) add(peak, "title", {}, "drag the peak");
   }
 
   /** Write the values at an angle [deg] into the legend. */
@@ -160,9 +168,9 @@ export class Plot {
     while (legend.children.length > all.length) legend.lastChild.remove();
     all.forEach(([name, style, value], n) => {
       const item = legend.children[n] ?? legend.appendChild(entry());
-      item.children[0].className = style ? `swatch ${style}` : "none";
-      item.children[1].textContent = value ? `${name} ` : name;
-      item.children[2].textContent = value;
+      set(item.children[0], { class: style ? `swatch ${style}` : "none" });
+      write(item.children[1], value ? `${name} ` : name);
+      write(item.children[2], value);
     });
   }
 

@@ -3,6 +3,7 @@
 import { proportions, turnedBy } from "./drawing.js";
 import { BODIES, forcesOn } from "./forces.js";
 import { general, readable, roundBelow } from "./format.js";
+import { arrowOf, rodOf, webOf } from "./outlines.js";
 import { Pen, add, set, watched } from "./svg.js";
 
 const REACH = 1.2; // of the crank radius: the longest arrow
@@ -35,13 +36,14 @@ export class Stage {
     this.most = Math.max(...cycle.samples.map((v) => v.cylinders[k].gas_pressure), 1);
     const lead = Math.max(...cycle.leads.map(Math.abs));
     this.magnified = lead > 1e-9 ? Math.max(roundBelow(LEAD / lead), 1) : 0;
+    const made = JSON.stringify([k, train.cylinders, heavy, this.magnified > 0]);
+    if (made !== this.made) this.make(heavy);
     const { rim, ...others } = this.sizes;
-    const all = [others, this.size, k, train.cylinders, heavy, this.magnified, train.shape];
-    const as = JSON.stringify(all);
-    if (as !== this.as) this.build(heavy);
-    this.as = as;
+    const fits = JSON.stringify([made, others, this.size, this.magnified, train.shape]);
+    if (fits !== this.fits) this.fit();
+    [this.made, this.fits] = [made, fits];
     for (const disc of this.discs) set(disc, { r: rim * UNITS });
-    this.buildScale();
+    this.fitScale();
   }
 
   /** Metres of arrow per newton, from the largest force of the cycle. */
@@ -57,16 +59,10 @@ export class Stage {
     return most > 0 ? (REACH * this.sizes.r) / most : 0;
   }
 
-  build(heavy) {
-    const { root, sizes, train } = this;
-    const { left, top, width, height } = scaledBox(sizes.bounds);
-    set(root, { viewBox: `${left} ${top} ${width} ${height}` });
+  /** The elements, in the order in which they cover each other. */
+  make(heavy) {
+    const { root, train } = this;
     root.replaceChildren();
-    const scale = Math.min(this.size.width / width, this.size.height / height) || 1;
-    this.type = (SMALL * this.size.type) / scale;
-    const middle = left + 0.5 * width; // what is wider than the drawing is room beside it
-    const half = (0.5 * this.size.width) / scale;
-    this.edge = { left: middle - half, right: middle + half };
     const flywheel = add(root, "g", { class: "flywheel" });
     this.discs = [add(flywheel, "circle", { class: "disc" })];
     this.mark = add(flywheel, "path", { class: "mark" });
@@ -76,72 +72,105 @@ export class Stage {
     const order = train.cylinders.map((_, k) => k).filter((k) => k !== this.k);
     this.parts = [];
     for (const k of [...order, this.k]) this.parts[k] = this.cylinder(k);
-    this.axle = add(root, "circle", { r: 0.13 * sizes.r * UNITS, class: "axle" });
-    this.ring = add(root, "g", { class: "ring" });
-    this.buildRing();
+    this.axle = add(root, "circle", { class: "axle" });
+    const ring = add(root, "g", { class: "ring" });
+    if (this.magnified) {
+      this.track = add(ring, "circle", { class: "track" });
+      this.turning = add(ring, "g");
+      this.ticks = add(this.turning, "path", { class: "tick" });
+      this.pointer = add(this.turning, "path", { class: "pointer" });
+      this.wedge = add(ring, "path");
+    }
     this.arrows = add(root, "g", { class: "arrows" });
     this.bar = add(root, "g", { class: "scale" });
   }
 
+  /** The sizes of all that stands still. */
+  fit() {
+    const { root, sizes, parts, axle } = this;
+    const { left, top, width, height } = scaledBox(sizes.bounds);
+    const scale = Math.min(this.size.width / width, this.size.height / height) || 1;
+    set(root, { viewBox: `${left} ${top} ${width} ${height}` });
+    // lines are about as wide on every screen; a new value would be a new style for every part
+    root.style.setProperty("--px", (1 / scale).toPrecision(2));
+    this.type = (SMALL * this.size.type) / scale;
+    const middle = left + 0.5 * width; // what is wider than the drawing is room beside it
+    const half = (0.5 * this.size.width) / scale;
+    const above = top + 0.5 * (height - this.size.height / scale);
+    this.edge = { left: middle - half, right: middle + half, top: above };
+    for (const part of parts) this.fitCylinder(part);
+    set(axle, { r: 0.13 * sizes.r * UNITS });
+    if (this.magnified) this.fitRing();
+  }
+
   /** Ticks of the ring at mean speed, and its pointer. */
-  buildRing() {
-    if (!this.magnified) return;
+  fitRing() {
     const radius = this.sizes.ring * UNITS;
-    add(this.ring, "circle", { r: radius, class: "track" });
-    this.turning = add(this.ring, "g");
-    for (let n = 0; n < TICKS; n++) {
+    set(this.track, { r: radius });
+    const tick = (n, inner) => {
       const angle = (2 * Math.PI * n) / TICKS;
-      const [x, y] = [-Math.sin(angle), -Math.cos(angle)];
-      const inner = (n === 0 ? 0.9 : 0.97) * radius;
-      const ends = { x1: inner * x, y1: inner * y, x2: radius * x, y2: radius * y };
-      add(this.turning, "line", { ...ends, class: n === 0 ? "pointer" : "tick" });
-    }
-    this.wedge = add(this.ring, "path", { class: "lead" });
+      const [x, y] = [-radius * Math.sin(angle), -radius * Math.cos(angle)];
+      return `M${inner * x} ${inner * y}L${x} ${y}`;
+    };
+    const ticks = Array.from({ length: TICKS - 1 }, (_, n) => tick(n + 1, 0.97)).join("");
+    set(this.ticks, { d: ticks });
+    set(this.pointer, { d: tick(0, 0.9) });
   }
 
   /** A bar as long as a round force. */
-  buildScale() {
+  fitScale() {
     const { force, bar, type } = this;
-    bar.replaceChildren();
-    if (!force) return;
+    const pen = new Pen(bar);
+    if (!force) return pen.end();
     const newtons = roundBelow(this.largest / 2.2);
     const long = newtons * force * UNITS;
     const { left, top, height } = scaledBox(this.sizes.bounds);
     const [x, y] = [left + 0.4 * type, top + height - 0.5 * type];
-    add(bar, "path", { d: `M${x} ${y - 0.3 * type}v${0.3 * type}h${long}v${-0.3 * type}` });
+    pen.add("path", { d: `M${x} ${y - 0.3 * type}v${0.3 * type}h${long}v${-0.3 * type}` });
     const size = newtons >= 1000 ? `${general(newtons / 1000)} kN` : `${general(newtons)} N`;
     const at = { x, y: y - 0.6 * type, "font-size": type };
-    add(bar, "text", at, `${size}, on the ${this.body}`);
+    pen.add("text", at, `${size}, on the ${this.body}`);
+    return pen.end();
   }
 
   /** Still parts of a cylinder, and those that move. */
   cylinder(k) {
-    const { sizes, train, root } = this;
-    const { bank } = train.cylinders[k];
-    const group = add(root, "g", { class: this.looks(k) });
+    const { bank } = this.train.cylinders[k];
+    const group = add(this.root, "g", { class: this.looks(k) });
     const fixed = add(group, "g", { transform: `rotate(${(-bank * 180) / Math.PI})` });
+    const gas = add(fixed, "rect", { class: "gas" });
+    const wall = add(fixed, "path", { class: "wall" });
+    const piston = add(fixed, "g", { class: "piston grip", "data-grip": "piston", "data-k": k });
+    const body = add(piston, "rect");
+    const grooves = add(piston, "path", { class: "groove" });
+    const crank = add(group, "path", { class: "web grip", "data-grip": "crank", "data-k": k });
+    const rod = add(group, "path", { class: "rod" });
+    const pin = add(group, "circle", { class: "eye grip", "data-grip": "pin", "data-k": k });
+    const small = add(group, "circle", { class: "eye" });
+    return { gas, wall, piston, body, grooves, crank, rod, pin, small };
+  }
+
+  fitCylinder(part) {
+    const { sizes, train } = this;
+    const { gas, wall, body, grooves, crank, pin, small } = part;
     const scale = (value) => value * UNITS;
     const middle = -scale(train.shape.offset);
     const half = scale(0.5 * sizes.width);
     const [head, low] = [-scale(sizes.head), -scale(sizes.low)];
-    const gas = add(fixed, "rect", { x: middle - half, width: 2 * half, y: head, class: "gas" });
-    const wall = scale(0.06 * sizes.width);
-    const d = `M${middle - half - wall / 2} ${low}V${head - wall / 2}` +
-      `H${middle + half + wall / 2}V${low}`;
-    add(fixed, "path", { d, class: "wall", "stroke-width": wall });
-    const piston = add(fixed, "g", { class: "piston grip", "data-grip": "piston", "data-k": k });
-    const body = { x: middle - half * 0.985, width: 1.97 * half, y: -scale(sizes.crown) };
-    add(piston, "rect", { ...body, height: scale(sizes.crown + sizes.skirt), rx: 0.09 * half });
-    for (const n of [1, 2, 3]) {
-      const y = -scale(sizes.crown) * (1 - 0.16 * n);
-      add(piston, "line", { x1: body.x, x2: body.x + body.width, y1: y, y2: y, class: "groove" });
-    }
-    const crank = add(group, "path", { class: "web grip", "data-grip": "crank", "data-k": k });
-    const rod = add(group, "path", { class: "rod" });
-    const big = { r: 0.2 * scale(sizes.r), class: "eye grip", "data-grip": "pin", "data-k": k };
-    const pin = add(group, "circle", big);
-    const small = { r: 0.13 * scale(sizes.r), class: "eye" };
-    return { gas, piston, crank, rod, pin, small: add(group, "circle", small), head, middle };
+    Object.assign(part, { head, middle });
+    set(gas, { x: middle - half, width: 2 * half, y: head });
+    const thick = scale(0.06 * sizes.width);
+    const d = `M${middle - half - thick / 2} ${low}V${head - thick / 2}` +
+      `H${middle + half + thick / 2}V${low}`;
+    set(wall, { d, "stroke-width": thick });
+    const [x, width, crown] = [middle - half * 0.985, 1.97 * half, scale(sizes.crown)];
+    const high = crown + scale(sizes.skirt);
+    set(body, { x, width, y: -crown, height: high, rx: 0.09 * half });
+    const groove = (n) => `M${x} ${-crown * (1 - 0.16 * n)}h${width}`;
+    set(grooves, { d: [1, 2, 3].map(groove).join("") });
+    set(crank, { d: webOf(scale(sizes.r)) });
+    set(pin, { r: 0.2 * scale(sizes.r) });
+    set(small, { r: 0.13 * scale(sizes.r) });
   }
 
   /** The chosen cylinder and others that stand beside it are drawn in full, the rest pale. */
@@ -183,7 +212,7 @@ export class Stage {
     const angle = theta + phase + bank;
     const [cx, cy] = onScreen(turnedBy(angle, r, 0));
     const [px, py] = onScreen(turnedBy(bank, x, -middle));
-    set(crank, { d: webOf(r), transform: `rotate(${(-angle * 180) / Math.PI})` });
+    set(crank, { transform: `rotate(${(-angle * 180) / Math.PI})` });
     set(rod, { d: rodOf([cx, cy], [px, py], 0.17 * r, 0.1 * r) });
     set(pin, { cx, cy });
     set(small, { cx: px, cy: py });
@@ -251,7 +280,8 @@ export class Stage {
     const [anchor, near] = side > 0
       ? ["start", Math.min(beyond, edge.right - wide)]
       : ["end", Math.max(beyond, edge.left + wide)];
-    return { "text-anchor": anchor, x: near, y: y + (0.7 * dy * type) / long };
+    const low = Math.max(y + (0.7 * dy * type) / long, edge.top + 1.2 * type);
+    return { "text-anchor": anchor, x: near, y: low };
   }
 }
 
@@ -261,30 +291,4 @@ function onScreen([x, y]) {
 
 function scaledBox({ left, top, width, height }) {
   return { left: left * UNITS, top: top * UNITS, width: width * UNITS, height: height * UNITS };
-}
-
-function arrowOf(x, y, dx, dy, half) {
-  const long = Math.hypot(dx, dy);
-  const [ux, uy] = [dx / long, dy / long];
-  const head = Math.min(5 * half, 0.6 * long);
-  const neck = long - head;
-  const at = (along, across) =>
-    `${(x + along * ux - across * uy).toFixed(1)} ${(y + along * uy + across * ux).toFixed(1)}`;
-  return `M${at(0, -half)}L${at(neck, -half)}L${at(neck, -2.2 * half)}L${at(long, 0)}` +
-    `L${at(neck, 2.2 * half)}L${at(neck, half)}L${at(0, half)}Z`;
-}
-
-/** A crank web with its counterweight, the throw upwards. */
-function webOf(r) {
-  const [w, c] = [0.24 * r, 0.72 * r];
-  return `M${-w} ${-r}A${w} ${w} 0 0 1 ${w} ${-r}L${0.3 * r} 0L${c} ${0.25 * r}` +
-    `A${0.78 * r} ${0.78 * r} 0 0 1 ${-c} ${0.25 * r}L${-0.3 * r} 0Z`;
-}
-
-/** A rod that tapers from its big end to its small one. */
-function rodOf([ax, ay], [bx, by], wide, narrow) {
-  const long = Math.hypot(bx - ax, by - ay);
-  const [nx, ny] = [-(by - ay) / long, (bx - ax) / long];
-  const at = (x, y, side) => `${(x + side * nx).toFixed(1)} ${(y + side * ny).toFixed(1)}`;
-  return `M${at(ax, ay, wide)}L${at(bx, by, narrow)}L${at(bx, by, -narrow)}L${at(ax, ay, -wide)}Z`;
 }

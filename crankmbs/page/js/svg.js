@@ -20,6 +20,14 @@ export function set(element, attributes) {
   return element;
 }
 
+/** Write a text into an element that holds nothing else, in the node that is there: a new one would
+ * be styled and laid out anew. */
+export function write(element, text) {
+  const { firstChild: node } = element;
+  if (node === null) element.textContent = text;
+  else if (node.data !== text) node.data = text;
+}
+
 /** Draws into a group over what it drew there before. */
 export class Pen {
   constructor(group) {
@@ -36,7 +44,7 @@ export class Pen {
       else this.group.append(made);
       each = made;
     }
-    if (text !== null && each.textContent !== text) each.textContent = text;
+    if (text !== null) write(each, text);
     return set(each, attributes);
   }
 
