@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
@@ -26,12 +27,14 @@ class CrankTrain:
     combustion : what a firing of share 1 adds to it, on the same knots, where `pressure` is that
         without combustion; None without fuel
     law : the decisions on the shares; None without fuel
+    bare : the numbers of `crankmbs.mechanics.tabulated`, once it has asked for them
     """
 
     scene: Scene
     pressure: tuple[PeriodicPressure, ...] | None
     combustion: tuple[PeriodicPressure, ...] | None = None
     law: FuelLaw | None = None
+    bare: list[Any] = field(default_factory=list, init=False, compare=False, repr=False)
 
     @property
     def off(self) -> CrankTrain:

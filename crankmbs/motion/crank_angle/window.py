@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crankmbs.mechanics.friction import friction_forces, friction_torque
-from crankmbs.mechanics.inertia import fired_torque, inertia_alone, reduce
+from crankmbs.mechanics.inertia import fired_torque
+from crankmbs.mechanics.tabulated import tabulate
 from crankmbs.mechanics.torque import Branch, Course
 from crankmbs.motion.base import NOWHERE, Nodes, Points, Samples, State
 from crankmbs.motion.crank_angle import readout
@@ -200,9 +201,8 @@ class Window:
 
     def speeds_at(self, k: Index) -> Array:
         """Speed [rad/s] at these edges."""
-        inertia = inertia_alone(
-            self.grid.train.scene, self.begin.theta + self.sense * self.edges[k]
-        )
+        theta = self.begin.theta + self.sense * self.edges[k]
+        inertia = tabulate(self.grid.train, theta).inertia
         return np.asarray(self.sense * np.sqrt(2.0 * self.energy[k] / inertia))
 
     def inside(self, k: int, x: Array) -> Samples:
@@ -235,7 +235,7 @@ class Window:
     def _samples(self, k: Index, theta: Array, t: Array, energy: Array) -> Samples:
         """Samples in the cells k."""
         once, which = one_period(theta, float(self.grid.edges[-1]))
-        inertia, slope, torque = reduce(self.grid.train, once)
+        inertia, slope, torque = tabulate(self.grid.train, once)
         over_angle = np.zeros_like(torque) + self.grid.outside(once)
         torque = torque + over_angle
         own = {}

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from crankmbs.mechanics.friction import rubbing
-from crankmbs.mechanics.inertia import inertia_alone
+from crankmbs.mechanics.tabulated import tabulate
 from crankmbs.mechanics.torque import branch_of, torque_at
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion.base import State
@@ -80,8 +80,8 @@ class Section:
     def __init__(self, train: CrankTrain, allowed: int, *, by_angle: bool) -> None:
         scene = train.scene
         assert scene.start is not None
-        self.scene, self.start = scene, scene.start
-        self.inertia = float(inertia_alone(scene, scene.start.angle))
+        self._train, self.scene, self.start = train, scene, scene.start
+        self.inertia = float(tabulate(train, scene.start.angle).inertia)
         every = scene.settled_period / _SAMPLES
         over_speed = [load.parts.over_speed for load in scene.torque]
         tables = [np.abs(part.knots) for part in over_speed if part is not None]
@@ -93,7 +93,7 @@ class Section:
     @cached_property
     def _inertias(self) -> Array:
         angles = np.linspace(0.0, self.scene.settled_period, _ANGLES)
-        return np.asarray(inertia_alone(self.scene, angles))
+        return tabulate(self._train, angles).inertia
 
     @property
     def least_inertia(self) -> float:
