@@ -15,7 +15,7 @@ from crankmbs.numerics.kernels import kernel
 _SETTLED, _GOOD = 1e-14, 1e-11  # relative change of the energy in Newton's last step
 
 
-__all__ = ["affine", "along", "fire", "fire_each", "fired", "missed", "newton"]
+__all__ = ["affine", "along", "fire", "fire_each", "fired", "missed", "newton", "worst"]
 
 Loads = tuple[Array, Array, Array, Array]  # the tables of a course of `crankmbs.mechanics.torque`
 Solved = tuple[Array, Array, Array, Array]  # edges, time, torque and slowness of cells, filled
@@ -387,6 +387,16 @@ def missed(
             both = abs(energy[k]) / edges[k + 1] + abs(width[k] * (late[i] - early[i])) * per_time
             inside[k] = inside[k] if both <= inside[k] or inside[k] != inside[k] else both
         at_end[k] = both
+
+
+@kernel
+def worst(cell: Index, at_end: Array, inside: Array, most: Array) -> None:
+    """Raise the largest errors so far of each cell of a grid, shape (2, n), to those of cells that
+    have been passed; NaN where one is."""
+    for k in range(len(cell)):
+        a, b = most[0, cell[k]], most[1, cell[k]]
+        most[0, cell[k]] = a if at_end[k] <= a or a != a else at_end[k]
+        most[1, cell[k]] = b if inside[k] <= b or b != b else inside[k]
 
 
 @kernel

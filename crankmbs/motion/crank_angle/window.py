@@ -80,10 +80,8 @@ class Window:
 
     @cached_property
     def _last(self) -> Samples:
-        k, x = np.array([self.stop[0]]), np.array([self.stop[1]])
-        theta = _exact(self.landed.theta, self._theta(k, x))
-        t = _exact(self.landed.time, self._time(k, x))
-        at = self._samples(k, theta, t, self._energy(k, x))
+        k, x = self.stop
+        at = self.inside(k, np.array([x]), self.landed)
         return replace(at, omega=_exact(self.landed.omega, at.omega))
 
     @property
@@ -205,18 +203,14 @@ class Window:
         inertia = tabulate(self.grid.train, theta).inertia
         return np.asarray(self.sense * np.sqrt(2.0 * self.energy[k] / inertia))
 
-    def inside(self, k: int, x: Array) -> Samples:
-        """The samples at places x in a cell, 0 to 1."""
-        cell = np.array([k])
-        return self._samples(cell, self._theta(cell, x), self._time(cell, x), self._energy(cell, x))
-
-    def _energy(self, k: Index, x: Array) -> Array:
-        gained, _ = self.grid.rule.between(self.torque[k], x)
-        return np.asarray(self.energy[k] + self.sense * self.strip.width[k] * gained)
-
-    def _time(self, k: Index, x: Array) -> Array:
-        spent, _ = self.grid.rule.between(self.slowness[k], x)
-        return np.asarray(self.time[k] + self.strip.width[k] * spent)
+    def inside(self, k: int, x: Array, landed: State = NOWHERE) -> Samples:
+        """The samples at places x in a cell, 0 to 1; what is known exactly as it is."""
+        t, energy = np.empty((2, len(x)))
+        to_legendre = self.grid.rule.to_legendre
+        readout.inside(k, x, self.sense, to_legendre, self._solved, (t, energy))
+        cell = np.full(len(x), k)
+        theta = _exact(landed.theta, self._theta(cell, x))
+        return self._samples(cell, theta, _exact(landed.time, t), energy)
 
     def _theta(self, k: Index, x: Array) -> Array:
         turned = self.edges[k] + x * self.strip.width[k]
@@ -225,12 +219,16 @@ class Window:
     def _read(self, given: Array, *, in_time: bool) -> tuple[Index, Array, Array, Array]:
         """Cell, position in it, time and energy at increasing times, or angles turned."""
         k, (x, t, energy) = np.empty(len(given), np.intp), np.empty((3, len(given)))
-        at_edges, at_nodes = (self.energy, self.time), (self.torque, self.slowness)
-        solved = self.edges, self.strip.width, *at_edges, *at_nodes
         to_legendre = self.grid.rule.to_legendre
         found = k, x, t, energy
-        readout.read(given, in_time, self.sense, to_legendre, solved, found)
+        readout.read(given, in_time, self.sense, to_legendre, self._solved, found)
         return found
+
+    @property
+    def _solved(self) -> tuple[Array, Array, Array, Array, Array, Array]:
+        """As `readout` takes it."""
+        at_edges, at_nodes = (self.energy, self.time), (self.torque, self.slowness)
+        return self.edges, self.strip.width, *at_edges, *at_nodes
 
     def _samples(self, k: Index, theta: Array, t: Array, energy: Array) -> Samples:
         """Samples in the cells k."""
