@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 
 from crankmbs import load_scene
+from crankmbs.mechanics.newton_euler import Powers
 from crankmbs.mechanics.pressure import pressures_of
-from crankmbs.mechanics.reactions import deviations, reactions
+from crankmbs.mechanics.reactions import balanced_by_arrays, deviations, reactions
+from crankmbs.mechanics.tabulated import balanced, rows_of
 from crankmbs.mechanics.train import CrankTrain, crank_train
 from validation.adapter import reference_variables
 from validation.oracles.arithmetic import multiprecision
@@ -49,6 +51,29 @@ def test_every_variable_of_shipped_machines(name):
     scene, state = load_scene(name), motion(1)
     worst = misfit(scene, state, reference_variables(scene, *state, DIGITS))
     assert max(worst.values()) < 1e-12, worst
+
+
+@pytest.mark.parametrize("way", [balanced, balanced_by_arrays])
+@pytest.mark.parametrize("seed", range(12))
+def test_every_balance_both_ways(seed, way):
+    """In the compiled loop, and by arrays; per omega^2, alpha and 1, and put together."""
+    scene, (theta, omega, alpha) = random_scene(seed), motion(seed)
+    train, exact = crank_train(scene), reference_variables(scene, *motion(seed), DIGITS)
+    powers = Powers(*np.atleast_2d(omega**2, alpha, np.ones(7)))
+    units = way(train, theta, Powers(*np.eye(3)[:, :, np.newaxis]))
+    whole = way(train, theta, powers)[:, 0]
+    joined = np.einsum("rui,ui->ri", units, np.concatenate(powers))
+    row = 0
+    for name, count in rows_of(scene).items():
+        vector = {name, name.replace("_force_x", "_force_y"), name.replace("_force_y", "_force_x")}
+        peak = max(np.abs(exact[part].astype(float)).max() for part in vector) or 1.0
+        wanted = np.atleast_2d(exact[name].astype(float).T)
+        per_speed = omega if name in ("rod_angular_speed", "piston_velocity") else 1.0
+        for found in (whole, joined):
+            apart = np.abs(found[row : row + count] * per_speed - wanted).max()
+            assert apart < 1e-12 * peak, name
+        row += count
+    assert row == len(whole)
 
 
 def test_angles_that_come_back():

@@ -89,6 +89,7 @@ class Section:
         self._rows = np.concatenate([rows * (1.0 - _BESIDE), rows * (1.0 + _BESIDE)])
         self._plan = replace(plan_of(scene), every=every, in_time=False, last=math.inf)
         self._allowed, self._by_angle, self._shots = allowed, by_angle, 0
+        self._closed: list[tuple[Grid, float, Period | None]] = []
 
     @cached_property
     def _inertias(self) -> Array:
@@ -170,6 +171,13 @@ class Section:
 
     def closed_form(self, grid: Grid, sense: float) -> Period | None:
         """The affine map of a period, where loads are such that there is one at every speed."""
+        for known, same_sense, one in self._closed:
+            if known is grid and same_sense == sense:
+                return one
+        self._closed.append((grid, sense, self._composed(grid, sense)))
+        return self._closed[-1][2]
+
+    def _composed(self, grid: Grid, sense: float) -> Period | None:
         branch = branch_of(self.scene.torque, 0.0, 0.0, rising=sense > 0.0)
         bounds = (branch.omega_low, branch.omega_high)
         if (
