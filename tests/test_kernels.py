@@ -30,7 +30,7 @@ from crankmbs import (
 from crankmbs.mechanics import combined, reduced
 from crankmbs.mechanics.torque import branch_of
 from crankmbs.mechanics.train import CrankTrain
-from crankmbs.motion.crank_angle import loops, readout
+from crankmbs.motion.crank_angle import cells, loops, readout
 from crankmbs.motion.crank_angle.grid import grid_of
 from crankmbs.motion.crank_angle.solvers import Begin, Cells, solve_affine, solve_newton
 from crankmbs.motion.minimal import stepper
@@ -58,7 +58,7 @@ def scene_with(loads: tuple[Torque, ...], speed: float, every: str) -> Scene:
 
 KERNELS = [
     (module, name)
-    for module in (combined, loops, readout, reduced, stepper)
+    for module in (cells, combined, loops, readout, reduced, stepper)
     for name, function in vars(module).items()
     if hasattr(function, "py_func")
 ]

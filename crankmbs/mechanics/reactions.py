@@ -159,7 +159,7 @@ def _found(
     scene = train.scene
     theta, omega, alpha = (np.asarray(q, dtype=np.float64) for q in given)
     samples = Powers(omega**2, alpha, np.ones(1))
-    once, which = one_period(theta, train.period)
+    once, which = one_period(theta, train.repeats)
     by_parts = len(theta) > _OFTEN * len(once)
     once, motion = (once, _UNITS) if by_parts else (theta, Powers(*map(np.atleast_2d, samples)))
     # numba is loaded only where angles repeat, or the motion has taken it already

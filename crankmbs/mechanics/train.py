@@ -46,6 +46,14 @@ class CrankTrain:
         return replace(self, pressure=pressure, combustion=more)
 
     @property
+    def repeats(self) -> float:
+        """Crank angle [rad] after which what depends on it alone comes again: a revolution without
+        gas, where no load has another."""
+        loads = (load.parts.over_angle for load in self.scene.torque)
+        one = self.pressure is None and all(each is None for each in loads)
+        return 2.0 * math.pi if one else self.period
+
+    @property
     def period(self) -> float:
         """Crank angle [rad] after which everything comes again: the least common multiple of the
         periods of the engine, the pressures and the loads over the angle, whole revolutions all."""

@@ -158,7 +158,7 @@ def _turned_by_rounding(samples: Samples) -> Samples:
 
 def _least_inertia(train: CrankTrain, theta: Array) -> float:
     """Of a free crank, which has inertia at every angle; a driven one may have none."""
-    angles, _ = one_period(theta, train.period)
+    angles, _ = one_period(theta, train.repeats)
     return float(np.min(tabulate(train, angles).inertia))
 
 

@@ -232,7 +232,7 @@ class Window:
 
     def _samples(self, k: Index, theta: Array, t: Array, energy: Array) -> Samples:
         """Samples in the cells k."""
-        once, which = one_period(theta, float(self.grid.edges[-1]))
+        once, which = one_period(theta, self.grid.train.repeats)
         inertia, slope, torque = tabulate(self.grid.train, once)
         over_angle = np.zeros_like(torque) + self.grid.outside(once)
         torque = torque + over_angle
