@@ -107,6 +107,7 @@ class _Found(NamedTuple):
     which : shape (samples,), which of the n angles a sample is at; None where n are the samples
     more : of the combustion and the friction, each: what a share of 1, or 1 N, on each cylinder
         adds at the n angles; and the shares, or forces, shape (samples, cylinders)
+    mixed : the variables that are not their parts alone
     """
 
     rows: dict[str, int]
@@ -115,6 +116,7 @@ class _Found(NamedTuple):
     at: Powers
     omega: Array
     more: tuple[tuple[Parts, Array], ...]
+    mixed: frozenset[str]
 
     def each(self) -> Iterator[tuple[str, int, Array]]:
         """Variable, number of its row, and the parts."""
@@ -138,7 +140,7 @@ class _Found(NamedTuple):
 
     def apart(self, name: str, row: int, parts: Array, variable: Array) -> float:
         """Largest difference of a variable from this one at the samples."""
-        simple = name not in _PER_SPEED and not any(name in others for others, _ in self.more)
+        simple = name not in self.mixed
         if simple and self.which is not None:
             from crankmbs.mechanics import combined
 
@@ -172,7 +174,8 @@ def _found(
         rows["friction_force"] = len(scene.cylinders)
         parts = np.pad(parts, ((0, len(scene.cylinders)), (0, 0), (0, 0)))
         more.append((_rubbed_parts(scene, once), friction))
-    return _Found(rows, parts, which if by_parts else None, samples, omega, tuple(more))
+    mixed = frozenset(_PER_SPEED).union(*(others for others, _ in more))
+    return _Found(rows, parts, which if by_parts else None, samples, omega, tuple(more), mixed)
 
 
 def balanced_by_arrays(train: CrankTrain, theta: Array, motion: Powers) -> Array:

@@ -84,7 +84,7 @@ def advance(
         if window is None:
             return None
         t_end = min(window.branch.t_end, plan.time_bound)
-        window = replace(window, skipped=skipped).cut(t_end, bound)
+        window = (replace(window, skipped=skipped) if skipped else window).cut(t_end, bound)
         whole, window = _landed(way, window, t_end)
         if whole is not None:
             yield whole

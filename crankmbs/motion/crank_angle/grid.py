@@ -73,7 +73,7 @@ class Strip:
 
     def first(self, m: int) -> Strip:
         """The first m cells."""
-        return self.part(0, m)
+        return self if m == len(self.cell) else self.part(0, m)
 
     def part(self, low: int, high: int) -> Strip:
         """The cells from one number to another; edges are still counted from the beginning."""

@@ -144,10 +144,16 @@ class Window:
                 if stop is not None:
                     stops.append((stop, nowhere._replace(omega=limit)))
         stop, landed = min(stops, key=lambda item: item[0])
-        return replace(self.first(stop[0] + 1), stop=stop, landed=landed)
+        if (stop, landed) == (self.stop, self.landed):
+            return self
+        return self._up_to(stop, landed)
 
     def first(self, m: int) -> Window:
         """The first m cells."""
+        return self._up_to((m - 1, 1.0), NOWHERE)
+
+    def _up_to(self, stop: tuple[int, float], landed: State) -> Window:
+        m = stop[0] + 1
         return replace(
             self,
             strip=self.strip.first(m),
@@ -156,8 +162,8 @@ class Window:
             time=self.time[: m + 1],
             torque=self.torque[:m],
             slowness=self.slowness[:m],
-            stop=(m - 1, 1.0),
-            landed=NOWHERE,
+            stop=stop,
+            landed=landed,
             modes=tuple(one for one in self.modes if one[0] < m),
         )
 
