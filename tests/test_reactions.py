@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 
 from crankmbs import load_scene
+from crankmbs.mechanics import reduced
 from crankmbs.mechanics.newton_euler import Powers
 from crankmbs.mechanics.pressure import pressures_of
 from crankmbs.mechanics.reactions import balanced_by_arrays, deviations, reactions
-from crankmbs.mechanics.tabulated import balanced, rows_of
+from crankmbs.mechanics.tabulated import balanced, rows_of, tabulate
 from crankmbs.mechanics.train import CrankTrain, crank_train
 from validation.adapter import reference_variables
 from validation.oracles.arithmetic import multiprecision
@@ -74,6 +75,25 @@ def test_every_balance_both_ways(seed, way):
             assert apart < 1e-12 * peak, name
         row += count
     assert row == len(whole)
+
+
+def test_a_compiled_loop_is_made_once():
+    """Whatever arrays come: with gaps, read-only, broadcast."""
+    train = crank_train(load_scene("coasting"))
+    theta, omega, alpha = motion(1)
+    reactions(train, theta, omega, alpha)
+    tabulate(train, theta)
+    made = len(reduced.balances.signatures), len(reduced.reduced.signatures)
+    gaps = np.repeat(theta, 2)[::2]
+    still = np.broadcast_to(3.0, 7)
+    alpha.flags.writeable = False
+    found = reactions(train, gaps, still, alpha)
+    np.testing.assert_array_equal(
+        found["rod_angle"], reactions(train, theta, omega, alpha)["rod_angle"]
+    )
+    np.testing.assert_array_equal(tabulate(train, gaps).inertia, tabulate(train, theta).inertia)
+    tabulate(train, still.reshape(1, 7))
+    assert (len(reduced.balances.signatures), len(reduced.reduced.signatures)) == made
 
 
 def test_angles_that_come_back():

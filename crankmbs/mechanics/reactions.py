@@ -62,8 +62,10 @@ def reactions(
     found = _found(train, (theta, omega, alpha), fuel, friction)
     # one piece of memory, so large that the system is not asked for every run's anew
     room = np.empty((len(found.parts), len(found.omega)))
-    for variable, (name, k, parts) in zip(room, found.each(), strict=True):
-        found.put(name, k, parts, variable)
+    found.put(found.parts, room)
+    for variable, (name, k, _) in zip(room, found.each(), strict=True):
+        if name in found.mixed:
+            found.mix(name, k, variable)
     ends = zip(found.rows.items(), accumulate(found.rows.values()), strict=True)
     variables = {name: room[end - count : end] for (name, count), end in ends}
     return {n: v.T if EVERY[n].per_cylinder else v[0] for n, v in variables.items()}
@@ -124,14 +126,17 @@ class _Found(NamedTuple):
         for (name, k), parts in zip(places, self.parts, strict=True):
             yield name, k, parts
 
-    def put(self, name: str, row: int, parts: Array, variable: Array) -> None:
-        """A variable at the samples into its place."""
+    def put(self, parts: Array, room: Array) -> None:
+        """Variables at the samples from their parts into their places, shape (rows, samples)."""
         if self.which is None:
-            variable[:] = parts[0]
+            room[:] = parts[:, 0]
         else:
             from crankmbs.mechanics import combined  # numba is loaded only where angles repeat
 
-            combined.together(parts, self.which, self.at.square, self.at.alpha, variable)
+            combined.together(parts, self.which, self.at.square, self.at.alpha, room)
+
+    def mix(self, name: str, row: int, variable: Array) -> None:
+        """Make of what has been put what it is: a velocity, or one with combustion and friction."""
         if name in _PER_SPEED:
             variable *= self.omega
         for others, size in self.more:
@@ -140,16 +145,16 @@ class _Found(NamedTuple):
 
     def apart(self, name: str, row: int, parts: Array, variable: Array) -> float:
         """Largest difference of a variable from this one at the samples."""
-        simple = name not in self.mixed
+        simple, own = name not in self.mixed, parts[0]
         if simple and self.which is not None:
             from crankmbs.mechanics import combined
 
             return combined.apart(parts, self.which, self.at.square, self.at.alpha, variable)
-        own = parts[0]
         if not simple:
             own = np.empty_like(self.omega)
-            self.put(name, row, parts, own)
-        return float(np.max(np.abs(own - variable), initial=0.0))
+            self.put(parts[np.newaxis], own[np.newaxis])
+            self.mix(name, row, own)
+        return float(np.abs(own - variable).max(initial=0.0))
 
 
 def _found(
@@ -159,7 +164,8 @@ def _found(
     friction: Array | None,
 ) -> _Found:
     scene = train.scene
-    theta, omega, alpha = (np.asarray(q, dtype=np.float64) for q in given)
+    # copies: a compiled loop is made for every kind of array, read-only or with gaps, that it meets
+    theta, omega, alpha = (np.array(q, dtype=np.float64, order="C") for q in given)
     samples = Powers(omega**2, alpha, np.ones(1))
     once, which = one_period(theta, train.repeats)
     by_parts = len(theta) > _OFTEN * len(once)

@@ -104,7 +104,7 @@ def tabulate(train: CrankTrain, theta: ArrayLike, shares: ArrayLike | None = Non
     """
     from crankmbs.mechanics import reduced  # numba is loaded only where a run needs it
 
-    angles = np.asarray(theta, dtype=np.float64)
+    angles = np.array(theta, dtype=np.float64, order="C")  # a loop is made for every kind of array
     found = np.empty((3, *angles.shape))
     numbers, _, gas = _bare(train)
     reduced.reduced(angles.ravel(), numbers, gas, found.reshape(3, -1))
