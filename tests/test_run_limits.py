@@ -66,6 +66,14 @@ def test_a_run_that_fits_into_memory_runs_and_a_longer_one_does_not(free):
     )
 
 
+def test_the_system_is_not_asked_for_a_megabyte(monkeypatch):
+    monkeypatch.setattr(psutil, "virtual_memory", None)
+    assert simulate(REVOLUTION).status == 0
+    longer = dataclasses.replace(REVOLUTION, run=Run(until="40 rev", rtol=1e-4))
+    with pytest.raises(TypeError):
+        simulate(longer)
+
+
 def test_every_cylinder_takes_its_memory(free):
     four = dataclasses.replace(REVOLUTION, layout=Layout(firing_order=(1, 3, 4, 2)))
     free(3 * OF_ONE)  # 80 numbers: 2.8 times as many
