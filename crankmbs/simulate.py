@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time as clock
+from functools import partial
 
 from crankmbs.choose import choose, chosen
 from crankmbs.errors import InputError, shown
@@ -59,9 +60,9 @@ def simulate(
     asked = max(scene.run.rtol, one.least_rtol) if rtol is None else rtol
     assembled = one.run(crank_train(scene), asked, cost_cap)
     solution = assembled.solution
-    return Result(
+    return Result.unlabelled(
+        partial(dataset, assembled),
         scene=scene,
-        data=dataset(assembled),
         formulation=choice.formulation,
         reasons=choice.reasons + remarks(scene) + speed_remarks(scene) + solution.reasons,
         status=solution.status,

@@ -8,7 +8,9 @@ import pytest
 from crankmbs import Gravity
 from crankmbs.mechanics.geometry import close_loop
 from crankmbs.mechanics.inertia import gravity_vector, reduce, rod_centre
-from crankmbs.mechanics.train import CrankTrain, crank_train
+from crankmbs.mechanics.tabulated import tabulate
+from crankmbs.mechanics.train import CrankTrain, crank_angle_knots, crank_train
+from crankmbs.scene.read import load_scene, shipped_scenes
 from validation.adapter import reference_variables
 from validation.oracles.arithmetic import multiprecision
 from validation.random_scenes import random_scene
@@ -24,8 +26,9 @@ def torque_from_outside(scene, omega, alpha):
     return found["external_torque"]
 
 
+@pytest.mark.parametrize("reduce", [reduce, tabulate])
 @pytest.mark.parametrize("seed", range(12))
-def test_every_term_of_the_equation_of_motion(seed):
+def test_every_term_of_the_equation_of_motion(seed, reduce):
     """T = J alpha + J_1 omega^2 / 2 - torque, term by term: at rest, then with one rate alone."""
     scene = random_scene(seed)
     inertia, slope, torque = reduce(crank_train(scene), ANGLES)
@@ -41,7 +44,27 @@ def test_every_term_of_the_equation_of_motion(seed):
         assert np.abs(ours - exact).max() <= 1e-12 * np.abs(exact).max() + floor, name
 
 
-def test_the_gas_is_left_out_on_request():
+@pytest.mark.parametrize("name", shipped_scenes())
+def test_the_loop_gives_what_arrays_give(name):
+    """Far away and backwards too, on both sides of every knot of the pressure and on it."""
+    train = crank_train(load_scene(name))
+    knots = crank_angle_knots(train)
+    near = np.add.outer(knots, [-3e-9, -0.9e-9, -0.1e-9, 0.0, 1e-9])
+    for turns in (-3, 0, 40):
+        angles = np.append(ANGLES, near) + turns * train.period
+        for ours, plain in zip(tabulate(train, angles), reduce(train, angles), strict=True):
+            assert np.abs(ours - plain).max() <= 2e-14 * np.abs(plain).max()
+
+
+def test_the_loop_takes_shares_of_the_combustion():
+    train = crank_train(load_scene("misfire"))
+    shares = np.linspace(0.0, 1.0, len(ANGLES) * len(train.scene.cylinders)).reshape(6, -1)
+    ours, plain = tabulate(train, ANGLES, shares), reduce(train, ANGLES, shares)
+    assert np.abs(ours.torque - plain.torque).max() <= 1e-14 * np.abs(plain.torque).max()
+
+
+@pytest.mark.parametrize("reduce", [reduce, tabulate])
+def test_the_gas_is_left_out_on_request(reduce):
     scene = replace(random_scene(0), gravity=None, torque=())
     assert np.all(reduce(CrankTrain(scene, None), ANGLES)[2] == 0.0)
 

@@ -89,3 +89,11 @@ def test_repeat():
     found = repeat(np.array([0.5, 2.0]), 3.0, -2.5, 5.0)
     np.testing.assert_allclose(found, [-1.0, 0.5, 2.0, 3.5])
     assert len(repeat(np.empty(0), 3.0, 0.0, 9.0)) == 0
+
+
+def test_cubics_that_runs_share_cannot_be_written_to():
+    one, again = (pressures_of(load_scene("propeller"))[0] for _ in range(2))
+    assert one.coefficients is again.coefficients
+    for shared in (one.knots, one.coefficients):
+        with pytest.raises(ValueError, match="read-only"):
+            shared[0] = 1.0

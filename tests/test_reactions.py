@@ -7,8 +7,11 @@ import numpy as np
 import pytest
 
 from crankmbs import load_scene
+from crankmbs.mechanics import reduced
+from crankmbs.mechanics.newton_euler import Powers
 from crankmbs.mechanics.pressure import pressures_of
-from crankmbs.mechanics.reactions import deviations, reactions
+from crankmbs.mechanics.reactions import balanced_by_arrays, deviations, reactions
+from crankmbs.mechanics.tabulated import balanced, rows_of, tabulate
 from crankmbs.mechanics.train import CrankTrain, crank_train
 from validation.adapter import reference_variables
 from validation.oracles.arithmetic import multiprecision
@@ -49,6 +52,48 @@ def test_every_variable_of_shipped_machines(name):
     scene, state = load_scene(name), motion(1)
     worst = misfit(scene, state, reference_variables(scene, *state, DIGITS))
     assert max(worst.values()) < 1e-12, worst
+
+
+@pytest.mark.parametrize("way", [balanced, balanced_by_arrays])
+@pytest.mark.parametrize("seed", range(12))
+def test_every_balance_both_ways(seed, way):
+    """In the compiled loop, and by arrays; per omega^2, alpha and 1, and put together."""
+    scene, (theta, omega, alpha) = random_scene(seed), motion(seed)
+    train, exact = crank_train(scene), reference_variables(scene, *motion(seed), DIGITS)
+    powers = Powers(*np.atleast_2d(omega**2, alpha, np.ones(7)))
+    units = way(train, theta, Powers(*np.eye(3)[:, :, np.newaxis]))
+    whole = way(train, theta, powers)[:, 0]
+    joined = np.einsum("rui,ui->ri", units, np.concatenate(powers))
+    row = 0
+    for name, count in rows_of(scene).items():
+        vector = {name, name.replace("_force_x", "_force_y"), name.replace("_force_y", "_force_x")}
+        peak = max(np.abs(exact[part].astype(float)).max() for part in vector) or 1.0
+        wanted = np.atleast_2d(exact[name].astype(float).T)
+        per_speed = omega if name in ("rod_angular_speed", "piston_velocity") else 1.0
+        for found in (whole, joined):
+            apart = np.abs(found[row : row + count] * per_speed - wanted).max()
+            assert apart < 1e-12 * peak, name
+        row += count
+    assert row == len(whole)
+
+
+def test_a_compiled_loop_is_made_once():
+    """Whatever arrays come: with gaps, read-only, broadcast."""
+    train = crank_train(load_scene("coasting"))
+    theta, omega, alpha = motion(1)
+    reactions(train, theta, omega, alpha)
+    tabulate(train, theta)
+    made = len(reduced.balances.signatures), len(reduced.reduced.signatures)
+    gaps = np.repeat(theta, 2)[::2]
+    still = np.broadcast_to(3.0, 7)
+    alpha.flags.writeable = False
+    found = reactions(train, gaps, still, alpha)
+    np.testing.assert_array_equal(
+        found["rod_angle"], reactions(train, theta, omega, alpha)["rod_angle"]
+    )
+    np.testing.assert_array_equal(tabulate(train, gaps).inertia, tabulate(train, theta).inertia)
+    tabulate(train, still.reshape(1, 7))
+    assert (len(reduced.balances.signatures), len(reduced.reduced.signatures)) == made
 
 
 def test_angles_that_come_back():

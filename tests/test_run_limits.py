@@ -45,6 +45,7 @@ def free(monkeypatch):
     def only(count):
         memory = SimpleNamespace(available=count)
         monkeypatch.setattr(psutil, "virtual_memory", lambda: memory)
+        monkeypatch.setattr("crankmbs.motion.memory._LITTLE", 0.0)
 
     return only
 
@@ -63,6 +64,14 @@ def test_a_run_that_fits_into_memory_runs_and_a_longer_one_does_not(free):
         "run.every: 720 samples of 29 numbers each came, which take up to 0.00167 GB, and "
         '0.000847 GB are free; give a wider spacing, or every = "none" to keep the last cycle alone'
     )
+
+
+def test_the_system_is_not_asked_for_a_megabyte(monkeypatch):
+    monkeypatch.setattr(psutil, "virtual_memory", None)
+    assert simulate(REVOLUTION).status == 0
+    longer = dataclasses.replace(REVOLUTION, run=Run(until="40 rev", rtol=1e-4))
+    with pytest.raises(TypeError):
+        simulate(longer)
 
 
 def test_every_cylinder_takes_its_memory(free):

@@ -1,5 +1,6 @@
 """The one verb: what it takes, what it refuses, what it hands back."""
 
+import copy
 from dataclasses import replace
 
 import pytest
@@ -72,3 +73,16 @@ def test_a_result_says_whether_it_is_of_the_whole_run():
     end = f"{whole.data['time'].values[-1]:.6g} s"
     assert f"\n  {end}, 6 rev, " in str(whole)
     assert f"\n  last 2 rev of {end}, " in str(last)
+
+
+def test_data_are_labelled_when_they_are_first_asked_for():
+    result = simulate(load_scene("torque_driven"))
+    assert "data" not in vars(result)
+    again = copy.copy(result)
+    data = result.data
+    assert data is result.data
+    assert vars(result).keys() >= {"data"}
+    assert again.data.identical(data)
+    assert replace(result, status=1).data is data
+    with pytest.raises(AttributeError, match="'Result' object has no attribute 'date'"):
+        _ = result.date

@@ -12,11 +12,14 @@ __all__ = ["apart", "together"]
 
 
 @kernel
-def together(parts: Array, which: Index, square: Array, alpha: Array, variable: Array) -> None:
-    """A variable from its parts (`reactions`) at the angles ``which``, in its place."""
-    for i in range(len(which)):
-        k = which[i]
-        variable[i] = parts[0, k] * square[i] + parts[1, k] * alpha[i] + parts[2, k]
+def together(parts: Array, which: Index, square: Array, alpha: Array, room: Array) -> None:
+    """Variables, shape (rows, n), from their parts (`reactions`), shape (rows, 3, angles), at the
+    angles ``which``, in their places."""
+    for row in range(len(parts)):
+        part, variable = parts[row], room[row]
+        for i in range(len(which)):
+            k = which[i]
+            variable[i] = part[0, k] * square[i] + part[1, k] * alpha[i] + part[2, k]
 
 
 @kernel

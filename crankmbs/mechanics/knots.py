@@ -20,8 +20,8 @@ def apart(knots: Array) -> Array:
     >>> apart(np.array([2.0, 1.0, 1.0 + 1e-15]))
     array([1., 2.])
     """
-    knots = np.unique(knots)
-    return np.asarray(knots[np.diff(knots, prepend=-math.inf) > KNOT])
+    knots = np.sort(knots)
+    return np.asarray(knots[np.append(True, knots[1:] - knots[:-1] > KNOT)[: len(knots)]])
 
 
 def repeat(knots: Array, period: float, low: float, high: float) -> Array:

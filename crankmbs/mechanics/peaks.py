@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+import numpy as np
+
 from crankmbs.mechanics.variables import EVERY, SUMS
 from crankmbs.numerics.arrays import Array
 
 __all__ = ["negligible", "peak", "relative_error"]
 
+_UNITS = {name: about.units for name, about in EVERY.items()}
 _NOTHING = 1e-10  # of the largest of the same unit; multibody's Newton iterations leave more rarely
 
 
@@ -18,7 +21,7 @@ def peak(values: Array) -> float:
     >>> peak(np.array([1.0, -2.0]))
     2.0
     """
-    return max(float(values.max(initial=0.0)), -float(values.min(initial=0.0)))
+    return float(np.abs(values).max(initial=0.0))
 
 
 def negligible(peaks: Mapping[str, float], units: Mapping[str, str]) -> set[str]:
@@ -44,7 +47,7 @@ def relative_error(peaks: Mapping[str, float], errors: Mapping[str, float], turn
     2e-06
     """
     sizes = {**peaks, "crank_angle": turned}
-    ignored = negligible(sizes, {name: EVERY[name].units for name in sizes})
+    ignored = negligible(sizes, _UNITS)
     ignored |= SUMS | {"energy_residual"}
     ratios = [errors[name] / size for name, size in sizes.items() if name not in ignored]
     return max(ratios, default=0.0)

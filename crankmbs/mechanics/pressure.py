@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -250,7 +251,13 @@ def remarks(scene: Scene) -> tuple[str, ...]:
     )
 
 
-def _remarks(gas: Gas, table: Table) -> Iterator[str]:
+@lru_cache(maxsize=32)
+def _remarks(gas: Gas, table: Table) -> tuple[str, ...]:
+    """Of one table."""
+    return tuple(_said(gas, table))
+
+
+def _said(gas: Gas, table: Table) -> Iterator[str]:
     apart = closing_row(table, cycles_in(table, gas.period) * gas.period)
     if apart:
         yield (

@@ -8,7 +8,7 @@ for each sample.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from itertools import accumulate
 from typing import NamedTuple
 
@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 from crankmbs.mechanics.fired import Parts, fired_parts, pushed_parts
 from crankmbs.mechanics.friction import friction_forces
 from crankmbs.mechanics.newton_euler import Powers, of_crank, of_cylinder
+from crankmbs.mechanics.tabulated import balanced, rows_of
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.variables import EVERY
 from crankmbs.numerics.arrays import Array
@@ -59,15 +60,14 @@ def reactions(
     0.0
     """
     found = _found(train, (theta, omega, alpha), fuel, friction)
-    rows = {name: len(columns) for name, columns in found.columns.items()}
     # one piece of memory, so large that the system is not asked for every run's anew
-    room = np.empty((sum(rows.values()), len(found.omega)))
-    ends = zip(rows.items(), accumulate(rows.values()), strict=True)
+    room = np.empty((len(found.parts), len(found.omega)))
+    found.put(found.parts, room)
+    for variable, (name, k, _) in zip(room, found.each(), strict=True):
+        if name in found.mixed:
+            found.mix(name, k, variable)
+    ends = zip(found.rows.items(), accumulate(found.rows.values()), strict=True)
     variables = {name: room[end - count : end] for (name, count), end in ends}
-    for name, variable in variables.items():
-        for k, (row, values) in enumerate(zip(variable, found.columns[name], strict=True)):
-            found.put(name, values, row)
-            found.add_more(name, k, row)
     return {n: v.T if EVERY[n].per_cylinder else v[0] for n, v in variables.items()}
 
 
@@ -93,64 +93,68 @@ def deviations(
     own = own or {}
     given = own.get("fuel"), own.get("friction_force")
     found = _found(train, (theta, omega, alpha), *given)
-    largest = {}
-    for name, columns in found.columns.items():
-        rows = np.atleast_2d(variables[name].T)
-        pairs = enumerate(zip(columns, rows, strict=True))
-        apart = [found.apart(name, k, *pair) for k, pair in pairs]
-        largest[name] = float(np.max(apart))
+    largest = dict.fromkeys(found.rows, 0.0)
+    for name, k, parts in found.each():
+        variable = variables[name]
+        apart = found.apart(name, k, parts, variable[:, k] if variable.ndim > 1 else variable)
+        largest[name] = apart if apart != apart else max(largest[name], apart)
     return largest
 
 
 class _Found(NamedTuple):
     """Every variable at the samples, not yet put together.
 
-    columns : for the crank or for each cylinder, shape (n,) what depends on the angle alone, for
-        velocities per speed; shape (3, n) what belongs to omega^2, alpha and 1
+    rows : how many of each variable; parts : shape (rows, 1, samples), velocities per speed; or
+        (rows, 3, n), what belongs to omega^2, alpha and 1 at the angles of one period
     which : shape (samples,), which of the n angles a sample is at; None where n are the samples
     more : of the combustion and the friction, each: what a share of 1, or 1 N, on each cylinder
         adds at the n angles; and the shares, or forces, shape (samples, cylinders)
+    mixed : the variables that are not their parts alone
     """
 
-    columns: dict[str, list[Array]]
+    rows: dict[str, int]
+    parts: Array
     which: NDArray[np.intp] | None
     at: Powers
     omega: Array
     more: tuple[tuple[Parts, Array], ...]
+    mixed: frozenset[str]
 
-    def put(self, name: str, values: Array, variable: Array) -> None:
-        """A variable at the samples into its place."""
-        if self.which is not None and values.ndim > 1:
+    def each(self) -> Iterator[tuple[str, int, Array]]:
+        """Variable, number of its row, and the parts."""
+        places = ((name, k) for name, count in self.rows.items() for k in range(count))
+        for (name, k), parts in zip(places, self.parts, strict=True):
+            yield name, k, parts
+
+    def put(self, parts: Array, room: Array) -> None:
+        """Variables at the samples from their parts into their places, shape (rows, samples)."""
+        if self.which is None:
+            room[:] = parts[:, 0]
+        else:
             from crankmbs.mechanics import combined  # numba is loaded only where angles repeat
 
-            combined.together(values, self.which, self.at.square, self.at.alpha, variable)
-        else:
-            variable[:] = self._all(name, values)
+            combined.together(parts, self.which, self.at.square, self.at.alpha, room)
 
-    def add_more(self, name: str, row: int, variable: Array) -> None:
-        """Add to a variable, in its place, what firings and friction do."""
-        for parts, size in self.more:
-            for k, part in parts[name][row].items() if name in parts else ():
+    def mix(self, name: str, row: int, variable: Array) -> None:
+        """Make of what has been put what it is: a velocity, or one with combustion and friction."""
+        if name in _PER_SPEED:
+            variable *= self.omega
+        for others, size in self.more:
+            for k, part in others[name][row].items() if name in others else ():
                 variable += size[:, k] * (part if self.which is None else part[self.which])
 
-    def apart(self, name: str, row: int, values: Array, variable: Array) -> float:
+    def apart(self, name: str, row: int, parts: Array, variable: Array) -> float:
         """Largest difference of a variable from this one at the samples."""
-        if any(name in parts for parts, _ in self.more):
-            own = self._all(name, values) + np.zeros(len(self.omega))
-            self.add_more(name, row, own)
-            return float(np.max(np.abs(own - variable), initial=0.0))
-        if self.which is not None and values.ndim > 1:
+        simple, own = name not in self.mixed, parts[0]
+        if simple and self.which is not None:
             from crankmbs.mechanics import combined
 
-            return combined.apart(values, self.which, self.at.square, self.at.alpha, variable)
-        return float(np.max(np.abs(self._all(name, values) - variable), initial=0.0))
-
-    def _all(self, name: str, values: Array) -> Array:
-        if self.which is not None:
-            values = values.take(self.which, axis=-1)
-        if values.ndim > 1:
-            return np.asarray(values[0] * self.at.square + values[1] * self.at.alpha + values[2])
-        return values * self.omega if name in _PER_SPEED else values
+            return combined.apart(parts, self.which, self.at.square, self.at.alpha, variable)
+        if not simple:
+            own = np.empty_like(self.omega)
+            self.put(parts[np.newaxis], own[np.newaxis])
+            self.mix(name, row, own)
+        return float(np.abs(own - variable).max(initial=0.0))
 
 
 def _found(
@@ -160,26 +164,43 @@ def _found(
     friction: Array | None,
 ) -> _Found:
     scene = train.scene
-    theta, omega, alpha = (np.asarray(q, dtype=np.float64) for q in given)
+    # copies: a compiled loop is made for every kind of array, read-only or with gaps, that it meets
+    theta, omega, alpha = (np.array(q, dtype=np.float64, order="C") for q in given)
     samples = Powers(omega**2, alpha, np.ones(1))
-    once, which = one_period(theta, train.period)
+    once, which = one_period(theta, train.repeats)
     by_parts = len(theta) > _OFTEN * len(once)
-    once, motion = (once, _UNITS) if by_parts else (theta, samples)
-    cylinders = [of_cylinder(train, once, motion, k) for k in range(len(scene.cylinders))]
-    columns = {name: [part] for name, part in of_crank(scene, once, motion, cylinders).items()}
+    once, motion = (once, _UNITS) if by_parts else (theta, Powers(*map(np.atleast_2d, samples)))
+    # numba is loaded only where angles repeat, or the motion has taken it already
+    balances = balanced if by_parts or scene.motion is None else balanced_by_arrays
+    rows, parts = rows_of(scene), balances(train, once, motion)
+    more = [] if fuel is None else [(fired_parts(train, once), fuel)]
+    if scene.friction is not None:
+        if friction is None:
+            friction = friction_forces(train, theta, omega, fuel)
+        rows["friction_force"] = len(scene.cylinders)
+        parts = np.pad(parts, ((0, len(scene.cylinders)), (0, 0), (0, 0)))
+        more.append((_rubbed_parts(scene, once), friction))
+    mixed = frozenset(_PER_SPEED).union(*(others for others, _ in more))
+    return _Found(rows, parts, which if by_parts else None, samples, omega, tuple(more), mixed)
+
+
+def balanced_by_arrays(train: CrankTrain, theta: Array, motion: Powers) -> Array:
+    """The same as `crankmbs.mechanics.tabulated.balanced`, by NumPy."""
+    scene = train.scene
+    cylinders = [of_cylinder(train, theta, motion, k) for k in range(len(scene.cylinders))]
+    columns = {name: [part] for name, part in of_crank(scene, theta, motion, cylinders).items()}
     for name in cylinders[0].variables:
         columns[name] = [c.variables[name] for c in cylinders]
     torque = columns["crank_torque"]
     columns["journal_torque"] = list(accumulate(torque))
     pairs = zip(columns["journal_torque"], torque, strict=True)
     columns["pin_torque"] = [journal - 0.5 * own for journal, own in pairs]
-    more = [] if fuel is None else [(fired_parts(train, once), fuel)]
-    if scene.friction is not None:
-        if friction is None:
-            friction = friction_forces(train, theta, omega, fuel)
-        columns["friction_force"] = [np.zeros_like(once) for _ in cylinders]
-        more.append((_rubbed_parts(scene, once), friction))
-    return _Found(columns, which if by_parts else None, samples, omega, tuple(more))
+    shape = (len(motion.one), len(theta))
+    # what depends on the angle alone belongs to 1
+    every = [
+        part if part.ndim > 1 else part * motion.one for n in rows_of(scene) for part in columns[n]
+    ]
+    return np.array([np.broadcast_to(part, shape) for part in every])
 
 
 def _rubbed_parts(scene: Scene, theta: Array) -> Parts:

@@ -193,7 +193,9 @@ def branch_at(
     """
     t, _, omega = state
     above = branch_of(torques, t, omega, rising=True, phases=phases)
-    below = branch_of(torques, t, omega, rising=False, phases=phases)
+    below = above  # but on a knot in the speed, which begins the branch above
+    if not above.omega_low < omega:
+        below = branch_of(torques, t, omega, rising=False, phases=phases)
     push, pull = float(above(t, omega)), float(below(t, omega))
     for function in above.functions:
         push, pull = push + function.beside(*state, 1.0), pull + function.beside(*state, -1.0)

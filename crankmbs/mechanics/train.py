@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -26,23 +28,33 @@ class CrankTrain:
     combustion : what a firing of share 1 adds to it, on the same knots, where `pressure` is that
         without combustion; None without fuel
     law : the decisions on the shares; None without fuel
+    bare : the numbers of `crankmbs.mechanics.tabulated`, once it has asked for them
     """
 
     scene: Scene
     pressure: tuple[PeriodicPressure, ...] | None
     combustion: tuple[PeriodicPressure, ...] | None = None
     law: FuelLaw | None = None
+    bare: list[Any] = field(default_factory=list, init=False, compare=False, repr=False)
 
-    @property
+    @cached_property
     def off(self) -> CrankTrain:
         """The same with pressures as far from these as the true ones may be."""
-        if self.pressure is None:
+        if all(each.off is each for each in (*(self.pressure or ()), *(self.combustion or ()))):
             return self
-        pressure = tuple(each.off for each in self.pressure)
+        pressure = self.pressure and tuple(each.off for each in self.pressure)
         more = self.combustion and tuple(each.off for each in self.combustion)
         return replace(self, pressure=pressure, combustion=more)
 
-    @property
+    @cached_property
+    def repeats(self) -> float:
+        """Crank angle [rad] after which what depends on it alone comes again: a revolution without
+        gas, where no load has another."""
+        loads = (load.parts.over_angle for load in self.scene.torque)
+        one = self.pressure is None and all(each is None for each in loads)
+        return 2.0 * math.pi if one else self.period
+
+    @cached_property
     def period(self) -> float:
         """Crank angle [rad] after which everything comes again: the least common multiple of the
         periods of the engine, the pressures and the loads over the angle, whole revolutions all."""

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from crankmbs.mechanics.inertia import inertia_alone
 from crankmbs.mechanics.peaks import peak, relative_error
 from crankmbs.mechanics.reactions import deviations, reactions
+from crankmbs.mechanics.tabulated import tabulate
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.variables import EVERY, SUMS
 from crankmbs.motion.base import Samples, Solution
@@ -158,8 +158,8 @@ def _turned_by_rounding(samples: Samples) -> Samples:
 
 def _least_inertia(train: CrankTrain, theta: Array) -> float:
     """Of a free crank, which has inertia at every angle; a driven one may have none."""
-    angles, _ = one_period(theta, train.period)
-    return float(np.min(inertia_alone(train.scene, angles)))
+    angles, _ = one_period(theta, train.repeats)
+    return float(np.min(tabulate(train, angles).inertia))
 
 
 def _speed_change(samples: Samples, ahead: float) -> Array:

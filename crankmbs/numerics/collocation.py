@@ -41,22 +41,6 @@ class Rule:
         """Integrals of the s Lagrange polynomials from 0 to x: shape (n,) -> (n, s)."""
         return _legendre_integrals(x, len(self.nodes)) @ self.to_legendre
 
-    def between(self, at_nodes: Array, x: Array) -> tuple[Array, Array]:
-        """Integrals from 0 to x of polynomials given at the nodes, and their values at x.
-
-        at_nodes : shape (n, s); x : shape (n,)
-        """
-        of = (at_nodes @ self.to_legendre.T).T
-        z = 2.0 * x - 1.0
-        before, p = np.ones_like(x), z
-        integral, value = of[0] * x, of[0]
-        for j in range(1, len(of)):
-            after = ((2 * j + 1) * z * p - j * before) / (j + 1)
-            integral = integral + of[j] * (after - before) / (4 * j + 2)
-            value = value + of[j] * p
-            before, p = p, after
-        return integral, value
-
     def maps(self, h: Array, push: Array, rate: Array) -> Maps:
         """The affine maps of dE/du = push + rate E over cells of signed width h.
 

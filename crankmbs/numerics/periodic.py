@@ -31,6 +31,7 @@ def one_period(theta: Array, period: float) -> tuple[Array, NDArray[np.intp]]:
     repeating = n if missed.max() <= close else count + int(np.argmax(missed > close))
     if repeating == count:
         return theta, np.arange(n)
-    others = np.arange(count, count + n - repeating)
-    which = np.append(np.resize(np.arange(count), repeating), others)
+    which = np.arange(n)
+    which[:repeating] %= count
+    which[repeating:] -= repeating - count
     return np.append(theta[:count], theta[repeating:]), which

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -56,6 +57,29 @@ class Result:
     error: Error
     decay: Decay | None = None
     keep: Keep | None = field(default=None, repr=False, compare=False)
+
+    @classmethod
+    def unlabelled(cls, label: Callable[[], xr.Dataset], **fields: Any) -> Result:
+        """A result whose ``data`` are labelled when they are first asked for: that takes longer
+        than a short run.
+
+        label : makes the data; fields : all others, by name
+        """
+        result = cls(data=None, **fields)  # type: ignore[arg-type]
+        del result.__dict__["data"]
+        result.__dict__["_label"] = label
+        return result
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> object:
+            """The data, where they have not been asked for."""
+            label = self.__dict__.get("_label")
+            if name != "data" or label is None:
+                raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+            data = self.__dict__["data"] = label()
+            self.__dict__.pop("_label", None)
+            return data
 
     @cached_property
     def events(self) -> xr.Dataset:

@@ -7,6 +7,7 @@ to jump; without any it is periodic.
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -108,6 +109,23 @@ def interpolate(rows: Period, interpolation: str) -> tuple[Array, Array]:
     monotone (no overshoot); cubic is the C2 spline, from jump to jump with SciPy's not-a-knot ends.
     """
     angle, value, jumps = rows
+    return _interpolated(angle.tobytes(), value.tobytes(), jumps, interpolation)
+
+
+@lru_cache(maxsize=32)
+def _interpolated(
+    angles: bytes, values: bytes, jumps: bool, interpolation: str
+) -> tuple[Array, Array]:
+    """The same for the rows' doubles: runs of one table, one after the other, share its cubics,
+    which therefore nobody may write to."""
+    angle, value = np.frombuffer(angles), np.frombuffer(values)
+    knots, cubics = _joined(angle, value, jumps, interpolation)
+    knots.flags.writeable = cubics.flags.writeable = False
+    return knots, cubics
+
+
+def _joined(angle: Array, value: Array, jumps: bool, interpolation: str) -> tuple[Array, Array]:
+    """Knots and cubics of rows."""
     cuts = np.flatnonzero(np.diff(angle) == 0.0) + 1
     if not jumps and len(cuts) == 0:
         return angle, _periodic(angle, value, interpolation)

@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crankmbs.mechanics.friction import rubbing
-from crankmbs.mechanics.inertia import fired_torque, inertia_alone, reduce
+from crankmbs.mechanics.inertia import fired_torque
+from crankmbs.mechanics.tabulated import tabulate
 from crankmbs.mechanics.torque import over_angle
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.windows import Phases
@@ -72,7 +73,7 @@ class Strip:
 
     def first(self, m: int) -> Strip:
         """The first m cells."""
-        return self.part(0, m)
+        return self if m == len(self.cell) else self.part(0, m)
 
     def part(self, low: int, high: int) -> Strip:
         """The cells from one number to another; edges are still counted from the beginning."""
@@ -137,7 +138,7 @@ class Grid:
     def at_decisions(self) -> Array:
         """J [kg m2] at the crank angles of one period at which the fuel is decided."""
         law = self.train.law
-        return inertia_alone(self.train.scene, np.array(law.angles if law else ()))
+        return tabulate(self.train, np.array(law.angles if law else ())).inertia
 
     def outside(self, theta: Array) -> Array | float:
         """Torque of loads over the angle [N m], at angles [rad]."""
@@ -147,7 +148,12 @@ class Grid:
     def tables(self) -> _Tables:
         """J and torques over the angle at the nodes of every cell, shape (n, s) each, or
         (n, s, cylinders)."""
-        return self._tabulate(self.edges[:-1], np.diff(self.edges))
+        return self._tabulate(self.edges[:-1], self._widths)
+
+    @cached_property
+    def _widths(self) -> Array:
+        """Of the cells, shape (n,) [rad]."""
+        return np.diff(self.edges)
 
     @cached_property
     def scale(self) -> Array:
@@ -193,24 +199,13 @@ class Grid:
     def strip(self, theta: float, sense: float, count: int, bound: float) -> Strip:
         """At most ``count`` cells from a crank angle on, in the sense of rotation, cut at the
         angle ``bound``; the first and the last may be parts of cells."""
-        n, period = len(self.edges) - 1, float(self.edges[-1])
-        first = self.cell_at(theta, sense)
-        base = math.floor((theta + sense * _SLIVER) / period) * period
-        local = theta - base
-        # not the sum of so many widths, which every pass over the same cells would round alike
-        turns, cell = np.divmod(first + int(sense) * np.arange(count + 1), n)
-        turned = sense * (turns * period + self.edges[cell + (sense < 0.0)] - local)
-        turned[0] = 0.0
-        cell, reach = cell[:count], abs(bound - theta)
-        whole = np.diff(self.edges)
-        width = whole[cell]
-        width[0] = turned[1]
-        last = int(np.searchsorted(turned[1:], reach - _SLIVER)) + 1
-        cell, width, turned = cell[:last], width[:last].copy(), turned[: last + 1]
-        if turned[-1] > reach:
-            turned[-1] = reach
-            width[-1] = reach - turned[-2]
-        return self._filled(theta, sense, cell, width, turned)
+        from crankmbs.motion.crank_angle import cells  # numba is loaded only where a run needs it
+
+        found = np.empty(count, np.intp), np.empty(count), np.empty(count + 1)
+        begin, reach = (theta, sense, self.cell_at(theta, sense)), abs(bound - theta)
+        m = cells.lay(self.edges, begin, reach, _SLIVER, found)
+        cell, width, turned = found
+        return self._filled(theta, sense, cell[:m], width[:m], turned[: m + 1])
 
     def same(self, strip: Strip, theta: float, sense: float) -> Strip:
         """The cells of another grid's strip from a crank angle on, where edges are the same."""
@@ -235,7 +230,7 @@ class Grid:
         tables = [table.take(cell, axis=0) for table in self.tables]
         if sense < 0.0:
             tables = [table[:, ::-1].copy() for table in tables]
-        parts = np.flatnonzero(width != np.diff(self.edges)[cell])
+        parts = np.flatnonzero(width != self._widths.take(cell))
         if len(parts):
             period = float(self.edges[-1])
             local = theta - math.floor((theta + sense * _SLIVER) / period) * period
@@ -252,7 +247,7 @@ class Grid:
 
     def _tabulate(self, start: Array, width: Array) -> _Tables:
         theta = start[:, None] + width[:, None] * self.rule.nodes
-        found = reduce(self.train, theta)
+        found = tabulate(self.train, theta)
         torque = np.asarray(found.torque + self.outside(theta))
         return _Tables(found.inertia, torque, fired_torque(self.train, theta), *self._rub(theta))
 

@@ -15,7 +15,18 @@ from crankmbs.numerics.kernels import kernel
 _SETTLED, _GOOD = 1e-14, 1e-11  # relative change of the energy in Newton's last step
 
 
-__all__ = ["affine", "along", "fire", "fire_each", "fired", "missed", "newton"]
+__all__ = [
+    "affine",
+    "along",
+    "compose",
+    "fire",
+    "fire_each",
+    "fired",
+    "maps",
+    "missed",
+    "newton",
+    "worst",
+]
 
 Loads = tuple[Array, Array, Array, Array]  # the tables of a course of `crankmbs.mechanics.torque`
 Solved = tuple[Array, Array, Array, Array]  # edges, time, torque and slowness of cells, filled
@@ -41,29 +52,15 @@ def affine(
 ) -> int:
     """Solve cells by affine maps, up to the end in time; count them.
 
-    cells : row of the loads for every one, and its width; loads : signed width, and push, rate and
-    inertia at the nodes, as `crankmbs.numerics.collocation.Rule.maps` takes them; rule : matrix and
-    weights; ends : energy and time at the start, last time
+    cells : row of the loads for every one, and its width; loads : as `maps` takes them, and
+    inertia at the nodes; rule : matrix and weights; ends : energy and time at the start, last time
     """
     (which, width), (signed, push, rate, inertia) = cells, loads
-    (matrix, weights), (energy, t, t_end) = rule, ends
+    (_, weights), (energy, t, t_end) = rule, ends
     edges, time, torque, slowness = solved
-    s = len(weights)
     gain, shift = np.empty(push.shape), np.empty(push.shape)
     growth, rise = np.empty(len(signed)), np.empty(len(signed))
-    system, both = np.empty((s, s)), np.empty((s, 2))
-    for c in range(len(signed)):
-        h, growth[c], rise[c] = signed[c], 0.0, 0.0
-        for j in range(len(weights)):
-            both[j, 0], both[j, 1] = 1.0, 0.0
-            for i in range(len(weights)):
-                both[j, 1] += h * matrix[j, i] * push[c, i]
-                system[j, i] = (1.0 if i == j else 0.0) - h * matrix[j, i] * rate[c, i]
-        _eliminate(system, both)
-        for j in range(len(weights)):
-            gain[c, j], shift[c, j] = both[j, 0], both[j, 1]
-            growth[c] += h * weights[j] * rate[c, j] * gain[c, j]
-            rise[c] += h * weights[j] * (push[c, j] + rate[c, j] * shift[c, j])
+    maps((signed, push, rate), rule, (gain, shift, growth, rise))
     edges[0], time[0] = energy, t
     lost, late = 0.0, 0.0  # of E and t by rounding: all passes over the cells lose it alike, unseen
     for k in range(len(which)):
@@ -84,6 +81,54 @@ def affine(
         if not t < t_end:
             return k + 1
     return len(which)
+
+
+@kernel
+def maps(loads: tuple[Array, Array, Array], rule: tuple[Array, Array], found: Solved) -> None:
+    """Fill gain, shift, growth and rise of `crankmbs.numerics.collocation.Maps`, cell by cell.
+
+    loads : signed width, and push and rate at the nodes, as `Rule.maps` there takes them
+    """
+    (signed, push, rate), (matrix, weights), (gain, shift, growth, rise) = loads, rule, found
+    s = len(weights)
+    system, both = np.empty((s, s)), np.empty((s, 2))
+    for c in range(len(signed)):
+        h, growth[c], rise[c] = signed[c], 0.0, 0.0
+        for j in range(len(weights)):
+            both[j, 0], both[j, 1] = 1.0, 0.0
+            for i in range(len(weights)):
+                both[j, 1] += h * matrix[j, i] * push[c, i]
+                system[j, i] = (1.0 if i == j else 0.0) - h * matrix[j, i] * rate[c, i]
+        _eliminate(system, both)
+        for j in range(len(weights)):
+            gain[c, j], shift[c, j] = both[j, 0], both[j, 1]
+            growth[c] += h * weights[j] * rate[c, j] * gain[c, j]
+            rise[c] += h * weights[j] * (push[c, j] + rate[c, j] * shift[c, j])
+
+
+@kernel
+def compose(
+    cells: tuple[Array, Array, Array, Array, Array],
+    rule: tuple[Array, Array],
+    found: tuple[Array, Array, Array, Array, Array],
+) -> None:
+    """Fill gain, shift and weight of `crankmbs.motion.crank_angle.periods.Period` at the nodes of
+    one period's cells, and at their ends growth of the period so far, and the rise of each.
+
+    cells : signed width, width, and push, rate and inertia at the nodes
+    """
+    (signed, width, push, rate, inertia), (_, weights) = cells, rule
+    gain, shift, weight, grown, rise = found
+    growth, risen, before = np.empty(len(signed)), 0.0, 0.0
+    maps((signed, push, rate), rule, (gain, shift, growth, rise))
+    for c in range(len(signed)):
+        for j in range(len(weights)):
+            shift[c, j] += gain[c, j] * risen
+            gain[c, j] *= 1.0 + before
+            weight[c, j] = math.sqrt(0.5 * inertia[c, j]) * width[c] * weights[j]
+        risen += growth[c] * risen + rise[c]
+        before += growth[c] + before * growth[c]
+        grown[c] = before
 
 
 @kernel
@@ -387,6 +432,16 @@ def missed(
             both = abs(energy[k]) / edges[k + 1] + abs(width[k] * (late[i] - early[i])) * per_time
             inside[k] = inside[k] if both <= inside[k] or inside[k] != inside[k] else both
         at_end[k] = both
+
+
+@kernel
+def worst(cell: Index, at_end: Array, inside: Array, most: Array) -> None:
+    """Raise the largest errors so far of each cell of a grid, shape (2, n), to those of cells that
+    have been passed; NaN where one is."""
+    for k in range(len(cell)):
+        a, b = most[0, cell[k]], most[1, cell[k]]
+        most[0, cell[k]] = a if at_end[k] <= a or a != a else at_end[k]
+        most[1, cell[k]] = b if inside[k] <= b or b != b else inside[k]
 
 
 @kernel

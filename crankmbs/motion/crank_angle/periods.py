@@ -77,19 +77,16 @@ class Period(NamedTuple):
 
 def period_of(grid: Grid, strip: Strip, branch: Branch, sense: float) -> Period:
     """Compose the maps of the cells of one period, given as a strip."""
-    rate = 2.0 * branch.c2 / strip.inertia
-    maps = grid.rule.maps(sense * strip.width, strip.torque + branch.c0, rate)
-    growths = accumulate(maps.growth.tolist(), lambda a, b: a + b + a * b, initial=0.0)
-    growth = np.array(list(growths))
+    from crankmbs.motion.crank_angle import loops  # numba is loaded only where a run needs it
+
+    rule, (growth, rise) = grid.rule, np.empty((2, len(strip.width)))
+    gain, shift, weight = np.empty((3, *strip.inertia.shape))
+    push, rate = strip.torque + branch.c0, 2.0 * branch.c2 / strip.inertia
+    cells = sense * strip.width, strip.width, push, rate, strip.inertia
+    found = gain, shift, weight, growth, rise
+    loops.compose(cells, (rule.matrix, rule.weights), found)
     with np.errstate(divide="ignore", invalid="ignore"):
-        left = (1.0 + growth[-1]) / (1.0 + growth[1:])  # what the rest of the period makes of it
-    steps = zip(maps.growth.tolist(), maps.rise.tolist(), strict=True)
-    rises = np.array(list(accumulate(steps, lambda e, s: e + (s[0] * e + s[1]), initial=0.0)))
-    root = np.sqrt(0.5 * strip.inertia) * strip.width[:, None] * grid.rule.weights
-    return Period(
-        float(growth[-1]),
-        math.fsum((maps.rise * left).tolist()),  # the cells' rises nearly cancel in a steady motion
-        (maps.gain * (1.0 + growth[:-1, None])).ravel(),
-        (maps.gain * rises[:-1, None] + maps.shift).ravel(),
-        root.ravel(),
-    )
+        left = (1.0 + growth[-1]) / (1.0 + growth)  # what the rest of the period makes of it
+    # the cells' rises nearly cancel in a steady motion
+    whole = float(growth[-1]), math.fsum((rise * left).tolist())
+    return Period(*whole, gain.ravel(), shift.ravel(), weight.ravel())

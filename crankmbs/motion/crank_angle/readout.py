@@ -13,7 +13,7 @@ from crankmbs.numerics.kernels import kernel
 Coefficients = tuple[float, float, float, float]  # c0, ct, c1, c2 of `crankmbs.mechanics.torque`
 
 
-__all__ = ["carried", "motion", "read"]
+__all__ = ["carried", "inside", "motion", "read"]
 
 Solved = tuple[Array, Array, Array, Array, Array, Array]  # as `read` unpacks them
 _MOST_NEWTON = 100  # steps; bisecting alone takes 53
@@ -33,20 +33,13 @@ def read(
     edges, width, energy, time, torque, slowness = solved
     cell, position, at, kinetic = found
     s, k = len(to_legendre), -1
-    of = np.empty((5, s))  # torque and slowness as sums of P_j, and of P_j what `_integrals` needs
-    for j in range(s):
-        of[2, j], of[3, j] = (2.0 * j + 1.0) / (j + 1.0), j / (j + 1.0)
-        of[4, j] = 1.0 / (4.0 * j + 2.0)
+    of = _room(s)
     for i in range(len(given)):
         now, entered = float(given[i]), k < 0
         while k < 0 or (now > (time[k + 1] if in_time else edges[k + 1]) and k + 1 < len(width)):
             k, entered = k + 1, True
         if entered:
-            for j in range(s):
-                of[0, j] = of[1, j] = 0.0
-                for m in range(s):
-                    of[0, j] += to_legendre[j, m] * torque[k, m]
-                    of[1, j] += to_legendre[j, m] * slowness[k, m]
+            _enter(k, to_legendre, torque, slowness, of)
         h = float(width[k])
         if in_time:
             x = _inverted((now - float(time[k])) / h, (float(time[k + 1]) - float(time[k])) / h, of)
@@ -56,6 +49,46 @@ def read(
         cell[i], position[i] = k, x
         at[i] = now if in_time else float(time[k]) + h * spent
         kinetic[i] = float(energy[k]) + sense * h * gained
+
+
+@kernel
+def inside(
+    cell: int,
+    places: Array,
+    sense: float,
+    to_legendre: Array,
+    solved: Solved,
+    found: tuple[Array, Array],
+) -> None:
+    """Fill ``found`` with time and energy at places in one cell, 0 to 1."""
+    _, width, energy, time, torque, slowness = solved
+    at, kinetic = found
+    of, h = _room(len(to_legendre)), float(width[cell])
+    _enter(cell, to_legendre, torque, slowness, of)
+    for i in range(len(places)):
+        gained, spent, _ = _integrals(of, places[i])
+        at[i] = float(time[cell]) + h * spent
+        kinetic[i] = float(energy[cell]) + sense * h * gained
+
+
+@kernel
+def _room(s: int) -> Array:
+    """For torque and slowness as sums of P_j, and of P_j what `_integrals` needs."""
+    of = np.empty((5, s))
+    for j in range(s):
+        of[2, j], of[3, j] = (2.0 * j + 1.0) / (j + 1.0), j / (j + 1.0)
+        of[4, j] = 1.0 / (4.0 * j + 2.0)
+    return of
+
+
+@kernel
+def _enter(cell: int, to_legendre: Array, torque: Array, slowness: Array, of: Array) -> None:
+    """Torque and slowness of a cell as sums of P_j."""
+    for j in range(len(to_legendre)):
+        of[0, j] = of[1, j] = 0.0
+        for m in range(len(to_legendre)):
+            of[0, j] += to_legendre[j, m] * torque[cell, m]
+            of[1, j] += to_legendre[j, m] * slowness[cell, m]
 
 
 @kernel

@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crankmbs.mechanics.friction import friction_forces, friction_torque
-from crankmbs.mechanics.inertia import fired_torque, inertia_alone, reduce
+from crankmbs.mechanics.inertia import fired_torque
+from crankmbs.mechanics.tabulated import tabulate
 from crankmbs.mechanics.torque import Branch, Course
 from crankmbs.motion.base import NOWHERE, Nodes, Points, Samples, State
 from crankmbs.motion.crank_angle import readout
@@ -79,10 +80,8 @@ class Window:
 
     @cached_property
     def _last(self) -> Samples:
-        k, x = np.array([self.stop[0]]), np.array([self.stop[1]])
-        theta = _exact(self.landed.theta, self._theta(k, x))
-        t = _exact(self.landed.time, self._time(k, x))
-        at = self._samples(k, theta, t, self._energy(k, x))
+        k, x = self.stop
+        at = self.inside(k, np.array([x]), self.landed)
         return replace(at, omega=_exact(self.landed.omega, at.omega))
 
     @property
@@ -145,10 +144,16 @@ class Window:
                 if stop is not None:
                     stops.append((stop, nowhere._replace(omega=limit)))
         stop, landed = min(stops, key=lambda item: item[0])
-        return replace(self.first(stop[0] + 1), stop=stop, landed=landed)
+        if (stop, landed) == (self.stop, self.landed):
+            return self
+        return self._up_to(stop, landed)
 
     def first(self, m: int) -> Window:
         """The first m cells."""
+        return self._up_to((m - 1, 1.0), NOWHERE)
+
+    def _up_to(self, stop: tuple[int, float], landed: State) -> Window:
+        m = stop[0] + 1
         return replace(
             self,
             strip=self.strip.first(m),
@@ -157,8 +162,8 @@ class Window:
             time=self.time[: m + 1],
             torque=self.torque[:m],
             slowness=self.slowness[:m],
-            stop=(m - 1, 1.0),
-            landed=NOWHERE,
+            stop=stop,
+            landed=landed,
             modes=tuple(one for one in self.modes if one[0] < m),
         )
 
@@ -200,23 +205,18 @@ class Window:
 
     def speeds_at(self, k: Index) -> Array:
         """Speed [rad/s] at these edges."""
-        inertia = inertia_alone(
-            self.grid.train.scene, self.begin.theta + self.sense * self.edges[k]
-        )
+        theta = self.begin.theta + self.sense * self.edges[k]
+        inertia = tabulate(self.grid.train, theta).inertia
         return np.asarray(self.sense * np.sqrt(2.0 * self.energy[k] / inertia))
 
-    def inside(self, k: int, x: Array) -> Samples:
-        """The samples at places x in a cell, 0 to 1."""
-        cell = np.array([k])
-        return self._samples(cell, self._theta(cell, x), self._time(cell, x), self._energy(cell, x))
-
-    def _energy(self, k: Index, x: Array) -> Array:
-        gained, _ = self.grid.rule.between(self.torque[k], x)
-        return np.asarray(self.energy[k] + self.sense * self.strip.width[k] * gained)
-
-    def _time(self, k: Index, x: Array) -> Array:
-        spent, _ = self.grid.rule.between(self.slowness[k], x)
-        return np.asarray(self.time[k] + self.strip.width[k] * spent)
+    def inside(self, k: int, x: Array, landed: State = NOWHERE) -> Samples:
+        """The samples at places x in a cell, 0 to 1; what is known exactly as it is."""
+        t, energy = np.empty((2, len(x)))
+        to_legendre = self.grid.rule.to_legendre
+        readout.inside(k, x, self.sense, to_legendre, self._solved, (t, energy))
+        cell = np.full(len(x), k)
+        theta = _exact(landed.theta, self._theta(cell, x))
+        return self._samples(cell, theta, _exact(landed.time, t), energy)
 
     def _theta(self, k: Index, x: Array) -> Array:
         turned = self.edges[k] + x * self.strip.width[k]
@@ -225,17 +225,21 @@ class Window:
     def _read(self, given: Array, *, in_time: bool) -> tuple[Index, Array, Array, Array]:
         """Cell, position in it, time and energy at increasing times, or angles turned."""
         k, (x, t, energy) = np.empty(len(given), np.intp), np.empty((3, len(given)))
-        at_edges, at_nodes = (self.energy, self.time), (self.torque, self.slowness)
-        solved = self.edges, self.strip.width, *at_edges, *at_nodes
         to_legendre = self.grid.rule.to_legendre
         found = k, x, t, energy
-        readout.read(given, in_time, self.sense, to_legendre, solved, found)
+        readout.read(given, in_time, self.sense, to_legendre, self._solved, found)
         return found
+
+    @property
+    def _solved(self) -> tuple[Array, Array, Array, Array, Array, Array]:
+        """As `readout` takes it."""
+        at_edges, at_nodes = (self.energy, self.time), (self.torque, self.slowness)
+        return self.edges, self.strip.width, *at_edges, *at_nodes
 
     def _samples(self, k: Index, theta: Array, t: Array, energy: Array) -> Samples:
         """Samples in the cells k."""
-        once, which = one_period(theta, float(self.grid.edges[-1]))
-        inertia, slope, torque = reduce(self.grid.train, once)
+        once, which = one_period(theta, self.grid.train.repeats)
+        inertia, slope, torque = tabulate(self.grid.train, once)
         over_angle = np.zeros_like(torque) + self.grid.outside(once)
         torque = torque + over_angle
         own = {}

@@ -153,6 +153,8 @@ def _parts(grid: Grid, worst: Array, local: float) -> NDArray[np.intp]:
     stages = len(grid.rule.nodes)
     at_end = worst[0] / np.maximum(local * np.diff(grid.edges), _FINEST)
     inside = worst[1] / max(local, _FINEST)
+    if at_end.max() <= 1.0 and inside.max() <= 1.0:
+        return np.ones(len(at_end), dtype=np.intp)
     parts = np.ceil(np.maximum(at_end ** (0.5 / stages), inside ** (1.0 / (stages + 1))))
     return np.asarray(np.clip(np.nan_to_num(parts, nan=2.0), 1, 4), dtype=np.intp)
 

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from crankmbs.mechanics.friction import rubbing
-from crankmbs.mechanics.inertia import inertia_alone
+from crankmbs.mechanics.tabulated import tabulate
 from crankmbs.mechanics.torque import branch_of, torque_at
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion.base import State
@@ -80,8 +80,8 @@ class Section:
     def __init__(self, train: CrankTrain, allowed: int, *, by_angle: bool) -> None:
         scene = train.scene
         assert scene.start is not None
-        self.scene, self.start = scene, scene.start
-        self.inertia = float(inertia_alone(scene, scene.start.angle))
+        self._train, self.scene, self.start = train, scene, scene.start
+        self.inertia = float(tabulate(train, scene.start.angle).inertia)
         every = scene.settled_period / _SAMPLES
         over_speed = [load.parts.over_speed for load in scene.torque]
         tables = [np.abs(part.knots) for part in over_speed if part is not None]
@@ -89,11 +89,12 @@ class Section:
         self._rows = np.concatenate([rows * (1.0 - _BESIDE), rows * (1.0 + _BESIDE)])
         self._plan = replace(plan_of(scene), every=every, in_time=False, last=math.inf)
         self._allowed, self._by_angle, self._shots = allowed, by_angle, 0
+        self._closed: list[tuple[Grid, float, Period | None]] = []
 
     @cached_property
     def _inertias(self) -> Array:
         angles = np.linspace(0.0, self.scene.settled_period, _ANGLES)
-        return np.asarray(inertia_alone(self.scene, angles))
+        return tabulate(self._train, angles).inertia
 
     @property
     def least_inertia(self) -> float:
@@ -170,6 +171,13 @@ class Section:
 
     def closed_form(self, grid: Grid, sense: float) -> Period | None:
         """The affine map of a period, where loads are such that there is one at every speed."""
+        for known, same_sense, one in self._closed:
+            if known is grid and same_sense == sense:
+                return one
+        self._closed.append((grid, sense, self._composed(grid, sense)))
+        return self._closed[-1][2]
+
+    def _composed(self, grid: Grid, sense: float) -> Period | None:
         branch = branch_of(self.scene.torque, 0.0, 0.0, rising=sense > 0.0)
         bounds = (branch.omega_low, branch.omega_high)
         if (
