@@ -4,6 +4,7 @@ that holds what comes out.
 What one scene amounts to belongs in measures and compare.
 """
 
+from crankmbs.sweep.indices import SobolIndices, sobol_indices
 from crankmbs.sweep.minimize import Minimum, minimize
 from crankmbs.sweep.run import sweep
 from crankmbs.sweep.sample import Sample
@@ -15,10 +16,12 @@ __all__ = [
     "Minimum",
     "Sample",
     "Sensitivity",
+    "SobolIndices",
     "Solved",
     "load_sweep",
     "minimize",
     "sensitivity",
+    "sobol_indices",
     "solve",
     "sweep",
 ]
