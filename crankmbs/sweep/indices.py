@@ -74,8 +74,8 @@ def sobol_indices(
 
     estimated by `scipy.stats.sobol_indices` (Saltelli 2010) on its own design of n (knobs + 2)
     runs, which all measures share. The error is 1.96 standard errors of 400 resamplings of that
-    design, 95 % where they are normal (with n below 64 rather less), and 8 times the largest error of the measure over its
-    standard deviation, which bounds what that error does to either index.
+    design, 95 % where they are normal, with n below 64 rather less; and 8 times the largest error
+    of the measure over its standard deviation, which bounds what that error does to either index.
 
     Parameters
     ----------
