@@ -46,7 +46,7 @@ class _At(Executor):
 
     def __init__(self, work: Callable[[Job], Block], there: Executor | None = None) -> None:
         self._work, self._there = work, there
-        self._max_workers = 2
+        self._max_workers, self._client = 2, getattr(there, "_client", None)
 
     def submit(self, _: Any, /, *given: Any, **__: Any) -> Future[Any]:
         """The work on a job; of a call without one, which makes workers ready, nothing."""
