@@ -48,10 +48,12 @@ from crankmbs.sweep import (
     Minimum,
     Sample,
     Sensitivity,
+    SobolIndices,
     Solved,
     load_sweep,
     minimize,
     sensitivity,
+    sobol_indices,
     solve,
     sweep,
 )
@@ -107,6 +109,7 @@ __all__ = [
     "SceneError",
     "Sensitivity",
     "Snapshot",
+    "SobolIndices",
     "Solved",
     "SpeedFile",
     "SpeedTable",
@@ -134,6 +137,7 @@ __all__ = [
     "sensitivity",
     "shipped_scenes",
     "simulate",
+    "sobol_indices",
     "solve",
     "sweep",
 ]

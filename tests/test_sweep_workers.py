@@ -272,6 +272,15 @@ def test_a_cluster_writes_the_bytes_of_one(scheduler, alone, tmp_path):
     assert files(tmp_path / "s") == files(alone)
 
 
+def test_all_workers_of_a_cluster_are_kept_busy(scheduler):
+    """However many processors the machine has that asks."""
+    with (
+        cluster_executor(scheduler) as executor,
+        workers_of(executor, plan_of(SCENE, GRID, "measures").job(0), 3) as there,
+    ):
+        assert there.at_once == 4 * 2
+
+
 def test_the_command_takes_a_cluster(scheduler, whole, tmp_path):
     words = [word for word in PLAIN if word not in ("--workers", "1")]
     done = crankmbs_(*words, "-o", str(tmp_path / "s"), "--cluster", scheduler)

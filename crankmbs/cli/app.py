@@ -24,6 +24,7 @@ from crankmbs.cli.page import demonstrate, write_page
 from crankmbs.cli.plot import plot
 from crankmbs.cli.pressure import pressure
 from crankmbs.cli.run import Wanted, run_scene
+from crankmbs.cli.sensitivity import sensitivity
 from crankmbs.cli.solve import solve
 from crankmbs.cli.sweep import sweep
 from crankmbs.cli.validate import validate
@@ -168,7 +169,7 @@ def page(
     write_page(scene, out=out)
 
 
-for command in (pressure, sweep, plot, solve):
+for command in (pressure, sweep, plot, solve, sensitivity):
     app.command()(command)
 
 

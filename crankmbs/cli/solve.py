@@ -8,10 +8,9 @@ import typer
 
 from crankmbs.cli.progress import progress
 from crankmbs.cli.sweep import varied
-from crankmbs.cli.text import table
-from crankmbs.digits import digits, error_digits
+from crankmbs.cli.text import cells, table, with_unit
+from crankmbs.digits import digits
 from crankmbs.errors import InputError
-from crankmbs.measures import Estimate
 from crankmbs.scene.read import load_scene, scene_path
 from crankmbs.sweep.minimize import Minimum, minimize
 from crankmbs.sweep.reading import Reading
@@ -62,34 +61,26 @@ def solve(
 
 
 def _roots(found: Solved) -> str:
-    heading = [_with_unit(found.knob, found.units), "error", found.measure.words, "error"]
+    heading = [with_unit(found.knob, found.units), "error", found.measure.words, "error"]
     roots = found.roots or ((found.nearest,) if found.nearest else ())
-    rows = [[*_cells(root.value), *_cells(root.reached)] for root in roots]
+    rows = [[*cells(root.value), *cells(root.reached)] for root in roots]
     said = found.message if found.roots else f"{found.message}; the nearest in the scan"
     return f"{said}\n\n{table(heading, rows)}" if rows else found.message
 
 
 def _minimum(found: Minimum) -> str:
     rows = [
-        [_with_unit(name, found.units[name]), digits(value), "", ""]
+        [with_unit(name, found.units[name]), digits(value), "", ""]
         for name, value in found.values.items()
     ]
-    rows.append([_named(found.measure), *_cells(found.reached), ""])
+    rows.append([_named(found.measure), *cells(found.reached), ""])
     rows += [
-        [_named(one.measure), *_cells(one.reached), f"{one.sign} {one.bound:.6g}"]
+        [_named(one.measure), *cells(one.reached), f"{one.sign} {one.bound:.6g}"]
         for one in found.conditions
     ]
     said = f"{found.message}, in {found.evaluations} runs"
     return f"{said}\n\n{table(['least of ' + found.measure.words, 'value', 'error', ''], rows)}"
 
 
-def _cells(one: Estimate) -> list[str]:
-    return [digits(*one), error_digits(one.error)]
-
-
 def _named(reading: Reading) -> str:
-    return _with_unit(reading.words, reading.about.units)
-
-
-def _with_unit(name: str, units: str) -> str:
-    return f"{name} [{units}]" if units else name
+    return with_unit(reading.words, reading.about.units)

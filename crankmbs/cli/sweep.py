@@ -16,10 +16,10 @@ from crankmbs.cli.text import table
 from crankmbs.digits import digits, error_digits
 from crankmbs.errors import InputError, shown
 from crankmbs.scene.read import load_scene, scene_path
-from crankmbs.sweep.cases import Sample
 from crankmbs.sweep.cluster import cluster_executor
 from crankmbs.sweep.plan import Plan, check_possible, plan_of
 from crankmbs.sweep.run import fill
+from crankmbs.sweep.sample import Sample
 from crankmbs.sweep.store import unfinished
 from crankmbs.sweep.summary import Summary, summary
 

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-__all__ = ["table"]
+from crankmbs.digits import digits, error_digits
+from crankmbs.measures import Estimate
+
+__all__ = ["cells", "table", "with_unit"]
 
 
 def table(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
@@ -19,3 +22,13 @@ def table(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
         ).rstrip()
         for line in (headings, rule, *rows)
     )
+
+
+def cells(one: Estimate) -> list[str]:
+    """A value to the digits that its error leaves, and the error."""
+    return [digits(*one), error_digits(one.error)]
+
+
+def with_unit(name: str, units: str) -> str:
+    """A name as a heading, its unit in brackets where it has one."""
+    return f"{name} [{units}]" if units else name

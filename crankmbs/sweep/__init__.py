@@ -4,9 +4,10 @@ that holds what comes out.
 What one scene amounts to belongs in measures and compare.
 """
 
-from crankmbs.sweep.cases import Sample
+from crankmbs.sweep.indices import SobolIndices, sobol_indices
 from crankmbs.sweep.minimize import Minimum, minimize
 from crankmbs.sweep.run import sweep
+from crankmbs.sweep.sample import Sample
 from crankmbs.sweep.sensitivity import Sensitivity, sensitivity
 from crankmbs.sweep.solve import Solved, solve
 from crankmbs.sweep.store import load_sweep
@@ -15,10 +16,12 @@ __all__ = [
     "Minimum",
     "Sample",
     "Sensitivity",
+    "SobolIndices",
     "Solved",
     "load_sweep",
     "minimize",
     "sensitivity",
+    "sobol_indices",
     "solve",
     "sweep",
 ]

@@ -18,7 +18,8 @@ from crankmbs.sweep.scenes import scene_of
 __all__ = ["BROKEN", "IMPOSSIBLE", "Block", "Job", "block_size", "broken", "joined", "solved"]
 
 IMPOSSIBLE, BROKEN = 2, -2  # status of a case whose scene is refused; that ended its worker
-_FEWEST, _MOST, _BLOCKS = 4, 256, 128
+_FEWEST, _BLOCKS = 4, 128
+_MOST, _MOST_SERIES = 2048, 256  # a block is a file of each column: few files, some 40 MB of series
 
 
 @dataclass(frozen=True)
@@ -48,13 +49,13 @@ class Block:
     message: tuple[str, ...]
 
 
-def block_size(count: int) -> int:
+def block_size(count: int, *, series: bool) -> int:
     """How many of so many cases make a block, whoever computes them.
 
-    >>> block_size(1000), block_size(10**6)
-    (8, 256)
+    >>> block_size(1000, series=False), block_size(10**6, series=False)
+    (8, 2048)
     """
-    return min(max(ceil(count / _BLOCKS), _FEWEST), _MOST)
+    return min(max(ceil(count / _BLOCKS), _FEWEST), _MOST_SERIES if series else _MOST)
 
 
 def solved(job: Job) -> Block:

@@ -3,113 +3,137 @@
 from __future__ import annotations
 
 import csv
-import hashlib
 import re
-from collections.abc import Mapping
-from dataclasses import dataclass
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from math import prod
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-from scipy.stats import qmc
 
 from crankmbs.errors import InputError, shown
-from crankmbs.numerics.arrays import Array
 from crankmbs.scene.content import content_of
 from crankmbs.scene.scene import Scene
 from crankmbs.sweep.knobs import Interval, Knob, interval_of, knob_of
+from crankmbs.sweep.sample import Sample
+from crankmbs.sweep.told import NotTold, digest_of
 
-__all__ = ["Cases", "Sample", "cases_of"]
+__all__ = ["Cases", "Grid", "Listed", "Spread", "cases_of"]
 
-_METHODS = ("sobol", "latin")
 _MOST = 10_000_000
+_TELLING = 64  # points
 _HEADING = re.compile(r"(.*?)\s*(?:\[(.*)\])?")
 
 
-@dataclass(frozen=True)
-class Sample:
-    """Cases spread over ranges: n points of a scrambled Sobol sequence, or of a Latin hypercube.
+class Cases(ABC):
+    """What is set to what in each case, told block by block: of many cases no list is held.
 
-    vary : name -> range, such as {"crank.inertia": "0.05..0.5 kg m^2:log"}
-    n : how many; a power of two is best with "sobol"
-    method : "sobol" or "latin"
-    seed : from which the points are drawn
+    names, units : of the knobs
+    shape : of a grid, the last knob the fastest; None for a sample or a list
+    count : how many cases there are
     """
 
-    vary: Mapping[str, str]
-    n: int
-    method: str = "sobol"
-    seed: int = 1
-
-    def __post_init__(self) -> None:
-        for name, least in (("n", 1), ("seed", 0)):
-            value = getattr(self, name)
-            if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= _MOST:
-                raise InputError(
-                    f"{name} must be a whole number from {least} to {_MOST}; {shown(value)} came"
-                )
-        if self.method not in _METHODS:
-            raise InputError(f'method must be "sobol" or "latin"; {shown(self.method)} came')
-
-    def points(self) -> Array:
-        """The points in the unit cube, shape (n, knobs).
-
-        >>> Sample({"rod.length": "0.14..0.2 m"}, 4, "latin").points().shape
-        (4, 1)
-        """
-        engine: Any = qmc.LatinHypercube if self.method == "latin" else qmc.Sobol
-        drawn = engine(len(self.vary), rng=self.seed)
-        if self.method == "latin":
-            return np.asarray(drawn.random(self.n))
-        whole = drawn.random_base2(max(self.n - 1, 0).bit_length())
-        return np.asarray(whole[: self.n])
-
-
-@dataclass(frozen=True)
-class Cases:
-    """What is set to what in each case.
-
-    knobs : their values; of a grid the levels of each, in a list the values case by case
-    shape : of a grid, the last knob the fastest; None for a list
-    """
-
-    knobs: tuple[Knob, ...]
+    names: tuple[str, ...]
+    units: tuple[str, ...]
     shape: tuple[int, ...] | None
+    count: int
+
+    @abstractmethod
+    def at(self, rows: range) -> tuple[Knob, ...]:
+        """The knobs at some successive cases, counted from 0."""
 
     @property
-    def names(self) -> tuple[str, ...]:
-        """The names of the knobs."""
-        return tuple(knob.name for knob in self.knobs)
+    @abstractmethod
+    def _told(self) -> object:
+        """What all values follow from."""
 
-    @property
-    def count(self) -> int:
-        """How many cases there are."""
-        return len(self.knobs[0].values) if self.shape is None else prod(self.shape)
-
-    def values(self, number: int) -> tuple[object, ...]:
-        """The values of all knobs in a case, counted from 0."""
-        at = self._places(number)
-        return tuple(knob.values[k] for knob, k in zip(self.knobs, at, strict=True))
-
-    def labels(self) -> dict[str, Array]:
-        """The values of each knob in every case, shape (count,), as a coordinate has them."""
-        places = self._places(np.arange(self.count))
-        return {knob.name: knob.labels[k] for knob, k in zip(self.knobs, places, strict=True)}
+    def values(self, rows: range) -> tuple[tuple[object, ...], ...]:
+        """The values of all knobs in some successive cases, case by case."""
+        return tuple(zip(*(knob.values.tolist() for knob in self.at(rows)), strict=True))
 
     @cached_property
     def digest(self) -> str:
-        """What tells these cases from all others."""
-        found = hashlib.sha256(repr((self.names, self.shape)).encode())
-        for knob in self.knobs:
-            found.update(repr(knob.values).encode())
-        return found.hexdigest()
+        """What tells these cases from all others; empty where they hold what nothing tells."""
+        try:
+            return digest_of([type(self).__name__, self.names, self.shape, self._told])
+        except NotTold:
+            return ""
 
-    def _places(self, number: Any) -> tuple[Any, ...]:
-        if self.shape is None:
-            return (number,) * len(self.knobs)
-        return tuple(np.unravel_index(number, self.shape))
+
+class Grid(Cases):
+    """All combinations of the values of some knobs."""
+
+    def __init__(self, knobs: tuple[Knob, ...]) -> None:
+        self._knobs = knobs
+        self.names, self.units = _named(knobs)
+        self.shape = tuple(len(knob.values) for knob in knobs)
+        self.count = prod(self.shape)
+        if self.count > _MOST:
+            raise InputError(
+                f"vary: these ranges have {self.count} combinations; at most {_MOST} go"
+            )
+
+    def at(self, rows: range) -> tuple[Knob, ...]:
+        """Taken from the levels by place."""
+        assert self.shape is not None
+        places = np.unravel_index(np.arange(rows.start, rows.stop), self.shape)
+        return tuple(knob.at(k) for knob, k in zip(self._knobs, places, strict=True))
+
+    @property
+    def _told(self) -> object:
+        return [knob.values.tolist() for knob in self._knobs]
+
+
+class Listed(Cases):
+    """Knobs with their values case by case."""
+
+    shape = None
+
+    def __init__(self, knobs: tuple[Knob, ...]) -> None:
+        self._knobs = knobs
+        self.names, self.units = _named(knobs)
+        self.count = len(knobs[0].values)
+
+    def at(self, rows: range) -> tuple[Knob, ...]:
+        """Cut from the lists."""
+        return tuple(knob.at(slice(rows.start, rows.stop)) for knob in self._knobs)
+
+    @property
+    def _told(self) -> object:
+        of_objects = [knob.values.tolist() for knob in self._knobs if knob.values.dtype == object]
+        return [[knob.values for knob in self._knobs if knob.values.dtype != object], of_objects]
+
+
+class Spread(Cases):
+    """Points of a sample, in ranges."""
+
+    shape = None
+
+    def __init__(self, ranges: tuple[Interval, ...], sample: Sample) -> None:
+        self._ranges, self._sample = ranges, sample
+        self.names, self.units = _named(ranges)
+        self.count = sample.n
+
+    def at(self, rows: range) -> tuple[Knob, ...]:
+        """Drawn anew."""
+        columns = self._sample.points(rows).T
+        pairs = zip(self._ranges, columns, strict=True)
+        return tuple(one.taken(one.at(column)) for one, column in pairs)
+
+    @property
+    def _told(self) -> object:
+        """The first points too: another version of SciPy may draw others."""
+        first = self._sample.points(range(min(self.count, _TELLING)))
+        return [tuple(self._ranges), self._sample, first]
+
+
+def _named(knobs: Sequence[Knob | Interval]) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Names and units of knobs, each given once."""
+    names = tuple(knob.name for knob in knobs)
+    for name in sorted({name for name in names if names.count(name) > 1}):
+        raise InputError(f"{name}: is varied twice; give it once")
+    return names, tuple(knob.units for knob in knobs)
 
 
 def cases_of(scene: Scene, vary: object) -> Cases:
@@ -133,29 +157,13 @@ def cases_of(scene: Scene, vary: object) -> Cases:
             'vary must name what is varied, such as {"rod.length": "0.14..0.2 m:25"}, or be a '
             f"Sample or a file of cases; {shown(vary)} came"
         )
-    knobs = tuple(knob_of(scene, name, given) for name, given in vary.items())
-    _check_once([knob.name for knob in knobs])
-    shape = tuple(len(knob.values) for knob in knobs)
-    if prod(shape) > _MOST:
-        raise InputError(f"vary: these ranges have {prod(shape)} combinations; at most {_MOST} go")
-    return Cases(knobs, shape)
+    return Grid(tuple(knob_of(scene, name, given) for name, given in vary.items()))
 
 
 def _sampled(scene: Scene, sample: Sample) -> Cases:
     if not sample.vary:
         raise InputError("vary: a sample needs at least one range; none came")
-    between: list[Interval] = [interval_of(scene, *item) for item in sample.vary.items()]
-    _check_once([one.name for one in between])
-    columns = sample.points().T
-    return Cases(
-        tuple(one.taken(one.at(column)) for one, column in zip(between, columns, strict=True)), None
-    )
-
-
-def _check_once(names: list[str]) -> None:
-    twice = {name for name in names if names.count(name) > 1}
-    for name in sorted(twice):
-        raise InputError(f"{name}: is varied twice; give it once")
+    return Spread(tuple(interval_of(scene, *item) for item in sample.vary.items()), sample)
 
 
 def _listed(scene: Scene, file: Path) -> Cases:
@@ -178,14 +186,13 @@ def _listed(scene: Scene, file: Path) -> Cases:
             )
     columns = zip(rows[0], *rows[1:], strict=True)
     try:
-        knobs = tuple(_column(scene, heading, list(cells)) for heading, *cells in columns)
-        _check_once([knob.name for knob in knobs])
+        return Listed(tuple(_column(scene, heading, cells) for heading, *cells in columns))
     except InputError as error:
         raise InputError(f"file {file}: {error}") from None
-    return Cases(knobs, None)
 
 
 def _column(scene: Scene, heading: str, cells: list[str]) -> Knob:
     match = _HEADING.fullmatch(heading)
     assert match is not None
-    return knob_of(scene, match[1], [f"{cell} {match[2]}" if match[2] else cell for cell in cells])
+    items = [f"{cell} {match[2]}" if match[2] else cell for cell in cells]
+    return knob_of(scene, match[1], items, _MOST)

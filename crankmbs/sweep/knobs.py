@@ -5,14 +5,15 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from numbers import Real
 from typing import NamedTuple
 
 import numpy as np
 
 from crankmbs.errors import InputError, shown
-from crankmbs.numerics.arrays import Array
+from crankmbs.numerics.arrays import Array, Index
+from crankmbs.numerics.function import named
 from crankmbs.scene.change import changed, field_at
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.schema import dimension_of
@@ -32,24 +33,30 @@ _MOST = 100_000  # values of one knob
 _GRAMMAR = 'write values as "0.05..0.5 kg m^2:40", "0.14..0.2 m:25:log", or a list "100 mm, 120 mm"'
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Knob:
     """A value of a scene, and what it is set to.
 
     name : as `Scene.with_` takes it with dots, or of `DERIVED`
     units : of numbers; empty for words
-    values : what a scene takes, numbers in SI units
+    values : shape (n,), what a scene takes: floats in SI units, whole numbers, or objects
+    numbers : whether all that it is ever set to are numbers
     """
 
     name: str
     units: str
-    values: tuple[object, ...]
+    values: Array
+    numbers: bool = True
+
+    def at(self, places: slice | Index) -> Knob:
+        """The knob at some of its values."""
+        return replace(self, values=self.values[places])
 
     @property
     def labels(self) -> Array:
         """The values as a coordinate: numbers, or what tells words, tables and parts apart."""
-        if all(isinstance(value, Real) for value in self.values):
-            return np.array(self.values, dtype=np.float64)
+        if self.numbers:
+            return np.asarray(self.values, dtype=np.float64)
         return np.array([_label(value) for value in self.values], dtype=object)
 
 
@@ -73,8 +80,7 @@ class Interval(NamedTuple):
 
     def taken(self, values: Array) -> Knob:
         """The knob at some of these values."""
-        numbers = values.tolist()
-        return Knob(self.name, self.units, tuple(map(int, numbers) if self.whole else numbers))
+        return Knob(self.name, self.units, values.astype(np.int64) if self.whole else values)
 
     @property
     def _count(self) -> float:
@@ -89,7 +95,7 @@ class _Kind(NamedTuple):
     whole: bool
 
 
-def knob_of(scene: Scene, name: str, given: object) -> Knob:
+def knob_of(scene: Scene, name: str, given: object, most: int = _MOST) -> Knob:
     """A knob from a text such as "0.05..0.5 kg m^2:40", or from a sequence of values.
 
     Raises
@@ -98,7 +104,7 @@ def knob_of(scene: Scene, name: str, given: object) -> Knob:
 
     >>> from crankmbs import load_scene
     >>> knob_of(load_scene("propeller"), "rod.length", "0.14..0.2 m:3").values
-    (0.14, 0.17, 0.2)
+    array([0.14, 0.17, 0.2 ])
     """
     kind = _kind(scene, name)
     if isinstance(given, str):
@@ -109,10 +115,10 @@ def knob_of(scene: Scene, name: str, given: object) -> Knob:
         items = given.tolist() if isinstance(given, np.ndarray) else given
     else:
         raise InputError(f"{name}: must be a text or a sequence of values; {shown(given)} came")
-    if not 1 <= len(items) <= _MOST:
-        raise InputError(f"{name}: must have from 1 to {_MOST} values; {len(items)} came")
+    if not 1 <= len(items) <= most:
+        raise InputError(f"{name}: must have from 1 to {most} values; {len(items)} came")
     unit = unit_of(kind.dimension) if kind.dimension else ""
-    return Knob(kind.name, unit, tuple(_value(scene, kind, item) for item in items))
+    return _knob(kind.name, unit, [_value(scene, kind, item) for item in items])
 
 
 def interval_of(scene: Scene, name: str, given: object) -> Interval:
@@ -154,7 +160,7 @@ def number_at(scene: Scene, name: str) -> tuple[Knob, float]:
     if kind.whole or isinstance(value, bool) or not isinstance(value, float):
         raise InputError(f"{name}: must be a number that a little can be added to; it is no such")
     unit = unit_of(kind.dimension) if kind.dimension else ""
-    return Knob(kind.name, unit, ()), value
+    return Knob(kind.name, unit, np.empty(0)), value
 
 
 def _kind(scene: Scene, name: str) -> _Kind:
@@ -196,7 +202,7 @@ def _spaced(kind: _Kind, given: str) -> Knob:
     ):  # of a unit that only the field knows
         space = np.geomspace if way else np.linspace
         numbers = space(float(match[1]), float(match[2]), number).tolist()
-        return Knob(kind.name, "", tuple(f"{value:.12g} {match[3]}" for value in numbers))
+        return _knob(kind.name, "", [f"{value:.12g} {match[3]}" for value in numbers])
     between = _interval(kind, match, way == "log")
     if kind.whole:
         values = np.round(np.linspace(between.low, between.high, number))
@@ -249,5 +255,17 @@ def _at(scene: object, name: str) -> object:
     return scene
 
 
+def _knob(name: str, units: str, values: list[object]) -> Knob:
+    for kind, dtype in ((int, np.int64), (float, np.float64)):
+        if all(type(value) is kind for value in values):
+            return Knob(name, units, np.array(values, dtype=dtype))
+    column = np.empty(len(values), dtype=object)
+    column[:] = values
+    return Knob(name, units, column, all(isinstance(value, Real) for value in values))
+
+
 def _label(value: object) -> str:
-    return value.source if isinstance(value, Table | CylinderTable) else shown(value).strip('"')
+    if isinstance(value, Table | CylinderTable):
+        return value.source
+    function = getattr(value, "function", value)
+    return named(function) if callable(function) else shown(value).strip('"')

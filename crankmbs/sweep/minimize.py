@@ -16,10 +16,10 @@ from crankmbs.errors import InputError, shown
 from crankmbs.measures import Estimate
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
-from crankmbs.sweep.cases import Sample
 from crankmbs.sweep.columns import columns_of
 from crankmbs.sweep.knobs import Interval, interval_of
 from crankmbs.sweep.reading import Reading, reading_of
+from crankmbs.sweep.sample import Sample
 from crankmbs.sweep.solve import Asked, asked_of
 
 __all__ = ["Condition", "Minimum", "minimize"]

@@ -8,16 +8,19 @@ from collections import Counter
 from dataclasses import dataclass
 from functools import cached_property
 from importlib import metadata
+from itertools import chain
 from math import prod
 
 from pydantic import TypeAdapter
 
 from crankmbs.errors import CrankmbsError, InputError, shown
+from crankmbs.scene.python_load import Load
 from crankmbs.scene.scene import Scene
 from crankmbs.sweep.block import Job, block_size
 from crankmbs.sweep.cases import Cases, cases_of
 from crankmbs.sweep.columns import columns_of, dims_of
 from crankmbs.sweep.scenes import scene_of
+from crankmbs.sweep.told import NotTold, digest_of
 
 __all__ = ["Plan", "check_possible", "plan_of"]
 
@@ -36,7 +39,7 @@ class Plan:
     @property
     def size(self) -> int:
         """Cases in a block."""
-        return block_size(self.cases.count)
+        return block_size(self.cases.count, series=self.series)
 
     @property
     def blocks(self) -> int:
@@ -49,8 +52,7 @@ class Plan:
 
     def job(self, number: int) -> Job:
         """A block as a worker takes it."""
-        values = tuple(self.cases.values(k) for k in self.rows(number))
-        return Job(self.scene, self.cases.names, values, self.series)
+        return Job(self.scene, self.cases.names, self.cases.values(self.rows(number)), self.series)
 
     @property
     def bytes(self) -> int:
@@ -61,14 +63,24 @@ class Plan:
 
     @cached_property
     def identity(self) -> dict[str, str]:
-        """What two sweeps that are one agree in."""
+        """What two sweeps that are one agree in; what is empty agrees with nothing."""
         scene = json.dumps(_SCENE.dump_python(self.scene, mode="json"), sort_keys=True)
         return {
             "version": metadata.version("crankmbs"),
             "scene": hashlib.sha256(scene.encode()).hexdigest(),
+            "functions": self._functions,
             "cases": self.cases.digest,
             "keep": _KEPT[self.series],
         }
+
+    @property
+    def _functions(self) -> str:
+        """What tells the functions of the loads, which a file has by name only, from others; empty
+        where nothing does."""
+        try:
+            return digest_of([one.function for one in self.scene.torque if isinstance(one, Load)])
+        except NotTold:
+            return ""
 
 
 def plan_of(scene: Scene, vary: object, keep: str) -> Plan:
@@ -99,8 +111,8 @@ def check_possible(plan: Plan) -> None:
     """
     reasons: Counter[str] = Counter()
     first: tuple[object, ...] = ()
-    for number in range(plan.cases.count):
-        values = plan.cases.values(number)
+    every = chain.from_iterable(plan.job(number).values for number in range(plan.blocks))
+    for values in every:
         try:
             scene_of(plan.scene, plan.cases.names, values)
         except CrankmbsError as error:

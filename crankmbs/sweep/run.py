@@ -69,7 +69,8 @@ def sweep(
     with tempfile.TemporaryDirectory() as scratch:
         path = Path(scratch, "sweep.zarr") if out is None else Path(out)
         fill(plan, path, executor, lambda _: None)
-        return load_sweep(path)
+        found = load_sweep(path)
+        return found.load() if out is None else found
 
 
 def fill(

@@ -10,15 +10,16 @@ from __future__ import annotations
 import shutil
 import tempfile
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from crankmbs.errors import InputError, OutputError
-from crankmbs.numerics.arrays import Array
 from crankmbs.sweep.block import Block
-from crankmbs.sweep.columns import Column, columns_of, dims_of
+from crankmbs.sweep.chunks import Chunks
+from crankmbs.sweep.columns import columns_of, dims_of
 from crankmbs.sweep.plan import Plan
 
 if TYPE_CHECKING:
@@ -37,6 +38,7 @@ _STATUS = (
 _WORDS = {
     "version": "by another version of crankmbs",
     "scene": "of another scene",
+    "functions": "with functions in Python that are others, or cannot be told from others",
     "cases": "of other cases",
     "keep": "that keeps other things",
 }
@@ -54,6 +56,10 @@ class Store:
     group: zarr.Group
     done: frozenset[int]
 
+    @cached_property
+    def _columns(self) -> dict[str, Chunks]:
+        return {name: Chunks(self.path / name, one) for name, one in self.group.arrays()}
+
     def write(self, number: int, block: Block) -> None:
         """Write a block, its mark last.
 
@@ -61,14 +67,12 @@ class Store:
         ------
         OutputError : the device is full, or the folder cannot be written
         """
-        rows = self.plan.rows(number)
-        where = slice(rows.start, rows.stop)
+        known = {knob.name: knob.labels for knob in self.plan.cases.at(self.plan.rows(number))}
+        ended = {"status": block.status, "message": np.array(block.message, dtype=object)}
         try:
-            for name, values in block.rows.items():
-                _array(self.group, name)[where] = values
-            _array(self.group, "status")[where] = block.status
-            _array(self.group, "message")[where] = np.array(block.message, dtype=object)
-            _array(self.group, "done")[number : number + 1] = 1
+            for name, values in (known | block.rows | ended).items():
+                self._columns[name].write(number, values)
+            self._columns["done"].write(number, np.ones(1))
         except OSError as error:
             raise _unwritable(self.path, error) from None
 
@@ -97,9 +101,10 @@ def opened(path: Path, plan: Plan) -> Store:
     """
     if not path.exists():
         _make(path, plan)
-    group = _group(path, "r+")
+        return Store(path, plan, _group(path, "r+"), frozenset())
+    group, ours = _group(path, "r+"), plan.identity
     identity: Any = group.attrs.get("identity", {})
-    other = [words for name, words in _WORDS.items() if identity.get(name) != plan.identity[name]]
+    other = [said for name, said in _WORDS.items() if identity.get(name) != (ours[name] or None)]
     if other:
         raise InputError(f"{path}: holds a sweep {' and '.join(other)}; give another folder")
     if (path / _MARK).exists():
@@ -130,10 +135,10 @@ def load_sweep(path: str | Path) -> xr.Dataset:
 
     Returns
     -------
-    Dataset : of a grid over its knobs, such as ``crank.inertia``; of a sample or a list of cases
-        over ``case``, with the knobs as coordinates. ``name_error`` is the error of ``name``, in
-        its unit; ``status`` and ``message`` say how each case ended, where NaN stands for what it
-        has not
+    Dataset : read from the folder as it is asked for; of a grid over its knobs, such as
+        ``crank.inertia``; of a sample or a list of cases over ``case``, with the knobs as
+        coordinates. ``name_error`` is the error of ``name``, in its unit; ``status`` and
+        ``message`` say how each case ended, where NaN stands for what it has not
 
     Raises
     ------
@@ -145,6 +150,8 @@ def load_sweep(path: str | Path) -> xr.Dataset:
     """
     import xarray as xr
 
+    from crankmbs.sweep.laid import SweepStore
+
     folder = Path(path)
     group = _group(folder, "r")
     if not (folder / _MARK).exists():
@@ -152,30 +159,7 @@ def load_sweep(path: str | Path) -> xr.Dataset:
         raise OutputError(
             f"{folder}: {done} of {blocks} blocks are there; crankmbs sweep with --resume goes on"
         )
-    with xr.open_zarr(folder, chunks=None, consolidated=True, decode_cf=False) as stored:
-        data = stored.drop_vars("done").load()
-    for one in data.variables.values():
-        one.attrs.pop("_FillValue", None)
-    names, shape = data.attrs.pop("knobs"), data.attrs.pop("grid")
-    data = data.set_coords(names)
-    return data if shape is None else _over_grid(data, names, tuple(shape))
-
-
-def _over_grid(data: xr.Dataset, names: list[str], shape: tuple[int, ...]) -> xr.Dataset:
-    """Cases one after the other, laid out over what was varied."""
-    import xarray as xr
-
-    def laid(one: xr.DataArray) -> Any:
-        values = one.values.reshape(*shape, *one.shape[1:])
-        return (*names, *one.dims[1:]), values, one.attrs
-
-    variables = {name: laid(one) for name, one in data.data_vars.items()}
-    others = {name: one for name, one in data.coords.items() if name not in names}
-    for k, name in enumerate(names):
-        along = tuple(slice(None) if k == j else 0 for j in range(len(shape)))
-        levels = data[name].values.reshape(shape)[along]
-        others[name] = xr.DataArray(levels, dims=name, attrs=data[name].attrs)
-    return xr.Dataset(variables, others, data.attrs)
+    return xr.open_dataset(folder, engine=SweepStore, decode_cf=False)
 
 
 def _make(path: Path, plan: Plan) -> None:
@@ -209,42 +193,43 @@ def _fill(group: zarr.Group, plan: Plan) -> None:
     )
     dims = dims_of(plan.scene, series=plan.series)
     for name, at in dims.items():
-        _known(group, name, np.array(at, dtype=object if name in _TEXTS else "i4"), (name,), "")
-    units = {knob.name: knob.units for knob in plan.cases.knobs}
-    for name, labels in plan.cases.labels().items():
-        _known(group, name, labels, ("case",), units[name])
-    for name, column in columns_of(plan.scene, series=plan.series).items():
-        sizes = tuple(len(dims[dim]) for dim in column.dims)
-        _column(group, name, column, (count, *sizes), size)
-    for name, kind, nothing in (("status", "i1", _NOT_RUN), ("message", str, "")):
+        kind: Any = str if isinstance(at[0], str) else "i4"
+        made = group.create_array(name, shape=(len(at),), chunks=(len(at),), dtype=kind)
+        made.attrs.update({_DIMS: [name]})
+        made[:] = np.array(at, dtype=object if kind is str else kind)
+    for name, (kind, nothing, own, about) in _columns_of(plan).items():
+        sizes = tuple(len(dims[dim]) for dim in own)
         made = group.create_array(
-            name, shape=(count,), chunks=(size,), dtype=kind, fill_value=nothing
+            name, shape=(count, *sizes), chunks=(size, *sizes), dtype=kind, fill_value=nothing
         )
-        made.attrs.update({_DIMS: ["case"]})
-    _array(group, "status").attrs.update({"long_name": _STATUS})
+        made.attrs.update({_DIMS: ["case", *own], **about})
     marks = group.create_array("done", shape=(plan.blocks,), chunks=(1,), dtype="i1", fill_value=0)
     marks.attrs.update({_DIMS: ["block"]})
 
 
-_TEXTS = ("lecture", "quantity")
+class _Kind(NamedTuple):
+    """What a column holds, and where nothing is; its dimensions beyond the case, and its labels."""
+
+    dtype: Any
+    nothing: object
+    dims: tuple[str, ...]
+    about: dict[str, str]
 
 
-def _known(group: zarr.Group, name: str, values: Array, dims: tuple[str, ...], units: str) -> None:
-    """What is known before a case is run."""
-    kind: Any = str if values.dtype == object else values.dtype
-    made = group.create_array(name, shape=values.shape, chunks=values.shape, dtype=kind)
-    made.attrs.update({_DIMS: list(dims), **({"units": units} if units else {})})
-    made[:] = values
-
-
-def _column(
-    group: zarr.Group, name: str, column: Column, shape: tuple[int, ...], size: int
-) -> None:
-    made = group.create_array(
-        name, shape=shape, chunks=(size, *shape[1:]), dtype="f8", fill_value=np.nan
-    )
-    labels = {"units": column.units, "long_name": column.long_name}
-    made.attrs.update({_DIMS: ["case", *column.dims], **labels})
+def _columns_of(plan: Plan) -> dict[str, _Kind]:
+    """All that is written of a case."""
+    found = {
+        "status": _Kind("i1", _NOT_RUN, (), {"long_name": _STATUS}),
+        "message": _Kind(str, "", (), {}),
+    }
+    for knob in plan.cases.at(range(1)):
+        about = {"units": knob.units} if knob.units else {}
+        kind, nothing = ("f8", np.nan) if knob.numbers else (str, "")
+        found[knob.name] = _Kind(kind, nothing, (), about)
+    for name, column in columns_of(plan.scene, series=plan.series).items():
+        about = {"units": column.units, "long_name": column.long_name}
+        found[name] = _Kind("f8", np.nan, column.dims, about)
+    return found
 
 
 def _group(path: Path, mode: Any) -> zarr.Group:

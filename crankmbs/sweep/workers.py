@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 import multiprocessing
 import os
 import pickle
 import signal
 import threading
+import time
 from collections.abc import Iterator
 from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor
 from contextlib import contextmanager
@@ -19,6 +21,7 @@ __all__ = ["Workers", "check_executor", "workers_of"]
 
 _THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS", "NUMBA_NUM_THREADS")
 _LARGEST = 512
+_COUNTING = 1.0  # s between two counts of a cluster's workers
 _FEW = 32  # blocks: they are done before processes have started
 _GUARD = (
     "the workers could not start: each of them imports the script that sweeps, so put its call "
@@ -29,12 +32,14 @@ _GUARD = (
 class Workers(Protocol):
     """What computes blocks.
 
-    at_once : how many blocks may be under way
     tries : how often a case may end its worker; once where that means that it did so several times
     """
 
-    at_once: int
     tries: int
+
+    @property
+    def at_once(self) -> int:
+        """How many blocks may be under way."""
 
     def submit(self, job: Job) -> Future[Block]:
         """Have a block computed."""
@@ -97,13 +102,24 @@ class _Processes:
 
 
 class _Given:
-    """An executor that is given; Dask's tries again by itself."""
+    """An executor that is given; Dask's tries again by itself, and its workers come and go."""
 
     tries = 1
 
     def __init__(self, executor: Executor) -> None:
         self._executor = executor
-        self.at_once = 2 * (getattr(executor, "_max_workers", None) or os.cpu_count() or 1)
+        self._client = getattr(executor, "_client", None)
+        self._counted, self._count = -math.inf, 0
+
+    @property
+    def at_once(self) -> int:
+        """Of a cluster more wait than of a pool: each block comes over a network."""
+        if self._client is None:
+            return 2 * (getattr(self._executor, "_max_workers", None) or os.cpu_count() or 1)
+        if time.monotonic() > self._counted + _COUNTING:
+            self._count = sum(self._client.nthreads().values())
+            self._counted = time.monotonic()
+        return 4 * max(self._count, 1)
 
     def submit(self, job: Job) -> Future[Block]:
         return self._executor.submit(solved, job)

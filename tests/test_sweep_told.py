@@ -1,0 +1,180 @@
+"""A sweep goes on with functions in Python only where they are the same ones."""
+
+import importlib.util
+import sys
+import threading
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numba import njit
+from scipy.interpolate import CubicSpline
+
+from crankmbs import InputError, Load, load_scene, sweep
+from crankmbs.sweep.plan import plan_of
+from crankmbs.sweep.run import fill
+from crankmbs.sweep.told import NotTold, digest_of
+
+MODULE = """
+import math
+from functools import cached_property, partial
+
+SHARE = {share}
+
+class Brake:
+    size = 1e-3
+
+    def __init__(self, offset):
+        self.offset = offset
+
+    def __call__(self, t, theta, omega):
+        return -self.size * self.force({factor} * omega)
+
+    def force(self, speed):
+        return self.offset + speed
+
+    @cached_property
+    def twice(self):
+        return {factor}
+
+def half(x):
+    {comment}
+    return {factor} * x
+
+def load(t, theta, omega):
+    return -half(omega) + SHARE * math.sin(theta)
+
+def made(size):
+    def inner(t, theta, omega, scale=SHARE):
+        return -size * scale * omega
+    return inner
+
+def later(t, theta, omega):
+    return max(load(t, theta, omega), *[later(t - 1.0, theta, omega) for _ in range(int(t > 0.0))])
+
+brake = Brake(0.5)
+closed = made({factor})
+whole = partial(Brake(0.5).force)
+"""
+PLAIN = {"share": "0.0", "factor": "1e-3", "comment": "# halves"}
+SCENE = load_scene("coasting").with_(run__until="0.01 s")
+VARY = {"start.speed": [50.0 + k for k in range(8)]}
+
+
+@pytest.fixture
+def module(tmp_path):
+    """Makes a module of one's own, with these numbers in it."""
+
+    def made(**words):
+        file = tmp_path / f"mine{len([*tmp_path.iterdir()])}.py"
+        file.write_text(MODULE.format(**(PLAIN | words)))
+        spec = importlib.util.spec_from_file_location("mine", file)
+        found = importlib.util.module_from_spec(spec)
+        sys.modules["mine"] = found
+        spec.loader.exec_module(found)
+        return found
+
+    yield made
+    sys.modules.pop("mine", None)
+
+
+NAMES = ["load", "later", "closed", "brake", "whole"]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_function_read_again_is_the_same(module, name):
+    first = digest_of(getattr(module(), name))
+    assert digest_of(getattr(module(comment="# after a word"), name)) == first
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_function_with_another_number_anywhere_is_another(module, name):
+    first = digest_of(getattr(module(), name))
+    assert digest_of(getattr(module(factor="2e-3"), name)) != first
+
+
+@pytest.mark.parametrize("name", ["load", "closed", "later"])
+def test_globals_and_defaults_are_looked_at(module, name):
+    first = digest_of(getattr(module(), name))
+    assert digest_of(getattr(module(share="0.1"), name)) != first
+
+
+def test_state_and_arrays_are_looked_at(module):
+    found = module()
+    assert digest_of(found.Brake(0.5)) == digest_of(found.brake)
+    assert digest_of(found.Brake(0.6)) != digest_of(found.brake)
+    assert digest_of(np.arange(3)) != digest_of(np.arange(3.0))
+    assert digest_of({1, 2, 3}) == digest_of({3, 2, 1})
+    x = np.linspace(0.0, 1.0, 5)
+    assert digest_of(CubicSpline(x, x)) == digest_of(CubicSpline(x, x))
+    assert digest_of(CubicSpline(x, x)) != digest_of(CubicSpline(x, x**2))
+
+
+def test_a_compiled_function_is_told_by_its_source(module):
+    found = module()
+    assert digest_of(njit(found.half)) == digest_of(njit(found.half))
+    assert digest_of(njit(found.half)) != digest_of(njit(found.load))
+
+
+def test_what_belongs_to_a_process_is_not_told():
+    lock = threading.Lock()
+    with pytest.raises(NotTold, match="a lock"):
+        digest_of(lambda t: (t, lock))
+
+
+# ----------------------------------------------------------------------------------------- resume
+
+
+def broken_off(out, function, vary=None):
+    """A store of which the first block is there."""
+
+    def enough(count):
+        if count:
+            raise RuntimeError("enough")
+
+    scene = replace(SCENE, torque=(Load(function),))
+    with pytest.raises(RuntimeError, match="enough"):
+        fill(plan_of(scene, vary or VARY, "measures"), out, 1, enough)
+
+
+def test_a_sweep_goes_on_with_the_same_function(module, tmp_path):
+    out = tmp_path / "sweep.zarr"
+    broken_off(out, module().load)
+    again = replace(SCENE, torque=(Load(module(comment="# as it was").load),))
+    assert (sweep(again, VARY, out=out, executor=1)["status"] == 0).all()
+
+
+def test_a_sweep_does_not_go_on_with_a_changed_function(module, tmp_path):
+    out = tmp_path / "sweep.zarr"
+    broken_off(out, module().load)
+    changed = replace(SCENE, torque=(Load(module(factor="2e-3").load),))
+    said = "holds a sweep with functions in Python that are others, or cannot be told from others;"
+    with pytest.raises(InputError, match=said):
+        sweep(changed, VARY, out=out, executor=1)
+
+
+def test_a_sweep_of_changed_functions_is_one_of_other_cases(module, tmp_path):
+    out = tmp_path / "sweep.zarr"
+    vary = {"torque.1": [Load(module().load), Load(module().closed)] * 3}
+    broken_off(out, module().load, vary)
+    scene = replace(SCENE, torque=(Load(module().load),))
+    vary["torque.1"][0] = Load(module(factor="2e-3").load)
+    with pytest.raises(InputError, match="holds a sweep of other cases; give another folder"):
+        sweep(scene, vary, out=out, executor=1)
+    vary["torque.1"][0] = Load(module().load)
+    found = sweep(scene, vary, out=out, executor=1)
+    assert found["torque.1"].values.tolist() == ["load", "inner"] * 3
+
+
+def test_functions_that_nothing_tells_run_but_are_not_gone_on_with(tmp_path):
+    lock = threading.Lock()
+
+    def held(t, theta, omega):
+        with lock:
+            return 0.0
+
+    scene = replace(SCENE, torque=(Load(held),))
+    broken_off(tmp_path / "s", held)
+    with pytest.raises(InputError, match="or cannot be told from others; give another folder"):
+        sweep(scene, VARY, out=tmp_path / "s", executor=1)
+    assert (sweep(scene, VARY, executor=1)["status"] == 0).all()
