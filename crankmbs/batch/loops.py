@@ -19,10 +19,13 @@ import numpy as np
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.kernels import kernel
 
-__all__ = ["OWN", "sum_up"]
+__all__ = ["LANES", "OWN", "sum_up"]
 
 OWN = 11
 """Columns of a case before those of its joints."""
+
+LANES = 8
+"""Cases beside one another, as many as the processor's vectors hold numbers, or some times that."""
 
 Rule = tuple[
     Array, Array, Array, Array
@@ -76,7 +79,9 @@ def sum_up(
     weights = rule[1]
     m, s = inertia.shape
     n, count = m * s, len(inertias)
-    maps, cells, energy = np.empty((4, m, s)), np.empty((2, m)), np.empty((m, s))
+    both, maps = np.empty((2, s, LANES)), np.empty((2, m, s, LANES))
+    cells, own = np.empty((2, m, LANES)), np.empty((8, LANES))
+    energy, at_ends = np.empty((m, s, LANES)), np.empty((m, LANES))
     square, alpha, slow = np.empty((count, n)), np.empty((count, n)), np.empty((count, n))
     first, second, size, share = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
     none, turned = np.empty(0), 0.0
@@ -85,23 +90,31 @@ def sum_up(
         for j in range(s):
             share[c * s + j] = width[c] * weights[j]
     for k in range(count):
-        out = columns[k]
-        own = (inertias[k], loads[k, 0], loads[k, 1], loads[k, 2], nudges[k], sense, speeds[k])
+        out, l = columns[k], k % LANES
+        if l == 0:
+            for lane in range(LANES):
+                of = min(k + lane, count - 1)
+                own[0, lane], own[4, lane], own[5, lane] = inertias[of], nudges[of], speeds[of]
+                own[1, lane], own[2, lane], own[3, lane] = loads[of, 0], loads[of, 1], loads[of, 2]
+            scratch = (both, maps, cells)
+            _settled((sense, own), rule, (width, inertia, torque), scratch, (energy, at_ends))
         out[:] = math.nan
-        scratch = (maps, cells, energy, ends[k])
-        if not _settled(own, rule, (width, inertia, torque), scratch, out):
+        for c in range(m):
+            ends[k, c] = at_ends[c, l]
+        if own[6, l] != own[6, l]:
             continue
+        out[0], out[1] = own[6, l], own[7, l]
         time, work, outside, fastest = 0.0, 0.0, 0.0, 0.0
         most, least = 0.0, math.inf
         for c in range(m):
             for j in range(s):
                 i, total = c * s + j, inertia[c, j] + inertias[k]
-                w2 = 2.0 * energy[c, j] / total
+                w2 = 2.0 * energy[c, j, l] / total
                 w = sense * math.sqrt(w2)
                 load = loads[k, 0] + loads[k, 1] * w + loads[k, 2] * w2
                 rate = (torque[c, j] + load - 0.5 * slope[c, j] * w2) / total
                 square[k, i], alpha[k, i], slow[k, i], first[i] = w2, rate, 1.0 / abs(w), abs(w)
-                most, least = max(most, energy[c, j]), min(least, energy[c, j])
+                most, least = max(most, energy[c, j, l]), min(least, energy[c, j, l])
                 time += share[i] * slow[k, i]
                 outside += share[i] * load
                 work += share[i] * (rods[0, 0, i] * w2 + rods[0, 1, i] * rate + rods[0, 2, i])
@@ -157,101 +170,119 @@ def sum_up(
 
 @kernel
 def _settled(
-    own: tuple[float, float, float, float, float, float, float],
+    about: tuple[float, Array],
     rule: Rule,
     of_angle: tuple[Array, Array, Array],
-    scratch: tuple[Array, Array, Array, Array],
-    out: Array,
-) -> bool:
-    """The energies at the nodes of the periodic motion, by Newton's method from a steady speed,
-    with the first columns of ``out``; whether there is one.
+    scratch: tuple[Array, Array, Array],
+    found: tuple[Array, Array],
+) -> None:
+    """The periodic motions of LANES cases beside one another, by Newton's method from a steady
+    speed: their energies at the nodes, shape (m, s, LANES), and ends of cells, shape (m, LANES);
+    and in ``about`` energy at the beginning and factor less 1, NaN where there is none.
 
-    own : inertia, c0, c1, c2, nudge, sense and that speed; of_angle : width, inertia and torque;
-    scratch : push, rate, gain and shift at the nodes, growth and rise of every cell, and the
-    energies at nodes and ends, filled
+    about : sense; per case inertia, c0, c1, c2, nudge, that speed, and the two, shape (8, LANES);
+    of_angle : width, inertia and torque; scratch : push, rate, gain and shift at the nodes of a
+    cell, and those two of all, and growth and rise of every cell
     """
-    (mass, c0, c1, c2, nudge, sense, steady), (width, inertia, torque) = own, of_angle
-    matrix, weights, _, _ = rule
-    maps, cells, energy, ends = scratch
-    push, rate, gain, shift = maps[0], maps[1], maps[2], maps[3]
+    (sense, own), (width, inertia, torque) = about, of_angle
+    (matrix, weights, _, _), (energy, ends) = rule, found
+    both, maps, cells = scratch
+    push, rate = both[0], both[1]
     m, s = inertia.shape
-    system, both = np.empty((s, s)), np.empty((s, 2))
+    mass, c0, c1, c2 = own[0], own[1], own[2], own[3]
+    nudge, steady, begin, damping = own[4], own[5], own[6], own[7]
+    system, left, now = np.empty((s, s, LANES)), np.ones(LANES), np.empty(LANES)
+    room = np.empty((8, LANES))
+    growth, rise, lost, at, factor = room[0], room[1], room[2], room[3], room[4]
+    change, most, least = room[5], room[6], room[7]
+    begin[:], viscous = math.nan, c1.any()
     for c in range(m):
         for j in range(s):
-            energy[c, j] = 0.5 * (inertia[c, j] + mass) * steady * steady
+            for l in range(LANES):
+                energy[c, j, l] = 0.5 * (inertia[c, j] + mass[l]) * steady[l] * steady[l]
     for _ in range(_ROUNDS):
+        growth[:], rise[:], lost[:] = 0.0, 0.0, 0.0
         for c in range(m):
             h = sense * width[c]
+            gain, shift, more, gained = maps[0, c], maps[1, c], cells[0, c], cells[1, c]
             for j in range(s):
-                total = inertia[c, j] + mass
-                w = sense * math.sqrt(2.0 * energy[c, j] / total)
-                push[c, j] = torque[c, j] + c0 + 0.5 * c1 * w
-                rate[c, j] = (2.0 * c2 + c1 / w) / total
+                for l in range(LANES):
+                    push[j, l] = torque[c, j] + c0[l]
+                    rate[j, l] = 2.0 * c2[l] / (inertia[c, j] + mass[l])
+                    gain[j, l], shift[j, l] = 1.0, 0.0
+                if viscous:
+                    for l in range(LANES):
+                        total = inertia[c, j] + mass[l]
+                        w = sense * math.sqrt(2.0 * energy[c, j, l] / total)
+                        push[j, l] += 0.5 * c1[l] * w
+                        rate[j, l] += c1[l] / (total * w)
             for j in range(s):
-                both[j, 0], both[j, 1] = 1.0, 0.0
                 for i in range(s):
-                    both[j, 1] += h * matrix[j, i] * push[c, i]
-                    system[j, i] = (1.0 if i == j else 0.0) - h * matrix[j, i] * rate[c, i]
-            _eliminate(system, both)
-            cells[0, c] = cells[1, c] = 0.0
+                    part, one = h * matrix[j, i], 1.0 if i == j else 0.0
+                    for l in range(LANES):
+                        shift[j, l] += part * push[i, l]
+                        system[j, i, l] = one - part * rate[i, l]
+            for k in range(s):  # nearly the unit matrix, which needs no pivots
+                for j in range(k + 1, s):
+                    for l in range(LANES):
+                        factor[l] = system[j, k, l] / system[k, k, l]
+                        gain[j, l] -= factor[l] * gain[k, l]
+                        shift[j, l] -= factor[l] * shift[k, l]
+                    for i in range(k + 1, s):
+                        for l in range(LANES):
+                            system[j, i, l] -= factor[l] * system[k, i, l]
+            for k in range(s - 1, -1, -1):
+                for i in range(k + 1, s):
+                    for l in range(LANES):
+                        gain[k, l] -= system[k, i, l] * gain[i, l]
+                        shift[k, l] -= system[k, i, l] * shift[i, l]
+                for l in range(LANES):
+                    gain[k, l] /= system[k, k, l]
+                    shift[k, l] /= system[k, k, l]
+            more[:], gained[:] = 0.0, 0.0
             for j in range(s):
-                gain[c, j], shift[c, j] = both[j, 0], both[j, 1]
-                cells[0, c] += h * weights[j] * rate[c, j] * both[j, 0]
-                cells[1, c] += h * weights[j] * (push[c, j] + rate[c, j] * both[j, 1])
-        growth = rise = lost = 0.0
-        for c in range(m):  # rises nearly cancel, and what they round counts over the damping
-            growth += cells[0, c] + growth * cells[0, c]
-            step = cells[1, c] + cells[0, c] * rise - lost
-            after = rise + step
-            lost, rise = (after - rise) - step, after
-        if not (growth < 0.0 and rise > 0.0):
-            return False
-        begin, change, most = -rise / growth, 0.0, 0.0
-        at = begin
+                part = h * weights[j]
+                for l in range(LANES):
+                    more[l] += part * rate[j, l] * gain[j, l]
+                    gained[l] += part * (push[j, l] + rate[j, l] * shift[j, l])
+            for l in range(LANES):  # rises nearly cancel: what they round counts over the damping
+                growth[l] += more[l] + growth[l] * more[l]
+                step = gained[l] + more[l] * rise[l] - lost[l]
+                after = rise[l] + step
+                lost[l], rise[l] = (after - rise[l]) - step, after
+        for l in range(LANES):
+            at[l] = -rise[l] / growth[l] if growth[l] < 0.0 else math.nan
+            change[l] = most[l] = 0.0
+            least[l] = math.inf
         for c in range(m):
             for j in range(s):
-                new = gain[c, j] * at + shift[c, j]
-                if not new > 0.0:
-                    return False
-                change, most = max(change, abs(new - energy[c, j])), max(most, new)
-                energy[c, j] = new
-            at += cells[0, c] * at + cells[1, c]
-        if c1 == 0.0 or change <= _SETTLED * most:
-            begin -= nudge * most / growth
-            _walk(begin, (maps, cells), energy, ends)
-            out[0], out[1] = begin, growth
-            return True
-    return False
-
-
-@kernel
-def _walk(begin: float, of: tuple[Array, Array], energy: Array, ends: Array) -> None:
-    """Fill the energies at the nodes and at the ends of cells of a period that begins with one."""
-    (maps, cells), at = of, begin
-    for c in range(energy.shape[0]):
-        for j in range(energy.shape[1]):
-            energy[c, j] = maps[2, c, j] * at + maps[3, c, j]
-        at += cells[0, c] * at + cells[1, c]
-        ends[c] = at
-
-
-@kernel
-def _eliminate(system: Array, right: Array) -> None:
-    """Solve in place; nearly the unit matrix, which needs no pivots."""
-    s = len(system)
-    for k in range(s):
-        for j in range(k + 1, s):
-            factor = system[j, k] / system[k, k]
-            for i in range(k + 1, s):
-                system[j, i] -= factor * system[k, i]
-            right[j, 0] -= factor * right[k, 0]
-            right[j, 1] -= factor * right[k, 1]
-    for k in range(s - 1, -1, -1):
-        for i in range(k + 1, s):
-            right[k, 0] -= system[k, i] * right[i, 0]
-            right[k, 1] -= system[k, i] * right[i, 1]
-        right[k, 0] /= system[k, k]
-        right[k, 1] /= system[k, k]
+                for l in range(LANES):
+                    new = maps[0, c, j, l] * at[l] + maps[1, c, j, l]
+                    moved = abs(new - energy[c, j, l])
+                    change[l] = moved if moved > change[l] else change[l]
+                    most[l] = new if new > most[l] else most[l]
+                    least[l] = new if new < least[l] else least[l]
+                    energy[c, j, l] = new if left[l] > 0.0 else energy[c, j, l]
+            for l in range(LANES):
+                at[l] += cells[0, c, l] * at[l] + cells[1, c, l]
+        for l in range(LANES):
+            good = 0.0 < least[l] < math.inf  # there is one, and it turns on
+            ends_here = c1[l] == 0.0 or not change[l] > _SETTLED * most[l] or not good
+            now[l] = left[l] if ends_here else 0.0
+            at[l] = -(rise[l] + nudge[l] * most[l]) / growth[l] if good else math.nan
+            begin[l] = at[l] if now[l] > 0.0 else begin[l]
+            damping[l] = growth[l] if now[l] > 0.0 else damping[l]
+            left[l] -= now[l]
+        for c in range(m):
+            for j in range(s):
+                for l in range(LANES):
+                    new = maps[0, c, j, l] * at[l] + maps[1, c, j, l]
+                    energy[c, j, l] = new if now[l] > 0.0 else energy[c, j, l]
+            for l in range(LANES):
+                at[l] += cells[0, c, l] * at[l] + cells[1, c, l]
+                ends[c, l] = at[l] if now[l] > 0.0 else ends[c, l]
+        if not left.any():
+            return
 
 
 @kernel

@@ -7,12 +7,13 @@ from collections.abc import Hashable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from crankmbs.batch import loops
-from crankmbs.batch.loops import OWN
+from crankmbs.batch.loops import LANES, OWN
 from crankmbs.batch.machine import LINEAR, Machine, Pass, key_of, machine_of
 from crankmbs.batch.serves import loads_of
 from crankmbs.compare import LECTURES, QUANTITIES
@@ -143,7 +144,9 @@ def _part(group: Group, kept: NDArray[np.bool_]) -> Group:
 
 def _merged(groups: list[Group]) -> Group:
     """Groups of one machine as one."""
-    every = {name: np.concatenate([getattr(g, name) for g in groups]) for name in _BY_SCENE}
+    every: dict[str, Any] = {
+        name: np.concatenate([getattr(group, name) for group in groups]) for name in _BY_SCENE
+    }
     return replace(groups[0], **every)
 
 
@@ -170,9 +173,9 @@ def _solved(machine: Machine, which: NDArray[np.intp], cases: _Cases) -> Group:
     started = 0.5 * (inertias + float(first[0, 0])) * starts**2
     reached = np.minimum(started - begin, 0.0) + least > clear
     sure = (growth < -_NONE) & (least > clear) & reached
-    closure = np.max(np.abs(ends - other), axis=1) / most + _ROUNDING
     shown = [2, 5, 6, *range(OWN, joints, 4)]
-    with np.errstate(invalid="ignore"):
+    with np.errstate(invalid="ignore"):  # where there is no periodic motion
+        closure = np.max(np.abs(ends - other), axis=1) / most + _ROUNDING
         apart = error[:, shown] / np.abs(answer[:, shown])
     relative = np.where(sure, np.max(np.nan_to_num(apart), axis=1), np.nan)
     return Group(which, scenes[0], machine, answer, error, closure, relative)
@@ -186,7 +189,7 @@ def _passed(
     columns = np.empty((len(starts), OWN + 4 * machine.joints + _OF_QUANTITIES))
     ends = np.empty((len(starts), len(tables.of_angle[0])))
     about = machine.sense, list(QUANTITIES).index(LINEAR)
-    together = max(1, _NODES // tables.of_angle[1].size)
+    together = LANES * max(1, _NODES // (LANES * tables.of_angle[1].size))
     for k in range(0, len(starts), together):
         some = slice(k, k + together)
         off = np.full_like(starts[some], nudge)
