@@ -22,10 +22,11 @@ from numpy.typing import NDArray
 
 from crankmbs import Sample, Scene, load_scene, simulate, sweep
 from crankmbs.batch import loops
-from crankmbs.batch.machine import LINEAR, Pass
+from crankmbs.batch.machine import LINEAR, OWN, Pass
 from crankmbs.batch.rows import rows_of
 from crankmbs.batch.solve import settled_together
 from crankmbs.compare import QUANTITIES
+from crankmbs.scene.loads import Quadratic
 from crankmbs.sweep.columns import row_of
 from crankmbs.sweep.scenes import scene_of
 from validation.speed import limit
@@ -57,10 +58,17 @@ def main(arguments: list[str] | None = None) -> int:
     return 0
 
 
+def _own(scene: Scene) -> tuple[float, float]:
+    """What is varied, as the scene has it."""
+    load = scene.torque[0]
+    assert isinstance(load, Quadratic)
+    return scene.crank.moment_of_inertia, load.coefficient
+
+
 def _one_block(scene: Scene) -> None:
     """A case among others over the same scene alone."""
     points = np.random.default_rng(1).uniform(1.0, _LEAST, (_BLOCK, 2))
-    own = scene.crank.moment_of_inertia, scene.torque[0].coefficient
+    own = _own(scene)
     values = [tuple(x * by for x, by in zip(own, point, strict=True)) for point in points]
     scenes = [scene_of(scene, _NAMES, each) for each in values]
     (rows,) = rows_of(scenes)
@@ -80,16 +88,16 @@ def _motion_alone(scene: Scene) -> None:
     (group,) = settled_together([scene])
     tables, machine = group.machine.answer, group.machine
     by = np.linspace(1.0, _LEAST, 8 * loops.LANES)
-    load = -abs(scene.torque[0].coefficient)
-    inertias, squares = scene.crank.moment_of_inertia * by, load * by[::-1]
+    inertia, load = _own(scene)
+    inertias, squares = inertia * by, -load * by[::-1]
     none = np.zeros_like(by)
     loads = np.stack([none, none, squares], axis=1)
     assert scene.start is not None
     cases = inertias, loads, np.full_like(by, scene.start.speed), none
-    found = np.empty((len(by), loops.OWN)), np.empty((len(by), len(tables.of_angle[0])))
+    found = np.empty((len(by), OWN)), np.empty((len(by), len(tables.of_angle[0])))
     forces, rods, quantities, lectures = tables.parts
     parts = forces[:0], rods, quantities[:0], lectures[:0]
-    about = machine.sense, list(QUANTITIES).index(LINEAR)
+    about = machine.sense, list(QUANTITIES).index(LINEAR), OWN
     try:
         solve, answer = _in_c(tables, np.stack([inertias, none, squares], axis=1))
     except NotServed as absent:
@@ -120,7 +128,7 @@ def _in_c(tables: Pass, given: Array) -> tuple[Callable[[], object], Array]:
 
 def _whole(scene: Scene, cases: int, processes: int) -> None:
     """So many cases with all measures, in processes that have been started before."""
-    own = scene.crank.moment_of_inertia, scene.torque[0].coefficient
+    own = _own(scene)
     units = "kg m^2", "N m s^2"
     ranges = {
         name: f"{value:.6g}..{_LEAST * value:.6g} {unit}"

@@ -19,10 +19,7 @@ import numpy as np
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.kernels import kernel
 
-__all__ = ["LANES", "OWN", "sum_up"]
-
-OWN = 11
-"""Columns of a case before those of its joints."""
+__all__ = ["LANES", "sum_up"]
 
 LANES = 8
 """Cases beside one another, as many as the processor's vectors hold numbers, or some times that."""
@@ -32,6 +29,7 @@ Rule = tuple[
 ]  # matrix, weights, nodes, and what makes of the values there
 # the last coefficient of Legendre polynomials: the nodes' barycentric weights, too
 Motion = tuple[Array, Array, Array, Array]  # omega^2, alpha, 1 / |omega| and 1, at the nodes
+Outline = tuple[Array, Array, Array]  # of the cells: width, and what `_reaching` fills
 Curve = tuple[Array, Array, Array]  # two components at the nodes and their size; of one alone, it,
 # an empty one, and it again
 
@@ -45,7 +43,7 @@ _ROUNDING = 64 * 2.0**-52  # of a quantity
 
 @kernel
 def sum_up(
-    about: tuple[float, int],
+    about: tuple[float, int, int],
     rule: Rule,
     of_angle: tuple[Array, Array, Array, Array],
     parts: tuple[Array, Array, Array, Array],
@@ -55,7 +53,7 @@ def sum_up(
     """Fill the columns of every case, and its energies at the ends of cells.
 
     about : sense of rotation; number of the quantity of which the first part belongs to omega
-        instead of omega^2
+        instead of omega^2; of columns before those of joints
     of_angle : width [rad] of the m cells, and at their s nodes J without the crank's, dJ/dtheta and
         the torque, shape (m, s)
     parts : what belongs to omega^2, alpha and 1, at the n = m s nodes: of forces, shape (rows, 3,
@@ -72,7 +70,7 @@ def sum_up(
         may err; of every quantity its peak and what that may err, and for each lecture its largest
         deviation and that one's. And the energy at the end of every cell, shape (k, m)
     """
-    (sense, linear), (width, inertia, slope, torque) = about, of_angle
+    (sense, linear, own_columns), (width, inertia, slope, torque) = about, of_angle
     forces, rods, quantities, lectures = parts
     inertias, loads, speeds, nudges = cases
     columns, ends = found
@@ -89,6 +87,8 @@ def sum_up(
         turned += width[c]
         for j in range(s):
             share[c * s + j] = width[c] * weights[j]
+    outline = (width, np.empty((2, n)), np.empty(m))
+    _reaching(outline, rule)
     for k in range(count):
         out, l = columns[k], k % LANES
         if l == 0:
@@ -120,15 +120,19 @@ def sum_up(
                 work += share[i] * (rods[0, 0, i] * w2 + rods[0, 1, i] * rate + rods[0, 2, i])
                 fastest = max(fastest, first[i])
         out[2], out[3], out[4] = time, most, least
-        out[5], _, out[9] = _highest((first, none, first), width, rule, 0.0)
+        out[5], _, out[9] = _highest((first, none, first), outline, rule, 0.0)
         for i in range(n):
             second[i] = 2.0 * fastest - first[i]
-        slowest, _, out[10] = _highest((second, none, second), width, rule, 0.0)
+        slowest, _, out[10] = _highest((second, none, second), outline, rule, 0.0)
         out[6] = 2.0 * fastest - slowest
         out[7], out[8] = work / turned, outside / turned
     rows = len(forces)
-    joints = (columns.shape[1] - OWN - 2 * len(quantities) * (1 + lectures.shape[1])) // 4
-    at, row, pairs = OWN, 0, rows - joints  # tables outside, cases inside: they stay in the cache
+    joints = (columns.shape[1] - own_columns - 2 * len(quantities) * (1 + lectures.shape[1])) // 4
+    at, row, pairs = (
+        own_columns,
+        0,
+        rows - joints,
+    )  # tables outside, cases inside: they stay in the cache
     for joint in range(joints):
         for k in range(count):
             if columns[k, 2] != columns[k, 2]:
@@ -140,7 +144,7 @@ def sum_up(
                     size[i] = math.sqrt(first[i] * first[i] + second[i] * second[i])
             curve = (first, second, size) if joint < pairs else (first, none, first)
             columns[k, at], columns[k, at + 1], columns[k, at + 3] = _highest(
-                curve, width, rule, 0.0
+                curve, outline, rule, 0.0
             )
             columns[k, at + 2] = _integral(curve, (slow[k], share), width, rule) / columns[k, 2]
         at, row = at + 4, row + (2 if joint < pairs else 1)
@@ -155,14 +159,14 @@ def sum_up(
             if q == linear:
                 for i in range(n):
                     first[i] = of[0, i] * sense / slow[k, i]
-            peak, _, rough = _highest((first, none, first), width, rule, 0.0)
+            peak, _, rough = _highest((first, none, first), outline, rule, 0.0)
             columns[k, at], columns[k, at + 1] = peak, rough
             for lecture in range(lectures.shape[1]):
                 said = lectures[q, lecture]
                 power = mean if q == linear else mean * mean
                 for i in range(n):
                     second[i] = said[0, i] * power + said[1, i] - first[i]
-                most, _, rough = _highest((second, none, second), width, rule, peak)
+                most, _, rough = _highest((second, none, second), outline, rule, peak)
                 columns[k, at + 2 + 2 * lecture] = most
                 columns[k, at + 3 + 2 * lecture] = rough
         at += 2 * (1 + lectures.shape[1])
@@ -310,7 +314,33 @@ def _basis(x: float, rule: Rule, basis: Array) -> None:
 
 
 @kernel
-def _highest(curve: Curve, width: Array, rule: Rule, scale: float) -> tuple[float, float, float]:
+def _reaching(outline: Outline, rule: Rule) -> None:
+    """Fill by how much a parabola may rise above a node that its neighbours do not exceed: parts of
+    what either lies below it, shape (2, nodes), and the largest sum of both in every cell.
+
+    With the gaps g and h to its neighbours, which lie b and c below it, that is at most
+    b (1 + h / 4 g) + c (1 + g / 4 h).
+    """
+    (width, lean, reach), nodes = outline, rule[2]
+    s, m = len(nodes), len(width)
+    for c in range(m):
+        reach[c] = 0.0
+        for j in range(s):
+            behind = (nodes[j] - nodes[j - 1]) * width[c] if j > 0 else nodes[0] * width[c]
+            ahead = (nodes[j + 1] if j + 1 < s else 1.0) * width[c] - nodes[j] * width[c]
+            if j == 0:
+                behind += (1.0 - nodes[s - 1]) * width[c - 1 if c > 0 else m - 1]
+            if j + 1 == s:
+                ahead += nodes[0] * width[c + 1 if c + 1 < m else 0]
+            lean[0, c * s + j] = 1.0 + 0.25 * ahead / behind
+            lean[1, c * s + j] = 1.0 + 0.25 * behind / ahead
+            reach[c] = max(reach[c], lean[0, c * s + j] + lean[1, c * s + j])
+
+
+@kernel
+def _highest(
+    curve: Curve, outline: Outline, rule: Rule, scale: float
+) -> tuple[float, float, float]:
     """The largest size of a curve over the period, the angle turned to it [rad], and the size of
     the last coefficient in its cell, about what the polynomial there errs.
 
@@ -319,7 +349,8 @@ def _highest(curve: Curve, width: Array, rule: Rule, scale: float) -> tuple[floa
     too. What cannot rise by more than the rounding of ``scale`` is left as the nodes have it.
     """
     (first, second, size), (_, _, nodes, barycentric) = curve, rule
-    s, m = len(nodes), len(width)
+    (width, lean, reach), s = outline, len(nodes)
+    m = len(width)
     n, highest, cell, place, seen = s * m, -1.0, 0, 0.0, 0
     rises, top = np.empty(m), 0
     before = abs(size[n - 1])
@@ -332,7 +363,7 @@ def _highest(curve: Curve, width: Array, rule: Rule, scale: float) -> tuple[floa
         before = abs(size[c * s + s - 1])
         after = abs(size[c * s + s if c + 1 < m else 0])
         low = after if after < low else low
-        rises[c] = 3.0 * most - 2.0 * low
+        rises[c] = most + reach[c] * (most - low)
         if most > highest:
             highest, top = most, c
     cell, rounding = top, _ROUNDING * max(scale, highest)
@@ -347,7 +378,7 @@ def _highest(curve: Curve, width: Array, rule: Rule, scale: float) -> tuple[floa
             i = c * s + j
             here, before, after = abs(size[i]), abs(size[i - 1 if i > 0 else n - 1]), 0.0
             after = abs(size[i + 1 if i + 1 < n else 0])
-            beyond = 3.0 * here - before - after
+            beyond = here + lean[0, i] * (here - before) + lean[1, i] * (here - after)
             if beyond <= highest + rounding or here < before or here < after:
                 continue
             if seen == _CANDIDATES:
@@ -378,7 +409,7 @@ def _climb(
 ) -> tuple[float, float]:
     """The largest size of a curve between the neighbours of a node in the cell whose nodes begin at
     a number, and where it is, by parabolas; beyond its outermost nodes a cell's ends are their
-    neighbours, and if one is larger it is looked for beside it."""
+    neighbours, and where one is larger it is looked for beside it."""
     first, second, size = curve
     s, paired = len(nodes), len(second) > 0
     x, of_x = nodes[node], abs(size[begin + node])
@@ -387,22 +418,24 @@ def _climb(
         a, of_a = nodes[node - 1], abs(size[begin + node - 1])
     if node + 1 < s:
         b, of_b = nodes[node + 1], abs(size[begin + node + 1])
-    looked = False
+    looks = 0  # beside an end that is larger
     for _ in range(_STEPS):
         at_end = of_a > of_x or of_b > of_x
+        left, right = (x - a) * (of_x - of_b), (x - b) * (of_x - of_a)
+        both = left - right
+        move = 0.5 * ((x - b) * right - (x - a) * left) / both if both != 0.0 else 0.0
         if of_a < 0.0:
             u = a
         elif of_b < 0.0:
             u = b
         elif at_end:
             end, of_end = (a, of_a) if of_a > of_b else (b, of_b)
-            if looked or 0.0 < end < 1.0:
-                return (of_end, end) if end in (0.0, 1.0) else (of_x, x)
-            u = end + _BESIDE * (x - end)
+            if 0.0 < end < 1.0:
+                return of_x, x
+            u = end + _BESIDE * (x - end) if looks == 0 else x + move
+            if looks == 2 or not min(x, end) < u < max(x, end):
+                return of_end, end
         else:
-            left, right = (x - a) * (of_x - of_b), (x - b) * (of_x - of_a)
-            both = left - right
-            move = 0.5 * ((x - b) * right - (x - a) * left) / both if both != 0.0 else 0.0
             if abs(move) <= _CLOSE:
                 break
             u = x + move
@@ -422,10 +455,11 @@ def _climb(
         elif of_b < 0.0:
             of_b = of_u
         elif at_end:
-            looked = True
-            if of_u > max(of_a, of_b):
-                a, of_a, b, of_b = (a, of_a, x, of_x) if u < x else (x, of_x, b, of_b)
-                x, of_x = u, of_u
+            looks += 1
+            if end == a:
+                b, of_b, x, of_x = x, of_x, u, of_u
+            else:
+                a, of_a, x, of_x = x, of_x, u, of_u
         elif of_u > of_x:
             a, of_a, b, of_b = (a, of_a, x, of_x) if u < x else (x, of_x, b, of_b)
             x, of_x = u, of_u

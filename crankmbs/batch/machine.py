@@ -22,9 +22,10 @@ from crankmbs.numerics.collocation import Rule, gauss
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.units import DEGREE
 
-__all__ = ["LINEAR", "Machine", "Pass", "key_of", "machine_of"]
+__all__ = ["LINEAR", "OWN", "Machine", "Pass", "key_of", "machine_of"]
 
-_WIDEST = 12.0 * DEGREE  # of a cell
+_WIDEST, _NARROW = 12.0 * DEGREE, 4.0 * DEGREE  # of a cell, and on average
+_FEW, _MANY = (6, 5), (10, 8)  # stages of the answer's rule and of its check's
 _SPEED = 300.0  # rad/s: any at which what belongs to its square is no smaller than what does not
 _SLIVER = 1e-9  # rad: a start so near an edge is on it
 _UNITS = Powers(*np.eye(3)[:, :, np.newaxis])
@@ -34,6 +35,9 @@ _FOLDED = 0.05  # cosine of the rod angle
 
 LINEAR = "piston velocity"
 """The quantity that goes with the speed."""
+
+OWN = 11
+"""Columns of a case before those of its joints, as `crankmbs.batch.loops.sum_up` fills them."""
 
 
 class Pass(NamedTuple):
@@ -52,7 +56,7 @@ class Pass(NamedTuple):
 class Machine:
     """What settled motions of a machine share.
 
-    sense : of rotation; answer, check : tables of either pass
+    sense : of rotation; answer, check : tables of either pass; finest : whether by the finest rules
     alike : of every cylinder the first one that has the same forces at the same cycle angles; those
         of the others are not tabulated
     displaced : of one cylinder [m3]; folds : whether a rod nearly folds onto the crank
@@ -61,6 +65,7 @@ class Machine:
     sense: float
     answer: Pass
     check: Pass
+    finest: bool
     alike: tuple[int, ...]
     displaced: float
     folds: bool
@@ -82,12 +87,11 @@ def key_of(scene: Scene) -> Hashable:
     )
 
 
-def machine_of(scene: Scene, stages: tuple[int, int]) -> Machine:
-    """The tables of a scene's machine, over a period from its start on.
+def machine_of(scene: Scene, *, finest: bool = False) -> Machine:
+    """The tables of a scene's machine, over a period from its start on, by rules with few nodes
+    where its cells are narrow; or by the finest.
 
-    stages : of the rules of the answer and of the pass that tells its error
-
-    >>> machine_of(load_scene("yi_diesel_free"), (6, 5)).alike
+    >>> machine_of(load_scene("yi_diesel_free")).alike
     (0, 0, 0, 0)
     """
     assert scene.start is not None
@@ -99,16 +103,17 @@ def machine_of(scene: Scene, stages: tuple[int, int]) -> Machine:
     edges[0] = 0.0
     shape = scene.crank.radius, scene.rod.length, scene.piston.offset
     top, bottom = close_loop(dead_centres(*shape), *shape).x
+    narrow = float(np.mean(np.diff(edges))) < _NARROW and not finest
     alike = _alike(train)
     chosen = tuple(dict.fromkeys(alike))
     answer, check = (
         _pass(one, (start, sense), edges, gauss(s), chosen)
-        for one, s in zip((train, train.off), stages, strict=True)
+        for one, s in zip((train, train.off), _FEW if narrow else _MANY, strict=True)
     )
     angles = np.linspace(0.0, 2.0 * math.pi, 361)
     folds = bool(np.min(close_loop(angles, *shape).cos_beta) < _FOLDED)
     displaced = (scene.piston.gas_area or 0.0) * float(top - bottom)
-    return Machine(sense, answer, check, alike, displaced, folds)
+    return Machine(sense, answer, check, not narrow, alike, displaced, folds)
 
 
 def _pass(

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crankmbs.batch.loops import OWN
+from crankmbs.batch.machine import OWN
 from crankmbs.batch.solve import Group, settled_together
 from crankmbs.compare import LECTURES, QUANTITIES
 from crankmbs.compare.excerpt import vanishing

@@ -12,9 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crankmbs.batch import loops
-from crankmbs.batch.loops import LANES, OWN
-from crankmbs.batch.machine import LINEAR, Machine, Pass, key_of, machine_of
+from crankmbs.batch.machine import LINEAR, OWN, Machine, Pass, key_of, machine_of
 from crankmbs.batch.serves import loads_of
 from crankmbs.compare import LECTURES, QUANTITIES
 from crankmbs.design.rebalance import mean_speed_of
@@ -24,8 +22,6 @@ from crankmbs.scene.scene import Scene
 
 __all__ = ["Group", "mean_speed_together", "settled_together"]
 
-_STAGES = (6, 5), (8, 6), (10, 8)  # of the answer and its check: where the first err too much the
-# next are tried, and after the last a scene is left to be solved alone
 _ROUNDING = 64 * float(np.finfo(float).eps)  # of a value
 _NUDGE = 4 * float(np.finfo(float).eps)  # of the greatest energy: what a period rounds
 _CLEAR = 0.05  # rad: an energy that the largest torque does not take within it is clear of rest
@@ -100,9 +96,9 @@ class _Alike:
 
 
 @lru_cache(maxsize=_KEPT)
-def _machine(alike: _Alike, stages: tuple[int, int]) -> Machine:
+def _machine(alike: _Alike, finest: bool) -> Machine:
     """The machine of a scene, kept from block to block."""
-    return machine_of(alike.scene, stages)
+    return machine_of(alike.scene, finest=finest)
 
 
 @dataclass(frozen=True)
@@ -117,11 +113,11 @@ class _Cases:
 
 def _of_machine(which: NDArray[np.intp], cases: _Cases) -> list[Group]:
     """The scenes of one machine, by the coarsest rules that do: where these err too much the first
-    one shows it."""
+    one shows it; those that err too much by the finest are left."""
     found: list[Group] = []
-    left, stages, sure = np.arange(len(which)), 0, False
-    while len(left) and stages < len(_STAGES):
-        machine = _machine(_Alike(cases.key, cases.scenes[0]), _STAGES[stages])
+    left, finest, sure = np.arange(len(which)), False, False
+    while len(left):
+        machine = _machine(_Alike(cases.key, cases.scenes[0]), finest)
         if machine.folds:
             break
         tried, rest = (left, left[:0]) if sure else (left[:1], left[1:])
@@ -131,7 +127,9 @@ def _of_machine(which: NDArray[np.intp], cases: _Cases) -> list[Group]:
         coarse = tried[group.relative > cases.asked[tried]]  # not where there is no number
         sure, left = bool(good.any()), np.append(coarse, rest)
         if len(coarse):
-            stages, sure = stages + 1, False
+            if machine.finest:
+                left = rest
+            finest, sure = True, False
     machines = {id(group.machine): group.machine for group in found}.values()
     every = [_merged([group for group in found if group.machine is one]) for one in machines]
     return [replace(group, which=which[group.which]) for group in every if len(group.which)]
@@ -185,14 +183,16 @@ def _passed(
     machine: Machine, tables: Pass, given: tuple[Array, Array, Array], nudge: float
 ) -> tuple[Array, Array]:
     """Columns and energies of a pass over cases, so many at once as the cache holds."""
+    from crankmbs.batch.loops import LANES, sum_up  # numba is loaded only when it is used
+
     inertias, loads, starts = given
     columns = np.empty((len(starts), OWN + 4 * machine.joints + _OF_QUANTITIES))
     ends = np.empty((len(starts), len(tables.of_angle[0])))
-    about = machine.sense, list(QUANTITIES).index(LINEAR)
+    about = machine.sense, list(QUANTITIES).index(LINEAR), OWN
     together = LANES * max(1, _NODES // (LANES * tables.of_angle[1].size))
     for k in range(0, len(starts), together):
         some = slice(k, k + together)
         off = np.full_like(starts[some], nudge)
         cases = inertias[some], loads[some], starts[some], off
-        loops.sum_up(about, *tables[:3], cases, (columns[some], ends[some]))
+        sum_up(about, *tables[:3], cases, (columns[some], ends[some]))
     return columns, ends
