@@ -18,7 +18,6 @@ from crankmbs import (
     sweep,
 )
 from crankmbs.mechanics.carried import carried_over
-from crankmbs.sweep.scenes import scene_of
 
 SCENE = load_scene("propeller").with_(run__until="settled")
 ENGINE = load_scene("yi_diesel")
@@ -30,10 +29,9 @@ def grid():
     return sweep(SCENE, GRID, executor=1)
 
 
-def test_a_case_has_the_measures_of_its_scene_alone(grid):
-    found = grid.isel({"crank.inertia": 1, "rod.length": 0})
-    inertia = float(found["crank.inertia"])
-    result = simulate(carried_over(SCENE.with_(crank__inertia=inertia, rod__length=0.15), SCENE))
+def test_a_case_has_the_measures_of_its_scene_alone():
+    found = sweep(ENGINE, {"rod.length": [0.15, 0.16]}, executor=1).isel({"rod.length": 0})
+    result = simulate(carried_over(ENGINE.with_(rod__length=0.15), ENGINE))
     measures = result.measures()
     for name in ("mean_speed", "fluctuation", "crank_torque", "indicated_power"):
         one = getattr(measures, name)
@@ -44,7 +42,18 @@ def test_a_case_has_the_measures_of_its_scene_alone(grid):
     assert float(found["imep"][0]) == measures.imep[0].value
     row = compare(result).row("side thrust", "S1 (motion and forces truncated)")
     deviation = found["lecture_deviation"].sel(lecture=row.reference, quantity="side thrust")
-    assert float(deviation) == row.size.largest / row.peak
+    assert float(deviation) == pytest.approx(row.size.largest / row.peak, rel=1e-2)
+    assert (int(found["status"]), str(found["message"].values)) == (0, result.message)
+
+
+def test_a_settled_case_agrees_with_its_scene_alone_within_both_errors(grid):
+    found = grid.isel({"crank.inertia": 1, "rod.length": 0})
+    inertia = float(found["crank.inertia"])
+    result = simulate(carried_over(SCENE.with_(crank__inertia=inertia, rod__length=0.15), SCENE))
+    measures = result.measures()
+    for name in ("mean_speed", "fluctuation", "crank_torque", "indicated_power"):
+        one = getattr(measures, name)
+        assert abs(float(found[name]) - one.value) <= float(found[f"{name}_error"]) + one.error
     assert (int(found["status"]), str(found["message"].values)) == (0, result.message)
 
 
@@ -56,14 +65,15 @@ def test_it_is_labelled_by_what_is_varied(grid):
     assert grid["status"].dtype.kind == "i"
 
 
-def test_a_deviation_of_a_lecture_may_rise_by_its_error_between_samples(grid):
-    finer = scene_of(SCENE, ["run.every", "rod.length"], ["0.1 deg", 0.15])
-    fine = sweep(finer, {"crank.inertia": [0.2]}, executor=1)
-    coarse = grid.isel({"crank.inertia": 0, "rod.length": 0})
-    apart = fine["lecture_deviation"].isel({"crank.inertia": 0}) - coarse["lecture_deviation"]
+def test_a_deviation_of_a_lecture_may_rise_by_its_error_between_samples():
+    coarse, fine = (
+        sweep(ENGINE.with_(run__every=every), {"rod.length": [0.15]}, executor=1).squeeze()
+        for every in ("1 deg", "0.1 deg")
+    )
+    apart = fine["lecture_deviation"] - coarse["lecture_deviation"]
     assert float(apart.max()) > 0.0
-    rises = 2.0 * coarse["lecture_deviation_error"] + 1e-7
-    assert bool((apart <= rises).where(apart.notnull(), True).all())
+    rises = coarse["lecture_deviation_error"] + fine["lecture_deviation_error"]
+    assert bool((abs(apart) <= rises).where(apart.notnull(), True).all())
 
 
 def test_a_scene_that_cannot_be_is_a_row():

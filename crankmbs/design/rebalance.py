@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -14,19 +15,40 @@ from crankmbs.scene.scene import Scene
 from crankmbs.scene.torque import Torque
 from crankmbs.simulate import simulate
 
-__all__ = ["rebalanced"]
+__all__ = ["mean_speed_of", "rebalanced"]
 
 _MOST = 30  # runs
 _FARTHEST = 4.0  # factor by which one run changes the share
 
 
-def rebalanced(scene: Scene, mean_speed: float) -> Scene:
+def mean_speed_of(scene: Scene) -> float:
+    """The mean speed that a scene settles to [rad/s], without its sign, by a run.
+
+    Raises
+    ------
+    InputError : it does not settle
+
+    >>> round(mean_speed_of(load_scene("propeller").with_(run__until="settled")), 3)
+    333.805
+    """
+    result = simulate(scene)
+    if result.status != 0:
+        raise InputError(f"settled_speed: with other loads {result.message}")
+    time = result.data["time"].values
+    return scene.settled_period / float(time[-1] - time[0])
+
+
+def rebalanced(
+    scene: Scene, mean_speed: float, mean: Callable[[Scene], float] = mean_speed_of
+) -> Scene:
     """The scene with its loads scaled by one share, so that it settles to a mean speed [rad/s].
 
     Those loads are scaled that take work at that speed, as a brake is turned up or down; where none
     does, those that give some. The share is found by secants between the logarithms of share and
     mean speed, nearly a line where loads are powers of the speed, to the scene's rtol. The motion
     then starts at this speed.
+
+    mean : the mean speed that a scene settles to, as `mean_speed_of` gives it
 
     Raises
     ------
@@ -55,16 +77,16 @@ def rebalanced(scene: Scene, mean_speed: float) -> Scene:
         start=Start(angle=scene.start.angle, speed=mean_speed),
         run=Run(until=SETTLED, rtol=scene.run.rtol),
     )
-    found = _scaled(free, math.exp(_share(free, abs(mean_speed))))
+    found = _scaled(free, math.exp(_share(free, abs(mean_speed), mean)))
     return replace(found, run=scene.run)
 
 
-def _share(scene: Scene, wanted: float) -> float:
+def _share(scene: Scene, wanted: float, mean: Callable[[Scene], float]) -> float:
     """The logarithm of the share."""
     share, slope = 0.0, -0.5  # of a quadratic load: mean speed as share^(-1/2)
     before: tuple[float, float] | None = None
     for _ in range(_MOST):
-        off = math.log(_mean(_scaled(scene, math.exp(share))) / wanted)
+        off = math.log(mean(_scaled(scene, math.exp(share))) / wanted)
         if abs(off) <= scene.run.rtol:
             return share
         if before is not None and share != before[0]:
@@ -77,14 +99,6 @@ def _share(scene: Scene, wanted: float) -> float:
         f"settled_speed: no share of the loads was found with which the motion settles to "
         f"{wanted:.6g} rad/s; give loads that grow with the speed"
     )
-
-
-def _mean(scene: Scene) -> float:
-    result = simulate(scene)
-    if result.status != 0:
-        raise InputError(f"settled_speed: with other loads {result.message}")
-    time = result.data["time"].values
-    return scene.settled_period / float(time[-1] - time[0])
 
 
 def _scaled(scene: Scene, share: float) -> Scene:

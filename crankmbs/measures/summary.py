@@ -24,7 +24,7 @@ from crankmbs.mechanics.geometry import close_loop, dead_centres
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 
-__all__ = ["Measures", "fluctuation", "mean_speed", "measure"]
+__all__ = ["Measures", "fluctuation", "mean_speed", "measure", "measured"]
 
 
 @dataclass(frozen=True)
@@ -73,9 +73,14 @@ def measure(result: Result) -> Measures:
     >>> measure(simulate(load_scene("propeller"))).window.kind
     'last cycle'
     """
+    return measured(result, refined(result, measured_span(result).first))
+
+
+def measured(result: Result, motions: tuple[Between, ...]) -> Measures:
+    """The same from the motion between the samples, that `refined` gives from the first sample of
+    the `measured_span` on."""
     window = measured_span(result)
     closure = _energy_closure(result)
-    motions = refined(result, window.first)
     if not motions:
         unknown: Measures = _beside(_measures(result, window, closure), None)
         return unknown

@@ -1,4 +1,4 @@
-"""A block of cases, computed one after the other wherever a worker takes it."""
+"""A block of cases, computed wherever a worker takes it."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from math import ceil
 import numpy as np
 from numpy.typing import NDArray
 
+from crankmbs.batch.rows import Rows, rows_of
 from crankmbs.errors import CrankmbsError
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
@@ -16,6 +17,8 @@ from crankmbs.sweep.columns import Row, columns_of, dims_of, row_of, samples_of
 from crankmbs.sweep.scenes import scene_of
 
 __all__ = ["BROKEN", "IMPOSSIBLE", "Block", "Job", "block_size", "broken", "joined", "solved"]
+
+Ended = tuple[Row, int, str]  # of one case: its columns, status and sentence
 
 IMPOSSIBLE, BROKEN = 2, -2  # status of a case whose scene is refused; that ended its worker
 _FEWEST, _BLOCKS = 4, 128
@@ -59,20 +62,25 @@ def block_size(count: int, *, series: bool) -> int:
 
 
 def solved(job: Job) -> Block:
-    """Compute the cases of a job; a case that fails is a row with its status and sentence.
+    """Compute the cases of a job: together those that `crankmbs.batch` can, the others one after
+    the other; a case that fails is a row with its status and sentence.
 
     >>> job = Job(load_scene("yi_diesel"), ("rod.length",), ((0.16,), (0.01,)), False)
     >>> print(solved(job).status)
     [0 2]
     """
+    cases = [_scene_of(job, values) for values in job.values]
+    scenes = [case if isinstance(case, Scene) else None for case in cases]
+    together = [] if job.series else rows_of(scenes)
+    found = {int(k) for rows in together for k in rows.which}
     samples = samples_of(job.scene) if job.series else None
-    ended = [_one(job, values, samples) for values in job.values]
-    return _block(job, ended)
+    ended = {k: _one(case, samples) for k, case in enumerate(cases) if k not in found}
+    return _block(job, ended, together)
 
 
 def broken(job: Job, message: str) -> Block:
     """What is left of cases that end their worker."""
-    return _block(job, [({}, BROKEN, message)] * len(job.values))
+    return _block(job, {k: ({}, BROKEN, message) for k in range(len(job.values))}, [])
 
 
 def joined(parts: list[Block]) -> Block:
@@ -82,12 +90,23 @@ def joined(parts: list[Block]) -> Block:
     return Block(rows, status, tuple(text for one in parts for text in one.message))
 
 
-def _one(job: Job, values: tuple[object, ...], samples: int | None) -> tuple[Row, int, str]:
+def _scene_of(job: Job, values: tuple[object, ...]) -> Scene | Ended:
     try:
-        result = simulate(scene_of(job.scene, job.names, values))
+        return scene_of(job.scene, job.names, values)
     except CrankmbsError as error:
         return {}, IMPOSSIBLE, str(error)
     except Exception as error:  # of a limit nobody knew: the other cases go on
+        return {}, -1, _broke_off(error)
+
+
+def _one(case: Scene | Ended, samples: int | None) -> Ended:
+    if not isinstance(case, Scene):
+        return case
+    try:
+        result = simulate(case)
+    except CrankmbsError as error:
+        return {}, IMPOSSIBLE, str(error)
+    except Exception as error:
         return {}, -1, _broke_off(error)
     try:
         return row_of(result, samples), result.status, result.message
@@ -102,14 +121,20 @@ def _broke_off(error: Exception) -> str:
     return f"broke off: {type(error).__name__}: {error}"
 
 
-def _block(job: Job, ended: list[tuple[Row, int, str]]) -> Block:
+def _block(job: Job, ended: dict[int, Ended], together: list[Rows]) -> Block:
     sizes = {dim: len(at) for dim, at in dims_of(job.scene, series=job.series).items()}
-    rows = {}
+    rows, count = {}, len(job.values)
     for name, column in columns_of(job.scene, series=job.series).items():
-        shape = tuple(sizes[dim] for dim in column.dims)
-        rows[name] = np.full((len(ended), *shape), np.nan)
-        for k, (row, _, _) in enumerate(ended):
+        rows[name] = np.full((count, *(sizes[dim] for dim in column.dims)), np.nan)
+        for some in together:
+            rows[name][some.which] = some.columns[name]
+        for k, (row, _, _) in ended.items():
             if name in row:
                 rows[name][k] = row[name]
-    status = np.array([status for _, status, _ in ended], dtype=np.int8)
-    return Block(rows, status, tuple(message for _, _, message in ended))
+    status, message = np.zeros(count, dtype=np.int8), [""] * count
+    for some in together:
+        for k, said in zip(some.which, some.messages, strict=True):
+            message[k] = said
+    for k, (_, how, said) in ended.items():
+        status[k], message[k] = how, said
+    return Block(rows, status, tuple(message))

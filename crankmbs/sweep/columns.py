@@ -10,8 +10,11 @@ import numpy as np
 
 from crankmbs.compare import LECTURES, QUANTITIES, compare
 from crankmbs.errors import InputError
-from crankmbs.measures import Estimate, JointForce, Measures, measure
+from crankmbs.measures import Estimate, JointForce, Measures
+from crankmbs.measures.between import Between, refined
 from crankmbs.measures.peak import rise
+from crankmbs.measures.span import measured_span
+from crankmbs.measures.summary import measured
 from crankmbs.mechanics.variables import variables_of
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
@@ -21,6 +24,7 @@ __all__ = ["Column", "Row", "columns_of", "dims_of", "row_of", "samples_of"]
 
 Row = dict[str, Array]
 _ERROR = "_error"
+_GUESSED = 2.0  # times what samples tell of how far a curve rises between them
 _CYLINDER = ("cylinder",)
 _FORMULAS = ("lecture", "quantity")
 
@@ -45,7 +49,7 @@ _MEASURES = {
     "mechanical_efficiency": Column("1", "mechanical efficiency"),
 }
 _JOINTS = ("main_bearing", "crank_pin", "piston_pin", "side_force")
-_LECTURE = Column("1", "largest deviation of the lecture at the samples, over the peak", _FORMULAS)
+_LECTURE = Column("1", "largest deviation of the lecture, over the peak", _FORMULAS)
 
 
 def columns_of(scene: Scene, *, series: bool) -> dict[str, Column]:
@@ -107,10 +111,11 @@ def row_of(result: Result, samples: int | None) -> Row:
     ------
     InputError : more samples
     """
-    row = _measured(measure(result), result.scene)
+    motions = refined(result, measured_span(result).first)
+    row = _measured(measured(result, motions), result.scene)
     row["relative_error"] = np.array(result.error.estimated)
     if result.scene.fuel is None:
-        row |= _lectured(result)
+        row |= _lectured(result, motions)
     if samples is not None:
         row |= _sampled(result, samples)
     return row
@@ -163,21 +168,25 @@ def _angle(joint: JointForce, period: float) -> float:
     return joint.crank_angle % period if joint.cycle_angle is None else joint.cycle_angle
 
 
-def _lectured(result: Result) -> Row:
-    """Errors of the lectures in cylinder 1, over the peak of the run; their own error is how far
-    they may rise between samples, and the run's."""
+def _lectured(result: Result, motions: tuple[Between, ...]) -> Row:
+    """Errors of the lectures in cylinder 1, over the peak of the run, finely sampled; their own
+    error is how far both may rise between these samples, and the run's."""
     value, error = np.full((2, len(LECTURES), len(QUANTITIES)), np.nan)
     try:
-        found = compare(result)
+        found = compare(motions[-1].result if motions else result)
     except InputError:  # folded all the time
         return {}
     for row in found.rows:
         if row.reference not in LECTURES or row.peak == 0.0:
             continue
         at = list(LECTURES).index(row.reference), list(QUANTITIES).index(row.quantity)
-        size = np.abs(row.error)
+        beyond = [
+            rise(size, int(np.argmax(size)))
+            for size in (np.abs(row.error), np.abs(found.simulated[row.quantity]))
+        ]
         value[at] = row.size.largest / row.peak
-        error[at] = rise(size, int(np.argmax(size))) / row.peak + result.error.estimated
+        rises = (beyond[0] + value[at] * beyond[1]) / row.peak
+        error[at] = _GUESSED * rises + result.error.estimated
     return {"lecture_deviation": value, f"lecture_deviation{_ERROR}": error}
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Sequence
 
+from crankmbs.batch.solve import mean_speed_together
 from crankmbs.design.rebalance import rebalanced
 from crankmbs.errors import InputError, shown
 from crankmbs.mechanics.carried import carried_over
@@ -43,7 +44,9 @@ def scene_of(scene: Scene, names: Sequence[str], values: Sequence[object]) -> Sc
             f"layout: a sweep keeps the number of cylinders, {len(scene.cylinders)}; "
             f"{len(new.cylinders)} came"
         )
-    return rebalanced(new, _number("settled_speed", given)) if "settled_speed" in given else new
+    if "settled_speed" not in given:
+        return new
+    return rebalanced(new, _number("settled_speed", given), mean_speed_together)
 
 
 def _stretched(scene: Scene, _ratio: object) -> Rod:

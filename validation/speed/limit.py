@@ -96,15 +96,20 @@ def _function(name: str, job: Job, method: Sequence[Array]) -> Callable[[float],
 
 
 @cache
-def library() -> ctypes.CDLL:
-    """limit.c, compiled and loaded."""
+def library(source: Path = _SOURCE) -> ctypes.CDLL:
+    """limit.c, or another file in C, compiled and loaded.
+
+    Raises
+    ------
+    NotServed : no C compiler, or it cannot compile it
+    """
     names = (os.environ.get("CC", ""), "cc", "gcc", "clang")
     compiler = next((path for name in names if name and (path := shutil.which(name))), None)
     if compiler is None:
         raise NotServed("no C compiler found; set CC, or install cc, gcc or clang")
     with tempfile.TemporaryDirectory() as folder:
         target = Path(folder) / "limit.so"
-        command = [compiler, *_FLAGS, "-o", str(target), str(_SOURCE), "-lm"]
+        command = [compiler, *_FLAGS, "-o", str(target), str(source), "-lm"]
         made = subprocess.run(command, capture_output=True, text=True, check=False)
         if made.returncode != 0:
             raise NotServed(f"{compiler} cannot compile it: {made.stderr.strip()}")

@@ -1,0 +1,42 @@
+"""Which scenes are solved together with others of their machine."""
+
+from __future__ import annotations
+
+import math
+
+from crankmbs.mechanics.torque import branch_of
+from crankmbs.scene.scene import Scene
+
+__all__ = ["Loads", "loads_of"]
+
+Loads = tuple[float, float, float]
+"""c0, c1 and c2 of c0 + c1 omega + c2 omega^2 [N m]."""
+
+
+def loads_of(scene: Scene) -> Loads | None:
+    """The loads of a scene whose settled motion is found together with others; None of another.
+
+    It starts turning and is to settle; its cycles are all alike, without friction; its loads are
+    c0 + c1 omega + c2 omega^2 at every speed in its sense, where no such load rises with the speed:
+    there is one periodic motion at most.
+
+    >>> loads_of(load_scene("propeller").with_(run__until="settled"))
+    (0.0, 0.0, -9.5e-05)
+    """
+    start = scene.start
+    if start is None or start.speed == 0.0 or not scene.settles:  # whose loads have no times
+        return None
+    if scene.fuel is not None or scene.friction is not None:
+        return None
+    if scene.run.formulation not in ("auto", "crank_angle"):
+        return None
+    if abs(scene.settled_period - scene.period) > 1e-9:
+        return None
+    if any(load.lacks or load.parts.over_angle or load.parts.function for load in scene.torque):
+        return None
+    sense = math.copysign(1.0, start.speed)
+    branch = branch_of(scene.torque, 0.0, 0.0, rising=sense > 0.0)
+    if any(0.0 < sense * end < math.inf for end in (branch.omega_low, branch.omega_high)):
+        return None
+    c0, _, c1, c2 = branch.coefficients
+    return c0, c1, c2

@@ -1,0 +1,175 @@
+"""Scenes solved together have what each of them has alone, within the errors of both."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from crankmbs import load_scene, simulate
+from crankmbs.batch.machine import machine_of
+from crankmbs.batch.rows import rows_of
+from crankmbs.batch.serves import loads_of
+from crankmbs.batch.solve import settled_together
+from crankmbs.scene.loads import Constant, Quadratic, SpeedTable
+from crankmbs.scene.tables import Table
+from crankmbs.sweep.block import Job, solved
+from crankmbs.sweep.columns import columns_of, row_of
+from crankmbs.sweep.scenes import scene_of
+from validation.random_settled import random_settled
+
+SEEDS = range(2000, 2024)
+LEFT = {2000, 2001, 2002, 2005, 2007, 2009, 2018, 2019, 2021}  # with tables over the speed
+COARSE = {2010}  # more than its tolerance, by the finest rules
+
+
+def settling(name, **changes):
+    return load_scene(name).with_(run__until="settled", run__every="none", **changes)
+
+
+SHIPPED = [settling(name) for name in ("propeller", "yi_diesel_free", "v_twin")]
+
+
+def by_hand(scene):
+    """The columns of a scene alone, finely sampled, and how it ends."""
+    result = simulate(scene.with_(run__every="0.25 deg"), rtol=1e-12)
+    return row_of(result, None), result.message
+
+
+def assert_agree(rows, number, alone):
+    """Every column within the errors of both; angles where the peak is no tie."""
+    for name, values in alone.items():
+        found = rows.columns[name][number]
+        assert found.shape == values.shape, name
+        assert (np.isnan(found) == np.isnan(values)).all(), name
+        if f"{name}_error" in alone:
+            both = alone[f"{name}_error"] + rows.columns[f"{name}_error"][number]
+            apart = np.abs(found - values)
+            worst = np.nanmax(np.append(apart - both, -1.0))
+            assert worst <= 0.0, (name, worst)
+
+
+@pytest.mark.parametrize("scene", SHIPPED, ids=lambda scene: scene.title[:20])
+def test_shipped_scenes_agree(scene):
+    (rows,) = rows_of([scene])
+    alone, message = by_hand(scene)
+    assert set(rows.columns) == set(alone) == set(columns_of(scene, series=False))
+    assert_agree(rows, 0, alone)
+    assert rows.messages[0] == message.partition(";")[0]
+    assert rows.columns["relative_error"][0] <= scene.run.rtol
+
+
+@pytest.mark.parametrize(
+    "scene", [SHIPPED[0], SHIPPED[2].with_(start__angle="217 deg")], ids=["one", "two"]
+)
+def test_a_peak_is_where_it_is_alone(scene):  # in an even engine every cylinder is as good
+    (rows,), (alone, _) = rows_of([scene]), by_hand(scene)
+    for joint in ("main_bearing", "crank_pin", "piston_pin", "side_force"):
+        name = f"{joint}_peak_angle"
+        np.testing.assert_allclose(rows.columns[name][0], alone[name], atol=1e-6)
+
+
+def test_what_a_fitted_diagram_errs_counts():
+    (rows,) = rows_of([SHIPPED[2]])
+    assert rows.columns["relative_error"][0] > 1e-10
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_random_scenes_agree(seed):
+    scene = random_settled(seed)
+    scene = replace(scene, run=replace(scene.run, every=None, rtol=1e-7))
+    assert (loads_of(scene) is None) == (seed in LEFT)
+    found = rows_of([scene])
+    assert bool(found) == (seed not in LEFT | COARSE)
+    if found:
+        assert_agree(found[0], 0, by_hand(scene)[0])
+
+
+def test_backwards_and_from_any_angle():
+    turned = settling("propeller", start__angle="217 deg", start__speed=-300.0)
+    turned = replace(turned, torque=(Constant(torque=-40.0), Quadratic(coefficient=4e-4)))
+    (rows,), (alone, _) = rows_of([turned]), by_hand(turned)
+    assert rows.columns["mean_speed"][0] < 0.0
+    assert rows.columns["indicated_power"][0] < 0.0
+    assert_agree(rows, 0, alone)
+
+
+def test_a_start_too_slow_for_the_first_compression_is_followed_alone():
+    slow = settling("propeller", start__speed=30.0)
+    assert rows_of([slow]) == []
+    assert simulate(slow).status != 0
+
+
+def test_a_light_load_states_what_rounding_makes_of_it():
+    light = settling("propeller", torque__1__coefficient=1e-6, crank__inertia=20.0)
+    light = replace(light, torque=(*light.torque, Constant(torque=-10.62)))
+    (rows,), (alone, _) = rows_of([light]), by_hand(light)
+    assert rows.columns["mean_speed_error"][0] > 1e-11 * rows.columns["mean_speed"][0]
+    assert_agree(rows, 0, alone)
+
+
+def test_more_stages_are_taken_where_fewer_err_too_much():
+    rough, fine = (
+        settled_together([settling("yi_diesel_free", run__rtol=rtol)])[0] for rtol in (1e-6, 1e-10)
+    )
+    count = [len(one.machine.answer.rule[2]) for one in (rough, fine)]
+    assert count[0] < count[1]
+    assert rough.relative[0] <= 1e-6
+    assert fine.relative[0] <= 1e-10
+
+
+def test_none_is_better_than_one_that_errs_more_than_it_may():
+    assert settled_together([settling("propeller", run__rtol=1e-13)]) == []
+
+
+def test_alone_and_among_others_it_is_the_same():
+    several = [settling("propeller", crank__inertia=inertia) for inertia in (0.02, 0.2, 0.11)]
+    seen = []
+    for rows in rows_of(several):
+        for place, number in enumerate(rows.which.tolist()):
+            (alone,) = rows_of([several[number]])
+            for name, values in alone.columns.items():
+                np.testing.assert_array_equal(values[0], rows.columns[name][place])
+            seen.append(number)
+    assert sorted(seen) == [0, 1, 2]
+
+
+def test_every_machine_has_its_own_group():
+    scenes = [SHIPPED[0], None, SHIPPED[2], settling("propeller", start__speed=300.0)]
+    groups = settled_together(scenes)
+    machines = {number: group.machine for group in groups for number in group.which.tolist()}
+    assert sorted(machines) == [0, 2, 3]
+    assert machines[0] is machines[3] is not machines[2]
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        load_scene("propeller"),
+        replace(SHIPPED[0], friction=load_scene("friction").friction),
+        load_scene("yi_diesel"),
+        settling("propeller", run__formulation="minimal"),
+        replace(SHIPPED[0], torque=(SpeedTable(file=Table((0.0, 600.0), (0.0, -20.0))),)),
+    ],
+)
+def test_what_is_no_plain_settled_motion_is_left(scene):
+    assert loads_of(scene) is None
+    assert rows_of([scene]) == []
+
+
+def test_a_load_that_stalls_the_crank_says_so_alone():
+    names, values = ("torque[1].coefficient",), ((9.5e-5,), (0.0,), (3.0,))
+    block = solved(Job(SHIPPED[0], names, values, series=False))
+    assert block.status[0] == 0
+    for number in (1, 2):
+        result = simulate(scene_of(SHIPPED[0], names, values[number]))
+        assert block.status[number] == result.status
+        assert block.message[number] == result.message
+
+
+def test_in_an_even_engine_the_other_cylinders_are_as_the_first():
+    machine = machine_of(SHIPPED[1])
+    assert machine.alike == (0, 0, 0, 0)
+    weighed = settling("yi_diesel_free", gravity={"acceleration": 9.81, "angle": 0.5})
+    assert machine_of(weighed).alike == (0, 1, 2, 3)
+    (rows,), (alone, _) = rows_of([weighed]), by_hand(weighed)
+    assert_agree(rows, 0, alone)
