@@ -21,7 +21,7 @@ from crankmbs.scene.scene import Scene
 from crankmbs.scene.torque import Torque
 from crankmbs.simulate import simulate
 
-__all__ = ["Flywheel", "excess", "flywheel"]
+__all__ = ["Flywheel", "excess", "excess_at", "flywheel"]
 
 _CLOSE = 1e-7  # of the fluctuation: as near the target is on it
 _MOST = 40  # runs
@@ -103,6 +103,20 @@ def flywheel(scene: Scene, fluctuation: float = 0.01) -> Flywheel:
     return search.found(scene.crank.moment_of_inertia)
 
 
+def excess_at(scene: Scene, speed: float) -> tuple[float, float]:
+    """What `excess` gives of a scene over a period at a constant speed [rad/s].
+
+    >>> excess_at(load_scene("propeller"), 300.0)[0] > 0.0
+    True
+    """
+    drive = scene.start or scene.motion
+    assert drive is not None
+    run = Run(until=Extent(value=scene.settled_period, unit="rad"), rtol=scene.run.rtol)
+    motion = Motion(speed=speed, angle=drive.angle)
+    even = simulate(replace(scene, start=None, torque=(), motion=motion, run=run))
+    return excess(even, scene.torque)
+
+
 def excess(even: Result, loads: tuple[Torque, ...] = ()) -> tuple[float, float]:
     """(W [J], J omega^2 [J]) of the lecture's formula, from a run of whole cycles at constant
     speed: the range of the work that rods, and loads over the angle, do beyond its mean, twice the
@@ -136,7 +150,7 @@ def _freed(scene: Scene) -> Scene:
 def _balanced(scene: Scene) -> Result:
     """The periodic motion under the constant load that balances the rest."""
     run = replace(scene.run, until=Extent(value=scene.settled_period, unit="rad"))
-    return simulate(balanced(replace(scene, run=run)))
+    return simulate(balanced(replace(scene, run=run))[0])
 
 
 class _Trial(NamedTuple):
@@ -199,11 +213,7 @@ class _Search:
         """W [J] at a constant speed [rad/s]; the inertia that the lecture finds, and the mean one
         of rods and pistons in it [kg m2]."""
         scene, inertia = self._scene, self._scene.crank.moment_of_inertia
-        assert scene.start is not None
-        run = replace(scene.run, until=Extent(value=scene.settled_period, unit="rad"))
-        motion = Motion(speed=speed, angle=scene.start.angle)
-        even = simulate(replace(scene, start=None, torque=(), motion=motion, run=run))
-        work, doubled = excess(even, scene.torque)
+        work, doubled = excess_at(scene, speed)
         return work, work / (self._wanted * speed**2), doubled / speed**2 - inertia
 
     def _answer(self, trial: _Trial, own: float, rest: float, off: float) -> Flywheel:

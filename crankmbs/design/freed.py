@@ -23,10 +23,20 @@ from crankmbs.scene.run import Extent
 from crankmbs.scene.scene import Scene
 from crankmbs.simulate import simulate
 
-__all__ = ["balanced", "freed", "mean_prescribed"]
+__all__ = ["NEAR_REST", "UNEVEN", "balanced", "freed", "mean_prescribed"]
+
+NEAR_REST = (
+    "crank.inertia: set free under the constant load that balances it the crank comes near rest in "
+    "every cycle; give it a heavier flywheel; {came:.6g} kg m^2 came"
+)
+UNEVEN = (
+    "fuel: with shares of the combustion cycles differ, and no one load balances them; leave "
+    "[fuel] out, or give [start] and loads"
+)
 
 _STAGES = 10  # of Gauss in a cell, more than a run takes
-_LEAST = 1e-9  # of the greatest energy: with less left over, the crank all but rests
+_LEAST = 1e-9  # of the greatest energy: no less is ever left over
+_SLOW = math.pi / 360.0  # rad: where the energy would be gone within this angle, the crank rests
 _RTOL = 1e-13  # of the runs that tell what viscous friction takes
 _CLOSE = 1e-12  # relative: so near gain and duration must come
 
@@ -41,7 +51,7 @@ def freed(scene: Scene) -> Scene:
     Raises
     ------
     InputError : a free crank; fuel, whose cycles differ; a crank without inertia, or with so little
-        that it comes to rest; what `mean_prescribed` refuses
+        that it comes near rest; what `mean_prescribed` refuses
 
     >>> found = freed(load_scene("yi_diesel"))
     >>> print(f"{found.torque[0].torque:.4f} N m, from {found.start.speed:.2f} rad/s")
@@ -52,16 +62,16 @@ def freed(scene: Scene) -> Scene:
     if scene.motion is None:
         raise InputError("start: the crank is free already; give a scene with [motion]")
     if scene.fuel is not None:
-        raise InputError(
-            "fuel: with shares of the combustion cycles differ, and no one load balances them; "
-            "leave [fuel] out, or give [start] and loads"
-        )
+        raise InputError(UNEVEN)
     start = Start(angle=scene.motion.angle, speed=mean_prescribed(scene))
     crank = replace(scene.crank, inertia=scene.crank.moment_of_inertia)
     run = replace(scene.run, until=Extent(value=scene.settled_period, unit="rad"))
     if run.formulation == "kinetostatic":
         run = replace(run, formulation="auto")
-    return balanced(replace(scene, crank=crank, motion=None, start=start, run=run))
+    found, rests = balanced(replace(scene, crank=crank, motion=None, start=start, run=run))
+    if rests:
+        raise InputError(NEAR_REST.format(came=crank.inertia))
+    return found
 
 
 def mean_prescribed(scene: Scene) -> float:
@@ -100,26 +110,25 @@ def mean_prescribed(scene: Scene) -> float:
     return sense * angle / (last - time_at(begin + sense * (turned - angle)))
 
 
-def balanced(scene: Scene) -> Scene:
+def balanced(scene: Scene) -> tuple[Scene, bool]:
     """A free scene with one more constant load, that which makes it repeat itself at a mean speed,
     start.speed; none of its own loads depends on the speed. It starts in that motion.
+
+    Besides, whether it comes near rest on the way, where its energy would be gone within half a
+    degree: then the mean speed may not be reached.
 
     Over the angle E = E_0 + (E - E_0)(theta), the same at every speed: E_0 is the one with which a
     period takes as long as at the mean speed. What viscous friction takes depends on the motion:
     load and E_0 are then sought together, run by run.
-
-    Raises
-    ------
-    InputError : an inertia so small that the crank comes to rest
     """
-    found = _at_any_speed(scene)
+    found, rests = _at_any_speed(scene)
     friction = scene.friction
-    if friction is None or friction.viscous == 0.0:
-        return found
+    if rests or friction is None or friction.viscous == 0.0:
+        return found, rests
     return _with_drag(scene, found)
 
 
-def _at_any_speed(scene: Scene) -> Scene:
+def _at_any_speed(scene: Scene) -> tuple[Scene, bool]:
     """The same, but for viscous friction that is what it would be at a constant speed."""
     assert scene.start is not None
     start, period = scene.start, scene.settled_period
@@ -138,13 +147,14 @@ def _at_any_speed(scene: Scene) -> Scene:
         return float((1.0 / np.sqrt(least + above + one.shift)) @ one.weight) - wanted
 
     most = 0.5 * float(strip.inertia.max()) * start.speed**2 + float(np.ptp(one.shift))
-    if late(_LEAST * most) < 0.0:
-        raise _too_light(scene)
-    above = float(brentq(late, _LEAST * most, 2.0 * most, xtol=1e-300, rtol=1e-15))
-    return _from(scene, -mean - given, least + above)
+    above = _LEAST * most
+    if late(above) > 0.0:
+        above = float(brentq(late, above, 2.0 * most, xtol=1e-300, rtol=1e-15))
+    largest = float(np.abs(strip.torque).max()) + abs(mean)
+    return _from(scene, -mean - given, least + above), above <= _SLOW * largest
 
 
-def _with_drag(scene: Scene, guess: Scene) -> Scene:
+def _with_drag(scene: Scene, guess: Scene) -> tuple[Scene, bool]:
     """Load and start such that a run of a period gains nothing and takes the time that it must."""
     assert scene.start is not None
     assert guess.start is not None
@@ -165,9 +175,7 @@ def _with_drag(scene: Scene, guess: Scene) -> Scene:
         return [kinetic[-1] / kinetic[0] - 1.0, time[-1] * mean / period - 1.0]
 
     solved = root(off, [0.0, 0.0], tol=_CLOSE)
-    if not np.abs(solved.fun).max() <= _CLOSE:
-        raise _too_light(scene)
-    return trial(solved.x)
+    return trial(solved.x), not np.abs(solved.fun).max() <= _CLOSE
 
 
 def _from(scene: Scene, torque: float, energy: float) -> Scene:
@@ -177,10 +185,3 @@ def _from(scene: Scene, torque: float, energy: float) -> Scene:
     squared = 2.0 * energy / float(inertia_alone(scene, start.angle))
     moved = Start(angle=start.angle, speed=math.copysign(math.sqrt(squared), start.speed))
     return replace(scene, start=moved, torque=(*scene.torque, Constant(torque=torque)))
-
-
-def _too_light(scene: Scene) -> InputError:
-    return InputError(
-        "crank.inertia: under the constant load that balances it the free crank comes to rest in "
-        f"every cycle; give it a heavier flywheel; {scene.crank.moment_of_inertia:.6g} kg m^2 came"
-    )
