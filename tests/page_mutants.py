@@ -102,8 +102,8 @@ MUTANTS = {
             "law.timeAt(to))",
         ),
         (
-            'return { train, found: { ...found, ending: "light" } };',
-            "return { train, found };",
+            'found.ending === "complete" ? "complete" : "light";',
+            '"complete";',
         ),
         (
             "each - friction.viscous * square[i] * speed",

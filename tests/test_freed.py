@@ -164,9 +164,9 @@ def test_it_swings_as_wide_as_it_can_until_it_is_refused(viscous):
         mean = DIESEL.period / float(data.time[-1])
         assert mean == pytest.approx(DIESEL.motion.speed, rel=1e-9)
         swings.append(np.ptp(simulate(found).data.crank_speed.values) / mean)
-    assert 1 < given < 6
     assert swings == sorted(swings)
-    assert swings[-1] > 1.2
+    assert swings[-1] > 1.0
+    assert given == 6 if viscous else 1 < given < 6
 
 
 def light(scene, viscous=0.0):

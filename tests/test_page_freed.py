@@ -123,6 +123,7 @@ def own(sentence):
 
 def test_a_crank_near_rest_keeps_the_picture_until_the_flywheel_is_turned_up(browser, tmp_path):
     scene = load_scene("friction")
+    scene = replace(scene, friction=replace(scene.friction, viscous=0.0))
     with opened(browser, tmp_path, scene) as visited:
         good = visited.settle().curve()
         assert visited.page.is_disabled("#fluctuation")
@@ -135,6 +136,18 @@ def test_a_crank_near_rest_keeps_the_picture_until_the_flywheel_is_turned_up(bro
         assert visited.message == ""
         assert "speed_is=free" in visited.address
         assert_same(visited.data(), of_python(scene, free(scene)))
+
+
+def test_friction_beyond_all_measure_is_not_called_a_light_crank(browser, tmp_path):
+    scene = load_scene("friction")
+    scene = replace(scene, friction=replace(scene.friction, viscous=1e4))
+    with opened(browser, tmp_path, scene) as visited:
+        visited.settle().page.select_option("[data-state=speed_is]", "free")
+        assert visited.message.startswith(
+            "the search for the motion that repeats itself finds none"
+        )
+        visited.type("flywheel", 0.1)
+        assert visited.message == ""
 
 
 def test_without_any_inertia_it_is_refused_in_pythons_words(browser, tmp_path):

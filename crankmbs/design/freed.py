@@ -115,7 +115,7 @@ def balanced(scene: Scene) -> tuple[Scene, bool]:
     start.speed; none of its own loads depends on the speed. It starts in that motion.
 
     Besides, whether it comes near rest on the way, where its energy would be gone within half a
-    degree: then the mean speed may not be reached.
+    degree, or no such motion is found: then the mean speed may not be reached.
 
     Over the angle E = E_0 + (E - E_0)(theta), the same at every speed: E_0 is the one with which a
     period takes as long as at the mean speed. What viscous friction takes depends on the motion:
@@ -123,7 +123,7 @@ def balanced(scene: Scene) -> tuple[Scene, bool]:
     """
     found, rests = _at_any_speed(scene)
     friction = scene.friction
-    if rests or friction is None or friction.viscous == 0.0:
+    if friction is None or friction.viscous == 0.0:
         return found, rests
     return _with_drag(scene, found)
 

@@ -29,15 +29,18 @@ function meanPrescribed(motion, { until, in_time: inTime }, period) {
 }
 
 /** The machine with the load that balances it, and what it settles to at the mean speed of a start
- * { angle, speed }, as `settle` gives it: ending "complete", or "light" where it comes to rest. */
+ * { angle, speed }, as `settle` gives it: ending "complete", "light" where it comes near rest, or
+ * "wanders" where none is found. */
 export function settleFree(train, grid, start) {
   const sense = Math.sign(start.speed);
   const even = evenly(train, grid, start.speed);
   const torque = balance(even, start, sense);
   const loaded = (load) => ({ ...train, loads: [constant(load)] });
   const found = settle({ ...even.train, loads: [constant(torque)] }, even.grid, start, null);
-  if (found.ending !== "complete") return { train, found: { ...found, ending: "light" } };
-  if (even.train === train) return { train: loaded(torque), found };
+  if (even.train === train) {
+    const ending = found.ending === "complete" ? "complete" : "light";
+    return { train: loaded(torque), found: { ...found, ending } };
+  }
   return withDrag({ grid, start, sense, loaded }, torque, found.motion);
 }
 
@@ -70,7 +73,7 @@ function withDrag({ grid, start, sense, loaded }, torque, { path, slope }) {
     const train = loaded(torque + (sense * at[1]) / grid.edges[grid.edges.length - 1]);
     const section = new Section(train, grid, start, sense);
     const shot = section.shot(at[0]);
-    if (shot.ending !== "complete") break;
+    if (shot.ending !== "complete") return { train, found: { ending: "light" } };
     const gained = shot.energy - at[0];
     const late = shot.time - section.period / Math.abs(start.speed);
     if (Math.abs(gained) <= CLOSE * at[0] && Math.abs(late) <= CLOSE * shot.time) {
@@ -81,7 +84,7 @@ function withDrag({ grid, start, sense, loaded }, torque, { path, slope }) {
     step = product(inverse, off).map((each) => -each);
     [last, at] = [off, sum(at, step)];
   }
-  return { train: loaded(torque), found: { ending: "light" } };
+  return { train: loaded(torque), found: { ending: "wanders" } };
 }
 
 /** The inverse of how gain and delay, as energies, change with energy and load: of the energy a
