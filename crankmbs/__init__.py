@@ -9,7 +9,7 @@ import types
 
 from crankmbs.choose import Choice, choose
 from crankmbs.compare import AtAngle, Budget, Comparison, Reading, at_angle, budget, compare
-from crankmbs.design import Balance, Flywheel, balance, flywheel
+from crankmbs.design import Balance, Flywheel, balance, flywheel, freed
 from crankmbs.errors import (
     CrankmbsError,
     FormulationError,
@@ -129,6 +129,7 @@ __all__ = [
     "engine_orders",
     "export",
     "flywheel",
+    "freed",
     "load_scene",
     "load_sweep",
     "minimize",

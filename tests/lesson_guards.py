@@ -10,7 +10,7 @@ from functools import cache
 
 import mpmath
 import numpy as np
-from lesson_shown import made
+from lesson_shown import SIZE, made
 from scipy.optimize import brentq, minimize_scalar
 
 from crankmbs.compare.lectured import LECTURES, lectured
@@ -147,11 +147,25 @@ def forces(along, side, worth):
     yield "two masses", same(lecture, 1e-3 * said_by["side thrust"][:, 0])
     yield "rigid", same(y(side, 0), own)
     yield "off", said(side, "off", 1e3 * np.abs(lecture - own).max())
+    most = 0.4e-3 * lumped * hardest_swing(side["scene"]) * side["mean"] ** 2
+    yield "room below", same(side["shapes"][0]["holdsBelow"], [-most, most], 1e-6)
     shape = worth["shapes"][0]
     parts = [np.abs(each["y"]).max() for each in shape["differences"]]
     peak = np.abs(shape["curves"][0]["y"]).max()
     yield "masses", said(worth, "masses", 100.0 * parts[0] / peak)
     yield "series", said(worth, "series", 100.0 * parts[1] / peak)
+
+
+def hardest_swing(scene):
+    """What a rod swings hardest at an even speed, of its square, at the wall [1/m]: a moment of the
+    rod's inertia is taken by forces across the piston pin, at the crank pin's lever along X."""
+    r, l, e = scene["crank"]["radius"], scene["rod"]["length"], scene["piston"]["offset"]
+    h = 1e-4
+    found = []
+    for phi in (0.5 * math.pi, 1.5 * math.pi):
+        beta = [math.asin((r * math.sin(p) - e) / l) for p in (phi - h, phi, phi + h)]
+        found.append(abs(beta[0] - 2.0 * beta[1] + beta[2]) / h**2 / (l * math.cos(beta[1])))
+    return max(found)
 
 
 def at_even_speed(scene, angle, mean):
@@ -189,6 +203,76 @@ def order_of(values, angles, order):
     return found[2 * order - 1 : 2 * order + 1]
 
 
+def row(couple):
+    """The crank from the side: throws and pistons where they are, arrows as the pistons' forces, in
+    thousandths of a metre; the arrows' sum is the force on the frame, their moment the couple."""
+    scene, at = couple["scene"], couple["at"]
+    svg, *parts = couple["drawing"]
+    r, mass = 1e3 * scene["crank"]["radius"], scene["piston"]["mass"]
+    levers = 1e3 * np.array(scene["levers"])
+    phi = at["crank_angle"] + np.array([each["phase"] for each in scene["cylinders"]])
+    pins = np.array([each["piston_position"] for each in at["cylinders"]])
+    by = {kind: [each for each in parts if each.get("class") == kind] for kind in KINDS}
+    throws, bars = (by[kind] for kind in ("throw", "bar"))
+    for lines in (throws, bars):
+        across = [[float(each[key]) for key in ("x1", "x2")] for each in lines]
+        yield "across", same(across, np.stack([levers, levers], axis=1))
+    ends = [[float(each[key]) for key in ("y1", "y2")] for each in throws]
+    yield "throws", same(ends, np.stack([0.0 * phi, -r * np.cos(phi)], axis=1))
+    ends = [[float(each[key]) for key in ("y1", "y2")] for each in bars]
+    yield "rods", same(ends, np.stack([-r * np.cos(phi), -1e3 * pins], axis=1))
+    wide = 2e3 * math.sqrt(scene["piston"]["area"] / math.pi)
+    boxes = [[float(each[key]) for key in ("x", "width", "y", "height")] for each in by["body"]]
+    left, width, top, height = np.array(boxes).T
+    yield "middles", same(left + 0.5 * width, levers)
+    yield "beside", bool(np.all(width < 0.9 * wide) and np.all(width > 0.7 * wide))
+    yield "pins inside", bool(np.all(top < -1e3 * pins) and np.all(top + height > -1e3 * pins))
+    lengths = np.array([length(each["d"]) for each in by["push"]])
+    force = mass * np.array([each["piston_acceleration"] for each in at["cylinders"]])
+    per = 1.3 * r / (mass * 1e-3 * r * at["crank_speed"] ** 2)  # m r omega^2 is 1.3 throws
+    yield "arrows", same(lengths, per * force)
+    yield "force on the frame", same(lengths.sum() / per, at["frame_force_x"], 1e-6 * len(force))
+    moment = lengths @ levers / per * 1e-3
+    yield (
+        "couple of the arrows",
+        abs(moment - at["rocking_moment_y"]) < 1e-9 * per * abs(force).sum(),
+    )
+    above = [tip(each["d"]) for each in by["push"]]
+    yield "arrows on the crowns", same(np.maximum(*np.array(above).T), top)
+    (letters,) = (each for each in parts if each["name"] == "text")
+    number = letters["text"].removeprefix("couple ").removesuffix(" N m").replace("\u2212", "-")
+    yield "couple in words", abs(float(number) - at["rocking_moment_y"]) <= 0.51
+    left, top, width, height = map(float, svg["viewBox"].split())
+    yield (
+        "all in it",
+        bool(
+            left < levers.min() - 0.4 * wide
+            and left + width > levers.max() + 0.4 * wide
+            and top < min(np.min(above), -1e3 * pins.max())
+            and top + height > float(letters["y"])
+        ),
+    )
+    scale = min(SIZE["width"] / width, SIZE["height"] / height)
+    yield "letters", same(float(letters["font-size"]) * scale, SIZE["type"])
+
+
+KINDS = ("throw", "bar", "body", "push")
+
+
+def tip(path):
+    """Where an upright arrow begins and ends, downwards."""
+    if not path:
+        return 0.0, 0.0
+    begin = float(re.match(r"M\S+ (\S+?)V", path)[1])
+    return begin, float(re.search(r"L\S+ (\S+?)Z", path)[1])
+
+
+def length(path):
+    """Of an upright arrow, upwards."""
+    begin, end = tip(path)
+    return begin - end
+
+
 def balance(shake, couple, torque, twin):
     own = made("balance").scene
     mass = own.piston.mass + own.rod.mass * own.rod.center_of_mass / own.rod.length
@@ -214,6 +298,7 @@ def balance(shake, couple, torque, twin):
     spacing = np.diff(levers)
     yield "levers", same(levers, -levers[::-1]) and bool(np.all(spacing > 0.0))
     yield "spacing", same(spacing, np.full(len(spacing), made("balance").more["spacing"]))
+    yield from row(couple)
     moment = column(couple, "rocking_moment_y")
     yield "couple", said(couple, "most", np.abs(moment).max())
     sums = np.array([sum(c["crank_torque"] for c in v["cylinders"]) for v in torque["samples"]])

@@ -1,6 +1,29 @@
 """Mutants of what the lessons compute by themselves, by lesson: the text as it is, and as the
 mutant has it."""
 
+ROW = [
+    ("train.levers[k] * UNITS", "-train.levers[k] * UNITS"),
+    ("-r * Math.cos(theta + phase)", "-r * Math.cos(theta - phase)"),
+    ("-r * Math.cos(theta + phase), -pin", "-r * Math.cos(theta + phase), pin"),
+    ("line(0, throwAt", "line(0.2 * throwAt, throwAt"),
+    ("line(throwAt, pinAt", "line(0, pinAt"),
+    ("x: x - 0.42 * wide", "x: x - 0.3 * wide"),
+    ("Math.sqrt((4 * train.piston.area) / Math.PI)", "Math.sqrt(train.piston.area / Math.PI)"),
+    ("const crown = pinAt - 0.35 * wide", "const crown = pinAt + 0.35 * wide"),
+    ("(1.3 * r) / (train.piston.mass", "(2.6 * r) / (train.piston.mass"),
+    ("v.crank_speed ** 2", "v.crank_speed"),
+    ("longest * train.piston.mass * acceleration", "longest * train.piston.mass * Math.abs("
+     "acceleration)"),
+    ("[crown, crown - force]", "[crown, crown + force]"),
+    ("[crown + force, crown]", "[crown, crown - force]"),
+    ("L${x} ${to}Z", "L${x} ${from}Z"),
+    ("readable(v.rocking_moment_y, 0)", "readable(v.rocking_moment_x, 0)"),
+    ("const far = Math.abs(train.levers[0]) * UNITS + wide", "const far = wide"),
+    ("0.4 * wide + 1.6 * r", "0.4 * wide - 1.6 * r"),
+    ("type / Math.min(width / (2 * far)", "type / Math.max(width / (2 * far)"),
+]  # fmt: skip
+"""Mutants of the row of pistons, which the lesson on balance draws."""
+
 MUTANTS = {
     "displacement": [
         ("0.5 * (topPosition(shape)", "0.4 * (topPosition(shape)"),
@@ -50,6 +73,11 @@ MUTANTS = {
         ("piston.mass + (rod.mass * rod.center_of_mass) / rod.length", "piston.mass + rod.mass"),
         ("(-mass * v.cylinders[0]", "(mass * v.cylinders[0]"),
         ("mass * center * (length - center);", "mass * center * length;"),
+        ("shape.radius + Math.abs(shape.offset)", "shape.radius - Math.abs(shape.offset)"),
+        ("/ shape.length) ** 2);", "/ shape.length));"),
+        ("((shape.radius / shape.length) * mean ** 2)", "((shape.radius / shape.length) * mean)"),
+        ("/ cosine ** 2 / shape.length", "/ cosine / shape.length"),
+        ("(0.4 * twoMasses(", "(0.2 * twoMasses("),
     ],
     "fluctuation": [
         ("{ name: \"simulated\", of: (v) => v.crank_speed / RPM }",

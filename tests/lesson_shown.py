@@ -23,11 +23,24 @@ CHANGED = {
 }
 """Values of a figure's knobs in place of those that it begins with, where these show less."""
 
-_PROBE = """([script, text, changed, fine]) => {
+SIZE = {"width": 400.0, "height": 300.0, "type": 14.0}
+"""Of a drawing and its letters [px]."""
+
+_PROBE = """([script, text, { changed, fine, size }]) => {
   const { lesson, engine, cycle, turned, answers } = eval(script);
   const given = answers.decoded(JSON.parse(text));
   const turner = new turned.Turner(given);
   const figures = lesson.start();
+  const told = (each) => ({
+    name: each.tagName, text: each.textContent,
+    ...Object.fromEntries(Array.from(each.attributes, ({ name, value }) => [name, value])),
+  });
+  const drawing = (made, shown, theta) => {
+    if (!made.draw) return null;
+    const root = document.createElementNS("http://www.w3.org/2000/svg", "svg");
+    made.draw(root, shown, theta, size);
+    return [root, ...root.children].map(told);
+  };
   return JSON.stringify(Object.fromEntries(given.figures.map((spec) => {
     const made = figures[spec.name];
     const values = { ...spec.values, ...changed[spec.name] };
@@ -37,8 +50,9 @@ _PROBE = """([script, text, changed, fine]) => {
     return [spec.name, {
       values, scene: { ...scene, gas: null, loads: null }, levels: made.levels?.(shown) ?? null,
       says: made.says?.(shown, values, given) ?? {},
-      shapes: shapes.map(({ curves, differences, of }) =>
-        ({ curves, differences, now: of(shown.angles[100]) })),
+      shapes: shapes.map(({ curves, differences, of, holdsBelow }) =>
+        ({ curves, differences, holdsBelow, now: of(shown.angles[100]) })),
+      drawing: drawing(made, shown, shown.angles[100]), at: shown.at(shown.angles[100]),
       samples: shown.samples, angles: shown.angles, mean: shown.mean, rows: shown.rows,
       fluctuation: shown.fluctuation, textbook: given.textbook ?? null,
     }];
@@ -78,4 +92,5 @@ def lesson_script(name):
 def probe(page, script, name):
     """What all figures of a lesson draw and say: figure -> what; of the lesson on errors with the
     second pass, whose own error does not show beside those that it is about."""
-    return json.loads(page.evaluate(_PROBE, [script, given(name), CHANGED, name == "trust"]))
+    asked = {"changed": CHANGED, "fine": name == "trust", "size": SIZE}
+    return json.loads(page.evaluate(_PROBE, [script, given(name), asked]))

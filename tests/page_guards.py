@@ -100,6 +100,11 @@ def driven(speed):
     return replace(scene, motion=Motion(speed=speed, angle=0.2))
 
 
+def timed(scene):
+    """Its run ends at a time."""
+    return replace(scene, run=replace(scene.run, until=Extent(value=0.05, unit="s")))
+
+
 def misfiring(scene):
     fuel = Fuel(misfire=(Misfire(cylinder=2, cycles="1"),), after=0.01)
     return replace(scene, gas=replace(scene.gas, motored=POLYTROPE), fuel=fuel)
@@ -129,6 +134,38 @@ GUARDS = {
 }
 
 
+def light(inertia=0.001):
+    """So light that at the begin it has not the energy that is wanting later."""
+    scene = driven(300.0)
+    return replace(scene, crank=replace(scene.crank, mass=0.0, inertia=inertia))
+
+
+def near_rest():
+    scene = light(1e-6)
+    return replace(scene, rod=replace(scene.rod, mass=0.1), piston=replace(scene.piston, mass=0.1))
+
+
+def dragging():
+    """Of friction that brakes a light crank by more than half of its energy in a period."""
+    scene = driven(RISE)
+    heavier = replace(scene.crank, mass=0.0, inertia=0.004)
+    return replace(scene, crank=heavier, friction=replace(RUBBING, viscous=200.0))
+
+
+FREED = {
+    "swinging": driven(SWING),
+    "over the angle": driven(OVER_ANGLE),
+    "backwards": timed(driven(-300.0)),
+    "rising": timed(driven(RISE)),
+    "light": light(),
+    "near rest": near_rest(),
+    "slow at the begin": replace(light(), motion=Motion(speed=300.0, angle=1.7)),
+    "dragging": dragging(),
+    "dragging backwards": replace(dragging(), motion=Motion(speed=-280.0, angle=0.2)),
+}
+"""Prescribed speeds that are set free."""
+
+
 def tasks(angles):
     """What is asked of an engine, by name and arguments, the quickest first: lectures, pressures
     carried over, and the guards by their names at crank angles."""
@@ -141,6 +178,8 @@ def tasks(angles):
     found += [("dragged", {"scene": longer(GUARDS[n]), "angles": angles[n][::3]}) for n in names]
     scenes = [braked(), *(GUARDS[name] for name in balancing)]
     found += [("balancing", {"scene": exported(scene), "speed": 345.0}) for scene in scenes]
+    around = np.linspace(0.2, 12.0, 24)
+    found += [("freeing", {"scene": exported(s), "angles": around}) for s in FREED.values()]
     still = balanced()
     found.append(("answer", {"scene": exported(still), "angles": np.array([0.0, still.period])}))
     return found + [

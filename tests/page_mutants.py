@@ -80,6 +80,84 @@ MUTANTS = {
             "(3 * a * behind + 2 * b) * behind",
         ),
     ],
+    "freed": [
+        (
+            "speed: meanPrescribed(motion, run, period) }",
+            "speed: 1.001 * meanPrescribed(motion, run, period) }",
+        ),
+        (
+            "Math.sign(law.at(0)[1]) * until",
+            "until",
+        ),
+        (
+            "inTime ? law.at(until)[0]",
+            "inTime ? law.at(0.9 * until)[0]",
+        ),
+        (
+            "const { from } = lastSpan(motion.angle, to, period);",
+            "const from = motion.angle;",
+        ),
+        (
+            "law.timeAt(to)) - law.timeAt(from)",
+            "law.timeAt(to))",
+        ),
+        (
+            'found.ending === "complete" ? "complete" : "light";',
+            '"complete";',
+        ),
+        (
+            "each - friction.viscous * square[i] * speed",
+            "each + friction.viscous * square[i] * speed",
+        ),
+        (
+            "(-sense * whole.rise) / section.period",
+            "(-0.999 * sense * whole.rise) / section.period",
+        ),
+        (
+            "(-sense * whole.rise) / section.period",
+            "-whole.rise / section.period",
+        ),
+        (
+            "torque + (sense * at[1]) / grid",
+            "torque + (0 * at[1]) / grid",
+        ),
+        (
+            "const gained = shot.energy - at[0];",
+            "const gained = 0.5 * at[0] - shot.energy;",
+        ),
+        (
+            "const late = shot.time - section.period / Math.abs(start.speed);",
+            "const late = shot.time - (1.001 * section.period) / Math.abs(start.speed);",
+        ),
+        (
+            "[last, at] = [off, sum(at, step)]",
+            "[last, at] = [off, at]",
+        ),
+        (
+            "const scale = 1 / (a * b - 1);",
+            "const scale = 0;",
+        ),
+        (
+            "each + scale * (step[i] - said[i]) * row[j]",
+            "each - scale * (step[i] - said[i]) * row[j]",
+        ),
+        (
+            "step[0] * b + step[1] * d];",
+            "step[1] * b + step[0] * d];",
+        ),
+        (
+            "return [a * x + b * y, c * x + d * y];",
+            "return [a * x + c * y, b * x + d * y];",
+        ),
+        (
+            "return [a + factor * c, b + factor * d];",
+            "return [a + c, b + d];",
+        ),
+        (
+            "Float64Array.of(torque, 0, 0)",
+            "Float64Array.of(0.999 * torque, 0, 0)",
+        ),
+    ],
     "rebalance": [
         (
             "energy *= (1 + late) ** 2;",
@@ -440,6 +518,14 @@ MUTANTS = {
         (
             "const step = (motion.time - wanted) / motion.slope;",
             "const step = 0;",
+        ),
+        (
+            "const floor = energy - motion.least;",
+            "const floor = energy;",
+        ),
+        (
+            "if (motion.least <= 0) {",
+            "if (motion.least <= -Infinity) {",
         ),
         (
             'bracket[gained > 0 ? "low" : "high"] = energy;',

@@ -3,7 +3,7 @@
 import math
 from dataclasses import replace
 
-from crankmbs import load_scene
+from crankmbs import InputError, load_scene
 from crankmbs.scene.fuel import Fuel, Misfire
 from crankmbs.scene.gas import Polytrope
 from crankmbs.scene.run import Extent
@@ -41,3 +41,12 @@ def fuelled(name, **gas):
 
 MISFIRE = Misfire(cylinder=1, cycles="every 3")
 POLYTROPE = Polytrope(polytrope=1.32, closes=math.radians(-20.0), compression_ratio=18.0)
+
+
+def refused(makes, *arguments):
+    """The sentence in which something is refused, if it is."""
+    try:
+        makes(*arguments)
+    except InputError as error:
+        return str(error)
+    return ""

@@ -35,9 +35,17 @@ CASES = {
     "prescribed": ("propeller", {"speed_is": "prescribed", "speed": 2500.0}, 0),
     "drifting": ("propeller", {"load": 0.0}, 0),
     "rubbing": ("friction", {"rod_ratio": 0.26, "offset": 3.0}, 0),
+    "freed": (
+        "compressor",
+        {"speed_is": "free", "speed": 1200.0, "flywheel": 0.015, "rod_ratio": 0.3,
+         "pressure": 120.0},
+        0,
+    ),
+    "freed rubbing": ("friction", {"speed_is": "free", "flywheel": 0.02, "rod_mass": 1.0}, 0),
     "uniform": ("grega_lecture", {"rod": "rigid", "rod_mass": 0.5, "pressure": 80.0}, 0),
 }  # fmt: skip
 """Name -> scene, values of its knobs, cylinder from 0."""
+FREED = ("freed", "freed rubbing")
 EVENED = "lumped"  # the case in which a flywheel for a fluctuation is sought
 
 CURVES = {
@@ -196,16 +204,20 @@ def truth(name):
     """Scene and data of Python for a case."""
     scene_name, values, _ = CASES[name]
     scene = turned(load_scene(scene_name), values)
-    return scene, cycle_of(scene, name == "drifting")
+    return scene, cycle_of(scene, name)
 
 
-def cycle_of(scene, drifting):
-    """The cycle that is shown: the settled one, or the first."""
-    if drifting:
+def cycle_of(scene, name):
+    """The cycle that is shown: the settled one, the first, or that from the start."""
+    if name == "drifting":
         every = Extent(value=math.radians(2.0), unit="rad")
         until = Extent(value=1.0, unit="cycle")
         run = dataclasses.replace(scene.run, until=until, every=every, rtol=1e-11)
         return simulate(dataclasses.replace(scene, run=run)).data
+    if name in FREED:
+        every = Extent(value=scene.settled_period / 360.0, unit="rad")
+        run = dataclasses.replace(scene.run, every=every)
+        return simulate(dataclasses.replace(scene, run=run), rtol=1e-11).data
     return expected(scene)
 
 
@@ -247,7 +259,7 @@ def files_hold(said, name, read):
     those for which this was so hold another scene."""
     if name in _HELD:
         return _HELD[name] == said["files"]
-    data = cycle_of(read(said["files"]), name == "drifting")
+    data = cycle_of(read(said["files"]), name)
     if not data_hold(said["data"], data):
         return False
     _HELD[name] = said["files"]
@@ -578,8 +590,9 @@ def words_hold(said, scene, data, k):
         "mean speed": (mean * 30.0 / math.pi, "rpm", 0.051),
         "fluctuation": (100.0 * np.ptp(speed) / mean, "%", 0.02),
     }
-    load = "drive torque" if scene.motion is not None else "load torque"
-    close[load] = (np.trapezoid(outside, angle) / (angle[-1] - angle[0]), "N m", 0.2)
+    done = np.trapezoid(outside, angle)
+    drives = scene.motion is not None or done > 0.0
+    close["drive torque" if drives else "load torque"] = (done / (angle[-1] - angle[0]), "N m", 0.2)
     if scene.gas is not None:
         volume = area(scene) * data["piston_displacement"].values
         pressure = data["gas_pressure"].values
@@ -620,6 +633,9 @@ def words_hold(said, scene, data, k):
         return False
     drifts = scene.motion is None and abs(gain) > 1e-3
     kind = "prescribed" if scene.motion is not None else "not settled" if drifts else "settled"
+    if scene.torque and scene.torque[-1].kind == "constant":
+        kind = "settled under the constant torque that balances the cycle"
+        kind += ": every speed" if scene.friction is None else " at the mean"
     turns_made = round((angle[-1] - angle[0]) / math.tau)
     return (
         badge.startswith(kind)

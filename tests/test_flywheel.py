@@ -118,25 +118,32 @@ def test_settled_under_a_turning_moment_is_the_run_of_many_cycles():
 
 
 RINGS = Friction(ring_force=60.0, ring_pressure=0.02)
+EVEN = 3200.0 * np.pi / 30.0
+SWINGS = Oscillation(mean="3200 rpm", amplitude=5.0, order=2)
 
 
 @pytest.mark.parametrize(
-    "scene",
+    ("scene", "mean"),
     [
-        ONE,
-        replace(ONE, motion=Motion(speed=Oscillation(mean="3200 rpm", amplitude=5.0, order=2))),
-        replace(DIESEL, torque=(), start=Start(angle=1.0, speed="-3200 rpm")),
-        replace(ONE, friction=RINGS),
-        replace(DIESEL, torque=(), start=Start(angle=1.0, speed="-3200 rpm"), friction=RINGS),
+        (ONE, EVEN),
+        (replace(ONE, motion=Motion(speed=SWINGS)), np.sqrt(EVEN**2 - 5.0**2)),
+        (replace(DIESEL, torque=(), start=Start(angle=1.0, speed="-3200 rpm")), EVEN),
+        (replace(ONE, friction=RINGS), EVEN),
+        (
+            replace(DIESEL, torque=(), start=Start(angle=1.0, speed="-3200 rpm"), friction=RINGS),
+            EVEN,
+        ),
+        (replace(ONE, friction=replace(RINGS, viscous=30.0)), EVEN),
     ],
-    ids=["motion", "oscillation", "free", "rings", "rings backwards"],
+    ids=["motion", "oscillation", "free", "rings", "rings backwards", "viscous"],
 )
-def test_without_a_load_the_mean_is_the_one_given(scene):
+def test_without_a_load_the_mean_is_the_one_given(scene, mean):
+    """Angle over time, also of a speed that swings over the angle."""
     found = flywheel(scene, 0.01)
     assert found.status == 0
     (balance,) = found.result.scene.torque
     assert balance.torque != 0.0
-    assert abs(found.mean_speed.value) == pytest.approx(3200.0 * np.pi / 30.0, rel=1e-9)
+    assert abs(found.mean_speed.value) == pytest.approx(mean, rel=1e-9)
     gain = measure(found.result).speed_gain
     assert abs(gain.value) <= gain.error
 
@@ -161,7 +168,7 @@ def test_a_scene_that_cannot_be_is_refused():
     with pytest.raises(InputError, match="scene must be a Scene"):
         flywheel("yi_diesel_free", 0.01)
     ramp = Motion(speed=Ramp(start=0.0, to=9.0, over=1.0))
-    with pytest.raises(InputError, match="needs one mean speed that is not 0"):
+    with pytest.raises(InputError, match="leaves a free crank no mean speed to keep"):
         flywheel(replace(ONE, motion=ramp), 0.01)
 
 

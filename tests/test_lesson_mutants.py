@@ -2,7 +2,7 @@
 
 import pytest
 from lesson_guards import wrong
-from lesson_mutants import MUTANTS
+from lesson_mutants import MUTANTS, ROW
 from lesson_shown import lesson_script, probe
 from playwright.sync_api import Error
 
@@ -21,6 +21,15 @@ def test_a_broken_formula_of_a_lesson_is_seen(page, name):
     for find, replace in MUTANTS[name]:
         assert own.count(find) == 1, f"{find!r} stands {own.count(find)} times"
         if not seen(page, head + begin + own.replace(find, replace), name):
+            survivors.append((find, replace))
+    assert survivors == []
+
+
+def test_a_broken_row_of_pistons_is_seen(page):
+    script, survivors = lesson_script("balance"), []
+    for find, replace in ROW:
+        assert script.count(find) == 1, f"{find!r} stands {script.count(find)} times"
+        if not seen(page, script.replace(find, replace), "balance"):
             survivors.append((find, replace))
     assert survivors == []
 

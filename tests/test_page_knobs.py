@@ -20,7 +20,6 @@ from crankmbs import (
     load_scene,
     shipped_scenes,
 )
-from crankmbs.page.document import page_of
 from crankmbs.page.knobs import FIRING_ORDERS, choices_of, knobs_of
 
 SINGLE, DIESEL = load_scene("propeller"), load_scene("yi_diesel_free")
@@ -42,7 +41,7 @@ def test_only_knobs_that_mean_something_are_there():
     assert {k.name for k in knobs_of(DIESEL)} == everywhere | free | {"pressure"}
     assert {k.name for k in knobs_of(SINGLE)} == everywhere | free | {"pressure", "counterweight"}
     assert {k.name for k in knobs_of(load_scene("grega_lecture"))} == everywhere | {
-        "speed", "pressure",
+        "flywheel", "speed", "pressure",
     }  # fmt: skip
     assert {k.name for k in knobs_of(load_scene("torque_driven"))} == everywhere | {
         "flywheel", "load", "counterweight",
@@ -51,7 +50,7 @@ def test_only_knobs_that_mean_something_are_there():
 
 def test_only_choices_that_mean_something_are_there():
     assert [c.name for c in choices_of(DIESEL)] == ["rod", "cylinders", "speed_is"]
-    assert [c.name for c in choices_of(load_scene("yi_diesel"))] == ["rod", "cylinders"]
+    assert [c.name for c in choices_of(load_scene("yi_diesel"))] == ["rod", "cylinders", "speed_is"]
     of_each = dataclasses.replace(DIESEL.gas, pressure=(DIESEL.gas.pressure,) * 4)
     assert "cylinders" not in {c.name for c in choices_of(dataclasses.replace(DIESEL, gas=of_each))}
     of_all = load_scene("turning_moment")
@@ -129,9 +128,3 @@ def test_pressure_scales_table_and_diagram():
 def test_a_scene_that_cannot_be_is_refused():
     with pytest.raises(InputError, match=r"rod\.length must be at least"):
         turned(SINGLE, {"rod_ratio": 0.9, "offset": 20.0})
-
-
-@pytest.mark.parametrize(("name", "said"), [("yi_diesel", True), ("propeller", False)])
-def test_a_page_without_a_free_crank_says_why(name, said):
-    text = page_of(load_scene(name), "mine")
-    assert ("There is no free crank to switch to" in text) == said

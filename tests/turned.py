@@ -6,6 +6,7 @@ import dataclasses
 from collections.abc import Mapping
 from typing import Any, Literal
 
+from crankmbs.design import freed
 from crankmbs.mechanics.carried import carried_over
 from crankmbs.page.knobs import AS_GIVEN, FIRING_ORDERS, knobs_of
 from crankmbs.scene.drives import Motion, Oscillation
@@ -65,7 +66,8 @@ def turned(scene: Scene, values: Values) -> Scene:
         start = parts.get("start", scene.start)
         parts |= {"start": None, "torque": (), "run": _one_cycle(scene)}
         parts["motion"] = Motion(speed=start.speed, angle=start.angle)
-    return carried_over(dataclasses.replace(scene, **parts), scene) if parts else scene
+    found = carried_over(dataclasses.replace(scene, **parts), scene) if parts else scene
+    return freed(found) if found.motion and values.get("speed_is") == "free" else found
 
 
 def _one_cycle(scene: Scene) -> Any:

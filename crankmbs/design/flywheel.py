@@ -10,31 +10,23 @@ from typing import NamedTuple
 
 import numpy as np
 from scipy.integrate import cumulative_simpson
-from scipy.optimize import brentq
 
+from crankmbs.design.freed import balanced, mean_prescribed
 from crankmbs.errors import InputError, shown
 from crankmbs.measures import Estimate, Measures, measure
-from crankmbs.mechanics.inertia import inertia_alone
-from crankmbs.mechanics.torque import branch_of
-from crankmbs.mechanics.train import crank_train
-from crankmbs.motion.crank_angle.grid import grid_of
-from crankmbs.motion.crank_angle.periods import period_of
-from crankmbs.numerics.collocation import gauss
 from crankmbs.result import Result
-from crankmbs.scene.drives import Motion, Oscillation, Start
-from crankmbs.scene.loads import Constant
+from crankmbs.scene.drives import Motion, Start
 from crankmbs.scene.run import SETTLED, Extent, Run
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.torque import Torque
 from crankmbs.simulate import simulate
 
-__all__ = ["Flywheel", "excess", "flywheel"]
+__all__ = ["Flywheel", "excess", "excess_at", "flywheel"]
 
 _CLOSE = 1e-7  # of the fluctuation: as near the target is on it
 _MOST = 40  # runs
 _WIDE = 1e4  # times the lecture's inertia: the search goes no farther
 _NARROW = 1e-6  # of the lecture's inertia: a crank so light is none
-_STAGES = 10  # of Gauss in a cell, more than a run takes
 
 
 @dataclass(frozen=True)
@@ -74,7 +66,8 @@ def flywheel(scene: Scene, fluctuation: float = 0.01) -> Flywheel:
     The coefficient of fluctuation is (max - min) / mean speed over the settled cycle of the very
     scene (`crankmbs.measures.measure`), met within 1e-7 of itself. Under loads the mean speed is
     the one they settle at; a scene without a load that depends on the speed is balanced with a
-    constant one, and takes the motion whose mean speed is start.speed or motion.speed.
+    constant one, and takes the motion whose mean speed is start.speed or that of the motion
+    prescribed (`crankmbs.freed`).
 
     Parameters
     ----------
@@ -87,7 +80,7 @@ def flywheel(scene: Scene, fluctuation: float = 0.01) -> Flywheel:
     Raises
     ------
     InputError : no scene, no such fluctuation, a load under which nothing settles, a prescribed
-        speed without a mean
+        speed that comes to rest or turns back
 
     >>> found = flywheel(load_scene("yi_diesel_free"), 0.01)
     >>> print(round(found.inertia.value, 3))
@@ -106,14 +99,22 @@ def flywheel(scene: Scene, fluctuation: float = 0.01) -> Flywheel:
         )
     freed = _freed(scene)
     over_speed = any(load.parts.over_speed or load.parts.function for load in freed.torque)
-    if freed.friction is not None and freed.friction.viscous > 0.0 and not over_speed:
-        raise InputError(
-            "friction.viscous: a scene without a load over the speed is balanced with a constant "
-            "one, and what viscous friction takes depends on the motion; give such a load, or "
-            f"leave it out; {freed.friction.viscous:g} N s/m came"
-        )
     search = _Search(freed, float(fluctuation), simulate if over_speed else _balanced)
     return search.found(scene.crank.moment_of_inertia)
+
+
+def excess_at(scene: Scene, speed: float) -> tuple[float, float]:
+    """What `excess` gives of a scene over a period at a constant speed [rad/s].
+
+    >>> excess_at(load_scene("propeller"), 300.0)[0] > 0.0
+    True
+    """
+    drive = scene.start or scene.motion
+    assert drive is not None
+    run = Run(until=Extent(value=scene.settled_period, unit="rad"), rtol=scene.run.rtol)
+    motion = Motion(speed=speed, angle=drive.angle)
+    even = simulate(replace(scene, start=None, torque=(), motion=motion, run=run))
+    return excess(even, scene.torque)
 
 
 def excess(even: Result, loads: tuple[Torque, ...] = ()) -> tuple[float, float]:
@@ -141,53 +142,15 @@ def _freed(scene: Scene) -> Scene:
     run = Run(until=SETTLED, rtol=scene.run.rtol)
     if scene.motion is None:
         return replace(scene, run=run)
-    start = Start(angle=scene.motion.angle, speed=_mean(scene.motion))
+    start = Start(angle=scene.motion.angle, speed=mean_prescribed(scene))
     crank = replace(scene.crank, inertia=scene.crank.moment_of_inertia or 1.0)  # any will do
     return replace(scene, crank=crank, motion=None, start=start, run=run)
 
 
-def _mean(motion: Motion) -> float:
-    speed = motion.speed
-    mean = speed.mean if isinstance(speed, Oscillation) else speed
-    if not isinstance(mean, float) or mean == 0.0:
-        raise InputError(
-            "motion.speed: a flywheel needs one mean speed that is not 0, such as "
-            f'"3200 rpm"; {type(speed).__name__ if mean != 0.0 else "0"} came'
-        )
-    return mean
-
-
 def _balanced(scene: Scene) -> Result:
-    """The periodic motion under the constant load that balances gas, gravity, rings and other
-    loads, none of which depends on the speed.
-
-    Over the angle E = E_0 + (E - E_0)(theta), the same at every speed: E_0 is the one with which a
-    period takes as long as at the wanted mean speed.
-    """
-    assert scene.start is not None
-    start, period = scene.start, scene.settled_period
-    sense = math.copysign(1.0, start.speed)
-    grid = grid_of(crank_train(scene), gauss(_STAGES))
-    mean = float(np.diff(grid.edges) @ (grid.tables[1] @ grid.rule.weights)) / period
-    if scene.friction is not None:
-        rings = grid.tables.friction @ grid.rule.weights
-        mean -= sense * float(np.diff(grid.edges) @ rings) / period
-    given = sum(float(load.parts.over_time(0.0)) for load in scene.torque if load.parts.over_time)
-    loads = (*scene.torque, Constant(torque=-mean - given))
-    strip = grid.strip(start.angle, sense, len(grid.edges) + 1, start.angle + sense * period)
-    one = period_of(grid, strip, branch_of(loads, 0.0, 0.0, rising=True), sense)
-    inertia = float(grid.tables[0].max())
-    least, wanted = -float(one.shift.min()), period / abs(start.speed)
-
-    def late(above: float) -> float:
-        return float((1.0 / np.sqrt(least + above + one.shift)) @ one.weight) - wanted
-
-    most = 0.5 * inertia * start.speed**2 + float(np.ptp(one.shift))
-    above = float(brentq(late, 1e-12 * most, 2.0 * most, xtol=1e-300, rtol=1e-15))
-    at_start = 2.0 * (least + above) / float(inertia_alone(scene, start.angle))
-    moved = Start(angle=start.angle, speed=sense * math.sqrt(at_start))
-    run = replace(scene.run, until=Extent(value=period, unit="rad"))
-    return simulate(replace(scene, start=moved, torque=loads, run=run))
+    """The periodic motion under the constant load that balances the rest."""
+    run = replace(scene.run, until=Extent(value=scene.settled_period, unit="rad"))
+    return simulate(balanced(replace(scene, run=run))[0])
 
 
 class _Trial(NamedTuple):
@@ -250,11 +213,7 @@ class _Search:
         """W [J] at a constant speed [rad/s]; the inertia that the lecture finds, and the mean one
         of rods and pistons in it [kg m2]."""
         scene, inertia = self._scene, self._scene.crank.moment_of_inertia
-        assert scene.start is not None
-        run = replace(scene.run, until=Extent(value=scene.settled_period, unit="rad"))
-        motion = Motion(speed=speed, angle=scene.start.angle)
-        even = simulate(replace(scene, start=None, torque=(), motion=motion, run=run))
-        work, doubled = excess(even, scene.torque)
+        work, doubled = excess_at(scene, speed)
         return work, work / (self._wanted * speed**2), doubled / speed**2 - inertia
 
     def _answer(self, trial: _Trial, own: float, rest: float, off: float) -> Flywheel:

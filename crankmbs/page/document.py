@@ -11,6 +11,7 @@ from typing import Any
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
+from crankmbs.design.freed import NEAR_REST, UNEVEN
 from crankmbs.errors import InputError
 from crankmbs.mechanics.variables import EVERY
 from crankmbs.motion.ending import Ending
@@ -21,7 +22,7 @@ from crankmbs.page.script import joined
 from crankmbs.scene.parts import LIGHT_CRANK
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.sentences import RULES
-from crankmbs.scene.whole import OPEN_LOOP
+from crankmbs.scene.whole import NO_INERTIA, OPEN_LOOP
 from crankmbs.scene.write import scene_files
 
 __all__ = ["given_of", "page_of", "policy", "shown_scene"]
@@ -38,6 +39,7 @@ _ENDINGS = {
         "misfires make cycles differ, and the motion that repeats itself is one of several cycles: "
         "crankmbs run --until settled shows it"
     ),
+    "light": NEAR_REST,
     "slow": f"the crank comes near rest, where time must be the variable; {_ON}",
     "held": f"a jump of the loads holds the speed from both sides; {_ON}",
 }
@@ -80,7 +82,8 @@ def page_of(scene: Scene, stem: str) -> str:
     return environment.get_template("page.html").render(
         scene=scene,
         stem=stem,
-        heavy=scene.start is not None,
+        prescribed=scene.motion is not None,
+        uneven="" if scene.fuel is None else UNEVEN,
         choices={choice.name: choice for choice in choices},
         policy=policy(script, style),
         script=Markup(script),
@@ -128,6 +131,7 @@ def given_of(scene: Scene) -> dict[str, Any]:
         "sentences": {
             "open_loop": OPEN_LOOP,
             "light_crank": LIGHT_CRANK,
+            "no_inertia": NO_INERTIA,
             "fold": _FOLD,
             "fluctuation": _FLUCTUATION,
             **{kind: RULES[kind] for kind in _NUMBERS},

@@ -5,6 +5,8 @@ from __future__ import annotations
 import dataclasses
 import math
 
+from crankmbs.design.flywheel import excess_at
+from crankmbs.design.freed import mean_prescribed
 from crankmbs.scene.drives import Oscillation
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.tables import CylinderTable
@@ -13,6 +15,7 @@ from crankmbs.scene.units import RPM
 __all__ = ["AS_GIVEN", "FIRING_ORDERS", "Choice", "Knob", "choices_of", "knobs_of"]
 
 AS_GIVEN = "given"
+_EVEN = 0.01  # coefficient of fluctuation with the heaviest flywheel of a prescribed speed
 FIRING_ORDERS = {
     "1": (1,),
     "2": (1, 2),
@@ -53,7 +56,7 @@ def knobs_of(scene: Scene) -> tuple[Knob, ...]:
     """The sliders that mean something for a scene; the scene's value lies between their ends.
 
     >>> [knob.name for knob in knobs_of(load_scene("grega_lecture"))]
-    ['speed', 'pressure', 'rod_ratio', 'offset', 'rod_mass']
+    ['speed', 'pressure', 'flywheel', 'rod_ratio', 'offset', 'rod_mass']
     """
     return (*_drive(scene), *_machine(scene))
 
@@ -62,15 +65,16 @@ def choices_of(scene: Scene) -> tuple[Choice, ...]:
     """The choices that mean something for a scene; loads of one that settles can be rebalanced.
 
     >>> [choice.name for choice in choices_of(load_scene("yi_diesel"))]
-    ['rod', 'cylinders']
+    ['rod', 'cylinders', 'speed_is']
     """
     rod = "two-mass" if scene.rod.inertia == "two-mass" else "rigid"
     choices = [Choice("rod", "rod", ("rigid", "two-mass"), rod)]
     if _is_of_any_number(scene):
         words = (AS_GIVEN, *FIRING_ORDERS)
         choices.append(Choice("cylinders", "cylinders", words, AS_GIVEN))
-    if scene.start is not None:
-        choices.append(Choice("speed_is", "speed", ("free", "prescribed"), "free"))
+    if _can_be_free(scene):
+        own = "free" if scene.motion is None else "prescribed"
+        choices.append(Choice("speed_is", "speed", ("free", "prescribed"), own))
     if scene.settles and scene.torque:
         choices.append(Choice("load_is", "load", ("given", "rebalanced"), "given"))
     return tuple(choices)
@@ -91,14 +95,28 @@ def _drive(scene: Scene) -> list[Knob]:
     if scene.gas is not None:
         about = "absolute, of what the scene gives"
         knobs.append(Knob("pressure", "pressure", "%", 20.0, 200.0, 100.0, 0, about))
-    if scene.start is not None:
-        inertia = scene.crank.moment_of_inertia or 1e-3
-        most = _above(4.0 * inertia)
+    if _can_be_free(scene):
         about = "inertia of all that turns with the crank"
-        value = scene.crank.moment_of_inertia
+        value, most = scene.crank.moment_of_inertia, _heaviest(scene)
         low, digits = min(most / 100.0, value), _decimals(most)
         knobs.append(Knob("flywheel", "flywheel", "kg m²", low, most, value, digits, about))
     return knobs
+
+
+def _can_be_free(scene: Scene) -> bool:
+    """Whether the crank is free, or a constant load can balance it as `crankmbs.freed` does."""
+    return scene.start is not None or scene.fuel is None
+
+
+def _heaviest(scene: Scene) -> float:
+    """The heaviest flywheel [kg m2]: a few times the scene's own; of a prescribed speed, whose
+    scene may have none, at least the one with which it would swing by a hundredth."""
+    most = 4.0 * scene.crank.moment_of_inertia
+    if scene.motion is not None:
+        speed = mean_prescribed(scene)
+        work, _ = excess_at(scene, speed)
+        most = max(most, work / (_EVEN * speed**2))
+    return _above(most or 4e-3)
 
 
 def _machine(scene: Scene) -> list[Knob]:

@@ -18,11 +18,15 @@ from crankmbs.scene.units import EXAMPLES
 if TYPE_CHECKING:
     from crankmbs.scene.scene import Scene
 
-__all__ = ["OPEN_LOOP", "check_whole"]
+__all__ = ["NO_INERTIA", "OPEN_LOOP", "check_whole"]
 
 OPEN_LOOP = (
     "rod.length must be at least crank.radius + |piston.offset| = {least:.12g} m, or the crank "
     "cannot turn; {came:.12g} m came"
+)
+NO_INERTIA = (
+    "crank.inertia: a free crank needs an inertia above 0, or nothing resists it at the dead "
+    "centres; 0 came"
 )
 
 _FARTHEST = 1e9  # rad: its last digit is 1e-7
@@ -146,10 +150,7 @@ def _check_motion(scene: Scene) -> None:
             "speed, [motion], does without"
         )
     if scene.start is not None and scene.crank.inertia == 0.0 and not rod_turns:
-        raise InputError(
-            "crank.inertia: a free crank needs an inertia above 0, or nothing resists it at "
-            "the dead centres; 0 came"
-        )
+        raise InputError(NO_INERTIA)
 
 
 def _check_settled(scene: Scene) -> None:

@@ -8,8 +8,9 @@ from dataclasses import replace
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
-from crankmbs.design.flywheel import flywheel
+from crankmbs.design import flywheel, freed
 from crankmbs.result import Result
+from crankmbs.scene.parts import Friction
 from crankmbs.scene.scene import Scene
 from validation.adapter import machine_of
 from validation.case import Case
@@ -17,10 +18,11 @@ from validation.checks.honest import scales, true_errors
 from validation.judge import Outcome
 from validation.oracles.free_motion import Motion
 from validation.oracles.many_turns import many_turns
+from validation.oracles.rubbing import Rings, rubbed_motion
 from validation.oracles.settled import settled_motion
 from validation.runs import run
 
-__all__ = ["fluctuation", "long_run", "stated_errors", "stated_ratio"]
+__all__ = ["fluctuation", "long_run", "set_free", "stated_errors", "stated_ratio"]
 
 _LEFT = 1e-14  # of a disturbance, after so many cycles
 _FLOOR = 2e-11  # of the peak of what has the same unit: there no statement is asked for
@@ -81,6 +83,26 @@ def fluctuation(case: Case) -> Outcome:
     off["fluctuation"] = abs(float(np.ptp(turns) / abs(float(mean))) / wanted - 1.0)
     detail = ", ".join(f"{name} off by {value:.1e}" for name, value in off.items())
     return Outcome(max(off.values()), f"{found.inertia.value:.6g} kg m^2; {detail}")
+
+
+def set_free(case: Case) -> Outcome:
+    """What the oracle's crank misses of one period, and gains of its speed, in the time that a
+    period takes at the speed prescribed, from the start and under the load of `freed`."""
+    ours, scene = freed(case.ours()), case.theirs()
+    assert ours.start is not None
+    crank = replace(scene.crank, inertia=ours.crank.moment_of_inertia)
+    free = replace(scene, crank=crank, motion=None, start=ours.start, torque=ours.torque)
+    friction = free.friction or Friction()
+    rings = Rings(friction.ring_force, friction.ring_pressure, friction.viscous)
+    taken = np.array([0.0, free.settled_period / abs(case.number("mean_speed"))])
+    found = rubbed_motion(machine_of(free), rings, ours.start.angle, ours.start.speed, taken)
+    off = {
+        "mean speed": abs(abs(float(np.ptp(found.theta))) / free.settled_period - 1.0),
+        "periodic": abs(float(found.omega[-1] / found.omega[0]) - 1.0),
+    }
+    detail = ", ".join(f"{name} off by {value:.1e}" for name, value in off.items())
+    (load,) = ours.torque
+    return Outcome(max(off.values()), f"{load(0.0, 0.0, 0.0):.6g} N m; {detail}")
 
 
 def stated_ratio(result: Result, scene: Scene) -> tuple[float, str]:

@@ -1,6 +1,7 @@
 /** What Python asks of the engine: a scene in, all numbers of its motion out. */
 import { pressuresOf } from "./gas.js";
 import { Engine } from "./engine.js";
+import { setFree } from "./freed.js";
 import { LECTURES, lecturedAt } from "./lecture.js";
 import { lastSpan, measuresOf } from "./measures.js";
 import { reactionsAt } from "./reactions.js";
@@ -36,6 +37,15 @@ export function answer(engine, { scene, angles }) {
   const span = lastSpan(angles[0], angles[angles.length - 1], scene.period);
   const measures = measuresOf(motion, engine.rules[9], span);
   return { ending, factor, balanced, variables: columns(samples), measures };
+}
+
+/** The same of a scene of a prescribed speed that is set free, and the load that balances it. */
+export function freeing(engine, { scene, angles }) {
+  const free = setFree(scene);
+  const found = answer(engine, { scene: free, angles });
+  if (found.ending !== "complete") return found;
+  const { train, from } = engine.run(free, FINE);
+  return { ...found, torque: train.loads[0].over_time.pieces[0], speed: free.start.speed, from };
 }
 
 /** The variables of a scene at crank angles as they are shown while a knob moves. */

@@ -57,7 +57,8 @@ export function showSlower(cycle, changed) {
   return Number(slower.value);
 }
 
-/** Measures, badge, and whether the pressure was carried over. error : of the quick pass */
+/** Measures, badge, whether the pressure was carried over, and whether a flywheel can be sought.
+ * error : of the quick pass */
 export function showWords(given, cycle, error) {
   const all = numbersOf(cycle, error);
   const list = find("numbers");
@@ -73,6 +74,7 @@ export function showWords(given, cycle, error) {
   const [shape, own] = [cycle.train.shape, given.scene.gas?.shape];
   const moved = own && ["radius", "length", "offset"].some((key) => shape[key] !== own[key]);
   find("carried").hidden = !moved;
+  find("fluctuation")?.toggleAttribute("disabled", cycle.prescribed);
 }
 
 function measure() {

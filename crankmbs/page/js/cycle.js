@@ -1,4 +1,5 @@
 /** One cycle of a scene as the page shows it: the settled one, or one that says how it drifts. */
+import { filled } from "./format.js";
 import { LECTURES, cylinderLectured, lecturedAt } from "./lecture.js";
 import { lastSpan, measuresOf } from "./measures.js";
 import { reactionsAt } from "./reactions.js";
@@ -21,12 +22,14 @@ export function cycleOf(engine, asked, endings, { fine = false, warm = null, spe
   const { scene, share } = balanced(engine, asked, endings, { speed, settings });
   let motion = engine.run(scene, { ...settings, warm: warm?.energy ?? null });
   let why = null;
-  if (scene.run.settled && motion.ending !== "complete") {
+  if (scene.run.settled && !scene.freed && motion.ending !== "complete") {
     why = motion.ending;
     const run = { ...scene.run, until: scene.period, in_time: false, settled: false };
     motion = engine.run({ ...scene, run }, settings);
   }
-  if (motion.ending !== "complete") throw new Refused(endings[motion.ending]);
+  if (motion.ending !== "complete") {
+    throw new Refused(filled(endings[motion.ending], { came: scene.crank.inertia }));
+  }
   const period = scene.run.settled ? scene.grid_period : scene.period;
   const span = lastSpan(motion.from, motion.to, period);
   const measures = fine ? measuresOf(motion, engine.rules[9], span) : null;

@@ -5,6 +5,7 @@
  */
 import { remembering } from "./arrays.js";
 import { knotsOver } from "./cubics.js";
+import { settleFree } from "./freed.js";
 import { frictionMarks } from "./friction.js";
 import { Firing, decisionAngles } from "./fuel.js";
 import { Loop } from "./geometry.js";
@@ -104,6 +105,10 @@ export class Engine {
 
   pass(scene, train, grid, warm) {
     const { start, run } = scene;
+    if (scene.freed) {
+      const { train: loaded, found } = settleFree(train, grid, start);
+      return new Settled(loaded, grid, start, found);
+    }
     if (run.settled) {
       const found = settle(train, grid, start, warm);
       return new Settled(train, grid, start, found);

@@ -226,7 +226,7 @@ class Page {
     const k = Math.min(Number(view.cylinder), cycle.train.cylinders.length) - 1;
     const own = given.scene.crank.inertia;
     const ratio = own > 0 ? cycle.scene.crank.inertia / own : 1;
-    const heavy = given.knobs.some((each) => each.name === "flywheel");
+    const heavy = own > 0 && given.knobs.some((each) => each.name === "flywheel");
     this.stage.show(cycle, { k, body: view.forces, ratio, heavy });
     const marks = deadCentreMarks(cycle, k, deadCentres(cycle.train.shape));
     for (const name of PLOTS) this.plots[name].draw(drawn(view[name], cycle, k), marks);

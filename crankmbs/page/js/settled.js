@@ -116,15 +116,21 @@ export class Section {
       Math.abs(branch.c0);
   }
 
-  /** The motion of which a period lasts as long as at a mean speed [rad/s], by Newton's method. */
+  /** The motion of which a period lasts as long as at a mean speed [rad/s], by Newton's method: the
+   * duration falls convexly, from without bound where the least energy is nothing. */
   withMean(period, speed) {
     const wanted = this.period / Math.abs(speed);
     let energy = this.energyAt(speed);
     let motion = period.sweep(energy);
+    const floor = energy - motion.least;
+    if (motion.least <= 0) {
+      energy += floor;
+      motion = period.sweep(energy);
+    }
     for (let n = 0; n < 60; n++) {
       const step = (motion.time - wanted) / motion.slope;
       if (!(Math.abs(step) > 4e-16 * energy)) break;
-      energy = Math.max(energy - step, 0.5 * energy);
+      energy = Math.max(energy - step, 0.5 * (energy + floor));
       motion = period.sweep(energy);
     }
     return motion;

@@ -34,8 +34,10 @@ export function sceneFiles(given, values, cycle) {
   const tables = { toml, files, given, scene, balance: cycle.share };
   if (scene.gas !== null) putGas(tables, values);
   if (scene.motion !== null && given.scene.motion === null) prescribe(tables);
+  else if (scene.freed) setFree(toml, cycle);
   else putDrive(tables, values);
   if (cycle.why !== null) toml.put("[run]", "until", '"1 cycle"');
+  if (scene.freed || (cycle.settled && cycle.motion.balanced)) putMotionShown(toml, cycle);
   const named = Object.entries(files).filter(([name]) => toml.text.includes(`"${name}"`));
   return { [first]: toml.text, ...Object.fromEntries(named) };
 }
@@ -116,6 +118,24 @@ function prescribe({ toml, scene }) {
   toml.put("[motion]", "speed", `"${coefficients[3]} rad/s"`);
   toml.put("[motion]", "angle", `"${angle} rad"`);
   toml.put("[run]", "until", '"1 cycle"');
+}
+
+/** A free crank under the load that balances it, in place of a prescribed speed. */
+function setFree(toml, { scene, motion }) {
+  toml.dropSection("[motion]");
+  toml.drop("[run]", "formulation");
+  toml.put("[crank]", "inertia", `"${scene.crank.inertia} kg m^2"`);
+  toml.put("[start]", "angle", `"${scene.start.angle} rad"`);
+  const [torque] = motion.train.loads[0].over_time.pieces;
+  toml.put("[[torque]]", "kind", '"constant"');
+  toml.put("[[torque]]", "torque", `"${torque} N m"`);
+}
+
+/** Where many motions repeat themselves, a period of that which is shown. */
+function putMotionShown(toml, { scene, samples }) {
+  toml.put("[start]", "speed", `"${samples[0].crank_speed} rad/s"`);
+  const cycles = Math.round(scene.grid_period / scene.period);
+  toml.put("[run]", "until", `"${cycles} cycle${cycles > 1 ? "s" : ""}"`);
 }
 
 function putDrive({ toml, files, given, scene, balance }, values) {

@@ -3,6 +3,7 @@
  */
 import { remembering } from "./arrays.js";
 import { filled } from "./format.js";
+import { setFree } from "./freed.js";
 import { Refused } from "./refused.js";
 
 const RPM = Math.PI / 30;
@@ -36,7 +37,11 @@ export class Turner {
     const cylinders = this.layout(values);
     const gas = this.gas(scene.gas, at.pressure * PERCENT, cylinders.length);
     const levers = cylinders === scene.cylinders ? scene.levers : null;
-    return { ...scene, crank, rod, piston, cylinders, levers, gas, ...this.driven(at, values) };
+    const parts = { crank, rod, piston, cylinders, levers, gas };
+    const turned = { ...scene, ...parts, ...this.driven(at, values) };
+    if (scene.motion === null || values.speed_is !== "free") return turned;
+    refuseNoInertia(turned, sentences);
+    return setFree(turned);
   }
 
   /** With another ratio the rod keeps its mass, the place of its centre of mass and its shape; with
@@ -101,6 +106,12 @@ function refuseLightCrank({ inertia, mass, center_of_mass: center }, sentences) 
   if (inertia < least * (1 - 1e-12)) {
     throw new Refused(filled(sentences.light_crank, { least, came: inertia }));
   }
+}
+
+/** A free crank that nothing resists at the dead centres. */
+function refuseNoInertia({ crank, rod }, sentences) {
+  const turns = rod.inertia > 0 || (rod.mass > 0 && rod.center_of_mass !== rod.length);
+  if (crank.inertia === 0 && !turns) throw new Refused(sentences.no_inertia);
 }
 
 /** The pressures of tables or diagrams times a factor, for so many cylinders; ambient stays. */

@@ -12,7 +12,8 @@ export function numbersOf(cycle, error) {
   ];
   if (measures) {
     const outside = measures.external_torque;
-    const name = cycle.prescribed ? "drive torque" : "load torque";
+    const drives = cycle.prescribed || outside * cycle.mean > 0;
+    const name = drives ? "drive torque" : "load torque";
     found.push([name, `${readable(outside, 1)} N m`]);
     if (measures.indicated_power !== null) {
       found.push(["indicated power", `${readable(measures.indicated_power / 1e3, 2)} kW`]);
@@ -38,6 +39,12 @@ export function badgeOf(cycle, endings) {
   if (cycle.prescribed) {
     const steady = Math.abs(cycle.drift) < 1e-9 * Math.abs(cycle.mean);
     return steady ? said("prescribed speed", true) : said(`prescribed speed: ${drifts}`, false);
+  }
+  if (cycle.scene.freed) {
+    const held = "settled under the constant torque that balances the cycle";
+    return cycle.motion.balanced
+      ? said(`${held}: every speed would repeat itself, the mean prescribed is kept`, true)
+      : said(`${held} at the mean speed prescribed`, true);
   }
   if (cycle.settled && cycle.motion.balanced) {
     return said("settled at any speed: the mean speed of the start is kept", true);
