@@ -8,10 +8,13 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from crankmbs.measures.between import Between
 from crankmbs.measures.peak import highest
 from crankmbs.measures.span import Span, integral
+from crankmbs.mechanics.knots import KNOT
+from crankmbs.mechanics.train import crank_angle_knots
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 
@@ -66,9 +69,14 @@ def peaks(
     if between is not None:
         angle = between.state(when)[0]
     errors = [math.hypot(*(stated(result, part) for part in place.parts)) for place in places]
+    beside = np.zeros(len(top))
+    if between is not None:
+        turned = np.interp(time, data["time"], data["crank_angle"])
+        at_knot = _at_knots(between, angle)
+        beside = np.where(at_knot, KNOT * _slopes_beside(time, values, when, turned), 0.0)
     of_peak = [
-        Estimate(float(peak), error + float(more))
-        for peak, error, more in zip(top, errors, missed, strict=False)
+        Estimate(float(peak), error + float(more) + float(off))
+        for peak, error, more, off in zip(top, errors, missed, beside, strict=False)
     ]
     of_mean = [Estimate(m.value, m.error + error) for m, error in zip(means, errors, strict=True)]
     joints = tuple(
@@ -76,6 +84,29 @@ def peaks(
         for place, *found in zip(places, of_peak, of_mean, angle.tolist(), strict=False)
     )
     return joints, float(top[-2]), -float(top[-1])
+
+
+def _at_knots(between: Between, theta: Array) -> NDArray[np.bool_]:
+    """Whether crank angles of shape (q,) are knots of a pressure, but for what is taken as one."""
+    knots, period = crank_angle_knots(between.train), between.train.period
+    apart = np.abs(np.mod(theta[:, None] - knots + 0.5 * period, period) - 0.5 * period)
+    return np.asarray(np.any(apart <= 2.0 * KNOT, axis=1))
+
+
+def _slopes_beside(time: Array, values: Array, when: Array, theta: Array) -> Array:
+    """How steep each quantity is beside its peak, shape (q,) per angle: a peak at a knot may be too
+    high by that over KNOT, as an angle so little below a knot has the piece beyond it. By the two
+    samples that follow the next one, on either side, and so not by a jump at the knot."""
+    last = len(time) - 1
+    k, rows = np.searchsorted(time, when), np.arange(len(values))
+    steepest = np.zeros(len(values))
+    for first, second in ((k + 1, k + 2), (k - 2, k - 3)):
+        a, b = np.clip(first, 0, last), np.clip(second, 0, last)
+        turned = np.abs(theta[b] - theta[a])
+        change = np.abs(values[rows, b] - values[rows, a])
+        slope = np.divide(change, turned, out=np.zeros_like(change), where=turned > 0.0)
+        steepest = np.maximum(steepest, slope)
+    return steepest
 
 
 def apart(result: Result, motions: Sequence[Between]) -> Array:
