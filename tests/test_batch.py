@@ -1,16 +1,18 @@
 """Scenes solved together have what each of them has alone, within the errors of both."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from crankmbs import load_scene, simulate
+from crankmbs.batch import loops
 from crankmbs.batch.machine import machine_of
 from crankmbs.batch.rows import rows_of
 from crankmbs.batch.serves import loads_of
 from crankmbs.batch.solve import settled_together
-from crankmbs.scene.loads import Constant, Quadratic, SpeedTable
+from crankmbs.scene.loads import Constant, Quadratic, SpeedTable, Viscous
 from crankmbs.scene.tables import Table
 from crankmbs.sweep.block import Job, solved
 from crankmbs.sweep.columns import columns_of, row_of
@@ -173,3 +175,17 @@ def test_in_an_even_engine_the_other_cylinders_are_as_the_first():
     assert machine_of(weighed).alike == (0, 1, 2, 3)
     (rows,), (alone, _) = rows_of([weighed]), by_hand(weighed)
     assert_agree(rows, 0, alone)
+
+
+def test_its_loops_are_the_same_compiled_and_plain(monkeypatch):
+    scene = settling("propeller", run__rtol=1e-5)
+    scene = replace(scene, torque=(*scene.torque, Viscous(coefficient=1e-3)))
+    (compiled,) = settled_together([scene])
+    kernels = {n: f for n, f in vars(loops).items() if hasattr(f, "py_func")}
+    for name, one in kernels.items():
+        monkeypatch.setattr(loops, name, one.py_func)
+    (plain,) = settled_together([scene])
+    np.testing.assert_allclose(plain.answer, compiled.answer, rtol=1e-7, atol=1e-9)
+    signatures = str([one.signatures for one in kernels.values()])
+    assert set(re.findall(r"\b(\w+)\(", signatures)) <= {"Array", "Tuple", "UniTuple", "array"}
+    assert all(one.targetoptions["nogil"] for one in kernels.values())

@@ -17,7 +17,8 @@ F = TypeVar("F", bound=Callable[..., object])
 
 
 def kernel(function: F) -> F:
-    """Compile a function when it is first called, or take it from the cache.
+    """Compile a function when it is first called, or take it from the cache; while it runs other
+    threads do.
 
     >>> double = kernel(lambda x: 2.0 * x)
     >>> double(1.5)
@@ -27,7 +28,7 @@ def kernel(function: F) -> F:
 
     from crankmbs.numerics.kernel_cache import healing_cache
 
-    compiled: Any = njit(error_model="numpy")(function)
+    compiled: Any = njit(error_model="numpy", nogil=True)(function)
     with suppress(RuntimeError):  # nothing can be cached
         compiled._cache = healing_cache(function)  # cache=True would put numba's own there
     return compiled  # type: ignore[no-any-return]
