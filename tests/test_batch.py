@@ -12,6 +12,7 @@ from crankmbs.batch.machine import machine_of
 from crankmbs.batch.rows import rows_of
 from crankmbs.batch.serves import loads_of
 from crankmbs.batch.solve import settled_together
+from crankmbs.numerics.collocation import gauss
 from crankmbs.scene.loads import Constant, Quadratic, SpeedTable, Viscous
 from crankmbs.scene.tables import Table
 from crankmbs.sweep.block import Job, solved
@@ -189,3 +190,16 @@ def test_its_loops_are_the_same_compiled_and_plain(monkeypatch):
     signatures = str([one.signatures for one in kernels.values()])
     assert set(re.findall(r"\b(\w+)\(", signatures)) <= {"Array", "Tuple", "UniTuple", "array"}
     assert all(one.targetoptions["nogil"] for one in kernels.values())
+
+
+def test_a_peak_may_lie_in_the_cell_beside_the_nearest_node():
+    rule, width = gauss(8), np.array([0.05, 0.3, 0.05])
+    edges = np.append(0.0, np.cumsum(width))
+    there = edges[1] + 0.2 * rule.nodes[0] * width[1]  # nearer to the last node of the first cell
+    curve = np.cos(edges[:-1, None] + width[:, None] * rule.nodes - there).ravel()
+    tables = rule.matrix, rule.weights, rule.nodes, rule.to_legendre[-1].copy()
+    outline = width, np.empty((2, len(curve))), np.empty(3)
+    loops._reaching(outline, tables)
+    peak, turned, tail = loops._highest((curve, curve[:0], curve), outline, tables, 0.0)
+    assert abs(peak - 1.0) < 1e-14 + tail
+    assert abs(turned - there) < 1e-7

@@ -246,15 +246,15 @@ def exact_gauge(engine, angle):
     )
 
 
-@dataclasses.dataclass(frozen=True)
-class Exact(PeriodicPressure):
-    """The knots of the pieces, the pressure of the polytropes."""
-
-    engine: Scene | None = None
-
-    def __call__(self, cycle_angle):
-        angle = np.asarray(cycle_angle, dtype=float)
-        return exact_gauge(self.engine, angle.reshape(-1)).reshape(angle.shape)
+def as_it_is(engine, pieces):
+    """The pressure of the polytropes: a cubic through four of its values in each twelfth of a
+    piece."""
+    starts, widths = pieces.knots[:-1], np.diff(pieces.knots)
+    knots = np.append((starts[:, None] + widths[:, None] * np.arange(12) / 12.0), pieces.knots[-1])
+    width, places = np.diff(knots), 0.5 - 0.5 * np.cos(np.pi * (np.arange(4) + 0.5) / 4.0)
+    values = exact_gauge(engine, (knots[:-1, None] + width[:, None] * places).ravel())
+    cubics = np.linalg.solve(np.vander(places, 4), values.reshape(-1, 4).T)
+    return PeriodicPressure(knots, cubics / width ** np.arange(3, -1, -1)[:, None])
 
 
 @pytest.mark.parametrize("seed", range(12))
@@ -270,10 +270,10 @@ def test_a_driven_engine_states_what_the_pieces_miss_of_the_polytropes(seed):
 
 @pytest.mark.parametrize("seed", range(6))
 def test_a_free_engine_states_what_the_pieces_miss_of_the_polytropes(seed):
-    """The same engine under the polytropes themselves, evaluated at every node of its cells."""
+    """The same engine under the polytropes themselves, but for a ten-thousandth of what the pieces
+    miss."""
     engine = random_engine(seed)
-    pieces = pressures_of(engine)[0]
-    pressure = Exact(pieces.knots, pieces.coefficients, engine=engine)
+    pressure = as_it_is(engine, pressures_of(engine)[0])
     exact = run_free(CrankTrain(engine, (pressure,)), 1e-11, 10.0, by_angle=True)
     data = simulate(engine, rtol=1e-11).data
     names = ("time", "crank_speed", "main_bearing_force_x", "side_force", "crank_torque")

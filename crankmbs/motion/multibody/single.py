@@ -33,7 +33,8 @@ class Single(NamedTuple):
     rows : of every variable at the steps from the scene's start on, shape (steps - run_up + 1,) or
         (..., cylinders)
     errors : largest error of each, in its unit, from runs of twice and four times the step: where
-        order 2 is seen a third of what the nearer one differs by, else all of it
+        order 2 is seen a third of what the nearer one differs by, else all of it; of the bearing
+        under several cylinders at least that of their crank pins
     """
 
     start: Start
@@ -78,6 +79,10 @@ def single_run(train: CrankTrain) -> Single:
         change = _difference(values, coarse[name])
         orderly = _difference(coarse[name], coarsest_rows[name]) > _ORDERLY * change
         errors[name] = _SAFE * change / (3.0 if orderly else 1.0)
+    if len(problem.scene.cylinders) > 1:  # whose differences may cancel where their errors do not
+        pins = max(errors["crank_pin_force_x"], errors["crank_pin_force_y"])
+        for name in ("main_bearing_force_x", "main_bearing_force_y"):
+            errors[name] = max(errors[name], pins)
     reference = coordinates(problem.scene, problem.start[0], 0.0).position
     return Single(start, reference, step, len(fine.columns) - 1, RUN_UP, angles, rows, errors)
 
