@@ -27,7 +27,7 @@ _QUANTITIES = ("piston acceleration", "side thrust", "torque")
 def main() -> int:
     """Compute and draw the map."""
     scene = load_scene("propeller").with_(run__until="settled")
-    vary = {"rod_ratio": "0.15..0.45:13", "crank.inertia": "0.02..2 kg m^2:13:log"}
+    vary = {"rod_ratio": "0.15..0.45:25", "crank.inertia": "0.02..2 kg m^2:49:log"}
     found = sweep(scene, vary).sel(lecture=_LECTURE)
     with mpl.rc_context(STYLE):
         figure, axes = panels(1, len(_QUANTITIES), 16.0, 6.5)
