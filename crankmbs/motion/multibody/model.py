@@ -20,8 +20,8 @@ __all__ = ["Model", "Record"]
 _SHIFT = 2e-4  # m or rad
 _WEIGHTS = (1.0 / 3.0, -2.0, 8.0 / 3.0)  # of h, h/2 and h/4: without terms in h and h^2
 _FAR = 1e9  # rad: no run turns farther
-# relative, of Newton's method: where forces are small beside what they cancel the first may lie below
-# what some processors round; 1e-8 leaves errors that no halving shows, and passes near folds
+# relative, of Newton's method: where forces are small beside what they cancel the first may lie
+# below what some processors round; 1e-8 leaves errors that no halving shows, and passes near folds
 _TOLERANCES = (1e-10, 1e-9)
 
 
