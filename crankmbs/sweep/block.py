@@ -22,6 +22,7 @@ Ended = tuple[Row, int, str]  # of one case: its columns, status and sentence
 
 IMPOSSIBLE, BROKEN = 2, -2  # status of a case whose scene is refused; that ended its worker
 _FEWEST, _BLOCKS = 4, 128
+_WIDE, _TOGETHER = 256, 32  # the same of cases that are solved together
 _MOST, _MOST_SERIES = 2048, 256  # a block is a file of each column: few files, some 40 MB of series
 
 
@@ -52,13 +53,18 @@ class Block:
     message: tuple[str, ...]
 
 
-def block_size(count: int, *, series: bool) -> int:
+def block_size(count: int, *, series: bool, together: bool = False) -> int:
     """How many of so many cases make a block, whoever computes them.
+
+    together : whether most are solved together, so fast that files would take longer
 
     >>> block_size(1000, series=False), block_size(10**6, series=False)
     (8, 2048)
+    >>> block_size(10_000, series=False, together=True)
+    256
     """
-    return min(max(ceil(count / _BLOCKS), _FEWEST), _MOST_SERIES if series else _MOST)
+    fewest = min(max(ceil(count / _TOGETHER), _FEWEST), _WIDE) if together else _FEWEST
+    return min(max(ceil(count / _BLOCKS), fewest), _MOST_SERIES if series else _MOST)
 
 
 def solved(job: Job) -> Block:

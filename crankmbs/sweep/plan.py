@@ -13,6 +13,7 @@ from math import prod
 
 from pydantic import TypeAdapter
 
+from crankmbs.batch.serves import loads_of
 from crankmbs.errors import CrankmbsError, InputError, shown
 from crankmbs.scene.python_load import Load
 from crankmbs.scene.scene import Scene
@@ -36,10 +37,11 @@ class Plan:
     cases: Cases
     series: bool
 
-    @property
+    @cached_property
     def size(self) -> int:
         """Cases in a block."""
-        return block_size(self.cases.count, series=self.series)
+        together = not self.series and loads_of(self.scene) is not None
+        return block_size(self.cases.count, series=self.series, together=together)
 
     @property
     def blocks(self) -> int:
