@@ -23,6 +23,12 @@ from crankmbs import (
     load_scene,
     simulate,
 )
+from crankmbs.mechanics.train import crank_train
+from crankmbs.motion.base import State
+from crankmbs.motion.minimal.advance import Effort, advance
+from crankmbs.motion.minimal.reduced import Reduced
+from crankmbs.motion.mode import begun
+from crankmbs.motion.plan import Plan
 from crankmbs.numerics.function import Function
 from crankmbs.scene.write import scene_files
 
@@ -50,6 +56,22 @@ def test_a_function_of_the_angle_does_its_integral(formulation):
     np.testing.assert_allclose(0.25 * omega**2, 36.0 + gained, rtol=1e-8)
     at = result.data["external_torque"]
     np.testing.assert_allclose(at, 20.0 * np.sin(3.0 * theta) + 5.0, atol=1e-6)
+
+
+@pytest.mark.parametrize("tolerance", [1e-6, 1e-10])
+def test_a_knot_is_met_as_soon_whatever_the_time(tolerance):
+    """Halves of a step that rounding leaves short of a knot by one more, of 1e-18 s, put the angle
+    on the knot and left the time: a jump of an angle that both passes may share."""
+    steady = replace(PROPELLER, torque=(Load(lambda t, theta, omega: -20.0),))
+    train, effort, elapsed = crank_train(steady), Effort(tolerance, 2, 10**6, 64), []
+    reduced = Reduced(train)
+    for begin in np.linspace(0.0, 10.0, 201):
+        state = State(float(begin), 0.3, 50.0, 0.0, begun(train))
+        plan = Plan(0.3, 1.0, True, begin + 1.0, True)
+        first = next(advance(reduced, state, plan, effort, lambda *_: False))
+        elapsed.append(first.end.time - begin)
+        assert np.min(np.diff([*first.track.begins, first.end.time])) > 1e-5
+    assert np.ptp(elapsed) < 1e-14
 
 
 @pytest.mark.parametrize("formulation", FREE)

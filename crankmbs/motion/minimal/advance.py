@@ -30,6 +30,7 @@ from crankmbs.numerics.arrays import Array
 __all__ = ["Effort", "advance"]
 
 _MOST_STEPS = 4096  # of one stretch
+_SLACK = 1.001  # of a part: none is left over where the parts of a step sum up to less by rounding
 _RADAU = 1e-13  # finest tolerance of a step, half of it where steps are halved; SciPy's is 2.3e-14
 
 
@@ -171,8 +172,8 @@ def _by_scipy(
             t, y, h = float(solver.t), solver.y, solver.h_abs
         elif x > 0.0:  # again, up to there only: its end is more exact than its inside
             t, width, row = track.pop()
-            y = row[0]
-            again = start(t, y, t + x * width, x * width / parts, x * width / parts)
+            y, part = row[0], x * width / parts
+            again = start(t, y, t + x * width, part, _SLACK * part)
             while again.status == "running" and not again.step():
                 track.append(_interpolant(again))
             t, y, evaluations = float(again.t), again.y, evaluations + again.nfev
