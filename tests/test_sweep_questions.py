@@ -45,6 +45,18 @@ def test_every_root_in_the_range_is_found():
     assert found.scanned.shape == (2, 17)
 
 
+def test_roots_between_two_points_of_the_scan_are_found():
+    """The least side force stands at no offset, between two points; there it bends."""
+    vary = {"piston.offset": "-9..10 mm"}
+    found = solve(SMOOTH, vary, "peak side force = 1475 N")
+    low, high = (root.value for root in found.roots)
+    assert -0.6875e-3 < low.value < 0.0 < high.value < 0.5e-3
+    assert abs(low.value + high.value) <= 2.0 * (low.error + high.error)
+    below = solve(SMOOTH, vary, "peak side force = 1400 N")
+    assert (below.roots, below.status) == ((), 1)
+    assert abs(below.nearest.value.value) <= 1e-6 * 19e-3
+
+
 def test_out_of_reach_is_the_nearest_and_said():
     found = solve(SCENE, {"crank.inertia": "0.2..0.4 kg m^2"}, "fluctuation = 5 %")
     assert (found.roots, found.status) == ((), 1)
