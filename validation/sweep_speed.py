@@ -2,8 +2,8 @@
 
 Our part of a case: plan, store, summary and figure with a solver that gives numbers at once, and
 the peak of the memory, for ten thousand to a million cases. Then, as ratios within one run: one
-sweep by a pool of two processes over two sweeps of half the cases side by side; and, with blocks
-that take ten milliseconds, two workers of a Dask cluster over the pool.
+sweep by two workers, threads and processes, over two sweeps of half the cases side by side; and,
+with blocks that take ten milliseconds, two workers of a Dask cluster over the pool.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable
-from concurrent.futures import Executor, Future, ProcessPoolExecutor
+from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -37,7 +37,7 @@ _SCENE = load_scene("propeller").with_(run__until="settled")
 _RANGES = {"crank.inertia": "0.05..0.5 kg m^2", "rod.length": "0.14..0.2 m"}
 _COUNTS = (10_000, 100_000, 1_000_000)
 _ROUNDS = 5
-_CASES, _BLOCKS = 96, 128
+_CASES, _BLOCKS = 4000, 128  # some seconds of one processor: store and start-up are little of it
 _BLOCK = 0.01  # s
 
 
@@ -123,17 +123,21 @@ def _unsaid(_: int) -> None:
 
 
 def _side_by_side() -> str:
-    """One sweep by two processes over two of half its cases, each in one of them."""
-    ratios = []
-    with _pool() as pool:
+    """One sweep by two workers over two of half its cases, each in a process of its own."""
+    ratios: dict[str, list[float]] = {"threads": [], "processes": []}
+    taken = []
+    with _pool() as pool, ThreadPoolExecutor(2) as threads:
         for k in range(_ROUNDS + 1):
             halves = [pool.submit(_alone, half) for half in range(2)]
             apart = max(half.result() for half in halves)
-            begin = time.perf_counter()
-            sweep(_SCENE, {"crank.inertia": f"0.1..0.5 kg m^2:{_CASES}"}, executor=pool)
-            together = time.perf_counter() - begin
-            ratios += [apart / together] if k else []  # the first loads everything
-    return _said("two workers over two copies side by side", ratios)
+            for name, executor in (("threads", threads), ("processes", pool)):
+                begin = time.perf_counter()
+                sweep(_SCENE, {"crank.inertia": f"0.1..0.5 kg m^2:{_CASES}"}, executor=executor)
+                together = time.perf_counter() - begin
+                ratios[name] += [apart / together] if k else []  # the first loads everything
+            taken += [apart] if k else []
+    about = f"over two copies side by side, {statistics.median(taken):.1f} s"
+    return "\n".join(_said(f"two {name} {about}", each) for name, each in ratios.items())
 
 
 def _alone(half: int) -> float:

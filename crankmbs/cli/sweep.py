@@ -62,7 +62,7 @@ def sweep(
         bool, typer.Option("--resume", help="Go on with what was interrupted.")
     ] = False,
     workers: Annotated[
-        int | None, typer.Option(help="Processes; default one for each processor.")
+        int | None, typer.Option(help="How many compute; default one for each processor.")
     ] = None,
     cluster: Annotated[
         str | None,

@@ -44,8 +44,9 @@ def sweep(
         combined. Or a `Sample`, or a CSV file of cases with a column for each name
     out : folder for the store in Zarr's format, written block by block; an unfinished one of the
         same scene and cases is gone on with. None keeps nothing on disk
-    executor : how many processes compute; 1 the calling one alone, None that for a hundred cases,
-        else one for each processor; or an Executor of concurrent.futures
+    executor : how many workers compute; 1 the calling process alone, None that for a hundred cases,
+        else one for each processor: threads where all cases are settled motions of one machine,
+        solved together in compiled loops, else processes. Or an Executor of concurrent.futures
     keep : "measures", or "series": every sample too
     strict : refuse scenes that cannot be before anything runs; else such a case has status 2
 
@@ -93,7 +94,8 @@ def fill(
     missing = [number for number in range(plan.blocks) if number not in store.done]
     report(plan.cases.count - sum(len(plan.rows(number)) for number in missing))
     if missing:
-        with workers_of(executor, plan.job(missing[0]), len(missing)) as workers:
+        job, count = plan.job(missing[0]), len(missing)
+        with workers_of(executor, job, count, compiled=plan.compiled) as workers:
             _Filling(store, workers, report).run(missing)
     store.finish()
 

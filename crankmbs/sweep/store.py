@@ -183,7 +183,7 @@ def _make(path: Path, plan: Plan) -> None:
 
 def _fill(group: zarr.Group, plan: Plan) -> None:
     count, size = plan.cases.count, plan.size
-    group.attrs.update(
+    group.attrs.put(
         {
             "title": plan.scene.title,
             "identity": {**plan.identity},
@@ -194,17 +194,22 @@ def _fill(group: zarr.Group, plan: Plan) -> None:
     dims = dims_of(plan.scene, series=plan.series)
     for name, at in dims.items():
         kind: Any = str if isinstance(at[0], str) else "i4"
-        made = group.create_array(name, shape=(len(at),), chunks=(len(at),), dtype=kind)
-        made.attrs.update({_DIMS: [name]})
-        made[:] = np.array(at, dtype=object if kind is str else kind)
-    for name, (kind, nothing, own, about) in _columns_of(plan).items():
-        sizes = tuple(len(dims[dim]) for dim in own)
+        about: Any = {_DIMS: [name]}
         made = group.create_array(
-            name, shape=(count, *sizes), chunks=(size, *sizes), dtype=kind, fill_value=nothing
+            name, shape=(len(at),), chunks=(len(at),), dtype=kind, attributes=about
         )
-        made.attrs.update({_DIMS: ["case", *own], **about})
-    marks = group.create_array("done", shape=(plan.blocks,), chunks=(1,), dtype="i1", fill_value=0)
-    marks.attrs.update({_DIMS: ["block"]})
+        made[:] = np.array(at, dtype=object if kind is str else kind)
+    for name, (kind, nothing, own, labels) in _columns_of(plan).items():
+        sizes = tuple(len(dims[dim]) for dim in own)
+        about = {_DIMS: ["case", *own], **labels}
+        shape, chunks = (count, *sizes), (size, *sizes)
+        group.create_array(
+            name, shape=shape, chunks=chunks, dtype=kind, fill_value=nothing, attributes=about
+        )
+    about = {_DIMS: ["block"]}
+    group.create_array(
+        "done", shape=(plan.blocks,), chunks=(1,), dtype="i1", fill_value=0, attributes=about
+    )
 
 
 class _Kind(NamedTuple):

@@ -1,4 +1,4 @@
-"""Where blocks are computed: here, in processes of this machine, or in an executor given."""
+"""Where blocks are computed: here, in threads or processes, or in an executor given."""
 
 from __future__ import annotations
 
@@ -10,7 +10,13 @@ import signal
 import threading
 import time
 from collections.abc import Iterator
-from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor
+from concurrent.futures import (
+    BrokenExecutor,
+    Executor,
+    Future,
+    ProcessPoolExecutor,
+    ThreadPoolExecutor,
+)
 from contextlib import contextmanager
 from typing import Protocol
 
@@ -155,9 +161,14 @@ def check_executor(executor: object) -> None:
 
 
 @contextmanager
-def workers_of(executor: Executor | int | None, job: Job, blocks: int) -> Iterator[Workers]:
-    """What computes so many blocks such as this one: an executor, or so many processes; 1 is the
-    calling one alone, and None takes it for few blocks, else one process for each processor.
+def workers_of(
+    executor: Executor | int | None, job: Job, blocks: int, *, compiled: bool = False
+) -> Iterator[Workers]:
+    """What computes so many blocks such as this one: an executor, or so many workers; 1 is the
+    calling process alone, and None takes it for few blocks, else one for each processor.
+
+    compiled : whether most of the work leaves Python, so that threads compute, which start at once;
+        else processes do
 
     Raises
     ------
@@ -173,10 +184,18 @@ def workers_of(executor: Executor | int | None, job: Job, blocks: int) -> Iterat
         _check_ready(ready)
         yield _Given(executor)
         return
-    few = executor is None and blocks < _FEW
+    few = executor is None and blocks < _FEW and not compiled
     count = 1 if few else min(executor or os.cpu_count() or 1, blocks)
     if count <= 1:
         yield _Here()
+        return
+    if compiled:
+        threads = ThreadPoolExecutor(count)
+        try:
+            threads.submit(_ready).result()
+            yield _Given(threads)
+        finally:
+            threads.shutdown(cancel_futures=True)
         return
     _check_sendable(job)
     with _one_thread_each():
