@@ -75,12 +75,22 @@ class Strip:
         """The first m cells."""
         return self if m == len(self.cell) else self.part(0, m)
 
+    @property
+    def _tables(self) -> tuple[Array, ...]:
+        return self.inertia, self.torque, self.combustion, self.rubbed, self.drag
+
     def part(self, low: int, high: int) -> Strip:
         """The cells from one number to another; edges are still counted from the beginning."""
-        tables = (self.inertia, self.torque, self.combustion, self.rubbed, self.drag)
-        of_cells = (table[low:high] for table in tables)
+        of_cells = (table[low:high] for table in self._tables)
         turned = self.turned[low : high + 1]
         return Strip(self.cell[low:high], self.width[low:high], turned, self.against, *of_cells)
+
+    def joined(self, after: Strip) -> Strip:
+        """These cells and those after them, whose angles are counted from where these end."""
+        cell, width = np.append(self.cell, after.cell), np.append(self.width, after.width)
+        turned = np.append(self.turned[:-1], self.turned[-1] + after.turned)
+        pairs = zip(self._tables, after._tables, strict=True)
+        return Strip(cell, width, turned, self.against, *map(np.concatenate, pairs))
 
 
 class _Tables(NamedTuple):

@@ -81,8 +81,8 @@ class Window:
     @cached_property
     def _last(self) -> Samples:
         k, x = self.stop
-        at = self.inside(k, np.array([x]), self.landed)
-        return replace(at, omega=_exact(self.landed.omega, at.omega))
+        at, omega = self.inside(k, np.array([x]), self.landed), self.landed.omega
+        return at if math.isnan(omega) else replace(at, omega=np.array([omega]))
 
     @property
     def steps(self) -> int:
@@ -147,6 +147,33 @@ class Window:
         if (stop, landed) == (self.stop, self.landed):
             return self
         return self._up_to(stop, landed)
+
+    def at_edge(self, k: int) -> State:
+        """The state where a cell begins; without the energy residual, but for the first."""
+        if k == 0:
+            return self.begin
+        mode = next((mode for cell, mode in self.modes[::-1] if cell <= k), self.begin.mode)
+        theta = self.begin.theta + self.sense * float(self.edges[k])
+        speed = float(self.speeds_at(np.array([k]))[0])
+        return State(float(self.time[k]), theta, speed, math.nan, mode)
+
+    def ended_by(self, last: Window) -> Window:
+        """With cells that were solved from where its last one begins, in place of that."""
+        k = self.stop[0]
+        strip = self.strip.part(0, k).joined(last.strip)
+        later = tuple((k + cell, mode) for cell, mode in last.modes[1:])
+        return replace(
+            self,
+            strip=strip,
+            edges=strip.turned,
+            energy=np.concatenate([self.energy[:k], last.energy]),
+            time=np.concatenate([self.time[:k], last.time]),
+            torque=np.concatenate([self.torque[:k], last.torque]),
+            slowness=np.concatenate([self.slowness[:k], last.slowness]),
+            stop=(k + last.stop[0], last.stop[1]),
+            landed=last.landed,
+            modes=self.modes + later,
+        )
 
     def first(self, m: int) -> Window:
         """The first m cells."""

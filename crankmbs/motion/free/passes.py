@@ -30,6 +30,7 @@ from crankmbs.motion.plan import plan_of
 from crankmbs.motion.remarks import left_open
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.collocation import gauss
+from crankmbs.numerics.once import once
 from crankmbs.scene.scene import Scene
 
 __all__ = ["Lead", "evaluations", "first_grid", "run"]
@@ -55,6 +56,7 @@ class Lead(NamedTuple):
     begin: Begin
 
 
+@once
 def first_grid(train: CrankTrain, rtol: float) -> Grid:
     """The coarsest grid, of the order that a tolerance asks for."""
     return grid_of(train, gauss(min(3 + round(-math.log10(rtol) / 3.0), 7)))
