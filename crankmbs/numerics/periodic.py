@@ -32,6 +32,6 @@ def one_period(theta: Array, period: float) -> tuple[Array, NDArray[np.intp]]:
     if repeating == count:
         return theta, np.arange(n)
     which = np.arange(n)
-    which[:repeating] %= count
+    which[count:repeating] = np.resize(which[:count], repeating - count)
     which[repeating:] -= repeating - count
     return np.append(theta[:count], theta[repeating:]), which
