@@ -100,6 +100,7 @@ def reactions(
 class Balances(NamedTuple):
     """Every variable at the samples, not yet put together.
 
+    angles : shape (n,) [rad], at which the parts are
     rows : how many of each variable; swift : shape (rows,), which are velocities
     parts : shape (rows, 1, samples), velocities per speed; or (rows, 3, n), what belongs to
         omega^2, alpha and 1 at the angles of one period
@@ -108,6 +109,7 @@ class Balances(NamedTuple):
         adds at the n angles; and the shares, or forces, shape (samples, cylinders)
     """
 
+    angles: Array
     rows: dict[str, int]
     swift: NDArray[np.bool_]
     parts: Array
@@ -199,7 +201,9 @@ def balances(
         parts = np.pad(parts, ((0, len(scene.cylinders)), (0, 0), (0, 0)))
         more.append((_rubbed_parts(scene, once), friction))
     swift = np.repeat([name in _PER_SPEED for name in rows], list(rows.values()))
-    return Balances(rows, swift, parts, which if by_parts else None, samples, omega, tuple(more))
+    return Balances(
+        once, rows, swift, parts, which if by_parts else None, samples, omega, tuple(more)
+    )
 
 
 def balanced_by_arrays(train: CrankTrain, theta: Array, motion: Powers) -> Array:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
@@ -17,7 +16,6 @@ from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.variables import EVERY, SUMS
 from crankmbs.motion.base import Samples, Solution
 from crankmbs.numerics.arrays import Array
-from crankmbs.numerics.periodic import one_period
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -91,18 +89,16 @@ def _errors(
     late = better.time - answer.time
     ahead = better.theta - answer.theta - answer.omega * late
     passes = _Passes(train.off, answer, _turned_by_rounding(better), table)
-    largest, missed = _ROUNDING * np.array(_sizes(peaks)), 0.0
-    for apart, last in passes.differences():
-        largest, missed = largest + table.largest(apart), last
+    apart, missed, angles = passes.difference()
+    largest = _ROUNDING * np.array(_sizes(peaks)) + apart
     if late.any() and late[-1] == 0.0 != ahead[-1]:  # else it ends at an angle, at the same time
         apart, missed_there = passes.end_in_time(ahead)
         missed = max(missed, missed_there)
-        largest = np.maximum(
-            largest, table.largest(apart) + _ROUNDING * np.array(list(peaks.values()))
-        )
+        rounded = _ROUNDING * np.array(list(peaks.values()))
+        largest = np.maximum(largest, apart + rounded)
     errors = dict(zip(table.rows, largest.tolist(), strict=True))
-    if missed:
-        errors["crank_acceleration"] += missed / _least_inertia(train, better.theta)
+    if missed:  # of a free crank, which has inertia at every angle; a driven one may have none
+        errors["crank_acceleration"] += missed / float(tabulate(train, angles).inertia.min())
     errors["crank_angle"] = peak(ahead) + _ROUNDING * peaks["crank_angle"]
     errors["energy_residual"] = peaks["energy_residual"] + _ROUNDING * peaks["kinetic_energy"]
     return errors
@@ -121,14 +117,16 @@ class _Passes(NamedTuple):
     rounded: Samples
     table: Table
 
-    def differences(self) -> Iterator[tuple[Array, float]]:
-        """What each row changes by from the answer to the better one, at most; and by how much the
-        torque that the better motion needs differs from the one it is given [N m].
+    def difference(self) -> tuple[Array, float, Array]:
+        """What each variable changes by from the answer to the better one, at most; by how much the
+        torque that the better motion needs differs from the one it is given [N m]; and the angles
+        that motion passes [rad], but for those whole periods on.
 
         In one go; of a few samples, where the differences may cancel in a variable by chance, in
-        three: the angle, the speed, the acceleration, whose changes are to be added up.
+        three: the angle, the speed, the acceleration, whose changes are added up.
         """
         before, places, first = self.table.values, self.table.places, len(_MOTION)
+        total = np.zeros(len(self.table.rows))
         for samples in self._chain():
             found, apart = _balances(self.off, samples), np.zeros(len(before))
             balanced = slice(first, first + len(found.parts))
@@ -137,9 +135,10 @@ class _Passes(NamedTuple):
             apart[:first] = _peaks(before[:first] - _motion(samples))
             for name, values in samples.own.items():
                 apart[places[name]] = _peaks(before[places[name]] - values.T)
-            yield apart, missed
+            total += self.table.largest(apart)
             if samples is not self.rounded:
                 before = _tabled(self.off, samples).values
+        return total, missed, found.angles
 
     def _chain(self) -> list[Samples]:
         if len(self.answer.time) > _FEW:
@@ -169,7 +168,7 @@ class _Passes(NamedTuple):
             missed = peak(own["external_torque"][-1:] - torque)
         for name in own:
             apart[places[name]] = 0.0
-        return apart, missed
+        return self.table.largest(apart), missed
 
 
 def _turned_by_rounding(samples: Samples) -> Samples:
@@ -177,12 +176,6 @@ def _turned_by_rounding(samples: Samples) -> Samples:
     rounding = ANGLE_ROUNDING * peak(samples.theta)
     omega = samples.omega + _speed_change(samples, rounding)
     return replace(samples, theta=samples.theta + rounding, omega=omega)
-
-
-def _least_inertia(train: CrankTrain, theta: Array) -> float:
-    """Of a free crank, which has inertia at every angle; a driven one may have none."""
-    angles, _ = one_period(theta, train.repeats)
-    return float(np.min(tabulate(train, angles).inertia))
 
 
 def _speed_change(samples: Samples, ahead: float) -> Array:

@@ -104,13 +104,15 @@ def maps(loads: tuple[Array, Array, Array], rule: tuple[Array, Array], found: So
     s = len(weights)
     system, both = np.empty((s, s)), np.empty((s, 2))
     for c in range(len(signed)):
-        h, growth[c], rise[c] = signed[c], 0.0, 0.0
+        h, growth[c], rise[c], bound = signed[c], 0.0, 0.0, False
         for j in range(len(weights)):
+            bound = bound or rate[c, j] != 0.0
             both[j, 0], both[j, 1] = 1.0, 0.0
             for i in range(len(weights)):
                 both[j, 1] += h * matrix[j, i] * push[c, i]
                 system[j, i] = (1.0 if i == j else 0.0) - h * matrix[j, i] * rate[c, i]
-        _eliminate(system, both)
+        if bound:  # else each node has its own equation
+            _eliminate(system, both)
         for j in range(len(weights)):
             gain[c, j], shift[c, j] = both[j, 0], both[j, 1]
             growth[c] += h * weights[j] * rate[c, j] * gain[c, j]

@@ -181,6 +181,8 @@ class Window:
 
     def _up_to(self, stop: tuple[int, float], landed: State) -> Window:
         m = stop[0] + 1
+        if m == len(self.torque):
+            return replace(self, stop=stop, landed=landed)
         return replace(
             self,
             strip=self.strip.first(m),
@@ -267,14 +269,17 @@ class Window:
         """Samples in the cells k."""
         once, which = one_period(theta, self.grid.train.repeats)
         inertia, slope, torque = tabulate(self.grid.train, once)
-        over_angle = np.zeros_like(torque) + self.grid.outside(once)
-        torque = torque + over_angle
+        over_angle: Array | None = None
+        if self.grid.over_angle is not None:
+            over_angle = self.grid.over_angle(once)
+            torque = torque + over_angle
         own = {}
         if self.modes:
             own = {"fuel": self.shares[k]}
             more = fired_torque(self.grid.train, once)[which] * own["fuel"]
             inertia, slope, torque = inertia[which], slope[which], torque[which] + more.sum(axis=1)
-            over_angle, which = over_angle[which], np.arange(len(theta))
+            over_angle = None if over_angle is None else over_angle[which]
+            which = np.arange(len(theta))
         of_angle = (inertia, slope, torque)  # bare: numba's cache must not name a class
         rubs = self.grid.train.scene.friction is not None
         if isinstance(self.branch, Branch) and not self.branch.functions and not rubs:
@@ -295,7 +300,7 @@ class Window:
                 own["friction_force"] = forces
             alpha = (torque + outside - 0.5 * slope * omega**2) / inertia
         residual = self.begin.residual - self.missed[k]
-        outside = outside + over_angle[which]
+        outside = outside if over_angle is None else outside + over_angle[which]
         return Samples(t, theta, omega, alpha, residual, {"external_torque": outside, **own})
 
 
