@@ -9,7 +9,8 @@ for each sample.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from functools import partial
+from dataclasses import dataclass
+from functools import cached_property, partial
 from itertools import accumulate
 from typing import NamedTuple
 
@@ -34,7 +35,8 @@ _OFTEN = 3  # so often an angle must come back for its parts to pay
 _UNITS = Powers(*np.eye(3)[:, :, np.newaxis])
 
 
-class Table(NamedTuple):
+@dataclass(frozen=True)
+class Table:
     """Variables at samples, a row for each, of what every cylinder has one for each of them.
 
     rows : how many of each variable, in their order; values : shape (rows, samples), SI units
@@ -43,7 +45,7 @@ class Table(NamedTuple):
     rows: dict[str, int]
     values: Array
 
-    @property
+    @cached_property
     def places(self) -> dict[str, slice]:
         """The rows of each variable."""
         ends = accumulate(self.rows.values())

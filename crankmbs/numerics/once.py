@@ -12,7 +12,7 @@ F = TypeVar("F", bound=Callable[..., object])
 
 
 class _Kept(dict[Any, Any]):
-    """Answers by function and arguments; what is copied or pickled begins without."""
+    """Answers by function and arguments; a deep or pickled copy begins without."""
 
     def __reduce__(self) -> tuple[type[_Kept], tuple[()]]:
         return _Kept, ()
