@@ -24,7 +24,7 @@ from crankmbs.mechanics.reactions import reactions
 from crankmbs.mechanics.train import crank_train
 from crankmbs.mechanics.variables import SUMS, variables_of
 from crankmbs.motion.assemble import Assembled
-from crankmbs.motion.base import Solution
+from crankmbs.motion.base import Samples, Solution
 from crankmbs.result import Result
 from crankmbs.scene.read import load_scene as read
 from crankmbs.scene.write import scene_files
@@ -138,12 +138,11 @@ def test_stated_errors_hold(formulation, every):
 
 def test_an_engine_whose_forces_cancel_is_not_refined_for_them():
     """What is left of several cylinders may be rounding of each: its share of error counts not."""
-    variables = {"crank_angle": np.array([0.0, 1.0]), "side_force": np.ones((2, 1))}
     errors = {"crank_angle": 1e-3, "side_force": 1e-2, "frame_force_y": 1.0}
-    variables["frame_force_y"] = np.full(2, 0.1)
     peaks = {"crank_angle": 1.0, "side_force": 1.0, "frame_force_y": 0.1}
-    solution = Solution(None, 0, "", 0, 0)
-    assert Assembled(solution, variables, peaks, errors).relative_error == 1e-2
+    turning = Samples(*np.array([[0.0, 1.0]] * 5))
+    solution = Solution(turning, 0, "", 0, 0)
+    assert Assembled(solution, None, peaks, errors).relative_error == 1e-2
 
 
 def test_saved_and_read_with_its_places(tmp_path):

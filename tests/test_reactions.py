@@ -1,6 +1,5 @@
 """Newton-Euler body by body against all bodies' equations at once, at 40 digits."""
 
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -10,7 +9,7 @@ from crankmbs import load_scene
 from crankmbs.mechanics import reduced
 from crankmbs.mechanics.newton_euler import Powers
 from crankmbs.mechanics.pressure import pressures_of
-from crankmbs.mechanics.reactions import balanced_by_arrays, deviations, reactions
+from crankmbs.mechanics.reactions import Table, balanced_by_arrays, balances, reactions
 from crankmbs.mechanics.tabulated import balanced, rows_of, tabulate
 from crankmbs.mechanics.train import CrankTrain, crank_train
 from validation.adapter import reference_variables
@@ -144,11 +143,16 @@ def test_deviations_are_those_between_two_motions(samples):
     scene = load_scene("v_twin")
     pressure, theta = pressures_of(scene), 0.3 + scene.period / 6 * np.arange(samples)
     one, other = ((theta + 1e-3 * k, *motion(k, samples)[1:]) for k in (1, 2))
-    first, second = (reactions(CrankTrain(scene, pressure), *state) for state in (one, other))
-    found = deviations(CrankTrain(scene, pressure), *other, first)
-    assert found.keys() == first.keys()
-    for name, most in found.items():
-        assert most == pytest.approx(np.abs(first[name] - second[name]).max(), rel=1e-12), name
-    first["side_force"][samples // 2, 1] = np.nan
-    found = deviations(CrankTrain(scene, pressure), *other, first)
-    assert [name for name, most in found.items() if math.isnan(most)] == ["side_force"]
+    first, second = (balances(CrankTrain(scene, pressure), *state) for state in (one, other))
+    values, others = np.empty((2, len(first.parts), samples))
+    first.fill(values)
+    second.fill(others)
+    apart = np.abs(values - others).max(axis=1)
+    assert second.apart(values) == pytest.approx(apart, rel=1e-12)
+    table = Table(first.rows, values)
+    assert list(table.variables) == list(reactions(CrankTrain(scene, pressure), *one))
+    table.variables["side_force"][samples // 2, 1] = np.nan
+    found = second.apart(values)
+    assert np.flatnonzero(np.isnan(found)) == table.places["side_force"].start + 1
+    by_name = dict(zip(first.rows, table.largest(found), strict=True))
+    assert [name for name, most in by_name.items() if np.isnan(most)] == ["side_force"]

@@ -8,7 +8,9 @@ for each sample.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import cached_property, partial
 from itertools import accumulate
 from typing import NamedTuple
 
@@ -25,12 +27,43 @@ from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.periodic import one_period
 from crankmbs.scene.scene import Scene
 
-__all__ = ["deviations", "reactions"]
+__all__ = ["Balances", "Table", "balances", "reactions"]
 
 
 _PER_SPEED = ("piston_velocity", "rod_angular_speed")
 _OFTEN = 3  # so often an angle must come back for its parts to pay
 _UNITS = Powers(*np.eye(3)[:, :, np.newaxis])
+
+
+@dataclass(frozen=True)
+class Table:
+    """Variables at samples, a row for each, of what every cylinder has one for each of them.
+
+    rows : how many of each variable, in their order; values : shape (rows, samples), SI units
+    """
+
+    rows: dict[str, int]
+    values: Array
+
+    @cached_property
+    def places(self) -> dict[str, slice]:
+        """The rows of each variable."""
+        ends = accumulate(self.rows.values())
+        pairs = zip(self.rows.items(), ends, strict=True)
+        return {name: slice(end - count, end) for (name, count), end in pairs}
+
+    @property
+    def variables(self) -> dict[str, Array]:
+        """By name, shape (samples,) those of the crank, (samples, cylinders) of a cylinder."""
+        found = ((name, self.values[rows]) for name, rows in self.places.items())
+        return {n: rows.T if EVERY[n].per_cylinder else rows[0] for n, rows in found}
+
+    def largest(self, of_rows: Array) -> Array:
+        """Of each variable, from something of its rows."""
+        if len(of_rows) == len(self.rows):
+            return of_rows
+        counts = np.array(list(self.rows.values()))
+        return np.asarray(np.maximum.reduceat(of_rows, np.cumsum(counts) - counts))
 
 
 def reactions(
@@ -59,113 +92,102 @@ def reactions(
     >>> float(reactions(train, [0.0], [10.0], [0.0])["rod_angle"][0, 0])
     0.0
     """
-    found = _found(train, (theta, omega, alpha), fuel, friction)
+    found = balances(train, theta, omega, alpha, fuel, friction)
     # one piece of memory, so large that the system is not asked for every run's anew
-    room = np.empty((len(found.parts), len(found.omega)))
-    found.put(found.parts, room)
-    for variable, (name, k, _) in zip(room, found.each(), strict=True):
-        if name in found.mixed:
-            found.mix(name, k, variable)
-    ends = zip(found.rows.items(), accumulate(found.rows.values()), strict=True)
-    variables = {name: room[end - count : end] for (name, count), end in ends}
-    return {n: v.T if EVERY[n].per_cylinder else v[0] for n, v in variables.items()}
+    table = Table(found.rows, np.empty((len(found.parts), len(found.omega))))
+    found.fill(table.values)
+    return table.variables
 
 
-def deviations(
-    train: CrankTrain,
-    theta: Array,
-    omega: Array,
-    alpha: Array,
-    variables: Mapping[str, Array],
-    own: Mapping[str, Array] | None = None,
-) -> dict[str, float]:
-    """Largest absolute difference of each variable, as `reactions` gives them for another motion,
-    from those of this motion, which are not kept.
-
-    Parameters are those of `reactions`; variables : by name, with the samples of this motion;
-    own : of that other motion "fuel" and "friction_force", where it has its own
-
-    >>> train = crank_train(load_scene("torque_driven"))
-    >>> motion = np.zeros((3, 2))
-    >>> max(deviations(train, *motion, reactions(train, *motion)).values())
-    0.0
-    """
-    own = own or {}
-    given = own.get("fuel"), own.get("friction_force")
-    found = _found(train, (theta, omega, alpha), *given)
-    largest = dict.fromkeys(found.rows, 0.0)
-    for name, k, parts in found.each():
-        variable = variables[name]
-        apart = found.apart(name, k, parts, variable[:, k] if variable.ndim > 1 else variable)
-        largest[name] = apart if apart != apart else max(largest[name], apart)
-    return largest
-
-
-class _Found(NamedTuple):
+class Balances(NamedTuple):
     """Every variable at the samples, not yet put together.
 
-    rows : how many of each variable; parts : shape (rows, 1, samples), velocities per speed; or
-        (rows, 3, n), what belongs to omega^2, alpha and 1 at the angles of one period
+    angles : shape (n,) [rad], at which the parts are
+    rows : how many of each variable; swift : shape (rows,), which are velocities
+    parts : shape (rows, 1, samples), velocities per speed; or (rows, 3, n), what belongs to
+        omega^2, alpha and 1 at the angles of one period
     which : shape (samples,), which of the n angles a sample is at; None where n are the samples
     more : of the combustion and the friction, each: what a share of 1, or 1 N, on each cylinder
         adds at the n angles; and the shares, or forces, shape (samples, cylinders)
-    mixed : the variables that are not their parts alone
     """
 
+    angles: Array
     rows: dict[str, int]
+    swift: NDArray[np.bool_]
     parts: Array
     which: NDArray[np.intp] | None
     at: Powers
     omega: Array
     more: tuple[tuple[Parts, Array], ...]
-    mixed: frozenset[str]
 
-    def each(self) -> Iterator[tuple[str, int, Array]]:
-        """Variable, number of its row, and the parts."""
-        places = ((name, k) for name, count in self.rows.items() for k in range(count))
-        for (name, k), parts in zip(places, self.parts, strict=True):
-            yield name, k, parts
+    def fill(self, room: Array) -> None:
+        """All variables at the samples in their places, shape (rows, samples)."""
+        self._put(slice(None), room)
+        for row, added in self._added():
+            added(room[row])
 
-    def put(self, parts: Array, room: Array) -> None:
-        """Variables at the samples from their parts into their places, shape (rows, samples)."""
+    def apart(self, values: Array) -> Array:
+        """Largest absolute difference of each row from one of another motion, NaN where one is:
+        values as `fill` gives them; these here are not kept."""
         if self.which is None:
-            room[:] = parts[:, 0]
+            own = np.empty_like(values)
+            self.fill(own)
+            return np.asarray(np.abs(own - values).max(axis=1, initial=0.0))
+        from crankmbs.mechanics import combined
+
+        largest, motion = np.empty(len(values)), (self.at.square, self.at.alpha, self.omega)
+        combined.apart(self.parts, self.swift, self.which, motion, (values, largest))
+        own = np.empty((1, len(self.omega)))
+        for row, added in self._added():
+            self._put(slice(row, row + 1), own)
+            added(own[0])
+            largest[row] = np.abs(own[0] - values[row]).max(initial=0.0)
+        return largest
+
+    def _put(self, rows: slice, room: Array) -> None:
+        """Rows at the samples from their parts alone."""
+        if self.which is None:
+            room[:] = self.parts[rows, 0]
+            room[self.swift[rows]] *= self.omega
         else:
             from crankmbs.mechanics import combined  # numba is loaded only where angles repeat
 
-            combined.together(parts, self.which, self.at.square, self.at.alpha, room)
+            motion = self.at.square, self.at.alpha, self.omega
+            combined.together(self.parts[rows], self.swift[rows], self.which, motion, room)
 
-    def mix(self, name: str, row: int, variable: Array) -> None:
-        """Make of what has been put what it is: a velocity, or one with combustion and friction."""
-        if name in _PER_SPEED:
-            variable *= self.omega
-        for others, size in self.more:
-            for k, part in others[name][row].items() if name in others else ():
+    def _added(self) -> Iterator[tuple[int, Callable[[Array], None]]]:
+        """The rows that combustion and friction add to, each with what adds it."""
+        if not self.more:
+            return
+        places = ((name, k) for name, count in self.rows.items() for k in range(count))
+        for row, (name, k) in enumerate(places):
+            given = [(others[name][k], size) for others, size in self.more if name in others]
+            if any(of_row for of_row, _ in given):
+                yield row, partial(self._add, given)
+
+    def _add(self, given: list[tuple[dict[int, Array], Array]], variable: Array) -> None:
+        for of_row, size in given:
+            for k, part in of_row.items():
                 variable += size[:, k] * (part if self.which is None else part[self.which])
 
-    def apart(self, name: str, row: int, parts: Array, variable: Array) -> float:
-        """Largest difference of a variable from this one at the samples."""
-        simple, own = name not in self.mixed, parts[0]
-        if simple and self.which is not None:
-            from crankmbs.mechanics import combined
 
-            return combined.apart(parts, self.which, self.at.square, self.at.alpha, variable)
-        if not simple:
-            own = np.empty_like(self.omega)
-            self.put(parts[np.newaxis], own[np.newaxis])
-            self.mix(name, row, own)
-        return float(np.abs(own - variable).max(initial=0.0))
-
-
-def _found(
+def balances(
     train: CrankTrain,
-    given: tuple[ArrayLike, ArrayLike, ArrayLike],
-    fuel: Array | None,
-    friction: Array | None,
-) -> _Found:
+    theta: ArrayLike,
+    omega: ArrayLike,
+    alpha: ArrayLike,
+    fuel: Array | None = None,
+    friction: Array | None = None,
+) -> Balances:
+    """What `reactions` puts together, before it does.
+
+    >>> train = crank_train(load_scene("torque_driven"))
+    >>> len(balances(train, [0.0], [10.0], [0.0]).parts)
+    24
+    """
     scene = train.scene
     # copies: a compiled loop is made for every kind of array, read-only or with gaps, that it meets
-    theta, omega, alpha = (np.array(q, dtype=np.float64, order="C") for q in given)
+    theta, omega, alpha = (np.array(q, dtype=np.float64, order="C") for q in (theta, omega, alpha))
     samples = Powers(omega**2, alpha, np.ones(1))
     once, which = one_period(theta, train.repeats)
     by_parts = len(theta) > _OFTEN * len(once)
@@ -180,8 +202,10 @@ def _found(
         rows["friction_force"] = len(scene.cylinders)
         parts = np.pad(parts, ((0, len(scene.cylinders)), (0, 0), (0, 0)))
         more.append((_rubbed_parts(scene, once), friction))
-    mixed = frozenset(_PER_SPEED).union(*(others for others, _ in more))
-    return _Found(rows, parts, which if by_parts else None, samples, omega, tuple(more), mixed)
+    swift = np.repeat([name in _PER_SPEED for name in rows], list(rows.values()))
+    return Balances(
+        once, rows, swift, parts, which if by_parts else None, samples, omega, tuple(more)
+    )
 
 
 def balanced_by_arrays(train: CrankTrain, theta: Array, motion: Powers) -> Array:

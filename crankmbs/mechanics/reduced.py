@@ -90,6 +90,7 @@ def balances(
             pressure = _pressure(phi, k, gas) if area > 0.0 else 0.0
             inertia = m_piston * x1 * x1 + m_rod * (gx1 * gx1 + gy1 * gy1) + i_rod * b1 * b1
             cos_bank, sin_bank = math.cos(banks[k]), math.sin(banks[k])
+            beta = math.atan2(sin_b, cos_b)
             for u in range(len(squares)):
                 square, alpha, one = squares[u, at], alphas[u, at], ones[u, one_at]
                 x_tt, beta_tt = x2 * square + x1 * alpha, b2 * square + b1 * alpha
@@ -105,7 +106,7 @@ def balances(
                 shake_y = -m_rod * felt_y + m_piston * across * one
                 torque = r * (sin_p * throw_x - cos_p * throw_y)
                 own = (
-                    math.atan2(sin_b, cos_b) * one,
+                    beta * one,
                     b1 * one,
                     beta_tt,
                     x * one,

@@ -7,7 +7,6 @@ once, and at single ones between its steps.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,6 +17,7 @@ from crankmbs.mechanics.inertia import Reduction, fired_torque, gravity_vector
 from crankmbs.mechanics.newton_euler import Powers
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.numerics.arrays import Array
+from crankmbs.numerics.once import once
 from crankmbs.scene.scene import Scene
 
 __all__ = ["balanced", "rows_of", "tabulate"]
@@ -144,15 +144,10 @@ def balanced(train: CrankTrain, theta: Array, motion: Powers) -> Array:
     return found
 
 
-def _bare(train: CrankTrain) -> Sequence[Any]:
+@once
+def _bare(train: CrankTrain) -> tuple[tuple[Any, ...], ...]:
     """The numbers, those of all balances and the gas, without names: numba's cache must not name a
     class."""
-    if not train.bare:
-        train.bare.extend(_numbers(train))
-    return train.bare
-
-
-def _numbers(train: CrankTrain) -> tuple[tuple[Any, ...], ...]:
     scene = train.scene
     crank, rod, piston = scene.crank, scene.rod, scene.piston
     axes = [(c.phase, *gravity_vector(scene, c.bank)) for c in scene.cylinders]

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
@@ -15,6 +14,7 @@ from crankmbs.mechanics.knots import KNOT, apart
 from crankmbs.mechanics.pressure import PeriodicPressure, combustion_of, motored_of, pressures_of
 from crankmbs.mechanics.speed import speed_law
 from crankmbs.numerics.arrays import Array
+from crankmbs.numerics.once import once
 from crankmbs.scene.scene import Scene
 
 __all__ = ["CrankTrain", "crank_angle_knots", "crank_train", "merged_knots"]
@@ -28,14 +28,12 @@ class CrankTrain:
     combustion : what a firing of share 1 adds to it, on the same knots, where `pressure` is that
         without combustion; None without fuel
     law : the decisions on the shares; None without fuel
-    bare : the numbers of `crankmbs.mechanics.tabulated`, once it has asked for them
     """
 
     scene: Scene
     pressure: tuple[PeriodicPressure, ...] | None
     combustion: tuple[PeriodicPressure, ...] | None = None
     law: FuelLaw | None = None
-    bare: list[Any] = field(default_factory=list, init=False, compare=False, repr=False)
 
     @cached_property
     def off(self) -> CrankTrain:
@@ -64,6 +62,7 @@ class CrankTrain:
         return math.lcm(*turns) * 2.0 * math.pi
 
 
+@once
 def crank_train(scene: Scene) -> CrankTrain:
     """The crank train of a scene.
 

@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from crankmbs.mechanics.peaks import peak, relative_error
-from crankmbs.mechanics.reactions import deviations, reactions
+from crankmbs.mechanics.reactions import Balances, Table, balances
 from crankmbs.mechanics.tabulated import tabulate
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.variables import EVERY, SUMS
 from crankmbs.motion.base import Samples, Solution
 from crankmbs.numerics.arrays import Array
-from crankmbs.numerics.periodic import one_period
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -25,23 +24,30 @@ __all__ = ["ANGLE_ROUNDING", "Assembled", "assemble", "dataset"]
 
 _ROUNDING = 64 * float(np.finfo(float).eps)  # of a variable's peak: what the formulas round
 _GIVEN = ("fuel", "friction_force")  # what reactions take from a formulation's own
+_MOTION = ("time", "crank_angle", "crank_speed", "crank_acceleration", "energy_residual")
 _FEW = 32  # samples: among more there is one where nothing cancels
 ANGLE_ROUNDING = 2 * float(np.finfo(float).eps)  # of the crank angle
 
 
-class Assembled(NamedTuple):
+@dataclass(frozen=True)
+class Assembled:
     """A solution, every variable of the result at its samples, its largest absolute value there,
     and an estimate of its error."""
 
     solution: Solution
-    variables: dict[str, Array]
+    table: Table
     peaks: dict[str, float]
     errors: dict[str, float]
 
     @property
+    def variables(self) -> dict[str, Array]:
+        """By name, with the shapes of a result."""
+        return self.table.variables
+
+    @cached_property
     def relative_error(self) -> float:
         """The worst relative error, as `crankmbs.mechanics.peaks` has it; 0 where nothing moved."""
-        angle = self.variables["crank_angle"]
+        angle = self.solution.samples.theta
         turned = peak(angle - angle[0])
         return relative_error(self.peaks, self.errors, turned) if turned else 0.0
 
@@ -68,29 +74,34 @@ def assemble(train: CrankTrain, solution: Solution) -> Assembled:
 
     Where the formulation states errors they are taken.
     """
-    variables = _variables(train, solution.samples)
-    peaks = {name: peak(values) for name, values in variables.items()}
-    if solution.errors:
-        return Assembled(solution, variables, peaks, dict(solution.errors))
+    table = _tabled(train, solution.samples)
+    peaks = table.largest(_peaks(table.values))
+    by_name = dict(zip(table.rows, peaks.tolist(), strict=True))
+    errors = dict(solution.errors) or _errors(train, solution, table, by_name)
+    return Assembled(solution, table, by_name, errors)
+
+
+def _errors(
+    train: CrankTrain, solution: Solution, table: Table, peaks: dict[str, float]
+) -> dict[str, float]:
+    """What `assemble` estimates, from the variables and their peaks."""
     answer, better = solution.samples, solution.better or solution.samples
     late = better.time - answer.time
     ahead = better.theta - answer.theta - answer.omega * late
-    passes = _Passes(train.off, answer, _turned_by_rounding(better), variables)
-    errors = {name: _ROUNDING * size for name, size in _sizes(peaks).items()}
-    differences = list(passes.differences())
-    missed = differences[-1][1]
-    for apart, _ in differences:
-        errors = {name: error + apart[name] for name, error in errors.items()}
+    passes = _Passes(train.off, answer, _turned_by_rounding(better), table)
+    apart, missed, angles = passes.difference()
+    largest = _ROUNDING * np.array(_sizes(peaks)) + apart
     if late.any() and late[-1] == 0.0 != ahead[-1]:  # else it ends at an angle, at the same time
         apart, missed_there = passes.end_in_time(ahead)
         missed = max(missed, missed_there)
-        for name, most in apart.items():
-            errors[name] = max(errors[name], most + _ROUNDING * peaks[name])
-    if missed:
-        errors["crank_acceleration"] += missed / _least_inertia(train, better.theta)
+        rounded = _ROUNDING * np.array(list(peaks.values()))
+        largest = np.maximum(largest, apart + rounded)
+    errors = dict(zip(table.rows, largest.tolist(), strict=True))
+    if missed:  # of a free crank, which has inertia at every angle; a driven one may have none
+        errors["crank_acceleration"] += missed / float(tabulate(train, angles).inertia.min())
     errors["crank_angle"] = peak(ahead) + _ROUNDING * peaks["crank_angle"]
     errors["energy_residual"] = peaks["energy_residual"] + _ROUNDING * peaks["kinetic_energy"]
-    return Assembled(solution, variables, peaks, errors)
+    return errors
 
 
 class _Passes(NamedTuple):
@@ -98,31 +109,36 @@ class _Passes(NamedTuple):
 
     off : the crank train of the better one
     rounded : the better answer, turned ahead by the rounding of its angle
-    variables : of the answer
+    table : the variables of the answer
     """
 
     off: CrankTrain
     answer: Samples
     rounded: Samples
-    variables: dict[str, Array]
+    table: Table
 
-    def differences(self) -> Iterator[tuple[dict[str, float], float]]:
-        """What each variable changes by from the answer to the better one, at most; and by how
-        much the torque that the better motion needs differs from the one it is given [N m].
+    def difference(self) -> tuple[Array, float, Array]:
+        """What each variable changes by from the answer to the better one, at most; by how much the
+        torque that the better motion needs differs from the one it is given [N m]; and the angles
+        that motion passes [rad], but for those whole periods on.
 
         In one go; of a few samples, where the differences may cancel in a variable by chance, in
-        three: the angle, the speed, the acceleration, whose changes are to be added up.
+        three: the angle, the speed, the acceleration, whose changes are added up.
         """
-        before = self.variables
+        before, places, first = self.table.values, self.table.places, len(_MOTION)
+        total = np.zeros(len(self.table.rows))
         for samples in self._chain():
-            motion = (samples.theta, samples.omega, samples.alpha)
-            apart = deviations(self.off, *motion, {**before, **samples.own}, samples.own)
-            missed = apart["external_torque"] if samples.own else 0.0
-            given = {**_motion(samples), **samples.own}
-            apart |= {name: peak(before[name] - values) for name, values in given.items()}
-            yield apart, missed
+            found, apart = _balances(self.off, samples), np.zeros(len(before))
+            balanced = slice(first, first + len(found.parts))
+            apart[balanced] = found.apart(before[balanced])
+            missed = float(apart[places["external_torque"]][0]) if samples.own else 0.0
+            apart[:first] = _peaks(before[:first] - _motion(samples))
+            for name, values in samples.own.items():
+                apart[places[name]] = _peaks(before[places[name]] - values.T)
+            total += self.table.largest(apart)
             if samples is not self.rounded:
-                before = _variables(self.off, samples)
+                before = _tabled(self.off, samples).values
+        return total, missed, found.angles
 
     def _chain(self) -> list[Samples]:
         if len(self.answer.time) > _FEW:
@@ -130,23 +146,29 @@ class _Passes(NamedTuple):
         turned = replace(self.answer, theta=self.rounded.theta)
         return [turned, replace(turned, omega=self.rounded.omega), self.rounded]
 
-    def end_in_time(self, ahead: Array) -> tuple[dict[str, float], float]:
-        """The same at the last sample, its angle as far off as the passes were in the last turn.
+    def end_in_time(self, ahead: Array) -> tuple[Array, float]:
+        """The same at the last sample, its angle as far off as the passes were in the last turn;
+        zero of what a formulation computed by itself.
 
         At an end in time that sample is the only one whose angle errs where the others are at
         angles, and two passes may agree in it by chance.
 
         ahead : shape (n,) [rad], by which the better answer is ahead at equal time
         """
-        theta, own = self.rounded.theta, self.rounded.own
+        theta, own, places = self.rounded.theta, self.rounded.own, self.table.places
         recent = ahead[np.abs(theta - theta[-1]) <= 2.0 * math.pi]
         more = math.copysign(peak(recent) - abs(ahead[-1]), ahead[-1])
         given = {name: values for name, values in own.items() if name in _GIVEN}
         last = replace(self.rounded, own=given).select(np.array([-1]))
-        end = _variables(self.off, replace(last, theta=last.theta + more))
-        missed = peak(own["external_torque"][-1:] - end["external_torque"]) if own else 0.0
-        names = self.variables.keys() - own.keys()
-        return {name: peak(self.variables[name][-1:] - end[name]) for name in names}, missed
+        end = _tabled(self.off, replace(last, theta=last.theta + more)).values
+        apart = _peaks(self.table.values[:, -1:] - end)
+        missed = 0.0
+        if own:
+            torque = end[places["external_torque"]]
+            missed = peak(own["external_torque"][-1:] - torque)
+        for name in own:
+            apart[places[name]] = 0.0
+        return self.table.largest(apart), missed
 
 
 def _turned_by_rounding(samples: Samples) -> Samples:
@@ -154,12 +176,6 @@ def _turned_by_rounding(samples: Samples) -> Samples:
     rounding = ANGLE_ROUNDING * peak(samples.theta)
     omega = samples.omega + _speed_change(samples, rounding)
     return replace(samples, theta=samples.theta + rounding, omega=omega)
-
-
-def _least_inertia(train: CrankTrain, theta: Array) -> float:
-    """Of a free crank, which has inertia at every angle; a driven one may have none."""
-    angles, _ = one_period(theta, train.repeats)
-    return float(np.min(tabulate(train, angles).inertia))
 
 
 def _speed_change(samples: Samples, ahead: float) -> Array:
@@ -194,26 +210,43 @@ def dataset(assembled: Assembled) -> xr.Dataset:
     )
 
 
-def _variables(train: CrankTrain, samples: Samples) -> dict[str, Array]:
+def _tabled(train: CrankTrain, samples: Samples) -> Table:
+    """Every variable at the samples: the motion, what follows from it, and in place of that, or
+    beside it, what the formulation computed by itself."""
+    found, own = _balances(train, samples), samples.own
+    more = {name: one.shape[1] for name, one in own.items() if name not in found.rows}
+    rows = dict.fromkeys(_MOTION, 1) | found.rows | more
+    # one piece of memory, so large that the system is not asked for every run's anew
+    table = Table(rows, np.empty((sum(rows.values()), len(samples.time))))
+    table.values[: len(_MOTION)] = _motion(samples)
+    found.fill(table.values[len(_MOTION) :][: len(found.parts)])
+    places = table.places
+    for name, values in own.items():
+        table.values[places[name]] = values.T
+    return table
+
+
+def _balances(train: CrankTrain, samples: Samples) -> Balances:
     given = (samples.own.get(name) for name in _GIVEN)
-    found = reactions(train, samples.theta, samples.omega, samples.alpha, *given)
-    return {**_motion(samples), **found, **samples.own}
+    return balances(train, samples.theta, samples.omega, samples.alpha, *given)
 
 
-def _sizes(peaks: dict[str, float]) -> dict[str, float]:
+def _motion(samples: Samples) -> Array:
+    """The rows of `_MOTION`."""
+    of_time = samples.time, samples.theta, samples.omega, samples.alpha
+    return np.array([*of_time, samples.energy_residual])
+
+
+def _peaks(rows: Array) -> Array:
+    """Largest absolute value of each row, 0 of none."""
+    low, high = rows.min(axis=1, initial=0.0), rows.max(axis=1, initial=0.0)
+    return np.asarray(np.maximum(-low, high))
+
+
+def _sizes(peaks: dict[str, float]) -> list[float]:
     """What of each variable is rounded: its peak; of sums that may cancel the largest of a unit."""
     largest: dict[str, float] = {}
     for name, size in peaks.items():
         unit = EVERY[name].units
         largest[unit] = max(largest.get(unit, 0.0), size)
-    return {n: largest[EVERY[n].units] if n in SUMS else p for n, p in peaks.items()}
-
-
-def _motion(samples: Samples) -> dict[str, Array]:
-    return {
-        "time": samples.time,
-        "crank_angle": samples.theta,
-        "crank_speed": samples.omega,
-        "crank_acceleration": samples.alpha,
-        "energy_residual": samples.energy_residual,
-    }
+    return [largest[EVERY[n].units] if n in SUMS else p for n, p in peaks.items()]

@@ -27,11 +27,15 @@ def one_period(theta: Array, period: float) -> tuple[Array, NDArray[np.intp]]:
     if count == n:
         return theta, np.arange(n)
     close = 4 * np.finfo(float).eps * max(float(theta.max()), -float(theta.min()))
-    missed = np.abs(np.abs(theta[count:] - theta[: n - count]) - period)
-    repeating = n if missed.max() <= close else count + int(np.argmax(missed > close))
+    missed = np.abs(theta[count:] - theta[: n - count])
+    missed -= period
+    beyond = np.abs(missed, out=missed) > close
+    first = int(beyond.argmax())
+    repeating = count + first if beyond[first] else n
     if repeating == count:
         return theta, np.arange(n)
-    which = np.arange(n)
-    which[:repeating] %= count
-    which[repeating:] -= repeating - count
-    return np.append(theta[:count], theta[repeating:]), which
+    turns = np.empty((-(-n // count), count), np.intp)
+    turns[:] = np.arange(count)
+    which = turns.ravel()[:n]
+    which[repeating:] = np.arange(count, count + n - repeating)
+    return np.concatenate([theta[:count], theta[repeating:]]), which

@@ -22,8 +22,9 @@ from crankmbs.mechanics.friction import friction_torque
 from crankmbs.mechanics.tabulated import tabulate
 from crankmbs.mechanics.torque import Branch, Course, branch_at, course_of
 from crankmbs.motion.base import State
+from crankmbs.motion.crank_angle import loops
 from crankmbs.motion.crank_angle.firings import solve, solve_fired
-from crankmbs.motion.crank_angle.grid import Grid, Strip, largest_of_row
+from crankmbs.motion.crank_angle.grid import Grid, Strip
 from crankmbs.motion.crank_angle.kinks import what_misses
 from crankmbs.motion.crank_angle.periods import period_of
 from crankmbs.motion.crank_angle.rings import sign_changes_in
@@ -85,9 +86,7 @@ def advance(
             return None
         t_end = min(window.branch.t_end, plan.time_bound)
         window = (replace(window, skipped=skipped) if skipped else window).cut(t_end, bound)
-        whole, window = _landed(way, window, t_end)
-        if whole is not None:
-            yield whole
+        window = _landed(way, window, t_end)
         yield window
         if window.end.time >= plan.time_bound or window.end.theta == end:
             return Ending.COMPLETE
@@ -137,27 +136,24 @@ def _before_kink(way: _Way, branch: Branch, course: Course) -> Window | None:
     return window.first(cut.stop[0]) if cut.stop[0] > 0 else None
 
 
-def _landed(way: _Way, window: Window, t_end: float) -> tuple[Window | None, Window]:
-    """A window that ends inside a cell in two: the whole cells, and that one solved again up to the
-    end. Inside a cell the answer is of lower order than at its edge."""
+def _landed(way: _Way, window: Window, t_end: float) -> Window:
+    """A window that ends inside a cell, with that one solved again up to the end: inside a cell the
+    answer is of lower order than at its edge."""
     k, x = window.stop
-    width = float(window.strip.width[k])
     if not _HAIR < x < 1.0 - _HAIR:
-        return None, window
-    whole = window.first(k) if k > 0 else None
-    begin = whole.end if whole else window.begin
-    energy = float(window.energy[k])
+        return window
+    begin, energy = window.at_edge(k), float(window.energy[k])
     for beyond in _BEYOND:
-        turned = float(window.edges[k]) + (x + beyond) * width
+        turned = float(window.edges[k]) + (x + beyond) * float(window.strip.width[k])
         bound = window.begin.theta + window.sense * turned
         again = way._replace(state=begin, energy=energy, bound=bound, t_end=math.inf)
         last = _solve(again, window.branch)
         if last is None:
             break
         last = last.cut(t_end, math.inf)
-        if np.array_equal(last.landed[:3], window.landed[:3], equal_nan=True):
-            return whole, replace(last, skipped=0 if whole else window.skipped)
-    return None, window
+        if last.landed[:3] == window.landed[:3]:  # also what neither knows: it is one NaN
+            return window.ended_by(last)
+    return window
 
 
 def _skip(way: _Way, branch: Branch, last: float) -> tuple[State, int]:
@@ -224,6 +220,8 @@ def _solve(way: _Way, loads: Branch | Course) -> Window | None:
         most = _SPEED_BLOCK if any(0.0 < end < math.inf for end in ends) else _BLOCK
     strip = grid.strip(state.theta, sense, int(min(cells, most)), bound)
     window = _solved(way, loads, strip, t_end)
+    if isinstance(loads, Branch) and grid.train.law is None:
+        return window
     for _ in range(_ROUNDS):
         if window is None:
             return None
@@ -247,17 +245,13 @@ def _solved(way: _Way, loads: Branch | Course, strip: Strip, t_end: float) -> Wi
         else:
             cells, strip, modes = solve_fired(grid, strip, loads, begin, state)
         edges, time, torque, slowness = cells
-        strip = strip.first(len(torque))
-        outside = loads(time[1:], sense / slowness[:, -1])
-        for function in loads.functions:
+        strip, more = strip.first(len(torque)), np.empty(0)
+        if loads.functions:
             at_ends = strip.angles(state.theta, sense, grid.rule)[:, -1]
-            outside = outside + function(time[1:], at_ends, sense / slowness[:, -1])
-        if strip.drags:
-            outside = outside - strip.drag[:, -1] * sense / slowness[:, -1]
-        scale = grid.scale[strip.cell] + np.abs(outside)
-        least = 0.5 * grid.least[strip.cell] / largest_of_row(slowness) ** 2
-        good = np.minimum(least, np.minimum(edges[1:], edges[:-1])) > _SLOW * scale  # not of a NaN
-    m = len(good) if good.all() else int(np.argmin(good))
+            given = time[1:], at_ends, sense / slowness[:, -1]
+            more = np.sum([function(*given) for function in loads.functions], axis=0)
+    course, limits = (loads.tables, more), (grid.scale, grid.least)
+    m = loops.lasting(_SLOW, sense, course, limits, (strip.cell, strip.drag), cells.bare)
     if m == 0:
         return None
     return Window(

@@ -75,12 +75,23 @@ class Strip:
         """The first m cells."""
         return self if m == len(self.cell) else self.part(0, m)
 
+    @property
+    def _tables(self) -> tuple[Array, ...]:
+        return self.inertia, self.torque, self.combustion, self.rubbed, self.drag
+
     def part(self, low: int, high: int) -> Strip:
         """The cells from one number to another; edges are still counted from the beginning."""
-        tables = (self.inertia, self.torque, self.combustion, self.rubbed, self.drag)
-        of_cells = (table[low:high] for table in tables)
+        of_cells = (table[low:high] for table in self._tables)
         turned = self.turned[low : high + 1]
         return Strip(self.cell[low:high], self.width[low:high], turned, self.against, *of_cells)
+
+    def joined(self, after: Strip) -> Strip:
+        """These cells and those after them, whose angles are counted from where these end."""
+        cell = np.concatenate([self.cell, after.cell])
+        width = np.concatenate([self.width, after.width])
+        turned = np.concatenate([self.turned[:-1], self.turned[-1] + after.turned])
+        pairs = zip(self._tables, after._tables, strict=True)
+        return Strip(cell, width, turned, self.against, *map(np.concatenate, pairs))
 
 
 class _Tables(NamedTuple):
@@ -227,16 +238,20 @@ class Grid:
         self, theta: float, sense: float, cell: NDArray[np.intp], width: Array, turned: Array
     ) -> Strip:
         """The strip of these cells; what is a part of a cell is tabulated anew."""
-        tables = [table.take(cell, axis=0) for table in self.tables]
-        if sense < 0.0:
-            tables = [table[:, ::-1].copy() for table in tables]
-        parts = np.flatnonzero(width != self._widths.take(cell))
+        parts = (width != self._widths.take(cell)).nonzero()[0]
+        anew: tuple[Array, ...] = ()
         if len(parts):
             period = float(self.edges[-1])
             local = theta - math.floor((theta + sense * _SLIVER) / period) * period
             start = local + sense * turned[parts]
             anew = self._tabulate(start, sense * width[parts])
-            for table, part in zip(tables, anew, strict=True):
+        if len(parts) == len(cell):
+            tables = [*anew]
+        else:
+            tables = [table.take(cell, axis=0) for table in self.tables]
+            if sense < 0.0:
+                tables = [table[:, ::-1].copy() for table in tables]
+            for table, part in zip(tables, anew, strict=False):
                 table[parts] = part
         inertia, torque, combustion, friction, *others = tables
         against = 0.0

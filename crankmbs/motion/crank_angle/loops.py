@@ -22,6 +22,7 @@ __all__ = [
     "fire",
     "fire_each",
     "fired",
+    "lasting",
     "maps",
     "missed",
     "newton",
@@ -44,32 +45,42 @@ _WEAK, _FAST = 0.01, 0.1
 
 @kernel
 def affine(
-    cells: tuple[Index, Array],
-    loads: tuple[Array, Array, Array, Array],
+    alike: int,
+    cells: tuple[Array, Array, Array],
+    loads: tuple[float, float, float],
     rule: tuple[Array, Array],
     ends: tuple[float, float, float],
     solved: Solved,
 ) -> int:
-    """Solve cells by affine maps, up to the end in time; count them.
+    """Solve cells by affine maps, dE/du = sense (T + c0) + 2 sense c2 E / J, up to the end in time;
+    count them.
 
-    cells : row of the loads for every one, and its width; loads : as `maps` takes them, and
-    inertia at the nodes; rule : matrix and weights; ends : energy and time at the start, last time
+    alike : after so many cells they come again, but for the first and the last, which may be parts
+    cells : width, and J and T at the nodes; loads : c0, c2 and sense; rule : matrix and weights;
+    ends : energy and time at the start, last time
     """
-    (which, width), (signed, push, rate, inertia) = cells, loads
-    (_, weights), (energy, t, t_end) = rule, ends
-    edges, time, torque, slowness = solved
-    gain, shift = np.empty(push.shape), np.empty(push.shape)
-    growth, rise = np.empty(len(signed)), np.empty(len(signed))
+    (width, inertia, rest), (c0, c2, sense), (_, weights) = cells, loads, rule
+    (energy, t, t_end), (edges, time, torque, slowness) = ends, solved
+    m, stages = len(width), len(weights)
+    once = min(m - 1, alike + 1)
+    signed, growth, rise = np.empty((3, once + 1))
+    push, rate, gain, shift = np.empty((4, once + 1, stages))
+    for c in range(once + 1):
+        k = c if c < once else m - 1
+        signed[c] = sense * width[k]
+        for j in range(stages):
+            push[c, j] = rest[k, j] + c0
+            rate[c, j] = 2.0 * c2 / inertia[k, j]
     maps((signed, push, rate), rule, (gain, shift, growth, rise))
     edges[0], time[0] = energy, t
     lost, late = 0.0, 0.0  # of E and t by rounding: all passes over the cells lose it alike, unseen
-    for k in range(len(which)):
-        c = which[k]
+    for k in range(m):
+        c = once if k == m - 1 else k if k < once else 1 + (k - 1) % alike
         spent = 0.0
-        for j in range(len(weights)):
+        for j in range(stages):
             e = gain[c, j] * energy + shift[c, j]
             torque[k, j] = push[c, j] + rate[c, j] * e
-            slowness[k, j] = math.sqrt(0.5 * inertia[c, j] / e) if e > 0.0 else math.nan
+            slowness[k, j] = math.sqrt(0.5 * inertia[k, j] / e) if e > 0.0 else math.nan
             spent += weights[j] * slowness[k, j]
         before, step = energy, growth[c] * energy + rise[c] - lost
         energy = before + step
@@ -80,7 +91,7 @@ def affine(
         edges[k + 1], time[k + 1] = energy, t
         if not t < t_end:
             return k + 1
-    return len(which)
+    return m
 
 
 @kernel
@@ -93,13 +104,15 @@ def maps(loads: tuple[Array, Array, Array], rule: tuple[Array, Array], found: So
     s = len(weights)
     system, both = np.empty((s, s)), np.empty((s, 2))
     for c in range(len(signed)):
-        h, growth[c], rise[c] = signed[c], 0.0, 0.0
+        h, growth[c], rise[c], bound = signed[c], 0.0, 0.0, False
         for j in range(len(weights)):
+            bound = bound or rate[c, j] != 0.0
             both[j, 0], both[j, 1] = 1.0, 0.0
             for i in range(len(weights)):
                 both[j, 1] += h * matrix[j, i] * push[c, i]
                 system[j, i] = (1.0 if i == j else 0.0) - h * matrix[j, i] * rate[c, i]
-        _eliminate(system, both)
+        if bound:  # else each node has its own equation
+            _eliminate(system, both)
         for j in range(len(weights)):
             gain[c, j], shift[c, j] = both[j, 0], both[j, 1]
             growth[c] += h * weights[j] * rate[c, j] * gain[c, j]
@@ -323,8 +336,8 @@ def fired(
         out = stretch, time[k : m + 1], torque[k:m], slowness[k:m]
         if affinely:
             begin = (edges[k], time[k], t_end)
-            of_loads = (sense * h, push + loads[1][0, 0], 2.0 * loads[3][0, 2] / inside, inside)
-            found = affine((np.arange(m - k), h), of_loads, rule, begin, out)
+            of_loads = (loads[1][0, 0], loads[3][0, 2], sense)
+            found = affine(m - k, (h, inside, push), of_loads, rule, begin, out)
         else:
             now = (edges[k], time[k], sense)
             found = newton(loads, bounds, now, rule, (h, inside, push, drag[k:m]), out)
@@ -432,6 +445,41 @@ def missed(
             both = abs(energy[k]) / edges[k + 1] + abs(width[k] * (late[i] - early[i])) * per_time
             inside[k] = inside[k] if both <= inside[k] or inside[k] != inside[k] else both
         at_end[k] = both
+
+
+@kernel
+def lasting(
+    slow: float,
+    sense: float,
+    course: tuple[Loads, Array],
+    grid: tuple[Array, Array],
+    cells: tuple[Index, Array],
+    solved: Solved,
+) -> int:
+    """How many solved cells come before one whose energy would be gone within an angle ``slow``
+    [rad], or that has none.
+
+    course : tables of the loads, and beside them the torque at each cell's end of those that are
+    functions, of none where none are; grid : of each of its cells largest torque over the angle and
+    least J; cells : number in the grid, and drag, if there is any, at the nodes
+    """
+    (loads, more), (scale, least), (cell, drag) = course, grid, cells
+    (energy, time, _, slowness), f, g = solved, 0, 0
+    drags, end = drag.shape[1] > 0, slowness.shape[1] - 1
+    for k in range(len(slowness)):
+        omega = sense / slowness[k, end]
+        torque, f, g = _loaded(loads, time[k + 1], omega, (f, g))
+        if drags:
+            torque -= drag[k, end] * omega
+        if len(more) > 0:
+            torque += more[k]
+        enough = slow * (scale[cell[k]] + abs(torque))
+        if not (energy[k] > enough and energy[k + 1] > enough):
+            return k
+        for j in range(end + 1):
+            if not 0.5 * least[cell[k]] > enough * slowness[k, j] ** 2:  # nor where it is NaN
+                return k
+    return len(slowness)
 
 
 @kernel

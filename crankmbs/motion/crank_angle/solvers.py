@@ -48,24 +48,18 @@ class Cells(NamedTuple):
 
     def first(self, m: int) -> Cells:
         """The first m cells."""
+        if m == len(self.torque):
+            return self
         return Cells(self.edges[: m + 1], self.time[: m + 1], self.torque[:m], self.slowness[:m])
 
 
 def solve_affine(grid: Grid, strip: Strip, branch: Branch, begin: Begin) -> Cells:
     """dE/du = sense (T + c0) + 2 sense c2 E / J: an affine map per cell, the same every period."""
-    m, n = len(strip.width), len(grid.edges) - 1
     alike = grid.train.law is None  # whose shares differ from period to period
-    once = (
-        min(m - 1, n + 1) if alike else m - 1
-    )  # the first cell may be a part; then one period, then the last cell
-    which = np.append(np.arange(once), m - 1)
-    again = np.append(np.arange(m - 1), once)
-    again[once:-1] = 1 + (again[once:-1] - 1) % n
-    inertia, push = strip.inertia[which], strip.torque[which] + branch.c0
-    rate, signed = 2.0 * branch.c2 / inertia, begin.sense * strip.width[which]
+    period = len(grid.edges) - 1 if alike else len(strip.width)
     cells, rule = Cells.empty(strip), (grid.rule.matrix, grid.rule.weights)
-    loads, ends = (signed, push, rate, inertia), begin[1:4]
-    return cells.first(loops.affine((again, strip.width), loads, rule, ends, cells.bare))
+    tables, loads = (strip.width, strip.inertia, strip.torque), (branch.c0, branch.c2, begin.sense)
+    return cells.first(loops.affine(period, tables, loads, rule, begin[1:4], cells.bare))
 
 
 def solve_newton(grid: Grid, strip: Strip, loads: Branch | Course, begin: Begin) -> Cells:

@@ -81,8 +81,8 @@ class Window:
     @cached_property
     def _last(self) -> Samples:
         k, x = self.stop
-        at = self.inside(k, np.array([x]), self.landed)
-        return replace(at, omega=_exact(self.landed.omega, at.omega))
+        at, omega = self.inside(k, np.array([x]), self.landed), self.landed.omega
+        return at if math.isnan(omega) else replace(at, omega=np.array([omega]))
 
     @property
     def steps(self) -> int:
@@ -148,12 +148,41 @@ class Window:
             return self
         return self._up_to(stop, landed)
 
+    def at_edge(self, k: int) -> State:
+        """The state where a cell begins; without the energy residual, but for the first."""
+        if k == 0:
+            return self.begin
+        mode = next((mode for cell, mode in self.modes[::-1] if cell <= k), self.begin.mode)
+        theta = self.begin.theta + self.sense * float(self.edges[k])
+        speed = float(self.speeds_at(np.array([k]))[0])
+        return State(float(self.time[k]), theta, speed, math.nan, mode)
+
+    def ended_by(self, last: Window) -> Window:
+        """With cells that were solved from where its last one begins, in place of that."""
+        k = self.stop[0]
+        strip = self.strip.part(0, k).joined(last.strip)
+        later = tuple((k + cell, mode) for cell, mode in last.modes[1:])
+        return replace(
+            self,
+            strip=strip,
+            edges=strip.turned,
+            energy=np.concatenate([self.energy[:k], last.energy]),
+            time=np.concatenate([self.time[:k], last.time]),
+            torque=np.concatenate([self.torque[:k], last.torque]),
+            slowness=np.concatenate([self.slowness[:k], last.slowness]),
+            stop=(k + last.stop[0], last.stop[1]),
+            landed=last.landed,
+            modes=self.modes + later,
+        )
+
     def first(self, m: int) -> Window:
         """The first m cells."""
         return self._up_to((m - 1, 1.0), NOWHERE)
 
     def _up_to(self, stop: tuple[int, float], landed: State) -> Window:
         m = stop[0] + 1
+        if m == len(self.torque):
+            return replace(self, stop=stop, landed=landed)
         return replace(
             self,
             strip=self.strip.first(m),
@@ -240,14 +269,17 @@ class Window:
         """Samples in the cells k."""
         once, which = one_period(theta, self.grid.train.repeats)
         inertia, slope, torque = tabulate(self.grid.train, once)
-        over_angle = np.zeros_like(torque) + self.grid.outside(once)
-        torque = torque + over_angle
+        over_angle: Array | None = None
+        if self.grid.over_angle is not None:
+            over_angle = self.grid.over_angle(once)
+            torque = torque + over_angle
         own = {}
         if self.modes:
             own = {"fuel": self.shares[k]}
             more = fired_torque(self.grid.train, once)[which] * own["fuel"]
             inertia, slope, torque = inertia[which], slope[which], torque[which] + more.sum(axis=1)
-            over_angle, which = over_angle[which], np.arange(len(theta))
+            over_angle = None if over_angle is None else over_angle[which]
+            which = np.arange(len(theta))
         of_angle = (inertia, slope, torque)  # bare: numba's cache must not name a class
         rubs = self.grid.train.scene.friction is not None
         if isinstance(self.branch, Branch) and not self.branch.functions and not rubs:
@@ -268,7 +300,7 @@ class Window:
                 own["friction_force"] = forces
             alpha = (torque + outside - 0.5 * slope * omega**2) / inertia
         residual = self.begin.residual - self.missed[k]
-        outside = outside + over_angle[which]
+        outside = outside if over_angle is None else outside + over_angle[which]
         return Samples(t, theta, omega, alpha, residual, {"external_torque": outside, **own})
 
 

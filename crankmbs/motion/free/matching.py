@@ -26,7 +26,7 @@ class Matched(NamedTuple):
 def stays(a: Samples, b: Samples) -> bool:
     """Whether from the earlier end on the other pass stays where the first has ended."""
     short, long = sorted((a, b), key=lambda samples: float(samples.time[-1]))
-    later = long.theta[long.time >= short.time[-1]]
+    later = long.theta[long.time.searchsorted(short.time[-1]) :]
     return bool(np.max(np.abs(later - short.theta[-1])) <= _SAME_REST)
 
 

@@ -30,6 +30,7 @@ from crankmbs.motion.plan import plan_of
 from crankmbs.motion.remarks import left_open
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.collocation import gauss
+from crankmbs.numerics.once import once
 from crankmbs.scene.scene import Scene
 
 __all__ = ["Lead", "evaluations", "first_grid", "run"]
@@ -55,6 +56,7 @@ class Lead(NamedTuple):
     begin: Begin
 
 
+@once
 def first_grid(train: CrankTrain, rtol: float) -> Grid:
     """The coarsest grid, of the order that a tolerance asks for."""
     return grid_of(train, gauss(min(3 + round(-math.log10(rtol) / 3.0), 7)))
@@ -121,15 +123,14 @@ def run(
     share = 2.0 if functions else 1.0
     if rounded or least > rtol:
         # what is left is rounding, in both passes alike, and their difference too small an estimate
-        best = best._replace(errors={name: 2.0 * error for name, error in best.errors.items()})
+        best = _doubled(best)
         share *= 2.0
     keep = partial(recount, partial(travel, by_angle=by_angle), way, followed, share)
-    best = best._replace(solution=replace(best.solution, keep=keep))
-    if best.relative_error > rtol and best.solution.status >= 0:
+    solution = replace(best.solution, keep=keep)
+    if best.relative_error > rtol and solution.status >= 0:
         text = f"asked for {rtol:.0e}, reached {best.relative_error:.0e}"
-        solution = replace(best.solution, message=f"{best.solution.message}; {text}")
-        best = best._replace(solution=solution)
-    return best
+        solution = replace(solution, message=f"{solution.message}; {text}")
+    return replace(best, solution=solution)
 
 
 def _staggered(grid: Grid) -> Grid:
@@ -144,7 +145,12 @@ def _stated_twice(by_order: Assembled, by_place: Assembled) -> Assembled:
     """The answer with twice the larger error of two comparisons; broken if one of them is."""
     larger = {name: max(e, by_place.errors[name]) for name, e in by_order.errors.items()}
     answer = by_place if by_place.solution.status < by_order.solution.status else by_order
-    return answer._replace(errors={name: 2.0 * error for name, error in larger.items()})
+    return _doubled(replace(answer, errors=larger))
+
+
+def _doubled(one: Assembled) -> Assembled:
+    """With twice the errors."""
+    return replace(one, errors={name: 2.0 * error for name, error in one.errors.items()})
 
 
 def _parts(grid: Grid, worst: Array, local: float) -> NDArray[np.intp]:

@@ -60,14 +60,14 @@ def _said(found: Assembled, lost: LostError) -> Assembled:
     samples = found.solution.samples
     at = float(samples.theta[-1]), float(samples.omega[-1])
     status, message = lost.ending.said(*at, shots=MOST_SHOTS, factor=lost.factor)
-    return found._replace(solution=replace(found.solution, status=status, message=message))
+    return replace(found, solution=replace(found.solution, status=status, message=message))
 
 
 def _settled(found: Assembled, decay: Decay) -> Assembled:
     """The settled period, with what it leaves of a disturbance."""
     _, mark, short = found.solution.message.partition(";")
     message = f"settled: a period leaves {decay.factor:.4g} of a disturbance{mark}{short}"
-    return found._replace(solution=replace(found.solution, message=message, decay=decay))
+    return replace(found, solution=replace(found.solution, message=message, decay=decay))
 
 
 class _Settling:

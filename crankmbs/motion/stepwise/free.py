@@ -141,7 +141,7 @@ class Free:
         better = self._sample(self._train.off, beside)
         found = assemble(self._train, Solution(answer, *self.said(standing), 0, 0, better))
         errors = {name: self._share * error for name, error in found.errors.items()}
-        return found._replace(errors=errors)
+        return replace(found, errors=errors)
 
     def _sample(self, train: CrankTrain, state: State) -> Samples:
         over_angle = self._passes[0].reduced.at(state.mode.loads).over_angle
