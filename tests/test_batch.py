@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from crankmbs import load_scene, simulate
-from crankmbs.batch import loops
+from crankmbs.batch import periodic, walk
 from crankmbs.batch.machine import machine_of
 from crankmbs.batch.rows import rows_of
 from crankmbs.batch.serves import loads_of
@@ -182,9 +182,14 @@ def test_its_loops_are_the_same_compiled_and_plain(monkeypatch):
     scene = settling("propeller", run__rtol=1e-5)
     scene = replace(scene, torque=(*scene.torque, Viscous(coefficient=1e-3)))
     (compiled,) = settled_together([scene])
-    kernels = {n: f for n, f in vars(loops).items() if hasattr(f, "py_func")}
-    for name, one in kernels.items():
-        monkeypatch.setattr(loops, name, one.py_func)
+    kernels = {
+        (of, name): one
+        for of in (periodic, walk)
+        for name, one in vars(of).items()
+        if hasattr(one, "py_func")
+    }
+    for (of, name), one in kernels.items():
+        monkeypatch.setattr(of, name, one.py_func)
     (plain,) = settled_together([scene])
     np.testing.assert_allclose(plain.answer, compiled.answer, rtol=1e-7, atol=1e-9)
     signatures = str([one.signatures for one in kernels.values()])
@@ -199,7 +204,7 @@ def test_a_peak_may_lie_in_the_cell_beside_the_nearest_node():
     curve = np.cos(edges[:-1, None] + width[:, None] * rule.nodes - there).ravel()
     tables = rule.matrix, rule.weights, rule.nodes, rule.to_legendre[-1].copy()
     outline = width, np.empty((2, len(curve))), np.empty(3)
-    loops._reaching(outline, tables)
-    peak, turned, tail = loops._highest((curve, curve[:0], curve), outline, tables, 0.0)
+    walk._reaching(True, outline, tables)
+    peak, turned, tail = walk._highest(True, (curve, curve[:0], curve), outline, tables, 0.0)
     assert abs(peak - 1.0) < 1e-14 + tail
     assert abs(turned - there) < 1e-7

@@ -37,11 +37,11 @@ LINEAR = "piston velocity"
 """The quantity that goes with the speed."""
 
 OWN = 11
-"""Columns of a case before those of its joints, as `crankmbs.batch.loops.sum_up` fills them."""
+"""Columns of a case before those of its joints, as `crankmbs.batch.walk.walk` fills them."""
 
 
 class Pass(NamedTuple):
-    """Tables at the nodes of one rule, as `crankmbs.batch.loops.sum_up` takes them.
+    """Tables at the nodes of one rule, as `crankmbs.batch.walk.walk` takes them.
 
     works : shape (cylinders,) [J], of the gas in a period
     """

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from crankmbs.batch.lanes import LANES, laid, taken
 from crankmbs.batch.machine import LINEAR, OWN, Machine, Pass, key_of, machine_of
 from crankmbs.batch.serves import loads_of
 from crankmbs.compare import LECTURES, QUANTITIES
@@ -36,7 +37,7 @@ class Group:
     """Scenes of one machine that are solved.
 
     which : their numbers; scene : one of them
-    answer, error : shape (n, columns) as `crankmbs.batch.loops.sum_up` fills them, and by how much
+    answer, error : shape (n, columns) as `crankmbs.batch.walk.walk` fills them, and by how much
         they may be off; closure, relative : shape (n,), the largest difference of the energies of
         both passes over the greatest energy; the largest error of the speed and of the peaks of
         joints, relative
@@ -183,16 +184,25 @@ def _passed(
     machine: Machine, tables: Pass, given: tuple[Array, Array, Array], nudge: float
 ) -> tuple[Array, Array]:
     """Columns and energies of a pass over cases, so many at once as the cache holds."""
-    from crankmbs.batch.loops import LANES, sum_up  # numba is loaded only when it is used
+    # numba is loaded only when it is used
+    from crankmbs.batch.periodic import find_periodic
+    from crankmbs.batch.walk import walk
 
     inertias, loads, starts = given
     columns = np.empty((len(starts), OWN + 4 * machine.joints + _OF_QUANTITIES))
-    ends = np.empty((len(starts), len(tables.of_angle[0])))
-    about = machine.sense, list(QUANTITIES).index(LINEAR), OWN
-    together = LANES * max(1, _NODES // (LANES * tables.of_angle[1].size))
+    width, inertia, _, torque = tables.of_angle
+    ends = np.empty((len(starts), len(width)))
+    about = machine.sense, True, list(QUANTITIES).index(LINEAR), OWN
+    together = LANES * max(1, _NODES // (LANES * inertia.size))
     for k in range(0, len(starts), together):
         some = slice(k, k + together)
-        off = np.full_like(starts[some], nudge)
-        cases = inertias[some], loads[some], starts[some], off
-        sum_up(about, *tables[:3], cases, (columns[some], ends[some]))
+        count = len(starts[some])
+        cases = laid(np.column_stack([inertias[some], loads[some], starts[some], [nudge] * count]))
+        groups = len(cases)
+        energy = np.empty((groups, *inertia.shape, LANES))
+        at_ends, begin = np.empty((groups, len(width), LANES)), np.empty((groups, 2, LANES))
+        shared = width, inertia, torque
+        find_periodic(machine.sense, tables.rule, shared, cases, (energy, at_ends, begin))
+        columns[some, :2], ends[some] = taken(begin, count), taken(at_ends, count)
+        walk(about, *tables[:3], (cases, energy), columns[some])
     return columns, ends
