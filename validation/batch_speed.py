@@ -25,7 +25,7 @@ from crankmbs.batch.lanes import LANES, laid, taken
 from crankmbs.batch.machine import Pass
 from crankmbs.batch.periodic import find_periodic
 from crankmbs.batch.rows import rows_of
-from crankmbs.batch.solve import settled_together
+from crankmbs.batch.solve import solved_together
 from crankmbs.scene.loads import Quadratic
 from crankmbs.sweep.columns import row_of
 from crankmbs.sweep.scenes import scene_of
@@ -85,7 +85,7 @@ def _one_block(scene: Scene) -> None:
 
 def _motion_alone(scene: Scene) -> None:
     """The periodic motion without measures over the limit in C."""
-    (group,) = settled_together([scene])
+    (group,) = solved_together([scene])
     tables, sense = group.machine.answer, group.machine.sense
     width, inertia, _, torque = tables.of_angle
     by = np.linspace(1.0, _LEAST, 8 * LANES)
