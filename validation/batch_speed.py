@@ -29,6 +29,7 @@ from crankmbs.batch.solve import solved_together
 from crankmbs.scene.loads import Quadratic
 from crankmbs.sweep.columns import row_of
 from crankmbs.sweep.scenes import scene_of
+from validation import transient_speed
 from validation.speed import limit
 from validation.speed.job import NotServed
 
@@ -55,6 +56,7 @@ def main(arguments: list[str] | None = None) -> int:
         _one_block(scene)
         _motion_alone(scene)
         _whole(scene, asked.cases, asked.processes)
+        transient_speed.measure(load_scene(name), _seconds)
     return 0
 
 
