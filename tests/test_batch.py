@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from crankmbs import load_scene, simulate
-from crankmbs.batch import loops
+from crankmbs.batch import periodic, walk
 from crankmbs.batch.machine import machine_of
 from crankmbs.batch.rows import rows_of
 from crankmbs.batch.serves import loads_of
-from crankmbs.batch.solve import settled_together
+from crankmbs.batch.solve import solved_together
 from crankmbs.numerics.collocation import gauss
 from crankmbs.scene.loads import Constant, Quadratic, SpeedTable, Viscous
 from crankmbs.scene.tables import Table
@@ -112,7 +112,7 @@ def test_a_light_load_states_what_rounding_makes_of_it():
 
 def test_more_stages_are_taken_where_fewer_err_too_much():
     rough, fine = (
-        settled_together([settling("yi_diesel_free", run__rtol=rtol)])[0] for rtol in (1e-6, 1e-10)
+        solved_together([settling("yi_diesel_free", run__rtol=rtol)])[0] for rtol in (1e-6, 1e-10)
     )
     count = [len(one.machine.answer.rule[2]) for one in (rough, fine)]
     assert count[0] < count[1]
@@ -121,7 +121,7 @@ def test_more_stages_are_taken_where_fewer_err_too_much():
 
 
 def test_none_is_better_than_one_that_errs_more_than_it_may():
-    assert settled_together([settling("propeller", run__rtol=1e-13)]) == []
+    assert solved_together([settling("propeller", run__rtol=1e-13)]) == []
 
 
 def test_alone_and_among_others_it_is_the_same():
@@ -138,7 +138,7 @@ def test_alone_and_among_others_it_is_the_same():
 
 def test_every_machine_has_its_own_group():
     scenes = [SHIPPED[0], None, SHIPPED[2], settling("propeller", start__speed=300.0)]
-    groups = settled_together(scenes)
+    groups = solved_together(scenes)
     machines = {number: group.machine for group in groups for number in group.which.tolist()}
     assert sorted(machines) == [0, 2, 3]
     assert machines[0] is machines[3] is not machines[2]
@@ -147,7 +147,6 @@ def test_every_machine_has_its_own_group():
 @pytest.mark.parametrize(
     "scene",
     [
-        load_scene("propeller"),
         replace(SHIPPED[0], friction=load_scene("friction").friction),
         load_scene("yi_diesel"),
         settling("propeller", run__formulation="minimal"),
@@ -181,11 +180,16 @@ def test_in_an_even_engine_the_other_cylinders_are_as_the_first():
 def test_its_loops_are_the_same_compiled_and_plain(monkeypatch):
     scene = settling("propeller", run__rtol=1e-5)
     scene = replace(scene, torque=(*scene.torque, Viscous(coefficient=1e-3)))
-    (compiled,) = settled_together([scene])
-    kernels = {n: f for n, f in vars(loops).items() if hasattr(f, "py_func")}
-    for name, one in kernels.items():
-        monkeypatch.setattr(loops, name, one.py_func)
-    (plain,) = settled_together([scene])
+    (compiled,) = solved_together([scene])
+    kernels = {
+        (of, name): one
+        for of in (periodic, walk)
+        for name, one in vars(of).items()
+        if hasattr(one, "py_func")
+    }
+    for (of, name), one in kernels.items():
+        monkeypatch.setattr(of, name, one.py_func)
+    (plain,) = solved_together([scene])
     np.testing.assert_allclose(plain.answer, compiled.answer, rtol=1e-7, atol=1e-9)
     signatures = str([one.signatures for one in kernels.values()])
     assert set(re.findall(r"\b(\w+)\(", signatures)) <= {"Array", "Tuple", "UniTuple", "array"}
@@ -199,7 +203,7 @@ def test_a_peak_may_lie_in_the_cell_beside_the_nearest_node():
     curve = np.cos(edges[:-1, None] + width[:, None] * rule.nodes - there).ravel()
     tables = rule.matrix, rule.weights, rule.nodes, rule.to_legendre[-1].copy()
     outline = width, np.empty((2, len(curve))), np.empty(3)
-    loops._reaching(outline, tables)
-    peak, turned, tail = loops._highest((curve, curve[:0], curve), outline, tables, 0.0)
+    walk._reaching(True, outline, tables)
+    peak, turned, tail = walk._highest(True, (curve, curve[:0], curve), outline, tables, 0.0)
     assert abs(peak - 1.0) < 1e-14 + tail
     assert abs(turned - there) < 1e-7

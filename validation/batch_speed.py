@@ -21,14 +21,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crankmbs import Sample, Scene, load_scene, simulate, sweep
-from crankmbs.batch import loops
-from crankmbs.batch.machine import LINEAR, OWN, Pass
+from crankmbs.batch.lanes import LANES, laid, taken
+from crankmbs.batch.machine import Pass
+from crankmbs.batch.periodic import find_periodic
 from crankmbs.batch.rows import rows_of
-from crankmbs.batch.solve import settled_together
-from crankmbs.compare import QUANTITIES
+from crankmbs.batch.solve import solved_together
 from crankmbs.scene.loads import Quadratic
 from crankmbs.sweep.columns import row_of
 from crankmbs.sweep.scenes import scene_of
+from validation import transient_speed
 from validation.speed import limit
 from validation.speed.job import NotServed
 
@@ -55,6 +56,7 @@ def main(arguments: list[str] | None = None) -> int:
         _one_block(scene)
         _motion_alone(scene)
         _whole(scene, asked.cases, asked.processes)
+        transient_speed.measure(load_scene(name), _seconds)
     return 0
 
 
@@ -85,30 +87,30 @@ def _one_block(scene: Scene) -> None:
 
 def _motion_alone(scene: Scene) -> None:
     """The periodic motion without measures over the limit in C."""
-    (group,) = settled_together([scene])
-    tables, machine = group.machine.answer, group.machine
-    by = np.linspace(1.0, _LEAST, 8 * loops.LANES)
-    inertia, load = _own(scene)
-    inertias, squares = inertia * by, -load * by[::-1]
+    (group,) = solved_together([scene])
+    tables, sense = group.machine.answer, group.machine.sense
+    width, inertia, _, torque = tables.of_angle
+    by = np.linspace(1.0, _LEAST, 8 * LANES)
+    of_crank, load = _own(scene)
+    inertias, squares = of_crank * by, -load * by[::-1]
     none = np.zeros_like(by)
-    loads = np.stack([none, none, squares], axis=1)
     assert scene.start is not None
-    cases = inertias, loads, np.full_like(by, scene.start.speed), none
-    found = np.empty((len(by), OWN)), np.empty((len(by), len(tables.of_angle[0])))
-    forces, rods, quantities, lectures = tables.parts
-    parts = forces[:0], rods, quantities[:0], lectures[:0]
-    about = machine.sense, list(QUANTITIES).index(LINEAR), OWN
+    speeds = np.full_like(by, scene.start.speed)
+    cases = laid(np.stack([inertias, none, none, squares, speeds, none], axis=1))
+    shape = len(cases), *inertia.shape, LANES
+    found = np.empty(shape), np.empty((*shape[:2], LANES)), np.empty((shape[0], 2, LANES))
     try:
         solve, answer = _in_c(tables, np.stack([inertias, none, squares], axis=1))
     except NotServed as absent:
         print(f"  no limit in C: {absent}")
         return
-    own = _seconds(lambda: loops.sum_up(about, tables.rule, tables.of_angle, parts, cases, found))
+    shared = width, inertia, torque
+    own = _seconds(lambda: find_periodic(sense, tables.rule, shared, cases, found))
     least = _seconds(solve)
-    apart = np.max(np.abs(found[0][:, 2] / answer[:, 1] - 1.0))
+    apart = np.max(np.abs(taken(found[2], len(by))[:, 0] / answer[:, 0] - 1.0))
     print(
         f"  its periodic motion {1e6 * own / len(by):.1f} us, in C {1e6 * least / len(by):.1f} us: "
-        f"{least / own:.2f} of the limit's speed; durations {apart:.0e} apart"
+        f"{least / own:.2f} of the limit's speed; energies {apart:.0e} apart"
     )
 
 
@@ -117,7 +119,7 @@ def _in_c(tables: Pass, given: Array) -> tuple[Callable[[], object], Array]:
     width, inertia, _, torque = tables.of_angle
     (m, s), (matrix, weights, _, _) = inertia.shape, tables.rule
     answer = np.empty((len(given), 2))
-    room = np.empty(2 * m * (s + 1) * loops.LANES)
+    room = np.empty(2 * m * (s + 1) * LANES)
     rule = np.concatenate([matrix.ravel(), weights])
     arrays = [np.ascontiguousarray(a) for a in (rule, width, inertia, torque, given, room, answer)]
     sizes = (ctypes.c_int(size) for size in (len(given), m, s))

@@ -1,4 +1,4 @@
-"""Many settled motions at once: the same machines under other loads and with other flywheels.
+"""Many motions at once: the same machines under other loads, with other flywheels and starts.
 
-A motion alone, and all that is no periodic motion under plain loads, belongs in simulate.
+A motion alone, and all that is no settled motion or free run under plain loads, belongs in simulate.
 """

@@ -1,5 +1,5 @@
-"""What settled motions of one machine share, tabulated over the crank angle at the nodes of Gauss
-rules: everything but the crank's inertia and the loads."""
+"""What motions of one machine share, tabulated over the crank angle at the nodes of Gauss rules:
+everything but the crank's inertia, the loads and the speed at the start."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from crankmbs.numerics.collocation import Rule, gauss
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.units import DEGREE
 
-__all__ = ["LINEAR", "OWN", "Machine", "Pass", "key_of", "machine_of"]
+__all__ = ["LINEAR", "OWN", "Machine", "Pass", "ahead_of", "key_of", "machine_of"]
 
 _WIDEST, _NARROW = 12.0 * DEGREE, 4.0 * DEGREE  # of a cell, and on average
 _FEW, _MANY = (6, 5), (10, 8)  # stages of the answer's rule and of its check's
@@ -37,11 +37,11 @@ LINEAR = "piston velocity"
 """The quantity that goes with the speed."""
 
 OWN = 11
-"""Columns of a case before those of its joints, as `crankmbs.batch.loops.sum_up` fills them."""
+"""Columns of a case before those of its joints, as `crankmbs.batch.walk.walk` fills them."""
 
 
 class Pass(NamedTuple):
-    """Tables at the nodes of one rule, as `crankmbs.batch.loops.sum_up` takes them.
+    """Tables at the nodes of one rule, as `crankmbs.batch.walk.walk` takes them.
 
     works : shape (cylinders,) [J], of the gas in a period
     """
@@ -51,12 +51,44 @@ class Pass(NamedTuple):
     parts: tuple[Array, Array, Array, Array]
     works: Array
 
+    def cut(self, cell: int, place: float, parts: Array) -> Pass:
+        """The tables over a period that begins in a cell: with what lies behind that place, and
+        ends with what lies before it.
+
+        place : in the cell, 0 to 1; parts : shape (2, s, s), what makes of the values at its nodes
+        those at the nodes of its parts before and after
+        """
+        width, *at_nodes = self.of_angle
+        shape, before = at_nodes[0].shape, place * width[cell : cell + 1]
+        turned = [width[cell : cell + 1] - before, width[cell + 1 :], width[:cell], before]
+        inertia, slope, torque = (
+            _cut(table.ravel(), shape, cell, parts).reshape(-1, shape[1]) for table in at_nodes
+        )
+        forces, rods, quantities, lectures = (
+            _cut(table, shape, cell, parts) for table in self.parts
+        )
+        return self._replace(
+            of_angle=(np.concatenate(turned), inertia, slope, torque),
+            parts=(forces, rods, quantities, lectures),
+        )
+
+
+def _cut(table: Array, shape: tuple[int, ...], cell: int, parts: Array) -> Array:
+    """A table over the n = m s nodes, shape (..., n), cut as `Pass.cut` says."""
+    whole = table.reshape(*table.shape[:-1], *shape)
+    before, after = (whole[..., cell : cell + 1, :] @ part.T for part in parts)
+    pieces = [after, whole[..., cell + 1 :, :], whole[..., :cell, :], before]
+    return np.concatenate(pieces, axis=-2).reshape(*table.shape[:-1], -1)
+
 
 @dataclass(frozen=True)
 class Machine:
-    """What settled motions of a machine share.
+    """What motions of a machine share.
 
     sense : of rotation; answer, check : tables of either pass; finest : whether by the finest rules
+    begin : crank angle at which the tables begin [rad]; first : number of the cell at whose
+        beginning a motion starts; inertias : J there and where the tables begin, without the
+        crank's [kg m2]
     alike : of every cylinder the first one that has the same forces at the same cycle angles; those
         of the others are not tabulated
     displaced : of one cylinder [m3]; folds : whether a rod nearly folds onto the crank
@@ -66,6 +98,9 @@ class Machine:
     answer: Pass
     check: Pass
     finest: bool
+    begin: float
+    first: int
+    inertias: tuple[float, float]
     alike: tuple[int, ...]
     displaced: float
     folds: bool
@@ -77,43 +112,67 @@ class Machine:
 
 
 def key_of(scene: Scene) -> Hashable:
-    """What two scenes have in common that share a machine; a scene that settles and starts."""
+    """What two scenes have in common that share a machine; scenes that start and turn."""
     assert scene.start is not None
     crank = scene.crank
     return (
         (crank.radius, crank.mass, crank.center_of_mass, scene.rod, scene.piston),
         (scene.cylinders, scene.gas, scene.gravity),
         (scene.start.angle, scene.start.speed > 0.0),
+        (scene.settles, scene.end[1], ahead_of(scene)),
     )
 
 
-def machine_of(scene: Scene, *, finest: bool = False) -> Machine:
-    """The tables of a scene's machine, over a period from its start on, by rules with few nodes
-    where its cells are narrow; or by the finest.
+def ahead_of(scene: Scene) -> float:
+    """The angle [rad] from the start of a scene to where its last period begins, less whole ones;
+    0 where it ends at a time.
 
-    >>> machine_of(load_scene("yi_diesel_free")).alike
+    >>> ahead_of(load_scene("yi_diesel_free"))
+    0.0
+    """
+    end, in_time = scene.end
+    rest = 0.0 if in_time else end % scene.period
+    return 0.0 if min(rest, scene.period - rest) < _SLIVER else rest
+
+
+def machine_of(scene: Scene, *, finest: bool = False) -> Machine:
+    """The tables of a scene's machine, over a period from where the last one begins on, by rules
+    with few nodes where its cells are narrow; or by the finest.
+
+    >>> machine_of(load_scene("yi_diesel_free").with_(run__until="settled")).alike
     (0, 0, 0, 0)
     """
     assert scene.start is not None
-    sense, start = math.copysign(1.0, scene.start.speed), scene.start.angle
-    train = crank_train(scene)
-    edges = np.mod(sense * (grid_of(train, gauss(1), _WIDEST).edges[:-1] - start), train.period)
-    edges = np.unique(np.concatenate([[0.0], edges, [train.period]]))
+    sense, start, ahead = math.copysign(1.0, scene.start.speed), scene.start.angle, ahead_of(scene)
+    train, begin = crank_train(scene), start + sense * ahead
+    edges = np.mod(sense * (grid_of(train, gauss(1), _WIDEST).edges[:-1] - begin), train.period)
+    starts = (train.period - ahead) % train.period
+    edges = np.unique(np.concatenate([[0.0, starts], edges, [train.period]]))
     edges = edges[np.append(np.diff(edges) > _SLIVER, True)]
     edges[0] = 0.0
     shape = scene.crank.radius, scene.rod.length, scene.piston.offset
     top, bottom = close_loop(dead_centres(*shape), *shape).x
     narrow = float(np.mean(np.diff(edges))) < _NARROW and not finest
-    alike = _alike(train)
+    alike = _alike(train) if scene.settles else tuple(range(len(scene.cylinders)))
     chosen = tuple(dict.fromkeys(alike))
     answer, check = (
-        _pass(one, (start, sense), edges, gauss(s), chosen)
+        _pass(one, (begin, sense), edges, gauss(s), chosen)
         for one, s in zip((train, train.off), _FEW if narrow else _MANY, strict=True)
     )
     angles = np.linspace(0.0, 2.0 * math.pi, 361)
     folds = bool(np.min(close_loop(angles, *shape).cos_beta) < _FOLDED)
     displaced = (scene.piston.gas_area or 0.0) * float(top - bottom)
-    return Machine(sense, answer, check, not narrow, alike, displaced, folds)
+    first = int(np.argmin(np.abs(edges[:-1] - starts)))
+    at_start, at_begin = _inertia(train, np.array([start, begin])).tolist()
+    about = not narrow, begin, first, (at_start, at_begin)
+    return Machine(sense, answer, check, *about, alike, displaced, folds)
+
+
+def _inertia(train: CrankTrain, theta: Array) -> Array:
+    """J without the crank's [kg m2] at crank angles of shape (n,)."""
+    count = len(train.scene.cylinders)
+    twice = [of_cylinder(train, theta, _UNITS, k).kinetic_energy[0] for k in range(count)]
+    return np.asarray(2.0 * np.sum(twice, axis=0))
 
 
 def _pass(

@@ -8,15 +8,18 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from crankmbs.batch.group import Group
 from crankmbs.batch.machine import OWN
-from crankmbs.batch.solve import Group, settled_together
+from crankmbs.batch.solve import solved_together
 from crankmbs.compare import LECTURES, QUANTITIES
 from crankmbs.compare.excerpt import vanishing
+from crankmbs.motion.ending import Ending
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 
 __all__ = ["Rows", "rows_of"]
 
+_ROUNDING = 8 * float(np.finfo(float).eps)  # of either of two speeds
 _JOINTS = ("crank_pin", "piston_pin", "side_force")
 
 
@@ -42,19 +45,19 @@ def rows_of(scenes: Sequence[Scene | None]) -> list[Rows]:
     >>> found.columns["fluctuation"].round(6).tolist()
     [0.137409]
     """
-    return [_rows(group) for group in settled_together(scenes)]
+    return [_rows(group) for group in solved_together(scenes)]
 
 
 def _rows(group: Group) -> Rows:
     machine, scene = group.machine, group.scene
-    begin, growth, time, most, _, fast, slow, rods, outside = group.answer.T[:9]
-    _, _, late, _, _, of_fast, of_slow, of_rods, of_outside = group.error.T[:9]
+    time, _, _, fast, slow, rods, outside = group.answer.T[2:9]
+    late, _, _, of_fast, of_slow, of_rods, of_outside = group.error.T[2:9]
     sense, period = machine.sense, scene.settled_period
     mean, spread = sense * period / time, (fast - slow) * time / period
     pairs = {
         "mean_speed": (mean, np.abs(mean) * late / time),
         "fluctuation": (spread, (of_fast + of_slow) * time / period + spread * late / time),
-        "speed_gain": (np.zeros_like(time), group.closure * most / begin * fast),
+        "speed_gain": _gained(group),
         "crank_torque": (rods, of_rods),
         "external_torque": (outside, of_outside),
     }
@@ -70,20 +73,34 @@ def _rows(group: Group) -> Rows:
     columns |= {name: value for name, (value, _) in pairs.items()}
     columns |= {f"{name}_error": error for name, (_, error) in pairs.items()}
     columns |= _of_lectures(group)
-    messages = tuple(f"settled: a period leaves {1.0 + g:.4g} of a disturbance" for g in growth)
-    return Rows(group.which, columns, messages)
+    return Rows(group.which, columns, _messages(group))
+
+
+def _gained(group: Group) -> tuple[Array, Array]:
+    """The speed gained over the period, and its error."""
+    begin, gained, _, most, _, fast = group.answer.T[:6]
+    if group.scene.settles:
+        return np.zeros_like(gained), group.closure * most / begin * fast
+    return gained, group.error[:, 1] + _ROUNDING * fast
+
+
+def _messages(group: Group) -> tuple[str, ...]:
+    """How each ends."""
+    if not group.scene.settles:
+        return (Ending.COMPLETE.said(0.0)[1],) * len(group.which)
+    factors = 1.0 + group.answer[:, 1]
+    return tuple(f"settled: a period leaves {factor:.4g} of a disturbance" for factor in factors)
 
 
 def _of_joints(group: Group, pairs: dict[str, tuple[Array, Array]]) -> dict[str, Array]:
     """The angles of the peaks; peaks and means go into ``pairs``."""
     machine, scene = group.machine, group.scene
-    assert scene.start is not None
     chosen = tuple(dict.fromkeys(machine.alike))
     table = slice(OWN, OWN + 4 * machine.joints)
     value, error = (
         part[:, table].reshape(len(part), machine.joints, 4) for part in (group.answer, group.error)
     )
-    angle = np.mod(scene.start.angle + machine.sense * value[:, :, 1], scene.period)
+    angle = np.mod(group.begin[:, None] + machine.sense * value[:, :, 1], scene.period)
     angles = {"main_bearing_peak_angle": angle[:, 0]}
     for what, column in (("peak", 0), ("mean", 2)):
         pairs[f"main_bearing_{what}"] = value[:, 0, column], error[:, 0, column]

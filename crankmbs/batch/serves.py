@@ -12,27 +12,30 @@ __all__ = ["Loads", "loads_of"]
 Loads = tuple[float, float, float]
 """c0, c1 and c2 of c0 + c1 omega + c2 omega^2 [N m]."""
 
+_SAME = 1e-9  # rad: periods as long are the same
+
 
 def loads_of(scene: Scene) -> Loads | None:
-    """The loads of a scene whose settled motion is found together with others; None of another.
+    """The loads of a scene whose motion is found together with others; None of another.
 
-    It starts turning and is to settle; its cycles are all alike, without friction; its loads are
-    c0 + c1 omega + c2 omega^2 at every speed in its sense, where no such load rises with the speed:
-    there is one periodic motion at most.
+    It starts turning, and is to settle or to turn on through a period at least, as far as one knows
+    beforehand; its cycles are all alike, without friction; its loads are c0 + c1 omega + c2 omega^2
+    at every speed in its sense and at any time, where no such load rises with the speed: there is
+    one periodic motion at most.
 
-    >>> loads_of(load_scene("propeller").with_(run__until="settled"))
+    >>> loads_of(load_scene("propeller"))
     (0.0, 0.0, -9.5e-05)
     """
-    start = scene.start
-    if start is None or start.speed == 0.0 or not scene.settles:  # whose loads have no times
+    start, (end, in_time) = scene.start, scene.end
+    if start is None or start.speed == 0.0 or not (in_time or end >= scene.period - _SAME):
         return None
     if scene.fuel is not None or scene.friction is not None:
         return None
     if scene.run.formulation not in ("auto", "crank_angle"):
         return None
-    if abs(scene.settled_period - scene.period) > 1e-9:
+    if abs(scene.settled_period - scene.period) > _SAME:
         return None
-    if any(load.lacks or load.parts.over_angle or load.parts.function for load in scene.torque):
+    if any(load.lacks or load.parts.over_angle or not load.is_steady for load in scene.torque):
         return None
     sense = math.copysign(1.0, start.speed)
     branch = branch_of(scene.torque, 0.0, 0.0, rising=sense > 0.0)

@@ -3,42 +3,7 @@
  * Each case has its own inertia of the crank and its own loads c0 + c2 omega^2. Out: the energy
  * where the period begins, and how long it takes. Forwards; no measure, no error. */
 
-#include <math.h>
-
-#define LANES 8
-#define MOST 10 /* stages */
-
-#define EACH for (int l = 0; l < LANES; l++)
-
-static void cell(int s, double h, const double *matrix, const double (*push)[LANES],
-                 const double (*rate)[LANES], double (*gain)[LANES], double (*shift)[LANES]) {
-  double system[MOST][MOST][LANES];
-  for (int j = 0; j < s; j++) {
-    EACH gain[j][l] = 1.0, shift[j][l] = 0.0;
-    for (int i = 0; i < s; i++) {
-      double step = h * matrix[j * s + i];
-      EACH {
-        shift[j][l] += step * push[i][l];
-        system[j][i][l] = (i == j) - step * rate[i][l];
-      }
-    }
-  }
-  for (int k = 0; k < s; k++)
-    for (int j = k + 1; j < s; j++) {
-      double factor[LANES];
-      EACH factor[l] = system[j][k][l] / system[k][k][l];
-      for (int i = k + 1; i < s; i++) EACH system[j][i][l] -= factor[l] * system[k][i][l];
-      EACH gain[j][l] -= factor[l] * gain[k][l], shift[j][l] -= factor[l] * shift[k][l];
-    }
-  for (int k = s - 1; k >= 0; k--) {
-    for (int i = k + 1; i < s; i++)
-      EACH {
-        gain[k][l] -= system[k][i][l] * gain[i][l];
-        shift[k][l] -= system[k][i][l] * shift[i][l];
-      }
-    EACH gain[k][l] /= system[k][k][l], shift[k][l] /= system[k][k][l];
-  }
-}
+#include "cell.h"
 
 /* room : (2 m s + 2 m) LANES numbers */
 void settle(int cases, int m, int s, const double *rule, const double *width,

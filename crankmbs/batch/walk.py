@@ -1,11 +1,9 @@
-"""Settled motions of one machine, and what each amounts to: loops over cases, compiled by numba
+"""What motions of one machine over a period amount to: loops over cases, compiled by numba
 (`crankmbs.numerics.kernels`).
 
-Of a case only the crank's inertia and the loads are its own. In a cell the energy obeys dE/dtheta =
-T + c0 + c1 omega + c2 omega^2, made linear in E about the last iterate; so a period is an affine
-map, and Newton's method for the periodic motion takes its fixed point again and again. Every force
-is A omega^2 + B alpha + C, with A, B and C of the angle alone. Between the nodes of a cell all is
-the polynomial through them.
+Of a case only the crank's inertia and the loads are its own. Every force is A omega^2 + B alpha +
+C, with A, B and C of the angle alone. Between the nodes of a cell all is the polynomial through
+them.
 
 Kernels of one file call none of another, so that they stand together here, over 300 lines.
 """
@@ -16,24 +14,20 @@ import math
 
 import numpy as np
 
+from crankmbs.batch.lanes import LANES
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.kernels import kernel
 
-__all__ = ["LANES", "sum_up"]
-
-LANES = 8
-"""Cases beside one another, as many as the processor's vectors hold numbers, or some times that."""
+__all__ = ["walk"]
 
 Rule = tuple[
     Array, Array, Array, Array
 ]  # matrix, weights, nodes, and what makes of the values there
 # the last coefficient of Legendre polynomials: the nodes' barycentric weights, too
-Motion = tuple[Array, Array, Array, Array]  # omega^2, alpha, 1 / |omega| and 1, at the nodes
 Outline = tuple[Array, Array, Array]  # of the cells: width, and what `_reaching` fills
 Curve = tuple[Array, Array, Array]  # two components at the nodes and their size; of one alone, it,
 # an empty one, and it again
 
-_ROUNDS, _SETTLED = 30, 1e-9  # of Newton's method; a change of the energies whose square is nothing
 _STEPS, _CLOSE, _BESIDE = 12, 1e-7, 0.1  # towards a peak; of a cell; of the way from its end
 _BENT = 0.6  # of what a force changes by across a piece: where it is less it has a bend, or nearly
 _DEEPEST = 8  # halvings of a cell
@@ -42,44 +36,39 @@ _ROUNDING = 64 * 2.0**-52  # of a quantity
 
 
 @kernel
-def sum_up(
-    about: tuple[float, int, int],
+def walk(
+    about: tuple[float, bool, int, int],
     rule: Rule,
     of_angle: tuple[Array, Array, Array, Array],
     parts: tuple[Array, Array, Array, Array],
-    cases: tuple[Array, Array, Array, Array],
-    found: tuple[Array, Array],
+    motions: tuple[Array, Array],
+    columns: Array,
 ) -> None:
-    """Fill the columns of every case, and its energies at the ends of cells.
+    """Fill the columns of every case from its energies over one period.
 
-    about : sense of rotation; number of the quantity of which the first part belongs to omega
-        instead of omega^2; of columns before those of joints
+    about : sense of rotation; whether the motions repeat themselves, so that the first cell follows
+        the last one; number of the quantity of which the first part belongs to omega instead of
+        omega^2; of columns before those of joints
     of_angle : width [rad] of the m cells, and at their s nodes J without the crank's, dJ/dtheta and
         the torque, shape (m, s)
     parts : what belongs to omega^2, alpha and 1, at the n = m s nodes: of forces, shape (rows, 3,
         n), those of joints in pairs of x and y, then the side forces; of the torque of all rods,
         shape (1, 3, n); of the quantities of the lectures, shape (q, 3, n); and what the lectures
         say of them at a constant speed, shape (q, lectures, 2, n), what belongs to omega^2 and to 1
-    cases : inertia of the crank [kg m2], shape (k,); c0, c1 and c2 of the loads, shape (k, 3); a
-        speed near the mean one [rad/s], shape (k,); how far above the fixed point the period is to
-        begin, as a part of its greatest energy over its damping, shape (k,)
-    found : filled; the columns, shape (k, columns), NaN where no motion of this sense is periodic:
-        energy [J] at the beginning, factor less 1, duration [s], greatest and least energy [J],
-        highest and lowest speed, mean torque of all rods and from outside, what both speeds may
-        err; of every joint its peak, the angle turned to it, its mean over time and what the peak
-        may err; of every quantity its peak and what that may err, and for each lecture its largest
-        deviation and that one's. And the energy at the end of every cell, shape (k, m)
+    motions : of the cases, beside one another as `crankmbs.batch.lanes` lays them; inertia of the
+        crank [kg m2], c0, c1 and c2 of the loads, shape (groups, 4 or more, LANES); the energy [J]
+        at the nodes, shape (groups, m, s, LANES), no number where there is no motion
+    columns : filled, shape (k, columns), but for the first two; no numbers where there is no
+        motion: duration [s], greatest and least energy [J], highest and lowest speed, mean torque
+        of all rods and from outside, what both speeds may err; of every joint its peak, the angle
+        turned to it, its mean over time and what the peak may err; of every quantity its peak and
+        what that may err, and for each lecture its largest deviation and that one's
     """
-    (sense, linear, own_columns), (width, inertia, slope, torque) = about, of_angle
+    (sense, closed, linear, own_columns), (width, inertia, slope, torque) = about, of_angle
     forces, rods, quantities, lectures = parts
-    inertias, loads, speeds, nudges = cases
-    columns, ends = found
-    weights = rule[1]
+    (cases, energy), weights = motions, rule[1]
     m, s = inertia.shape
-    n, count = m * s, len(inertias)
-    both, maps = np.empty((2, s, LANES)), np.empty((2, m, s, LANES))
-    cells, own = np.empty((2, m, LANES)), np.empty((8, LANES))
-    energy, at_ends = np.empty((m, s, LANES)), np.empty((m, LANES))
+    n, count = m * s, len(columns)
     square, alpha, slow = np.empty((count, n)), np.empty((count, n)), np.empty((count, n))
     first, second, size, share = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
     none, turned = np.empty(0), 0.0
@@ -88,42 +77,32 @@ def sum_up(
         for j in range(s):
             share[c * s + j] = width[c] * weights[j]
     outline = (width, np.empty((2, n)), np.empty(m))
-    _reaching(outline, rule)
+    _reaching(closed, outline, rule)
     for k in range(count):
-        out, l = columns[k], k % LANES
-        if l == 0:
-            for lane in range(LANES):
-                of = min(k + lane, count - 1)
-                own[0, lane], own[4, lane], own[5, lane] = inertias[of], nudges[of], speeds[of]
-                own[1, lane], own[2, lane], own[3, lane] = loads[of, 0], loads[of, 1], loads[of, 2]
-            scratch = (both, maps, cells)
-            _settled((sense, own), rule, (width, inertia, torque), scratch, (energy, at_ends))
-        out[:] = math.nan
-        for c in range(m):
-            ends[k, c] = at_ends[c, l]
-        if own[6, l] != own[6, l]:
+        out, g, l = columns[k], k // LANES, k % LANES
+        out[2:] = math.nan
+        if energy[g, 0, 0, l] != energy[g, 0, 0, l]:
             continue
-        out[0], out[1] = own[6, l], own[7, l]
         time, work, outside, fastest = 0.0, 0.0, 0.0, 0.0
         most, least = 0.0, math.inf
         for c in range(m):
             for j in range(s):
-                i, total = c * s + j, inertia[c, j] + inertias[k]
-                w2 = 2.0 * energy[c, j, l] / total
+                i, total = c * s + j, inertia[c, j] + cases[g, 0, l]
+                w2 = 2.0 * energy[g, c, j, l] / total
                 w = sense * math.sqrt(w2)
-                load = loads[k, 0] + loads[k, 1] * w + loads[k, 2] * w2
+                load = cases[g, 1, l] + cases[g, 2, l] * w + cases[g, 3, l] * w2
                 rate = (torque[c, j] + load - 0.5 * slope[c, j] * w2) / total
                 square[k, i], alpha[k, i], slow[k, i], first[i] = w2, rate, 1.0 / abs(w), abs(w)
-                most, least = max(most, energy[c, j, l]), min(least, energy[c, j, l])
+                most, least = max(most, energy[g, c, j, l]), min(least, energy[g, c, j, l])
                 time += share[i] * slow[k, i]
                 outside += share[i] * load
                 work += share[i] * (rods[0, 0, i] * w2 + rods[0, 1, i] * rate + rods[0, 2, i])
                 fastest = max(fastest, first[i])
         out[2], out[3], out[4] = time, most, least
-        out[5], _, out[9] = _highest((first, none, first), outline, rule, 0.0)
+        out[5], _, out[9] = _highest(closed, (first, none, first), outline, rule, 0.0)
         for i in range(n):
             second[i] = 2.0 * fastest - first[i]
-        slowest, _, out[10] = _highest((second, none, second), outline, rule, 0.0)
+        slowest, _, out[10] = _highest(closed, (second, none, second), outline, rule, 0.0)
         out[6] = 2.0 * fastest - slowest
         out[7], out[8] = work / turned, outside / turned
     rows = len(forces)
@@ -144,7 +123,7 @@ def sum_up(
                     size[i] = math.sqrt(first[i] * first[i] + second[i] * second[i])
             curve = (first, second, size) if joint < pairs else (first, none, first)
             columns[k, at], columns[k, at + 1], columns[k, at + 3] = _highest(
-                curve, outline, rule, 0.0
+                closed, curve, outline, rule, 0.0
             )
             columns[k, at + 2] = _integral(curve, (slow[k], share), width, rule) / columns[k, 2]
         at, row = at + 4, row + (2 if joint < pairs else 1)
@@ -159,134 +138,17 @@ def sum_up(
             if q == linear:
                 for i in range(n):
                     first[i] = of[0, i] * sense / slow[k, i]
-            peak, _, rough = _highest((first, none, first), outline, rule, 0.0)
+            peak, _, rough = _highest(closed, (first, none, first), outline, rule, 0.0)
             columns[k, at], columns[k, at + 1] = peak, rough
             for lecture in range(lectures.shape[1]):
                 said = lectures[q, lecture]
                 power = mean if q == linear else mean * mean
                 for i in range(n):
                     second[i] = said[0, i] * power + said[1, i] - first[i]
-                most, _, rough = _highest((second, none, second), outline, rule, peak)
+                most, _, rough = _highest(closed, (second, none, second), outline, rule, peak)
                 columns[k, at + 2 + 2 * lecture] = most
                 columns[k, at + 3 + 2 * lecture] = rough
         at += 2 * (1 + lectures.shape[1])
-
-
-@kernel
-def _settled(
-    about: tuple[float, Array],
-    rule: Rule,
-    of_angle: tuple[Array, Array, Array],
-    scratch: tuple[Array, Array, Array],
-    found: tuple[Array, Array],
-) -> None:
-    """The periodic motions of LANES cases beside one another, by Newton's method from a steady
-    speed: their energies at the nodes, shape (m, s, LANES), and ends of cells, shape (m, LANES);
-    and in ``about`` energy at the beginning and factor less 1, NaN where there is none.
-
-    about : sense; per case inertia, c0, c1, c2, nudge, that speed, and the two, shape (8, LANES);
-    of_angle : width, inertia and torque; scratch : push, rate, gain and shift at the nodes of a
-    cell, and those two of all, and growth and rise of every cell
-    """
-    (sense, own), (width, inertia, torque) = about, of_angle
-    (matrix, weights, _, _), (energy, ends) = rule, found
-    both, maps, cells = scratch
-    push, rate = both[0], both[1]
-    m, s = inertia.shape
-    mass, c0, c1, c2 = own[0], own[1], own[2], own[3]
-    nudge, steady, begin, damping = own[4], own[5], own[6], own[7]
-    system, left, now = np.empty((s, s, LANES)), np.ones(LANES), np.empty(LANES)
-    room = np.empty((8, LANES))
-    growth, rise, lost, at, factor = room[0], room[1], room[2], room[3], room[4]
-    change, most, least = room[5], room[6], room[7]
-    begin[:], viscous = math.nan, c1.any()
-    for c in range(m):
-        for j in range(s):
-            for l in range(LANES):
-                energy[c, j, l] = 0.5 * (inertia[c, j] + mass[l]) * steady[l] * steady[l]
-    for _ in range(_ROUNDS):
-        growth[:], rise[:], lost[:] = 0.0, 0.0, 0.0
-        for c in range(m):
-            h = sense * width[c]
-            gain, shift, more, gained = maps[0, c], maps[1, c], cells[0, c], cells[1, c]
-            for j in range(s):
-                for l in range(LANES):
-                    push[j, l] = torque[c, j] + c0[l]
-                    rate[j, l] = 2.0 * c2[l] / (inertia[c, j] + mass[l])
-                    gain[j, l], shift[j, l] = 1.0, 0.0
-                if viscous:
-                    for l in range(LANES):
-                        total = inertia[c, j] + mass[l]
-                        w = sense * math.sqrt(2.0 * energy[c, j, l] / total)
-                        push[j, l] += 0.5 * c1[l] * w
-                        rate[j, l] += c1[l] / (total * w)
-            for j in range(s):
-                for i in range(s):
-                    part, one = h * matrix[j, i], 1.0 if i == j else 0.0
-                    for l in range(LANES):
-                        shift[j, l] += part * push[i, l]
-                        system[j, i, l] = one - part * rate[i, l]
-            for k in range(s):  # nearly the unit matrix, which needs no pivots
-                for j in range(k + 1, s):
-                    for l in range(LANES):
-                        factor[l] = system[j, k, l] / system[k, k, l]
-                        gain[j, l] -= factor[l] * gain[k, l]
-                        shift[j, l] -= factor[l] * shift[k, l]
-                    for i in range(k + 1, s):
-                        for l in range(LANES):
-                            system[j, i, l] -= factor[l] * system[k, i, l]
-            for k in range(s - 1, -1, -1):
-                for i in range(k + 1, s):
-                    for l in range(LANES):
-                        gain[k, l] -= system[k, i, l] * gain[i, l]
-                        shift[k, l] -= system[k, i, l] * shift[i, l]
-                for l in range(LANES):
-                    gain[k, l] /= system[k, k, l]
-                    shift[k, l] /= system[k, k, l]
-            more[:], gained[:] = 0.0, 0.0
-            for j in range(s):
-                part = h * weights[j]
-                for l in range(LANES):
-                    more[l] += part * rate[j, l] * gain[j, l]
-                    gained[l] += part * (push[j, l] + rate[j, l] * shift[j, l])
-            for l in range(LANES):  # rises nearly cancel: what they round counts over the damping
-                growth[l] += more[l] + growth[l] * more[l]
-                step = gained[l] + more[l] * rise[l] - lost[l]
-                after = rise[l] + step
-                lost[l], rise[l] = (after - rise[l]) - step, after
-        for l in range(LANES):
-            at[l] = -rise[l] / growth[l] if growth[l] < 0.0 else math.nan
-            change[l] = most[l] = 0.0
-            least[l] = math.inf
-        for c in range(m):
-            for j in range(s):
-                for l in range(LANES):
-                    new = maps[0, c, j, l] * at[l] + maps[1, c, j, l]
-                    moved = abs(new - energy[c, j, l])
-                    change[l] = moved if moved > change[l] else change[l]
-                    most[l] = new if new > most[l] else most[l]
-                    least[l] = new if new < least[l] else least[l]
-                    energy[c, j, l] = new if left[l] > 0.0 else energy[c, j, l]
-            for l in range(LANES):
-                at[l] += cells[0, c, l] * at[l] + cells[1, c, l]
-        for l in range(LANES):
-            good = 0.0 < least[l] < math.inf  # there is one, and it turns on
-            ends_here = c1[l] == 0.0 or not change[l] > _SETTLED * most[l] or not good
-            now[l] = left[l] if ends_here else 0.0
-            at[l] = -(rise[l] + nudge[l] * most[l]) / growth[l] if good else math.nan
-            begin[l] = at[l] if now[l] > 0.0 else begin[l]
-            damping[l] = growth[l] if now[l] > 0.0 else damping[l]
-            left[l] -= now[l]
-        for c in range(m):
-            for j in range(s):
-                for l in range(LANES):
-                    new = maps[0, c, j, l] * at[l] + maps[1, c, j, l]
-                    energy[c, j, l] = new if now[l] > 0.0 else energy[c, j, l]
-            for l in range(LANES):
-                at[l] += cells[0, c, l] * at[l] + cells[1, c, l]
-                ends[c, l] = at[l] if now[l] > 0.0 else ends[c, l]
-        if not left.any():
-            return
 
 
 @kernel
@@ -314,12 +176,13 @@ def _basis(x: float, rule: Rule, basis: Array) -> None:
 
 
 @kernel
-def _reaching(outline: Outline, rule: Rule) -> None:
+def _reaching(closed: bool, outline: Outline, rule: Rule) -> None:
     """Fill by how much a parabola may rise above a node that its neighbours do not exceed: parts of
     what either lies below it, shape (2, nodes), and the largest sum of both in every cell.
 
     With the gaps g and h to its neighbours, which lie b and c below it, that is at most
-    b (1 + h / 4 g) + c (1 + g / 4 h).
+    b (1 + h / 4 g) + c (1 + g / 4 h). At the ends of what is not closed a gap goes to the end,
+    which is taken to lie no lower.
     """
     (width, lean, reach), nodes = outline, rule[2]
     s, m = len(nodes), len(width)
@@ -328,9 +191,9 @@ def _reaching(outline: Outline, rule: Rule) -> None:
         for j in range(s):
             behind = (nodes[j] - nodes[j - 1]) * width[c] if j > 0 else nodes[0] * width[c]
             ahead = (nodes[j + 1] if j + 1 < s else 1.0) * width[c] - nodes[j] * width[c]
-            if j == 0:
+            if j == 0 and (c > 0 or closed):
                 behind += (1.0 - nodes[s - 1]) * width[c - 1 if c > 0 else m - 1]
-            if j + 1 == s:
+            if j + 1 == s and (c + 1 < m or closed):
                 ahead += nodes[0] * width[c + 1 if c + 1 < m else 0]
             lean[0, c * s + j] = 1.0 + 0.25 * ahead / behind
             lean[1, c * s + j] = 1.0 + 0.25 * behind / ahead
@@ -339,7 +202,7 @@ def _reaching(outline: Outline, rule: Rule) -> None:
 
 @kernel
 def _highest(
-    curve: Curve, outline: Outline, rule: Rule, scale: float
+    closed: bool, curve: Curve, outline: Outline, rule: Rule, scale: float
 ) -> tuple[float, float, float]:
     """The largest size of a curve over the period, the angle turned to it [rad], and the size of
     the last coefficient in its cell, about what the polynomial there errs.
@@ -353,7 +216,7 @@ def _highest(
     m = len(width)
     n, highest, cell, place, seen = s * m, -1.0, 0, 0.0, 0
     rises, top = np.empty(m), 0
-    before = abs(size[n - 1])
+    before = abs(size[n - 1 if closed else 0])
     for c in range(m):
         most, low = 0.0, before
         for i in range(c * s, c * s + s):
@@ -361,7 +224,7 @@ def _highest(
             most = here if here > most else most
             low = here if here < low else low
         before = abs(size[c * s + s - 1])
-        after = abs(size[c * s + s if c + 1 < m else 0])
+        after = abs(size[c * s + s if c + 1 < m else (0 if closed else n - 1)])
         low = after if after < low else low
         rises[c] = most + reach[c] * (most - low)
         if most > highest:
@@ -376,8 +239,9 @@ def _highest(
             continue
         for j in range(s):
             i = c * s + j
-            here, before, after = abs(size[i]), abs(size[i - 1 if i > 0 else n - 1]), 0.0
-            after = abs(size[i + 1 if i + 1 < n else 0])
+            here = abs(size[i])
+            before = abs(size[i - 1 if i > 0 else (n - 1 if closed else 0)])
+            after = abs(size[i + 1 if i + 1 < n else (0 if closed else n - 1)])
             beyond = here + lean[0, i] * (here - before) + lean[1, i] * (here - after)
             if beyond <= highest + rounding or here < before or here < after:
                 continue
@@ -389,6 +253,8 @@ def _highest(
                     continue
                 node = j if side == 0 else (s - 1 if side < 0 else 0)
                 at = (c + side) % m
+                if not closed and at != c + side:
+                    continue
                 found, x = _climb(node, curve, at * s, nodes, barycentric)
                 if found >= highest:
                     highest, cell, place = found, at, x
