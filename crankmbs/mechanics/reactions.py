@@ -144,6 +144,15 @@ class Balances(NamedTuple):
             largest[row] = np.abs(own[0] - values[row]).max(initial=0.0)
         return largest
 
+    def row(self, number: int) -> Array:
+        """One row at the samples."""
+        room = np.empty((1, len(self.omega)))
+        self._put(slice(number, number + 1), room)
+        for row, added in self._added():
+            if row == number:
+                added(room[0])
+        return np.asarray(room[0])
+
     def _put(self, rows: slice, room: Array) -> None:
         """Rows at the samples from their parts alone."""
         if self.which is None:

@@ -131,7 +131,10 @@ class _Passes(NamedTuple):
             found, apart = _balances(self.off, samples), np.zeros(len(before))
             balanced = slice(first, first + len(found.parts))
             apart[balanced] = found.apart(before[balanced])
-            missed = float(apart[places["external_torque"]][0]) if samples.own else 0.0
+            missed = 0.0
+            if samples.own:
+                needed = found.row(places["external_torque"].start - first)
+                missed = peak(needed - samples.own["external_torque"])
             apart[:first] = _peaks(before[:first] - _motion(samples))
             for name, values in samples.own.items():
                 apart[places[name]] = _peaks(before[places[name]] - values.T)
