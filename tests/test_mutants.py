@@ -77,7 +77,7 @@ def test_the_command_keeps_the_other_results_and_writes_both(tmp_path, monkeypat
     assert main(["--page"]) == 0
     text = page.read_text(encoding="utf-8")
     assert all(f"| {name} |" in text for name in NAMED)
-    assert "2000-01-01, commit 0" in capsys.readouterr().out
+    assert "run: 2000-01-01, on 1 commits" in capsys.readouterr().out
     write_rows(rows[1:], table)
     assert main(["--page"]) == 1
     assert "1 mutants have no result" in capsys.readouterr().out

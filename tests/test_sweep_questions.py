@@ -45,6 +45,18 @@ def test_every_root_in_the_range_is_found():
     assert found.scanned.shape == (2, 17)
 
 
+def test_roots_between_two_points_of_the_scan_are_found():
+    """The least side force stands at no offset, between two points; there it bends."""
+    vary = {"piston.offset": "-9..10 mm"}
+    found = solve(SMOOTH, vary, "peak side force = 1475 N")
+    low, high = (root.value for root in found.roots)
+    assert -0.6875e-3 < low.value < 0.0 < high.value < 0.5e-3
+    assert abs(low.value + high.value) <= 2.0 * (low.error + high.error)
+    below = solve(SMOOTH, vary, "peak side force = 1400 N")
+    assert (below.roots, below.status) == ((), 1)
+    assert abs(below.nearest.value.value) <= 1e-6 * 19e-3
+
+
 def test_out_of_reach_is_the_nearest_and_said():
     found = solve(SCENE, {"crank.inertia": "0.2..0.4 kg m^2"}, "fluctuation = 5 %")
     assert (found.roots, found.status) == ((), 1)
@@ -212,6 +224,17 @@ def test_three_knobs_are_small_multiples():
     assert titles == ["motion.speed 1000 rpm", "motion.speed 2000 rpm", "motion.speed 3000 rpm"]
 
 
+def test_a_logarithmic_axis_has_plain_numbers_and_units_are_raised():
+    vary = {"crank.inertia": "0.1..1 kg m^2:9:log"}
+    figure = sweep_figure(sweep(SCENE, vary, executor=1), "fluctuation", "5 %")
+    figure.draw_without_rendering()
+    (ax,) = figure.axes
+    words = [tick.label1.get_text() for tick in ax.xaxis.get_major_ticks() if tick.get_visible()]
+    assert {"0.1", "0.2", "0.5", "1"} <= set(words)
+    assert ax.get_xlabel() == "crank.inertia [kg m$^{2}$]"
+    assert "all cases lie on one side of 5 %" in figure.get_supxlabel()
+
+
 def test_a_sample_is_points_over_each_knob_and_failures_are_counted():
     vary = {"rod.length": "0.03..0.2 m", "piston.mass": "1..2 kg"}
     scene = load_scene("yi_diesel").with_(run__until="1 cycles")
@@ -246,6 +269,10 @@ def test_the_commands_draw_and_solve(tmp_path):
     assert names(tmp_path / "f") == {"side_thrust_by_S1.png", "peak_side_force.png"}
     assert "--show speed: " in refused("plot", store, "--show", "speed", "-o", str(tmp_path / "g"))
     assert not (tmp_path / "g").exists()
+    one = str(tmp_path / "one.png")
+    assert crankmbs_("plot", store, *shown[:2], "-o", one).stdout == f"wrote {one}\n"
+    assert (tmp_path / "one.png").read_bytes()[1:4] == b"PNG"
+    assert "is one file, and 2 figures come" in refused("plot", store, *shown, "-o", one)
 
 
 def test_the_command_solves():

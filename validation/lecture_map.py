@@ -14,7 +14,7 @@ from matplotlib.axes import Axes
 
 from crankmbs import load_scene, sweep
 from crankmbs.digits import error_digits
-from crankmbs.figures.style import STYLE, caption, panels
+from crankmbs.figures.style import STYLE, caption, logarithmic, panels
 from crankmbs.storage.files import write_in_one_move
 
 __all__ = ["main"]
@@ -60,6 +60,7 @@ def _draw(ax: Axes, data: xr.Dataset) -> None:
     lines = ax.contour(fluctuation, ratio, off, levels[1:], colors="black", linewidths=1.0)
     ax.clabel(lines, fmt=lambda value: f"{value:g} %", fontsize=12)
     ax.set_xscale("log")
+    logarithmic(ax.xaxis)
     ax.set_xlabel("fluctuation of the speed [%]")
     ax.set_title(str(data["quantity"].values))
 

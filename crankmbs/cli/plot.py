@@ -26,21 +26,27 @@ def plot(
     ] = None,
     out: Annotated[
         Path | None,
-        typer.Option("-o", "--out", help="Folder of the figures; default results/NAME."),
+        typer.Option(
+            "-o", "--out", help="Folder of the figures, or one PNG file; default results/NAME."
+        ),
     ] = None,
 ) -> None:
     """Draw measures of a sweep over what was varied: curves, contours or small multiples."""
-    data = load_sweep(sweep)
-    folder = writable(Path("results", sweep.stem) if out is None else out)
+    data, shown = load_sweep(sweep), show or ["fluctuation"]
+    out = Path("results", sweep.stem) if out is None else out
+    file = out.name if out.suffix == ".png" else None
+    if file and len(shown) > 1:
+        raise InputError(f"--out {out}: is one file, and {len(shown)} figures come; give a folder")
+    folder = writable(out.parent if file else out)
     from crankmbs.figures import sweep_figure  # matplotlib only here
 
     drawn = {}
-    for words in show or ["fluctuation"]:
+    for words in shown:
         try:
-            drawn[f"{'_'.join(words.split())}.png"] = sweep_figure(data, words, limit)
+            drawn[file or f"{'_'.join(words.split())}.png"] = sweep_figure(data, words, limit)
         except InputError as error:
             raise InputError(f"--show {words}: {error}") from None
     with together(folder) as part:
         for name, figure in drawn.items():
             figure.savefig(part / name, format="png")
-    typer.echo(wrote(folder, [*drawn]))
+    typer.echo(f"wrote {out}" if file else wrote(folder, [*drawn]))

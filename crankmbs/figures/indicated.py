@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
-from crankmbs.figures.style import COLOURS, STYLE, caption, legend, line_of, panels
+from crankmbs.figures.style import COLOURS, STYLE, caption, legend, line_of, logarithmic, panels
 from crankmbs.indicated import CylinderPressure, Indicated
 from crankmbs.scene.units import BAR
 
@@ -57,6 +57,8 @@ def volume_figure(found: Indicated) -> Figure:
     axes[0].set_ylabel(_pressure(found))
     if with_log:
         axes[1].set_xlabel("volume over the clearance volume [1]")
+        logarithmic(axes[1].xaxis)
+        logarithmic(axes[1].yaxis)
     handles, labels = axes[0].get_legend_handles_labels()
     columns = 2 if with_log and len(labels) > 1 else 1
     figure.legend(handles, labels, loc="outside upper center", ncols=columns)

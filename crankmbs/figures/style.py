@@ -10,8 +10,10 @@ from typing import Any, Literal
 import numpy as np
 from matplotlib import rcParams
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullLocator
 from numpy.typing import NDArray
 
 from crankmbs.figures.view import View
@@ -29,6 +31,7 @@ __all__ = [
     "keep_flat",
     "legend",
     "line_of",
+    "logarithmic",
     "mark_points",
     "panels",
     "png",
@@ -86,6 +89,13 @@ def panels(
     FigureCanvasAgg(figure)
     grid = figure.subplots(rows, columns, squeeze=False, width_ratios=ratios)
     return figure, [axes for row in grid for axes in row]
+
+
+def logarithmic(axis: Axis) -> None:
+    """Plain numbers on a logarithmic axis of some decades, at 1, 2 and 5 of each."""
+    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axis.set_minor_locator(NullLocator())
+    axis.set_major_formatter(lambda value, _: f"{value:g}")
 
 
 def line_of(cylinder: int) -> dict[str, Any]:

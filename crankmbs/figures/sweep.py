@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -11,9 +12,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from crankmbs.digits import digits, error_digits
+from crankmbs.digits import error_digits
 from crankmbs.errors import InputError
-from crankmbs.figures.style import COLOURS, STYLE, caption, panels
+from crankmbs.figures.style import COLOURS, STYLE, caption, logarithmic, panels
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.units import BAR, DEGREE, RPM
 from crankmbs.sweep.columns import Column
@@ -45,9 +46,15 @@ class _Drawn(NamedTuple):
     values : over the knobs of a grid, or over the cases; limit : where a line is drawn
     """
 
-    values: xr.DataArray
-    label: str
+    values: Any
+    words: str
+    unit: str
     limit: float | None
+
+    @property
+    def label(self) -> str:
+        """What it is, with its unit."""
+        return f"{self.words} [{self.unit}]"
 
 
 class _Axis(NamedTuple):
@@ -64,6 +71,7 @@ class _Axis(NamedTuple):
             ax.set_xticks(self.at, self.words)
         elif self.log:
             ax.set_xscale("log")
+            logarithmic(ax.xaxis)
 
     def along_y(self, ax: Axes) -> None:
         ax.set_ylabel(self.label)
@@ -71,6 +79,7 @@ class _Axis(NamedTuple):
             ax.set_yticks(self.at, self.words)
         elif self.log:
             ax.set_yscale("log")
+            logarithmic(ax.yaxis)
 
 
 @rc_context(STYLE)
@@ -102,13 +111,15 @@ def sweep_figure(data: xr.Dataset, show: str, limit: str | None = None) -> Figur
         raise InputError(f"{show}: no case of this sweep has it")
     scale, unit = _SHOWN.get(reading.about.units, (1.0, reading.about.units))
     at = None if limit is None else amount_of(limit, reading) / scale
-    drawn = _Drawn(values / scale, f"{reading.words} [{unit}]", at)
+    drawn = _Drawn(values / scale, reading.words, unit, at)
     knobs = [str(name) for name in values.dims if name in data.coords]
     figure = _over_cases(data, drawn) if values.dims == ("case",) else _over(data, drawn, knobs)
     missing = int(np.count_nonzero(np.isnan(values.values)))
     lines = [str(data.attrs.get("title", "")), f"{values.size} cases; error at most "]
     lines[1] += f"{error_digits(error / scale)} {unit}"
     lines[1] += f"; {missing} have none and are left white" if missing else ""
+    if at is not None and not np.nanmin(drawn.values) <= at <= np.nanmax(drawn.values):
+        lines.append(f"all cases lie on one side of {_amount(drawn)}")
     caption(figure, [line for line in lines if line])
     return figure
 
@@ -140,7 +151,9 @@ def _over(data: xr.Dataset, drawn: _Drawn, knobs: list[str]) -> Figure:
         if k >= count:
             continue
         table = drawn.values.values if rest is None else rest.values[k]
-        filled = _contours(ax, (_axis(data, x), _axis(data, y)), table, levels, drawn.limit)
+        filled = _contours(
+            ax, (_axis(data, x), _axis(data, y)), drawn._replace(values=table), levels
+        )
         if rest is not None:
             ax.set_title(_where(data, others, rest["panel"].values[k]), fontsize=11)
     figure.colorbar(filled, ax=axes)
@@ -160,19 +173,23 @@ def _curve(axis: _Axis, drawn: _Drawn) -> Figure:
     return figure
 
 
-def _contours(
-    ax: Axes, at: tuple[_Axis, _Axis], table: Array, levels: Array, limit: float | None
-) -> Any:
-    x, y = at
+def _contours(ax: Axes, at: tuple[_Axis, _Axis], drawn: _Drawn, levels: Array) -> Any:
+    (x, y), table, limit = at, np.ma.masked_invalid(drawn.values), drawn.limit
     ax.set_facecolor("white")
     ax.grid(visible=False)
-    filled = ax.contourf(x.at, y.at, np.ma.masked_invalid(table), levels, cmap="viridis")
+    filled = ax.contourf(x.at, y.at, table, levels, cmap="viridis")
     if limit is not None and levels[0] < limit < levels[-1]:
-        line = ax.contour(x.at, y.at, np.ma.masked_invalid(table), [limit], colors=COLOURS[1])
-        ax.clabel(line, fmt=lambda value: digits(value, most=3), fontsize=12, inline_spacing=2)
+        line = ax.contour(x.at, y.at, table, [limit], colors=COLOURS[1])
+        ax.clabel(line, fmt=lambda _: _amount(drawn), fontsize=12, inline_spacing=2)
     x.along_x(ax)
     y.along_y(ax)
     return filled
+
+
+def _amount(drawn: _Drawn) -> str:
+    """The limit in words."""
+    assert drawn.limit is not None
+    return f"{drawn.limit:.6g} {drawn.unit}"
 
 
 def _over_cases(data: xr.Dataset, drawn: _Drawn) -> Figure:
@@ -214,7 +231,7 @@ def _axis(data: xr.Dataset, name: str) -> _Axis:
     if values.dtype.kind != "f":
         words, at = np.unique(values, return_inverse=True)
         return _Axis(name, at.astype(np.float64), [str(w) for w in words], log=False)
-    label = f"{name} [{unit}]" if unit else name.replace("_", " ")
+    label = f"{name} [{_typeset(unit)}]" if unit else name.replace("_", " ")
     return _Axis(label, values / scale, [], log=_is_log(values))
 
 
@@ -245,4 +262,9 @@ def _said(data: xr.Dataset, name: str, value: Any) -> str:
     if isinstance(value, str):
         return f"{name} {value}"
     scale, unit = _SHOWN.get(units, (1.0, units))
-    return f"{name} {digits(float(value) / scale, most=4)} {unit}".rstrip()
+    return f"{name} {float(value) / scale:.4g} {_typeset(unit)}".rstrip()
+
+
+def _typeset(unit: str) -> str:
+    """With its powers raised."""
+    return re.sub(r"\^(-?\d)", r"$^{\1}$", unit)

@@ -7,7 +7,7 @@ import re
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq
+from scipy.optimize import brentq, minimize_scalar
 
 from crankmbs.errors import InputError, shown
 from crankmbs.measures import Estimate
@@ -22,6 +22,7 @@ __all__ = ["Asked", "Root", "Solved", "asked_of", "solve"]
 
 _POINTS = 17  # of the scan
 _CLOSE = 1e-9  # of the interval: as near as a root is polished
+_TURN = 1e-6  # of the interval: as near as a turn is, where the measure is flat or bends
 _EQUATION = re.compile(r"(.*?)\s*(<=|>=|=|<|>)\s*(.*)")
 
 
@@ -44,7 +45,8 @@ class Solved:
     knob, units : what was varied; measure : what was wanted, in words; wanted : how much of it
     roots : every crossing between the points of the scan, in their order
     nearest : where there is none, the point of the scan whose measure is nearest, else None
-    scanned : shape (2, n), values and measures; NaN where a case has none
+    scanned : shape (2, n), values and measures; NaN where a case has none. Where the measure turns
+        towards what is wanted the turn is a point of the scan, too
     status, message : 0 and how many; 1 where there is none
     """
 
@@ -102,9 +104,10 @@ def asked_of(scene: Scene, text: str, signs: str) -> tuple[Reading, str, float]:
 def solve(scene: Scene, vary: dict[str, str], wanted: str) -> Solved:
     """Find the values of a knob with which a measure is what is wanted.
 
-    The range is scanned at 17 points; wherever the measure crosses between two of them the crossing
-    is polished by Brent's method. Two crossings between neighbours are not seen: narrow the range
-    where ``scanned`` turns.
+    The range is scanned at 17 points, and wherever the measure turns towards what is wanted without
+    reaching it there, the turn is looked for between them; wherever it crosses between two points
+    the crossing is polished by Brent's method. Wiggles narrower than the points lie apart are not
+    seen: narrow the range for those.
 
     Parameters
     ----------
@@ -145,9 +148,10 @@ class _Search:
     def __init__(self, asked: Asked, knob: Interval, reading: Reading, wanted: float) -> None:
         self._asked, self._knob = asked, knob
         self._reading, self._wanted = reading, wanted
+        self._known: dict[float, Estimate] = {}
 
     def found(self) -> Solved:
-        shares = np.linspace(0.0, 1.0, _POINTS)
+        shares = self._points()
         estimates = [self._estimate(share) for share in shares.tolist()]
         off = np.array([one.value for one in estimates]) - self._wanted
         roots = [self._root(share) for share in shares[off == 0.0].tolist()]
@@ -178,6 +182,30 @@ class _Search:
             message=message,
         )
 
+    def _points(self) -> Array:
+        """Evenly spaced shares, and those where the measure turns towards what is wanted."""
+        shares = np.linspace(0.0, 1.0, _POINTS)
+        off = np.array([self._estimate(share).value for share in shares.tolist()]) - self._wanted
+        inner, before, after = off[1:-1], off[:-2], off[2:]
+        nearest = np.abs(inner) < np.minimum(np.abs(before), np.abs(after))
+        turns = 1 + np.flatnonzero(nearest & (inner * before > 0.0) & (inner * after > 0.0))
+        more = [
+            self._turn(float(shares[k - 1]), float(shares[k + 1]), float(np.sign(off[k])))
+            for k in turns.tolist()
+        ]
+        return np.unique([*shares, *more])
+
+    def _turn(self, low: float, high: float, side: float) -> float:
+        """Where between two shares the measure, on one side of what is wanted, is nearest to it or
+        farthest beyond it."""
+        found = minimize_scalar(
+            lambda share: np.nan_to_num(side * self._estimate(share).value, nan=math.inf),
+            bounds=(low, high),
+            method="bounded",
+            options={"xatol": _TURN},
+        )
+        return float(found.x)
+
     def _polished(self, low: float, high: float) -> Root | None:
         """The crossing between two shares; none where a case in between has no measure, or where
         the measure jumps across what is wanted."""
@@ -205,7 +233,9 @@ class _Search:
         return off
 
     def _estimate(self, share: float) -> Estimate:
-        return self._asked.at((self._value(share),), (self._reading,))[0]
+        if share not in self._known:
+            (self._known[share],) = self._asked.at((self._value(share),), (self._reading,))
+        return self._known[share]
 
     def _value(self, share: float) -> float:
         return float(self._knob.at(np.array(share)))

@@ -32,7 +32,8 @@ def summary(mutants: list[Mutant], rows: dict[str, Row]) -> list[str]:
     """What was done and what came of it, in a few lines of Markdown."""
     dead, counted = score(mutants, rows)
     equivalent = sum(bool(mutant.equivalent) for mutant in mutants)
-    commits = sorted({f"{row.date}, commit {row.commit}" for row in rows.values()})
+    dates = sorted({row.date for row in rows.values()})
+    commits = {row.commit for row in rows.values()}
     killed = [row for row in rows.values() if row.verdict == "killed"]
     by_test = sum(row.by.startswith("tests/") for row in killed)
     endless = sum(row.verdict == NO_END for row in rows.values())
@@ -45,7 +46,8 @@ def summary(mutants: list[Mutant], rows: dict[str, Row]) -> list[str]:
         f"%.** {equivalent} more change no number and are not counted; they are listed with "
         "the reason.",
         "",
-        f"- run: {'; '.join(commits)}",
+        f"- run: {' to '.join(dict.fromkeys((dates[0], dates[-1])))}, on {len(commits)} "
+        "commits; `validation/mutants/results.csv` has that of each",
         f"- a test turned red first for {by_test}, a claim for {len(killed) - by_test}; for "
         f"{endless} the guards did not come to their end in the time they have",
         "- command: `python -m validation.mutants`; the mutants are the TOML files in "
