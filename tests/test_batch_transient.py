@@ -167,6 +167,7 @@ def test_runs_of_different_lengths_are_carried_beside_one_another():
     [
         load_scene("torque_driven"),
         PROPELLER.with_(run__until="719 deg"),
+        load_scene("coasting").with_(run__until="0.06 s"),
         replace(PROPELLER, friction=load_scene("friction").friction),
         PROPELLER.with_(run__formulation="minimal"),
         load_scene("yi_diesel").with_(run__until="2 cycles"),
