@@ -4,11 +4,12 @@ rules: everything but the crank's inertia and the loads."""
 from __future__ import annotations
 
 import math
-from collections.abc import Hashable
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from crankmbs.compare.lectured import LECTURES, lectured
 from crankmbs.compare.quantities import QUANTITIES, observed
@@ -40,6 +41,14 @@ OWN = 11
 """Columns of a case before those of its joints, as `crankmbs.batch.walk.walk` fills them."""
 
 
+Curves = tuple[Array, Array, Array, Array]
+"""A and B, C and D, of `crankmbs.batch.walk.walk`, and both in straight lines."""
+
+
+Known = tuple[NDArray[np.intp], NDArray[np.bool_]]
+"""Of the quantities, which curves are the same, and whether they are of the angle alone."""
+
+
 class Pass(NamedTuple):
     """Tables at the nodes of one rule, as `crankmbs.batch.walk.walk` takes them.
 
@@ -48,7 +57,7 @@ class Pass(NamedTuple):
 
     rule: tuple[Array, Array, Array, Array]
     of_angle: tuple[Array, Array, Array, Array]
-    parts: tuple[Array, Array, Array, Array]
+    parts: tuple[Curves, Array, Curves, NDArray[np.intp], Known]
     works: Array
 
 
@@ -145,24 +154,81 @@ def _pass(
     inertia, slope, torque = (
         part.reshape(shape).copy() for part in (np.asarray(inertia), 2.0 * half_slope, -against)
     )
-    rods = np.sum(each["crank_torque"], axis=0)[None]
+    rods = np.asarray(np.sum(each["crank_torque"], axis=0))
     share = (width[:, None] * rule.weights).ravel()
     works = [
         sense * float(np.sum(share * force * speed))
         for force, speed in zip(each["gas_force"], each["piston_velocity"], strict=True)
     ]
     variables = {name: np.stack(columns, axis=-1) for name, columns in each.items()}
+    forces = np.array([*bearing, *pins, *(each["side_force"][k] for k in chosen)])
+    own, said = _observed(scene, variables, crank, theta), _lectured(train, theta)
+    starts = _blocks(width)
+    first = np.append(np.arange(0, theta.size, len(rule.nodes)), theta.size)
+    pieces = (edges, first), (edges[starts], first[starts])
+
+    def curves(of: Array, rest: Array) -> Curves:
+        lines = [_lines(part, turned.ravel(), pieces) for part in (of, rest)]
+        return of, rest, lines[0], lines[1]
+
+    none = np.zeros_like(forces[:, 2])
+    more = np.stack([own[:, None, 2] - said[:, :, 1], own[:, None, 0] - said[:, :, 0]], axis=2)
+    of_quantities = np.stack([own[:, 2], np.zeros_like(own[:, 2])], axis=1)[:, None]
     return Pass(
         (rule.matrix, rule.weights, rule.nodes, rule.to_legendre[-1].copy()),
         (width, inertia, slope, torque),
         (
-            np.array([*bearing, *pins, *(each["side_force"][k] for k in chosen)]),
+            curves(forces[:, :2].copy(), np.stack([forces[:, 2], none], axis=1)[:, None]),
             rods,
-            _observed(scene, variables, crank, theta),
-            _lectured(train, theta),
+            curves(own[:, :2].copy(), every := np.concatenate([of_quantities, more], axis=1)),
+            starts,
+            (_twins(every), np.asarray(~own[:, :2].any(axis=(1, 2)))),
         ),
         np.array(works),
     )
+
+
+def _twins(rest: Array) -> NDArray[np.intp]:
+    """For every curve of a quantity the number of the first one that is the same: what two lectures
+    say in the same way is sought once. rest : their C and D, shape (q, 1 + lectures, 2, n)."""
+    found = np.zeros(rest.shape[:2], dtype=np.intp)
+    for q, of in enumerate(rest):
+        for k in range(1, len(of)):
+            found[q, k] = next(j for j in range(1, k + 1) if j == k or np.array_equal(of[j], of[k]))
+    return found
+
+
+def _blocks(width: Array) -> NDArray[np.intp]:
+    """The first of the cells that together are no wider than the widest, and how many cells there
+    are."""
+    starts, begin = [0], 0.0
+    for cell, end in enumerate(np.cumsum(width)):
+        if end - begin > _WIDEST + _SLIVER and cell > starts[-1]:
+            starts, begin = [*starts, cell], end - width[cell]
+    return np.array([*starts, len(width)])
+
+
+def _lines(values: Array, turned: Array, pieces: Sequence[tuple[Array, NDArray[np.intp]]]) -> Array:
+    """Straight lines for curves in the cells, then in the blocks of cells: their middle, by how
+    much they rise, and by how much they miss a node at most; of two curves each, shape (..., 2, n)
+    -> (..., 6, m + b).
+
+    turned : to the nodes; pieces : of cells and of blocks, edges and where their nodes begin
+    """
+    found = []
+    for edges, nodes in pieces:
+        count, begin, end = np.diff(nodes), nodes[:-1], nodes[1:] - 1
+        middle, wide = 0.5 * (edges[:-1] + edges[1:]), np.diff(edges)
+        x = (turned - np.repeat(middle, count)) / np.repeat(wide, count)
+        rise = (values[..., end] - values[..., begin]) / (x[end] - x[begin])
+        middle = values[..., begin] - rise * x[begin]
+        off = np.abs(
+            values - np.repeat(middle, count, axis=-1) - np.repeat(rise, count, axis=-1) * x
+        )
+        rest = np.maximum.reduceat(off, begin, axis=-1)
+        found.append(np.stack([middle, rise, rest], axis=-2))
+    lines = np.concatenate(found, axis=-1)
+    return lines.reshape(*lines.shape[:-3], 6, -1)
 
 
 def _alike(train: CrankTrain) -> tuple[int, ...]:

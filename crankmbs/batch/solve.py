@@ -192,7 +192,7 @@ def _passed(
     columns = np.empty((len(starts), OWN + 4 * machine.joints + _OF_QUANTITIES))
     width, inertia, _, torque = tables.of_angle
     ends = np.empty((len(starts), len(width)))
-    about = machine.sense, True, list(QUANTITIES).index(LINEAR), OWN
+    about = machine.sense, list(QUANTITIES).index(LINEAR), OWN
     together = LANES * max(1, _NODES // (LANES * inertia.size))
     for k in range(0, len(starts), together):
         some = slice(k, k + together)
