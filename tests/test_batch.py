@@ -7,11 +7,12 @@ import numpy as np
 import pytest
 
 from crankmbs import load_scene, simulate
-from crankmbs.batch import periodic, walk
+from crankmbs.batch import machine, periodic, walk
 from crankmbs.batch.machine import machine_of
 from crankmbs.batch.rows import rows_of
 from crankmbs.batch.serves import loads_of
 from crankmbs.batch.solve import solved_together
+from crankmbs.compare import QUANTITIES
 from crankmbs.numerics.collocation import gauss
 from crankmbs.scene.loads import Constant, Quadratic, SpeedTable, Viscous
 from crankmbs.scene.tables import Table
@@ -169,8 +170,7 @@ def test_a_load_that_stalls_the_crank_says_so_alone():
 
 
 def test_in_an_even_engine_the_other_cylinders_are_as_the_first():
-    machine = machine_of(SHIPPED[1])
-    assert machine.alike == (0, 0, 0, 0)
+    assert machine_of(SHIPPED[1]).alike == (0, 0, 0, 0)
     weighed = settling("yi_diesel_free", gravity={"acceleration": 9.81, "angle": 0.5})
     assert machine_of(weighed).alike == (0, 1, 2, 3)
     (rows,), (alone, _) = rows_of([weighed]), by_hand(weighed)
@@ -196,14 +196,123 @@ def test_its_loops_are_the_same_compiled_and_plain(monkeypatch):
     assert all(one.targetoptions["nogil"] for one in kernels.values())
 
 
+WIDTHS = np.array([0.05, 0.3, 0.05, 0.02, 0.03, 0.05, 0.01, 0.2])
+
+
+def sought(rows, level=0.0, width=WIDTHS, stages=8):
+    """What is found of a curve whose rows are A, B, C, D, omega^2 and alpha over the angle, and the
+    largest size of its polynomials, densely."""
+    rule, edges = gauss(stages), np.append(0.0, np.cumsum(width))
+    nodes = edges[:-1, None] + width[:, None] * rule.nodes
+    of, rest, motion = (
+        np.array([[f(nodes).ravel() for f in each[k : k + 2]] for each in rows]) for k in (0, 2, 4)
+    )
+    course = np.concatenate([motion[0], motion[0]])
+    starts = machine._blocks(width)
+    first = stages * np.arange(len(width) + 1)
+    pieces = (edges, first), (edges[starts], first[starts])
+    lines = [machine._lines(part, nodes.ravel(), pieces) for part in (of, rest)]
+    prepared, track = np.empty((8, stages)), np.empty((9, lines[0].shape[-1]))
+    walk._prepare(tables_of(stages), prepared)
+    for k in range(3):
+        walk._straighten(course[k], prepared, (edges, starts), track[3 * k : 3 * k + 3])
+    curves = of, rest[:, None], lines[0], lines[1][:, None]
+    motions, found = (course[None], track[None], np.array([[level, 0.0]])), np.empty((1, 3))
+    walk._seek((0, len(rows), 0, False), curves, (edges, starts), prepared, motions, found)
+    values = of[:, 0] * (course[0] - level) + of[:, 1] * course[1] + rest[:, 0] + rest[:, 1] * level
+    dense = np.polynomial.legendre.legvander(np.linspace(-1.0, 1.0, 3001), stages - 1)
+    between = (values.reshape(len(rows), -1, stages) @ rule.to_legendre.T) @ dense.T
+    return found[0], np.max(np.sqrt(np.sum(between**2, axis=0)))
+
+
+def tables_of(stages):
+    rule = gauss(stages)
+    return rule.matrix, rule.weights, rule.nodes, rule.to_legendre[-1].copy()
+
+
+def flat(value):
+    return lambda angle: np.full_like(angle, value)
+
+
 def test_a_peak_may_lie_in_the_cell_beside_the_nearest_node():
-    rule, width = gauss(8), np.array([0.05, 0.3, 0.05])
-    edges = np.append(0.0, np.cumsum(width))
-    there = edges[1] + 0.2 * rule.nodes[0] * width[1]  # nearer to the last node of the first cell
-    curve = np.cos(edges[:-1, None] + width[:, None] * rule.nodes - there).ravel()
-    tables = rule.matrix, rule.weights, rule.nodes, rule.to_legendre[-1].copy()
-    outline = width, np.empty((2, len(curve))), np.empty(3)
-    walk._reaching(True, outline, tables)
-    peak, turned, tail = walk._highest(True, (curve, curve[:0], curve), outline, tables, 0.0)
+    edge, nodes = 0.05, gauss(8).nodes
+    there = edge + 0.2 * nodes[0] * 0.3  # nearer to the last node of the first cell
+    none = flat(0.0)
+    rows = [[none, none, lambda angle: np.cos(angle - there), none, none, none]]
+    (peak, turned, tail), _ = sought(rows)
     assert abs(peak - 1.0) < 1e-14 + tail
     assert abs(turned - there) < 1e-7
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_of_two_peaks_that_are_nearly_equal_the_higher_one_is_found(sign):
+    width, none = np.full(90, 4.0 / 90), flat(0.0)
+
+    def two(angle):
+        return sign * (np.cos(2.0 * np.pi * angle / 2.0 - 1.2) + 1e-9 * angle)
+
+    (peak, turned, tail), _ = sought([[none, none, two, none, none, none]], width=width)
+    assert tail < 1e-12
+    assert abs(turned - (2.0 + 1.2 / np.pi)) < 1e-6
+    assert abs(peak - (1.0 + 1e-9 * turned)) < 1e-14 + tail
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_no_peak_escapes_the_bounds(seed):
+    random = np.random.default_rng(seed)
+
+    def wave():
+        size, often, phase = random.normal(), random.uniform(0.0, 12.0), random.uniform(0.0, 6.0)
+        mean = random.normal()
+        return lambda angle: mean + size * np.cos(often * angle + phase)
+
+    motion = [wave(), wave()]
+    rows = [[*(wave() for _ in range(4)), *motion] for _ in range(1 + seed % 2)]
+    (peak, _, _), dense = sought(rows, random.normal(), stages=5 + seed % 5)
+    assert dense * (1.0 - 1e-14) <= peak <= dense * (1.0 + 1e-4)
+
+
+@pytest.mark.parametrize("stages", [5, 8])
+def test_a_size_that_bends_is_summed_on_both_sides(stages):
+    tables, nodes = tables_of(stages), gauss(stages).nodes
+    for zero in (1e-9, 0.02, 0.37, 0.5, nodes[2], 0.999):
+        found = walk._split(nodes - zero, 1.0 + nodes, tables)
+        whole, before = (x**3 / 3.0 + (1.0 - zero) * x**2 / 2.0 - zero * x for x in (1.0, zero))
+        assert abs(found - (whole - 2.0 * before)) < 2e-15
+    assert walk._split((nodes - 0.3) * (nodes - 0.6), nodes, tables) < 0.0
+    assert abs(walk._split(-1.0 - nodes, nodes, tables) - 5.0 / 6.0) < 1e-15
+
+
+def test_where_two_components_nearly_vanish_cells_are_halved():
+    rule, miss, zero = gauss(8), 1e-2, 0.37
+    first, second = rule.nodes - zero, np.full(8, miss)
+    curve, over = (first, second, np.hypot(first, second)), (np.ones(8), rule.weights)
+    found = walk._integral(curve, over, np.ones(1), tables_of(8))
+    before, whole = (
+        0.5 * (x * np.hypot(x, miss) + miss**2 * np.arcsinh(x / miss)) for x in (-zero, 1.0 - zero)
+    )
+    assert abs(found - (whole - before)) < 1e-9
+
+
+def test_a_force_that_passes_zero_has_its_mean():
+    """By other nodes it is the same, and by a fine sum."""
+    (group,) = solved_together([SHIPPED[0]])
+    side = slice(machine.OWN + 14, machine.OWN + 15)
+    result = simulate(SHIPPED[0].with_(run__every="0.02 deg"), rtol=1e-12)
+    time, force = result.data["time"].values, np.abs(result.data["side_force"].values[:, 0])
+    fine = np.trapezoid(force, time) / (time[-1] - time[0])
+    assert abs(fine / group.answer[0, side] - 1.0) < 2e-7
+    assert group.error[0, side] < 1e-11 * fine
+
+
+def test_what_is_the_same_is_sought_once():
+    """Where lectures say the same, and what is of the angle alone."""
+    for scene in SHIPPED[:2]:
+        (group,) = solved_together([scene])
+        twin, steady = group.machine.answer.parts[4]
+        names = [name for name, is_so in zip(QUANTITIES, steady, strict=True) if is_so]
+        assert names == ["piston displacement", "gas torque"]
+        assert (twin[:, 0] == 0).all()
+        assert (twin[:, 1] == 1).all()  # another than the quantity itself
+        accelerates = list(QUANTITIES).index("piston acceleration")
+        assert twin[accelerates].tolist() == [0, 1, 2, 2]

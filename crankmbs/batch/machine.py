@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from crankmbs.compare.lectured import LECTURES, lectured
 from crankmbs.compare.quantities import QUANTITIES, observed
@@ -40,6 +41,14 @@ OWN = 11
 """Columns of a case before those of its joints, as `crankmbs.batch.walk.walk` fills them."""
 
 
+Curves = tuple[Array, Array, Array, Array]
+"""A and B, C and D, of `crankmbs.batch.walk.walk`, and both in straight lines."""
+
+
+Known = tuple[NDArray[np.intp], NDArray[np.bool_]]
+"""Of the quantities, which curves are the same, and whether they are of the angle alone."""
+
+
 class Pass(NamedTuple):
     """Tables at the nodes of one rule, as `crankmbs.batch.walk.walk` takes them.
 
@@ -48,7 +57,7 @@ class Pass(NamedTuple):
 
     rule: tuple[Array, Array, Array, Array]
     of_angle: tuple[Array, Array, Array, Array]
-    parts: tuple[Array, Array, Array, Array]
+    parts: tuple[Curves, Array, Curves, NDArray[np.intp], Known]
     works: Array
 
     def cut(self, cell: int, place: float, parts: Array) -> Pass:
@@ -64,12 +73,22 @@ class Pass(NamedTuple):
         inertia, slope, torque = (
             _cut(table.ravel(), shape, cell, parts).reshape(-1, shape[1]) for table in at_nodes
         )
-        forces, rods, quantities, lectures = (
-            _cut(table, shape, cell, parts) for table in self.parts
-        )
+        forces, rods, quantities, _, known = self.parts
+        layout = _layout(np.concatenate(turned), self.rule[2])
+
+        def again(curves: Curves) -> Curves:
+            of, rest = (_cut(table, shape, cell, parts) for table in curves[:2])
+            return _curves(of, rest, layout)
+
         return self._replace(
-            of_angle=(np.concatenate(turned), inertia, slope, torque),
-            parts=(forces, rods, quantities, lectures),
+            of_angle=(layout.width, inertia, slope, torque),
+            parts=(
+                again(forces),
+                _cut(rods, shape, cell, parts),
+                again(quantities),
+                layout.starts,
+                known,
+            ),
         )
 
 
@@ -204,24 +223,94 @@ def _pass(
     inertia, slope, torque = (
         part.reshape(shape).copy() for part in (np.asarray(inertia), 2.0 * half_slope, -against)
     )
-    rods = np.sum(each["crank_torque"], axis=0)[None]
+    rods = np.asarray(np.sum(each["crank_torque"], axis=0))
     share = (width[:, None] * rule.weights).ravel()
     works = [
         sense * float(np.sum(share * force * speed))
         for force, speed in zip(each["gas_force"], each["piston_velocity"], strict=True)
     ]
     variables = {name: np.stack(columns, axis=-1) for name, columns in each.items()}
+    forces = np.array([*bearing, *pins, *(each["side_force"][k] for k in chosen)])
+    own, said = _observed(scene, variables, crank, theta), _lectured(train, theta)
+    layout = _layout(width, rule.nodes)
+    none = np.zeros_like(forces[:, 2])
+    more = np.stack([own[:, None, 2] - said[:, :, 1], own[:, None, 0] - said[:, :, 0]], axis=2)
+    of_quantities = np.stack([own[:, 2], np.zeros_like(own[:, 2])], axis=1)[:, None]
+    every = np.concatenate([of_quantities, more], axis=1)
     return Pass(
         (rule.matrix, rule.weights, rule.nodes, rule.to_legendre[-1].copy()),
         (width, inertia, slope, torque),
         (
-            np.array([*bearing, *pins, *(each["side_force"][k] for k in chosen)]),
+            _curves(forces[:, :2].copy(), np.stack([forces[:, 2], none], axis=1)[:, None], layout),
             rods,
-            _observed(scene, variables, crank, theta),
-            _lectured(train, theta),
+            _curves(own[:, :2].copy(), every, layout),
+            layout.starts,
+            (_twins(every), np.asarray(~own[:, :2].any(axis=(1, 2)))),
         ),
         np.array(works),
     )
+
+
+class _Layout(NamedTuple):
+    """Where the nodes of a period lie: width of the cells, angle turned to the nodes, the first
+    cell of every block; and of cells and of blocks edges and where their nodes begin."""
+
+    width: Array
+    turned: Array
+    starts: NDArray[np.intp]
+    pieces: tuple[tuple[Array, NDArray[np.intp]], tuple[Array, NDArray[np.intp]]]
+
+
+def _layout(width: Array, nodes: Array) -> _Layout:
+    edges, starts = np.append(0.0, np.cumsum(width)), _blocks(width)
+    turned = (edges[:-1, None] + width[:, None] * nodes).ravel()
+    first = np.arange(0, turned.size + 1, len(nodes))
+    return _Layout(width, turned, starts, ((edges, first), (edges[starts], first[starts])))
+
+
+def _curves(of: Array, rest: Array, layout: _Layout) -> Curves:
+    """With their straight lines."""
+    return of, rest, _lines(of, layout), _lines(rest, layout)
+
+
+def _twins(rest: Array) -> NDArray[np.intp]:
+    """For every curve of a quantity the number of the first one that is the same: what two lectures
+    say in the same way is sought once. rest : their C and D, shape (q, 1 + lectures, 2, n)."""
+    found = np.zeros(rest.shape[:2], dtype=np.intp)
+    for q, of in enumerate(rest):
+        for k in range(1, len(of)):
+            found[q, k] = next(j for j in range(1, k + 1) if j == k or np.array_equal(of[j], of[k]))
+    return found
+
+
+def _blocks(width: Array) -> NDArray[np.intp]:
+    """The first of the cells that together are no wider than the widest, and how many cells there
+    are."""
+    starts, begin = [0], 0.0
+    for cell, end in enumerate(np.cumsum(width)):
+        if end - begin > _WIDEST + _SLIVER and cell > starts[-1]:
+            starts, begin = [*starts, cell], end - width[cell]
+    return np.array([*starts, len(width)])
+
+
+def _lines(values: Array, layout: _Layout) -> Array:
+    """Straight lines for curves in the cells, then in the blocks of cells: their middle, by how
+    much they rise, and by how much they miss a node at most; of two curves each, shape (..., 2, n)
+    -> (..., 6, m + b)."""
+    found = []
+    for edges, nodes in layout.pieces:
+        count, begin, end = np.diff(nodes), nodes[:-1], nodes[1:] - 1
+        middle, wide = 0.5 * (edges[:-1] + edges[1:]), np.diff(edges)
+        x = (layout.turned - np.repeat(middle, count)) / np.repeat(wide, count)
+        rise = (values[..., end] - values[..., begin]) / (x[end] - x[begin])
+        middle = values[..., begin] - rise * x[begin]
+        off = np.abs(
+            values - np.repeat(middle, count, axis=-1) - np.repeat(rise, count, axis=-1) * x
+        )
+        rest = np.maximum.reduceat(off, begin, axis=-1)
+        found.append(np.stack([middle, rise, rest], axis=-2))
+    lines = np.concatenate(found, axis=-1)
+    return lines.reshape(*lines.shape[:-3], 6, -1)
 
 
 def _alike(train: CrankTrain) -> tuple[int, ...]:

@@ -12,7 +12,7 @@ from crankmbs.batch.group import Group
 from crankmbs.batch.machine import OWN
 from crankmbs.batch.solve import solved_together
 from crankmbs.compare import LECTURES, QUANTITIES
-from crankmbs.compare.excerpt import vanishing
+from crankmbs.mechanics.peaks import negligible
 from crankmbs.motion.ending import Ending
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
@@ -125,8 +125,9 @@ def _of_lectures(group: Group) -> dict[str, Array]:
     with np.errstate(divide="ignore", invalid="ignore"):
         share = deviation / peak[:, :, None]
         apart = (error[:, :, 1:] + share * error[:, :, :1]) / peak[:, :, None]
-    for k, sizes in enumerate(np.fmax.reduce(value, axis=2)):  # a lecture is no larger than these
-        nothing = vanishing([dict(zip(QUANTITIES, sizes[:, None], strict=True))])
+    units = {name: about.units for name, about in QUANTITIES.items()}
+    for k, sizes in enumerate(np.fmax.reduce(value, axis=2).tolist()):  # no lecture is larger
+        nothing = negligible(dict(zip(QUANTITIES, sizes, strict=True)), units)
         share[k, [name in nothing for name in QUANTITIES]] = np.nan
     share[~np.isfinite(apart)] = np.nan
     apart[np.isnan(share)] = np.nan

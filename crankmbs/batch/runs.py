@@ -92,7 +92,7 @@ def _to_angles(way: _Way, given: Array) -> _Passed:
     machine, tables, count = way.machine, way.tables, len(given)
     columns, ends = room(machine, count), np.empty((count, len(tables.of_angle[0])))
     sure = np.empty(count, dtype=np.bool_)
-    about = machine.sense, False, list(QUANTITIES).index(LINEAR), OWN
+    about = machine.sense, list(QUANTITIES).index(LINEAR), OWN
     for some in together(count, tables.of_angle[1].size):
         own, (energy, at_ends, seen), sure[some] = _carried(way, given[some], in_time=False)
         ends[some] = taken(at_ends, len(given[some]))

@@ -47,7 +47,7 @@ def _passed(machine: Machine, tables: Pass, cases: Cases, nudge: float) -> tuple
     starts, shared = cases.starts, (width, inertia, torque)
     given = np.column_stack([cases.inertias, cases.loads, starts, np.full_like(starts, nudge)])
     columns, ends = room(machine, len(starts)), np.empty((len(starts), len(width)))
-    about = machine.sense, True, list(QUANTITIES).index(LINEAR), OWN
+    about = machine.sense, list(QUANTITIES).index(LINEAR), OWN
     for some in together(len(starts), inertia.size):
         own = laid(given[some])
         groups, count = len(own), len(given[some])
