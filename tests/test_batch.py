@@ -208,10 +208,8 @@ def sought(rows, level=0.0, width=WIDTHS, stages=8):
         np.array([[f(nodes).ravel() for f in each[k : k + 2]] for each in rows]) for k in (0, 2, 4)
     )
     course = np.concatenate([motion[0], motion[0]])
-    starts = machine._blocks(width)
-    first = stages * np.arange(len(width) + 1)
-    pieces = (edges, first), (edges[starts], first[starts])
-    lines = [machine._lines(part, nodes.ravel(), pieces) for part in (of, rest)]
+    layout = machine._layout(width, rule.nodes)
+    starts, lines = layout.starts, [machine._lines(part, layout) for part in (of, rest)]
     prepared, track = np.empty((8, stages)), np.empty((9, lines[0].shape[-1]))
     walk._prepare(tables_of(stages), prepared)
     for k in range(3):
