@@ -22,9 +22,10 @@ from numpy.typing import NDArray
 
 from crankmbs import Sample, Scene, load_scene, simulate, sweep
 from crankmbs.batch import loops
-from crankmbs.batch.machine import LINEAR, OWN, Pass
+from crankmbs.batch.machine import OWN
 from crankmbs.batch.rows import rows_of
 from crankmbs.batch.solve import settled_together
+from crankmbs.batch.tables import LINEAR, Pass
 from crankmbs.compare import QUANTITIES
 from crankmbs.scene.loads import Quadratic
 from crankmbs.sweep.columns import row_of

@@ -6,50 +6,28 @@ from __future__ import annotations
 import math
 from collections.abc import Hashable
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
-from crankmbs.compare.lectured import LECTURES, lectured
-from crankmbs.compare.quantities import QUANTITIES, observed
-from crankmbs.errors import InputError
+from crankmbs.batch.tables import Pass, Period, tabulated
 from crankmbs.mechanics.geometry import close_loop, dead_centres
-from crankmbs.mechanics.newton_euler import Powers, of_crank, of_cylinder
 from crankmbs.mechanics.train import CrankTrain, crank_train
 from crankmbs.motion.crank_angle.grid import grid_of
 from crankmbs.numerics.arrays import Array
-from crankmbs.numerics.collocation import Rule, gauss
+from crankmbs.numerics.collocation import gauss
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.units import DEGREE
 
-__all__ = ["LINEAR", "OWN", "Machine", "Pass", "key_of", "machine_of"]
+__all__ = ["OWN", "Machine", "key_of", "machine_of"]
 
 _WIDEST, _NARROW = 12.0 * DEGREE, 4.0 * DEGREE  # of a cell, and on average
 _FEW, _MANY = (6, 5), (10, 8)  # stages of the answer's rule and of its check's
-_SPEED = 300.0  # rad/s: any at which what belongs to its square is no smaller than what does not
 _SLIVER = 1e-9  # rad: a start so near an edge is on it
-_UNITS = Powers(*np.eye(3)[:, :, np.newaxis])
-_OF_ANGLE = ("piston displacement", "gas torque")  # alone
+_SAME = 1e-12  # rad: of phases, no more than rounding
 _FOLDED = 0.05  # cosine of the rod angle
-
-
-LINEAR = "piston velocity"
-"""The quantity that goes with the speed."""
 
 OWN = 11
 """Columns of a case before those of its joints, as `crankmbs.batch.loops.sum_up` fills them."""
-
-
-class Pass(NamedTuple):
-    """Tables at the nodes of one rule, as `crankmbs.batch.loops.sum_up` takes them.
-
-    works : shape (cylinders,) [J], of the gas in a period
-    """
-
-    rule: tuple[Array, Array, Array, Array]
-    of_angle: tuple[Array, Array, Array, Array]
-    parts: tuple[Array, Array, Array, Array]
-    works: Array
 
 
 @dataclass(frozen=True)
@@ -97,18 +75,14 @@ def machine_of(scene: Scene, *, finest: bool = False) -> Machine:
     assert scene.start is not None
     sense, start = math.copysign(1.0, scene.start.speed), scene.start.angle
     train = crank_train(scene)
-    edges = np.mod(sense * (grid_of(train, gauss(1), _WIDEST).edges[:-1] - start), train.period)
-    edges = np.unique(np.concatenate([[0.0], edges, [train.period]]))
-    edges = edges[np.append(np.diff(edges) > _SLIVER, True)]
-    edges[0] = 0.0
+    alike = _alike(train)
+    period = Period(start, sense, _edges(train, start, sense, alike), alike)
     shape = scene.crank.radius, scene.rod.length, scene.piston.offset
     top, bottom = close_loop(dead_centres(*shape), *shape).x
-    narrow = float(np.mean(np.diff(edges))) < _NARROW and not finest
-    alike = _alike(train)
-    chosen = tuple(dict.fromkeys(alike))
+    narrow = float(np.mean(np.diff(period.edges))) < _NARROW and not finest
     answer, check = (
-        _pass(one, (start, sense), edges, gauss(s), chosen)
-        for one, s in zip((train, train.off), _FEW if narrow else _MANY, strict=True)
+        tabulated(one, period, gauss(stages))
+        for one, stages in zip((train, train.off), _FEW if narrow else _MANY, strict=True)
     )
     angles = np.linspace(0.0, 2.0 * math.pi, 361)
     folds = bool(np.min(close_loop(angles, *shape).cos_beta) < _FOLDED)
@@ -116,53 +90,17 @@ def machine_of(scene: Scene, *, finest: bool = False) -> Machine:
     return Machine(sense, answer, check, not narrow, alike, displaced, folds)
 
 
-def _pass(
-    train: CrankTrain,
-    begin: tuple[float, float],
-    edges: Array,
-    rule: Rule,
-    chosen: tuple[int, ...],
-) -> Pass:
-    """The tables at the nodes of a rule, of the joints of some cylinders; begin : angle and sense
-    of rotation."""
-    scene, width, (start, sense) = train.scene, np.diff(edges), begin
-    shape = len(width), len(rule.nodes)
-    turned = edges[:-1, None] + width[:, None] * rule.nodes
-    theta = (start + sense * turned).ravel()
-    count = len(scene.cylinders)
-    cylinders = [of_cylinder(train, theta, _UNITS, k) for k in range(count)]
-    crank = of_crank(scene, theta, _UNITS, cylinders)
-    each = {name: [c.variables[name] for c in cylinders] for name in cylinders[0].variables}
-    pins = [
-        each[f"{joint}_force_{axis}"][k]
-        for joint in ("crank_pin", "piston_pin")
-        for k in chosen
-        for axis in "xy"
-    ]
-    bearing = [crank["main_bearing_force_x"], crank["main_bearing_force_y"]]
-    half_slope, _, against = crank["external_torque"]
-    inertia = 2.0 * sum(c.kinetic_energy[0] for c in cylinders)
-    inertia, slope, torque = (
-        part.reshape(shape).copy() for part in (np.asarray(inertia), 2.0 * half_slope, -against)
-    )
-    rods = np.sum(each["crank_torque"], axis=0)[None]
-    share = (width[:, None] * rule.weights).ravel()
-    works = [
-        sense * float(np.sum(share * force * speed))
-        for force, speed in zip(each["gas_force"], each["piston_velocity"], strict=True)
-    ]
-    variables = {name: np.stack(columns, axis=-1) for name, columns in each.items()}
-    return Pass(
-        (rule.matrix, rule.weights, rule.nodes, rule.to_legendre[-1].copy()),
-        (width, inertia, slope, torque),
-        (
-            np.array([*bearing, *pins, *(each["side_force"][k] for k in chosen)]),
-            rods,
-            _observed(scene, variables, crank, theta),
-            _lectured(train, theta),
-        ),
-        np.array(works),
-    )
+def _edges(train: CrankTrain, start: float, sense: float, alike: tuple[int, ...]) -> Array:
+    """Of the cells, angles turned [rad] from 0 to a period, so that no knot of the pressure lies in
+    one; the same in every firing's share of the period where all cylinders are alike."""
+    shares = len(alike) if len(set(alike)) == 1 else 1
+    share = train.period / shares
+    edges = np.mod(sense * (grid_of(train, gauss(1), _WIDEST).edges[:-1] - start), share)
+    edges = np.unique(np.concatenate([[0.0], edges, [share]]))
+    edges = edges[np.append(np.diff(edges) > _SLIVER, True)]
+    edges[0] = 0.0
+    firings = share * np.arange(shares)
+    return np.append(np.add.outer(firings, edges[:-1]).ravel(), train.period)
 
 
 def _alike(train: CrankTrain) -> tuple[int, ...]:
@@ -171,45 +109,6 @@ def _alike(train: CrankTrain) -> tuple[int, ...]:
     scene, count = train.scene, len(train.scene.cylinders)
     one = train.pressure is None or len({id(each) for each in train.pressure}) == 1
     phases = np.sort([np.mod(c.phase + _SLIVER, train.period) for c in scene.cylinders])
-    even = np.all(np.abs(np.diff(phases) - train.period / count) < _SLIVER)
+    even = np.all(np.abs(np.diff(phases) - train.period / count) < _SAME)
     same = one and even and scene.gravity is None
     return (0,) * count if same else tuple(range(count))
-
-
-def _observed(
-    scene: Scene, cylinders: dict[str, Array], crank: dict[str, Array], theta: Array
-) -> Array:
-    """The lectures' quantities of cylinder 1: parts that belong to omega^2, alpha and 1, shape
-    (quantities, 3, n); of what is LINEAR the first belongs to omega."""
-    found = np.zeros((len(QUANTITIES), 3, len(theta)))
-    for unit, (omega, alpha) in enumerate(((1.0, 0.0), (0.0, 1.0), (0.0, 0.0))):
-        at = {name: part[unit] for name, part in crank.items()}
-        at |= {name: part[unit] if part.ndim > 2 else part for name, part in cylinders.items()}
-        motion = np.full_like(theta, omega), np.full_like(theta, alpha)
-        answer = observed(scene, at, theta, *motion)
-        for q, (name, about) in enumerate(QUANTITIES.items()):
-            values = answer[name][:, 0] if about.per_cylinder else answer[name]
-            if name not in _OF_ANGLE and name != LINEAR:
-                found[q, unit] = values
-            elif unit == 0:
-                found[q, 0 if name == LINEAR else 2] = values
-    return found
-
-
-def _lectured(train: CrankTrain, theta: Array) -> Array:
-    """What the lectures say of them at a constant speed: parts that belong to its square and to 1,
-    shape (quantities, lectures, 2, n); no numbers where one says nothing."""
-    found = np.full((len(QUANTITIES), len(LECTURES), 2, len(theta)), np.nan)
-    still = np.zeros_like(theta)
-    for number, formulas in enumerate(LECTURES.values()):
-        try:
-            rest, moving = (lectured(formulas, train, theta, still + w, still) for w in (0, _SPEED))
-        except InputError:
-            continue
-        for q, (name, about) in enumerate(QUANTITIES.items()):
-            at_rest, at_speed = (
-                one[name][:, 0] if about.per_cylinder else one[name] for one in (rest, moving)
-            )
-            more = (at_speed - at_rest) / (_SPEED if name == LINEAR else _SPEED**2)
-            found[q, number] = (0.0 * more, at_speed) if name in _OF_ANGLE else (more, at_rest)
-    return found

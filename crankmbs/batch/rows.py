@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crankmbs.batch.machine import OWN
-from crankmbs.batch.solve import Group, settled_together
+from crankmbs.batch.solve import ROUNDING, Group, settled_together
 from crankmbs.compare import LECTURES, QUANTITIES
 from crankmbs.compare.excerpt import vanishing
 from crankmbs.numerics.arrays import Array
@@ -59,7 +59,8 @@ def _rows(group: Group) -> Rows:
         "external_torque": (outside, of_outside),
     }
     if scene.gas is not None:
-        works, apart = machine.answer.works, np.abs(machine.answer.works - machine.check.works)
+        works = machine.answer.works
+        apart = np.abs(works - machine.check.works) + ROUNDING * np.abs(works)
         of_all = float(works.sum()), float(apart.sum())
         power = of_all[0] / time
         pairs["indicated_power"] = power, of_all[1] / time + np.abs(power) * late / time

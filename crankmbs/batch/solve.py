@@ -3,7 +3,7 @@ error asked for needs."""
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Hashable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
@@ -12,17 +12,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crankmbs.batch.machine import LINEAR, OWN, Machine, Pass, key_of, machine_of
+from crankmbs.batch.machine import OWN, Machine, key_of, machine_of
 from crankmbs.batch.serves import loads_of
+from crankmbs.batch.tables import LINEAR, Pass
 from crankmbs.compare import LECTURES, QUANTITIES
 from crankmbs.design.rebalance import mean_speed_of
 from crankmbs.errors import CrankmbsError
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 
-__all__ = ["Group", "mean_speed_together", "settled_together"]
+__all__ = ["ROUNDING", "Group", "mean_speed_together", "settled_together"]
 
-_ROUNDING = 64 * float(np.finfo(float).eps)  # of a value
+ROUNDING = 64 * float(np.finfo(float).eps)  # of a value
 _NUDGE = 4 * float(np.finfo(float).eps)  # of the greatest energy: what a period rounds
 _CLEAR = 0.05  # rad: an energy that the largest torque does not take within it is clear of rest
 _OF_QUANTITIES = 2 * len(QUANTITIES) * (1 + len(LECTURES))  # columns
@@ -51,9 +52,9 @@ class Group:
     relative: Array
 
 
-def settled_together(scenes: Sequence[Scene | None]) -> list[Group]:
+def settled_together(scenes: Sequence[Scene | None]) -> Iterator[Group]:
     """Solve the scenes that can be solved so, and whose answers err no more than they ask for;
-    the others are in no group.
+    the others are in no group. One group after the other, as tables of many machines are large.
 
     >>> scene = load_scene("propeller").with_(run__until="settled")
     >>> [group.which.tolist() for group in settled_together([scene, None, scene])]
@@ -64,14 +65,12 @@ def settled_together(scenes: Sequence[Scene | None]) -> list[Group]:
     for number, (scene, load) in enumerate(zip(scenes, loads, strict=True)):
         if scene is not None and load is not None:
             alike.setdefault(key_of(scene), []).append(number)
-    found = []
     for key, numbers in alike.items():
         own = [scene for scene in (scenes[k] for k in numbers) if scene is not None]
         given = np.array([loads[k] for k in numbers], dtype=np.float64)
         asked = np.array([scene.run.rtol for scene in own])
         with suppress(CrankmbsError):  # alone the scene says what it lacks
-            found += _of_machine(np.array(numbers), _Cases(key, own, given, asked))
-    return found
+            yield from _of_machine(np.array(numbers), _Cases(key, own, given, asked))
 
 
 _BY_SCENE = ("which", "answer", "error", "closure", "relative")
@@ -83,8 +82,8 @@ def mean_speed_together(scene: Scene) -> float:
     >>> round(mean_speed_together(load_scene("propeller").with_(run__until="settled")), 3)
     333.805
     """
-    found = settled_together([scene])
-    return scene.settled_period / float(found[0].answer[0, 2]) if found else mean_speed_of(scene)
+    found = next(settled_together([scene]), None)
+    return scene.settled_period / float(found.answer[0, 2]) if found else mean_speed_of(scene)
 
 
 @dataclass(frozen=True)
@@ -159,7 +158,7 @@ def _solved(machine: Machine, which: NDArray[np.intp], cases: _Cases) -> Group:
         _passed(machine, one, given, nudge)
         for one, nudge in ((machine.answer, 0.0), (machine.check, _NUDGE))
     )
-    error = np.abs(answer - check) + _ROUNDING * np.abs(answer)
+    error = np.abs(answer - check) + ROUNDING * np.abs(answer)
     joints = OWN + 4 * machine.joints
     error[:, 5:7] += answer[:, 9:11]
     error[:, OWN:joints:4] += answer[:, OWN + 3 : joints : 4]
@@ -173,7 +172,7 @@ def _solved(machine: Machine, which: NDArray[np.intp], cases: _Cases) -> Group:
     sure = (growth < -_NONE) & (least > clear) & reached
     shown = [2, 5, 6, *range(OWN, joints, 4)]
     with np.errstate(invalid="ignore"):  # where there is no periodic motion
-        closure = np.max(np.abs(ends - other), axis=1) / most + _ROUNDING
+        closure = np.max(np.abs(ends - other), axis=1) / most + ROUNDING
         apart = error[:, shown] / np.abs(answer[:, shown])
     relative = np.where(sure, np.max(np.nan_to_num(apart), axis=1), np.nan)
     return Group(which, scenes[0], machine, answer, error, closure, relative)
