@@ -14,7 +14,7 @@ from crankmbs.batch.serves import loads_of
 from crankmbs.batch.solve import settled_together
 from crankmbs.numerics.collocation import gauss
 from crankmbs.scene.loads import Constant, Quadratic, SpeedTable, Viscous
-from crankmbs.scene.parts import Cylinder
+from crankmbs.scene.parts import Cylinder, Friction
 from crankmbs.scene.tables import Table
 from crankmbs.sweep.block import Job, solved
 from crankmbs.sweep.columns import columns_of, row_of
@@ -150,7 +150,7 @@ def test_every_machine_has_its_own_group():
     "scene",
     [
         load_scene("propeller"),
-        replace(SHIPPED[0], friction=load_scene("friction").friction),
+        replace(SHIPPED[0], friction=Friction(ring_force=40.0, viscous=10.0)),
         load_scene("yi_diesel"),
         settling("propeller", run__formulation="minimal"),
         replace(SHIPPED[0], torque=(SpeedTable(file=Table((0.0, 600.0), (0.0, -20.0))),)),
@@ -159,6 +159,37 @@ def test_every_machine_has_its_own_group():
 def test_what_is_no_plain_settled_motion_is_left(scene):
     assert loads_of(scene) is None
     assert rows_of([scene]) == []
+
+
+@pytest.mark.parametrize("scene", SHIPPED, ids=lambda scene: scene.title[:20])
+def test_friction_that_does_not_depend_on_the_speed_is_a_torque_over_the_angle(scene):
+    scene = replace(scene, friction=Friction(ring_force=30.0, ring_pressure=0.01))
+    (rows,), (alone, _) = rows_of([scene]), by_hand(scene)
+    assert set(rows.columns) == set(alone)
+    assert rows.columns["friction_power"][0] > 10.0
+    assert 0.5 < rows.columns["mechanical_efficiency"][0] < 0.999
+    assert_agree(rows, 0, alone)
+
+
+def test_friction_backwards_and_without_gas():
+    turned = settling("propeller", start__angle="217 deg", start__speed=-300.0)
+    loads = Constant(torque=-60.0), Quadratic(coefficient=4e-4)
+    turned = replace(turned, torque=loads, friction=Friction(ring_force=30.0, ring_pressure=0.01))
+    driven = replace(turned, gas=None, friction=Friction(ring_force=30.0))
+    shares = []
+    for scene in (turned, driven):
+        (rows,), (alone, _) = rows_of([scene]), by_hand(scene)
+        assert_agree(rows, 0, alone)
+        shares.append(rows.columns["mechanical_efficiency"][0])
+    assert 0.0 < shares[0] < 1.0
+    assert np.isnan(shares[1])
+
+
+def test_every_friction_is_a_machine_of_its_own():
+    rubbed = replace(SHIPPED[0], friction=Friction(ring_force=1.0))
+    scenes = [scene_of(rubbed, ["friction.ring_force"], [force]) for force in (10.0, 50.0)]
+    powers = [rows.columns["friction_power"][0] for rows in rows_of(scenes)]
+    assert 3.0 * powers[0] < powers[1]
 
 
 def test_a_load_that_stalls_the_crank_says_so_alone():

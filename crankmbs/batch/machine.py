@@ -60,7 +60,7 @@ def key_of(scene: Scene) -> Hashable:
     crank = scene.crank
     return (
         (crank.radius, crank.mass, crank.center_of_mass, scene.rod, scene.piston),
-        (scene.cylinders, scene.gas, scene.gravity),
+        (scene.cylinders, scene.gas, scene.gravity, scene.friction),
         (scene.start.angle, scene.start.speed > 0.0),
     )
 

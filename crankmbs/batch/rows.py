@@ -12,6 +12,7 @@ from crankmbs.batch.machine import OWN
 from crankmbs.batch.solve import ROUNDING, Group, settled_together
 from crankmbs.compare import LECTURES, QUANTITIES
 from crankmbs.compare.excerpt import vanishing
+from crankmbs.measures import Estimate, efficiency
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 
@@ -58,14 +59,21 @@ def _rows(group: Group) -> Rows:
         "crank_torque": (rods, of_rods),
         "external_torque": (outside, of_outside),
     }
+    works, apart = _works(machine.answer.works, machine.check.works)
+    gained = Estimate(float(works.sum()), float(apart.sum()))
     if scene.gas is not None:
-        works = machine.answer.works
-        apart = np.abs(works - machine.check.works) + ROUNDING * np.abs(works)
-        of_all = float(works.sum()), float(apart.sum())
-        power = of_all[0] / time
-        pairs["indicated_power"] = power, of_all[1] / time + np.abs(power) * late / time
+        pairs["indicated_power"] = _per_time(gained, time, late)
         each = np.tile(works / machine.displaced, (len(time), 1))
         pairs["imep"] = each, np.tile(apart / machine.displaced, (len(time), 1))
+    if scene.friction is not None:
+        lost, unsure = _works(machine.answer.rubbed, machine.check.rubbed)
+        taken = Estimate(-float(lost.sum()), float(unsure.sum()))
+        pairs["friction_power"] = _per_time(taken, time, late)
+        left = efficiency(gained, taken) or Estimate(np.nan, np.nan)
+        pairs["mechanical_efficiency"] = (
+            np.full_like(time, left.value),
+            np.full_like(time, left.error),
+        )
     columns = {"relative_error": group.relative, "energy_closure": group.closure}
     columns |= _of_joints(group, pairs)
     columns |= {name: value for name, (value, _) in pairs.items()}
@@ -73,6 +81,17 @@ def _rows(group: Group) -> Rows:
     columns |= _of_lectures(group)
     messages = tuple(f"settled: a period leaves {1.0 + g:.4g} of a disturbance" for g in growth)
     return Rows(group.which, columns, messages)
+
+
+def _works(answer: Array, check: Array) -> tuple[Array, Array]:
+    """Works on the pistons [J], and by how much they may be off."""
+    return answer, np.abs(answer - check) + ROUNDING * np.abs(answer)
+
+
+def _per_time(work: Estimate, time: Array, late: Array) -> tuple[Array, Array]:
+    """The power of a work done in a period, and by how much it may be off."""
+    power = work.value / time
+    return power, work.error / time + np.abs(power) * late / time
 
 
 def _of_joints(group: Group, pairs: dict[str, tuple[Array, Array]]) -> dict[str, Array]:

@@ -16,7 +16,8 @@ Loads = tuple[float, float, float]
 def loads_of(scene: Scene) -> Loads | None:
     """The loads of a scene whose settled motion is found together with others; None of another.
 
-    It starts turning and is to settle; its cycles are all alike, without friction; its loads are
+    It starts turning and is to settle; its cycles are all alike, its friction, if any, does not
+    depend on the speed; its loads are
     c0 + c1 omega + c2 omega^2 at every speed in its sense, where no such load rises with the speed:
     there is one periodic motion at most.
 
@@ -26,7 +27,7 @@ def loads_of(scene: Scene) -> Loads | None:
     start = scene.start
     if start is None or start.speed == 0.0 or not scene.settles:  # whose loads have no times
         return None
-    if scene.fuel is not None or scene.friction is not None:
+    if scene.fuel is not None or (scene.friction is not None and scene.friction.viscous > 0.0):
         return None
     if scene.run.formulation not in ("auto", "crank_angle"):
         return None

@@ -22,7 +22,9 @@ from crankmbs.compare.lectured import (
 )
 from crankmbs.compare.quantities import QUANTITIES, observed_cylinders
 from crankmbs.errors import InputError
-from crankmbs.mechanics.newton_euler import Cylinder, Powers, of_crank, of_cylinder
+from crankmbs.mechanics.fired import pushed_parts
+from crankmbs.mechanics.friction import friction_forces
+from crankmbs.mechanics.newton_euler import Powers, of_crank, of_cylinder
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.collocation import Rule
@@ -34,17 +36,15 @@ LINEAR = "piston velocity"
 """The quantity that goes with the speed."""
 
 _UNITS = Powers(*np.eye(3)[:, :, np.newaxis])
-_OF_CYLINDER = (
+_JOINTS = (
     "crank_pin_force_x",
     "crank_pin_force_y",
     "piston_pin_force_x",
     "piston_pin_force_y",
     "side_force",
     "crank_torque",
-    "gas_pressure",
-    "gas_force",
-    "piston_velocity",
 )
+_OF_CYLINDER = (*_JOINTS, "gas_pressure", "gas_force", "piston_velocity")
 _BEARING = ("main bearing force x", "main bearing force y")
 _OF_ANGLE = ("piston displacement", "gas torque")  # alone
 _MOVING = np.array([1.0, 0.0])[:, np.newaxis, np.newaxis]  # omega of what a lecture adds up:
@@ -54,13 +54,15 @@ _PRESSED = 1.0 - _MOVING  # inertia at a speed of 1, and gas
 class Pass(NamedTuple):
     """Tables at the nodes of one rule, as `crankmbs.batch.loops.sum_up` takes them.
 
-    works : shape (cylinders,) [J], of the gas in a period
+    works, rubbed : shape (cylinders,) [J], of the gas and of the friction on the pistons in a
+        period
     """
 
     rule: tuple[Array, Array, Array, Array]
     of_angle: tuple[Array, Array, Array, Array]
     parts: tuple[Array, Array, Array, Array]
     works: Array
+    rubbed: Array
 
 
 @dataclass(frozen=True)
@@ -115,6 +117,7 @@ def tabulated(train: CrankTrain, period: Period, rule: Rule) -> Pass:
     cylinders = [of_cylinder(train, theta, _UNITS, k) for k in period.chosen]
     own, ones = of_crank(scene, theta, _UNITS, []), np.ones(len(scene.cylinders))
     each = {name: np.array([c.variables[name] for c in cylinders]) for name in _OF_CYLINDER}
+    friction = _rubbed(train, period, theta, each)
     throws = each["crank_pin_force_x"], each["crank_pin_force_y"]
     bearing = _in_the_engine(scene, period, *throws)
     bearing[0] += own["main_bearing_force_x"]
@@ -126,8 +129,10 @@ def tabulated(train: CrankTrain, period: Period, rule: Rule) -> Pass:
     inertia = 2.0 * period.summed(scene, energies, ones)
     slope, torque = -2.0 * rods[0], rods[2] - own["external_torque"][2]
     share = (width[:, None] * rule.weights).ravel()
-    powers = each["gas_force"] * each["piston_velocity"]
-    works = period.sense * (powers @ share)
+    path = period.sense * share * each["piston_velocity"]
+    works, rubbed = (np.sum(force * path, axis=1) for force in (each["gas_force"], friction))
+    of = [period.chosen.index(k) for k in period.alike]
+    seen = cylinders[0].variables | {name: tables[0] for name, tables in each.items()}
     return Pass(
         (rule.matrix, rule.weights, rule.nodes, rule.to_legendre[-1].copy()),
         (
@@ -139,11 +144,31 @@ def tabulated(train: CrankTrain, period: Period, rule: Rule) -> Pass:
         (
             np.concatenate([bearing, *pins, each["side_force"]]),
             rods[None],
-            _observed(scene, cylinders[0], bearing, theta),
+            _observed(scene, seen, bearing, theta),
             _lectured(scene, period, each["gas_pressure"], theta),
         ),
-        works[[period.chosen.index(k) for k in period.alike]],
+        works[of],
+        rubbed[of],
     )
+
+
+def _rubbed(train: CrankTrain, period: Period, theta: Array, each: dict[str, Array]) -> Array:
+    """The friction on the pistons of the chosen cylinders that does not depend on the speed, in
+    the sense of rotation, shape (chosen, n) [N]; what it does in the joints is put to what belongs
+    to 1.
+
+    each : by name, shape (chosen, 3, n), of the joints
+    """
+    scene = train.scene
+    if scene.friction is None:
+        return np.zeros((len(period.chosen), len(theta)))
+    sense = np.full_like(theta, period.sense)
+    forces = friction_forces(train, theta, np.zeros_like(theta), slides=sense)
+    parts = pushed_parts(scene, theta, list(forces.T))
+    for name in _JOINTS:
+        for own, k in zip(each[name], period.chosen, strict=True):
+            own[2] += parts[name][k][k]
+    return forces.T[list(period.chosen)]
 
 
 def _in_the_engine(scene: Scene, period: Period, x: Array, y: Array) -> Array:
@@ -156,13 +181,16 @@ def _in_the_engine(scene: Scene, period: Period, x: Array, y: Array) -> Array:
     )
 
 
-def _observed(scene: Scene, first: Cylinder, bearing: Array, theta: Array) -> Array:
+def _observed(scene: Scene, first: dict[str, Array], bearing: Array, theta: Array) -> Array:
     """The lectures' quantities of cylinder 1: parts that belong to omega^2, alpha and 1, shape
-    (quantities, 3, n); of what is LINEAR the first belongs to omega."""
+    (quantities, 3, n); of what is LINEAR the first belongs to omega.
+
+    first : its variables, by name
+    """
     found = np.zeros((len(QUANTITIES), 3, len(theta)))
     omega, alpha, _ = _UNITS
     phi = theta + scene.cylinders[0].phase
-    answer = observed_cylinders(scene, first.variables, phi, omega, alpha)
+    answer = observed_cylinders(scene, first, phi, omega, alpha)
     answer |= dict(zip(_BEARING, bearing, strict=True))
     for q, name in enumerate(QUANTITIES):
         if name == LINEAR:
