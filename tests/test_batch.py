@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from crankmbs import load_scene, simulate
-from crankmbs.batch import machine, periodic, walk
+from crankmbs.batch import curves, machine, periodic, walk
 from crankmbs.batch.machine import machine_of
 from crankmbs.batch.rows import rows_of
 from crankmbs.batch.serves import loads_of
@@ -15,6 +15,7 @@ from crankmbs.batch.solve import solved_together
 from crankmbs.compare import QUANTITIES
 from crankmbs.numerics.collocation import gauss
 from crankmbs.scene.loads import Constant, Quadratic, SpeedTable, Viscous
+from crankmbs.scene.parts import Cylinder, Friction
 from crankmbs.scene.tables import Table
 from crankmbs.sweep.block import Job, solved
 from crankmbs.sweep.columns import columns_of, row_of
@@ -113,7 +114,8 @@ def test_a_light_load_states_what_rounding_makes_of_it():
 
 def test_more_stages_are_taken_where_fewer_err_too_much():
     rough, fine = (
-        solved_together([settling("yi_diesel_free", run__rtol=rtol)])[0] for rtol in (1e-6, 1e-10)
+        next(solved_together([settling("yi_diesel_free", run__rtol=rtol)]))
+        for rtol in (1e-6, 1e-10)
     )
     count = [len(one.machine.answer.rule[2]) for one in (rough, fine)]
     assert count[0] < count[1]
@@ -122,7 +124,7 @@ def test_more_stages_are_taken_where_fewer_err_too_much():
 
 
 def test_none_is_better_than_one_that_errs_more_than_it_may():
-    assert solved_together([settling("propeller", run__rtol=1e-13)]) == []
+    assert list(solved_together([settling("propeller", run__rtol=1e-13)])) == []
 
 
 def test_alone_and_among_others_it_is_the_same():
@@ -148,7 +150,7 @@ def test_every_machine_has_its_own_group():
 @pytest.mark.parametrize(
     "scene",
     [
-        replace(SHIPPED[0], friction=load_scene("friction").friction),
+        replace(SHIPPED[0], friction=Friction(ring_force=40.0, viscous=10.0)),
         load_scene("yi_diesel"),
         settling("propeller", run__formulation="minimal"),
         replace(SHIPPED[0], torque=(SpeedTable(file=Table((0.0, 600.0), (0.0, -20.0))),)),
@@ -157,6 +159,37 @@ def test_every_machine_has_its_own_group():
 def test_what_is_no_plain_settled_motion_is_left(scene):
     assert loads_of(scene) is None
     assert rows_of([scene]) == []
+
+
+@pytest.mark.parametrize("scene", SHIPPED, ids=lambda scene: scene.title[:20])
+def test_friction_that_does_not_depend_on_the_speed_is_a_torque_over_the_angle(scene):
+    scene = replace(scene, friction=Friction(ring_force=30.0, ring_pressure=0.01))
+    (rows,), (alone, _) = rows_of([scene]), by_hand(scene)
+    assert set(rows.columns) == set(alone)
+    assert rows.columns["friction_power"][0] > 10.0
+    assert 0.5 < rows.columns["mechanical_efficiency"][0] < 0.999
+    assert_agree(rows, 0, alone)
+
+
+def test_friction_backwards_and_without_gas():
+    turned = settling("propeller", start__angle="217 deg", start__speed=-300.0)
+    loads = Constant(torque=-60.0), Quadratic(coefficient=4e-4)
+    turned = replace(turned, torque=loads, friction=Friction(ring_force=30.0, ring_pressure=0.01))
+    driven = replace(turned, gas=None, friction=Friction(ring_force=30.0))
+    shares = []
+    for scene in (turned, driven):
+        (rows,), (alone, _) = rows_of([scene]), by_hand(scene)
+        assert_agree(rows, 0, alone)
+        shares.append(rows.columns["mechanical_efficiency"][0])
+    assert 0.0 < shares[0] < 1.0
+    assert np.isnan(shares[1])
+
+
+def test_every_friction_is_a_machine_of_its_own():
+    rubbed = replace(SHIPPED[0], friction=Friction(ring_force=1.0))
+    scenes = [scene_of(rubbed, ["friction.ring_force"], [force]) for force in (10.0, 50.0)]
+    powers = [rows.columns["friction_power"][0] for rows in rows_of(scenes)]
+    assert 3.0 * powers[0] < powers[1]
 
 
 def test_a_load_that_stalls_the_crank_says_so_alone():
@@ -175,6 +208,27 @@ def test_in_an_even_engine_the_other_cylinders_are_as_the_first():
     assert machine_of(weighed).alike == (0, 1, 2, 3)
     (rows,), (alone, _) = rows_of([weighed]), by_hand(weighed)
     assert_agree(rows, 0, alone)
+
+
+@pytest.mark.parametrize(("speed", "drive"), [(300.0, 8.0), (-300.0, -72.0)])
+def test_in_an_even_star_every_cylinder_has_its_bank_and_its_turn(speed, drive):
+    star = tuple(Cylinder(phase=f"{240 * k} deg", bank=f"{120 * k} deg") for k in range(3))
+    loads = Constant(torque=drive), Quadratic(coefficient=4e-4)
+    scene = settling("propeller", layout={"cylinders": star}, start__angle="217 deg")
+    scene = scene.with_(start__speed=speed, crank__center_of_mass=0.01)
+    scene = replace(scene, torque=loads, gravity=None)
+    assert machine_of(scene).alike == (0, 0, 0)
+    (rows,), (alone, _) = rows_of([scene]), by_hand(scene)
+    assert_agree(rows, 0, alone)
+
+
+def test_with_another_shape_in_every_case_each_is_as_alone():
+    knobs = ["rod.length", "piston.mass"]
+    shapes = [scene_of(SHIPPED[0], knobs, given) for given in ((0.16, 0.5), (0.19, 0.8))]
+    found = rows_of(shapes)
+    assert [rows.which.tolist() for rows in found] == [[0], [1]]
+    for rows, scene in zip(found, shapes, strict=True):
+        assert_agree(rows, 0, by_hand(scene)[0])
 
 
 def test_its_loops_are_the_same_compiled_and_plain(monkeypatch):
@@ -208,15 +262,15 @@ def sought(rows, level=0.0, width=WIDTHS, stages=8):
         np.array([[f(nodes).ravel() for f in each[k : k + 2]] for each in rows]) for k in (0, 2, 4)
     )
     course = np.concatenate([motion[0], motion[0]])
-    layout = machine._layout(width, rule.nodes)
-    starts, lines = layout.starts, [machine._lines(part, layout) for part in (of, rest)]
+    layout = curves.layout_of(width, rule.nodes)
+    starts, lines = layout.starts, [curves._lines(part, layout) for part in (of, rest)]
     prepared, track = np.empty((8, stages)), np.empty((9, lines[0].shape[-1]))
     walk._prepare(tables_of(stages), prepared)
     for k in range(3):
         walk._straighten(course[k], prepared, (edges, starts), track[3 * k : 3 * k + 3])
-    curves = of, rest[:, None], lines[0], lines[1][:, None]
+    sought = of, rest[:, None], lines[0], lines[1][:, None]
     motions, found = (course[None], track[None], np.array([[level, 0.0]])), np.empty((1, 3))
-    walk._seek((0, len(rows), 0, False), curves, (edges, starts), prepared, motions, found)
+    walk._seek((0, len(rows), 0, False), sought, (edges, starts), prepared, motions, found)
     values = of[:, 0] * (course[0] - level) + of[:, 1] * course[1] + rest[:, 0] + rest[:, 1] * level
     dense = np.polynomial.legendre.legvander(np.linspace(-1.0, 1.0, 3001), stages - 1)
     between = (values.reshape(len(rows), -1, stages) @ rule.to_legendre.T) @ dense.T

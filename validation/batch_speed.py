@@ -22,10 +22,10 @@ from numpy.typing import NDArray
 
 from crankmbs import Sample, Scene, load_scene, simulate, sweep
 from crankmbs.batch.lanes import LANES, laid, taken
-from crankmbs.batch.machine import Pass
 from crankmbs.batch.periodic import find_periodic
 from crankmbs.batch.rows import rows_of
 from crankmbs.batch.solve import solved_together
+from crankmbs.batch.tables import Pass
 from crankmbs.scene.loads import Quadratic
 from crankmbs.sweep.columns import row_of
 from crankmbs.sweep.scenes import scene_of

@@ -17,8 +17,9 @@ from numpy.typing import NDArray
 
 from crankmbs import Scene, simulate
 from crankmbs.batch.lanes import LANES, laid, taken
-from crankmbs.batch.machine import Pass, machine_of
+from crankmbs.batch.machine import machine_of
 from crankmbs.batch.rows import rows_of
+from crankmbs.batch.tables import Pass
 from crankmbs.batch.transient import carry
 from crankmbs.scene.loads import Quadratic
 from crankmbs.sweep.columns import row_of

@@ -15,9 +15,11 @@ from crankmbs.compare import LECTURES, QUANTITIES
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 
-__all__ = ["NUDGE", "Cases", "Group", "clear", "group_of", "merged", "room", "together"]
+__all__ = ["NUDGE", "ROUNDING", "Cases", "Group", "clear", "group_of", "merged", "room", "together"]
 
-_ROUNDING = 64 * float(np.finfo(float).eps)  # of a value
+ROUNDING = 64 * float(np.finfo(float).eps)
+"""Of a value."""
+
 NUDGE = 4 * float(np.finfo(float).eps)
 """What a period rounds, of the greatest energy."""
 
@@ -100,14 +102,14 @@ def group_of(
     """What two passes found for some of the cases: columns, and energies at the ends of cells;
     begin, sure : shape (n,), as `Group` has it, and whether the motion is the one asked for."""
     (answer, ends), (check, other) = passes
-    error = np.abs(answer - check) + _ROUNDING * np.abs(answer)
+    error = np.abs(answer - check) + ROUNDING * np.abs(answer)
     joints = OWN + 4 * machine.joints
     error[:, 5:7] += answer[:, 9:11]
     error[:, OWN:joints:4] += answer[:, OWN + 3 : joints : 4]
     error[:, joints::2] += answer[:, joints + 1 :: 2]
     shown = [2, 5, 6, *range(OWN, joints, 4)]
     with np.errstate(invalid="ignore"):  # where there is no motion
-        closure = np.max(np.abs(ends - other), axis=1) / answer[:, 3] + _ROUNDING
+        closure = np.max(np.abs(ends - other), axis=1) / answer[:, 3] + ROUNDING
         apart = error[:, shown] / np.abs(answer[:, shown])
     relative = np.where(sure, np.max(np.nan_to_num(apart), axis=1), np.nan)
     return Group(which, cases.scenes[0], machine, begin, answer, error, closure, relative)

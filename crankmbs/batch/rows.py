@@ -8,10 +8,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crankmbs.batch.group import Group
+from crankmbs.batch.group import ROUNDING, Group
 from crankmbs.batch.machine import OWN
 from crankmbs.batch.solve import solved_together
 from crankmbs.compare import LECTURES, QUANTITIES
+from crankmbs.measures import Estimate, efficiency
 from crankmbs.mechanics.peaks import negligible
 from crankmbs.motion.ending import Ending
 from crankmbs.numerics.arrays import Array
@@ -61,13 +62,21 @@ def _rows(group: Group) -> Rows:
         "crank_torque": (rods, of_rods),
         "external_torque": (outside, of_outside),
     }
+    works, apart = _works(machine.answer.works, machine.check.works)
+    gained = Estimate(float(works.sum()), float(apart.sum()))
     if scene.gas is not None:
-        works, apart = machine.answer.works, np.abs(machine.answer.works - machine.check.works)
-        of_all = float(works.sum()), float(apart.sum())
-        power = of_all[0] / time
-        pairs["indicated_power"] = power, of_all[1] / time + np.abs(power) * late / time
+        pairs["indicated_power"] = _per_time(gained, time, late)
         each = np.tile(works / machine.displaced, (len(time), 1))
         pairs["imep"] = each, np.tile(apart / machine.displaced, (len(time), 1))
+    if scene.friction is not None:
+        lost, unsure = _works(machine.answer.rubbed, machine.check.rubbed)
+        taken = Estimate(-float(lost.sum()), float(unsure.sum()))
+        pairs["friction_power"] = _per_time(taken, time, late)
+        left = efficiency(gained, taken) or Estimate(np.nan, np.nan)
+        pairs["mechanical_efficiency"] = (
+            np.full_like(time, left.value),
+            np.full_like(time, left.error),
+        )
     columns = {"relative_error": group.relative, "energy_closure": group.closure}
     columns |= _of_joints(group, pairs)
     columns |= {name: value for name, (value, _) in pairs.items()}
@@ -90,6 +99,17 @@ def _messages(group: Group) -> tuple[str, ...]:
         return (Ending.COMPLETE.said(0.0)[1],) * len(group.which)
     factors = 1.0 + group.answer[:, 1]
     return tuple(f"settled: a period leaves {factor:.4g} of a disturbance" for factor in factors)
+
+
+def _works(answer: Array, check: Array) -> tuple[Array, Array]:
+    """Works on the pistons [J], and by how much they may be off."""
+    return answer, np.abs(answer - check) + ROUNDING * np.abs(answer)
+
+
+def _per_time(work: Estimate, time: Array, late: Array) -> tuple[Array, Array]:
+    """The power of a work done in a period, and by how much it may be off."""
+    power = work.value / time
+    return power, work.error / time + np.abs(power) * late / time
 
 
 def _of_joints(group: Group, pairs: dict[str, tuple[Array, Array]]) -> dict[str, Array]:

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from crankmbs.batch.group import NUDGE, Cases, Group, clear, group_of, room, together
 from crankmbs.batch.lanes import LANES, laid, taken
-from crankmbs.batch.machine import LINEAR, OWN, Machine, Pass, ahead_of
+from crankmbs.batch.machine import OWN, Machine, ahead_of
+from crankmbs.batch.tables import LINEAR, Pass
 from crankmbs.compare import QUANTITIES
 from crankmbs.numerics.arrays import Array
 

@@ -7,7 +7,8 @@ from numpy.typing import NDArray
 
 from crankmbs.batch.group import NUDGE, Cases, Group, clear, group_of, room, together
 from crankmbs.batch.lanes import LANES, laid, taken
-from crankmbs.batch.machine import LINEAR, OWN, Machine, Pass
+from crankmbs.batch.machine import OWN, Machine
+from crankmbs.batch.tables import LINEAR, Pass
 from crankmbs.compare import QUANTITIES
 from crankmbs.numerics.arrays import Array
 

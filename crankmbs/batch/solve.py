@@ -3,7 +3,7 @@ asked for needs."""
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Hashable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
@@ -24,9 +24,9 @@ __all__ = ["mean_speed_together", "solved_together"]
 _KEPT = 12  # machines
 
 
-def solved_together(scenes: Sequence[Scene | None]) -> list[Group]:
+def solved_together(scenes: Sequence[Scene | None]) -> Iterator[Group]:
     """Solve the scenes that can be solved so, and whose answers err no more than they ask for;
-    the others are in no group.
+    the others are in no group. One group after the other, as tables of many machines are large.
 
     >>> scene = load_scene("propeller").with_(run__until="settled")
     >>> [group.which.tolist() for group in solved_together([scene, None, scene])]
@@ -37,14 +37,12 @@ def solved_together(scenes: Sequence[Scene | None]) -> list[Group]:
     for number, (scene, load) in enumerate(zip(scenes, loads, strict=True)):
         if scene is not None and load is not None:
             alike.setdefault(key_of(scene), []).append(number)
-    found = []
     for key, numbers in alike.items():
         own = [scene for scene in (scenes[k] for k in numbers) if scene is not None]
         given = np.array([loads[k] for k in numbers], dtype=np.float64)
         asked = np.array([scene.run.rtol for scene in own])
         with suppress(CrankmbsError):  # alone the scene says what it lacks
-            found += _of_machine(np.array(numbers), Cases(key, own, given, asked))
-    return found
+            yield from _of_machine(np.array(numbers), Cases(key, own, given, asked))
 
 
 def mean_speed_together(scene: Scene) -> float:
@@ -53,8 +51,8 @@ def mean_speed_together(scene: Scene) -> float:
     >>> round(mean_speed_together(load_scene("propeller").with_(run__until="settled")), 3)
     333.805
     """
-    found = solved_together([scene])
-    return scene.settled_period / float(found[0].answer[0, 2]) if found else mean_speed_of(scene)
+    found = next(solved_together([scene]), None)
+    return scene.settled_period / float(found.answer[0, 2]) if found else mean_speed_of(scene)
 
 
 @dataclass(frozen=True)

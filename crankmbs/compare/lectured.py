@@ -17,22 +17,43 @@ from crankmbs.mechanics.train import CrankTrain
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 
-__all__ = ["LECTURES", "S0", "S1", "UNTRUNCATED", "Formulas", "lectured"]
+__all__ = [
+    "LECTURES",
+    "S0",
+    "S1",
+    "UNTRUNCATED",
+    "Formulas",
+    "Gear",
+    "Motion",
+    "RodForces",
+    "gear_of",
+    "lectured",
+    "of_cylinders",
+    "turning_crank",
+]
 
 
-class _Gear(NamedTuple):
+class Gear(NamedTuple):
+    """What a cylinder's kinematics depend on [m]."""
+
     crank_radius: float
     rod_length: float
     offset: float
 
 
-class _PistonMotion(NamedTuple):
+class Motion(NamedTuple):
+    """Of a piston at cycle angles: its displacement; velocity over omega; of its acceleration the
+    parts over omega^2 and over alpha."""
+
     displacement: Array
     velocity: Array
-    acceleration: Array
+    square: Array
+    alpha: Array | float
 
 
-class _RodForces(NamedTuple):
+class RodForces(NamedTuple):
+    """Over the net force on a piston pin, at cycle angles."""
+
     side_thrust: Array
     rod: Array
     tangential: Array
@@ -42,47 +63,50 @@ class _RodForces(NamedTuple):
 class Formulas(NamedTuple):
     """A choice among the lectures' formulas: how the piston moves, and how its force goes on."""
 
-    motion: Callable[[Array, _Gear, Array, Array], _PistonMotion]
-    forces: Callable[[Array, _Gear, Array], _RodForces]
+    motion: Callable[[Array, Gear], Motion]
+    forces: Callable[[Array, Gear], RodForces]
 
 
-def _exact_motion(phi: Array, gear: _Gear, omega: Array, alpha: Array) -> _PistonMotion:
+def _exact_motion(phi: Array, gear: Gear) -> Motion:
     where = gear._asdict()
-    return _PistonMotion(
+    velocity = np.asarray(lecture.piston_velocity(phi, omega=1.0, **where))
+    return Motion(
         np.asarray(lecture.piston_displacement(phi, **where)),
-        np.asarray(lecture.piston_velocity(phi, omega=omega, **where)),
-        np.asarray(lecture.piston_acceleration(phi, omega=omega, alpha=alpha, **where)),
+        velocity,
+        np.asarray(lecture.piston_acceleration(phi, omega=1.0, alpha=0.0, **where)),
+        velocity,
     )
 
 
-def _truncated_motion(phi: Array, gear: _Gear, omega: Array, _: Array) -> _PistonMotion:
+def _truncated_motion(phi: Array, gear: Gear) -> Motion:
     where = gear._asdict()
-    return _PistonMotion(
+    return Motion(
         np.asarray(lecture.piston_displacement_series(phi, **where)),
-        np.asarray(lecture.piston_velocity_series(phi, omega=omega, **where)),
-        np.asarray(lecture.piston_acceleration_series(phi, omega=omega, **where)),
+        np.asarray(lecture.piston_velocity_series(phi, omega=1.0, **where)),
+        np.asarray(lecture.piston_acceleration_series(phi, omega=1.0, **where)),
+        0.0,
     )
 
 
-def _exact_forces(phi: Array, gear: _Gear, net: Array) -> _RodForces:
+def _exact_forces(phi: Array, gear: Gear) -> RodForces:
     where = gear._asdict()
-    rod = lecture.rod_force(phi, net_force=net, **where)
-    return _RodForces(
-        np.asarray(lecture.side_thrust(phi, net_force=net, **where)),
+    rod = lecture.rod_force(phi, net_force=1.0, **where)
+    return RodForces(
+        np.asarray(lecture.side_thrust(phi, net_force=1.0, **where)),
         np.asarray(rod),
         np.asarray(lecture.tangential_force(phi, rod_force=rod, **where)),
         np.asarray(lecture.radial_force(phi, rod_force=rod, **where)),
     )
 
 
-def _truncated_forces(phi: Array, gear: _Gear, net: Array) -> _RodForces:
+def _truncated_forces(phi: Array, gear: Gear) -> RodForces:
     where = gear._asdict()
     central = {"crank_radius": gear.crank_radius, "rod_length": gear.rod_length}
-    return _RodForces(
-        np.asarray(lecture.side_thrust_series(phi, net_force=net, **where)),
-        np.asarray(lecture.rod_force_series(phi, net_force=net, **central)),
-        np.asarray(lecture.tangential_force_series(phi, net_force=net, **where)),
-        np.asarray(lecture.radial_force_series(phi, net_force=net, **where)),
+    return RodForces(
+        np.asarray(lecture.side_thrust_series(phi, net_force=1.0, **where)),
+        np.asarray(lecture.rod_force_series(phi, net_force=1.0, **central)),
+        np.asarray(lecture.tangential_force_series(phi, net_force=1.0, **where)),
+        np.asarray(lecture.radial_force_series(phi, net_force=1.0, **where)),
     )
 
 
@@ -123,61 +147,92 @@ def lectured(
     InputError : truncated formulas with a rod ratio of 1
     """
     scene, pressure = train.scene, train.pressure
-    crank, rod, piston = scene.crank, scene.rod, scene.piston
-    r = crank.radius
-    gear = _Gear(r, rod.length, piston.offset)
-    phi, speed, rate = cycle_angles(scene, theta), omega[:, None], alpha[:, None]
+    phi, gear = cycle_angles(scene, theta), gear_of(scene)
+    difference = np.zeros_like(phi)
+    for k, each in enumerate(pressure or ()):
+        difference[:, k] = each(phi[:, k])
+    at = formulas.motion(phi, gear), formulas.forces(phi, gear)
+    found = of_cylinders(scene, at, phi, difference, (omega[:, None], alpha[:, None]))
+    throw_x, throw_y = found["crank pin force x"], found["crank pin force y"]
+    bearing_x, bearing_y = _main_bearing(scene, theta, omega, alpha, throw_x, throw_y)
+    return found | {"main bearing force x": bearing_x, "main bearing force y": bearing_y}
+
+
+def gear_of(scene: Scene) -> Gear:
+    """The gear of any cylinder.
+
+    >>> gear_of(load_scene("propeller")).crank_radius
+    0.046
+    """
+    return Gear(scene.crank.radius, scene.rod.length, scene.piston.offset)
+
+
+def of_cylinders(
+    scene: Scene,
+    at: tuple[Motion, RodForces],
+    phi: Array,
+    difference: Array,
+    motion: tuple[Array, Array | float],
+) -> dict[str, Array]:
+    """What a choice of formulas says of cylinders, each for itself.
+
+    Parameters
+    ----------
+    at : what its formulas give at the cycle angles
+    phi : cycle angles [rad], of any shape
+    difference : pressure difference across the piston [Pa]; motion : omega [rad/s] and alpha
+        [rad/s2]; shapes that broadcast with that of phi. All but displacement is linear in alpha,
+        in the pressure and in omega^2, the velocity in omega
+
+    Returns
+    -------
+    dict over those QUANTITIES that a cylinder has, of the shape of all together
+    """
+    (moved, forces), (speed, rate) = at, motion
+    rod, piston, r = scene.rod, scene.piston, scene.crank.radius
     masses = lecture.two_mass_rod(
         rod_mass=rod.mass, rod_length=rod.length, center_of_mass=rod.center_of_mass
     )
     mass = lecture.reciprocating_mass(
         piston_mass=piston.mass, rod_piston_pin_mass=masses.piston_pin
     )
-    difference = np.zeros_like(phi)
-    for k, each in enumerate(pressure or ()):
-        difference[:, k] = each(phi[:, k])
     gas = np.asarray(
         lecture.gas_force(
             gas_pressure=difference, ambient_pressure=0.0, piston_area=piston.gas_area or 0.0
         )
     )
-    motion = formulas.motion(phi, gear, speed, rate)
+    acceleration = moved.square * speed**2 + moved.alpha * rate
 
     def force_with(moving: float) -> Array:
-        inertia = lecture.inertia_force(
-            reciprocating_mass=moving, piston_acceleration=motion.acceleration
-        )
+        inertia = lecture.inertia_force(reciprocating_mass=moving, piston_acceleration=acceleration)
         return np.asarray(lecture.net_force(gas_force=gas, inertia_force=inertia))
 
     net = force_with(float(mass))
-    forces = formulas.forces(phi, gear, net)
+    side_thrust, tangential = net * forces.side_thrust, net * forces.tangential
     turning_x, turning_y = _inertia_at_throw(float(masses.crank_pin), r, phi, speed, rate)
-    throw_x, throw_y = net + turning_x, turning_y - forces.side_thrust
-    drive = np.asarray(lecture.crank_torque(tangential_force=forces.tangential, crank_radius=r))
-    bearing_x, bearing_y = _main_bearing(scene, theta, omega, alpha, throw_x, throw_y)
-    from_gas = formulas.forces(phi, gear, gas).tangential
+    throw_x, throw_y = net + turning_x, turning_y - side_thrust
+    drive = np.asarray(lecture.crank_torque(tangential_force=tangential, crank_radius=r))
+    from_gas = gas * forces.tangential
     return {
-        "piston displacement": motion.displacement,
-        "piston velocity": motion.velocity,
-        "piston acceleration": motion.acceleration,
+        "piston displacement": moved.displacement,
+        "piston velocity": moved.velocity * speed,
+        "piston acceleration": acceleration,
         "net force": net,
-        "side thrust": forces.side_thrust,
-        "rod force": forces.rod,
-        "tangential force": forces.tangential,
-        "radial force": forces.radial,
+        "side thrust": side_thrust,
+        "rod force": net * forces.rod,
+        "tangential force": tangential,
+        "radial force": net * forces.radial,
         "torque": drive - masses.crank_pin * r**2 * rate,
         "gas torque": np.asarray(lecture.crank_torque(tangential_force=from_gas, crank_radius=r)),
         "piston pin force x": force_with(piston.mass),
-        "piston pin force y": -forces.side_thrust,
+        "piston pin force y": -side_thrust,
         "crank pin force x": throw_x,
         "crank pin force y": throw_y,
-        "main bearing force x": bearing_x,
-        "main bearing force y": bearing_y,
     }
 
 
 def _inertia_at_throw(
-    mass: float, radius: float, angle: Array, omega: Array, alpha: Array
+    mass: float, radius: float, angle: Array, omega: Array, alpha: Array | float
 ) -> tuple[Array, Array]:
     """Force that a mass turning at the crank radius needs: inwards, and forwards with alpha."""
     inwards = np.asarray(
@@ -188,15 +243,23 @@ def _inertia_at_throw(
     return -inwards * cos - forwards * sin, -inwards * sin + forwards * cos
 
 
-def _main_bearing(
-    scene: Scene, theta: Array, omega: Array, alpha: Array, throw_x: Array, throw_y: Array
+def turning_crank(
+    scene: Scene, theta: Array, omega: Array, alpha: Array | float
 ) -> tuple[Array, Array]:
-    """Every throw's force turned into the engine's frame, and the crank's own reduced mass."""
+    """What the main bearing gives to the crank's own reduced mass, in the engine's frame [N], at
+    crank angles [rad], speeds [rad/s] and accelerations [rad/s2] whose shapes broadcast."""
     crank = scene.crank
     mass = lecture.reduced_web_mass(
         web_mass=crank.mass, center_of_mass=crank.center_of_mass, crank_radius=crank.radius
     )
-    own_x, own_y = _inertia_at_throw(float(mass), crank.radius, theta, omega, alpha)
+    return _inertia_at_throw(float(mass), crank.radius, theta, omega, alpha)
+
+
+def _main_bearing(
+    scene: Scene, theta: Array, omega: Array, alpha: Array, throw_x: Array, throw_y: Array
+) -> tuple[Array, Array]:
+    """Every throw's force turned into the engine's frame, and the crank's own."""
+    own_x, own_y = turning_crank(scene, theta, omega, alpha)
     bank = np.array([cylinder.bank for cylinder in scene.cylinders])
     sin, cos = np.sin(bank), np.cos(bank)
     return own_x + throw_x @ cos - throw_y @ sin, own_y + throw_x @ sin + throw_y @ cos

@@ -18,7 +18,14 @@ from crankmbs.mechanics.variables import EVERY
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 
-__all__ = ["OBSERVABLES", "QUANTITIES", "Quantity", "cycle_angles", "observed"]
+__all__ = [
+    "OBSERVABLES",
+    "QUANTITIES",
+    "Quantity",
+    "cycle_angles",
+    "observed",
+    "observed_cylinders",
+]
 
 
 class Quantity(NamedTuple):
@@ -84,18 +91,29 @@ def observed(
     the gas force's power over omega, no number where the crank stands still
     """
     phi = cycle_angles(scene, theta)
+    return observed_cylinders(scene, variables, phi, omega[:, None], alpha[:, None]) | {
+        "main bearing force x": variables["main_bearing_force_x"],
+        "main bearing force y": variables["main_bearing_force_y"],
+    }
+
+
+def observed_cylinders(
+    scene: Scene, variables: Mapping[str, Array], phi: Array, omega: Array, alpha: Array
+) -> dict[str, Array]:
+    """Those quantities that a cylinder has, as `observed` makes them, at cycle angles of any shape
+    [rad]; the others in shapes that broadcast with it."""
     sin_phi, cos_phi = np.sin(phi), np.cos(phi)
-    square, rate = omega[:, None] ** 2, alpha[:, None]
+    square = omega**2
     rod, r = scene.rod, scene.crank.radius
     masses = two_mass_rod(
         rod_mass=rod.mass, rod_length=rod.length, center_of_mass=rod.center_of_mass
     )
     turning = float(masses.crank_pin) * r
-    through_x = variables["crank_pin_force_x"] + turning * (cos_phi * square + sin_phi * rate)
-    through_y = variables["crank_pin_force_y"] + turning * (sin_phi * square - cos_phi * rate)
+    through_x = variables["crank_pin_force_x"] + turning * (cos_phi * square + sin_phi * alpha)
+    through_y = variables["crank_pin_force_y"] + turning * (sin_phi * square - cos_phi * alpha)
     beta = variables["rod_angle"]
     with np.errstate(divide="ignore", invalid="ignore"):
-        gas_torque = variables["gas_force"] * variables["piston_velocity"] / omega[:, None]
+        gas_torque = variables["gas_force"] * variables["piston_velocity"] / omega
     return {
         "piston displacement": variables["piston_displacement"],
         "piston velocity": variables["piston_velocity"],
@@ -111,6 +129,4 @@ def observed(
         "piston pin force y": variables["piston_pin_force_y"],
         "crank pin force x": variables["crank_pin_force_x"],
         "crank pin force y": variables["crank_pin_force_y"],
-        "main bearing force x": variables["main_bearing_force_x"],
-        "main bearing force y": variables["main_bearing_force_y"],
     }

@@ -76,6 +76,6 @@ def piston_acceleration(
     across, along = np.sin(crank_angle), np.cos(crank_angle)
     first = crank_radius * (across + along * slope)
     second = crank_radius * (
-        along - across * slope + crank_radius / rod_length * along**2 / cosine**3
+        along - across * slope + crank_radius / rod_length * (along / cosine) ** 2 / cosine
     )
     return second * omega**2 + first * alpha

@@ -9,7 +9,7 @@ from crankmbs.measures.interpolate import interp
 from crankmbs.measures.joints import Estimate, JointForce
 from crankmbs.measures.orders import Orders, orders
 from crankmbs.measures.span import Span, last_span
-from crankmbs.measures.summary import Measures, fluctuation, mean_speed, measure
+from crankmbs.measures.summary import Measures, efficiency, fluctuation, mean_speed, measure
 
 __all__ = [
     "EngineOrder",
@@ -19,6 +19,7 @@ __all__ = [
     "Measures",
     "Orders",
     "Span",
+    "efficiency",
     "engine_orders",
     "fluctuation",
     "interp",

@@ -24,7 +24,7 @@ from crankmbs.mechanics.geometry import close_loop, dead_centres
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 
-__all__ = ["Measures", "fluctuation", "mean_speed", "measure", "measured"]
+__all__ = ["Measures", "efficiency", "fluctuation", "mean_speed", "measure", "measured"]
 
 
 @dataclass(frozen=True)
@@ -135,7 +135,7 @@ def _measures(
         indicated_power=power,
         imep=imep,
         friction_power=rubbed,
-        mechanical_efficiency=_efficiency(power, rubbed),
+        mechanical_efficiency=efficiency(power, rubbed),
         energy_closure=energy_closure,
     )
 
@@ -211,9 +211,13 @@ def _rubbed(result: Result, window: Span) -> Estimate | None:
     return Estimate(-float(work.sum()) / window.duration, float(error.sum()) / window.duration)
 
 
-def _efficiency(indicated: Estimate | None, rubbed: Estimate | None) -> Estimate | None:
-    """Of indicated power I and friction's R: (I - R) / I of an engine, I / (I - R) of what is
-    driven, with the errors of both."""
+def efficiency(indicated: Estimate | None, rubbed: Estimate | None) -> Estimate | None:
+    """Of indicated power I and friction's R, or their works: (I - R) / I of an engine, I / (I - R)
+    of what is driven, with the errors of both; None without either.
+
+    >>> efficiency(Estimate(4.0, 0.0), Estimate(1.0, 0.1)).value
+    0.75
+    """
     if indicated is None or rubbed is None or indicated.value == 0.0:
         return None
     of_gas, left = indicated.value, indicated.value - rubbed.value

@@ -113,7 +113,8 @@ def of_cylinder(
 def of_crank(
     scene: Scene, theta: Array, motion: Powers, cylinders: list[Cylinder]
 ) -> dict[str, Array]:
-    """The variables of the crank and of the frame, at crank angles of shape (n,) [rad]."""
+    """The variables of the crank and of the frame, at crank angles of shape (n,) [rad]; without
+    cylinders what belongs to the crank alone."""
     crank, (square, alpha, one) = scene.crank, motion
     first_moment = crank.mass * crank.center_of_mass
     sin_theta, cos_theta = np.sin(theta), np.cos(theta)
@@ -145,7 +146,7 @@ def of_crank(
 
 def _rocking(scene: Scene, cylinders: list[Cylinder]) -> dict[str, Array]:
     """Moments about the middle of the crank, where every cylinder has its place along it."""
-    if scene.levers is None:
+    if scene.levers is None or not cylinders:
         return {}
     levers = np.array(scene.levers)
     return {
