@@ -133,8 +133,9 @@ class _Passes(NamedTuple):
             apart[balanced] = found.apart(before[balanced])
             missed = 0.0
             if samples.own:
-                needed = found.row(places["external_torque"].start - first)
-                missed = peak(needed - samples.own["external_torque"])
+                row = places["external_torque"].start
+                given = samples.own.get("external_torque", before[row])
+                missed = peak(found.row(row - first) - given)
             apart[:first] = _peaks(before[:first] - _motion(samples))
             for name, values in samples.own.items():
                 apart[places[name]] = _peaks(before[places[name]] - values.T)
