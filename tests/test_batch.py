@@ -253,9 +253,9 @@ def test_its_loops_are_the_same_compiled_and_plain(monkeypatch):
 WIDTHS = np.array([0.05, 0.3, 0.05, 0.02, 0.03, 0.05, 0.01, 0.2])
 
 
-def sought(rows, level=0.0, width=WIDTHS, stages=8):
-    """What is found of a curve whose rows are A, B, C, D, omega^2 and alpha over the angle, and the
-    largest size of its polynomials, densely."""
+def laid_out(rows, level, width, stages):
+    """What the walk needs of a curve whose rows are A, B, C, D, omega^2 and alpha over the angle,
+    and the sizes of its polynomials, densely, shape (cells, places)."""
     rule, edges = gauss(stages), np.append(0.0, np.cumsum(width))
     nodes = edges[:-1, None] + width[:, None] * rule.nodes
     of, rest, motion = (
@@ -263,18 +263,27 @@ def sought(rows, level=0.0, width=WIDTHS, stages=8):
     )
     course = np.concatenate([motion[0], motion[0]])
     layout = curves.layout_of(width, rule.nodes)
-    starts, lines = layout.starts, [curves._lines(part, layout) for part in (of, rest)]
+    lines = [curves._lines(part, layout) for part in (of, rest)]
     prepared, track = np.empty((8, stages)), np.empty((9, lines[0].shape[-1]))
     walk._prepare(tables_of(stages), prepared)
+    grid = edges, layout.starts
     for k in range(3):
-        walk._straighten(course[k], prepared, (edges, starts), track[3 * k : 3 * k + 3])
-    sought = of, rest[:, None], lines[0], lines[1][:, None]
-    motions, found = (course[None], track[None], np.array([[level, 0.0]])), np.empty((1, 3))
-    walk._seek((0, len(rows), 0, False), sought, (edges, starts), prepared, motions, found)
+        walk._straighten(course[k], prepared, grid, track[3 * k : 3 * k + 3])
     values = of[:, 0] * (course[0] - level) + of[:, 1] * course[1] + rest[:, 0] + rest[:, 1] * level
     dense = np.polynomial.legendre.legvander(np.linspace(-1.0, 1.0, 3001), stages - 1)
     between = (values.reshape(len(rows), -1, stages) @ rule.to_legendre.T) @ dense.T
-    return found[0], np.max(np.sqrt(np.sum(between**2, axis=0)))
+    return (of, rest, *lines), grid, prepared, (course, track), np.sqrt(np.sum(between**2, axis=0))
+
+
+def sought(rows, level=0.0, width=WIDTHS, stages=8):
+    """What is found of such a curve, and its largest size."""
+    (of, rest, *lines), grid, prepared, (course, track), sizes = laid_out(
+        rows, level, width, stages
+    )
+    curve, found = (of, rest[:, None], lines[0], lines[1][:, None]), np.empty((1, 3))
+    motions = course[None], track[None], np.array([[level, 0.0]])
+    walk._seek((0, len(rows), 0, False), curve, grid, prepared, motions, found)
+    return found[0], np.max(sizes)
 
 
 def tables_of(stages):
@@ -309,19 +318,43 @@ def test_of_two_peaks_that_are_nearly_equal_the_higher_one_is_found(sign):
     assert abs(peak - (1.0 + 1e-9 * turned)) < 1e-14 + tail
 
 
+def waves(random, often, pairs):
+    """Rows as `laid_out` takes them, of waves."""
+
+    def wave():
+        size, phase = random.normal(), random.uniform(0.0, 6.0)
+        mean, many = random.normal(), random.uniform(0.0, often)
+        return lambda angle: mean + size * np.cos(many * angle + phase)
+
+    motion = [wave(), wave()]
+    return [[*(wave() for _ in range(4)), *motion] for _ in range(pairs)]
+
+
 @pytest.mark.parametrize("seed", range(40))
 def test_no_peak_escapes_the_bounds(seed):
     random = np.random.default_rng(seed)
-
-    def wave():
-        size, often, phase = random.normal(), random.uniform(0.0, 12.0), random.uniform(0.0, 6.0)
-        mean = random.normal()
-        return lambda angle: mean + size * np.cos(often * angle + phase)
-
-    motion = [wave(), wave()]
-    rows = [[*(wave() for _ in range(4)), *motion] for _ in range(1 + seed % 2)]
+    rows = waves(random, 12.0, 1 + seed % 2)
     (peak, _, _), dense = sought(rows, random.normal(), stages=5 + seed % 5)
     assert dense * (1.0 - 1e-14) <= peak <= dense * (1.0 + 1e-4)
+
+
+@pytest.mark.parametrize("bent", range(-1, 6))
+def test_no_cell_and_no_block_exceeds_its_bound(bent):
+    """Of A, B, C, D, omega^2 and alpha all are bent, or one alone is: its rest is all there is."""
+    for seed in range(12):
+        random = np.random.default_rng(seed)
+        rows, width = waves(random, 40.0, 1 + seed % 2), np.full(12, 0.08)
+        for row in rows if bent >= 0 else ():
+            row[:] = [f if k == bent else flat(random.normal()) for k, f in enumerate(row)]
+        level, stages = random.normal(), 5 + seed % 5
+        (_, _, of, rest), grid, prepared, (_, track), sizes = laid_out(rows, level, width, stages)
+        every, room = (0, of.shape[-1]), np.empty((7, of.shape[-1]))
+        for r in range(len(rows)):
+            walk._bound((r, False, level), (of[r], rest[r]), track, every, room)
+        walk._join(len(rows) == 2, float(np.sum(np.abs(prepared[3]))), every, room)
+        highest, starts = sizes.max(axis=1), grid[1]
+        highest = np.append(highest, np.maximum.reduceat(highest, starts[:-1]))
+        assert np.all(highest <= room[6] * (1.0 + 1e-14))
 
 
 @pytest.mark.parametrize("stages", [5, 8])
