@@ -107,7 +107,7 @@ def _motion_alone(scene: Scene) -> None:
     shared = width, inertia, torque
     own = _seconds(lambda: find_periodic(sense, tables.rule, shared, cases, found))
     least = _seconds(solve)
-    apart = np.max(np.abs(taken(found[2], len(by))[:, 0] / answer[:, 0] - 1.0))
+    apart = np.max(np.abs(taken(found[2], len(by))[:, 0] / answer - 1.0))
     print(
         f"  its periodic motion {1e6 * own / len(by):.1f} us, in C {1e6 * least / len(by):.1f} us: "
         f"{least / own:.2f} of the limit's speed; energies {apart:.0e} apart"
@@ -115,10 +115,10 @@ def _motion_alone(scene: Scene) -> None:
 
 
 def _in_c(tables: Pass, given: Array) -> tuple[Callable[[], object], Array]:
-    """A call of settled.c for cases (inertia, c0, c2), and its answer: energy and duration."""
+    """A call of settled.c for cases (inertia, c0, c2), and its answer: energies [J]."""
     width, inertia, _, torque = tables.of_angle
     (m, s), (matrix, weights, _, _) = inertia.shape, tables.rule
-    answer = np.empty((len(given), 2))
+    answer = np.empty(len(given))
     room = np.empty(2 * m * (s + 1) * LANES)
     rule = np.concatenate([matrix.ravel(), weights])
     arrays = [np.ascontiguousarray(a) for a in (rule, width, inertia, torque, given, room, answer)]

@@ -1,7 +1,8 @@
 /* The limit for many settled motions: affine cells of one machine, eight cases beside one another.
  *
  * Each case has its own inertia of the crank and its own loads c0 + c2 omega^2. Out: the energy
- * where the period begins, and how long it takes. Forwards; no measure, no error. */
+ * where the period begins, and at all nodes, in the first part of the room. Forwards; no measure, no
+ * error. */
 
 #include "cell.h"
 
@@ -13,11 +14,11 @@ void settle(int cases, int m, int s, const double *rule, const double *width,
   double(*gains)[LANES] = (double(*)[LANES])room, (*shifts)[LANES] = gains + m * s;
   double(*maps)[LANES] = shifts + m * s;
   for (int first = 0; first < cases; first += LANES) {
-    double own[LANES], c0[LANES], c2[LANES], growth[LANES], rise[LANES], at[LANES], time[LANES];
+    double own[LANES], c0[LANES], c2[LANES], growth[LANES], rise[LANES], at[LANES];
     EACH {
       const double *one = given + 3 * (first + l < cases ? first + l : cases - 1);
       own[l] = one[0], c0[l] = one[1], c2[l] = one[2];
-      growth[l] = rise[l] = time[l] = 0.0;
+      growth[l] = rise[l] = 0.0;
     }
     for (int c = 0; c < m; c++) {
       double push[MOST][LANES], rate[MOST][LANES], more[LANES], gained[LANES];
@@ -42,15 +43,11 @@ void settle(int cases, int m, int s, const double *rule, const double *width,
       }
     }
     EACH at[l] = -rise[l] / growth[l];
-    for (int l = 0; l < LANES && first + l < cases; l++) found[2 * (first + l)] = at[l];
+    for (int l = 0; l < LANES && first + l < cases; l++) found[first + l] = at[l];
     for (int c = 0; c < m; c++) {
       for (int j = 0; j < s; j++)
-        EACH {
-          double e = gains[c * s + j][l] * at[l] + shifts[c * s + j][l];
-          time[l] += width[c] * weights[j] * sqrt(0.5 * (inertia[c * s + j] + own[l]) / e);
-        }
+        EACH gains[c * s + j][l] = gains[c * s + j][l] * at[l] + shifts[c * s + j][l];
       EACH at[l] += maps[2 * c][l] * at[l] + maps[2 * c + 1][l];
     }
-    for (int l = 0; l < LANES && first + l < cases; l++) found[2 * (first + l) + 1] = time[l];
   }
 }
