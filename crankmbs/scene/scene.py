@@ -62,7 +62,7 @@ class Scene:
         """Whether the motion asked for is the one that the run comes to."""
         return self.run.until == SETTLED
 
-    @property
+    @cached_property
     def settled_period(self) -> float:
         """The angle [rad] after which a settled motion repeats itself: the least common multiple
         of the periods of the engine, of a sequence of cycles, of misfires "every n" and of loads
