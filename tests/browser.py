@@ -10,6 +10,7 @@ from pathlib import Path
 from urllib.parse import urlsplit
 
 import pytest
+from playwright.sync_api import sync_playwright
 
 _INSTALL = (
     ["apt-get", "update"],
@@ -32,6 +33,15 @@ def chromium():
             pytest.fail(missing)
         pytest.skip(missing)
     return path
+
+
+@contextmanager
+def started():
+    """The browser, open."""
+    with sync_playwright() as playwright:
+        opened = playwright.chromium.launch(executable_path=chromium(), args=["--no-sandbox"])
+        yield opened
+        opened.close()
 
 
 class Visit:

@@ -1,6 +1,7 @@
 """Fixtures of several test files."""
 
 import pytest
+from browser import started
 from page_engine import engine
 from scene_texts import GAS
 
@@ -20,6 +21,13 @@ def read(tmp_path):
             raise SceneError(str(error).replace(f"{tmp_path}/", "")) from None
 
     return parse
+
+
+@pytest.fixture(scope="module")
+def browser():
+    """A browser for the visits of a test file."""
+    with started() as opened:
+        yield opened
 
 
 @pytest.fixture(scope="module")

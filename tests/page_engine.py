@@ -5,8 +5,7 @@ import math
 from contextlib import contextmanager
 
 import numpy as np
-from browser import chromium, visiting
-from playwright.sync_api import sync_playwright
+from browser import started, visiting
 
 from crankmbs.mechanics.peaks import peak
 from crankmbs.mechanics.variables import EVERY, SUMS
@@ -22,14 +21,11 @@ _ASK = """([name, text]) =>
 @contextmanager
 def engine():
     """The engine in chromium; asked by the name of what it answers and its arguments."""
-    with sync_playwright() as playwright:
-        opened = playwright.chromium.launch(executable_path=chromium(), args=["--no-sandbox"])
-        with visiting(opened, offline=True) as visit:
-            visit.page.evaluate(f"() => {{ window.answers = {joined('answers')} }}")
-            start = "(text) => { window.engine = answers.engineOf(JSON.parse(text)) }"
-            visit.page.evaluate(start, encoded(rules()))
-            yield Engine(visit.page)
-        opened.close()
+    with started() as opened, visiting(opened, offline=True) as visit:
+        visit.page.evaluate(f"() => {{ window.answers = {joined('answers')} }}")
+        start = "(text) => { window.engine = answers.engineOf(JSON.parse(text)) }"
+        visit.page.evaluate(start, encoded(rules()))
+        yield Engine(visit.page)
 
 
 class Engine:

@@ -10,8 +10,7 @@ from importlib import import_module
 
 import numpy as np
 import pytest
-from browser import chromium, visiting
-from playwright.sync_api import sync_playwright
+from browser import visiting
 
 from crankmbs import load_scene, simulate
 from crankmbs.lessons import LESSONS, write_lesson
@@ -20,14 +19,6 @@ from crankmbs.scene.parts import Layout
 
 PASSES = "() => [...document.querySelectorAll('figure')].every((f) => f.dataset.passes === '2')"
 PHONE, LAPTOP, LARGE = (390, 844), (1366, 641), (1920, 1080)
-
-
-@pytest.fixture(scope="module")
-def browser():
-    with sync_playwright() as playwright:
-        started = playwright.chromium.launch(executable_path=chromium(), args=["--no-sandbox"])
-        yield started
-        started.close()
 
 
 @pytest.fixture(scope="module")

@@ -12,9 +12,8 @@ import re
 
 import numpy as np
 import pytest
-from browser import chromium, visiting
+from browser import visiting
 from page_visit import assert_same, expected, opened
-from playwright.sync_api import sync_playwright
 from turned import turned
 
 from crankmbs import Fuel, InputError, Misfire, load_scene, shipped_scenes, simulate
@@ -25,14 +24,6 @@ from crankmbs.scene.run import Extent
 
 SHIPPED = {name: load_scene(name) for name in shipped_scenes()}
 SHOWN = [name for name, one in SHIPPED.items() if not refusals(one) and not early_end(one)]
-
-
-@pytest.fixture(scope="module")
-def browser():
-    with sync_playwright() as playwright:
-        started = playwright.chromium.launch(executable_path=chromium(), args=["--no-sandbox"])
-        yield started
-        started.close()
 
 
 @pytest.fixture

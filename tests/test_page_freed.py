@@ -5,10 +5,8 @@ import math
 from dataclasses import replace
 
 import pytest
-from browser import chromium
 from page_scenes import refused
 from page_visit import assert_same, expected, opened
-from playwright.sync_api import sync_playwright
 from turned import turned
 
 from crankmbs import (
@@ -32,14 +30,6 @@ from crankmbs.scene.gas import Polytrope
 from crankmbs.scene.run import Extent
 
 DRIVEN = [name for name in shipped_scenes() if load_scene(name).motion is not None]
-
-
-@pytest.fixture(scope="module")
-def browser():
-    with sync_playwright() as playwright:
-        started = playwright.chromium.launch(executable_path=chromium(), args=["--no-sandbox"])
-        yield started
-        started.close()
 
 
 def shown(values):

@@ -6,22 +6,12 @@ import re
 
 import numpy as np
 import pytest
-from browser import chromium
 from page_visit import opened
-from playwright.sync_api import sync_playwright
 
 from crankmbs import flywheel, load_scene
 
 SCENE = load_scene("propeller")
 LAPTOP, PHONE, LARGE = (1366, 641), (390, 844), (1920, 1080)
-
-
-@pytest.fixture(scope="module")
-def browser():
-    with sync_playwright() as playwright:
-        started = playwright.chromium.launch(executable_path=chromium(), args=["--no-sandbox"])
-        yield started
-        started.close()
 
 
 @pytest.fixture

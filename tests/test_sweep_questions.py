@@ -202,6 +202,7 @@ def test_one_knob_is_a_curve(grid):
     np.testing.assert_allclose(curve.get_ydata(), 100.0 * one["fluctuation"][0])
     np.testing.assert_array_equal(limit.get_ydata(), [1.0, 1.0])
     assert figure.axes[0].get_xscale() == "log"
+    assert [text.get_text() for text in figure.axes[0].get_legend().get_texts()] == ["1 %"]
 
 
 def test_two_knobs_are_contours_with_the_line_of_the_limit(grid):
@@ -211,6 +212,7 @@ def test_two_knobs_are_contours_with_the_line_of_the_limit(grid):
     assert filled.levels[0] <= 100.0 * float(
         grid["lecture_deviation"].sel(quantity="side thrust")[..., 2].min()
     )
+    assert [text.get_text() for text in figure.axes[0].get_legend().get_texts()] == ["25 %"]
     assert "by S1 (motion and forces truncated)" in figure.get_suptitle()
     assert png(figure)
 
@@ -247,7 +249,7 @@ def test_a_sample_is_points_over_each_knob_and_failures_are_counted():
     ("show", "limit", "said"),
     [
         ("fluctuatoin", None, 'did you mean "fluctuation"?'),
-        ("fluctuation", "3 mm", "must be a share"),
+        ("fluctuation", "3 mm", "limit: must be a share"),
         ("peak crank pin force", "1 %", "is no force here"),
         ("friction power", None, "is nothing that a case has"),
     ],

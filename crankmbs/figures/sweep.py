@@ -18,7 +18,7 @@ from crankmbs.figures.style import COLOURS, STYLE, caption, logarithmic, panels
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.units import BAR, DEGREE, RPM
 from crankmbs.sweep.columns import Column
-from crankmbs.sweep.reading import amount_of, reading_of
+from crankmbs.sweep.reading import Reading, amount_of, reading_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -72,6 +72,8 @@ class _Axis(NamedTuple):
         elif self.log:
             ax.set_xscale("log")
             logarithmic(ax.xaxis)
+        else:
+            ax.xaxis.set_major_locator(MaxNLocator(6))
 
     def along_y(self, ax: Axes) -> None:
         ax.set_ylabel(self.label)
@@ -110,7 +112,7 @@ def sweep_figure(data: xr.Dataset, show: str, limit: str | None = None) -> Figur
     if not np.isfinite(values.values).any():
         raise InputError(f"{show}: no case of this sweep has it")
     scale, unit = _SHOWN.get(reading.about.units, (1.0, reading.about.units))
-    at = None if limit is None else amount_of(limit, reading) / scale
+    at = None if limit is None else _limit(limit, reading) / scale
     drawn = _Drawn(values / scale, reading.words, unit, at)
     knobs = [str(name) for name in values.dims if name in data.coords]
     figure = _over_cases(data, drawn) if values.dims == ("case",) else _over(data, drawn, knobs)
@@ -122,6 +124,13 @@ def sweep_figure(data: xr.Dataset, show: str, limit: str | None = None) -> Figur
         lines.append(f"all cases lie on one side of {_amount(drawn)}")
     caption(figure, [line for line in lines if line])
     return figure
+
+
+def _limit(text: str, reading: Reading) -> float:
+    try:
+        return amount_of(text, reading)
+    except InputError as error:
+        raise InputError(f"limit: {error}") from None
 
 
 def _varied(data: xr.Dataset) -> xr.Dataset:
@@ -168,9 +177,16 @@ def _curve(axis: _Axis, drawn: _Drawn) -> Figure:
     ax.plot(axis.at, drawn.values, color=COLOURS[0], marker=marker or None, linestyle=line)
     axis.along_x(ax)
     figure.suptitle(drawn.label, fontsize=14)
-    if drawn.limit is not None:
-        ax.axhline(drawn.limit, color=COLOURS[1], linestyle=(0, (6, 3)))
+    _limited(ax, drawn)
     return figure
+
+
+def _limited(ax: Axes, drawn: _Drawn) -> None:
+    """The limit across an axis, named in a legend."""
+    if drawn.limit is not None:
+        dashes = (0, (6, 3))
+        ax.axhline(drawn.limit, color=COLOURS[1], linestyle=dashes, label=_amount(drawn))
+        ax.legend()
 
 
 def _contours(ax: Axes, at: tuple[_Axis, _Axis], drawn: _Drawn, levels: Array) -> Any:
@@ -179,8 +195,9 @@ def _contours(ax: Axes, at: tuple[_Axis, _Axis], drawn: _Drawn, levels: Array) -
     ax.grid(visible=False)
     filled = ax.contourf(x.at, y.at, table, levels, cmap="viridis")
     if limit is not None and levels[0] < limit < levels[-1]:
-        line = ax.contour(x.at, y.at, table, [limit], colors=COLOURS[1])
-        ax.clabel(line, fmt=lambda _: _amount(drawn), fontsize=12, inline_spacing=2)
+        ax.contour(x.at, y.at, table, [limit], colors=COLOURS[1])
+        ax.plot([], [], color=COLOURS[1], label=_amount(drawn))  # beside it, it is cut at an edge
+        ax.legend(loc="upper right")
     x.along_x(ax)
     y.along_y(ax)
     return filled
@@ -201,8 +218,7 @@ def _over_cases(data: xr.Dataset, drawn: _Drawn) -> Figure:
         axis = _axis(data, name)
         ax.plot(*_apart(axis.at, drawn.values.values), ".", color=COLOURS[0], markersize=4)
         axis.along_x(ax)
-        if drawn.limit is not None:
-            ax.axhline(drawn.limit, color=COLOURS[1], linestyle=(0, (6, 3)))
+        _limited(ax, drawn)
     for ax in axes[len(names) :]:
         ax.set_visible(False)
     figure.suptitle(drawn.label, fontsize=14)
