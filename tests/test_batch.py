@@ -357,6 +357,12 @@ def test_no_cell_and_no_block_exceeds_its_bound(bent):
         assert np.all(highest <= room[6] * (1.0 + 1e-14))
 
 
+def test_what_two_lectures_say_alike_is_sought_once_and_the_quantity_by_itself():
+    rest = np.random.default_rng(1).normal(size=(1, 5, 2, 6))
+    rest[0, 1], rest[0, 3], rest[0, 4] = rest[0, 0], rest[0, 2], rest[0, 2]
+    assert curves.twins(rest).tolist() == [[0, 1, 2, 2, 2]]
+
+
 @pytest.mark.parametrize("stages", [5, 8])
 def test_a_size_that_bends_is_summed_on_both_sides(stages):
     tables, nodes = tables_of(stages), gauss(stages).nodes
