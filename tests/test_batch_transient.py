@@ -141,10 +141,10 @@ def test_alone_and_among_others_it_is_the_same(until):
     several = [
         base.with_(crank__inertia=inertia, start__speed=speed)
         for inertia in (0.02, 0.2, 0.11)
-        for speed in (300.0, 340.0, 280.0)
+        for speed in (300.0, 340.0, 280.0, 310.0, 290.0, 320.0)
     ]
     (rows,) = rows_of(several)
-    assert rows.which.tolist() == list(range(9))
+    assert rows.which.tolist() == list(range(2 * LANES + 2))  # the first one alone, then the rest
     for number, scene in enumerate(several):
         (alone,) = rows_of([scene])
         for name, values in alone.columns.items():
