@@ -253,8 +253,8 @@ def test_a_script_without_a_guard_is_told_of_it(tmp_path):
     script = tmp_path / "mine.py"
     script.write_text(
         "import crankmbs\n"
-        "scene = crankmbs.load_scene('coasting')\n"
-        "crankmbs.sweep(scene, {'crank.inertia': '0.1..0.2 kg m^2:9'}, executor=2)\n"
+        "scene = crankmbs.load_scene('yi_diesel')\n"
+        "crankmbs.sweep(scene, {'piston.mass': '1..2 kg:9'}, executor=2)\n"
     )
     done = subprocess.run(
         [sys.executable, str(script)], capture_output=True, text=True, check=False
