@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from beside_alone import assert_agree, by_hand
 
 from crankmbs import load_scene, simulate
 from crankmbs.batch import curves, machine, periodic, walk
@@ -18,7 +19,7 @@ from crankmbs.scene.loads import Constant, Quadratic, SpeedTable, Viscous
 from crankmbs.scene.parts import Cylinder, Friction
 from crankmbs.scene.tables import Table
 from crankmbs.sweep.block import Job, solved
-from crankmbs.sweep.columns import columns_of, row_of
+from crankmbs.sweep.columns import columns_of
 from crankmbs.sweep.scenes import scene_of
 from validation.random_settled import random_settled
 
@@ -32,25 +33,6 @@ def settling(name, **changes):
 
 
 SHIPPED = [settling(name) for name in ("propeller", "yi_diesel_free", "v_twin")]
-
-
-def by_hand(scene):
-    """The columns of a scene alone, finely sampled, and how it ends."""
-    result = simulate(scene.with_(run__every="0.25 deg"), rtol=1e-12)
-    return row_of(result, None), result.message
-
-
-def assert_agree(rows, number, alone):
-    """Every column within the errors of both; angles where the peak is no tie."""
-    for name, values in alone.items():
-        found = rows.columns[name][number]
-        assert found.shape == values.shape, name
-        assert (np.isnan(found) == np.isnan(values)).all(), name
-        if f"{name}_error" in alone:
-            both = alone[f"{name}_error"] + rows.columns[f"{name}_error"][number]
-            apart = np.abs(found - values)
-            worst = np.nanmax(np.append(apart - both, -1.0))
-            assert worst <= 0.0, (name, worst)
 
 
 @pytest.mark.parametrize("scene", SHIPPED, ids=lambda scene: scene.title[:20])

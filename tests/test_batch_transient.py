@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from beside_alone import assert_agree, by_hand
 
 from crankmbs import load_scene, simulate
 from crankmbs.batch import transient
@@ -19,7 +20,7 @@ from crankmbs.scene.loads import Constant, Quadratic, SpeedTable, TimeTable, Vis
 from crankmbs.scene.run import Extent, Run
 from crankmbs.scene.tables import Table
 from crankmbs.sweep.block import Job, solved
-from crankmbs.sweep.columns import columns_of, row_of
+from crankmbs.sweep.columns import columns_of
 from crankmbs.sweep.scenes import scene_of
 from validation.random_settled import random_settled
 
@@ -50,24 +51,6 @@ SERVED = {
     "backwards": TURNED,
     "backwards in time": TURNED.with_(run__until="0.11 s"),
 }
-
-
-def by_hand(scene):
-    """The columns of a scene alone, finely sampled, and how it ends."""
-    result = simulate(scene.with_(run__every="0.25 deg"), rtol=1e-12)
-    return row_of(result, None), result.message
-
-
-def assert_agree(rows, number, alone, least=0.0):
-    """Every column within the errors of both, and those that are nothing but rounding."""
-    for name, values in alone.items():
-        found = rows.columns[name][number]
-        assert found.shape == values.shape, name
-        assert (np.isnan(found) == np.isnan(values)).all(), name
-        if f"{name}_error" in alone:
-            both = alone[f"{name}_error"] + rows.columns[f"{name}_error"][number]
-            worst = np.nanmax(np.append(np.abs(found - values) - both, -1.0))
-            assert worst <= least, (name, worst)
 
 
 @pytest.mark.parametrize("name", SERVED)
