@@ -258,14 +258,30 @@ def laid_out(rows, level, width, stages):
 
 
 def sought(rows, level=0.0, width=WIDTHS, stages=8):
-    """What is found of such a curve, and its largest size."""
+    """What is found of such a curve, and its largest size; there a rule with more nodes must have
+    it, too."""
     (of, rest, *lines), grid, prepared, (course, track), sizes = laid_out(
         rows, level, width, stages
     )
     curve, found = (of, rest[:, None], lines[0], lines[1][:, None]), np.empty((1, 3))
     motions = course[None], track[None], np.array([[level, 0.0]])
-    walk._seek((0, len(rows), 0, False), curve, grid, prepared, motions, found)
+    which, places = (0, len(rows), 0, False), np.empty((1, 2))
+    walk._peaks(which, curve, (grid, prepared, True), motions, (places, found))
+    looked_at(rows, level, width, stages + 2, places, found)
     return found[0], np.max(sizes)
+
+
+def looked_at(rows, level, width, stages, places, found):
+    """By another rule the sizes at the places of the peaks are the same but for what either errs,
+    and so are the angles."""
+    (of, rest, *_), grid, prepared, (course, _), _ = laid_out(rows, level, width, stages)
+    curve, there = (of, rest[:, None], of, rest[:, None]), np.empty((1, 3))
+    motions = course[None], course[None], np.array([[level, 0.0]])
+    which, kept = (0, len(rows), 0, False), places.copy()
+    walk._peaks(which, curve, (grid, prepared, False), motions, (kept, there))
+    assert abs(there[0, 0] - found[0, 0]) <= 2.0 * found[0, 2] + 1e-13 * found[0, 0]
+    assert there[0, 1] == found[0, 1]
+    np.testing.assert_array_equal(kept, places)
 
 
 def tables_of(stages):

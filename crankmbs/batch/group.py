@@ -122,9 +122,11 @@ def clear(machine: Machine, loads: Array) -> Array:
     return np.asarray(_CLEAR * (torque + np.sum(np.abs(loads), axis=1)))
 
 
-def room(machine: Machine, count: int) -> Array:
-    """For the columns of so many cases."""
-    return np.empty((count, OWN + 4 * machine.joints + _OF_QUANTITIES))
+def room(machine: Machine, count: int) -> tuple[Array, Array]:
+    """For the columns of so many cases, and for where their peaks are, as
+    `crankmbs.batch.walk.walk` fills them."""
+    columns = np.empty((count, OWN + 4 * machine.joints + _OF_QUANTITIES))
+    return columns, np.full((count, 2 + machine.joints + _OF_QUANTITIES // 2, 2), np.nan)
 
 
 def together(count: int, nodes: int) -> list[slice]:

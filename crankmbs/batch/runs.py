@@ -20,20 +20,23 @@ __all__ = ["solved"]
 
 class _Way(NamedTuple):
     """How runs go over the tables of a pass: of which machine, from the beginning of which cell on;
-    J without the crank's where the period ends [kg m2]; and by what part of itself a period raises
-    the energy."""
+    J without the crank's where the period ends [kg m2]; by what part of itself a period raises the
+    energy; and whether peaks are sought, or looked at where they are."""
 
     machine: Machine
     tables: Pass
     first: int
     inertia: float
     off: float
+    sought: bool
 
 
 class _Passed(NamedTuple):
-    """Columns, energies at the ends of cells [J], and whether a run keeps clear of rest."""
+    """Columns, where peaks are, energies at the ends of cells [J], and whether a run keeps clear of
+    rest."""
 
     columns: Array
+    places: Array
     ends: Array
     sure: NDArray[np.bool_]
 
@@ -61,15 +64,16 @@ def solved(machine: Machine, which: NDArray[np.intp], cases: Cases) -> Group:
     given = _given(machine, cases)[order]
     by_time = cases.scenes[0].end[1]
     ways = [
-        _Way(machine, tables, machine.first, machine.inertias[1], off)
-        for tables, off in ((machine.answer, 0.0), (machine.check, NUDGE))
+        _Way(machine, tables, machine.first, machine.inertias[1], off, sought)
+        for tables, off, sought in ((machine.answer, 0.0, True), (machine.check, NUDGE, False))
     ]
     begin = np.full(len(order), machine.begin)
     if by_time:
         answer, check, turned = _to_times(ways[0], ways[1], given)
         begin += machine.sense * turned
     else:
-        answer, check = (_to_angles(way, given) for way in ways)
+        answer = _to_angles(ways[0], given, room(machine, len(given))[1])
+        check = _to_angles(ways[1], given, answer.places)
     back = np.argsort(order)
     sure = (answer.sure & check.sure)[back]
     passes = tuple((one.columns[back], one.ends[back]) for one in (answer, check))
@@ -86,14 +90,14 @@ def _given(machine: Machine, cases: Cases) -> Array:
     return np.column_stack([inertias, cases.loads, energy, ends])
 
 
-def _to_angles(way: _Way, given: Array) -> _Passed:
+def _to_angles(way: _Way, given: Array, places: Array) -> _Passed:
     """A pass over runs that end at an angle, where the tables do."""
     from crankmbs.batch.walk import walk  # numba is loaded only when it is used
 
     machine, tables, count = way.machine, way.tables, len(given)
-    columns, ends = room(machine, count), np.empty((count, len(tables.of_angle[0])))
+    columns, ends = room(machine, count)[0], np.empty((count, len(tables.of_angle[0])))
     sure = np.empty(count, dtype=np.bool_)
-    about = machine.sense, list(QUANTITIES).index(LINEAR), OWN
+    about = machine.sense, list(QUANTITIES).index(LINEAR), OWN, way.sought
     for some in together(count, tables.of_angle[1].size):
         own, (energy, at_ends, seen), sure[some] = _carried(way, given[some], in_time=False)
         ends[some] = taken(at_ends, len(given[some]))
@@ -102,8 +106,8 @@ def _to_angles(way: _Way, given: Array) -> _Passed:
         with np.errstate(invalid="ignore"):  # where the energy is used up
             faster = np.sqrt(2.0 * ends[some][:, -1] / total) - np.sqrt(2.0 * begun / total)
         columns[some, 0], columns[some, 1] = begun, machine.sense * faster
-        walk(about, *tables[:3], (own, energy), columns[some])
-    return _Passed(columns, ends, sure)
+        walk(about, *tables[:3], (own, energy), (columns[some], places[some]))
+    return _Passed(columns, places, ends, sure)
 
 
 def _to_times(way: _Way, other: _Way, given: Array) -> tuple[_Passed, _Passed, Array]:
@@ -116,14 +120,16 @@ def _to_times(way: _Way, other: _Way, given: Array) -> tuple[_Passed, _Passed, A
     turned = (
         np.append(0.0, np.cumsum(width))[landed.cell] + landed.places[:, 0] * width[landed.cell]
     )
-    answer, check = (_over_cut(way, landed, given, sure), _over_cut(other, checked, given, sure))
-    return answer, check, turned
+    answer = _over_cut(way, landed, given, sure, room(way.machine, len(given))[1])
+    return answer, _over_cut(other, checked, given, sure, answer.places), turned
 
 
-def _over_cut(way: _Way, landed: _Landed, given: Array, sure: NDArray[np.bool_]) -> _Passed:
+def _over_cut(
+    way: _Way, landed: _Landed, given: Array, sure: NDArray[np.bool_], places: Array
+) -> _Passed:
     """The last period of each run that is sure, over tables that end where it does."""
     count, m = len(given), len(way.tables.of_angle[0])
-    columns, ends = room(way.machine, count), np.empty((count, m + 1))
+    columns, ends = room(way.machine, count)[0], np.empty((count, m + 1))
     columns[:], ends[:], passed = np.nan, np.nan, sure.copy()
     for k in np.flatnonzero(sure).tolist():
         cell, (place, inertia) = int(landed.cell[k]), landed.places[k].tolist()
@@ -131,8 +137,9 @@ def _over_cut(way: _Way, landed: _Landed, given: Array, sure: NDArray[np.bool_])
             tables=way.tables.cut(cell, place, landed.parts[k]), first=m - cell, inertia=inertia
         )
         rest = np.array([[*given[k, :4], landed.before[k], 1.0]])
-        columns[k : k + 1], ends[k : k + 1], passed[k : k + 1] = _to_angles(cut, rest)
-    return _Passed(columns, ends, passed)
+        one = slice(k, k + 1)
+        columns[one], _, ends[one], passed[one] = _to_angles(cut, rest, places[one])
+    return _Passed(columns, places, ends, passed)
 
 
 def _landed(way: _Way, given: Array, cell: NDArray[np.intp]) -> _Landed:

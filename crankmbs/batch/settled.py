@@ -24,11 +24,11 @@ def solved(machine: Machine, which: NDArray[np.intp], cases: Cases) -> Group:
     Of the columns the first two are the energy [J] where the period begins, and by how much the
     factor by which a disturbance shrinks in it differs from 1.
     """
+    (answer, places), (check, _) = room(machine, len(which)), room(machine, len(which))
     passes = (
-        _passed(machine, machine.answer, cases, 0.0),
-        _passed(machine, machine.check, cases, NUDGE),
+        (answer, _passed(machine, machine.answer, cases, 0.0, (answer, places))),
+        (check, _passed(machine, machine.check, cases, NUDGE, (check, places))),
     )
-    answer = passes[0][0]
     begin, growth, least = answer[:, 0], answer[:, 1], answer[:, 4]
     started = 0.5 * (cases.inertias + machine.inertias[0]) * cases.starts**2
     needed = clear(machine, cases.loads[:, :1])
@@ -38,8 +38,10 @@ def solved(machine: Machine, which: NDArray[np.intp], cases: Cases) -> Group:
     return group_of(machine, cases, which, at, sure, passes)
 
 
-def _passed(machine: Machine, tables: Pass, cases: Cases, nudge: float) -> tuple[Array, Array]:
-    """Columns and energies of a pass over cases."""
+def _passed(
+    machine: Machine, tables: Pass, cases: Cases, nudge: float, found: tuple[Array, Array]
+) -> Array:
+    """Energies of a pass over cases, whose columns are filled, and for the check from places."""
     # numba is loaded only when it is used
     from crankmbs.batch.periodic import find_periodic
     from crankmbs.batch.walk import walk
@@ -47,8 +49,8 @@ def _passed(machine: Machine, tables: Pass, cases: Cases, nudge: float) -> tuple
     width, inertia, _, torque = tables.of_angle
     starts, shared = cases.starts, (width, inertia, torque)
     given = np.column_stack([cases.inertias, cases.loads, starts, np.full_like(starts, nudge)])
-    columns, ends = room(machine, len(starts)), np.empty((len(starts), len(width)))
-    about = machine.sense, list(QUANTITIES).index(LINEAR), OWN
+    (columns, places), ends = found, np.empty((len(starts), len(width)))
+    about = machine.sense, list(QUANTITIES).index(LINEAR), OWN, tables is machine.answer
     for some in together(len(starts), inertia.size):
         own = laid(given[some])
         groups, count = len(own), len(given[some])
@@ -56,5 +58,5 @@ def _passed(machine: Machine, tables: Pass, cases: Cases, nudge: float) -> tuple
         at_ends, begin = np.empty((groups, len(width), LANES)), np.empty((groups, 2, LANES))
         find_periodic(machine.sense, tables.rule, shared, own, (energy, at_ends, begin))
         columns[some, :2], ends[some] = taken(begin, count), taken(at_ends, count)
-        walk(about, *tables[:3], (own, energy), columns[some])
-    return columns, ends
+        walk(about, *tables[:3], (own, energy), (columns[some], places[some]))
+    return ends

@@ -7,7 +7,8 @@ Between the nodes of a cell all is the polynomial through them.
 
 No curve is made as a whole for its peak. Within a cell, and within a block of cells, what it is
 made of is straight but for a rest, so that the curve is, but for a rest which is bounded. Only
-where that could exceed what is found it is made, and sought in.
+where that could exceed what is found it is made, and sought in. A second pass with another rule
+looks where the first one found the peaks: what it has there tells how far they are off.
 
 Kernels of one file call none of another, so that they stand together here, over 300 lines.
 """
@@ -35,7 +36,7 @@ Grid = tuple[
     Array, Indices
 ]  # where cells end; the first cell of every block, and how many there are
 
-_STEPS, _CLOSE = 12, 1e-7  # towards a peak; of a cell
+_STEPS, _CLOSE, _BESIDE = 16, 1e-7, 1e-4  # towards a peak; of a cell
 _BENT = 0.6  # of what a force changes by across a piece: where it is less it has a bend, or nearly
 _DEEPEST = 8  # halvings of a cell
 _CANDIDATES = 64  # cells of a curve that are sought in; more are ripples of rounding
@@ -44,17 +45,17 @@ _ROUNDING = 64 * 2.0**-52  # of a quantity
 
 @kernel
 def walk(
-    about: tuple[float, int, int],
+    about: tuple[float, int, int, bool],
     rule: Rule,
     of_angle: tuple[Array, Array, Array, Array],
     parts: tuple[Curves, Array, Curves, Indices, tuple[Indices, NDArray[np.bool_]]],
     motions: tuple[Array, Array],
-    columns: Array,
+    found: tuple[Array, Array],
 ) -> None:
     """Fill the columns of every case from its energies over one period.
 
     about : sense of rotation; number of the quantity whose A belongs to omega; of columns before
-        those of joints
+        those of joints; whether peaks are sought, or looked at where they are
     of_angle : width [rad] of the m cells, and at their s nodes J without the crank's, dJ/dtheta and
         the torque, shape (m, s)
     parts : of forces, those of joints in pairs of x and y, then the side forces: A and B at the n =
@@ -68,14 +69,17 @@ def walk(
     motions : of the cases, beside one another as `crankmbs.batch.lanes` lays them; inertia of the
         crank [kg m2], c0, c1 and c2 of the loads, shape (groups, 4 or more, LANES); the energy [J]
         at the nodes, shape (groups, m, s, LANES), no number where there is no motion
-    columns : filled, shape (k, columns), but for the first two; no numbers where there is no
+    found : columns, filled, shape (k, columns), but for the first two; no numbers where there is no
         motion: duration [s], greatest and least energy [J], highest and lowest speed, mean torque
         of all rods and from outside, what both speeds may err; of every joint its peak, the angle
         turned to it, its mean over time and what the peak may err; of every quantity its peak and
-        what that may err, and for each lecture its largest deviation and that one's
+        what that may err, and for each lecture its largest deviation and that one's. And where the
+        peaks are, shape (k, 2 + joints + curves of quantities, 2): the cell, and the place in it, 0
+        to 1; filled, or given
     """
-    (sense, linear, own_columns), (width, inertia, _, _) = about, of_angle
+    (sense, linear, own_columns, sought), (width, inertia, _, _) = about, of_angle
     (forces, rods, quantities, starts, (twin, steady)), (cases, energy) = parts, motions
+    columns, places = found
     m, s = inertia.shape
     n, count = m * s, len(columns)
     share, edges, gauss = np.empty(n), np.zeros(m + 1), np.empty((8, s))
@@ -93,56 +97,55 @@ def walk(
             case = (cases[g, 0, l], cases[g, 1, l], cases[g, 2, l], cases[g, 3, l])
             _course(sense, case, of_angle, energy[g, :, :, l], courses[k])
             _sums(of_angle, case, (courses[k], share, rods), columns[k])
-            for row in range(3):
+            for row in range(3 if sought else 0):
                 _straighten(courses[k, row], gauss, grid, tracks[k, 3 * row : 3 * row + 3])
     ones = np.zeros((1, 2, n)), np.zeros((1, 1, 2, n))
     lines = np.zeros((1, 6, tracks.shape[2])), np.zeros((1, 1, 6, tracks.shape[2]))
     ones[0][0, 0], lines[0][0, 0] = 1.0, 1.0
     speed = (ones[0], ones[1], lines[0], lines[1])
-    levels, found = np.zeros((count, 2)), np.empty((count, 3))
+    levels, peaks = np.zeros((count, 2)), np.empty((count, 3))
     levels[:, 1] = 0.0 * columns[:, 2]
-    _seek((0, 1, 0, True), speed, grid, gauss, (courses, tracks, levels), found)
-    columns[:, 5], columns[:, 9] = found[:, 0], found[:, 2]
-    levels[:, 0] = 2.0 * sense * found[:, 0]
-    _seek((0, 1, 0, True), speed, grid, gauss, (courses, tracks, levels), found)
-    columns[:, 6], columns[:, 10] = sense * levels[:, 0] - found[:, 0], found[:, 2]
+    seen, by = (courses, tracks, levels), (grid, gauss, sought)
+    _peaks((0, 1, 0, True), speed, by, seen, (places[:, 0], peaks))
+    columns[:, 5], columns[:, 9] = peaks[:, 0], peaks[:, 2]
+    levels[:, 0] = 2.0 * sense * peaks[:, 0]
+    _peaks((0, 1, 0, True), speed, by, seen, (places[:, 1], peaks))
+    columns[:, 6], columns[:, 10] = sense * levels[:, 0] - peaks[:, 0], peaks[:, 2]
     levels[:, 0] = 0.0
     rows, kinds = len(forces[0]), quantities[1].shape[1]
     joints = (columns.shape[1] - own_columns - 2 * len(quantities[0]) * kinds) // 4
-    at, row, pairs = own_columns, 0, rows - joints
+    at, row, pairs, of = own_columns, 0, rows - joints, 2
     for joint in range(joints):
         more = 2 if joint < pairs else 1
-        _seek((row, more, 0, False), forces, grid, gauss, (courses, tracks, levels), found)
-        columns[:, at], columns[:, at + 1], columns[:, at + 3] = (
-            found[:, 0],
-            found[:, 1],
-            found[:, 2],
-        )
+        _peaks((row, more, 0, False), forces, by, seen, (places[:, of], peaks))
+        columns[:, at], columns[:, at + 1] = peaks[:, 0], peaks[:, 1]
+        columns[:, at + 3] = peaks[:, 2]
         _means(row, more, forces, (courses, share, width), rule, columns[:, at + 2])
         columns[:, at + 2] /= columns[:, 2]
-        at, row = at + 4, row + more
+        at, row, of = at + 4, row + more, of + 1
     mean, some = sense * turned / columns[:, 2], 0
     while some + 1 < count and mean[some] != mean[some]:
         some += 1
     for q in range(len(quantities[0])):
-        begin, end = (some, some + 1) if steady[q] else (0, count)
-        seen = (courses[begin:end], tracks[begin:end], levels[begin:end])
+        one, end = (some, some + 1) if steady[q] else (0, count)
+        seen = courses[one:end], tracks[one:end], levels[one:end]
         for kind in range(kinds):
-            if twin[q, kind] < kind:
-                earlier = at - 2 * (kind - twin[q, kind])
-                columns[:, at : at + 2] = columns[:, earlier : earlier + 2]
-                at += 2
-                continue
             for k in range(count):
                 of_mean = mean[k] if q == linear else mean[k] * mean[k]
                 levels[k, 0] = of_mean if kind > 0 else 0.0
                 levels[k, 1] = columns[k, at - 2 * kind] if kind > 0 else 0.0 * mean[k]
-            which = (q, 1, kind, q == linear)
-            _seek(which, quantities, grid, gauss, seen, found[begin:end])
-            for k in range(count):
-                of = some if steady[q] and mean[k] == mean[k] else k
-                columns[k, at], columns[k, at + 1] = found[of, 0], found[of, 2]
-            at += 2
+            if twin[q, kind] < kind:
+                back = kind - twin[q, kind]
+                columns[:, at : at + 2] = columns[:, at - 2 * back : at - 2 * back + 2]
+                places[:, of] = places[:, of - back]
+            else:
+                which = (q, 1, kind, q == linear)
+                _peaks(which, quantities, by, seen, (places[one:end, of], peaks[one:end]))
+                for k in range(count):
+                    like = some if steady[q] and mean[k] == mean[k] else k
+                    columns[k, at], columns[k, at + 1] = peaks[like, 0], peaks[like, 2]
+                    places[k, of] = places[like, of]
+            at, of = at + 2, of + 1
 
 
 @kernel
@@ -268,32 +271,71 @@ def _basis(x: float, rule: Rule, basis: Array) -> None:
 
 
 @kernel
+def _peaks(
+    which: tuple[int, int, int, bool],
+    curves: Curves,
+    by: tuple[Grid, Array, bool],
+    motions: tuple[Array, Array, Array],
+    found: tuple[Array, Array],
+) -> None:
+    """Fill the places, shape (k, 2), of the largest size of a curve over the period, for every
+    case, and that size, the angle turned to it [rad] and what it may err, shape (k, 3), as `_seek`
+    does; or, where none is sought, the size at the places."""
+    (grid, gauss, sought), (places, peaks) = by, found
+    if sought:
+        _seek(which, curves, grid, gauss, motions, (places, peaks))
+        return
+    (row, rows, kind, linear), (of, rest, _, _) = which, curves
+    (courses, _, levels), edges, s = motions, grid[0], gauss.shape[1]
+    for k in range(len(peaks)):
+        cell, x = places[k]
+        peaks[k] = math.nan
+        if cell == cell and levels[k, 1] == levels[k, 1]:
+            c, course, level = int(cell), courses[k], levels[k, 0]
+            of_rows = 0.0
+            for r in range(row, row + rows):
+                above = below = 0.0
+                for j in range(s):
+                    i = c * s + j
+                    u = course[2, i] if linear else course[0, i]
+                    value = of[r, 0, i] * (u - level) + of[r, 1, i] * course[1, i]
+                    value += rest[r, kind, 0, i] + rest[r, kind, 1, i] * level
+                    apart = x - gauss[0, j]
+                    weight = gauss[1, j] / (apart if apart != 0.0 else 1e-300)
+                    above, below = above + weight * value, below + weight
+                of_rows += (above / below) ** 2
+            peaks[k, 0], peaks[k, 2] = math.sqrt(of_rows), 0.0
+            peaks[k, 1] = edges[c] + x * (edges[c + 1] - edges[c])
+
+
+@kernel
 def _seek(
     which: tuple[int, int, int, bool],
     curves: Curves,
     grid: Grid,
     gauss: Array,
     motions: tuple[Array, Array, Array],
-    found: Array,
+    found: tuple[Array, Array],
 ) -> None:
-    """Fill for every case the largest size of a curve over the period, the angle turned to it
-    [rad], and what it may err: the size of the last coefficient of the polynomial in its cell.
+    """Fill for every case where the largest size of a curve over the period is, shape (k, 2), that
+    size, the angle turned to it [rad], and what it may err, shape (k, 3): the size of the last
+    coefficient of the polynomial in its cell.
 
     which : row, how many rows make it up, number of C and D, and whether u is of omega; motions :
         courses and tracks, and for each case p, and the scale whose rounding is nothing, no number
         where there is no motion; shape (k, 2)
     """
     (row, rows, kind, linear), (of, rest, lines_of, lines_rest) = which, curves
-    (edges, starts), (courses, tracks, levels) = grid, motions
+    (edges, starts), (courses, tracks, levels), (places, peaks) = grid, motions, found
     m, s, blocks = len(edges) - 1, gauss.shape[1], len(starts) - 1
     room, values = np.empty((7, m + blocks)), np.zeros((3, s))
     bounds, most_of, paired = room[6], 0.0, rows == 2
     for j in range(s):
         most_of += abs(gauss[3, j])
-    for k in range(len(found)):
+    for k in range(len(peaks)):
         level, scale = levels[k]
         course, track = courses[k], tracks[k]
-        found[k] = math.nan
+        peaks[k], places[k] = math.nan, math.nan
         if scale != scale:
             continue
         highest, limit, place, tail, left, seen = -1.0, -1.0, 0.0, 0.0, -1.0, 0
@@ -348,9 +390,10 @@ def _seek(
                         other += gauss[1, j] * values[1, j]
                     highest, tail = size, math.sqrt(one * one + other * other)
                     place = edges[c] + x * (edges[c + 1] - edges[c])
+                    places[k, 0], places[k, 1] = c, x
                     limit = highest + _ROUNDING * max(scale, highest)
         if highest >= 0.0:
-            found[k, 0], found[k, 1], found[k, 2] = highest, place, tail + max(left - highest, 0.0)
+            peaks[k, 0], peaks[k, 1], peaks[k, 2] = highest, place, tail + max(left - highest, 0.0)
 
 
 @kernel
@@ -478,10 +521,15 @@ def _top(paired: bool, values: Array, gauss: Array, least: float) -> tuple[float
                 left, right = (x - a) * (of_x - of_b), (x - b) * (of_x - of_a)
                 both = left - right
                 move = 0.5 * ((x - b) * right - (x - a) * left) / both if both != 0.0 else 0.0
-                if abs(move) <= _CLOSE:
-                    break
                 u = x + move
-                if not a < u < b:
+                if abs(move) <= _CLOSE:  # by luck, perhaps, where a neighbour is far
+                    if b - x > 2.0 * _BESIDE:
+                        u = x + _BESIDE
+                    elif x - a > 2.0 * _BESIDE:
+                        u = x - _BESIDE
+                    else:
+                        break
+                elif not a < u < b:
                     u = 0.5 * (x + (a if x - a > b - x else b))
             total = one = other = 0.0
             for i in range(s):

@@ -22,7 +22,7 @@ Ended = tuple[Row, int, str]  # of one case: its columns, status and sentence
 
 IMPOSSIBLE, BROKEN = 2, -2  # status of a case whose scene is refused; that ended its worker
 _FEWEST, _BLOCKS = 4, 128
-_SOME, _WIDE, _TOGETHER = 32, 256, 32  # the same of cases that are solved together
+_SOME, _WIDE, _TOGETHER = 32, 512, 16  # the same of cases that are solved together
 _MOST, _MOST_SERIES = 2048, 256  # a block is a file of each column: few files, some 40 MB of series
 
 
@@ -61,7 +61,7 @@ def block_size(count: int, *, series: bool, together: bool = False) -> int:
     >>> block_size(1000, series=False), block_size(10**6, series=False)
     (8, 2048)
     >>> block_size(10_000, series=False, together=True), block_size(96, series=False, together=True)
-    (256, 32)
+    (512, 32)
     """
     fewest = min(max(ceil(count / _TOGETHER), _SOME), _WIDE) if together else _FEWEST
     return min(max(ceil(count / _BLOCKS), fewest), _MOST_SERIES if series else _MOST)
