@@ -14,6 +14,7 @@ from crankmbs.result import Result
 __all__ = ["Span", "integral", "last_span", "measured_span", "same_span"]
 
 
+_JUMPS = 4  # of a cylinder in a cycle that count: as many as it has dead centres
 _SAME_ANGLE = 1e-9  # rad: rounding of start + k * every must not lose a cycle
 
 
@@ -104,8 +105,9 @@ def integral(result: Result, window: Span, values: Array) -> tuple[Array, Array]
 
     A cubic spline through the samples is integrated: order 4 in the spacing where the quantity is
     smooth, 2 across a bend, 1 across a jump. The error is the difference from the splines through
-    the even and through the odd samples: their sum, where smooth 16 times too large, or its parts'
-    root of squares, as those at jumps and bends may cancel by luck; whichever is largest.
+    the even and through the odd samples, whichever is largest: their sum, where smooth 16 times too
+    large; as those at jumps and bends may cancel by luck the root of squares of its parts; and, as
+    cylinders that jump at the same place between two samples add up, the sum of the largest parts.
 
     Parameters
     ----------
@@ -120,6 +122,8 @@ def integral(result: Result, window: Span, values: Array) -> tuple[Array, Array]
     if len(time) < 2:
         return np.zeros(values.shape[1:]), np.zeros(values.shape[1:])
     number, last = np.arange(len(time)), len(time) - 1
+    cycles = max(1, round(abs(window.angle) / result.scene.period))
+    jumps = min(_JUMPS * cycles * len(result.scene.cylinders), last // 2)
     found = CubicSpline(time, inner).antiderivative()
     error = np.zeros(values.shape[1:])
     for odd in (0, 1):
@@ -129,4 +133,6 @@ def integral(result: Result, window: Span, values: Array) -> tuple[Array, Array]
         apart = np.diff(found(edges) - coarse(edges), axis=0)
         error = np.maximum(error, np.abs(apart.sum(axis=0)))
         error = np.maximum(error, np.sqrt((apart**2).sum(axis=0)))
+        largest = np.sort(np.abs(apart), axis=0)[len(apart) - jumps :]
+        error = np.maximum(error, largest.sum(axis=0))
     return np.asarray(found(window.end) - found(window.begin)), error
