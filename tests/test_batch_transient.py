@@ -124,7 +124,7 @@ def test_alone_and_among_others_it_is_the_same(until):
     several = [
         base.with_(crank__inertia=inertia, start__speed=speed)
         for inertia in (0.02, 0.2, 0.11)
-        for speed in (300.0, 340.0, 280.0, 310.0, 290.0, 320.0)
+        for speed in np.linspace(280.0, 340.0, 22).tolist()
     ]
     (rows,) = rows_of(several)
     assert rows.which.tolist() == list(range(2 * LANES + 2))  # the first one alone, then the rest
@@ -201,8 +201,9 @@ def carried(given, *, in_time):
     """What `carry` fills for cases of the propeller's machine, one after the other."""
     machine = machine_of(PROPELLER)
     (width, inertia, _, torque), cases = machine.answer.of_angle, laid(np.asarray(given))
-    energy = np.empty((len(cases), *inertia.shape, LANES))
-    ends, seen = np.empty((len(cases), len(width), LANES)), np.empty((len(cases), 4, LANES))
+    groups, _, lanes = cases.shape
+    energy = np.empty((groups, *inertia.shape, lanes))
+    ends, seen = np.empty((groups, len(width), lanes)), np.empty((groups, 4, lanes))
     about, shared = (machine.sense, 0, 0.0, in_time), (width, inertia, torque)
     transient.carry(about, machine.answer.rule, shared, cases, (energy, ends, seen))
     return taken(ends, len(given)), taken(seen, len(given))

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crankmbs.batch.group import NUDGE, Cases, Group, clear, group_of, room, together
-from crankmbs.batch.lanes import LANES, laid, taken
+from crankmbs.batch.lanes import laid, taken
 from crankmbs.batch.machine import OWN, Machine, ahead_of
 from crankmbs.batch.tables import LINEAR, Pass
 from crankmbs.compare import QUANTITIES
@@ -164,15 +164,14 @@ def _carried(
     where one of a run is not clear of rest; and whether all of a run are."""
     from crankmbs.batch.transient import carry
 
-    (width, inertia, _, torque), beside = way.tables.of_angle, laid(given)
-    lanes = LANES if len(given) > 1 else 1  # one alone needs none beside it
-    own = beside[:, :, :lanes].copy()
-    energy = np.empty((len(own), *inertia.shape, lanes))
-    ends, seen = np.empty((len(own), len(width), lanes)), np.empty((len(own), 4, lanes))
+    (width, inertia, _, torque), own = way.tables.of_angle, laid(given)
+    groups, _, lanes = own.shape
+    energy = np.empty((groups, *inertia.shape, lanes))
+    ends, seen = np.empty((groups, len(width), lanes)), np.empty((groups, 4, lanes))
     about = way.machine.sense, way.first, way.off, in_time
     carry(about, way.tables.rule, (width, inertia, torque), own, (energy, ends, seen))
     least = taken(seen, len(given))[:, 3]
     slow = np.sqrt(2.0 * np.maximum(least, 0.0) / (given[:, 0] + float(np.min(inertia))))
     sure = least > clear(way.machine, given[:, 1:3] * np.stack([np.ones_like(slow), slow], axis=1))
-    energy += laid(np.where(sure, 0.0, np.nan)[:, None])[:, :, None, :lanes]
-    return beside, (np.repeat(energy, LANES // lanes, axis=3), ends, seen), sure
+    energy += laid(np.where(sure, 0.0, np.nan)[:, None])[:, :, None, :]
+    return own, (energy, ends, seen), sure

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crankmbs.batch.group import NUDGE, Cases, Group, clear, group_of, room, together
-from crankmbs.batch.lanes import LANES, laid, taken
+from crankmbs.batch.lanes import laid, taken
 from crankmbs.batch.machine import OWN, Machine
 from crankmbs.batch.tables import LINEAR, Pass
 from crankmbs.compare import QUANTITIES
@@ -53,9 +53,9 @@ def _passed(
     about = machine.sense, list(QUANTITIES).index(LINEAR), OWN, tables is machine.answer
     for some in together(len(starts), inertia.size):
         own = laid(given[some])
-        groups, count = len(own), len(given[some])
-        energy = np.empty((groups, *inertia.shape, LANES))
-        at_ends, begin = np.empty((groups, len(width), LANES)), np.empty((groups, 2, LANES))
+        (groups, _, lanes), count = own.shape, len(given[some])
+        energy = np.empty((groups, *inertia.shape, lanes))
+        at_ends, begin = np.empty((groups, len(width), lanes)), np.empty((groups, 2, lanes))
         find_periodic(machine.sense, tables.rule, shared, own, (energy, at_ends, begin))
         columns[some, :2], ends[some] = taken(begin, count), taken(at_ends, count)
         walk(about, *tables[:3], (own, energy), (columns[some], places[some]))

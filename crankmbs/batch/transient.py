@@ -13,7 +13,6 @@ import math
 
 import numpy as np
 
-from crankmbs.batch.lanes import LANES
 from crankmbs.numerics.arrays import Array, Index
 from crankmbs.numerics.kernels import kernel
 
@@ -41,13 +40,13 @@ def carry(
         itself every period raises the energy besides; whether they end at times
     of_angle : width [rad] of the m cells of a period, and at their s nodes J without the crank's
         and the torque, shape (m, s)
-    cases : beside one another as `crankmbs.batch.lanes` lays them, shape (groups, 6, LANES):
+    cases : beside one another as `crankmbs.batch.lanes` lays them, shape (groups, 6, lanes):
         inertia of the crank [kg m2]; c0, c1 and c2 of the loads; the energy at the start [J]; how
         many whole periods to pass, or the time [s] from which on none begins
-    found : filled; the energies of the last period [J] at its nodes, shape (groups, m, s, LANES),
-        and at the ends of its cells, shape (groups, m, LANES); energy and time [s] where it begins,
+    found : filled; the energies of the last period [J] at its nodes, shape (groups, m, s, lanes),
+        and at the ends of its cells, shape (groups, m, lanes); energy and time [s] where it begins,
         the energy a period before, NaN where none was, and the least at a node on the way, shape
-        (groups, 4, LANES), time only where they end at times. No numbers, or an energy below zero,
+        (groups, 4, lanes), time only where they end at times. No numbers, or an energy below zero,
         where it is used up
     """
     (sense, first, off, in_time), (m, s), lanes = about, of_angle[1].shape, cases.shape[2]
@@ -239,13 +238,12 @@ def land(
     """
     (width, inertia, torque), (energies, ends, seen) = of_angle, carried
     (_, weights, nodes, _), (cell, places, parts), s = rule, found, len(rule[2])
-    of_loads, guess, begin = np.empty((2, s, LANES)), np.empty((s, LANES)), np.empty(LANES)
-    scratch, to = (np.empty((2, s, LANES)), np.empty((s, s, LANES))), np.empty(s)
-    maps, cells, one = np.empty((2, s, LANES)), np.empty((2, LANES)), np.zeros(LANES)
-    one[0] = 1.0  # of the lanes the first one counts
+    of_loads, guess, begin = np.empty((2, s, 1)), np.empty((s, 1)), np.empty(1)
+    scratch, to = (np.empty((2, s, 1)), np.empty((s, s, 1))), np.empty(s)
+    maps, cells, one = np.empty((2, s, 1)), np.empty((2, 1)), np.ones(1)
+    own, lanes = np.empty((4, 1)), cases.shape[2]
     for k in range(len(cell)):
-        g, l, c = k // LANES, k % LANES, 0
-        own = np.empty((4, LANES))
+        g, l, c = k // lanes, k % lanes, 0
         for i in range(4):
             own[i] = cases[g, i, l]
         mass, end, at, t = own[0, 0], cases[g, 5, l], seen[g, 0, l], seen[g, 1, l]
@@ -333,10 +331,10 @@ def _linear(
     found: tuple[Array, Array],
 ) -> None:
     """Fill the maps of a cell of signed width h [rad], loads linear in E about a guess: gain and
-    shift at its nodes, shape (2, s, LANES), growth and rise at its end, shape (2, LANES).
+    shift at its nodes, shape (2, s, lanes), growth and rise at its end, shape (2, lanes).
 
-    here : J / 2 and the torque with c0 at the nodes, shape (2, s, LANES); inertia of the crank, c0,
-    c1 and c2, shape (4, LANES); the guess of the energies, shape (s, LANES), not used without c1
+    here : J / 2 and the torque with c0 at the nodes, shape (2, s, lanes); inertia of the crank, c0,
+    c1 and c2, shape (4, lanes); the guess of the energies, shape (s, lanes), not used without c1
     """
     (matrix, weights, _, _), (of_loads, own, guess) = rule, here
     (both, system), (maps, cells) = scratch, found

@@ -20,7 +20,6 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from crankmbs.batch.lanes import LANES
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.kernels import kernel
 
@@ -67,8 +66,8 @@ def walk(
         blocks, and m; and the number of the first of a quantity's curves that is the same, shape
         (q, 1 + lectures), and whether all of them are of the angle alone, shape (q,)
     motions : of the cases, beside one another as `crankmbs.batch.lanes` lays them; inertia of the
-        crank [kg m2], c0, c1 and c2 of the loads, shape (groups, 4 or more, LANES); the energy [J]
-        at the nodes, shape (groups, m, s, LANES), no number where there is no motion
+        crank [kg m2], c0, c1 and c2 of the loads, shape (groups, 4 or more, lanes); the energy [J]
+        at the nodes, shape (groups, m, s, lanes), no number where there is no motion
     found : columns, filled, shape (k, columns), but for the first two; no numbers where there is no
         motion: duration [s], greatest and least energy [J], highest and lowest speed, mean torque
         of all rods and from outside, what both speeds may err; of every joint its peak, the angle
@@ -81,7 +80,7 @@ def walk(
     (forces, rods, quantities, starts, (twin, steady)), (cases, energy) = parts, motions
     columns, places = found
     m, s = inertia.shape
-    n, count = m * s, len(columns)
+    n, count, lanes = m * s, len(columns), energy.shape[3]
     share, edges, gauss = np.empty(n), np.zeros(m + 1), np.empty((8, s))
     for c in range(m):
         edges[c + 1] = edges[c] + width[c]
@@ -91,7 +90,7 @@ def walk(
     grid, turned = (edges, starts), edges[m]
     courses, tracks = np.empty((count, 4, n)), np.empty((count, 9, m + len(starts) - 1))
     for k in range(count):
-        g, l = k // LANES, k % LANES
+        g, l = k // lanes, k % lanes
         columns[k, 2:] = math.nan
         if energy[g, 0, 0, l] == energy[g, 0, 0, l]:
             case = (cases[g, 0, l], cases[g, 1, l], cases[g, 2, l], cases[g, 3, l])

@@ -1,4 +1,4 @@
-/* The limit for many settled motions: affine cells of one machine, eight cases beside one another.
+/* The limit for many settled motions: affine cells of one machine, cases beside one another.
  *
  * Each case has its own inertia of the crank and its own loads c0 + c2 omega^2. Out: the energy
  * where the period begins, and at all nodes, in the first part of the room. Forwards; no measure, no

@@ -1,4 +1,4 @@
-/* The limit for many runs of one machine over many periods: affine cells, found once, eight runs
+/* The limit for many runs of one machine over many periods: affine cells, found once, runs
  * beside one another; time by quadrature of sqrt(J / 2 E).
  *
  * Out: the energy at the end, and how long it takes. Forwards; no measure, no error. Included is how
