@@ -8,7 +8,8 @@ import pytest
 from beside_alone import assert_agree, by_hand
 
 from crankmbs import load_scene, simulate
-from crankmbs.batch import curves, machine, periodic, walk
+from crankmbs.batch import courses, curves, machine, means, peaks, periodic, settled, straight
+from crankmbs.batch.group import Cases
 from crankmbs.batch.machine import machine_of
 from crankmbs.batch.rows import rows_of
 from crankmbs.batch.serves import loads_of
@@ -219,7 +220,7 @@ def test_its_loops_are_the_same_compiled_and_plain(monkeypatch):
     (compiled,) = solved_together([scene])
     kernels = {
         (of, name): one
-        for of in (periodic, walk)
+        for of in (courses, means, peaks, periodic, straight)
         for name, one in vars(of).items()
         if hasattr(one, "py_func")
     }
@@ -230,6 +231,17 @@ def test_its_loops_are_the_same_compiled_and_plain(monkeypatch):
     signatures = str([one.signatures for one in kernels.values()])
     assert set(re.findall(r"\b(\w+)\(", signatures)) <= {"Array", "Tuple", "UniTuple", "array"}
     assert all(one.targetoptions["nogil"] for one in kernels.values())
+
+
+def test_beside_a_case_without_a_motion_it_is_as_alone():
+    """What is of the angle alone is sought in one case, which must have a motion."""
+    stalls = replace(SHIPPED[0], torque=(*SHIPPED[0].torque, Constant(torque=-900.0)))
+    both = [stalls, SHIPPED[0]]
+    cases = Cases(None, both, np.array([loads_of(one) for one in both]), np.full(2, 1e-9))
+    group = settled.solved(machine_of(SHIPPED[0]), np.arange(2), cases)
+    assert np.isnan(group.answer[0, 2:]).all()
+    (alone,) = solved_together([SHIPPED[0]])
+    np.testing.assert_array_equal(group.answer[1], alone.answer[0])
 
 
 WIDTHS = np.array([0.05, 0.3, 0.05, 0.02, 0.03, 0.05, 0.01, 0.2])
@@ -243,44 +255,44 @@ def laid_out(rows, level, width, stages):
     of, rest, motion = (
         np.array([[f(nodes).ravel() for f in each[k : k + 2]] for each in rows]) for k in (0, 2, 4)
     )
-    course = np.concatenate([motion[0], motion[0]])
-    layout = curves.layout_of(width, rule.nodes)
-    lines = [curves._lines(part, layout) for part in (of, rest)]
-    prepared, track = np.empty((8, stages)), np.empty((9, lines[0].shape[-1]))
-    walk._prepare(tables_of(stages), prepared)
-    grid = edges, layout.starts
-    for k in range(3):
-        walk._straighten(course[k], prepared, grid, track[3 * k : 3 * k + 3])
+    course = np.concatenate([motion[0], motion[0, :1]])
+    grid = curves.grid_of(width, rule.nodes, rule.to_legendre[-1])
+    lines = [curves._lines(part, grid) for part in (of, rest)]
+    track = np.empty((9, lines[0].shape[-1]))
+    straight.straighten(course, rule.nodes, *grid[:2], track.reshape(3, 3, -1))
     values = of[:, 0] * (course[0] - level) + of[:, 1] * course[1] + rest[:, 0] + rest[:, 1] * level
     dense = np.polynomial.legendre.legvander(np.linspace(-1.0, 1.0, 3001), stages - 1)
     between = (values.reshape(len(rows), -1, stages) @ rule.to_legendre.T) @ dense.T
-    return (of, rest, *lines), grid, prepared, (course, track), np.sqrt(np.sum(between**2, axis=0))
+    return (of, rest, *lines), grid, (course, track), np.sqrt(np.sum(between**2, axis=0))
 
 
 def sought(rows, level=0.0, width=WIDTHS, stages=8):
     """What is found of such a curve, and its largest size; there a rule with more nodes must have
     it, too."""
-    (of, rest, *lines), grid, prepared, (course, track), sizes = laid_out(
-        rows, level, width, stages
-    )
-    curve, found = (of, rest[:, None], lines[0], lines[1][:, None]), np.empty((1, 3))
-    motions = course[None], track[None], np.array([[level, 0.0]])
-    which, places = (0, len(rows), 0, False), np.empty((1, 2))
-    walk._peaks(which, curve, (grid, prepared, True), motions, (places, found))
+    (of, rest, *lines), grid, (course, track), sizes = laid_out(rows, level, width, stages)
+    curve = of, rest[:, None], lines[0], lines[1][:, None]
+    motions, asked = (course[None], track[None], np.array([[level]])), plainly(len(rows))
+    places, found = np.empty((1, 1, 2)), np.empty((1, 1, 3))
+    peaks.find(True, asked, curve, grid, motions, (places, found))
     looked_at(rows, level, width, stages + 2, places, found)
-    return found[0], np.max(sizes)
+    return found[0, 0], np.max(sizes)
+
+
+def plainly(rows):
+    """One curve of so many rows, as `peaks.find` takes it."""
+    return np.array([[0, rows, 0, 0, 0, -1, -1, 0]])
 
 
 def looked_at(rows, level, width, stages, places, found):
     """By another rule the sizes at the places of the peaks are the same but for what either errs,
     and so are the angles."""
-    (of, rest, *_), grid, prepared, (course, _), _ = laid_out(rows, level, width, stages)
-    curve, there = (of, rest[:, None], of, rest[:, None]), np.empty((1, 3))
-    motions = course[None], course[None], np.array([[level, 0.0]])
-    which, kept = (0, len(rows), 0, False), places.copy()
-    walk._peaks(which, curve, (grid, prepared, False), motions, (kept, there))
-    assert abs(there[0, 0] - found[0, 0]) <= 2.0 * found[0, 2] + 1e-13 * found[0, 0]
-    assert there[0, 1] == found[0, 1]
+    (of, rest, *_), grid, (course, _), _ = laid_out(rows, level, width, stages)
+    curve, there = (of, rest[:, None], of, rest[:, None]), np.empty((1, 1, 3))
+    motions, kept = (course[None], course[None], np.array([[level]])), places.copy()
+    peaks.find(False, plainly(len(rows)), curve, grid, motions, (kept, there))
+    (size, turned, _), (sought_size, sought_turned, tail) = there[0, 0], found[0, 0]
+    assert abs(size - sought_size) <= 2.0 * tail + 1e-13 * sought_size
+    assert turned == sought_turned
     np.testing.assert_array_equal(kept, places)
 
 
@@ -345,11 +357,11 @@ def test_no_cell_and_no_block_exceeds_its_bound(bent):
         for row in rows if bent >= 0 else ():
             row[:] = [f if k == bent else flat(random.normal()) for k, f in enumerate(row)]
         level, stages = random.normal(), 5 + seed % 5
-        (_, _, of, rest), grid, prepared, (_, track), sizes = laid_out(rows, level, width, stages)
+        (_, _, of, rest), grid, (_, track), sizes = laid_out(rows, level, width, stages)
         every, room = (0, of.shape[-1]), np.empty((7, of.shape[-1]))
         for r in range(len(rows)):
-            walk._bound((r, False, level), (of[r], rest[r]), track, every, room)
-        walk._join(len(rows) == 2, float(np.sum(np.abs(prepared[3]))), every, room)
+            peaks._bound((r, False, level), (of[r], rest[r]), track, every, room)
+        peaks._join(len(rows) == 2, float(np.sum(np.abs(grid[2][3]))), every, room)
         highest, starts = sizes.max(axis=1), grid[1]
         highest = np.append(highest, np.maximum.reduceat(highest, starts[:-1]))
         assert np.all(highest <= room[6] * (1.0 + 1e-14))
@@ -365,18 +377,18 @@ def test_what_two_lectures_say_alike_is_sought_once_and_the_quantity_by_itself()
 def test_a_size_that_bends_is_summed_on_both_sides(stages):
     tables, nodes = tables_of(stages), gauss(stages).nodes
     for zero in (1e-9, 0.02, 0.37, 0.5, nodes[2], 0.999):
-        found = walk._split(nodes - zero, 1.0 + nodes, tables)
+        found = means._split(nodes - zero, 1.0 + nodes, tables)
         whole, before = (x**3 / 3.0 + (1.0 - zero) * x**2 / 2.0 - zero * x for x in (1.0, zero))
         assert abs(found - (whole - 2.0 * before)) < 2e-15
-    assert walk._split((nodes - 0.3) * (nodes - 0.6), nodes, tables) < 0.0
-    assert abs(walk._split(-1.0 - nodes, nodes, tables) - 5.0 / 6.0) < 1e-15
+    assert means._split((nodes - 0.3) * (nodes - 0.6), nodes, tables) < 0.0
+    assert abs(means._split(-1.0 - nodes, nodes, tables) - 5.0 / 6.0) < 1e-15
 
 
 def test_where_two_components_nearly_vanish_cells_are_halved():
     rule, miss, zero = gauss(8), 1e-2, 0.37
     first, second = rule.nodes - zero, np.full(8, miss)
     curve, over = (first, second, np.hypot(first, second)), (np.ones(8), rule.weights)
-    found = walk._integral(curve, over, np.ones(1), tables_of(8))
+    found = means._integral(curve, over, np.ones(1), tables_of(8))
     before, whole = (
         0.5 * (x * np.hypot(x, miss) + miss**2 * np.arcsinh(x / miss)) for x in (-zero, 1.0 - zero)
     )

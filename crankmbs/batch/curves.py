@@ -3,15 +3,13 @@ straight lines over cells and blocks of cells."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 from numpy.typing import NDArray
 
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.units import DEGREE
 
-__all__ = ["WIDEST", "Curves", "Layout", "curves_of", "cut", "layout_of", "twins"]
+__all__ = ["WIDEST", "Curves", "Grid", "curves_of", "cut", "grid_of", "twins"]
 
 WIDEST = 12.0 * DEGREE
 """Of a cell, and of a block of cells."""
@@ -21,28 +19,31 @@ _SLIVER = 1e-9  # rad: what rounding may add to it
 Curves = tuple[Array, Array, Array, Array]
 """A and B, C and D, of `crankmbs.batch.walk.walk`, and both in straight lines."""
 
-
-class Layout(NamedTuple):
-    """Where the nodes of a period lie: width of the cells, angle turned to the nodes, the first
-    cell of every block; and of cells and of blocks edges and where their nodes begin."""
-
-    width: Array
-    turned: Array
-    starts: NDArray[np.intp]
-    pieces: tuple[tuple[Array, NDArray[np.intp]], tuple[Array, NDArray[np.intp]]]
+Grid = tuple[Array, NDArray[np.intp], Array]
+"""Where the nodes of a period are: edges of the m cells, angle turned to there [rad], shape (m +
+1,); the first cell of every block of cells, and m; and of the s nodes of a cell, shape (8, s):
+places, 0 to 1; barycentric weights; what makes of the values there those at both ends of the cell,
+and the slopes there; and how far a parabola may rise above a node: parts of what both neighbours
+lie below it."""
 
 
-def layout_of(width: Array, nodes: Array) -> Layout:
-    """Of cells whose nodes lie there, from 0 to 1."""
-    edges, starts = np.append(0.0, np.cumsum(width)), _blocks(width)
-    turned = (edges[:-1, None] + width[:, None] * nodes).ravel()
-    first = np.arange(0, turned.size + 1, len(nodes))
-    return Layout(width, turned, starts, ((edges, first), (edges[starts], first[starts])))
+def grid_of(width: Array, nodes: Array, barycentric: Array) -> Grid:
+    """Of cells of those widths [rad], whose nodes lie there, from 0 to 1."""
+    gauss = np.empty((8, len(nodes)))
+    gauss[0], gauss[1] = nodes, barycentric
+    for side in (0, 1):
+        inverse = 1.0 / (side - nodes)
+        gauss[2 + side] = barycentric * inverse / np.sum(barycentric * inverse)
+        gauss[4 + side] = gauss[2 + side] * (np.sum(inverse) - inverse)
+    gaps = np.diff(nodes, prepend=0.0, append=1.0)
+    gauss[6] = 1.0 + 0.25 * gaps[1:] / gaps[:-1]
+    gauss[7] = 1.0 + 0.25 * gaps[:-1] / gaps[1:]
+    return np.append(0.0, np.cumsum(width)), _blocks(width), gauss
 
 
-def curves_of(of: Array, rest: Array, layout: Layout) -> Curves:
+def curves_of(of: Array, rest: Array, grid: Grid) -> Curves:
     """With their straight lines."""
-    return of, rest, _lines(of, layout), _lines(rest, layout)
+    return of, rest, _lines(of, grid), _lines(rest, grid)
 
 
 def twins(rest: Array) -> NDArray[np.intp]:
@@ -74,21 +75,14 @@ def _blocks(width: Array) -> NDArray[np.intp]:
     return np.array([*starts, len(width)])
 
 
-def _lines(values: Array, layout: Layout) -> Array:
-    """Straight lines for curves in the cells, then in the blocks of cells: their middle, by how
-    much they rise, and by how much they miss a node at most; of two curves each, shape (..., 2, n)
-    -> (..., 6, m + b)."""
-    found = []
-    for edges, nodes in layout.pieces:
-        count, begin, end = np.diff(nodes), nodes[:-1], nodes[1:] - 1
-        middle, wide = 0.5 * (edges[:-1] + edges[1:]), np.diff(edges)
-        x = (layout.turned - np.repeat(middle, count)) / np.repeat(wide, count)
-        rise = (values[..., end] - values[..., begin]) / (x[end] - x[begin])
-        middle = values[..., begin] - rise * x[begin]
-        off = np.abs(
-            values - np.repeat(middle, count, axis=-1) - np.repeat(rise, count, axis=-1) * x
-        )
-        rest = np.maximum.reduceat(off, begin, axis=-1)
-        found.append(np.stack([middle, rise, rest], axis=-2))
-    lines = np.concatenate(found, axis=-1)
-    return lines.reshape(*lines.shape[:-3], 6, -1)
+def _lines(values: Array, grid: Grid) -> Array:
+    """In straight lines, those of cells, then of blocks, of two curves each, shape (..., 2, n) ->
+    (..., 6, m + b)."""
+    from crankmbs.batch.straight import straighten  # numba is loaded only when it is used
+
+    edges, starts, gauss = grid
+    n, pieces = values.shape[-1], len(edges) + len(starts) - 2
+    lines = np.empty((*values.shape[:-2], 6, pieces))
+    flat = np.ascontiguousarray(values).reshape(-1, n)
+    straighten(flat, gauss[0], edges, starts, lines.reshape(-1, 3, pieces))
+    return lines

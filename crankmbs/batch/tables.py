@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crankmbs.batch.curves import Curves, curves_of, cut, layout_of, twins
+from crankmbs.batch.curves import Curves, Grid, curves_of, cut, grid_of, twins
 from crankmbs.compare.lectured import (
     LECTURES,
     Gear,
@@ -66,7 +66,7 @@ class Pass(NamedTuple):
 
     rule: tuple[Array, Array, Array, Array]
     of_angle: tuple[Array, Array, Array, Array]
-    parts: tuple[Curves, Array, Curves, NDArray[np.intp], Known]
+    parts: tuple[Curves, Array, Curves, Grid, Known]
     works: Array
     rubbed: Array
 
@@ -84,19 +84,20 @@ class Pass(NamedTuple):
             cut(table.ravel(), shape, cell, parts).reshape(-1, shape[1]) for table in at_nodes
         )
         forces, rods, quantities, _, known = self.parts
-        layout = layout_of(np.concatenate(turned), self.rule[2])
+        width = np.concatenate(turned)
+        grid = grid_of(width, *self.rule[2:])
 
         def again(curves: Curves) -> Curves:
             of, rest = (cut(table, shape, cell, parts) for table in curves[:2])
-            return curves_of(of, rest, layout)
+            return curves_of(of, rest, grid)
 
         return self._replace(
-            of_angle=(layout.width, inertia, slope, torque),
+            of_angle=(width, inertia, slope, torque),
             parts=(
                 again(forces),
                 cut(rods, shape, cell, parts),
                 again(quantities),
-                layout.starts,
+                grid,
                 known,
             ),
         )
@@ -170,13 +171,14 @@ def tabulated(train: CrankTrain, period: Period, rule: Rule) -> Pass:
     works, rubbed = (np.sum(force * path, axis=1) for force in (each["gas_force"], friction))
     of = [period.chosen.index(k) for k in period.alike]
     seen = cylinders[0].variables | {name: tables[0] for name, tables in each.items()}
-    layout = layout_of(width, rule.nodes)
+    barycentric = rule.to_legendre[-1].copy()
+    grid = grid_of(width, rule.nodes, barycentric)
     forces = np.concatenate([bearing, *pins, each["side_force"]])
     none = np.zeros_like(forces[:, 2])
     quantities = _observed(scene, seen, bearing, theta)
     said = _deviating(quantities, _lectured(scene, period, each["gas_pressure"], theta))
     return Pass(
-        (rule.matrix, rule.weights, rule.nodes, rule.to_legendre[-1].copy()),
+        (rule.matrix, rule.weights, rule.nodes, barycentric),
         (
             width,
             inertia.reshape(turned.shape),
@@ -184,12 +186,10 @@ def tabulated(train: CrankTrain, period: Period, rule: Rule) -> Pass:
             torque.reshape(turned.shape),
         ),
         (
-            curves_of(
-                forces[:, :2].copy(), np.stack([forces[:, 2], none], axis=1)[:, None], layout
-            ),
+            curves_of(forces[:, :2].copy(), np.stack([forces[:, 2], none], axis=1)[:, None], grid),
             rods,
-            curves_of(quantities[:, :2].copy(), said, layout),
-            layout.starts,
+            curves_of(quantities[:, :2].copy(), said, grid),
+            grid,
             (twins(said), np.asarray(~quantities[:, :2].any(axis=(1, 2)))),
         ),
         works[of],
