@@ -200,9 +200,11 @@ def tabulated(train: CrankTrain, period: Period, rule: Rule) -> Pass:
 def _deviating(own: Array, said: Array) -> Array:
     """C and D of every quantity, and of what it is more than each lecture says, shape (quantities,
     1 + lectures, 2, n); own : shape (quantities, 3, n), said : (quantities, lectures, 2, n)."""
-    more = np.stack([own[:, None, 2] - said[:, :, 1], own[:, None, 0] - said[:, :, 0]], axis=2)
-    itself = np.stack([own[:, 2], np.zeros_like(own[:, 2])], axis=1)[:, None]
-    return np.concatenate([itself, more], axis=1)
+    found = np.empty((len(own), 1 + said.shape[1], *said.shape[2:]))
+    found[:, 0, 0], found[:, 0, 1] = own[:, 2], 0.0
+    np.subtract(own[:, None, 2], said[:, :, 1], out=found[:, 1:, 0])
+    np.subtract(own[:, None, 0], said[:, :, 0], out=found[:, 1:, 1])
+    return found
 
 
 def _rubbed(train: CrankTrain, period: Period, theta: Array, each: dict[str, Array]) -> Array:
