@@ -6,6 +6,7 @@ import subprocess
 import sys
 import time
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from contextlib import suppress
 from dataclasses import replace
 from importlib import metadata
 from pathlib import Path
@@ -144,6 +145,37 @@ def test_an_interrupted_sweep_says_how_to_go_on(whole, tmp_path):
     assert files(out) == whole
 
 
+def test_workers_that_are_interrupted_while_they_start_are_silent(tmp_path):
+    out = tmp_path / "s"
+    words = ["sweep", "yi_diesel", "--workers", "2", "--vary", "rod.length=0.15..0.2 m:4000"]
+    command = [sys.executable, "-c", COMMAND, *words, "-o", str(out)]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as running:
+        while not (started := [k for k in children_of(running.pid) if is_loading(k)]):
+            assert running.poll() is None
+            time.sleep(0.001)
+        for _ in range(50):  # while they load, which a terminal's interrupt would meet by chance
+            for worker in started:
+                os.kill(int(worker), signal.SIGINT)
+            time.sleep(0.005)
+        running.send_signal(signal.SIGINT)
+        _, said = running.communicate()
+    assert running.returncode == 130
+    assert said == f"{out} keeps what is finished; --resume goes on\ninterrupted\n"
+
+
+def is_loading(process):
+    """Whether it is a worker, no copy of this process any more, that imports what it needs."""
+    with suppress(OSError):
+        folder = Path(f"/proc/{process}")
+        is_worker = "spawn_main" in (folder / "cmdline").read_text()
+        return is_worker and "numpy" in (folder / "maps").read_text()
+    return False
+
+
+def children_of(process):
+    return Path(f"/proc/{process}/task/{process}/children").read_text().split()
+
+
 def test_processes_end_with_the_one_that_writes(tmp_path):
     words = ["sweep", "yi_diesel", "--workers", "2", "--vary", "rod.length=0.15..0.2 m:4000"]
     command = [sys.executable, "-c", COMMAND, *words, "-o", str(tmp_path / "s")]
@@ -151,7 +183,7 @@ def test_processes_end_with_the_one_that_writes(tmp_path):
         while not [*tmp_path.glob("s/done/[0-9]*")]:
             assert running.poll() is None
             time.sleep(0.05)
-        children = Path(f"/proc/{running.pid}/task/{running.pid}/children").read_text().split()
+        children = children_of(running.pid)
         running.kill()
     assert len(children) >= 2
     for _ in range(500):

@@ -85,7 +85,8 @@ class _Processes:
         self._pool = self._new()
 
     def submit(self, job: Job) -> Future[Block]:
-        return self._pool.submit(solved, job)
+        with _deaf():
+            return self._pool.submit(solved, job)
 
     def renew(self) -> None:
         self.close()
@@ -96,7 +97,8 @@ class _Processes:
 
     def ready(self) -> Future[None]:
         """When the first of them has loaded everything."""
-        return self._pool.submit(_ready)
+        with _deaf():
+            return self._pool.submit(_ready)
 
     def close(self) -> None:
         """End them, after the blocks under way."""
@@ -254,6 +256,26 @@ def _one_thread_each() -> Iterator[None]:
                 del os.environ[name]
             else:
                 os.environ[name] = value
+
+
+@contextmanager
+def _deaf() -> Iterator[None]:
+    """Processes that are started meanwhile do not hear an interrupt while they load, when `_begin`
+    has not been called yet; this one hears it when they have been told what to load."""
+    here = threading.current_thread() is threading.main_thread()
+    if not here or not hasattr(signal, "pthread_sigmask"):  # Windows has none
+        yield
+        return
+    heard: list[int] = []
+    handler = signal.signal(signal.SIGINT, lambda number, _: heard.append(number))
+    mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})  # processes inherit it
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+        signal.signal(signal.SIGINT, handler)
+        if heard:
+            signal.raise_signal(signal.SIGINT)
 
 
 def _begin() -> None:
