@@ -15,8 +15,8 @@ NEEDS_FULL = pytest.mark.skipif(not FULL.exists(), reason="this system has no /d
 COMMAND = "import sys; from crankmbs.cli import main; sys.argv[0] = 'crankmbs'; main()"
 
 
-def run(*words, stdout, stderr=subprocess.PIPE):
-    command = [sys.executable, "-c", COMMAND, *words]
+def run(*words, stdout, stderr=subprocess.PIPE, python=()):
+    command = [sys.executable, *python, "-c", COMMAND, *words]
     return subprocess.run(command, stdout=stdout, stderr=stderr, text=True, check=False)
 
 
@@ -50,9 +50,11 @@ def test_a_full_device_is_one_sentence(word):
 
 
 @NEEDS_FULL
-def test_the_status_is_right_where_not_even_the_message_can_be_written():
+@pytest.mark.parametrize("python", [["-E"], ["-u"]], ids=["buffered", "unbuffered"])
+def test_the_status_is_right_where_not_even_the_message_can_be_written(python):
+    words = ("check", "no such scene")
     with FULL.open("w") as stderr:
-        done = run("check", "no such scene", stdout=subprocess.PIPE, stderr=stderr)
+        done = run(*words, stdout=subprocess.PIPE, stderr=stderr, python=python)
     assert (done.returncode, done.stdout) == (2, "")
 
 

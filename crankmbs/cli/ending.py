@@ -5,7 +5,8 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
+from typing import TextIO
 
 import typer
 
@@ -31,24 +32,26 @@ def ending() -> Iterator[None]:
     except KeyboardInterrupt:
         raise _exit(130, "interrupted") from None
     except BrokenPipeError:  # head, or a pager that was left
-        _close_output()
+        _close(sys.stdout)
         raise typer.Exit(141) from None
     except OSError as error:
         if error.filename is not None:  # no error of the output
             raise
-        _close_output()
+        _close(sys.stdout)
         why = f"standard output cannot be written ({error.strerror})"
         raise _exit(2, f"error: {why}; send it elsewhere") from None
 
 
 def _exit(status: int, message: str) -> typer.Exit:
-    with suppress(OSError):  # stderr may be as full
+    try:
         typer.echo(message, err=True)
+    except OSError:  # stderr is as full
+        _close(sys.stderr)
     return typer.Exit(status)
 
 
-def _close_output() -> None:
+def _close(stream: TextIO) -> None:
     """Send what is still to be written nowhere, or Python would fail once more when it ends."""
     nowhere = os.open(os.devnull, os.O_WRONLY)
-    os.dup2(nowhere, sys.stdout.fileno())
+    os.dup2(nowhere, stream.fileno())
     os.close(nowhere)
