@@ -12,10 +12,11 @@ from scipy.interpolate import CubicHermiteSpline
 
 from crankmbs.mechanics.friction import friction_forces, friction_torque
 from crankmbs.mechanics.inertia import inertia_alone, reduce
+from crankmbs.mechanics.knots import KNOT
 from crankmbs.mechanics.reactions import reactions
 from crankmbs.mechanics.speed import speed_law
 from crankmbs.mechanics.torque import torque_at
-from crankmbs.mechanics.train import CrankTrain, crank_train
+from crankmbs.mechanics.train import CrankTrain, crank_angle_knots, crank_train
 from crankmbs.mechanics.windows import span
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
@@ -32,10 +33,14 @@ State = tuple[Array, Array, Array]
 _MOTION = ("crank_angle", "crank_speed", "crank_acceleration")
 _SPACING = 0.2 * DEGREE  # of the coarser motion: where samples are no farther apart sums and
 # peaks hardly change
+_SMOOTH = 1e-9  # of the largest value at a knot: where cubics meet no farther apart is no jump
 _FEWEST, _MOST = 2, 512  # parts of one interval in the coarser motion
 _PASSES = 6  # the speed hardly changes what drives it: each leaves a small part of the error
 _ENOUGH = 1e-14  # of the speed: a change so small is rounding
 _SETTLED = 0.1  # of the speed: where the last pass changes it more they lead nowhere
+_JUMPED = 4.0  # a jump by J of the acceleration within a part h of an interval in two: the speed
+# amid it differs by J h (1/8 - 1/24) or more from that in parts of h / 2, which errs by up to J h
+# 13/48 at them and J h / 16 more between
 
 
 @dataclass(frozen=True)
@@ -45,17 +50,19 @@ class Between:
     result : finely sampled
     train : its crank train
     state : crank angle, speed and acceleration, each of shape (n,), at times of shape (n,) [s]
+    unsure : how many times as much it may err as it differs from one half as finely sampled
     """
 
     result: Result
     train: CrankTrain
     state: Callable[[Array], State]
+    unsure: float = 1.0
 
     def variables(self, time: Array) -> dict[str, Array]:
         """Every variable but the energy residual at times of shape (n,) [s]."""
         theta, omega, alpha = self.state(time)
         fuel = _fuel_at(self.result.data, time)
-        found = reactions(self.train, theta, omega, alpha, fuel)
+        found = reactions(self.train, _on_knots(self.train, theta), omega, alpha, fuel)
         return found | {"crank_angle": theta, "crank_speed": omega, "crank_acceleration": alpha}
 
 
@@ -91,10 +98,24 @@ def refined(result: Result, first: int) -> tuple[Between, ...]:
     coarse, fine = (free.motion(parts * k, _PASSES * k) for k in (1, 2))
     if coarse is None or fine is None:
         return ()
+    unsure = _JUMPED if _jumps(train) else 1.0
     return tuple(
-        Between(sampled(result, train, data, one[0], one[1:]), train, free.between(*one))
+        Between(sampled(result, train, data, one[0], one[1:]), train, free.between(*one), unsure)
         for one in (coarse, fine)
     )
+
+
+def _jumps(train: CrankTrain) -> bool:
+    """Whether a torque over the crank angle jumps."""
+    cubics = [(each.knots, each.coefficients) for each in train.pressure or ()]
+    loads = [load.parts.over_angle for load in train.scene.torque]
+    cubics += [(each.knots, each.coefficients) for each in loads if each is not None]
+    for knots, (a, b, c, d) in cubics:
+        width = np.diff(knots)
+        before = ((a * width + b) * width + c) * width + d
+        if np.any(np.abs(np.roll(d, -1) - before) > _SMOOTH * np.max(np.abs(d))):
+            return True
+    return False
 
 
 def _alone(data: xr.Dataset) -> Callable[[Array], State]:
@@ -168,7 +189,7 @@ class _Free:
         return state
 
     def _acceleration(self, t: Array, angle: Array, speed: Array) -> Array:
-        shares = _fuel_at(self._data, t)
+        angle, shares = _on_knots(self._train, angle), _fuel_at(self._data, t)
         inertia, slope, given = reduce(self._train, angle, shares)
         outside, beside = (np.interp(t, self._time, q) for q in (self._outside, self._beside))
         interval = np.searchsorted(self._time[1:-1], t, side="right")
@@ -188,6 +209,18 @@ def _fuel_at(data: xr.Dataset, t: Array) -> Array | None:
     last = data.sizes["time"] - 1
     which = np.minimum(np.searchsorted(data["time"].values, t, side="left"), last)
     return np.asarray(data["fuel"].values[which])
+
+
+def _on_knots(train: CrankTrain, theta: Array) -> Array:
+    """Crank angles [rad] with those on a knot of the pressure that what is taken as one lies below:
+    a piece that begins there would be continued to before its beginning, and be far off if
+    steep."""
+    knots, period = crank_angle_knots(train), train.period
+    if len(knots) == 0:
+        return theta
+    within = np.mod(theta, period)
+    ahead = np.append(knots, knots[0] + period)[np.searchsorted(knots, within)] - within
+    return np.where(ahead <= KNOT, theta + ahead, theta)
 
 
 def _steepness(scene: Scene, t: Array, theta: Array, omega: Array) -> Array:

@@ -68,7 +68,7 @@ def interp(
         for when, motion in zip(times, motions, strict=True)
     ]
     _refuse_events(result, times[-1])
-    return _with_errors(found[-1], found[0], _fuel_jump(result, times[-1]))
+    return _with_errors(found, motions[-1].unsure, _fuel_jump(result, times[-1]))
 
 
 def _inside(result: Result, name: str, unit: str, given: ArrayLike | None) -> Array:
@@ -144,10 +144,11 @@ def _fuel_jump(result: Result, time: Array) -> float:
     return float(np.max(np.abs(fuel[behind + 1] - fuel[behind])))
 
 
-def _with_errors(found: xr.Dataset, other: xr.Dataset, fuel_jump: float) -> xr.Dataset:
-    """The found values, their errors larger by what the others differ by."""
+def _with_errors(values: list[xr.Dataset], unsure: float, fuel_jump: float) -> xr.Dataset:
+    """The last of these values, their errors larger by so many times what the first differ by."""
+    other, found = values[0], values[-1]
     for name in found.variables:
         if "error_estimate" in found[name].attrs:
-            apart = float(np.max(np.abs(found[name].values - other[name].values)))
+            apart = unsure * float(np.max(np.abs(found[name].values - other[name].values)))
             found[name].attrs["error_estimate"] += max(apart, fuel_jump * (name == "fuel"))
     return found

@@ -72,8 +72,9 @@ def peaks(
     beside = np.zeros(len(top))
     if between is not None:
         turned = np.interp(time, data["time"], data["crank_angle"])
-        at_knot = _at_knots(between, angle)
-        beside = np.where(at_knot, KNOT * _slopes_beside(time, values, when, turned), 0.0)
+        short = _before_knots(between, angle)
+        slopes = _slopes_beside(time, values, when, turned)
+        beside = np.where(short, 2.0 * KNOT * slopes, 0.0)  # at the knot it may be steeper
     of_peak = [
         Estimate(float(peak), error + float(more) + float(off))
         for peak, error, more, off in zip(top, errors, missed, beside, strict=False)
@@ -86,17 +87,18 @@ def peaks(
     return joints, float(top[-2]), -float(top[-1])
 
 
-def _at_knots(between: Between, theta: Array) -> NDArray[np.bool_]:
-    """Whether crank angles of shape (q,) are knots of a pressure, but for what is taken as one."""
+def _before_knots(between: Between, theta: Array) -> NDArray[np.bool_]:
+    """Whether crank angles of shape (q,) lie just before what is taken as a knot of a pressure: so
+    does a peak where the pressure falls at once."""
     knots, period = crank_angle_knots(between.train), between.train.period
-    apart = np.abs(np.mod(theta[:, None] - knots + 0.5 * period, period) - 0.5 * period)
-    return np.asarray(np.any(apart <= 2.0 * KNOT, axis=1))
+    ahead = np.mod(knots - theta[:, None], period)
+    return np.asarray(np.any((ahead > 0.999 * KNOT) & (ahead <= 2.0 * KNOT), axis=1))
 
 
 def _slopes_beside(time: Array, values: Array, when: Array, theta: Array) -> Array:
-    """How steep each quantity is beside its peak, shape (q,) per angle: a peak at a knot may be too
-    high by that over KNOT, as an angle so little below a knot has the piece beyond it. By the two
-    samples that follow the next one, on either side, and so not by a jump at the knot."""
+    """How steep each quantity is beside its peak, shape (q,) per angle: a peak before a knot rises
+    by that over KNOT, which is taken as on it. By the two samples that follow the next one, on
+    either side, and so not by a jump at the knot."""
     last = len(time) - 1
     k, rows = np.searchsorted(time, when), np.arange(len(values))
     steepest = np.zeros(len(values))
@@ -110,10 +112,12 @@ def _slopes_beside(time: Array, values: Array, when: Array, theta: Array) -> Arr
 
 
 def apart(result: Result, motions: Sequence[Between]) -> Array:
-    """What every joint's force, the speed and the negative speed differ by at most between the
-    coarser and the finer of two motions, shape (joints + 2,); nothing for one alone."""
+    """What every joint's force, the speed and the negative speed may err in the finer of two
+    motions by what it differs from the coarser at most, shape (joints + 2,); nothing for one
+    alone."""
     coarse, fine = (_rows(result, _values(m.result)) for m in (motions[0], motions[-1]))
-    return np.asarray(np.max(np.abs(fine[:, :: len(motions)] - coarse), axis=1))
+    differs = np.max(np.abs(fine[:, :: len(motions)] - coarse), axis=1)
+    return np.asarray(motions[-1].unsure * differs)
 
 
 def _values(result: Result) -> dict[str, Array]:
