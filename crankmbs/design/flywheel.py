@@ -23,7 +23,8 @@ from crankmbs.simulate import simulate
 
 __all__ = ["Flywheel", "excess", "excess_at", "flywheel"]
 
-_CLOSE = 1e-7  # of the fluctuation: as near the target is on it
+_CLOSE = 1e-7  # of the fluctuation: as near the target is on it,
+_LEFT = 0.1  # or within so much of its error, which hardly grows by that
 _MOST = 40  # runs
 _WIDE = 1e4  # times the lecture's inertia: the search goes no farther
 _NARROW = 1e-6  # of the lecture's inertia: a crank so light is none
@@ -180,7 +181,7 @@ class _Search:
             else:
                 found = trial.measures.fluctuation
                 off = found.value / self._wanted - 1.0
-                if abs(off) <= max(_CLOSE, found.error / found.value):
+                if abs(off) <= max(_CLOSE, _LEFT * found.error / found.value):
                     return self._answer(trial, own, rest, off)
                 low, high = (trial.inertia, high) if off > 0.0 else (low, trial.inertia)
                 step = self._step(trial, before, rest)
