@@ -39,7 +39,8 @@ def interp(
     Returns
     -------
     Dataset as ``result.data``, in the order asked for; ``error_estimate`` adds to that of the
-    samples what a motion in coarser steps differs by between them
+    samples what a motion in coarser steps differs by between them, four times of it where a torque
+    jumps over the angle
 
     Raises
     ------
