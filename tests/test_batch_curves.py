@@ -146,6 +146,13 @@ def test_a_size_that_bends_is_summed_on_both_sides(stages):
     assert abs(means._split(-1.0 - nodes, nodes, tables) - 5.0 / 6.0) < 1e-15
 
 
+def test_a_polynomial_has_its_large_values_at_its_nodes():
+    """What stands for no distance from a node must not overflow."""
+    tables, nodes = tables_of(8), gauss(8).nodes
+    for node in nodes:
+        assert means._value(node, 1e12 * nodes, tables) == pytest.approx(1e12 * node, rel=1e-14)
+
+
 def test_where_two_components_nearly_vanish_cells_are_halved():
     rule, miss, zero = gauss(8), 1e-2, 0.37
     first, second = rule.nodes - zero, np.full(8, miss)

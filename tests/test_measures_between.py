@@ -125,6 +125,22 @@ def test_a_pulse_of_a_load_between_two_samples_is_in_the_error_of_the_fluctuatio
     assert missed <= 2.0 * coarse.fluctuation.error + fine.fluctuation.error
 
 
+@pytest.mark.parametrize("width", [2e-3, 1e-5])
+def test_a_pulse_of_the_pressure_between_two_samples_is_in_the_peak(width):
+    """Where it is highest all but the gas force is as without it."""
+    peaks = []
+    for top in (6.0, 5.0):
+        rows = ((0.0, 0.1), (0.4, 0.1), (0.4 + width, top), (0.4 + 2 * width, 0.1))
+        table = fired(*rows, (2.5, 0.1), (6.0, 0.1), (9.0, 0.1))
+        driven = dataclasses.replace(table, torque=(), start=None, motion=STEADY)
+        forces = measure(simulate(driven.with_(run__every="1 deg"))).joints
+        peaks.append(next(one for one in forces if one.joint == "side force"))
+    assert peaks[0].cycle_angle == pytest.approx(0.4 + width, abs=1e-8)
+    rod = np.arcsin(DIESEL.crank.radius / DIESEL.rod.length * np.sin(0.4 + width))
+    more = 1e6 * DIESEL.piston.gas_area * np.tan(rod)
+    assert peaks[0].peak.value - peaks[1].peak.value == pytest.approx(more, rel=1e-6)
+
+
 def test_an_error_that_the_samples_cannot_tell_is_said_to_be_unknown():
     """A pendulum that swings many times from one sample to the next."""
     swinging = dataclasses.replace(

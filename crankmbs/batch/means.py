@@ -151,7 +151,7 @@ def _value(x: float, values: Array, rule: Rule) -> float:
     above = below = 0.0
     for j in range(len(nodes)):
         apart = x - nodes[j]
-        weight = barycentric[j] / (apart if apart != 0.0 else 1e-300)
+        weight = barycentric[j] / (apart if apart != 0.0 else 1e-200)
         above, below = above + weight * values[j], below + weight
     return above / below
 

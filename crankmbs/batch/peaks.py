@@ -29,6 +29,7 @@ Indices = NDArray[np.intp]
 _STEPS, _CLOSE, _BESIDE = 16, 1e-7, 1e-4  # towards a peak; of a cell
 _CANDIDATES = 64  # cells of a curve that are sought in; more are ripples of rounding
 _ROUNDING = 64 * 2.0**-52  # of a quantity
+_TAILS = 2.0  # times the last coefficient: what the polynomial of a cell misses at its ends
 
 
 @kernel
@@ -41,8 +42,8 @@ def find(
     found: tuple[Array, Array],
 ) -> None:
     """Fill the largest sizes of curves over the period, the angles turned to there [rad] and what
-    they may err: the size of the last coefficient of the polynomial in the cell. Where they are is
-    sought and filled, or given; then no error is told.
+    they may err: how much more any cell could have by the last coefficient of its polynomial. Where
+    they are is sought and filled, or given; then no error is told.
 
     asked : shape (q, 8); of every curve its first row, how many rows make it up, number of C and D,
         whether u is of omega, number of its level, of the curve before whose size has a rounding
@@ -103,7 +104,7 @@ def _look(
         above = below = 0.0
         for j in range(gauss.shape[1]):
             apart = x - gauss[0, j]
-            weight = gauss[1, j] / (apart if apart != 0.0 else 1e-300)
+            weight = gauss[1, j] / (apart if apart != 0.0 else 1e-200)
             above, below = above + weight * values[r, j], below + weight
         squares += (above / below) ** 2
     peak[0], peak[2] = math.sqrt(squares), 0.0
@@ -166,16 +167,17 @@ def _seek(
                 else:
                     values[2, j] = abs(values[0, j])
             size, x = _top(paired, values, gauss, limit)
+            one = other = 0.0
+            for j in range(s):
+                one += gauss[1, j] * values[0, j]
+                other += gauss[1, j] * values[1, j]
+            tail = math.sqrt(one * one + (other * other if paired else 0.0))
+            left = max(left, size + _TAILS * tail)
             if size > highest:
-                one = other = 0.0
-                for j in range(s):
-                    one += gauss[1, j] * values[0, j]
-                    other += gauss[1, j] * values[1, j]
                 highest, limit = size, size + _ROUNDING * max(scale, size)
                 there[0], there[1] = c, x
                 peak[0], peak[1] = size, edges[c] + x * (edges[c + 1] - edges[c])
-                peak[2] = math.sqrt(one * one + (other * other if paired else 0.0))
-    peak[2] += max(left - highest, 0.0)
+    peak[2] = left - highest
 
 
 @kernel
@@ -331,7 +333,7 @@ def _top(paired: bool, values: Array, gauss: Array, least: float) -> tuple[float
             total = one = other = 0.0
             for i in range(s):
                 apart = u - nodes[i]
-                weight = barycentric[i] / (apart if apart != 0.0 else 1e-300)
+                weight = barycentric[i] / (apart if apart != 0.0 else 1e-200)
                 total += weight
                 one += weight * first[i]
                 if paired:

@@ -39,8 +39,6 @@ def rows_of(scenes: Sequence[Scene | None]) -> list[Rows]:
     """The columns of those scenes that are solved together (`crankmbs.batch.solve`): names, units
     and meaning are those of a sweep, what it has of one scene alone agrees within the errors.
 
-    The largest deviation of a lecture is that of the curves, not of samples.
-
     >>> scene = load_scene("propeller").with_(run__until="settled")
     >>> (found,) = rows_of([scene])
     >>> found.columns["fluctuation"].round(6).tolist()

@@ -11,6 +11,7 @@ from crankmbs.compare.chain import CAUSES, REST, checked_chain
 from crankmbs.compare.excerpt import Excerpt, LeftOut, check_cylinder
 from crankmbs.compare.files import save_budget, save_budget_peaks, save_comparison, save_numbers
 from crankmbs.compare.formula import CLOSED_FORM, Formula, formulas_of
+from crankmbs.compare.largest import largest_deviations
 from crankmbs.compare.lectured import LECTURES
 from crankmbs.compare.numbers import NUMBERS, Number
 from crankmbs.compare.quantities import OBSERVABLES, QUANTITIES, Quantity
@@ -47,6 +48,7 @@ __all__ = [
     "checked_chain",
     "compare",
     "formulas_of",
+    "largest_deviations",
     "percent",
     "save_budget",
     "save_budget_peaks",

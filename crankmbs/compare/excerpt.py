@@ -22,11 +22,11 @@ from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 from crankmbs.scene.scene import Scene
 
-__all__ = ["Answer", "Excerpt", "LeftOut", "check_cylinder", "excerpt_of", "vanishing"]
+__all__ = ["FOLD", "Answer", "Excerpt", "LeftOut", "check_cylinder", "excerpt_of", "vanishing"]
 
 Answer = dict[str, Array]
 
-_FOLD = 0.01  # cosine of the rod angle; below it the formulas lose digits with its third power
+FOLD = 0.01  # cosine of the rod angle; below it the formulas lose digits with its third power
 
 
 class LeftOut(NamedTuple):
@@ -75,7 +75,7 @@ class Excerpt:
 
     def lecture(self, formulas: Formulas, *, constant_speed: bool) -> Answer:
         """The lectures' formulas at the run's own theta, at its mean or its own speed."""
-        return self._seen(lectured(formulas, self.train, self.theta, *self._speeds(constant_speed)))
+        return self.seen(lectured(formulas, self.train, self.theta, *self._speeds(constant_speed)))
 
     def angles(self, quantity: str) -> Array:
         """Cycle angle of the cylinder, for the whole engine's quantities the crank angle [rad]."""
@@ -97,9 +97,9 @@ class Excerpt:
     def _of(self, variables: dict[str, Array], omega: Array, alpha: Array) -> Answer:
         answer = observed(self.result.scene, variables, self.theta, omega, alpha)
         more = {name: variables.get(name.replace(" ", "_")) for name in self.others}
-        return self._seen(answer | {name: v for name, v in more.items() if v is not None})
+        return self.seen(answer | {name: v for name, v in more.items() if v is not None})
 
-    def _seen(self, answer: Answer) -> Answer:
+    def seen(self, answer: Answer) -> Answer:
         """The curves of the one cylinder and of the whole engine, without those left out."""
         missing = self.left_out()
         return {
@@ -148,7 +148,7 @@ def excerpt_of(result: Result, cylinder: int, others: tuple[str, ...] = ()) -> E
             "to compare with them"
         )
     window = last_span(result)
-    folded = np.min(np.cos(result.data["rod_angle"].values), axis=1) < _FOLD
+    folded = np.min(np.cos(result.data["rod_angle"].values), axis=1) < FOLD
     samples = np.flatnonzero(~folded[window.inside :]) + window.inside
     if len(samples) == 0:
         raise InputError("the rod is folded onto the crank all the time: nothing can be compared")

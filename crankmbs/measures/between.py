@@ -38,6 +38,7 @@ _FEWEST, _MOST = 2, 512  # parts of one interval in the coarser motion
 _PASSES = 6  # the speed hardly changes what drives it: each leaves a small part of the error
 _ENOUGH = 1e-14  # of the speed: a change so small is rounding
 _SETTLED = 0.1  # of the speed: where the last pass changes it more they lead nowhere
+_NARROW = 1 / 16  # of an interval: what changes in less is as good as a jump
 _JUMPED = 4.0  # a jump by J of the acceleration within a part h of an interval in two: the speed
 # amid it differs by J h (1/8 - 1/24) or more from that in parts of h / 2, which errs by up to J h
 # 13/48 at them and J h / 16 more between
@@ -61,8 +62,8 @@ class Between:
     def variables(self, time: Array) -> dict[str, Array]:
         """Every variable but the energy residual at times of shape (n,) [s]."""
         theta, omega, alpha = self.state(time)
-        fuel = _fuel_at(self.result.data, time)
-        found = reactions(self.train, _on_knots(self.train, theta), omega, alpha, fuel)
+        theta, fuel = _on_knots(self.train, theta), _fuel_at(self.result.data, time)
+        found = reactions(self.train, theta, omega, alpha, fuel)
         return found | {"crank_angle": theta, "crank_speed": omega, "crank_acceleration": alpha}
 
 
@@ -106,14 +107,15 @@ def refined(result: Result, first: int) -> tuple[Between, ...]:
 
 
 def _jumps(train: CrankTrain) -> bool:
-    """Whether a torque over the crank angle jumps."""
+    """Whether a torque over the crank angle jumps, or changes in next to no angle."""
     cubics = [(each.knots, each.coefficients) for each in train.pressure or ()]
     loads = [load.parts.over_angle for load in train.scene.torque]
     cubics += [(each.knots, each.coefficients) for each in loads if each is not None]
     for knots, (a, b, c, d) in cubics:
         width = np.diff(knots)
         before = ((a * width + b) * width + c) * width + d
-        if np.any(np.abs(np.roll(d, -1) - before) > _SMOOTH * np.max(np.abs(d))):
+        least, sudden = _SMOOTH * np.max(np.abs(d)), width < _NARROW * _SPACING
+        if np.any(np.abs(np.roll(d, -1) - np.where(sudden, d, before)) > least):
             return True
     return False
 

@@ -8,13 +8,11 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crankmbs.measures.between import Between
+from crankmbs.measures.knots import tops
 from crankmbs.measures.peak import highest
 from crankmbs.measures.span import Span, integral
-from crankmbs.mechanics.knots import KNOT
-from crankmbs.mechanics.train import crank_angle_knots
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 
@@ -59,22 +57,15 @@ def peaks(
     places, data = _places(result), _values(result)
     time, values = data["time"], _rows(result, data)
     means = _means(result, window, values[: len(places)])
-    time, values = time[window.inside :], values[:, window.inside :]
-    at = None if between is None else lambda t: _rows(result, between.variables(t))
-    if at is not None and window.first < window.inside:
-        begin = np.array([window.begin])
-        time, values = np.append(begin, time), np.hstack([at(begin), values])
-    when, top = highest(time, values, at)
-    angle = np.interp(when, data["time"], data["crank_angle"])
-    if between is not None:
-        angle = between.state(when)[0]
+    samples = time[window.inside :], values[:, window.inside :]
+    if between is None:
+        when, top = highest(*samples, None)
+        angle, beside = np.interp(when, time, data["crank_angle"]), np.zeros(len(top))
+    else:
+        _, angle, top, beside = tops(
+            between, window, samples, lambda t: _rows(result, between.variables(t))
+        )
     errors = [math.hypot(*(stated(result, part) for part in place.parts)) for place in places]
-    beside = np.zeros(len(top))
-    if between is not None:
-        turned = np.interp(time, data["time"], data["crank_angle"])
-        short = _before_knots(between, angle)
-        slopes = _slopes_beside(time, values, when, turned)
-        beside = np.where(short, 2.0 * KNOT * slopes, 0.0)  # at the knot it may be steeper
     of_peak = [
         Estimate(float(peak), error + float(more) + float(off))
         for peak, error, more, off in zip(top, errors, missed, beside, strict=False)
@@ -85,30 +76,6 @@ def peaks(
         for place, *found in zip(places, of_peak, of_mean, angle.tolist(), strict=False)
     )
     return joints, float(top[-2]), -float(top[-1])
-
-
-def _before_knots(between: Between, theta: Array) -> NDArray[np.bool_]:
-    """Whether crank angles of shape (q,) lie just before what is taken as a knot of a pressure: so
-    does a peak where the pressure falls at once."""
-    knots, period = crank_angle_knots(between.train), between.train.period
-    ahead = np.mod(knots - theta[:, None], period)
-    return np.asarray(np.any((ahead > 0.999 * KNOT) & (ahead <= 2.0 * KNOT), axis=1))
-
-
-def _slopes_beside(time: Array, values: Array, when: Array, theta: Array) -> Array:
-    """How steep each quantity is beside its peak, shape (q,) per angle: a peak before a knot rises
-    by that over KNOT, which is taken as on it. By the two samples that follow the next one, on
-    either side, and so not by a jump at the knot."""
-    last = len(time) - 1
-    k, rows = np.searchsorted(time, when), np.arange(len(values))
-    steepest = np.zeros(len(values))
-    for first, second in ((k + 1, k + 2), (k - 2, k - 3)):
-        a, b = np.clip(first, 0, last), np.clip(second, 0, last)
-        turned = np.abs(theta[b] - theta[a])
-        change = np.abs(values[rows, b] - values[rows, a])
-        slope = np.divide(change, turned, out=np.zeros_like(change), where=turned > 0.0)
-        steepest = np.maximum(steepest, slope)
-    return steepest
 
 
 def apart(result: Result, motions: Sequence[Between]) -> Array:

@@ -15,8 +15,9 @@ Indices = NDArray[np.intp]
 
 _MOST = 12  # candidates for one quantity's maximum
 _ROUNDS = 12  # each looks sixteen times closer
-_SAME, _ROUNDING = 2, 4.0 * np.finfo(float).eps  # after two rounds without a gain none follows
+_ROUNDING = 4.0 * np.finfo(float).eps
 _AROUND = np.linspace(-1.0, 1.0, 33)  # a sixteenth of the reach apart
+_CENTRE = 16
 
 _T = np.linspace(-0.25, 1.25, 601)  # across one interval, and a little on either side
 _JUMP = 10.0  # a difference so many times its neighbour is a jump
@@ -43,18 +44,24 @@ def highest(time: Array, values: Array, at: Callable[[Array], Array] | None) -> 
     which, k = _candidates(values)
     last = len(time) - 1
     low, middle, high = time[np.maximum(k - 1, 0)], time[k], time[np.minimum(k + 1, last)]
-    top, row, same = values[which, k], np.arange(len(k)), 0
+    top, most, on = values[which, k], values.max(axis=1), np.arange(len(k))
     for _ in range(_ROUNDS):
-        if at is None or same == _SAME:
+        if at is None or len(on) == 0:
             break
-        side = np.where(_AROUND < 0.0, (middle - low)[:, None], (high - middle)[:, None])
-        t = middle[:, None] + _AROUND * side
-        found = at(t.ravel()).reshape(-1, *t.shape)[which, row]
+        around, mine = np.unique(np.stack([low, middle, high])[:, on], axis=1, return_inverse=True)
+        left, centre, right = around[:, :, None]
+        t = centre + _AROUND * np.where(_AROUND < 0.0, centre - left, right - centre)
+        found = at(t.ravel()).reshape(-1, *t.shape)[which[on], mine]
+        t, row = t[mine], np.arange(len(on))
         best = np.argmax(found, axis=1)
-        beside = np.clip([best - 1, best + 1], 0, len(_AROUND) - 1)
-        low, middle, high = t[row, beside[0]], t[row, best], t[row, beside[1]]
-        before, top = top, found[row, best]
-        same = same + 1 if np.all(np.abs(top - before) <= _ROUNDING * np.abs(top)) else 0
+        best = np.where(found[row, _CENTRE] == found[row, best], _CENTRE, best)
+        before, after = np.clip([best - 1, best + 1], 0, len(_AROUND) - 1)
+        low[on], middle[on], high[on] = t[row, before], t[row, best], t[row, after]
+        top[on] = found[row, best]
+        np.maximum.at(most, which[on], top[on])
+        rises = top[on] - np.minimum(found[row, before], found[row, after])
+        more = rises > _ROUNDING * np.abs(top[on])
+        on = on[more & (top[on] + rises >= most[which[on]])]
     order = np.lexsort((-top, which))
     first = order[np.searchsorted(which[order], np.arange(len(values)))]
     return middle[first], top[first]

@@ -8,11 +8,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from crankmbs.compare import LECTURES, QUANTITIES, compare
+from crankmbs.compare import LECTURES, QUANTITIES, largest_deviations
 from crankmbs.errors import InputError
 from crankmbs.measures import Estimate, JointForce, Measures
 from crankmbs.measures.between import Between, refined
-from crankmbs.measures.peak import rise
 from crankmbs.measures.span import measured_span
 from crankmbs.measures.summary import measured
 from crankmbs.mechanics.variables import variables_of
@@ -24,7 +23,6 @@ __all__ = ["Column", "Row", "columns_of", "dims_of", "row_of", "samples_of"]
 
 Row = dict[str, Array]
 _ERROR = "_error"
-_GUESSED = 2.0  # times what samples tell of how far a curve rises between them
 _CYLINDER = ("cylinder",)
 _FORMULAS = ("lecture", "quantity")
 
@@ -169,24 +167,15 @@ def _angle(joint: JointForce, period: float) -> float:
 
 
 def _lectured(result: Result, motions: tuple[Between, ...]) -> Row:
-    """Errors of the lectures in cylinder 1, over the peak of the run, finely sampled; their own
-    error is how far both may rise between these samples, and the run's."""
+    """Errors of the lectures, as far as they have one."""
     value, error = np.full((2, len(LECTURES), len(QUANTITIES)), np.nan)
     try:
-        found = compare(motions[-1].result if motions else result)
+        found = largest_deviations(result, motions)
     except InputError:  # folded all the time
         return {}
-    for row in found.rows:
-        if row.reference not in LECTURES or row.peak == 0.0:
-            continue
-        at = list(LECTURES).index(row.reference), list(QUANTITIES).index(row.quantity)
-        beyond = [
-            rise(size, int(np.argmax(size)))
-            for size in (np.abs(row.error), np.abs(found.simulated[row.quantity]))
-        ]
-        value[at] = row.size.largest / row.peak
-        rises = (beyond[0] + value[at] * beyond[1]) / row.peak
-        error[at] = _GUESSED * rises + result.error.estimated
+    for (lecture, quantity), one in found.items():
+        at = list(LECTURES).index(lecture), list(QUANTITIES).index(quantity)
+        value[at], error[at] = one
     return {"lecture_deviation": value, f"lecture_deviation{_ERROR}": error}
 
 
