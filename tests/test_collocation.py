@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from crankmbs.numerics.collocation import gauss
+from crankmbs.numerics.collocation import chain, gauss
 
 STAGES = range(1, 10)
 
@@ -44,3 +44,22 @@ def test_order(stages):
     assert errors[-1] > 1e-12
     assert np.ptp(slopes) < 0.2
     assert slopes[-1] == pytest.approx(2 * stages, abs=0.2)
+
+
+@pytest.mark.parametrize("stiff", [0.0, 1e-4, 0.09, 0.11, 30.0])
+@pytest.mark.parametrize("cases", [(), (3,), (20,)])
+def test_maps_and_chain_solve_the_collocation(stiff, cases):
+    """Sweeps or elimination, one case or many: both fulfil the collocation's equations."""
+    rule, rng = gauss(4), np.random.default_rng(5)
+    turned = 0.1 + rng.random((*cases, 7, 4))
+    push, rate = rng.standard_normal((2, *turned.shape))
+    rate *= stiff / np.max(np.abs(turned * rate))
+    start = 1.0 + rng.random(cases)
+    maps = rule.maps(turned, push, rate)
+    edges = chain(maps.growth, maps.rise, start)
+    nodes = maps.gain * edges[..., :-1, None] + maps.shift
+    slopes = turned * (push + rate * nodes)
+    np.testing.assert_allclose(edges[..., 0], start)
+    scale = 1e-13 * np.max(np.abs(nodes))
+    np.testing.assert_allclose(nodes, edges[..., :-1, None] + slopes @ rule.matrix.T, atol=scale)
+    np.testing.assert_allclose(np.diff(edges), slopes @ rule.weights, atol=scale)

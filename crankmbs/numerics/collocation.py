@@ -2,20 +2,26 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cache
 from typing import NamedTuple
 
 import numpy as np
+from scipy.linalg.blas import dtbsv
 
 from crankmbs.numerics.arrays import Array
 
-__all__ = ["Maps", "Rule", "gauss"]
+__all__ = ["Maps", "Rule", "chain", "gauss"]
+
+_SWEEPS = 0.1  # of |h rate|: where no cell has more, sweeps solve it sooner than elimination
+_TOGETHER = 16  # cases: so many together are chained sooner cell by cell than each by itself
+_EPS = float(np.finfo(float).eps)
 
 
 class Maps(NamedTuple):
-    """Of the energy E at a cell's begin: E becomes gain E + shift at each node, shape (m, s), and
-    E + (growth E + rise) at the cell's end, shape (m,)."""
+    """Of the energy E at a cell's begin: E becomes gain E + shift at each node, shape (..., m, s),
+    and E + (growth E + rise) at the cell's end, shape (..., m)."""
 
     gain: Array
     shift: Array
@@ -41,19 +47,69 @@ class Rule:
         """Integrals of the s Lagrange polynomials from 0 to x: shape (n,) -> (n, s)."""
         return _legendre_integrals(x, len(self.nodes)) @ self.to_legendre
 
-    def maps(self, h: Array, push: Array, rate: Array) -> Maps:
-        """The affine maps of dE/du = push + rate E over cells of signed width h.
+    def maps(self, turned: Array, push: Array, rate: Array) -> Maps:
+        """The affine maps of dE/du = push + rate E over cells, exact to rounding.
 
-        h : shape (m,) [rad]; push, rate : shape (m, s) [N m, 1/rad], at the nodes
+        With a node's u' = du/dx, x from 0 to 1 in the cell, and A the matrix,
+
+            y_i = E + sum over j of A_ij u'_j (push_j + rate_j y_j)
+
+        is solved by sweeps where |u' rate| is small throughout, else by elimination.
+
+        turned : u', shape (..., m, s), or (..., m, 1) where a cell is passed evenly [rad]
+        push, rate : shape (..., m, s) [N m, 1/rad], at the nodes
+
+        >>> rule = gauss(3)
+        >>> maps = rule.maps(np.full((1, 1), 0.5), np.zeros((1, 3)), np.ones((1, 3)))
+        >>> f"{1.0 + maps.growth[0]:.6f}"
+        '1.648721'
         """
-        shift: Array = h[:, None] * (push @ self.matrix.T)
+        push, rate = turned * push, turned * rate
+        stiff = float(np.max(np.abs(rate), initial=0.0))
         gain: Array = np.ones_like(push)
-        if rate.any():
-            system = np.eye(len(self.weights)) - h[:, None, None] * self.matrix * rate[:, None, :]
+        shift: Array = push @ self.matrix.T
+        if stiff > _SWEEPS or not math.isfinite(stiff):
+            system = np.eye(len(self.weights)) - self.matrix * rate[..., None, :]
             both = np.linalg.solve(system, np.stack([gain, shift], axis=-1))
-            gain, shift = (np.asarray(part, np.float64) for part in np.moveaxis(both, -1, 0))
-        growth = h * ((rate * gain) @ self.weights)
-        return Maps(gain, shift, growth, h * ((push + rate * shift) @ self.weights))
+            gain, shift = np.asarray(both[..., 0]), np.asarray(both[..., 1], np.float64)
+        elif stiff > 0.0:
+            first = shift
+            for _ in range(math.ceil(math.log(_EPS) / math.log(stiff))):
+                gain, shift = (
+                    1.0 + (rate * gain) @ self.matrix.T,
+                    first + (rate * shift) @ self.matrix.T,
+                )
+        growth = (rate * gain) @ self.weights
+        return Maps(gain, shift, growth, (push + rate * shift) @ self.weights)
+
+
+def chain(growth: Array, rise: Array, start: float | Array) -> Array:
+    """Energy at the edges of consecutive cells, of which each adds growth E + rise.
+
+    growth, rise : shape (..., m); start : shape (...)
+
+    Returns
+    -------
+    shape (..., m + 1)
+
+    >>> chain(np.array([1.0, 1.0]), np.array([0.0, 3.0]), 1.0)
+    array([1., 2., 7.])
+    """
+    rise = np.asarray(rise, dtype=np.float64)
+    cells, cases = rise.shape[-1], rise.shape[:-1]
+    edges = np.empty((*cases, cells + 1))
+    edges[..., 0], edges[..., 1:] = start, rise
+    factors = 1.0 + np.broadcast_to(growth, rise.shape)
+    if math.prod(cases) > _TOGETHER:
+        along = np.moveaxis(edges, -1, 0)
+        for k, factor in enumerate(np.moveaxis(factors, -1, 0)):
+            along[k + 1] += factor * along[k]
+        return edges
+    band = np.zeros((2, cells + 1), order="F")
+    for case in np.ndindex(cases):  # a triangle of two diagonals, of which the first is 1
+        band[1, :-1] = -factors[case]
+        edges[case] = dtbsv(1, band, edges[case], lower=1, diag=1)
+    return edges
 
 
 @cache

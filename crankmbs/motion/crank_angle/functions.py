@@ -6,15 +6,13 @@ by quadrature, follows behind.
 
 from __future__ import annotations
 
-from itertools import accumulate
-
 import numpy as np
 
 from crankmbs.mechanics.torque import Branch, Course
 from crankmbs.motion.crank_angle.grid import Grid, Strip
 from crankmbs.motion.crank_angle.solvers import Begin, Cells
 from crankmbs.numerics.arrays import Array
-from crankmbs.numerics.collocation import Maps
+from crankmbs.numerics.collocation import chain
 
 __all__ = ["solve_functions"]
 
@@ -35,8 +33,9 @@ def solve_functions(grid: Grid, strip: Strip, loads: Branch | Course, begin: Beg
         for function in loads.functions:
             slope = slope + function.slope(t, theta, omega)
         torque, rate = _torque(strip, loads, t, theta, omega), slope / (strip.inertia * omega)
-        maps = rule.maps(sense * strip.width, torque - rate * energy, rate)
-        edges, new = _chain(maps, start)
+        maps = rule.maps(sense * strip.width[:, None], torque - rate * energy, rate)
+        edges = chain(maps.growth, maps.rise, start)
+        new = maps.gain * edges[:-1, None] + maps.shift
         change = np.abs(new / energy - 1.0).max(axis=1)
         energy = new
         slowness = np.sqrt(0.5 * strip.inertia / energy)
@@ -62,17 +61,3 @@ def _clock(t0: float, spent: Array) -> Array:
     """Time at the edges from the times spent in the cells; summed in more bits where there are:
     passes over the same cells would round alike, and not see it in their difference."""
     return np.asarray(t0 + np.append(0.0, np.cumsum(spent, dtype=np.longdouble)), dtype=np.float64)
-
-
-def _chain(maps: Maps, start: float) -> tuple[Array, Array]:
-    """Energy at edges and nodes, cell after cell; what a sum loses by rounding goes to the next."""
-
-    def step(before: tuple[float, float], maps: tuple[float, float]) -> tuple[float, float]:
-        (energy, lost), (growth, rise) = before, maps
-        gained = growth * energy + rise - lost
-        after = energy + gained
-        return after, (after - energy) - gained
-
-    steps = zip(maps.growth.tolist(), maps.rise.tolist(), strict=True)
-    edges = np.array([energy for energy, _ in accumulate(steps, step, initial=(start, 0.0))])
-    return edges, maps.gain * edges[:-1, None] + maps.shift
