@@ -28,7 +28,7 @@ from crankmbs import (
 )
 from crankmbs.mechanics.pressure import pressures_of
 from crankmbs.motion import cycles as kept
-from crankmbs.motion.free import recount
+from crankmbs.motion.free import passes
 from crankmbs.scene.parts import Friction
 
 PERIOD = 4.0 * math.pi
@@ -221,16 +221,17 @@ def test_the_samples_do_not_matter():
     assert ours.identical(theirs)
 
 
-def test_of_more_cycles_the_last_are_kept(monkeypatch):
-    scene = until(load_scene("propeller"), 40.0, "cycle", every=None)
-    every = simulate(scene).cycles
-    for module in (kept, recount):
+@pytest.mark.parametrize("every", ["1 deg", "none"])
+def test_of_more_cycles_the_last_are_kept(monkeypatch, every):
+    scene = load_scene("propeller").with_(run__until="40 cycles", run__every=every)
+    all_of = simulate(scene).cycles
+    for module in (kept, passes):
         monkeypatch.setattr(module, "MOST_CYCLES", 5)
     last = simulate(scene).cycles
     assert last["cycle"].values.tolist() == [36, 37, 38, 39, 40]
     assert str(last.attrs["left_out"]) == "the first 35 cycles are left out"
     for name, one in last.data_vars.items():
-        np.testing.assert_allclose(one.values, every[name].values[-5:], rtol=1e-11, atol=1e-9)
+        np.testing.assert_allclose(one.values, all_of[name].values[-5:], rtol=1e-11, atol=1e-9)
 
 
 def test_saved_and_loaded_they_are_the_same(tmp_path):

@@ -10,7 +10,6 @@ from scipy.interpolate import CubicSpline
 from crankmbs import Motion, Oscillation, Ramp, Run, load_scene, simulate
 from crankmbs.errors import InputError
 from crankmbs.measures import last_span, measure, orders
-from crankmbs.measures.joints import mean_over_time
 
 RPM = math.pi / 30.0
 DIESEL = load_scene("propeller")  # one fired cylinder; its motion is prescribed here
@@ -68,18 +67,6 @@ def test_without_output_spacing_the_last_cycle_is_whole(until):
     assert found.window.kind == usual.window.kind == "last cycle"
     assert found.imep[0].value == pytest.approx(usual.imep[0].value, rel=1e-9)
     assert found.window.begin == pytest.approx(usual.window.begin, rel=1e-12)
-
-
-@pytest.mark.parametrize("every", ["1 deg", "0.8 deg"])
-@pytest.mark.parametrize("place", [0.02, 0.3, 0.9])
-def test_jumps_of_cylinders_at_the_same_place_between_two_samples_add_up(every, place):
-    """A sawtooth that falls by 1 whenever one of four cylinders is where another was; after an odd
-    number of samples, too."""
-    result = simulate(scene(base=load_scene("yi_diesel"), every=every))
-    late = place * math.radians(float(every.split()[0]))
-    values = np.mod((result.data["crank_angle"].values - late) / math.pi, 1.0)
-    found = mean_over_time(result, last_span(result), values)
-    assert abs(found.value - 0.5) <= found.error <= 4.0 / 360.0
 
 
 def test_a_joint_force_is_the_magnitude_of_its_components(constant):
@@ -157,12 +144,12 @@ def test_imep_does_not_depend_on_the_speed_law(constant):
     assert here.error < 1e-3 * here.value
 
 
-@pytest.mark.parametrize("every", ["4 deg", "2 deg", "1 deg"])
-def test_stated_quadrature_error_covers_the_true_one(every):
+@pytest.mark.parametrize("every", ["100 deg", "4 deg", "0.3e-3 s"])
+def test_it_does_not_depend_on_the_samples(every):
     (found,) = measure(simulate(scene(every=every))).imep
     (exact,) = measure(simulate(scene(every="0.125 deg"))).imep
     assert abs(found.value - exact.value) <= found.error + exact.error
-    assert exact.error < found.error
+    assert found.error < 1e-12 * found.value
 
 
 def test_power_flow_closes_over_a_cycle_of_constant_speed(constant):

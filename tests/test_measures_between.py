@@ -141,17 +141,27 @@ def test_a_pulse_of_the_pressure_between_two_samples_is_in_the_peak(width):
     assert peaks[0].peak.value - peaks[1].peak.value == pytest.approx(more, rel=1e-6)
 
 
-def test_an_error_that_the_samples_cannot_tell_is_said_to_be_unknown():
-    """A pendulum that swings many times from one sample to the next."""
-    swinging = dataclasses.replace(
-        load_scene("coasting"),
-        crank=dataclasses.replace(DIESEL.crank, inertia=1e-2, mass=5.0, center_of_mass=-0.04),
-        gravity=Gravity(acceleration=9.81, angle=0.0),
-        torque=(),
-        start=Start(angle=2.0, speed=0.0),
-        run=Run(until="3 s", every="2.9 s"),
-    )
-    found = measure(simulate(swinging))
+def test_a_pendulum_that_swings_many_times_between_two_samples_is_measured_all_the_same():
+    def swung(every):
+        return dataclasses.replace(
+            load_scene("coasting"),
+            crank=dataclasses.replace(DIESEL.crank, inertia=1e-2, mass=5.0, center_of_mass=-0.04),
+            gravity=Gravity(acceleration=9.81, angle=0.0),
+            torque=(),
+            start=Start(angle=2.0, speed=0.0),
+            run=Run(until="3 s", every=every),
+        )
+
+    found, exact = (dict(estimates(measure(simulate(swung(e))))) for e in ("2.9 s", "1 deg"))
+    for name, here in found.items():
+        assert abs(here.value - exact[name].value) <= 1.05 * (here.error + exact[name].error), name
+        assert here.error < 1e-6 * max(abs(here.value), 1.0), name
+
+
+def test_an_error_that_nothing_checks_is_said_to_be_unknown():
+    result = simulate(DIESEL.with_(run__until="1 cycle"))
+    alone = result.passes._replace(checks=())
+    found = measure(dataclasses.replace(result, motion=lambda: alone))
     assert found.mean_speed.error == math.inf
     assert error_digits(found.mean_speed.error) == "-"
     assert digits(*found.joints[0].peak) == digits(found.joints[0].peak.value)

@@ -15,7 +15,7 @@ from crankmbs.cli.folder import writable, wrote
 from crankmbs.cli.orders import orders_report, reading_report, save_orders
 from crankmbs.cli.progress import progress
 from crankmbs.cli.report import comparison, report
-from crankmbs.compare import AtAngle, at_angle
+from crankmbs.compare import at_angle
 from crankmbs.compare.confirm import Difference, differences, followed
 from crankmbs.errors import InputError
 from crankmbs.measures import EngineOrders, engine_orders, measure
@@ -89,7 +89,7 @@ def run_scene(
     if wanted.orders:
         made.orders = engine_orders(result)
         said.append(orders_report(made.orders))
-    found = (_look_up(result, angle, cost_cap) for angle in angles)
+    found = (at_angle(result, angle) for angle in angles)
     said += [reading_report(one, scene.period) for one in found]
     written = _save(made, folder, figures=wanted.figures)
     typer.echo("\n".join([*said, "", wrote(folder, written)]))  # a screen may fail: files first
@@ -137,11 +137,6 @@ def _angle(text: str) -> float:
         return quantity(text, "angle")
     except InputError as error:
         raise InputError(f"--at: {error}") from None
-
-
-def _look_up(result: Result, angle: float, cost_cap: float) -> AtAngle:
-    with progress("looking up"):
-        return at_angle(result, angle, cost_cap=cost_cap)
 
 
 def override(scene: Scene, options: Mapping[str, Any]) -> Scene:

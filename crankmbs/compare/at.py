@@ -2,22 +2,24 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from crankmbs.compare.quantities import QUANTITIES, observed
 from crankmbs.errors import InputError
 from crankmbs.lecture import two_mass_rod
-from crankmbs.measures.span import last_span
+from crankmbs.measures.interpolate import read_at
+from crankmbs.measures.span import last_span, passes_over
 from crankmbs.result import Result
-from crankmbs.scene.run import Extent
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.units import quantity
-from crankmbs.simulate import simulate
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 __all__ = ["AtAngle", "Reading", "at_angle"]
 
@@ -48,18 +50,16 @@ class AtAngle:
     readings: tuple[Reading, ...]
 
 
-def at_angle(result: Result, angle: float | str, *, cost_cap: float = 10.0) -> AtAngle:
+def at_angle(result: Result, angle: float | str) -> AtAngle:
     """Every quantity of a run where the last whole cycle passes a crank angle.
 
-    The run is repeated up to that angle, by the formulation that made it, so that every number is
-    the formulation's own, no interpolation; its error is that of the repeated run. The lectures'
-    F_v, N, F_oj, F_T, F_R and M_k follow as in `crankmbs.compare.quantities.observed`, with the
-    lectures' signs; their errors sum those of what they are made of.
+    It is read from the motion as it was solved, between the samples too. The lectures' F_v, N,
+    F_oj, F_T, F_R and M_k follow as in `crankmbs.compare.quantities.observed`, with the lectures'
+    signs; their errors sum those of what they are made of.
 
     Parameters
     ----------
     angle : [rad], or with its unit, such as "60 deg"; modulo the engine's period
-    cost_cap : as `simulate` takes it [s]
 
     Raises
     ------
@@ -75,35 +75,15 @@ def at_angle(result: Result, angle: float | str, *, cost_cap: float = 10.0) -> A
     window = last_span(result)
     if window.kind != "last cycle":
         raise InputError("a crank angle is looked up in the last whole cycle; let the run last one")
-    there = _in_window(result, wanted)
-    again = _there(result, there, cost_cap)
-    time = float(again.data["time"].values[-1])
-    reached = abs(float(again.data["crank_angle"].values[-1]) - there) <= _SAME
-    late = float(again.data["time"].attrs["error_estimate"]) + 1e-9 * window.duration
-    if not reached or time < window.begin - late:
+    there, passes = _in_window(result, wanted), passes_over(result, window)
+    if not passes.answer.turns_one_way:
         raise InputError(
-            f"the crank passes {math.degrees(there):.6g} degrees before the last cycle, too: it "
-            "reverses; look in the samples"
+            f"the crank passes {math.degrees(there):.6g} degrees more than once: it reverses in "
+            "the last cycle; look in the samples"
         )
-    return AtAngle(there, time, (*_variables(again), *_lectured(again)))
-
-
-def _there(result: Result, angle: float, cost_cap: float) -> Result:
-    """The same run with its last sample at a crank angle [rad]: up to there, or, as a settled
-    motion is one of its whole period, with the angle as its first step."""
-    scene = result.scene
-    turned = Extent(value=abs(angle - _begin(scene)), unit="rad")
-    run = dataclasses.replace(scene.run, until=turned, every=None)
-    if scene.settles:
-        run = dataclasses.replace(scene.run, every=turned)
-    again = simulate(
-        dataclasses.replace(scene, run=run),
-        formulation=result.formulation,
-        rtol=result.error.asked,
-        cost_cap=cost_cap,
-    )
-    data = again.data.isel(time=slice(0, 2)) if scene.settles else again.data
-    return dataclasses.replace(again, data=data)
+    data = read_at(result, passes, np.array([there]), in_time=False)
+    time = float(data["time"].values[0])
+    return AtAngle(there, time, (*_variables(data), *_lectured(result.scene, data)))
 
 
 def _in_window(result: Result, angle: float) -> float:
@@ -118,51 +98,44 @@ def _in_window(result: Result, angle: float) -> float:
     return end - sense * short
 
 
-def _begin(scene: Scene) -> float:
-    part = scene.start or scene.motion
-    assert part is not None
-    return part.angle
-
-
-def _variables(result: Result) -> Iterator[Reading]:
-    """The last sample of every variable."""
+def _variables(data: xr.Dataset) -> Iterator[Reading]:
+    """Every variable at the one point."""
     symbols = {name.replace(" ", "_"): symbol for name, symbol in _OF_MOTION.items()}
-    for name, variable in result.data.data_vars.items():
+    for name, variable in data.data_vars.items():
         units, error = variable.attrs["units"], variable.attrs["error_estimate"]
-        for k, value in enumerate(np.atleast_1d(variable.values[-1]), start=1):
+        for k, value in enumerate(np.atleast_1d(variable.values[0]), start=1):
             cylinder = k if "cylinder" in variable.dims else None
             symbol = symbols.get(str(name), "")
             yield Reading(str(name), symbol, units, cylinder, float(value), error)
 
 
-def _lectured(result: Result) -> Iterator[Reading]:
-    """The lectures' forces and torque at the last sample."""
-    last = result.data.isel(time=slice(-1, None))
-    variables = {str(name): variable.values for name, variable in last.variables.items()}
+def _lectured(scene: Scene, data: xr.Dataset) -> Iterator[Reading]:
+    """The lectures' forces and torque there."""
+    variables = {str(name): variable.values for name, variable in data.variables.items()}
     motion = (variables[name] for name in ("crank_angle", "crank_speed", "crank_acceleration"))
-    found = observed(result.scene, variables, *motion)
+    found = observed(scene, variables, *motion)
     for name in _LECTURED:
         units, symbol, _ = QUANTITIES[name]
-        error, plain = _error(result, name), symbol.replace("{", "").replace("}", "")
+        error, plain = _error(scene, data, name), symbol.replace("{", "").replace("}", "")
         for k, value in enumerate(found[name][0], start=1):
             yield Reading(name, plain, units, k, float(value), error)
 
 
-def _error(result: Result, name: str) -> float:
+def _error(scene: Scene, data: xr.Dataset, name: str) -> float:
     """Of a lecture's quantity: those of the crank pin force and of what turns with it."""
 
     def stated(variable: str) -> float:
-        return float(result.data[variable].attrs["error_estimate"])
+        return float(data[variable].attrs["error_estimate"])
 
     if name == "side thrust":
         return stated("side_force")
     if name == "torque":
         return stated("crank_torque")
-    rod = result.scene.rod
+    rod = scene.rod
     masses = two_mass_rod(
         rod_mass=rod.mass, rod_length=rod.length, center_of_mass=rod.center_of_mass
     )
-    speed = abs(float(result.data["crank_speed"].values[-1]))
+    speed = abs(float(data["crank_speed"].values[0]))
     rate = 2.0 * speed * stated("crank_speed") + stated("crank_acceleration")
-    turning = abs(float(masses.crank_pin)) * result.scene.crank.radius * rate
+    turning = abs(float(masses.crank_pin)) * scene.crank.radius * rate
     return stated("crank_pin_force_x") + stated("crank_pin_force_y") + turning

@@ -1,8 +1,9 @@
-"""How far the lectures are off at most, between the samples of a run too."""
+"""How far the lectures are off at most, over the motion as it was solved."""
 
 from __future__ import annotations
 
-import math
+from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -11,8 +12,10 @@ from crankmbs.compare.lectured import LECTURES, lectured
 from crankmbs.compare.quantities import QUANTITIES, observed
 from crankmbs.errors import InputError
 from crankmbs.measures import Estimate
-from crankmbs.measures.between import Between
-from crankmbs.measures.knots import tops
+from crankmbs.measures.estimate import Number, Numbers, estimates
+from crankmbs.measures.nodes import nodes_of
+from crankmbs.measures.span import passes_over
+from crankmbs.motion.motion import Motion
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 
@@ -23,18 +26,13 @@ Pair = tuple[str, str]
 _RUN = "run"  # beside the lectures, whose answers are held against its
 
 
-def largest_deviations(result: Result, motions: tuple[Between, ...]) -> dict[Pair, Estimate]:
+def largest_deviations(result: Result) -> dict[Pair, Estimate]:
     """The largest deviation of every lecture in cylinder 1 over the run's last cycle, as a share of
     the largest value of the run [1].
 
     Both are those of the curves, from the very beginning of the cycle on, but where the rod is
-    folded and `compare` has no samples. The error is the run's and what the curves differ by from
-    those of the coarser motion; without a motion between the samples it is infinite, and the
-    values are those at the samples.
-
-    Parameters
-    ----------
-    motions : as `crankmbs.measures.between.refined` gives them
+    folded and `compare` has no samples. The error is what they differ by from those of the motions
+    that check the run.
 
     Returns
     -------
@@ -44,50 +42,29 @@ def largest_deviations(result: Result, motions: tuple[Between, ...]) -> dict[Pai
     ------
     InputError : the rod is folded all the time, or the scene has fuel
 
-    >>> from crankmbs.measures.between import refined
-    >>> run = simulate(load_scene("propeller"))
-    >>> found = largest_deviations(run, refined(run, 0))
+    >>> found = largest_deviations(simulate(load_scene("propeller")))
     >>> found["untruncated lecture", "side thrust"].error < 1e-6
     True
     """
-    excerpt = excerpt_of(motions[-1].result if motions else result, 1)
-    window, every = excerpt.window, max(len(motions), 1)
-    first = window.first - window.first % every  # a sample of either motion
-    variables = _variables(excerpt.result, first)
-    pairs = _pairs(_answers(excerpt, variables))
-    values = _sizes(excerpt, pairs, variables)
-    inside = window.inside - first
-    if not motions:
-        top, missed = np.max(values[:, inside:], axis=1), np.full(len(pairs), math.inf)
-    else:
-        coarse = _sizes(excerpt, pairs, _variables(motions[0].result, first // every))
-        missed = motions[-1].unsure * np.max(np.abs(values[:, ::every] - coarse), axis=1)
-
-        def at(t: Array) -> Array:
-            return _sizes(excerpt, pairs, motions[-1].variables(t))
-
-        samples = variables["time"][inside:], values[:, inside:]
-        found = tops(motions[-1], window, samples, at)
-        top, missed = found.value, missed + found.beside
-    sizes = dict(zip(pairs, np.stack([top, missed], axis=1), strict=True))
-    return {
-        pair: _share(size, sizes[_RUN, pair[1]], result.error.estimated)
-        for pair, size in sizes.items()
-        if pair[0] != _RUN and sizes[_RUN, pair[1]][0] > 0.0
-    }
+    excerpt = excerpt_of(result, 1)
+    passes = passes_over(result, excerpt.window)
+    pairs = _pairs(_answers(excerpt, nodes_of(passes.answer).variables))
+    shares = estimates(passes, partial(_shares, excerpt, pairs))["shares"]
+    rows = zip(pairs, shares, strict=True)
+    return {pair: share for pair, share in rows if pair[0] != _RUN and np.isfinite(share.value)}
 
 
-def _share(size: Array, whole: Array, relative: float) -> Estimate:
-    """One size over another, both with their errors."""
-    share = float(size[0] / whole[0])
-    missed = float((size[1] + share * whole[1]) / whole[0])
-    return Estimate(share, missed + (1.0 + share) * relative)
-
-
-def _variables(result: Result, first: int) -> Answer:
-    """Every variable and coordinate over time, from a sample on."""
-    variables = result.data.variables.items()
-    return {str(name): one.values[first:] for name, one in variables if "time" in one.dims}
+def _shares(excerpt: Excerpt, pairs: list[Pair], motion: Motion) -> Numbers:
+    """The largest deviations over a motion, as shares of the run's largest values."""
+    duration = motion.end - motion.begin
+    mean = excerpt.window.angle / duration if duration > 0.0 else excerpt.mean_speed
+    seen = replace(excerpt, train=motion.train, mean_speed=mean)
+    tops = nodes_of(motion).tops(partial(_sizes, seen, pairs)).value
+    whole = {name: top for (who, name), top in zip(pairs, tops, strict=True) if who == _RUN}
+    of = np.array([whole[name] for _, name in pairs])
+    share = np.full(len(pairs), np.nan)
+    np.divide(tops, of, out=share, where=of > 0.0)
+    return {"shares": Number(share, 1.0 + share)}
 
 
 def _answers(excerpt: Excerpt, variables: Answer) -> dict[str, Answer]:

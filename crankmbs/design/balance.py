@@ -10,7 +10,6 @@ import numpy as np
 from crankmbs.errors import InputError
 from crankmbs.lecture import two_mass_rod
 from crankmbs.measures import Estimate, Orders
-from crankmbs.measures.joints import stated
 from crankmbs.measures.orders import Harmonics
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
@@ -128,14 +127,6 @@ class _Weights:
             rocking += lever * np.stack([-y, x], axis=1)
         return {"frame_force": force, "rocking_moment": rocking}
 
-    def error(self, result: Result, vector: str) -> float:
-        """What the stated errors of the motion leave of one component [N] or [N m]."""
-        fastest = float(np.max(np.abs(result.data["crank_speed"].values)))
-        rate = 2.0 * fastest * stated(result, "crank_speed") + stated(result, "crank_acceleration")
-        if vector == "rocking_moment":
-            return self.per_throw * sum(map(abs, self.scene.levers or ())) * rate
-        return (self.per_throw * len(self.scene.cylinders) + abs(self.of_crank)) * rate
-
 
 def _remaining(result: Result, weights: _Weights) -> Iterator[Remaining]:
     harmonics = Harmonics(result, max(_ORDERS))
@@ -144,9 +135,8 @@ def _remaining(result: Result, weights: _Weights) -> Iterator[Remaining]:
         if names[0] not in result.data:
             continue
         units = str(result.data[names[0]].attrs["units"])
-        error = stated(result, names[0]) + stated(result, names[1]) + weights.error(result, vector)
         before = [harmonics.of(name) for name in names]
-        after = [harmonics.split(_balanced(weights, vector, k), error) for k in range(2)]
+        after = [harmonics.split(_balanced(weights, vector, k)) for k in range(2)]
         for order in _ORDERS:
             k = int(np.flatnonzero(harmonics.order == order)[0])
             for axis, old, new in zip("xy", before, after, strict=True):

@@ -6,7 +6,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline
 
 from crankmbs.digits import digits
 from crankmbs.errors import InputError
@@ -88,9 +87,6 @@ def frames_of(result: Result, rate: float, length: float | None = None) -> Frame
     """The last cycle at ``rate`` frames a second, slowed down to last about so long [s]; None: six
     seconds.
 
-    Between samples the angle is the cubic through their angles and speeds; exact to fourth order
-    in the spacing.
-
     Raises
     ------
     InputError : the run has no stretch of time
@@ -100,10 +96,7 @@ def frames_of(result: Result, rate: float, length: float | None = None) -> Frame
         raise InputError(f"nothing moves that could be animated: {result.message}")
     slower = float(f"{(_LASTS if length is None else length) / window.duration:.2g}")
     count = max(2, round(window.duration * slower * rate))
-    data = result.data.isel(time=slice(window.first, None))
-    time, angle, speed = (data[name].values for name in ("time", "crank_angle", "crank_speed"))
-    path = CubicHermiteSpline(time, angle, speed)
     at = np.arange(count, dtype=np.float64) * (window.duration / count)
-    instants = window.begin + at
+    states = result.passes.answer.at(window.begin + at, in_time=True)
     mean = window.angle / window.duration
-    return Frames(at, path(instants), path(instants, 1), mean, slower)
+    return Frames(at, states.angle, states.speed, mean, slower)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from crankmbs import lecture
 from crankmbs.design.flywheel import flywheel
 from crankmbs.lessons.freed import (
@@ -15,9 +13,8 @@ from crankmbs.lessons.freed import (
     with_inertia,
 )
 from crankmbs.lessons.pieces import Figure, Formula, Lesson, Question, Section, exact, simulated
-from crankmbs.lessons.runs import named
-from crankmbs.measures import Estimate, measure
-from crankmbs.measures.peak import rise
+from crankmbs.lessons.runs import named, peak
+from crankmbs.measures import measure
 from crankmbs.page.knobs import Choice
 from crankmbs.result import Result
 from crankmbs.scene.scene import Scene
@@ -176,10 +173,7 @@ def _lightest(scene: Scene) -> Question:
     numbers = {}
     for name, variable in (("free", run), ("held", textbook(run).even)):
         joint = next(j for j in measure(variable).joints if j.joint == "crank pin")
-        acceleration = variable.data["piston_acceleration"]
-        values = acceleration.values[:, 0]
-        error = float(acceleration.attrs["error_estimate"]) + rise(values, int(np.argmax(values)))
-        most = Estimate(float(values.max()), error)
+        most = peak(variable, "piston_acceleration")
         numbers[name] = (
             simulated(f"acceleration_{name}", most, "m/s²"),
             simulated(f"crank_pin_{name}", joint.peak, "kN", 1e-3),

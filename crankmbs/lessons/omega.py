@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
@@ -10,7 +11,8 @@ from crankmbs.lessons.freed import flywheel_knob, free, settled
 from crankmbs.lessons.pieces import Figure, Formula, Lesson, Question, Section, exact, simulated
 from crankmbs.lessons.runs import changed, named
 from crankmbs.measures import Estimate, measure
-from crankmbs.measures.peak import rise
+from crankmbs.measures.summary import largest
+from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 from crankmbs.scene.run import Extent
 from crankmbs.scene.scene import Scene
@@ -117,16 +119,14 @@ def _speed(scene: Scene) -> Section:
     )
 
 
-def _range(values: np.ndarray, stated: float) -> Estimate:
-    """The greatest less the least value, with what its samples miss."""
-    missed = rise(values, int(np.argmax(values))) + rise(-values, int(np.argmin(values)))
-    return Estimate(float(np.ptp(values)), 2.0 * stated + missed)
+def _range(result: Result, quantity: Callable[[Mapping[str, Array]], Array]) -> Estimate:
+    """The greatest less the least value of a quantity."""
+    high, low = largest(result, quantity), largest(result, lambda v: -quantity(v))
+    return Estimate(high.value + low.value, high.error + low.error)
 
 
 def _swing(result: Result) -> Question:
-    energy = result.data["kinetic_energy"]
-    stated = float(energy.attrs["error_estimate"])
-    wanted = simulated("swing", _range(energy.values, stated), "J")
+    wanted = simulated("swing", _range(result, lambda v: v["kinetic_energy"]), "J")
     return Question(
         name="ask_swing",
         asked="By how many joules does the kinetic energy swing over a cycle?",
@@ -157,11 +157,11 @@ def _fluctuation(result: Result) -> Question:
 
 
 def _inertia(result: Result) -> Question:
-    speed = result.data["crank_speed"].values
-    inertia = 2.0 * result.data["kinetic_energy"].values / speed**2
-    stated = 3.0 * result.error.estimated * float(inertia.max())
-    wanted = simulated("inertia_swing", _range(inertia, stated), "kg m²")
-    least = float(inertia.min())
+    def inertia(variables: Mapping[str, Array]) -> Array:
+        return np.asarray(2.0 * variables["kinetic_energy"] / variables["crank_speed"] ** 2)
+
+    wanted = simulated("inertia_swing", _range(result, inertia), "kg m²")
+    least = -largest(result, lambda variables: -inertia(variables)).value
     return Question(
         name="ask_inertia",
         asked="By how much does the inertia that the crank feels change over a turn?",

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
 from crankmbs.errors import InputError
 from crankmbs.measures import Estimate
-from crankmbs.measures.peak import rise
+from crankmbs.measures.summary import largest
+from crankmbs.numerics.arrays import Array
 from crankmbs.page.knobs import Knob
 from crankmbs.result import Result
 from crankmbs.scene.drives import Motion, Oscillation
@@ -144,11 +146,13 @@ def finely(scene: Scene, degrees: float = 0.01) -> Result:
 
 def peak(result: Result, name: str, cylinder: int = 0, sign: float = 1.0) -> Estimate:
     """Largest value of sign times a variable over the run, with its error."""
-    values = sign * result.data[name].values
-    values = values[:, cylinder] if values.ndim > 1 else values
-    at = int(np.argmax(values))
-    stated = float(result.data[name].attrs["error_estimate"])
-    return Estimate(sign * float(values[at]), stated + rise(values, at))
+
+    def quantity(variables: Mapping[str, Array]) -> Array:
+        values = variables[name]
+        return np.asarray(sign * (values[:, cylinder] if values.ndim > 1 else values))
+
+    value, error = largest(result, quantity)
+    return Estimate(sign * value, error)
 
 
 def peak_angle(result: Result, name: str, begin: float, end: float, sign: float = 1.0) -> Estimate:

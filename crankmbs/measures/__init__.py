@@ -5,8 +5,9 @@ Differences from formulas or other runs belong in compare.
 """
 
 from crankmbs.measures.engine_orders import EngineOrder, EngineOrders, engine_orders
+from crankmbs.measures.estimate import Estimate
 from crankmbs.measures.interpolate import interp
-from crankmbs.measures.joints import Estimate, JointForce
+from crankmbs.measures.joints import JointForce
 from crankmbs.measures.orders import Orders, orders
 from crankmbs.measures.span import Span, last_span
 from crankmbs.measures.summary import Measures, efficiency, fluctuation, mean_speed, measure

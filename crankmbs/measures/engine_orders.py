@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from crankmbs.measures.joints import Estimate, stated
+from crankmbs.measures.estimate import Estimate
 from crankmbs.measures.orders import Harmonics, Orders
 from crankmbs.measures.span import Span
 from crankmbs.measures.summary import mean_speed
@@ -62,8 +62,6 @@ def engine_orders(result: Result, highest: float = 12.0) -> EngineOrders:
     """
     harmonics = Harmonics(result, highest)
     speed = mean_speed(result, harmonics.window)
-    count = len(result.scene.cylinders)
-    of_torque = count * stated(result, "crank_torque")
     closed = closed_orders(result.scene, int(highest)) if highest >= 1.0 else None
 
     def at_mean(name: str) -> Waves | None:
@@ -73,10 +71,8 @@ def engine_orders(result: Result, highest: float = 12.0) -> EngineOrders:
         waves[harmonics.order % 1.0 == 0.0] = getattr(closed, name) * speed.value**2
         return waves
 
-    torque = harmonics.split(lambda v: v["crank_torque"].sum(axis=1), of_torque)
-    inertia = harmonics.split(
-        _inertia_torque(result), of_torque + _of_gas(result, harmonics.window)
-    )
+    torque = harmonics.split(lambda v: v["crank_torque"].sum(axis=1))
+    inertia = harmonics.split(_inertia_torque(result))
     rows = [
         EngineOrder("torque", "N m", torque, None),
         EngineOrder("inertia torque", "N m", inertia, at_mean("torque")),
@@ -99,14 +95,3 @@ def _inertia_torque(result: Result) -> Callable[[Mapping[str, Array]], Array]:
         return np.asarray(variables["crank_torque"].sum(axis=1) - gas - weights)
 
     return torque
-
-
-def _of_gas(result: Result, window: Span) -> float:
-    """What the stated errors of gas force and piston velocity leave of the gas's torque [N m]."""
-    force, velocity, speed = (
-        np.abs(result.data[name].values) for name in ("gas_force", "piston_velocity", "crank_speed")
-    )
-    power = float(force.max()) * stated(result, "piston_velocity")
-    power += float(velocity.max()) * stated(result, "gas_force")
-    slowest = float(speed[window.first :].min())
-    return float(len(result.scene.cylinders) * power / slowest)

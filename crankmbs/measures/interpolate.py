@@ -1,52 +1,45 @@
-"""The variables of a run at any time or crank angle between its samples, each with its error."""
+"""The variables of a run at any time or crank angle, each with its error."""
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from crankmbs.errors import InputError, shown
-from crankmbs.measures.between import Between, refined, sampled
+from crankmbs.motion.motion import Motion, Passes
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["interp"]
+__all__ = ["interp", "read_at"]
 
-_HALVINGS = 60  # of an interval between two samples: to rounding
 _HAIR = 1e-12  # of the run: an end may be so far off by rounding
 
 
 def interp(
     result: Result, time: ArrayLike | None = None, crank_angle: ArrayLike | None = None
 ) -> xr.Dataset:
-    """Every variable but the energy residual, at times or at crank angles.
-
-    Between two samples a prescribed motion follows its law and that of a free crank the equation of
-    motion (`crankmbs.measures.between.refined`); forces follow from it. Nothing is read off a
-    straight line, and nothing is run again.
+    """Every variable but the energy residual, at times or at crank angles, by the polynomials that
+    the motion was solved with; forces follow from it. Nothing is run again.
 
     Parameters
     ----------
-    time : shape (n,) or one number [s], within the samples; or
+    time : shape (n,) or one number [s], within the run; or
     crank_angle : shape (n,) or one number [rad], unwrapped, as in ``result.data``
 
     Returns
     -------
     Dataset as ``result.data``, in the order asked for; ``error_estimate`` adds to that of the
-    samples what a motion in coarser steps differs by between them, four times of it where a torque
-    jumps over the angle
+    samples what the motions that check the run differ by at these points
 
     Raises
     ------
-    InputError : neither or both, no finite numbers, outside the samples; samples too far apart to
-        tell the motion between them, or with a load between them that sets in or ends; an angle
-        that a crank which turns back passes twice
+    InputError : neither or both, no finite numbers, outside what is kept of the run; an angle that
+        a crank which turns back passes twice
 
     >>> found = interp(simulate(load_scene("propeller")), time=[0.1, 0.20001])
     >>> found.sizes["time"]
@@ -55,21 +48,31 @@ def interp(
     if (time is None) == (crank_angle is None):
         came = "neither" if time is None else "both"
         raise InputError(f"give time or crank_angle, exactly one of the two; {came} came")
-    name, unit = ("time", "s") if crank_angle is None else ("crank_angle", "rad")
-    wanted = _inside(result, name, unit, time if crank_angle is None else crank_angle)
-    motions = refined(result, 0)
-    if not motions:
-        raise InputError(
-            "the samples are too far apart to tell the motion between them; run the scene with a "
-            "smaller every"
-        )
-    times = [wanted if unit == "s" else _passed(result, motion, wanted) for motion in motions]
-    found = [
-        sampled(result, motion.train, result.data, when, motion.state(when)).data
-        for when, motion in zip(times, motions, strict=True)
-    ]
-    _refuse_events(result, times[-1])
-    return _with_errors(found, motions[-1].unsure, _fuel_jump(result, times[-1]))
+    in_time = crank_angle is None
+    name, unit = ("time", "s") if in_time else ("crank_angle", "rad")
+    wanted = _inside(result, name, unit, time if in_time else crank_angle)
+    if not in_time and not result.passes.answer.turns_one_way:
+        raise InputError("the crank rests or turns back, and an angle has no one time; give time")
+    return read_at(result, result.passes, wanted, in_time=in_time)
+
+
+def read_at(result: Result, passes: Passes, wanted: Array, *, in_time: bool) -> xr.Dataset:
+    """Every variable of passes over a result, or a part of them, at times [s], or else at crank
+    angles [rad], shape (n,), as `interp` gives it."""
+    import xarray as xr
+
+    def read(motion: Motion) -> dict[str, Array]:
+        return motion.at(wanted, in_time=in_time).variables(motion.train)
+
+    values, others = read(passes.answer), [read(motion) for motion in passes.checks]
+    rows = {}
+    for variable, found in values.items():
+        sampled = result.data[variable]
+        apart = [float(np.max(np.abs(one[variable] - found))) for one in others]
+        error = float(sampled.attrs["error_estimate"]) + passes.share * max(apart, default=0.0)
+        rows[variable] = (sampled.dims, found, {**sampled.attrs, "error_estimate": error})
+    coordinates = {name: rows.pop(name) for name in ("time", "crank_angle")}
+    return xr.Dataset(rows, {**coordinates, "cylinder": result.data["cylinder"]})
 
 
 def _inside(result: Result, name: str, unit: str, given: ArrayLike | None) -> Array:
@@ -90,66 +93,3 @@ def _inside(result: Result, name: str, unit: str, given: ArrayLike | None) -> Ar
             f"{outside[0]:.9g} {unit} came"
         )
     return np.clip(wanted, low, high)
-
-
-def _passed(result: Result, motion: Between, wanted: Array) -> Array:
-    """The times [s] at which the crank passes angles, by halving the intervals they lie in."""
-    time, angle = (result.data[name].values for name in ("time", "crank_angle"))
-    sense = math.copysign(1.0, angle[-1] - angle[0])
-    if np.any(sense * np.diff(angle) <= 0.0):
-        raise InputError("the crank rests or turns back, and an angle has no one time; give time")
-    after = np.searchsorted(sense * angle[1:-1], sense * wanted, side="left")
-    low, high = time[after].copy(), time[np.minimum(after + 1, len(time) - 1)].copy()
-    for _ in range(_HALVINGS):
-        middle = 0.5 * (low + high)
-        beyond = sense * (motion.state(middle)[0] - wanted) >= 0.0
-        low, high = np.where(beyond, low, middle), np.where(beyond, middle, high)
-    return np.asarray(0.5 * (low + high))
-
-
-def _intervals(result: Result, time: Array) -> Array:
-    """The numbers of the samples behind which times lie, not at one, shape (m,)."""
-    samples = result.data["time"].values
-    between = time[~np.isin(time, samples)]
-    return np.unique(np.searchsorted(samples, between, side="right") - 1)
-
-
-def _refuse_events(result: Result, time: Array) -> None:
-    """Refuse times between two samples between which a load sets in or ends, or the crank stops."""
-    speed = result.data["crank_speed"].values
-    stops = bool(np.any(speed[1:] * speed[:-1] < 0.0) or np.any(speed[1:-1] == 0.0))
-    windows = any(load.has_window for load in result.scene.torque)
-    if result.keep is None or not (stops or windows):  # to find events may take longer than the run
-        return
-    samples, events = result.data["time"].values, result.events
-    unlike = events["kind"].values != "fuel"
-    when = events["time"].values[unlike]
-    behind = np.searchsorted(samples, when, side="right") - 1
-    hit = np.flatnonzero(np.isin(behind, _intervals(result, time)) & ~np.isin(when, samples))
-    if hit.size:
-        event, first = events["text"].values[unlike][hit[0]], behind[hit[0]]
-        raise InputError(
-            f"between the samples at {samples[first]:.9g} and {samples[first + 1]:.9g} s there is "
-            f"an event ({event}), and they do not tell the motion there; leave out that stretch, "
-            "or run the scene with a smaller every"
-        )
-
-
-def _fuel_jump(result: Result, time: Array) -> float:
-    """The largest change of a share of the combustion in the intervals in which times lie: it is
-    decided somewhere in one, where it does not act yet."""
-    behind = _intervals(result, time)
-    if "fuel" not in result.data or not behind.size:
-        return 0.0
-    fuel = result.data["fuel"].values
-    return float(np.max(np.abs(fuel[behind + 1] - fuel[behind])))
-
-
-def _with_errors(values: list[xr.Dataset], unsure: float, fuel_jump: float) -> xr.Dataset:
-    """The last of these values, their errors larger by so many times what the first differ by."""
-    other, found = values[0], values[-1]
-    for name in found.variables:
-        if "error_estimate" in found[name].attrs:
-            apart = unsure * float(np.max(np.abs(found[name].values - other[name].values)))
-            found[name].attrs["error_estimate"] += max(apart, fuel_jump * (name == "fuel"))
-    return found

@@ -1,4 +1,4 @@
-"""The stretch of a run over which it is summed up, and integrals over it."""
+"""The stretch of a run over which it is summed up."""
 
 from __future__ import annotations
 
@@ -6,15 +6,12 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline, CubicSpline
 
-from crankmbs.numerics.arrays import Array
+from crankmbs.motion.motion import Motion, Passes
 from crankmbs.result import Result
 
-__all__ = ["Span", "integral", "last_span", "measured_span", "same_span"]
+__all__ = ["Span", "last_span", "measured_span", "passes_over"]
 
-
-_JUMPS = 4  # of a cylinder in a cycle that count: as many as it has dead centres
 _SAME_ANGLE = 1e-9  # rad: rounding of start + k * every must not lose a cycle
 
 
@@ -42,10 +39,8 @@ class Span:
 
 
 def last_span(result: Result) -> Span:
-    """The last whole cycle of a run; without one the last whole revolution, or else the run.
-
-    It ends with the run. Where it begins between two samples the time follows from the cubic
-    through their angles and speeds; exact to fourth order in the spacing.
+    """The last whole cycle of a run; without one the last whole revolution, or else the run. It
+    ends with the run.
 
     >>> last_span(simulate(load_scene("propeller"))).kind
     'last cycle'
@@ -68,12 +63,14 @@ def measured_span(result: Result) -> Span:
     return last_span(result)
 
 
-def same_span(window: Span, result: Result) -> Span:
-    """The window of the same kind and length in the same run, sampled otherwise."""
-    found = None
-    if window.kind != "whole run":
-        found = _ending(result, window.kind, abs(window.angle))
-    return found or _whole_run(result)
+def passes_over(result: Result, window: Span) -> Passes:
+    """The motion over a window, and the motions that check it over theirs."""
+    if window.kind == "whole run":
+        return result.passes
+    turned = abs(window.angle)
+    answer = result.passes.answer.last(turned) or result.passes.answer
+    checks = [motion.last(turned) for motion in result.passes.checks]
+    return Passes(answer, tuple(one for one in checks if one), result.passes.share)
 
 
 def _ending(result: Result, kind: str, wanted: float) -> Span | None:
@@ -87,52 +84,13 @@ def _ending(result: Result, kind: str, wanted: float) -> Span | None:
     sense = math.copysign(1.0, angle[-1] - angle[k])
     if turned[k] <= wanted + _SAME_ANGLE:
         return Span(kind, float(time[k]), float(time[-1]), sense * wanted, k, k)
-    pair = slice(k, k + 2)
-    speed = result.data["crank_speed"].values
-    path = CubicHermiteSpline(time[pair], angle[pair], speed[pair])
-    begin = float(path.solve(angle[-1] - sense * wanted, extrapolate=False)[-1])
-    return Span(kind, begin, float(time[-1]), sense * wanted, k, k + 1)
+    part: Motion | None = result.passes.answer.last(wanted)
+    begin = float(time[k]) if part is None else part.begin
+    inside = int(np.searchsorted(time, begin))
+    return Span(kind, begin, float(time[-1]), sense * wanted, inside - 1, inside)
 
 
 def _whole_run(result: Result) -> Span:
     time, angle = result.data["time"].values, result.data["crank_angle"].values
     whole = float(angle[-1] - angle[0])
     return Span("whole run", float(time[0]), float(time[-1]), whole, 0, 0)
-
-
-def integral(result: Result, window: Span, values: Array) -> tuple[Array, Array]:
-    """Integral over time across a window, and an estimate of its quadrature error.
-
-    A cubic spline through the samples is integrated: order 4 in the spacing where the quantity is
-    smooth, 2 across a bend, 1 across a jump. The error is the difference from the splines through
-    the even and through the odd samples, whichever is largest: their sum, where smooth 16 times too
-    large; as those at jumps and bends may cancel by luck the root of squares of its parts; and, as
-    cylinders that jump at the same place between two samples add up, the sum of the largest parts.
-
-    Parameters
-    ----------
-    values : shape (samples, ...) [unit]; all samples of the run
-
-    Returns
-    -------
-    integral, error : shape (...) [unit s]
-    """
-    time = result.data["time"].values[window.first :]
-    inner = values[window.first :]
-    if len(time) < 2:
-        return np.zeros(values.shape[1:]), np.zeros(values.shape[1:])
-    number, last = np.arange(len(time)), len(time) - 1
-    cycles = max(1, round(abs(window.angle) / result.scene.period))
-    jumps = min(_JUMPS * cycles * len(result.scene.cylinders), last // 2)
-    found = CubicSpline(time, inner).antiderivative()
-    error = np.zeros(values.shape[1:])
-    for odd in (0, 1):
-        chosen = (number % 2 == odd) | (number == 0) | (number == last)
-        coarse = CubicSpline(time[chosen], inner[chosen]).antiderivative()
-        edges = np.maximum(time[chosen], window.begin)
-        apart = np.diff(found(edges) - coarse(edges), axis=0)
-        error = np.maximum(error, np.abs(apart.sum(axis=0)))
-        error = np.maximum(error, np.sqrt((apart**2).sum(axis=0)))
-        largest = np.sort(np.abs(apart), axis=0)[len(apart) - jumps :]
-        error = np.maximum(error, largest.sum(axis=0))
-    return np.asarray(found(window.end) - found(window.begin)), error

@@ -3,28 +3,23 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields, replace
-from typing import Any
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline
 
-from crankmbs.measures.between import Between, refined
-from crankmbs.measures.joints import (
-    Estimate,
-    JointForce,
-    apart,
-    mean_over_time,
-    peaks,
-    stated,
-)
-from crankmbs.measures.peak import rise
-from crankmbs.measures.span import Span, integral, measured_span, same_span
+from crankmbs.measures.estimate import Estimate, Number, Numbers, estimates
+from crankmbs.measures.joints import JointForce, joints_of
+from crankmbs.measures.nodes import Nodes, nodes_of
+from crankmbs.measures.span import Span, measured_span, passes_over
 from crankmbs.mechanics.geometry import close_loop, dead_centres
+from crankmbs.motion.motion import Motion
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
+from crankmbs.scene.scene import Scene
 
-__all__ = ["Measures", "efficiency", "fluctuation", "mean_speed", "measure", "measured"]
+__all__ = ["Measures", "efficiency", "fluctuation", "largest", "mean_speed", "measure"]
 
 
 @dataclass(frozen=True)
@@ -63,152 +58,67 @@ def measure(result: Result) -> Measures:
     """Sum up a run over its last whole cycle (or revolution, or the run); a settled motion over
     its period.
 
-    A value is that of the motion between the samples (`crankmbs.measures.between.refined`). Its
-    error sums the stated errors of the variables in it, the quadrature's (the spline through all
-    points against that through every second one) and, where the crank is free, what the value
-    differs by from that of the coarser motion between the samples. Where a free crank turns or
-    swings so far between two samples that they do not tell how, the value is that of the samples
-    and its error infinite.
+    Every number is read from the motion as it was solved (`crankmbs.measures.nodes`). Its error is
+    what the same number of the motion that checks it differs by, and the rounding of what it is
+    summed from; infinite where nothing checks it.
 
     >>> measure(simulate(load_scene("propeller"))).window.kind
     'last cycle'
     """
-    return measured(result, refined(result, measured_span(result).first))
+    window, scene = measured_span(result), result.scene
+    passes = passes_over(result, window)
+    found = estimates(passes, partial(_numbers, scene, window))
+    angles = nodes_of(passes.answer).tops(partial(_sought, scene)).angle.tolist()
+    joints = zip(joints_of(scene), found["peaks"], found["means"], angles, strict=False)
 
+    def single(name: str) -> Estimate | None:
+        return found[name][0] if name in found else None
 
-def measured(result: Result, motions: tuple[Between, ...]) -> Measures:
-    """The same from the motion between the samples, that `refined` gives from the first sample of
-    the `measured_span` on."""
-    window = measured_span(result)
-    closure = _energy_closure(result)
-    if not motions:
-        unknown: Measures = _beside(_measures(result, window, closure), None)
-        return unknown
-    missed = apart(result, motions)
-    *coarser, found = (
-        _measures(motion.result, same_span(window, motion.result), closure, motion, missed)
-        for motion in motions
-    )
-    for other in coarser:
-        found = _beside(found, other)
-    return replace(found, window=window)
-
-
-def _beside(found: Any, other: Any) -> Any:
-    """Measures with the errors that others show besides, without others with infinite errors."""
-    if isinstance(found, Estimate):
-        apart = math.inf if other is None else abs(found.value - other.value)
-        return Estimate(found.value, found.error + apart)
-    if isinstance(found, tuple):
-        others = [None] * len(found) if other is None else other
-        return tuple(_beside(*pair) for pair in zip(found, others, strict=True))
-    if isinstance(found, Measures | JointForce):
-        names = [field.name for field in fields(found)]
-        parts = {name: _beside(getattr(found, name), getattr(other, name, None)) for name in names}
-        return replace(found, **parts)
-    return found
-
-
-def _measures(
-    result: Result,
-    window: Span,
-    energy_closure: float,
-    between: Between | None = None,
-    missed: Array | float = 0.0,
-) -> Measures:
-    power, imep = _indicated(result, window)
-    rubbed = _rubbed(result, window)
-    rods = result.data["crank_torque"]
-    rods_error = stated(result, "crank_torque") * rods.sizes["cylinder"]
-    outside = result.data["external_torque"].values
-    missed = np.broadcast_to(missed, 3 + 3 * rods.sizes["cylinder"])
-    joints, high, low = peaks(result, window, between, missed)
-    of_speed = float(missed[-1])
     return Measures(
         window=window,
-        mean_speed=mean_speed(result, window),
-        fluctuation=_coefficient(result, window, high, low, error=2.0 * of_speed),
-        speed_gain=_speed_gain(result, window, of_speed),
-        joints=joints,
-        crank_torque=_mean_torque(result, window, rods.values.sum(axis=1), rods_error),
-        external_torque=_mean_torque(result, window, outside, stated(result, "external_torque")),
-        indicated_power=power,
-        imep=imep,
-        friction_power=rubbed,
-        mechanical_efficiency=efficiency(power, rubbed),
-        energy_closure=energy_closure,
+        mean_speed=found["mean_speed"][0],
+        fluctuation=found["fluctuation"][0],
+        speed_gain=found["speed_gain"][0],
+        joints=tuple(joint.labelled(scene, *of_joint) for joint, *of_joint in joints),
+        crank_torque=found["crank_torque"][0],
+        external_torque=found["external_torque"][0],
+        indicated_power=single("indicated_power"),
+        imep=found.get("imep"),
+        friction_power=single("friction_power"),
+        mechanical_efficiency=single("mechanical_efficiency"),
+        energy_closure=_energy_closure(result),
     )
 
 
 def mean_speed(result: Result, window: Span) -> Estimate:
-    """Mean speed over a window [rad/s]: the angle turned over the time it took, no quadrature. The
-    error is that of the samples; `measure` adds that of a beginning between two of them."""
-    if window.duration == 0.0:
-        speed = float(result.data["crank_speed"].values[-1])
-        return Estimate(speed, stated(result, "crank_speed"))
-    mean = window.angle / window.duration
-    ends = stated(result, "crank_angle") + abs(mean) * stated(result, "time")
-    return Estimate(mean, 2.0 * ends / window.duration)
+    """Mean speed over a window [rad/s]: the angle turned over the time it took."""
+    passes = passes_over(result, window)
+    return estimates(passes, lambda motion: {"mean": _mean_speed(motion, window)})["mean"][0]
 
 
 def fluctuation(result: Result, window: Span) -> Estimate:
-    """Coefficient of fluctuation of the samples over a window [1]: (max - min) / |mean speed|; NaN
-    at rest. The error guesses from them how far the speed goes in between; `measure` looks there.
+    """Coefficient of fluctuation over a window [1]: (max - min) / |mean speed|; NaN at rest."""
+
+    def numbers(motion: Motion) -> Numbers:
+        mean = _mean_speed(motion, window)
+        return {"fluctuation": _fluctuation(nodes_of(motion).tops(_speeds).value, mean)}
+
+    return estimates(passes_over(result, window), numbers)["fluctuation"][0]
+
+
+def largest(result: Result, quantity: Callable[[Mapping[str, Array]], Array]) -> Estimate:
+    """The largest value of a quantity over all that is kept of a run.
+
+    quantity : from the variables of the result by name, shape (p,) or (p, cylinders), to (p,)
+
+    >>> value, error = largest(simulate(load_scene("turning_moment")), lambda v: v["crank_speed"])
     """
-    speed = result.data["crank_speed"].values
-    high = window.inside + int(np.argmax(speed[window.inside :]))
-    low = window.inside + int(np.argmin(speed[window.inside :]))
-    beyond = rise(speed, high) + rise(-speed, low)
-    return _coefficient(result, window, float(speed[high]), float(speed[low]), error=beyond)
 
+    def numbers(motion: Motion) -> Numbers:
+        top = nodes_of(motion).tops(lambda variables: quantity(variables)[None]).value
+        return {"largest": Number(top, np.abs(top))}
 
-def _coefficient(
-    result: Result, window: Span, high: float, low: float, *, error: float
-) -> Estimate:
-    mean = abs(mean_speed(result, window).value)
-    if mean == 0.0:
-        return Estimate(math.nan, math.nan)
-    return Estimate((high - low) / mean, (2.0 * stated(result, "crank_speed") + error) / mean)
-
-
-def _speed_gain(result: Result, window: Span, missed: float) -> Estimate:
-    """Where the window begins between two samples the speed there is that of the cubic through
-    their speeds and accelerations."""
-    names = ("time", "crank_speed", "crank_acceleration")
-    time, speed, rate = (result.data[name].values for name in names)
-    begin = float(speed[window.first])
-    if window.first < window.inside:
-        pair = [window.first, window.inside]
-        begin = float(CubicHermiteSpline(time[pair], speed[pair], rate[pair])(window.begin))
-    return Estimate(float(speed[-1]) - begin, 2.0 * stated(result, "crank_speed") + missed)
-
-
-def _indicated(result: Result, window: Span) -> tuple[Estimate | None, tuple[Estimate, ...] | None]:
-    """Work of the gas force on the piston velocity: indicated power and imep."""
-    scene = result.scene
-    area = scene.piston.gas_area
-    if scene.gas is None or area is None or window.duration == 0.0:
-        return None, None
-    work, error = _work(result, window, "gas_force")
-    mean = Estimate(float(work.sum()) / window.duration, float(error.sum()) / window.duration)
-    if window.kind not in ("last cycle", "settled period"):
-        return mean, None
-    cycles = abs(window.angle) / scene.period
-    r, l, e = scene.crank.radius, scene.rod.length, scene.piston.offset
-    top, bottom = close_loop(dead_centres(r, l, e), r, l, e).x
-    volume = area * float(top - bottom)
-    return mean, tuple(
-        Estimate(float(w) / (cycles * volume), float(d) / (cycles * volume))
-        for w, d in zip(work, error, strict=True)
-    )
-
-
-def _rubbed(result: Result, window: Span) -> Estimate | None:
-    """What friction takes from all pistons per time."""
-    if result.scene.friction is None or window.duration == 0.0:
-        return None
-    work, error = _work(result, window, "friction_force")
-    return Estimate(-float(work.sum()) / window.duration, float(error.sum()) / window.duration)
+    return estimates(result.passes, numbers)["largest"][0]
 
 
 def efficiency(indicated: Estimate | None, rubbed: Estimate | None) -> Estimate | None:
@@ -226,30 +136,113 @@ def efficiency(indicated: Estimate | None, rubbed: Estimate | None) -> Estimate 
     return Estimate(value, apart / whole**2)
 
 
-def _work(result: Result, window: Span, force: str) -> tuple[Array, Array]:
-    """Work of a force on every piston over a window [J], and its error."""
-    along, velocity = (result.data[name].values for name in (force, "piston_velocity"))
-    work, quadrature = integral(result, window, along * velocity)
-    power = np.mean(np.abs(along), axis=0) * stated(result, "piston_velocity")
-    power = power + np.mean(np.abs(velocity), axis=0) * stated(result, force)
-    return work, quadrature + power * window.duration
+def _numbers(scene: Scene, window: Span, motion: Motion) -> Numbers:
+    """Everything that is measured of one motion."""
+    nodes, mean = nodes_of(motion), _mean_speed(motion, window)
+    duration = motion.end - motion.begin
+    tops, forces = nodes.tops(partial(_sought, scene)).value, _forces(scene, nodes.variables)
+    variables, speed = nodes.variables, nodes.variables["crank_speed"]
+    torque = {
+        "crank_torque": variables["crank_torque"].sum(axis=1),
+        "external_torque": variables["external_torque"],
+    }
+    sizes = np.hypot(forces[:, 0], forces[:, 1])
+    over = nodes.magnitude(forces) / duration if duration else _last(sizes)
+    largest = tops[: len(forces)].copy()
+    largest[0] = largest.max()  # the main bearing's is a sum of the pins'
+    numbers = {
+        "mean_speed": mean,
+        "fluctuation": _fluctuation(tops[-2:], mean),
+        "speed_gain": _speed_gain(motion),
+        "peaks": Number(tops[: len(forces)], largest),
+        "means": Number(over, largest),
+    }
+    turned = motion.turned
+    for name, values in torque.items():
+        if turned and duration:
+            work = Number(nodes.integral(values * speed), nodes.integral(np.abs(values * speed)))
+            numbers[name] = work.over(turned)
+        else:
+            numbers[name] = Number(_last(values[None]), np.abs(_last(values[None])))
+    return numbers | (_powers(scene, window, nodes, duration) if duration else {})
+
+
+def _powers(scene: Scene, window: Span, nodes: Nodes, duration: float) -> Numbers:
+    """Of gas and friction on the pistons."""
+    numbers, velocity = {}, nodes.variables["piston_velocity"]
+    of_gas, rubbed = (
+        Number(nodes.integral(power), nodes.integral(np.abs(power)))
+        for power in (
+            nodes.variables[name] * velocity if name in nodes.variables else 0.0 * velocity
+            for name in ("gas_force", "friction_force")
+        )
+    )
+    area = scene.piston.gas_area
+    if scene.gas is not None and area is not None:
+        numbers["indicated_power"] = of_gas.summed.over(duration)
+        if window.kind in ("last cycle", "settled period"):
+            cycles = abs(window.angle) / scene.period
+            shape = scene.crank.radius, scene.rod.length, scene.piston.offset
+            top, bottom = close_loop(dead_centres(*shape), *shape).x
+            numbers["imep"] = of_gas.over(cycles * area * float(top - bottom))
+    if scene.friction is not None:
+        numbers["friction_power"] = rubbed.summed.over(-duration)
+        gained, lost = (
+            Estimate(float(one.summed.value[0]), 0.0) for one in (of_gas, rubbed.over(-1.0))
+        )
+        share = efficiency(gained if scene.gas is not None else None, lost)
+        if share is not None:
+            value = np.array([share.value])
+            numbers["mechanical_efficiency"] = Number(value, np.ones(1) + np.abs(value))
+    return numbers
+
+
+def _mean_speed(motion: Motion, window: Span) -> Number:
+    duration = motion.end - motion.begin
+    if duration <= 0.0:
+        speed = motion.cells[-1].speed[-1:, -1]
+        return Number(speed, np.abs(speed))
+    turned = motion.turned if window.kind == "whole run" else window.angle
+    mean = np.array([turned / duration])
+    return Number(mean, np.abs(mean) * (1.0 + motion.end / duration))
+
+
+def _fluctuation(extremes: Array, mean: Number) -> Number:
+    """From the largest and the largest negative speed."""
+    size = np.abs(mean.value)
+    if size[0] == 0.0:
+        return Number(np.full(1, math.nan), np.full(1, math.nan))
+    return Number(extremes.sum() / size, np.abs(extremes).max() / size)
+
+
+def _speed_gain(motion: Motion) -> Number:
+    first, last = motion.cells[0], motion.cells[-1]
+    begin = first.states(motion.train, np.zeros(1, np.intp), np.zeros(1)).speed
+    end = last.speed[-1:, -1]
+    return Number(end - begin, np.maximum(np.abs(end), np.abs(begin)))
+
+
+def _forces(scene: Scene, variables: dict[str, Array]) -> Array:
+    """Components of every joint's force, shape (joints, 2, points)."""
+    return np.array([joint.force(variables) for joint in joints_of(scene)])
+
+
+def _speeds(variables: dict[str, Array]) -> Array:
+    """The speed and the negative speed."""
+    return np.array([variables["crank_speed"], -variables["crank_speed"]])
+
+
+def _sought(scene: Scene, variables: dict[str, Array]) -> Array:
+    """Whose largest values are measured: the force of every joint and the speeds."""
+    forces = _forces(scene, variables)
+    return np.concatenate([np.hypot(forces[:, 0], forces[:, 1]), _speeds(variables)])
+
+
+def _last(values: Array) -> Array:
+    return np.asarray(values[:, -1])
 
 
 def _energy_closure(result: Result) -> float:
     peak = float(np.max(result.data["kinetic_energy"].values))
     worst = float(np.max(np.abs(result.data["energy_residual"].values)))
     return worst / peak if peak > 0.0 else 0.0
-
-
-def _mean_torque(result: Result, window: Span, torque: Array, own: float) -> Estimate:
-    """Work per angle turned; where none is turned, the mean over time."""
-    if window.angle == 0.0:
-        mean = mean_over_time(result, window, torque)
-        return Estimate(mean.value, mean.error + own)
-    speed = result.data["crank_speed"].values
-    work, quadrature = integral(result, window, torque * speed)
-    error = float(quadrature) + window.duration * (
-        own * float(np.max(np.abs(speed)))
-        + float(np.max(np.abs(torque))) * stated(result, "crank_speed")
-    )
-    return Estimate(float(work) / window.angle, error / abs(window.angle))

@@ -11,7 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crankmbs.motion.account import Keep
+from crankmbs.motion.cells import Cells
 from crankmbs.motion.mode import Mode
+from crankmbs.motion.motion import Passes
 from crankmbs.motion.plan import Wanted
 from crankmbs.numerics.arrays import Array
 
@@ -88,6 +90,7 @@ class Solution:
     reasons : sentences about what the run had to do, beside the choice of the formulation
     decay : of a settled motion
     keep : makes the account of what happened on the way
+    motion : makes the passes of the motion as they were solved; None where samples are all there is
     """
 
     samples: Samples
@@ -100,6 +103,7 @@ class Solution:
     reasons: tuple[str, ...] = ()
     decay: Decay | None = None
     keep: Keep | None = None
+    motion: Callable[[], Passes] | None = None
 
 
 class State(NamedTuple):
@@ -162,6 +166,9 @@ class Solved(Stretched, Protocol):
 
 class Piece(Solved, Protocol):
     """A solved stretch of a free motion."""
+
+    def cells(self) -> Cells:
+        """Its cells or steps as cells of a motion."""
 
     @property
     def steps(self) -> int:

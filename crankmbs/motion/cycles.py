@@ -120,7 +120,7 @@ class Cycles:
         it turns back, none is."""
         if sense != self._sense:
             self._open, self._sense = None, sense
-        elif abs(theta - self._reached) > _SAME * self._period:
+        if abs(theta - self._reached) > _SAME * self._period:
             passed = len(self._places(self._reached, theta))
             self._passed += max(passed - (self._open is None), 0)
             self._open = None

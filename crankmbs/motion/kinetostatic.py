@@ -21,6 +21,7 @@ from crankmbs.motion.account import Account
 from crankmbs.motion.base import Samples, Solution
 from crankmbs.motion.driven import Driven, Way, driven, driven_observer
 from crankmbs.motion.ending import Ending
+from crankmbs.motion.motion import Motion, Passes
 from crankmbs.motion.observer import account_of
 from crankmbs.motion.plan import Plan, plan_of
 from crankmbs.motion.prescribed import monotone_stretches
@@ -29,7 +30,7 @@ from crankmbs.scene.units import DEGREE
 
 __all__ = ["run"]
 
-_POINTS = (8, 10)  # of Gauss in a panel, in either look at what happens on the way
+_POINTS = (6, 8)  # of Gauss in a panel, in either look at what happens on the way
 _PANEL = 5.0 * DEGREE  # widest panel of the work integral; Gauss with 4 points errs below 1e-12
 
 
@@ -47,7 +48,8 @@ def run(train: CrankTrain) -> Solution:
     law = speed_law(scene.motion)
     stretches, reached = monotone_stretches(plan, law)
     firings = None if train.law is None else _firings(driven(_way(train, law), stretches))
-    keep = partial(_account, train, law, tuple(stretches), rests=not reached)
+    whole = tuple(stretches)
+    keep = partial(_account, train, law, whole, rests=not reached)
     stretches = _kept(plan, law, stretches)
     time, theta = _sample(plan, law, stretches, reached)
     _, omega, alpha = law.at_time(time)
@@ -61,7 +63,18 @@ def run(train: CrankTrain) -> Solution:
     by_angle = np.full(len(time), not plan.in_time)
     by_angle[-1] = reached and not plan.until_time
     better = None if law.off is law else _by(law.off, samples, by_angle)
-    return Solution(samples, *ending.said(float(theta[-1])), len(time), 0, better, keep=keep)
+    said = ending.said(float(theta[-1]))
+    motion = partial(_motion, train, law, whole)
+    return Solution(samples, *said, len(time), 0, better, keep=keep, motion=motion)
+
+
+def _motion(train: CrankTrain, law: SpeedLaw, stretches: tuple[tuple[float, float], ...]) -> Passes:
+    """The law as cells, twice, the second time finer and as far off as law and pressures may be."""
+    passes = [
+        Motion(one, list(driven(_way(one, of, finer=finer), stretches)))
+        for one, of, finer in ((train, law, False), (train.off, law.off, True))
+    ]
+    return Passes(passes[0], (passes[1],))
 
 
 def _account(

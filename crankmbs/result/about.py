@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 from pydantic import TypeAdapter
 
@@ -16,6 +16,9 @@ from crankmbs.kept import DIMS, account_in, with_account
 from crankmbs.mechanics.variables import VARIABLES, variables_of
 from crankmbs.motion.account import Account, Keep
 from crankmbs.motion.base import Decay
+from crankmbs.motion.motion import Passes
+from crankmbs.result.motion_file import DIMS as MOTION_DIMS
+from crankmbs.result.motion_file import passes_in, with_passes
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.schema import SAVED
 from crankmbs.storage.netcdf import read_netcdf, write_netcdf
@@ -24,6 +27,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
 __all__ = ["Cost", "Error", "read_saved", "write_saved"]
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -56,14 +61,22 @@ class _About:
     error: Error
     decay: Decay | None = None
     left_out: tuple[int, int] | None = None
+    share: float | None = None
 
 
 def write_saved(
-    given: Mapping[str, Any], data: xr.Dataset, account: Account | None, file: Path
+    given: Mapping[str, Any],
+    data: xr.Dataset,
+    account: Account | None,
+    passes: Passes | None,
+    file: Path,
 ) -> None:
-    """Write result.nc: the data, the account of the way where there is one, and the fields of a
-    result by name."""
+    """Write result.nc: the data, the account of the way and the passes of the motion where there
+    are, and the fields of a result by name."""
     about: dict[str, Any] = {one.name: given.get(one.name) for one in fields(_About)}
+    if passes is not None:
+        about["share"] = passes.share
+        data = with_passes(data, passes)
     if account is not None:
         about["left_out"] = tuple(rows.left_out for rows in account)
         data = with_account(data, account)
@@ -85,9 +98,19 @@ def read_saved(path: str | Path) -> dict[str, Any]:
     if not file.is_file():
         raise OutputError(f"{file}: no such result; save writes one, and so does crankmbs run")
     try:
-        data = read_netcdf(file, {**_DIMS, **DIMS})
-        about = _ABOUT.validate_python(json.loads(data.attrs.pop("crankmbs")), context=SAVED)
+        data = read_netcdf(file, {**_DIMS, **DIMS, **MOTION_DIMS})
+        written = json.loads(data.attrs.pop("crankmbs"))
+        if isinstance(written, dict) and "scene" in written and "share" not in written:
+            raise OutputError(
+                f"{file}: was saved by an earlier version, without the motion between its samples; "
+                "run its scene again: crankmbs run SCENE"
+            )
+        about = _ABOUT.validate_python(written, context=SAVED)
         keep: Keep | None = None
+        motion: Callable[[], Passes] | None = None
+        if about.share is not None:
+            passes, data = passes_in(data, about.scene, about.share)
+            motion = partial(_itself, passes)
         if about.left_out is not None:
             account, data = account_in(data, about.scene, about.left_out)
             keep = partial(_itself, account)
@@ -96,8 +119,9 @@ def read_saved(path: str | Path) -> dict[str, Any]:
         raise OutputError(
             f"{file}: no readable result of crankmbs; give the result.nc that save wrote"
         ) from None
-    given = {name: value for name, value in vars(about).items() if name != "left_out"}
-    return {**given, "data": data, "keep": keep}
+    kept = {"left_out", "share"}
+    given = {name: value for name, value in vars(about).items() if name not in kept}
+    return {**given, "data": data, "keep": keep, "motion": motion}
 
 
 def _check_labels(data: xr.Dataset, scene: Scene) -> None:
@@ -114,8 +138,8 @@ def _check_labels(data: xr.Dataset, scene: Scene) -> None:
             raise ValueError(f"{name}: no unit or no error")
 
 
-def _itself(account: Account) -> Account:
-    return account
+def _itself(value: T) -> T:
+    return value
 
 
 _ABOUT = TypeAdapter(_About)

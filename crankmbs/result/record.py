@@ -16,6 +16,8 @@ from crankmbs.kept import write_rows
 from crankmbs.motion.account import Account, Keep
 from crankmbs.motion.base import Decay
 from crankmbs.motion.labels import cycles_dataset, events_dataset
+from crankmbs.motion.motion import Passes
+from crankmbs.motion.sampled import through_samples
 from crankmbs.result.about import Cost, Error, read_saved, write_saved
 from crankmbs.result.columns import data_frame, write_csv
 from crankmbs.scene.scene import Scene
@@ -45,6 +47,7 @@ class Result:
     message : the sentence that goes with the status
     decay : of a settled motion: the largest factor by which a disturbance changes in a period
     keep : makes the account of what happened on the way, of which `events` tells
+    motion : makes the passes of the motion as they were solved, of which `passes` has one copy
     """
 
     scene: Scene
@@ -57,6 +60,7 @@ class Result:
     error: Error
     decay: Decay | None = None
     keep: Keep | None = field(default=None, repr=False, compare=False)
+    motion: Callable[[], Passes] | None = field(default=None, repr=False, compare=False)
 
     @classmethod
     def unlabelled(cls, label: Callable[[], xr.Dataset], **fields: Any) -> Result:
@@ -95,7 +99,7 @@ class Result:
         two runs of different order differ by, infinite where there was one alone. Events that one
         of them has not, near the end of the run, are left out. So are all decisions on the fuel
         where they are more than 10,000, and other events beyond as many; ``attrs["left_out"]`` says
-        so. They are located by following the motion again, when they are first asked for.
+        so.
 
         Raises
         ------
@@ -123,8 +127,7 @@ class Result:
 
         Each ``error_estimate`` is the largest error over all: what two runs of different order
         differ by, looked at in different places, infinite where there was one alone. Of more than
-        10,000 cycles the last are kept; ``attrs["left_out"]`` says so. They are found by following
-        the motion again, when they are first asked for.
+        10,000 cycles the last are kept; ``attrs["left_out"]`` says so.
 
         Raises
         ------
@@ -141,6 +144,12 @@ class Result:
             raise InputError("nothing was kept of the way of this result; run the scene again")
         return self.keep()
 
+    @cached_property
+    def passes(self) -> Passes:
+        """The motion as it was solved, and the motions that check it; from the samples where a
+        formulation gives no more."""
+        return through_samples(self.data, self.scene) if self.motion is None else self.motion()
+
     def measures(self) -> Measures:
         """What the run amounts to over its last cycle: means, peaks, power, each with its error.
 
@@ -153,10 +162,10 @@ class Result:
 
         return measure(self)
 
-    def at(self, angle: float | str, *, cost_cap: float = 10.0) -> AtAngle:
+    def at(self, angle: float | str) -> AtAngle:
         """Every quantity where the last cycle passes a crank angle: [rad], or such as "60 deg".
 
-        As `crankmbs.at_angle`, which repeats the run up to there: nothing is interpolated.
+        As `crankmbs.at_angle`, which reads it from the motion as it was solved.
 
         Raises
         ------
@@ -167,7 +176,7 @@ class Result:
         """
         from crankmbs.compare import at_angle
 
-        return at_angle(self, angle, cost_cap=cost_cap)
+        return at_angle(self, angle)
 
     def interp(
         self, time: ArrayLike | None = None, crank_angle: ArrayLike | None = None
@@ -175,12 +184,12 @@ class Result:
         """Every variable but the energy residual between the samples: at times [s], or at crank
         angles [rad], unwrapped, each with its error.
 
-        As `crankmbs.measures.interp`: by the equation of motion, not by lines; also of a loaded
-        result, and without running anything again.
+        As `crankmbs.measures.interp`: by the polynomials that the motion was solved with, not by
+        lines; also of a loaded result, and without running anything again.
 
         Raises
         ------
-        InputError : outside the samples; where these do not tell what lies between them
+        InputError : outside the samples; an angle that is passed twice
 
         >>> simulate(load_scene("coasting")).interp(time=0.1234).sizes["time"]
         1
@@ -233,7 +242,8 @@ class Result:
         target = Path(folder)
         account = None if self.keep is None else self._account
         with together(target) as part:
-            write_saved(vars(self), self.data, account, part / "result.nc")
+            passes = None if self.motion is None else self.passes
+            write_saved(vars(self), self.data, account, passes, part / "result.nc")
             write_csv(self.data, part / "motion.csv")
             if self.keep is not None and self.events.sizes["event"]:
                 write_rows(self.events, part / "events.csv")

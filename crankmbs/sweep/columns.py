@@ -10,10 +10,7 @@ import numpy as np
 
 from crankmbs.compare import LECTURES, QUANTITIES, largest_deviations
 from crankmbs.errors import InputError
-from crankmbs.measures import Estimate, JointForce, Measures
-from crankmbs.measures.between import Between, refined
-from crankmbs.measures.span import measured_span
-from crankmbs.measures.summary import measured
+from crankmbs.measures import Estimate, JointForce, Measures, measure
 from crankmbs.mechanics.variables import variables_of
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
@@ -109,11 +106,10 @@ def row_of(result: Result, samples: int | None) -> Row:
     ------
     InputError : more samples
     """
-    motions = refined(result, measured_span(result).first)
-    row = _measured(measured(result, motions), result.scene)
+    row = _measured(measure(result), result.scene)
     row["relative_error"] = np.array(result.error.estimated)
     if result.scene.fuel is None:
-        row |= _lectured(result, motions)
+        row |= _lectured(result)
     if samples is not None:
         row |= _sampled(result, samples)
     return row
@@ -166,11 +162,11 @@ def _angle(joint: JointForce, period: float) -> float:
     return joint.crank_angle % period if joint.cycle_angle is None else joint.cycle_angle
 
 
-def _lectured(result: Result, motions: tuple[Between, ...]) -> Row:
+def _lectured(result: Result) -> Row:
     """Errors of the lectures, as far as they have one."""
     value, error = np.full((2, len(LECTURES), len(QUANTITIES)), np.nan)
     try:
-        found = largest_deviations(result, motions)
+        found = largest_deviations(result)
     except InputError:  # folded all the time
         return {}
     for (lecture, quantity), one in found.items():

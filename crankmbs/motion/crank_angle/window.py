@@ -14,6 +14,7 @@ from crankmbs.mechanics.inertia import fired_torque
 from crankmbs.mechanics.tabulated import tabulate
 from crankmbs.mechanics.torque import Branch, Course
 from crankmbs.motion.base import NOWHERE, Nodes, Points, Samples, State
+from crankmbs.motion.cells import Acting, Cells
 from crankmbs.motion.crank_angle import readout
 from crankmbs.motion.crank_angle.crossing import crossing
 from crankmbs.motion.crank_angle.errors import Errors, errors_of
@@ -51,6 +52,28 @@ class Window:
     landed: State = NOWHERE
     skipped: int = 0
     modes: tuple[tuple[int, Mode], ...] = ()
+
+    def cells(self) -> Cells:
+        """Its cells, the last one up to where it ends."""
+        (k, x), rule, sense = self.stop, self.grid.rule, self.sense
+        m = k + 1
+        strip, width = self.strip.first(m), self.strip.width[:m, None]
+        angle, energy, time, speed = np.empty((4, m, len(rule.nodes) + 2))
+        angle[:, 1:-1] = strip.angles(self.begin.theta, sense, rule)
+        energy[:, 1:-1] = self.energy[:m, None] + sense * width * (self.torque[:m] @ rule.matrix.T)
+        time[:, 1:-1] = self.time[:m, None] + width * (self.slowness[:m] @ rule.matrix.T)
+        speed[:, 1:-1] = sense / self.slowness[:m]
+        edges = self.begin.theta + sense * self.edges, self.energy, self.time
+        ends = *edges, self.speeds_at(np.arange(len(self.edges)))
+        for inside, at in zip((angle, energy, time, speed), ends, strict=True):
+            inside[:, 0], inside[:, -1] = at[:m], at[1 : m + 1]
+        acting = Acting(sense, phases=self.begin.mode.loads, loads=self.branch)
+        cells = Cells(time, angle, speed, acting, self.shares[:m], energy)
+        if x < 1.0:
+            last = cells.part(np.array([k]), np.zeros(1), np.array([x]))
+            cells = cells.first(k).joined(last)
+        cells.time[-1, -1], cells.angle[-1, -1] = self.end.time, self.end.theta
+        return cells
 
     def nodes(self) -> Nodes:
         """The whole cells, and the nodes of the collocation."""

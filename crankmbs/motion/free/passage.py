@@ -11,15 +11,15 @@ import numpy as np
 
 from crankmbs.motion.base import Piece, Samples, State
 from crankmbs.motion.ending import Ending
+from crankmbs.motion.events import Log
 from crankmbs.motion.plan import Chosen, Plan
 
-__all__ = ["Passage", "Watch"]
+__all__ = ["Passage"]
 
 _VAIN = 20  # as many reversals that reach no farther, and the end is not coming
 _SAMPLE = 200  # evaluations as costly as a sample of a swing
 
 AnyPiece = TypeVar("AnyPiece", bound=Piece)
-Watch = Callable[[Piece], None]
 
 
 class Passage:
@@ -27,17 +27,17 @@ class Passage:
 
     can_swing : whether a swing that reaches no farther is known to go on so for ever
     left : evaluations over time that are still allowed
-    watch : is shown every piece
+    log : of the events
     """
 
     def __init__(
-        self, plan: Plan, first: Samples, *, can_swing: bool, allowed: int, watch: Watch | None
+        self, plan: Plan, first: Samples, log: Log, *, can_swing: bool, allowed: int
     ) -> None:
-        self._plan, self._can_swing, self.left, self._watch = plan, can_swing, allowed, watch
+        self._plan, self._can_swing, self.left, self.log = plan, can_swing, allowed, log
         self._farthest, self._since = 0.0, 0  # reach [rad], and reversals that reached no farther
         self.turned_back = plan.start  # crank angle of the last reversal [rad]
         self._blocks, self._count = [first], 1
-        self._tail: deque[Piece] = deque()
+        self.pieces: deque[Piece] = deque()
         self.reversals = self.steps = self.evaluations = 0
 
     def follow(
@@ -70,8 +70,7 @@ class Passage:
                     return Ending.COSTLY
 
     def _add(self, piece: Piece) -> None:
-        if self._watch is not None:
-            self._watch(piece)
+        self.log.add(piece)
         self.steps += piece.steps
         self.evaluations += piece.evaluations
         if piece.end.omega == 0.0:
@@ -82,15 +81,14 @@ class Passage:
                 self._farthest, self._since = reach, 0
             self._since += 1
         if math.isinf(self._plan.last):
-            if self._tail and self._plan.in_time:
+            if self.pieces and self._plan.in_time:
                 self._blocks[-1] = self._begun_by(piece, self._blocks[-1])
             self._blocks.append(piece.sample(self._plan))
             self._count += len(self._blocks[-1].time)
             self._plan.room.check(self._count)
-            self._tail.clear()
-        self._tail.append(piece)
-        while abs(piece.end.theta - self._tail[0].end.theta) > self._plan.last:
-            self._tail.popleft()
+        self.pieces.append(piece)
+        while abs(piece.end.theta - self.pieces[0].end.theta) > self._plan.last:
+            self.pieces.popleft()
             self._blocks = []  # the sample at the start lies before what is kept
 
     def _begun_by(self, piece: Piece, before: Samples) -> Samples:
@@ -108,12 +106,12 @@ class Passage:
 
     def samples(self) -> Samples:
         """All samples, the last one exactly at the end."""
-        if not self._tail:
+        if not self.pieces:
             return self._blocks[0]
         blocks = self._blocks
         if math.isfinite(self._plan.last):
-            blocks = blocks + [piece.sample(self._plan) for piece in self._tail]
-        joined = Samples.joined([*blocks, self._tail[-1].last()])
+            blocks = blocks + [piece.sample(self._plan) for piece in self.pieces]
+        joined = Samples.joined([*blocks, self.pieces[-1].last()])
         kept = np.ones(len(joined.time), dtype=np.bool_)
         values = joined.time if self._plan.in_time else joined.theta
         if len(values) > 1:
@@ -126,4 +124,4 @@ class Passage:
     @property
     def state(self) -> State | None:
         """The state reached, None before the first piece."""
-        return self._tail[-1].end if self._tail else None
+        return self.pieces[-1].end if self.pieces else None

@@ -10,14 +10,17 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from crankmbs.mechanics.inertia import inertia_alone
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.variables import VARIABLES
+from crankmbs.motion.account import Account
 from crankmbs.motion.assemble import Assembled, assemble
-from crankmbs.motion.base import Solution
+from crankmbs.motion.base import Samples, Solution, State
 from crankmbs.motion.crank_angle.grid import Grid, grid_of
+from crankmbs.motion.cycles import MOST_CYCLES, Cycles, cycles_of
 from crankmbs.motion.ending import Ending
+from crankmbs.motion.events import events_of
 from crankmbs.motion.free.matching import match, stays
-from crankmbs.motion.free.recount import Leg, recount
 from crankmbs.motion.free.travel import (
     FINEST_STEP,
     Begin,
@@ -26,6 +29,7 @@ from crankmbs.motion.free.travel import (
     begin_at_start,
     travel,
 )
+from crankmbs.motion.motion import Motion, Passes
 from crankmbs.motion.plan import plan_of
 from crankmbs.motion.remarks import left_open
 from crankmbs.numerics.arrays import Array
@@ -101,21 +105,20 @@ def run(
             continue
         trail = answer.trail
         better = travel(grid.finer, way, 1e-2 * local, by_angle=by_angle, first=trail)
-        legs = [Leg(grid, local, trail.state)]
-        legs.append(Leg(grid.finer, 1e-2 * local, better.trail.state, trail))
+        passes = [_Made(grid, local, answer), _Made(grid.finer, 1e-2 * local, better)]
         solution = _solution(train.scene, answer, better, way)
         assembled = assemble(train, solution)
         if functions:
             other = _staggered(grid)
             staggered = travel(other, way, 0.1 * local, by_angle=by_angle, first=trail)
-            legs.append(Leg(other, 0.1 * local, staggered.trail.state, trail))
+            passes.append(_Made(other, 0.1 * local, staggered))
             again = assemble(train, _solution(train.scene, answer, staggered, way))
             assembled = _stated_twice(assembled, again)
         near = local <= 10.0 * finest
         estimate = assembled.relative_error * (2.0 if near else 1.0)
         if estimate <= least:
             best, least, rounded = assembled, estimate, near
-            followed = tuple(legs)
+            followed = tuple(passes)
         if estimate <= rtol or local <= finest or answer.ending in _BROKEN:
             break
         local = max(local * max(1e-3, 0.1 * rtol / estimate), finest)
@@ -125,12 +128,48 @@ def run(
         # what is left is rounding, in both passes alike, and their difference too small an estimate
         best = _doubled(best)
         share *= 2.0
-    keep = partial(recount, partial(travel, by_angle=by_angle), way, followed, share)
-    solution = replace(best.solution, keep=keep)
+    first, *others = (Motion(one.grid.train, [*one.made.path.pieces]) for one in followed)
+    motion = Passes(first, tuple(others), share)
+    keep = partial(_account, followed, way, share, by_angle=by_angle)
+    solution = replace(best.solution, keep=keep, motion=lambda: motion)
     if best.relative_error > rtol and solution.status >= 0:
         text = f"asked for {rtol:.0e}, reached {best.relative_error:.0e}"
         solution = replace(solution, message=f"{solution.message}; {text}")
     return replace(best, solution=solution)
+
+
+class _Made(NamedTuple):
+    """A pass, and what it was made with: the grid, and what it might err locally."""
+
+    grid: Grid
+    local: float
+    made: Pass
+
+
+def _account(passes: tuple[_Made, ...], way: Way, share: float, *, by_angle: bool) -> Account:
+    """The events of a motion and its whole cycles; where its pieces were not kept it is followed
+    once more."""
+    cycles, trail = [], passes[0].made.trail
+    for k, (grid, local, made) in enumerate(passes):
+        scene = grid.train.scene
+
+        def kinetic(at: Samples, scene: Scene = scene) -> Array:
+            return np.asarray(0.5 * inertia_alone(scene, at.theta) * at.omega**2)
+
+        if math.isfinite(way.plan.last):
+            plan = replace(way.plan, last=(MOST_CYCLES + 1) * scene.period)
+            again = Way(partial(_given, made.trail.state), plan, way.allowed)
+            first = None if k == 0 else trail
+            made = travel(grid, again, local, by_angle=by_angle, first=first)
+        cycles.append(Cycles(grid.train, made.trail.state.theta, kinetic, finer=k > 0))
+        for piece in made.path.pieces:
+            cycles[-1].add(piece)
+    events = events_of([one.made.path.log for one in passes], share)
+    return Account(events, cycles_of(cycles, share))
+
+
+def _given(state: State, _grid: Grid, _local: float) -> State:
+    return state
 
 
 def _staggered(grid: Grid) -> Grid:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
 from functools import cache, partial
 from typing import NamedTuple
 
@@ -22,8 +21,9 @@ from crankmbs.motion.crank_angle import loops
 from crankmbs.motion.crank_angle.grid import Grid
 from crankmbs.motion.crank_angle.window import Window
 from crankmbs.motion.ending import Ending
+from crankmbs.motion.events import Log
 from crankmbs.motion.first import first_sample
-from crankmbs.motion.free.passage import Passage, Watch
+from crankmbs.motion.free.passage import Passage
 from crankmbs.motion.minimal import advance as minimal
 from crankmbs.motion.minimal.reduced import Reduced
 from crankmbs.motion.mode import begun
@@ -44,15 +44,11 @@ FINEST_STEP = 1e-15  # what rounding leaves of a step over time
 
 
 class Way(NamedTuple):
-    """What a pass follows: from where, sampled how, and the evaluations over time it may take.
-
-    watch : is shown every piece, of which then only the last is kept
-    """
+    """What a pass follows: from where, sampled how, and the evaluations over time it may take."""
 
     begin: Begin
     plan: Plan
     allowed: int
-    watch: Watch | None = None
 
 
 class Trail(NamedTuple):
@@ -98,8 +94,10 @@ def travel(
     same = first is not None and first.begin.omega[0] == state.omega
     of_angle = float(grid.at(state.mode.loads).outside(np.asarray(state.theta)))
     begin = first.begin if first and same else first_sample(grid.train, state, of_angle)
-    kept = plan if way.watch is None else replace(plan, last=0.0)
-    path = Passage(kept, begin, can_swing=steady, allowed=way.allowed, watch=way.watch)
+    log = Log(grid.train)
+    if not scene.settles:  # a periodic motion has no start: what acts was decided before
+        log.start(state)
+    path = Passage(plan, begin, log, can_swing=steady, allowed=way.allowed)
     if first:  # it begins a rounding ahead: so the difference knows what the motion makes of one
         ahead = math.copysign(ANGLE_ROUNDING * state.theta, state.omega or float(begin.alpha[0]))
         state = state._replace(theta=state.theta + ahead)
@@ -138,6 +136,7 @@ def travel(
         over_time = not over_time
     if ending is Ending.COMPLETE and plan.folds_at((path.state or state).theta):
         ending = Ending.FOLD
+    log.close(ending, path.state or begun_in)
     trail = Trail(begun_in, begin, tuple(fast))
     return Pass(trail, path.samples(), ending, path, worst, slow if by_angle else [])
 

@@ -13,17 +13,20 @@ from crankmbs.mechanics.friction import friction_forces, friction_torque, held_s
 from crankmbs.mechanics.inertia import reduce
 from crankmbs.mechanics.torque import Branch
 from crankmbs.motion.base import Nodes, Points, Samples, State
+from crankmbs.motion.cells import Acting, Cells
 from crankmbs.motion.minimal import stepper
 from crankmbs.motion.minimal.reduced import KnotPair, Reduced
 from crankmbs.motion.minimal.system import System
 from crankmbs.motion.mode import decided
 from crankmbs.motion.plan import Wanted
 from crankmbs.numerics.arrays import Array
+from crankmbs.numerics.lagrange import ends_and_nodes
 from crankmbs.numerics.roots import invert_monotone
 from crankmbs.scene.units import DEGREE
 
 __all__ = ["BALANCED", "Equation", "Stretch", "Track"]
 
+_STAGES = 8  # of the rule at whose nodes, and at both ends, a step of degree 7 is told
 _GAUSS = np.polynomial.legendre.leggauss(8)  # what a step's polynomials give is of degree 15
 _PLACES, _WEIGHTS = 0.5 * (1.0 + _GAUSS[0]), 0.5 * _GAUSS[1]
 
@@ -164,6 +167,19 @@ class Stretch:
     def evaluations(self) -> int:
         """Evaluations of the equation of motion."""
         return self.track.evaluations
+
+    def cells(self) -> Cells:
+        """Its steps as cells of a motion."""
+        track, places = self.track, ends_and_nodes(_STAGES).places
+        edges = np.append(track.begins, self.end.time)
+        time = track.begins[:, None] + np.diff(edges)[:, None] * places
+        steps = np.repeat(np.arange(self.steps), len(places))
+        angle, speed, _ = track.at(time.ravel(), steps).reshape(3, *time.shape)
+        time[:, -1], angle[-1, -1], speed[-1, -1] = edges[1:], self.end.theta, self.end.omega
+        sense = float(np.sign(self.end.theta - self.begin.theta))
+        mode, loads = self.begin.mode, self.equation.branch
+        acting = Acting(sense, sense == 0.0, mode.loads, loads)
+        return Cells(time, angle, speed, acting, np.tile(mode.shares, (self.steps, 1)))
 
     def nodes(self) -> Nodes:
         """The steps, and Gauss points in them."""

@@ -1,0 +1,252 @@
+"""The variables at the ends and nodes of a motion's cells, and what is read off them: integrals
+over time, of magnitudes too, and largest values.
+
+Cells end where pressures, loads over the angle or friction bend or jump, so that all is smooth in
+them. Integrals are those of the Gauss rule the motion was solved with. A magnitude bends where it
+comes near zero: there its parts are, as polynomials, integrated in panels that narrow towards its
+least value. A largest value is sought on the polynomial through the nodes and evaluated there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from crankmbs.mechanics.friction import friction_knots
+from crankmbs.mechanics.torque import knots_over_angle
+from crankmbs.mechanics.train import CrankTrain, crank_angle_knots
+from crankmbs.motion.cells import Cells, States
+from crankmbs.motion.motion import Motion
+from crankmbs.numerics.arrays import Array, Index
+from crankmbs.numerics.lagrange import ends_and_nodes
+from crankmbs.numerics.once import once
+from crankmbs.scene.units import DEGREE
+
+__all__ = ["Nodes", "Tops", "nodes_of"]
+
+_WIDEST = 6.0 * DEGREE  # of a cell: in a wider one, of steps over time, forces are no polynomials
+_FINE = 6  # places a node at which polynomials are looked at
+_NEAR = 2.0  # a magnitude that comes nearer to zero than this part of what it changes by bends
+_PANELS = 20  # halvings of a cell towards the least value of a magnitude, on either side
+_POINTS = 6  # of Gauss in each of them
+_REFINED = 3  # steps of a parabola towards the top of a polynomial
+
+Rows = Callable[[dict[str, Array]], Array]
+
+
+class Tops(NamedTuple):
+    """The largest values of q quantities, and the crank angles [rad] and times [s] where they are,
+    shape (q,) each."""
+
+    value: Array
+    angle: Array
+    time: Array
+
+
+class _Block(NamedTuple):
+    """Cells of one kind, and which of all points are theirs."""
+
+    cells: Cells
+    points: slice
+
+    def of(self, values: Array) -> Array:
+        """Values at points, shape (..., p), by cell and node."""
+        return values[..., self.points].reshape(*values.shape[:-1], *self.cells.time.shape)
+
+
+class Nodes:
+    """Every variable at the nodes and ends of the cells of a motion.
+
+    variables : by name, shape (p,) or (p, cylinders)
+    duration, turned : shape (p,) [s, rad], weights of the integrals over time and crank angle; zero
+        at ends
+    """
+
+    def __init__(self, motion: Motion, widest: float) -> None:
+        self.motion, self.train = motion, motion.train
+        marks, first = _marks(motion.train, widest), 0
+        self._blocks: list[_Block] = []
+        for stretch in motion.cells:
+            turned = np.abs(stretch.angle[:, -1] - stretch.angle[:, 0])
+            wide = int(np.max(turned, initial=0.0) > 1.01 * widest)
+            cells = stretch.cut_at(marks[wide], motion.train.period)
+            self._blocks.append(_Block(cells, slice(first, first + cells.time.size)))
+            first += cells.time.size
+        self.states = _states(self.train, self._blocks)
+        self.variables = self.states.variables(self.train)
+        weights = [(b.cells.spent * b.cells.weights).ravel() for b in self._blocks]
+        self.duration = np.concatenate(weights)
+        self.turned = self.duration * self.states.speed
+
+    def integral(self, values: Array) -> Array:
+        """Over time, of values at the points, shape (p, ...)."""
+        return np.asarray(np.tensordot(self.duration, values, (0, 0)))
+
+    def magnitude(self, parts: Array) -> Array:
+        """Integral over time of the magnitudes of q vectors, shape (q,).
+
+        parts : shape (q, c, p), their c components at the points
+        """
+        total = np.sqrt((parts**2).sum(axis=1)) @ self.duration
+        for block in self._blocks:
+            total += _bent(block, block.of(parts))
+        return np.asarray(total)
+
+    def tops(self, rows: Rows) -> Tops:
+        """The largest values of q quantities over the motion.
+
+        rows : from variables by name at any points to the quantities, shape (q, points)
+        """
+        values = rows(self.variables)
+        at_node = np.argmax(values, axis=1)
+        q = np.arange(len(values))
+        best = values[q, at_node]
+        angle, time = self.states.angle[at_node], self.states.time[at_node]
+        block, cell, near, at_end = self._sought(values)
+        inwards = np.where(near < 0.5, 2.0 * near, 2.0 * near - 1.0)
+        states = self._at(block, cell, near, np.where(at_end, inwards, near))
+        there = rows(states.variables(self.train))
+        at_top, inside = there[q, q], there[q, q + len(q)]
+        # at the end of a cell the values a hair and two inside are continued to it
+        higher = at_top + np.maximum(at_top - inside, 0.0)
+        more = higher > best
+        return Tops(
+            np.where(more, higher, best),
+            np.where(more, states.angle[q], angle),
+            np.where(more, states.time[q], time),
+        )
+
+    def _sought(self, values: Array) -> tuple[Index, Index, Array, np.ndarray]:
+        """Block, cell and place of the top of each quantity's polynomials; whether it is an end."""
+        count = len(values)
+        top, block = np.full(count, -np.inf), np.zeros(count, np.intp)
+        cell, place, ends = np.zeros(count, np.intp), np.zeros(count), np.zeros(count, bool)
+        for number, one in enumerate(self._blocks):
+            high, k, x, at_end = _highest(one.cells, one.of(values))
+            more = high > top
+            top, block = np.where(more, high, top), np.where(more, number, block)
+            cell, place = np.where(more, k, cell), np.where(more, x, place)
+            ends = np.where(more, at_end, ends)
+        return block, cell, place, ends
+
+    def _at(self, block: Index, cell: Index, first: Array, second: Array) -> States:
+        """The motion at two places each of some cells, the first ones before all second ones."""
+        parts, order = [], []
+        for number in np.unique(block):
+            which = np.flatnonzero(block == number)
+            k = np.tile(cell[which], 2)
+            x = np.concatenate([first[which], second[which]])
+            parts.append(self._blocks[number].cells.states(self.train, k, x))
+            order += [which, which + len(block)]
+        return States.joined(parts, np.argsort(np.concatenate(order)))
+
+
+@once
+def nodes_of(motion: Motion, widest: float = _WIDEST) -> Nodes:
+    """The nodes of a motion in cells no wider than an angle [rad], made once."""
+    return Nodes(motion, widest)
+
+
+def _marks(train: CrankTrain, widest: float) -> tuple[Array, Array]:
+    """Crank angles [rad] of one period at which cells end, and those of wide cells."""
+    knots = [crank_angle_knots(train), knots_over_angle(train), friction_knots(train)]
+    marks = np.concatenate(knots)
+    even = np.arange(0.0, train.period, widest)
+    return marks, np.concatenate([marks, even])
+
+
+def _states(train: CrankTrain, blocks: Sequence[_Block]) -> States:
+    parts = []
+    for one in blocks:
+        k = np.repeat(np.arange(len(one.cells.time)), one.cells.time.shape[1])
+        parts.append(one.cells.states(train, k, one.cells.inner().ravel()))
+    return States.joined(parts)
+
+
+def _highest(cells: Cells, values: Array) -> tuple[Array, Index, Array, np.ndarray]:
+    """The top of polynomials through values, shape (q, m, n): value, cell and place, and whether
+    that is a hair from the end of the cell."""
+    n = len(cells.places)
+    polynomials, inner = ends_and_nodes(n - 2), cells.inner()
+    fine = np.linspace(0.0, 1.0, _FINE * n + 1)
+    highest, lowest = values.max(axis=-1), values.min(axis=-1)
+    # a polynomial goes hardly farther beyond its values than they lie apart
+    which, k = np.nonzero(2.0 * highest - lowest >= highest.max(axis=1, keepdims=True))
+    heights = values[which, k] @ polynomials.basis(fine).T
+    order = np.lexsort((-heights.max(axis=1), which))
+    first = order[np.searchsorted(which[order], np.arange(len(values)))]
+    cell, at = k[first], np.argmax(heights[first], axis=1)
+    x, step = fine[at], np.full(len(values), fine[1])
+    rows = values[np.arange(len(values)), cell]
+
+    def height(x: Array) -> Array:
+        return np.asarray(np.einsum("qn,qn->q", polynomials.basis(x), rows))
+
+    for _ in range(_REFINED):
+        x = np.clip(x, step, 1.0 - step)
+        low, middle, high = height(x - step), height(x), height(x + step)
+        bend = low - 2.0 * middle + high
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ahead = np.where(bend < 0.0, 0.5 * (low - high) / bend, np.sign(high - low))
+        x, step = x + step * np.clip(ahead, -1.0, 1.0), 0.1 * step
+    hair = inner[cell, 0]
+    at_end = (x <= hair) | (x >= 1.0 - hair)
+    x = np.clip(x, hair, 1.0 - hair)
+    return height(x), cell, x, at_end
+
+
+def _bent(block: _Block, parts: Array) -> Array:
+    """What the rule of the cells misses of the magnitudes, shape (q,), of parts at their nodes,
+    shape (q, c, m, n), in those cells where they come near zero."""
+    cells = block.cells
+    n = len(cells.places)
+    polynomials = ends_and_nodes(n - 2)
+    fine = np.linspace(0.0, 1.0, _FINE * n + 1)
+    squares, changes = (parts**2).sum(axis=1), np.ptp(parts, axis=-1)
+    least = squares.min(axis=-1) < _NEAR**2 * (changes**2).sum(axis=1)
+    which, k = np.nonzero(least & (squares.max(axis=-1) > 0.0))
+    missed = np.zeros(len(parts))
+    if len(k) == 0:
+        return missed
+    rows = parts[which, :, k]  # (f, c, n)
+    sizes = ((rows @ polynomials.basis(fine).T) ** 2).sum(axis=1)
+    x = _least(rows, fine[np.argmin(sizes, axis=1)], fine[1], n)
+    x, weight = _graded(x)
+    basis = polynomials.basis(x.ravel()).reshape(*x.shape, n)
+    size = np.sqrt((np.einsum("fcn,fpn->fcp", rows, basis) ** 2).sum(axis=1))
+    spent = np.einsum("fn,fpn->fp", cells.spent[k], basis)
+    exact = (size * spent * weight).sum(axis=1)
+    by_rule = (np.sqrt((rows**2).sum(axis=1)) * cells.spent[k]) @ cells.weights
+    np.add.at(missed, which, exact - by_rule)
+    return missed
+
+
+def _least(rows: Array, x: Array, step: float, n: int) -> Array:
+    """Where polynomial vectors, shape (f, c, n), are least, near places x, shape (f,)."""
+    polynomials = ends_and_nodes(n - 2)
+    slopes = rows @ polynomials.slopes.T
+    bends = slopes @ polynomials.slopes.T
+    low, high = np.clip(x - step, 0.0, 1.0), np.clip(x + step, 0.0, 1.0)
+    for _ in range(_REFINED + 3):
+        basis = polynomials.basis(x)
+        at, rise, bend = (np.einsum("fcn,fn->fc", r, basis) for r in (rows, slopes, bends))
+        slope = (at * rise).sum(axis=1)
+        steep = (rise**2 + at * bend).sum(axis=1)
+        moved = np.divide(slope, steep, out=np.zeros_like(slope), where=steep > 0.0)
+        x = np.clip(x - moved, low, high)
+    return x
+
+
+def _graded(middle: Array) -> tuple[Array, Array]:
+    """Points and weights of Gauss in panels of the unit interval that halve towards a place in it,
+    shape (f,) -> (f, points)."""
+    nodes, weights = np.polynomial.legendre.leggauss(_POINTS)
+    nodes, weights = 0.5 * (1.0 + nodes), 0.5 * weights
+    ends = np.concatenate([[0.0], 0.5 ** np.arange(_PANELS, -1, -1)])
+    inside = (ends[:-1, None] + np.diff(ends)[:, None] * nodes).ravel()
+    share = (np.diff(ends)[:, None] * weights).ravel()
+    m = middle[:, None]
+    x = np.concatenate([m - m * inside, m + (1.0 - m) * inside], axis=1)
+    return x, np.concatenate([m * share, (1.0 - m) * share], axis=1)

@@ -1,0 +1,265 @@
+"""Cells of a solved motion, and the state anywhere in them by the polynomials it was solved with.
+
+In a cell time and crank angle, and energy or speed, are polynomials of a place x from 0 to 1, given
+by their values at both ends and at the nodes of a Gauss rule. What follows from them, acceleration,
+torques and the friction on the pistons, is algebra with what acts in the cell.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from crankmbs.mechanics.friction import friction_forces, friction_torque, held_share
+from crankmbs.mechanics.knots import KNOT, repeat
+from crankmbs.mechanics.reactions import reactions
+from crankmbs.mechanics.tabulated import tabulate
+from crankmbs.mechanics.torque import Branch, Course, over_angle
+from crankmbs.mechanics.train import CrankTrain
+from crankmbs.mechanics.windows import Phases
+from crankmbs.numerics.arrays import Array, Index
+from crankmbs.numerics.lagrange import Lagrange, ends_and_nodes
+
+__all__ = ["Acting", "Cells", "States"]
+
+_INSIDE = 2.0 * KNOT  # rad: so far from the end of a cell nothing counts as on a knot there
+_MOST = 0.25  # of a cell
+_ROWS = ("time", "angle", "speed", "shares", "energy", "acceleration", "outside")
+
+
+class Acting(NamedTuple):
+    """What acts in cells, the same in all of them.
+
+    sense : of rotation; holds : whether the crank is at rest and held
+    phases : of the loads' windows; loads : their torque over time and speed, with functions; None
+        where the torque from outside is what the given acceleration takes
+    """
+
+    sense: float
+    holds: bool = False
+    phases: Phases = ()
+    loads: Branch | Course | None = None
+
+
+class States(NamedTuple):
+    """The motion at points, shape (p,) each [s, rad, rad/s, rad/s2, N m].
+
+    external_torque : None where it is what the acceleration takes
+    fuel : shares of the combustion, friction : on every piston [N], shape (p, cylinders); or None
+    """
+
+    time: Array
+    angle: Array
+    speed: Array
+    acceleration: Array
+    external_torque: Array | None
+    fuel: Array | None
+    friction: Array | None
+
+    @staticmethod
+    def joined(parts: Sequence[States], order: Index | slice = slice(None)) -> States:
+        """States one after the other, then in an order."""
+        rows: list[Any] = [
+            None if row[0] is None else np.concatenate(row)[order]
+            for row in zip(*parts, strict=True)
+        ]
+        return States(*rows)
+
+    def variables(self, train: CrankTrain) -> dict[str, Array]:
+        """Every variable of a result by name but the energy residual, shape (p,) or
+        (p, cylinders)."""
+        motion = self.angle, self.speed, self.acceleration
+        values = reactions(train, *motion, self.fuel, self.friction)
+        values |= {"time": self.time, "crank_angle": self.angle}
+        values |= {"crank_speed": self.speed, "crank_acceleration": self.acceleration}
+        if self.external_torque is not None:
+            values["external_torque"] = self.external_torque
+        if self.fuel is not None:
+            values["fuel"] = self.fuel
+        return values
+
+
+@dataclass(frozen=True, eq=False)
+class Cells:
+    """Consecutive cells in the order in which they are passed, in one sense of rotation.
+
+    time, angle, speed : shape (m, n) [s, rad, rad/s], at the n - 2 nodes of a Gauss rule and at
+        both ends
+    energy : shape (m, n) [J]; where there is one it is the polynomial, and the speed follows
+    shares : shape (m, cylinders), of the combustion; (m, 0) without fuel
+    acceleration : shape (m, n) [rad/s2], where it is given and not what the torques make
+    outside : shape (m, n) [N m], the torque of the loads where these are known at the nodes alone
+    """
+
+    time: Array
+    angle: Array
+    speed: Array
+    acting: Acting
+    shares: Array
+    energy: Array | None = None
+    acceleration: Array | None = None
+    outside: Array | None = None
+
+    @property
+    def places(self) -> Array:
+        """Of ends and nodes, shape (n,)."""
+        return self._polynomials.places
+
+    @property
+    def weights(self) -> Array:
+        """Of the Gauss rule, shape (n,), zero at the ends."""
+        return self._polynomials.weights
+
+    @property
+    def _polynomials(self) -> Lagrange:
+        return ends_and_nodes(self.time.shape[1] - 2)
+
+    @property
+    def spent(self) -> Array:
+        """dt/dx at ends and nodes [s], shape (m, n)."""
+        return np.asarray((self.time - self.time[:, :1]) @ self._polynomials.slopes.T)
+
+    def place(self, k: Index, values: Array, *, in_time: bool) -> Array:
+        """Where in the cells k times [s], or else angles [rad], are passed, shape (p,)."""
+        return self._polynomials.inverse(self.time if in_time else self.angle, k, values)
+
+    def part(self, k: Index, low: Array, high: Array) -> Cells:
+        """Parts of cells, each from a place in it to another, as cells; shape (p,) each."""
+        shape = len(k), len(self.places)
+        basis = self._basis(low[:, None] + (high - low)[:, None] * self.places)
+        cell = np.repeat(k, shape[1])
+
+        def cut(rows: Array) -> Array:
+            return self._polynomials.values(rows, cell, basis).reshape(shape)
+
+        return replace(
+            self,
+            time=cut(self.time),
+            angle=cut(self.angle),
+            speed=cut(self.speed),
+            shares=self.shares[k],
+            energy=None if self.energy is None else cut(self.energy),
+            acceleration=None if self.acceleration is None else cut(self.acceleration),
+            outside=None if self.outside is None else cut(self.outside),
+        )
+
+    def first(self, m: int) -> Cells:
+        """The first m cells."""
+        return self._with(lambda row: row[:m])
+
+    def joined(self, after: Cells) -> Cells:
+        """These cells and others after them in which the same acts."""
+        rows: dict[str, Any] = {}
+        for name in _ROWS:
+            row = getattr(self, name)
+            rows[name] = None if row is None else np.concatenate([row, getattr(after, name)])
+        return replace(self, **rows)
+
+    def since(self, k: int, x: float = 0.0) -> Cells:
+        """The cells from a place in cell k on."""
+        rest = self._with(lambda row: row[k:])
+        if x == 0.0:
+            return rest
+        first = self.part(np.array([k]), np.array([x]), np.ones(1))
+        return first.joined(rest.since(1))
+
+    def _with(self, function: Callable[[Array], Array]) -> Cells:
+        """With a function of all its rows in their place."""
+        rows: dict[str, Any] = {}
+        for name in _ROWS:
+            row = getattr(self, name)
+            rows[name] = None if row is None else function(row)
+        return replace(self, **rows)
+
+    def cut_at(self, knots: Array, period: float) -> Cells:
+        """The cells with ends at all knots [rad], given over one period, that lie inside them."""
+        begin, end = self.angle[:, 0], self.angle[:, -1]
+        sense, bounds = self.acting.sense, (float(self.angle.min()), float(self.angle.max()))
+        if sense == 0.0 or len(knots) == 0:
+            return self
+        inside = sense * repeat(knots, period, *bounds)
+        cell = np.searchsorted(sense * begin, inside, side="right") - 1
+        reach = np.minimum(inside - sense * begin[cell], sense * end[cell] - inside)
+        cell, inside = cell[reach > KNOT], inside[reach > KNOT]
+        if len(cell) == 0:
+            return self
+        x = self.place(cell, sense * inside, in_time=False)
+        order = np.lexsort((x, cell))
+        return self._cut(cell[order], x[order])
+
+    def _cut(self, cell: Index, x: Array) -> Cells:
+        """The cells with ends at places in some of them, in their order, shape (p,) each."""
+        at = cell + np.arange(len(cell)) + 1  # of the later parts among all
+        parts = np.insert(np.arange(len(self.time)), cell + 1, cell)
+        low, high = np.zeros(len(parts)), np.ones(len(parts))
+        low[at], high[at - 1] = x, x
+        return self.part(parts, low, high)
+
+    def cut_where_it_turns(self) -> Cells:
+        """The cells with ends where the speed changes its sign between theirs."""
+        k = np.flatnonzero(self.speed[:, 0] * self.speed[:, -1] < 0.0)
+        if len(k) == 0:
+            return self
+        x = self._polynomials.inverse(self.speed, k, np.zeros(len(k)))
+        return self._cut(k, x)
+
+    def inner(self) -> Array:
+        """Places of nodes, and of the ends a hair inside, shape (m, n): there everything counts as
+        it is in the cell."""
+        turned = np.abs(self.angle[:, -1] - self.angle[:, 0])
+        hair = np.zeros_like(turned)
+        np.divide(_INSIDE, turned, out=hair, where=turned > 0.0)
+        places = np.tile(self.places, (len(turned), 1))
+        places[:, 0] = np.minimum(hair, _MOST)
+        places[:, -1] = 1.0 - places[:, 0]
+        return places
+
+    def states(self, train: CrankTrain, k: Index, x: Array) -> States:
+        """The motion at places in the cells k, shape (p,) each."""
+        basis, polynomials = self._basis(x), self._polynomials
+        time, angle = (polynomials.values(rows, k, basis) for rows in (self.time, self.angle))
+        shares = self.shares[k] if self.shares.shape[1] else None
+        reduction = tabulate(train, angle, shares)
+        sense = self.acting.sense
+        if self.energy is None:
+            speed = polynomials.values(self.speed, k, basis)
+        else:
+            energy = np.maximum(polynomials.values(self.energy, k, basis), 0.0)
+            speed = sense * np.sqrt(2.0 * energy / reduction.inertia)
+        slides = np.full_like(speed, sense)
+        outside, rate = None, None
+        if self.outside is not None:
+            outside = polynomials.values(self.outside, k, basis)
+        elif self.acting.loads is not None:
+            outside = self._outside(train, time, angle, speed)
+        if outside is not None:
+            if self.acting.holds and train.scene.friction is not None:
+                given = reduction.torque + outside
+                share = held_share(train, float(angle[0]), given, tuple(self.shares[0].tolist()))
+                slides = np.clip(share, -1.0, 1.0)
+            rubbed = friction_torque(train, angle, speed, slides, shares)
+            rest = reduction.rest(speed) + rubbed
+            outside = -rest if self.acting.holds else outside
+            rate = (rest + outside) / reduction.inertia
+        if self.acceleration is not None:
+            rate = polynomials.values(self.acceleration, k, basis)
+        assert rate is not None
+        friction = None
+        if train.scene.friction is not None:
+            friction = friction_forces(train, angle, speed, shares, slides)
+        return States(time, angle, speed, rate, outside, shares, friction)
+
+    def _basis(self, x: Array) -> Array:
+        return self._polynomials.basis(x.ravel())
+
+    def _outside(self, train: CrankTrain, time: Array, angle: Array, speed: Array) -> Array:
+        """Torque of all loads that act [N m]."""
+        loads, of_angle = self.acting.loads, over_angle(train.scene, self.acting.phases)
+        assert loads is not None
+        outside = loads(time, speed) + (0.0 if of_angle is None else of_angle(angle))
+        for function in loads.functions:
+            outside = outside + function(time, angle, speed)
+        return np.asarray(outside)

@@ -1,0 +1,137 @@
+"""A solved motion: the cells it was solved in, as a function of time and of crank angle."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from functools import cached_property
+from typing import NamedTuple, Protocol
+
+import numpy as np
+
+from crankmbs.mechanics.train import CrankTrain
+from crankmbs.motion.cells import Cells, States
+from crankmbs.numerics.arrays import Array
+
+__all__ = ["Motion", "Passes"]
+
+_SAME_ANGLE = 1e-9  # rad: rounding of an angle must not lose a cycle
+
+
+class _Solved(Protocol):
+    """A stretch of a motion that can give its cells."""
+
+    def cells(self) -> Cells:
+        """All of them."""
+
+
+class Motion:
+    """A rotation as it was solved, from its begin to its end, or what is kept of it.
+
+    train : the machine that moves
+    """
+
+    def __init__(self, train: CrankTrain, pieces: Sequence[_Solved | Cells]) -> None:
+        self.train = train
+        self._pieces = list(pieces)
+        self._solved: dict[int, Cells] = {}
+
+    @cached_property
+    def cells(self) -> tuple[Cells, ...]:
+        """All cells, stretch by stretch."""
+        return tuple(self._cells(k) for k in range(len(self._pieces)))
+
+    def _cells(self, k: int) -> Cells:
+        """Of one stretch, made when they are first asked for."""
+        piece = self._pieces[k]
+        if isinstance(piece, Cells):
+            return piece
+        if k not in self._solved:
+            self._solved[k] = piece.cells()
+        return self._solved[k]
+
+    @property
+    def begin(self) -> float:
+        """Time [s] at which it begins."""
+        return float(self._cells(0).time[0, 0])
+
+    @property
+    def end(self) -> float:
+        """Time [s] at which it ends."""
+        return float(self._cells(len(self._pieces) - 1).time[-1, -1])
+
+    @property
+    def turned(self) -> float:
+        """Crank angle at its end less that at its begin [rad]."""
+        first, last = self._cells(0), self._cells(len(self._pieces) - 1)
+        return float(last.angle[-1, -1] - first.angle[0, 0])
+
+    @property
+    def turns_one_way(self) -> bool:
+        """Whether the crank neither rests nor turns back."""
+        senses = {each.acting.sense for each in self.cells}
+        return len(senses) == 1 and 0.0 not in senses
+
+    def at(self, values: Array, *, in_time: bool) -> States:
+        """The motion at times [s], or else at crank angles [rad], shape (p,) in any order.
+
+        At a time at which something jumps it is the motion before. Values beyond an end are taken
+        at the end. By angles only where the crank turns one way.
+        """
+        sense = 1.0 if in_time else self.cells[0].acting.sense
+        rows = [each.time if in_time else each.angle for each in self.cells]
+        ends = sense * np.concatenate([row[:, -1] for row in rows])
+        cell = np.minimum(np.searchsorted(ends, sense * values), len(ends) - 1)
+        counts = np.cumsum([len(row) for row in rows])
+        piece = np.searchsorted(counts, cell, side="right")
+        parts, order = [], []
+        for number in np.unique(piece):
+            of_piece = np.flatnonzero(piece == number)
+            cells = self.cells[number]
+            k = cell[of_piece] - (counts[number] - len(rows[number]))
+            x = cells.place(k, values[of_piece], in_time=in_time)
+            states = cells.states(self.train, k, x)
+            exact = "time" if in_time else "angle"
+            parts.append(states._replace(**{exact: values[of_piece]}))
+            order.append(of_piece)
+        return States.joined(parts, np.argsort(np.concatenate(order)))
+
+    def after(self, time: float) -> Motion:
+        """Its part from a time [s] on."""
+        for number in reversed(range(len(self._pieces))):
+            cells = self._cells(number)
+            if cells.time[0, 0] <= time or number == 0:
+                k = max(int(np.searchsorted(cells.time[:, 0], time, side="right")) - 1, 0)
+                at = np.array([max(time, float(cells.time[k, 0]))])
+                x = float(cells.place(np.array([k]), at, in_time=True)[0])
+                return Motion(self.train, [cells.since(k, x), *self._pieces[number + 1 :]])
+        return self
+
+    def last(self, turned: float) -> Motion | None:
+        """Its end, in which the crank turns through an angle [rad]; None where it does not."""
+        final = float(self._cells(len(self._pieces) - 1).angle[-1, -1])
+        for number in reversed(range(len(self._pieces))):
+            cells = self._cells(number)
+            away = np.abs(final - cells.angle[:, 0])
+            before = np.flatnonzero(away >= turned - _SAME_ANGLE)
+            if len(before):
+                k = int(before[-1])
+                x = 0.0
+                if away[k] > turned + _SAME_ANGLE:
+                    wanted = final + math.copysign(turned, cells.angle[k, 0] - final)
+                    x = float(cells.place(np.array([k]), np.array([wanted]), in_time=False)[0])
+                return Motion(self.train, [cells.since(k, x), *self._pieces[number + 1 :]])
+        return None
+
+
+class Passes(NamedTuple):
+    """A motion that was solved several times: the answer, others that check it, and the share of
+    the largest difference that is stated as error.
+
+    The error of any number read from the motion is that share of the largest difference from the
+    same number of the others; infinite where there is no other.
+    """
+
+    answer: Motion
+    checks: tuple[Motion, ...]
+    share: float = 1.0

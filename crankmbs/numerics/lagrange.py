@@ -1,0 +1,76 @@
+"""Polynomials through values at given places: their values anywhere, and their slopes."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+
+from crankmbs.numerics.arrays import Array, Index
+from crankmbs.numerics.collocation import gauss
+from crankmbs.numerics.roots import invert_monotone
+
+__all__ = ["Lagrange", "ends_and_nodes"]
+
+
+class Lagrange:
+    """The polynomials through values at n places, by the barycentric formula.
+
+    places : shape (n,), increasing
+    weights : shape (n,), whose sum with the values is the integral over a unit interval; zero where
+        the rule of `ends_and_nodes` has none
+    """
+
+    def __init__(self, places: Array, weights: Array) -> None:
+        self.places, self.weights = places, weights
+        apart = places[:, None] - places
+        np.fill_diagonal(apart, 1.0)
+        self._barycentric = 1.0 / apart.prod(axis=1)
+        ratio = self._barycentric / self._barycentric[:, None] / apart
+        np.fill_diagonal(ratio, 0.0)
+        np.fill_diagonal(ratio, -ratio.sum(axis=1))
+        self.slopes = ratio
+        """Shape (n, n): from values to slopes at the places."""
+
+    def basis(self, x: Array) -> Array:
+        """What each value adds at x: shape (p,) -> (p, n).
+
+        >>> ends_and_nodes(1).basis(np.array([0.25])).round(12)
+        array([[0.375, 0.75 , -0.125]])
+        """
+        apart = x[:, None] - self.places
+        at, which = np.nonzero(apart == 0.0)
+        apart[at, which] = 1.0
+        terms = self._barycentric / apart
+        terms /= terms.sum(axis=1, keepdims=True)
+        terms[at] = 0.0
+        terms[at, which] = 1.0
+        return np.asarray(terms)
+
+    def values(self, rows: Array, k: Index, basis: Array) -> Array:
+        """The polynomials through rows k, shape (m, n), where a basis was made, shape (p,)."""
+        first = rows[k, 0]
+        return np.asarray(first + np.einsum("pn,pn->p", basis, rows[k] - first[:, None]))
+
+    def inverse(self, rows: Array, k: Index, values: Array) -> Array:
+        """Where in [0, 1] the monotone polynomials through rows k take values, shape (p,)."""
+        some = rows[k] - rows[k, :1]
+        slopes = some @ self.slopes.T
+
+        def at(x: Array) -> tuple[Array, Array]:
+            basis = self.basis(x)
+            return np.einsum("pn,pn->p", basis, some), np.einsum("pn,pn->p", basis, slopes)
+
+        return invert_monotone(at, values - rows[k, 0], np.zeros(len(k)), np.ones(len(k)))
+
+
+@cache
+def ends_and_nodes(stages: int) -> Lagrange:
+    """Through the ends of the unit interval and the nodes of a Gauss rule between.
+
+    >>> ends_and_nodes(1).places
+    array([0. , 0.5, 1. ])
+    """
+    rule = gauss(stages)
+    places = np.concatenate([[0.0], rule.nodes, [1.0]])
+    return Lagrange(places, np.concatenate([[0.0], rule.weights, [0.0]]))
