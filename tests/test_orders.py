@@ -1,7 +1,6 @@
 """Orders of torque and frame force: against closed forms that mpmath integrates."""
 
 import math
-import sys
 from dataclasses import replace
 
 import mpmath
@@ -9,7 +8,6 @@ import numpy as np
 import pytest
 
 from crankmbs import Motion, Run, engine_orders, load_scene, orders, simulate
-from crankmbs.errors import InputError
 from crankmbs.mechanics.harmonics import closed_orders
 from validation.case import CASES
 

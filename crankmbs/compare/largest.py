@@ -59,12 +59,14 @@ def _shares(excerpt: Excerpt, pairs: list[Pair], motion: Motion) -> Numbers:
     duration = motion.end - motion.begin
     mean = excerpt.window.angle / duration if duration > 0.0 else excerpt.mean_speed
     seen = replace(excerpt, train=motion.train, mean_speed=mean)
-    tops = nodes_of(motion).tops(partial(_sizes, seen, pairs)).value
-    whole = {name: top for (who, name), top in zip(pairs, tops, strict=True) if who == _RUN}
-    of = np.array([whole[name] for _, name in pairs])
+    tops = nodes_of(motion).tops(partial(_sizes, seen, pairs))
+    runs = [k for k, (who, _) in enumerate(pairs) if who == _RUN]
+    of = np.array([next(k for k in runs if pairs[k][1] == name) for _, name in pairs])
+    whole = tops.value[of]
     share = np.full(len(pairs), np.nan)
-    np.divide(tops, of, out=share, where=of > 0.0)
-    return {"shares": Number(share, 1.0 + share)}
+    np.divide(tops.value, whole, out=share, where=whole > 0.0)
+    size = np.divide(tops.sizes + share * tops.sizes[of], whole, out=1.0 + share, where=whole > 0.0)
+    return {"shares": Number(share, 1.0 + share + size)}
 
 
 def _answers(excerpt: Excerpt, variables: Answer) -> dict[str, Answer]:

@@ -20,7 +20,7 @@ from crankmbs.mechanics.train import CrankTrain, crank_angle_knots
 from crankmbs.motion.cells import Cells, States
 from crankmbs.motion.motion import Motion
 from crankmbs.numerics.arrays import Array, Index
-from crankmbs.numerics.lagrange import ends_and_nodes
+from crankmbs.numerics.lagrange import Lagrange, ends_and_nodes
 from crankmbs.numerics.once import once
 from crankmbs.scene.units import DEGREE
 
@@ -31,6 +31,9 @@ _FINE = 6  # places a node at which polynomials are looked at
 _NEAR = 2.0  # a magnitude that comes nearer to zero than this part of what it changes by bends
 _PANELS = 20  # halvings of a cell towards the least value of a magnitude, on either side
 _POINTS = 6  # of Gauss in each of them
+_ANGLE = 1.0 / 16.0  # of ROUNDING: four units of rounding of an angle
+_HAIRS = np.arange(1.0, 5.0)  # places from the end of a cell at which a cubic is known there
+_TO_END = Lagrange(_HAIRS, np.empty(0)).basis(np.linspace(0.0, 1.0, 65)).T
 _REFINED = 3  # steps of a parabola towards the top of a polynomial
 
 Rows = Callable[[dict[str, Array]], Array]
@@ -38,11 +41,21 @@ Rows = Callable[[dict[str, Array]], Array]
 
 class Tops(NamedTuple):
     """The largest values of q quantities, and the crank angles [rad] and times [s] where they are,
-    shape (q,) each."""
+    shape (q,) each.
+
+    steep : at the end of a cell the slope over the angle times the angle, whose rounding is in the
+        value
+    """
 
     value: Array
     angle: Array
     time: Array
+    steep: Array
+
+    @property
+    def sizes(self) -> Array:
+        """What of the values is rounded."""
+        return np.asarray(np.abs(self.value) + _ANGLE * self.steep)
 
 
 class _Block(NamedTuple):
@@ -105,17 +118,22 @@ class Nodes:
         best = values[q, at_node]
         angle, time = self.states.angle[at_node], self.states.time[at_node]
         block, cell, near, at_end = self._sought(values)
-        inwards = np.where(near < 0.5, 2.0 * near, 2.0 * near - 1.0)
-        states = self._at(block, cell, near, np.where(at_end, inwards, near))
-        there = rows(states.variables(self.train))
-        at_top, inside = there[q, q], there[q, q + len(q)]
-        # at the end of a cell the values a hair and two inside are continued to it
-        higher = at_top + np.maximum(at_top - inside, 0.0)
+        hair = np.where(at_end, np.where(near < 0.5, near, near - 1.0), 0.0)
+        places = near + (_HAIRS[:, None] - 1.0) * hair
+        states = self._at(block, cell, places)
+        there = rows(states.variables(self.train)).reshape(len(q), len(_TO_END), len(q))[q, :, q]
+        # at the end of a cell the cubic through values a hair and more inside is continued to it
+        top = there[:, 0]
+        higher = np.where(at_end, np.max(there @ _TO_END, axis=1), top)
         more = higher > best
+        angle_there = states.angle[q]
+        turned = np.abs(angle_there - states.angle[q + len(q)])
+        slope = np.divide(np.abs(top - there[:, 1]), turned, out=np.zeros(len(q)), where=at_end)
         return Tops(
             np.where(more, higher, best),
-            np.where(more, states.angle[q], angle),
+            np.where(more, angle_there, angle),
             np.where(more, states.time[q], time),
+            np.where(at_end, slope * np.abs(angle_there), 0.0),
         )
 
     def _sought(self, values: Array) -> tuple[Index, Index, Array, np.ndarray]:
@@ -131,15 +149,15 @@ class Nodes:
             ends = np.where(more, at_end, ends)
         return block, cell, place, ends
 
-    def _at(self, block: Index, cell: Index, first: Array, second: Array) -> States:
-        """The motion at two places each of some cells, the first ones before all second ones."""
-        parts, order = [], []
+    def _at(self, block: Index, cell: Index, places: Array) -> States:
+        """The motion at several places each of q cells, shape (places, q), place after place."""
+        parts, order, count = [], [], len(places)
         for number in np.unique(block):
             which = np.flatnonzero(block == number)
-            k = np.tile(cell[which], 2)
-            x = np.concatenate([first[which], second[which]])
+            k = np.tile(cell[which], count)
+            x = places[:, which].ravel()
             parts.append(self._blocks[number].cells.states(self.train, k, x))
-            order += [which, which + len(block)]
+            order += [which + len(block) * n for n in range(count)]
         return States.joined(parts, np.argsort(np.concatenate(order)))
 
 

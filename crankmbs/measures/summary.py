@@ -115,8 +115,8 @@ def largest(result: Result, quantity: Callable[[Mapping[str, Array]], Array]) ->
     """
 
     def numbers(motion: Motion) -> Numbers:
-        top = nodes_of(motion).tops(lambda variables: quantity(variables)[None]).value
-        return {"largest": Number(top, np.abs(top))}
+        tops = nodes_of(motion).tops(lambda variables: quantity(variables)[None])
+        return {"largest": Number(tops.value, tops.sizes)}
 
     return estimates(result.passes, numbers)["largest"][0]
 
@@ -140,22 +140,22 @@ def _numbers(scene: Scene, window: Span, motion: Motion) -> Numbers:
     """Everything that is measured of one motion."""
     nodes, mean = nodes_of(motion), _mean_speed(motion, window)
     duration = motion.end - motion.begin
-    tops, forces = nodes.tops(partial(_sought, scene)).value, _forces(scene, nodes.variables)
+    found, forces = nodes.tops(partial(_sought, scene)), _forces(scene, nodes.variables)
+    tops = found.value
     variables, speed = nodes.variables, nodes.variables["crank_speed"]
     torque = {
         "crank_torque": variables["crank_torque"].sum(axis=1),
         "external_torque": variables["external_torque"],
     }
-    sizes = np.hypot(forces[:, 0], forces[:, 1])
-    over = nodes.magnitude(forces) / duration if duration else _last(sizes)
-    largest = tops[: len(forces)].copy()
-    largest[0] = largest.max()  # the main bearing's is a sum of the pins'
+    over = nodes.magnitude(forces) / duration if duration else _last(_magnitudes(forces))
+    sizes = found.sizes[: len(forces)]
+    sizes[0] = sizes.max()  # the main bearing's is a sum of the pins'
     numbers = {
         "mean_speed": mean,
         "fluctuation": _fluctuation(tops[-2:], mean),
         "speed_gain": _speed_gain(motion),
-        "peaks": Number(tops[: len(forces)], largest),
-        "means": Number(over, largest),
+        "peaks": Number(tops[: len(forces)], sizes),
+        "means": Number(over, sizes),
     }
     turned = motion.turned
     for name, values in torque.items():
@@ -235,7 +235,11 @@ def _speeds(variables: dict[str, Array]) -> Array:
 def _sought(scene: Scene, variables: dict[str, Array]) -> Array:
     """Whose largest values are measured: the force of every joint and the speeds."""
     forces = _forces(scene, variables)
-    return np.concatenate([np.hypot(forces[:, 0], forces[:, 1]), _speeds(variables)])
+    return np.concatenate([_magnitudes(forces), _speeds(variables)])
+
+
+def _magnitudes(forces: Array) -> Array:
+    return np.asarray(np.hypot(forces[:, 0], forces[:, 1]))
 
 
 def _last(values: Array) -> Array:

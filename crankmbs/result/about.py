@@ -115,6 +115,8 @@ def read_saved(path: str | Path) -> dict[str, Any]:
             account, data = account_in(data, about.scene, about.left_out)
             keep = partial(_itself, account)
         _check_labels(data, about.scene)
+    except OutputError:
+        raise
     except _NO_RESULT:  # HDF5's own words name its inner calls
         raise OutputError(
             f"{file}: no readable result of crankmbs; give the result.nc that save wrote"

@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 
 __all__ = ["read_netcdf", "write_netcdf"]
 
+_NO_VARIABLE = b"This is a netCDF dimension but not a netCDF variable"
+
 
 def write_netcdf(data: xr.Dataset, file: Path) -> None:
     """Write a dataset as netCDF-4.
@@ -73,6 +75,8 @@ def _check_plain(raw: h5py.File, size: int) -> None:
             raise ValueError(f"{name} lies elsewhere")
         if found.dtype.kind not in "fi":
             raise ValueError(f"{name} has no numbers")
+        if bytes(found.attrs.get("NAME", b"")).startswith(_NO_VARIABLE):
+            continue  # the length of a dimension, which is never read
         promised += math.prod(found.shape or ()) * found.dtype.itemsize
     if promised > size:
         raise ValueError(f"{promised} bytes promised, {size} there")

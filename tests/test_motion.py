@@ -1,0 +1,197 @@
+"""A motion as it was solved: read anywhere, summed over, and its largest values."""
+
+import math
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from crankmbs import InputError, Result, load_scene, simulate
+from crankmbs.errors import OutputError
+from crankmbs.measures.nodes import nodes_of
+from crankmbs.motion.sampled import through_samples
+from crankmbs.numerics.lagrange import ends_and_nodes
+from crankmbs.storage.netcdf import read_netcdf, write_netcdf
+
+FREE = ["crank_angle", "minimal"]
+SCENES = {
+    "propeller": "2 cycles",
+    "misfire": "3 cycles",
+    "v_twin": "1.2 cycles",
+    "run_down": "0.4 s",
+    "run_up": "0.4 s",
+    "torque_driven": "0.5 s",
+}
+
+
+def scene(name, **changes):
+    return load_scene(name).with_(run__until=SCENES[name], **changes)
+
+
+@pytest.mark.parametrize("stages", [1, 4, 7])
+def test_polynomials_through_values_are_those_polynomials(stages):
+    through, degree = ends_and_nodes(stages), np.arange(stages + 2)
+    factors = np.random.default_rng(stages).standard_normal(stages + 2)
+    rows = (through.places[:, None] ** degree @ factors)[None]
+    x, zeros = np.linspace(0.0, 1.0, 23), np.zeros(23, dtype=np.intp)
+    expected = x[:, None] ** degree @ factors
+    np.testing.assert_allclose(through.values(rows, zeros, through.basis(x)), expected, atol=1e-13)
+    slopes = degree[1:] * x[:, None] ** (degree[1:] - 1) @ factors[1:]
+    found = through.values(rows @ through.slopes.T, zeros, through.basis(x))
+    np.testing.assert_allclose(found, slopes, atol=1e-11)
+    integral = float(factors[:stages] @ (1.0 / (degree[:stages] + 1.0)))
+    known = through.places[:, None] ** degree[:stages] @ factors[:stages]
+    assert through.weights @ known == pytest.approx(integral, abs=1e-13)
+
+
+def test_the_inverse_of_a_monotone_polynomial():
+    through = ends_and_nodes(3)
+    rows = np.array([through.places**3, 2.0 - through.places**2])
+    k, values = np.array([0, 1, 0, 0]), np.array([0.125, 1.75, 1.0, 0.0])
+    np.testing.assert_allclose(through.inverse(rows, k, values), [0.5, 0.5, 1.0, 0.0], atol=1e-9)
+
+
+@pytest.mark.parametrize("formulation", FREE)
+@pytest.mark.parametrize("name", SCENES)
+def test_at_its_samples_it_is_the_samples(name, formulation):
+    result = simulate(scene(name), formulation=formulation)
+    motion, data = result.passes.answer, result.data
+    states = motion.at(data["time"].values, in_time=True)
+    turned = float(np.max(np.abs(data["crank_angle"].values)))
+    np.testing.assert_allclose(states.angle, data["crank_angle"], rtol=0.0, atol=1e-12 * turned)
+    fastest = float(np.max(np.abs(data["crank_speed"].values)))
+    np.testing.assert_allclose(states.speed, data["crank_speed"], rtol=0.0, atol=1e-10 * fastest)
+
+
+@pytest.mark.parametrize("formulation", FREE)
+@pytest.mark.parametrize("name", ["propeller", "run_up", "run_down"])
+def test_the_acceleration_is_the_rate_of_the_speed(name, formulation):
+    """By central differences, but across what jumps: the median is smooth."""
+    motion = simulate(scene(name), formulation=formulation).passes.answer
+    rng, h = np.random.default_rng(1), 1e-6
+    time = rng.uniform(motion.begin + h, motion.end - h, 200)
+    before, here, after = (motion.at(time + d, in_time=True) for d in (-h, 0.0, h))
+    rate = (after.speed - before.speed) / (2.0 * h)
+    off = np.abs(rate - here.acceleration) / np.max(np.abs(here.acceleration))
+    assert np.median(off) < 1e-6
+    assert np.mean(off < 1e-4) > 0.9
+    pace = (after.angle - before.angle) / (2.0 * h)
+    np.testing.assert_allclose(pace, here.speed, atol=1e-6 * np.max(np.abs(here.speed)))
+
+
+def test_by_angle_and_by_time_it_is_one_motion():
+    motion = simulate(scene("propeller")).passes.answer
+    angle = np.linspace(0.3, motion.turned - 0.2, 57)
+    by_angle = motion.at(angle, in_time=False)
+    np.testing.assert_allclose(motion.at(by_angle.time, in_time=True).angle, angle, rtol=1e-13)
+    assert np.all(np.diff(by_angle.time) > 0.0)
+
+
+@pytest.mark.parametrize("turned", [0.3, 4.0 * math.pi, 7.77])
+def test_its_end_turns_through_an_angle(turned):
+    motion = simulate(scene("propeller")).passes.answer
+    last = motion.last(turned)
+    assert last.turned == pytest.approx(turned, abs=1e-12)
+    assert last.end == motion.end
+    assert motion.at(np.array([last.begin]), in_time=True).angle[0] == pytest.approx(
+        motion.turned - turned, abs=1e-11
+    )
+    assert motion.last(1e3) is None
+
+
+@pytest.mark.parametrize("small", [0.0, 1e-9, 1e-3, 0.3, 10.0])
+def test_a_magnitude_that_comes_near_zero_is_integrated_all_the_same(small):
+    nodes = nodes_of(simulate(load_scene("yi_diesel")).passes.answer)
+    angle = nodes.states.angle
+    parts = np.array([[np.cos(3.0 * angle + 0.1), np.full_like(angle, small)]])
+    (found,) = nodes.magnitude(parts)
+    begin, end = float(angle.min()), float(angle.max())
+    zeros = [(math.pi * (k + 0.5) - 0.1) / 3.0 for k in range(12)]
+    edges = [begin, *zeros, end]
+    exact = sum(
+        quad(lambda t: math.hypot(math.cos(3.0 * t + 0.1), small), a, b, epsabs=1e-12)[0]
+        for a, b in pairwise(edges)
+    )
+    speed = float(nodes.states.speed[0])
+    assert found == pytest.approx(exact / speed, rel=1e-9)
+
+
+def test_the_integral_is_over_time_and_not_over_cells():
+    result = simulate(load_scene("coasting").with_(run__until="1 cycle"))
+    nodes = nodes_of(result.passes.answer)
+    speed = nodes.variables["crank_speed"]
+    assert float(nodes.integral(np.ones_like(speed))) == pytest.approx(result.passes.answer.end)
+    assert float(nodes.integral(speed)) == pytest.approx(4.0 * math.pi, rel=1e-12)
+
+
+@pytest.mark.parametrize("place", [1.0, 2.0, math.radians(90.0) + 1e-7, 7.3])
+def test_a_largest_value_lies_anywhere(place):
+    nodes = nodes_of(simulate(load_scene("yi_diesel")).passes.answer)
+    tops = nodes.tops(lambda v: np.array([2.0 - (v["crank_angle"] - place) ** 2]))
+    assert tops.value[0] == pytest.approx(2.0, abs=1e-15)
+    assert tops.angle[0] == pytest.approx(place, abs=1e-7)
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_a_largest_value_at_a_knot_is_that_of_its_own_side(side):
+    """Rising to a knot and dropping there, or jumping up there and falling: exact, no hair off."""
+    nodes = nodes_of(simulate(load_scene("yi_diesel")).passes.answer)
+    knot = float(nodes.motion.cells[0].angle[40, 0])
+
+    def saw(variables):
+        ahead = side * (variables["crank_angle"] - knot)
+        return np.array([np.where(ahead < 0.0, 5.0 + 1e3 * ahead, 0.0)])
+
+    tops = nodes.tops(saw)
+    assert tops.value[0] == pytest.approx(5.0, abs=1e-9)
+    assert tops.angle[0] == pytest.approx(knot, abs=1e-8)
+
+
+@pytest.mark.parametrize("name", ["misfire", "run_down", "v_twin"])
+def test_saved_and_loaded_it_is_the_same_motion(name, tmp_path):
+    result = simulate(scene(name))
+    result.save(tmp_path)
+    again = Result.load(tmp_path)
+    for one, other in (
+        (result.passes.answer, again.passes.answer),
+        *zip(result.passes.checks, again.passes.checks, strict=True),
+    ):
+        time = np.linspace(one.begin, one.end, 301)
+        before, after = (motion.at(time, in_time=True) for motion in (one, other))
+        for old, new in zip(before, after, strict=True):
+            if old is not None:
+                size = float(np.max(np.abs(old)))
+                np.testing.assert_allclose(new, old, rtol=0.0, atol=1e-12 * size)
+    assert again.measures() == result.measures()
+
+
+def test_a_result_of_an_earlier_version_is_refused(tmp_path):
+    file = simulate(scene("propeller")).save(tmp_path) / "result.nc"
+    data = read_netcdf(file, {})
+    about = data.attrs["crankmbs"].replace('"share"', '"nothing"')
+    write_netcdf(data.assign_attrs(crankmbs=about), file)
+    with pytest.raises(OutputError, match=r"earlier version.*run its scene again: crankmbs run"):
+        Result.load(tmp_path)
+
+
+@pytest.mark.parametrize("name", ["propeller", "run_down"])
+def test_through_samples_alone_it_states_what_they_miss(name):
+    result = simulate(scene(name))
+    exact, passes = result.passes.answer, through_samples(result.data, result.scene)
+    time = np.linspace(exact.begin, exact.end, 777)
+    true = exact.at(time, in_time=True).angle
+    answer, *others = (m.at(time, in_time=True).angle for m in (passes.answer, *passes.checks))
+    missed = np.max(np.abs(answer - true))
+    stated = passes.share * max(np.max(np.abs(other - answer)) for other in others)
+    assert 0.0 < missed < stated < 1e-3
+
+
+def test_by_angle_a_motion_that_turns_back_is_refused():
+    result = simulate(load_scene("run_down"))
+    assert not result.passes.answer.turns_one_way
+    with pytest.raises(InputError, match="rests or turns back"):
+        result.interp(crank_angle=[1.0])
+    unchecked = replace(result, motion=lambda: result.passes._replace(checks=()))
+    assert unchecked.measures().mean_speed.error == math.inf
