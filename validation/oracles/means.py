@@ -87,7 +87,15 @@ def means(machine: Machine, stretch: Stretch) -> Means:
     joints = (total[1 : 2 + 3 * n] / total[0]).astype(float)
     torques = (total[-2:] / LONG.number(stretch.angle)).astype(float)
     pins = joints[1:].reshape(3, n)
-    return Means(float(total[0]), float(joints[0]), *pins, float(torques[0]), float(torques[1]))
+    return Means(
+        float(total[0]),
+        float(joints[0]),
+        pins[0],
+        pins[1],
+        pins[2],
+        float(torques[0]),
+        float(torques[1]),
+    )
 
 
 class _Walk:
@@ -111,16 +119,16 @@ class _Walk:
         wanted = np.concatenate(offsets)
         wanted = wanted[wanted < LONG.number(angle)]
         edges = self.turning.edges(start, wanted, LONG.number(angle))
-        return edges[np.append(True, np.diff(edges) > _NO_WIDTH)]
+        return np.asarray(edges[np.append(True, np.diff(edges) > _NO_WIDTH)])
 
     def integrals(self, begin: Array, end: Array, energy: Number) -> Array:
         """Over all panels, from the first one's energy [J] on; each is halved until it agrees."""
         energies = begin * 0 + energy
         if self.stretch.free:
             lost = self._loss(begin, end)
-            kept = np.exp(-lost.whole)
+            decay = np.exp(-lost.whole)
             for k in range(1, len(begin)):
-                energies[k] = kept[k - 1] * (energies[k - 1] + lost.gained[k - 1] @ self.weights)
+                energies[k] = decay[k - 1] * (energies[k - 1] + lost.gained[k - 1] @ self.weights)
         values, _ = self._values(begin, end, energies)
         largest, total = np.abs(values).sum(axis=0), values.sum(axis=0) * 0
         largest[-2:] = largest[-2:].max()  # without a load the torque from outside is rounding
@@ -131,7 +139,7 @@ class _Walk:
             done = (np.abs(low + high - values) <= _CLOSE * largest).all(axis=1)
             total = total + (low + high)[done].sum(axis=0)
             if done.all():
-                return total
+                return np.asarray(total)
             begin, end, energies, values = (
                 np.concatenate([first[~done], second[~done]])
                 for first, second in (
