@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from numpy.typing import ArrayLike
 from scipy.integrate import quad
 
 from crankmbs import InputError, load_scene, simulate
@@ -15,15 +16,16 @@ from crankmbs.mechanics.friction import friction_forces, friction_torque, sign_c
 from crankmbs.mechanics.geometry import close_loop, dead_centres
 from crankmbs.mechanics.reactions import reactions
 from crankmbs.mechanics.train import crank_train
-from crankmbs.scene.drives import Start
+from crankmbs.scene.drives import Motion, Start
 from crankmbs.scene.fuel import Fuel
+from crankmbs.scene.gas import Gas
 from crankmbs.scene.loads import Constant, TimeTable
-from crankmbs.scene.parts import Crank, Friction, Piston, Rod
+from crankmbs.scene.parts import Crank, Friction, Layout, Piston, Rod
 from crankmbs.scene.run import Extent, Run
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.tables import Table
 
-R, L, E, J = 0.04, 0.13, 0.006, 0.05
+R, L, E, J, AREA = 0.04, 0.13, 0.006, 0.05, 5e-3
 ENGINE = load_scene("yi_diesel_free")
 BOTH = pytest.mark.parametrize("formulation", ["crank_angle", "minimal"])
 
@@ -267,6 +269,79 @@ def test_what_gas_and_drive_give_friction_and_load_take(name):
     taken, paid = sorted((abs(found.indicated_power.value), abs(outside)))
     assert efficiency == pytest.approx(taken / paid, rel=1e-6)
     assert found.friction_power.error < 1e-4 * found.friction_power.value
+
+
+UNLIKE = {0.0: (3e5, 60e5), 1.9: (2e5, 25e5), math.tau: (7e5, 1e5), 9.1: (4e5, 30e5)}
+
+
+def unlike(friction: Friction, **more: object) -> Scene:
+    """Two cylinders, each with a pressure of its own, of chords between four rows."""
+    low, high = (tuple(row[k] for row in UNLIKE.values()) for k in (0, 1))
+    run = Run(until="3 cycles", every="1 deg")
+    return Scene(
+        crank=Crank(radius=R, inertia=J),
+        rod=Rod(length=L),
+        piston=Piston(mass=0.8, area=AREA, offset=E),
+        gas=Gas(
+            pressure=[Table(tuple(UNLIKE), low), Table(tuple(UNLIKE), high)],
+            absolute=False,
+            stroke=4,
+            interpolation="linear",
+        ),
+        layout=Layout(firing_order=(1, 2)),
+        friction=friction,
+        **({"motion": Motion(speed=250.0), "run": run} | more),
+    )
+
+
+def chords(phi: ArrayLike, number: int) -> np.ndarray:
+    """Gas force of a cylinder at its cycle angle."""
+    rows = [pair[number] for pair in UNLIKE.values()]
+    return AREA * np.interp(phi, list(UNLIKE), rows, period=4.0 * math.pi)
+
+
+PRESSED = Friction(ring_force=30.0, ring_pressure=0.02, viscous=12.0)
+
+
+@pytest.mark.parametrize("formulation", ["kinetostatic", "multibody"])
+def test_every_piston_is_pressed_by_the_gas_of_its_own_cylinder(formulation):
+    scene = unlike(PRESSED, run=Run(until="1 cycle", every="7 deg"))
+    data = simulate(scene, formulation=formulation).data
+    for k in (0, 1):
+        phi = data.crank_angle.values + 2.0 * math.pi * k  # it fires a turn later
+        velocity = -250.0 * np.array([slope(angle) for angle in phi])
+        limit = 30.0 + 0.02 * np.abs(chords(phi, k))
+        expected = -np.sign(velocity) * limit - 12.0 * velocity
+        np.testing.assert_allclose(data.friction_force.values[:, k], expected, rtol=1e-6)
+
+
+def test_a_crank_at_rest_is_held_by_pistons_pressed_unlike():
+    theta, share = 0.7, 0.3
+    train = crank_train(unlike(PRESSED))
+    found = friction_forces(train, np.array([theta]), np.zeros(1), slides=np.array([share]))
+    towards = -np.sign([slope(theta + 2.0 * math.pi * k) for k in (0, 1)])
+    gas = np.array([chords(theta + 2.0 * math.pi * k, k) for k in (0, 1)])
+    np.testing.assert_allclose(found[0], -share * towards * (30.0 + 0.02 * gas), rtol=1e-12)
+
+
+def test_the_power_of_friction_is_that_of_all_unlike_pistons():
+    """Work over the way of each piston between its dead centres and the rows, over the time."""
+    found = measure(simulate(unlike(PRESSED)))
+    work = 0.0
+    for k in (0, 1):
+        centres = [c + 2.0 * math.pi * n for c in dead_centres(R, L, E) for n in range(3)]
+        marks = sorted({0.0, 4.0 * math.pi, *UNLIKE, *centres})
+        marks = [mark for mark in marks if mark <= 4.0 * math.pi]
+
+        def power(phi: float, k: int = k) -> float:
+            way = abs(slope(phi))
+            return (30.0 + 0.02 * float(chords(phi, k))) * way + 12.0 * 250.0 * way**2
+
+        work += sum(quad(power, *pair, epsabs=1e-12, epsrel=1e-12)[0] for pair in pairwise(marks))
+    expected = work * 250.0 / (4.0 * math.pi)
+    power, stated = found.friction_power
+    assert abs(power - expected) <= 2.0 * stated + 1e-12 * expected
+    assert stated < 1e-3 * expected
 
 
 def test_measures_know_a_crank_that_waits():

@@ -8,13 +8,17 @@ import psutil
 import pytest
 from command_line import SCENE, names, refused
 
-from crankmbs import InputError, Layout, Run, load_scene, simulate
+from crankmbs import InputError, Layout, Motion, Run, Start, Table, load_scene, simulate
+from crankmbs.scene.drives import Oscillation, Ramp, SpeedFile
 
 
 @pytest.mark.parametrize(
     ("run", "message"),
     [
         (Run(until="1e300 cycles"), "run.until: beyond 1.6e"),
+        (Run(until="1e30 s"), "run.until: beyond 1e\\+09 s a time has too few digits left"),
+        (Run(until="1e30 s", every="none"), "give a nearer end; 1e\\+30 s came"),
+        (Run(until="1e8 s", every="none"), "give a nearer end; 1.59e\\+09 rev at its speed came"),
         (Run(until="1 rev", every="1e-9 deg"), "run.every: 3.6e\\+11 samples came"),
         (Run(until="1 s", every="1e-9 s"), "run.every: 1e\\+09 samples came"),
     ],
@@ -23,6 +27,33 @@ def test_an_impossible_size_is_no_scene(run, message):
     scene = load_scene("coasting")
     with pytest.raises(InputError, match=message):
         dataclasses.replace(scene, run=run)
+
+
+@pytest.mark.parametrize(
+    "speed",
+    [
+        250.0,
+        -250.0,
+        Oscillation(mean=250.0, amplitude=10.0, order=2.0),
+        Ramp(start=0.0, to=250.0, over=1.0),
+        SpeedFile(file=Table([0.0, 2.0, 4.0], [240.0, 250.0, 240.0]), kind="angle_table"),
+    ],
+)
+def test_a_prescribed_speed_turns_too_far_in_too_long_a_time(speed):
+    scene = dataclasses.replace(
+        load_scene("coasting"), start=None, motion=Motion(speed=speed), run=Run(until="1 s")
+    )
+    assert dataclasses.replace(scene, run=Run(until="3e6 s", every="none")).end == (3e6, True)
+    for until in ("1e7 s", "1e30 s"):
+        with pytest.raises(InputError, match=r"run\.until: beyond .* give a nearer end; .* came"):
+            dataclasses.replace(scene, run=Run(until=until, every="none"))
+
+
+@pytest.mark.parametrize("every", ["none", "1 deg", "1e29 s"])
+def test_a_crank_that_starts_at_rest_has_an_end_in_time_too(every):
+    still = dataclasses.replace(load_scene("coasting"), start=Start(angle=0.3, speed=0.0))
+    with pytest.raises(InputError, match=r"run\.until: beyond 1e\+09 s"):
+        dataclasses.replace(still, run=Run(until="1e30 s", every=every))
 
 
 @pytest.mark.parametrize("command", ["run", "check", "validate"])

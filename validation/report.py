@@ -23,6 +23,8 @@ oracles in `oracles/` share no code with crankmbs. References, each with its sou
 """
 _HARD = """\
 Right: the true error is at most twice the stated one, and that at most 1e-3 of a variable's peak.
+For rounding 1e-12 of the largest peak with the same unit is allowed besides; what is right by that
+alone is named.
 Right, but only to x %: more is stated. No answer: more than the peak is. Error unknown: no number
 is. Or stopped, and why."""
 

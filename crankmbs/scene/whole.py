@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from crankmbs.errors import InputError
 from crankmbs.scene.cover import check_angles, check_times
-from crankmbs.scene.drives import SpeedFile
+from crankmbs.scene.drives import Oscillation, Ramp, SpeedFile
 from crankmbs.scene.fuel import Fuel
 from crankmbs.scene.gas import tables_of
 from crankmbs.scene.speed_rows import repeats
@@ -29,7 +29,7 @@ NO_INERTIA = (
     "centres; 0 came"
 )
 
-_FARTHEST = 1e9  # rad: its last digit is 1e-7
+_FARTHEST = 1e9  # rad or s: its last digit is 1e-7
 _MOST_SAMPLES = 2e7  # the memory of a machine may hold less: `crankmbs.motion.memory`
 
 
@@ -207,16 +207,38 @@ def _check_speed(scene: Scene, speed: SpeedFile, end: float) -> None:
 def _check_size(scene: Scene) -> None:
     """Refuse what no memory holds and what double precision cannot tell apart."""
     until, until_time = scene.end
-    if not until_time and until > _FARTHEST:
+    if until_time and until > _FARTHEST:
+        raise InputError(
+            f"run.until: beyond {_FARTHEST:.0e} s a time has too few digits left; give a nearer "
+            f"end; {until:.3g} s came"
+        )
+    turned, at = (_speed_known(scene) * until, " at its speed") if until_time else (until, "")
+    if turned > _FARTHEST:
         raise InputError(
             f"run.until: beyond {_FARTHEST / (2 * math.pi):.2g} rev an angle has too few "
-            f"digits left; {until / (2 * math.pi):.3g} rev came"
+            f"digits left; give a nearer end; {turned / (2 * math.pi):.3g} rev{at} came"
         )
     if scene.run.every is None:
         return
     every, in_time = scene.run.every.resolve(scene.period)
     if in_time == until_time:
         _check_count(until / every)
+
+
+def _speed_known(scene: Scene) -> float:
+    """How fast the crank turns [rad/s], as far as that is known before the run: as prescribed, or
+    at the start."""
+    if scene.motion is None:
+        return 0.0 if scene.start is None else abs(scene.start.speed)
+    match scene.motion.speed:
+        case Oscillation(mean=mean):
+            return abs(mean)
+        case Ramp(to=to):
+            return abs(to)
+        case SpeedFile(file=rows):
+            return max(map(abs, rows.y))
+        case speed:
+            return abs(speed)
 
 
 def _check_count(samples: float) -> None:

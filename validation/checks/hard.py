@@ -43,8 +43,11 @@ class _Answer(NamedTuple):
 
 
 def every_formulation(case: Case) -> Outcome:
-    """The worst true error over twice the stated one, over all formulations and variables.
+    """The worst true error over twice the stated one and a floor, over all formulations and
+    variables.
 
+    The floor is 1e-12 of the largest peak of what has the same unit, for the rounding of sums of
+    large parts that cancel; the sentence names what is right by it alone.
     A run that stops is measured up to there; infinite for a stop that the case does not know, for
     an error that is no refusal, for a warning, and for a stated error of over 1e-3 of a variable's
     peak that the case does not name. Parameters of the case: `only_to`, by formulation that larger
@@ -161,7 +164,19 @@ def _compared(case: Case, result: Result, scene: Scene) -> tuple[float, str]:
         return shares[worst], f"WRONG: {numbers}"
     coarse, name = coarsest(result, peaks)
     known = coarse <= case.parameters.get("only_to", {}).get(result.formulation, _USUAL)
-    return shares[worst] if known else math.inf, f"{graded(coarse, name)}: {numbers}"
+    text = f"{graded(coarse, name)}: {numbers}{_by_floor(result, true)}"
+    return shares[worst] if known else math.inf, text
+
+
+def _by_floor(result: Result, true: dict[str, float]) -> str:
+    """What is right only by the floor, the furthest beyond twice its stated error."""
+    allowed = {n: _TOO_SMALL * float(result.data[n].attrs["error_estimate"]) for n in true}
+    beyond = {n: true[n] / allowed[n] if allowed[n] else math.inf for n in true if true[n] > 0.0}
+    name = max(beyond, key=lambda n: beyond[n], default="")
+    if not name or beyond[name] <= 1.0:
+        return ""
+    numbers = f"{true[name]:.1e}, stated {0.5 * allowed[name]:.1e} {VARIABLES[name].units}"
+    return f"; by the {_FLOOR:.0e} of the peak allowed for rounding {name} {numbers}"
 
 
 def coarsest(result: Result, peaks: dict[str, float]) -> tuple[float, str]:

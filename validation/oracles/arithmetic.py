@@ -1,7 +1,8 @@
-"""The two number systems of the oracles, 80-bit floats and mpmath numbers, behind one interface."""
+"""The number systems of the oracles, 80-bit floats, doubles and mpmath numbers, behind one
+interface."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, TypeAlias
 
 import mpmath
@@ -96,6 +97,11 @@ def multiprecision(digits: int) -> Arithmetic:
 
 
 LONG = _longdouble()
+
+DOUBLE = replace(
+    LONG, digits=15, epsilon=np.finfo(np.float64).eps, pi=np.pi, number=float, dtype=np.float64
+)
+"""Four times as quick, where sums of many panels are taken and not their last digits."""
 
 
 def distance(a: Number, b: Number) -> float:
