@@ -229,6 +229,9 @@ def _bent(block: _Block, parts: Array) -> Array:
     if len(k) == 0:
         return missed
     rows = parts[which, :, k]  # (f, c, n)
+    slopes, hair = rows @ polynomials.slopes.T, cells.inner()[k, :1]
+    rows[..., 0] -= hair * slopes[..., 0]  # from a hair inside to the very ends
+    rows[..., -1] += hair * slopes[..., -1]
     sizes = ((rows @ polynomials.basis(fine).T) ** 2).sum(axis=1)
     x = _least(rows, fine[np.argmin(sizes, axis=1)], fine[1], n)
     x, weight = _graded(x)

@@ -22,7 +22,7 @@ from validation.oracles.rubbing import Rings
 
 __all__ = ["Means", "Stretch", "means"]
 
-_CLOSE = 1e-11  # of the whole integral of its kind: so far a panel and its halves agree
+_CLOSE = 1e-14  # of the whole integral of its kind: so far a panel and its halves agree
 _HALVINGS = 40
 _NO_WIDTH = 1e-12  # rad: what rounding leaves between two cylinders' knots at one angle
 
