@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -12,7 +12,7 @@ from scipy.linalg.blas import dtbsv
 
 from crankmbs.numerics.arrays import Array
 
-__all__ = ["Maps", "Rule", "chain", "gauss"]
+__all__ = ["Maps", "Rule", "carried", "chain", "gauss", "summed"]
 
 _SWEEPS = 0.1  # of |h rate|: where no cell has more, sweeps solve it sooner than elimination
 _TOGETHER = 16  # cases: so many together are chained sooner cell by cell than each by itself
@@ -42,6 +42,16 @@ class Rule:
     weights: Array
     matrix: Array
     to_legendre: Array
+
+    @cached_property
+    def to_integral(self) -> Array:
+        """Node values to the Legendre series of their integral from 0 on, shape (s + 1, s)."""
+        s = len(self.nodes)
+        share = 0.5 / (2.0 * np.arange(s) + 1.0)  # int P_j dx = (P_{j+1} - P_{j-1}) / (4 j + 2)
+        of_legendre = np.diag(share, -1)[:, :s]
+        of_legendre[: s - 1] -= np.diag(share[1:], 1)[: s - 1, :s]
+        of_legendre[0, 0] = 0.5
+        return np.asarray(of_legendre @ self.to_legendre)
 
     def integrals(self, x: Array) -> Array:
         """Integrals of the s Lagrange polynomials from 0 to x: shape (n,) -> (n, s)."""
@@ -110,6 +120,38 @@ def chain(growth: Array, rise: Array, start: float | Array) -> Array:
         band[1, :-1] = -factors[case]
         edges[case] = dtbsv(1, band, edges[case], lower=1, diag=1)
     return edges
+
+
+def summed(series: Array, x: Array) -> Array:
+    """Sums of shifted Legendre polynomials at x in [0, 1]: shape (n,), with coefficients of shape
+    (degrees, ..., n), by ascending degree.
+
+    >>> summed(np.array([[1.0], [2.0], [4.0]]), np.array([0.5]))
+    array([-1.])
+    """
+    z = 2.0 * x - 1.0
+    before, p = np.ones_like(z), z
+    total: Array = series[0] + series[1] * z
+    for j, coefficient in enumerate(series[2:], start=2):
+        before, p = p, (2.0 - 1.0 / j) * z * p - (1.0 - 1.0 / j) * before
+        total += coefficient * p
+    return total
+
+
+def carried(
+    growth: Array, rise: Array, start: float | Array, surplus: float | Array = 0.0
+) -> Array:
+    """The same edges, each to its own rounding: what the first chain missed is chained behind.
+
+    surplus : shape (..., m), of the rises, so little that they cannot hold it
+
+    >>> edges = carried(np.zeros(1000), np.full(1000, 0.1), 0.0)
+    >>> float(edges[-1]) == math.fsum([0.1] * 1000)
+    True
+    """
+    edges = chain(growth, rise, start)
+    missed = np.diff(edges, axis=-1) - (growth * edges[..., :-1] + rise) + surplus
+    return np.asarray(edges - chain(growth, missed, 0.0))
 
 
 @cache
