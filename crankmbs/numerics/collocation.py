@@ -92,6 +92,25 @@ class Rule:
         growth = (rate * gain) @ self.weights
         return Maps(gain, shift, growth, (push + rate * shift) @ self.weights)
 
+    def corrected(self, missed: Array, rate: Array) -> tuple[Array, Array]:
+        """Of (I - A rate) y = 1 and = missed, shape (m, s), the answers in each cell, with A the
+        matrix: exact where |rate| is not small, else to a thousandth or better, as a step of
+        Newton's method is repeated.
+
+        rate : shape (m, s), times u' of `maps`
+        """
+        gain = 1.0 + rate @ self.matrix.T
+        gain = 1.0 + (rate * gain) @ self.matrix.T
+        shift = missed + (rate * missed) @ self.matrix.T
+        shift = missed + (rate * shift) @ self.matrix.T
+        stiff = np.abs(rate).max(initial=0.0)
+        if not stiff <= _SWEEPS:
+            which = np.flatnonzero(~(np.abs(rate) <= _SWEEPS).all(axis=1))
+            system = np.eye(len(self.weights)) - self.matrix * rate[which, None, :]
+            right = np.stack([np.ones_like(missed[which]), missed[which]], axis=-1)
+            gain[which], shift[which] = np.moveaxis(np.linalg.solve(system, right), -1, 0)
+        return gain, shift
+
 
 def chain(growth: Array, rise: Array, start: float | Array) -> Array:
     """Energy at the edges of consecutive cells, of which each adds growth E + rise.

@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from crankmbs.mechanics.firing import Firing, FuelLaw
 from crankmbs.mechanics.torque import Branch, Course
 from crankmbs.motion.base import State
 from crankmbs.motion.crank_angle.grid import Grid, Strip
@@ -63,12 +64,12 @@ def solve_fired(
     law, mode = grid.train.law, state.mode
     assert law is not None
     assert mode.firing is not None
-    unforeseen = law.fuel.governor is not None or mode.firing.imposed is not None
+    foreseen = _foreseen(law, mode.firing)
     ahead, count = _ahead(grid, strip, begin.sense, state), len(strip.cell)
     torque, modes, parts = strip.torque.copy(), [(0, mode)], list[Cells]()
     k, n, now = 0, 0, begin
     while k < count and now.energy > 0.0 and now.time < begin.t_end:
-        last = n if unforeseen else len(ahead.cell) - 1
+        last = len(ahead.cell) - 1 if foreseen else n
         stop, expected = int(ahead.cell[last]), ahead.expected(n, last, mode)
         shares = expected.repeat(np.diff([k, *ahead.cell[n : last + 1]]), axis=0)
         part = strip.part(k, stop).fired(shares)
@@ -94,6 +95,11 @@ def solve_fired(
             energy=float(solved.edges[m]), time=float(solved.time[m])
         )  # the angle counts from the strip's begin
     return Fired(_joined(parts), replace(strip, torque=torque).first(k), tuple(modes))
+
+
+def _foreseen(law: FuelLaw, firing: Firing) -> bool:
+    """Whether shares are known before the motion is, as long as the fuel's window stays as it is."""
+    return law.fuel.governor is None and firing.imposed is None
 
 
 def _ahead(grid: Grid, strip: Strip, sense: float, state: State) -> _Ahead:

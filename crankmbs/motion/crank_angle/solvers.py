@@ -16,14 +16,15 @@ import numpy as np
 from crankmbs.mechanics.torque import Branch, Course
 from crankmbs.motion.crank_angle.grid import Grid, Strip, largest_of_row
 from crankmbs.numerics.arrays import Array
-from crankmbs.numerics.collocation import Maps, carried
+from crankmbs.numerics.collocation import Maps, carried, chain
 
-__all__ = ["Begin", "Cells", "clock", "is_affine", "lasting", "solve", "surplus", "torque_at"]
+__all__ = ["Begin", "Cells", "added", "is_affine", "lasting", "solve", "surplus", "torque_at"]
 
 _NEWTON = 20  # steps; where they do not suffice the motion goes on from the last cell that is good
-_TRIED = 6  # of them, after which a cell whose energy still falls to a tenth in each is cut off
+_TRIED = 2  # of them, after which cells are given up from one on whose energy is still cut
 _SETTLED, _GOOD = 1e-14, 1e-11  # relative change of the energy that another step would bring
-_LEAST = 0.1  # of its energy before, that a step leaves a node at least
+_TINY = float(np.finfo(float).tiny)
+_LEAST = 0.1  # of the energy of a node before, that a step leaves it at least
 
 
 class Begin(NamedTuple):
@@ -66,6 +67,8 @@ def solve(grid: Grid, strip: Strip, loads: Branch | Course, begin: Begin) -> Cel
         else:
             cells = _newton(grid, strip, loads, begin)
     count = len(cells.torque)
+    if count == 0:
+        return cells
     if not cells.time[-1] < begin.t_end:  # or it is NaN: then as far as the energy lasts
         count = min(count, int(np.argmax(~(cells.time[1:] < begin.t_end))) + 1)
     if math.isfinite(loads.omega_low) or math.isfinite(loads.omega_high):
@@ -87,10 +90,10 @@ def lasting(slow: float, grid: Grid, strip: Strip, cells: Cells) -> int:
     return int(np.argmin(np.append(lasts, False)))
 
 
-def clock(begin: float, spent: Array) -> Array:
-    """Time at the edges from the times spent in the cells; summed in more bits where there are:
+def added(begin: float, steps: Array) -> Array:
+    """What a value is at the edges that changes by steps; summed in more bits where there are:
     passes over the same cells would round alike, and not see it in their difference."""
-    return np.asarray(begin + np.append(0.0, np.cumsum(spent, dtype=np.longdouble)), np.float64)
+    return np.asarray(begin + np.append(0.0, np.cumsum(steps, dtype=np.longdouble)), np.float64)
 
 
 def _affine(grid: Grid, strip: Strip, branch: Branch, begin: Begin) -> Cells:
@@ -110,7 +113,7 @@ def _affine(grid: Grid, strip: Strip, branch: Branch, begin: Begin) -> Cells:
         energy = maps.gain * edges[:-1, None] + maps.shift
         push = push + 2.0 * branch.c2 * energy / inertia
     slowness = np.sqrt(0.5 * inertia / energy)
-    time = clock(begin.time, (strip.pace * slowness) @ grid.rule.weights)
+    time = added(begin.time, (strip.pace * slowness) @ grid.rule.weights)
     return Cells(edges, time, push, slowness)
 
 
@@ -139,42 +142,54 @@ def _alike(grid: Grid, strip: Strip) -> tuple[slice | Array, Array | None]:
 
 
 def _newton(grid: Grid, strip: Strip, loads: Branch | Course, begin: Begin) -> Cells:
-    """Newton's method; time by quadrature behind, so that a load over the time converges as the
-    cells do."""
+    """Newton's method on energies e at the edges and y at the nodes. With the torque f and its
+    slope k about the last ones, u' the pace, A and b the rule's matrix and weights, they miss
+
+        d = e + A u' f - y      at the nodes,      D = b u' f - (next e - e)      at the edge,
+
+    and are corrected by dy = de + d + A u' k dy and next de = de + D + b u' k dy. Time follows by
+    quadrature, so that a load over the time converges as the cells do.
+    """
     sense, start, t0, _, angle = begin
-    rule, turned = grid.rule, sense * strip.pace
-    theta = strip.angles(angle, sense, rule) if loads.functions else np.empty(0)
-    energy = np.full(strip.inertia.shape, start)
-    t, before, left = np.full_like(energy, t0), np.full(len(energy), math.inf), energy[:, 0]
-    slowness = np.sqrt(0.5 * strip.inertia / energy)
-    timed = bool(loads.functions) or not loads.is_steady
+    rule, theta = grid.rule, strip.angles(angle, sense, grid.rule) if loads.functions else None
+    timed = not loads.is_steady or bool(loads.functions)
+    energy, edges = np.full(strip.inertia.shape, start), np.full(len(strip.cell) + 1, start)
+    slowness, t = np.sqrt(0.5 * strip.inertia / energy), np.full_like(energy, t0)
+    before = np.full(len(energy), math.inf)
     for step in range(_NEWTON):
-        omega = sense / slowness
-        torque, rate = _linear(strip, loads, t, theta, omega)
-        maps = rule.maps(turned, torque - rate * energy, rate)
-        edges = carried(maps.growth, maps.rise, start)
-        new = maps.gain * edges[:-1, None] + maps.shift
-        change = largest_of_row(np.abs(new / energy - 1.0))
-        energy = np.maximum(new, _LEAST * energy)
+        torque, slope = _linear(strip, loads, t, theta, sense / slowness)
+        turned = sense * strip.pace
+        push, rate = turned * torque, turned * slope
+        missed = edges[:-1, None] + push @ rule.matrix.T - energy
+        gain, shift = rule.corrected(missed, rate)
+        rise = push @ rule.weights - np.diff(edges) + (rate * shift) @ rule.weights
+        more = chain((rate * gain) @ rule.weights, rise, 0.0)
+        edges, new = edges + more, energy + gain * more[:-1, None] + shift
+        change, least = largest_of_row(np.abs(new / energy - 1.0)), _LEAST * energy
+        # what another step would bring, by what the last one did
+        left = change * np.minimum(change / np.maximum(before, _TINY), 1.0) if step else change
+        if step >= _TRIED and (new < least).any():
+            m = int(np.argmax((new < least).any(axis=1)))
+            if m == 0:
+                break
+            strip, edges, new, least = strip.first(m), edges[: m + 1], new[:m], least[:m]
+            change, left, t, theta = change[:m], left[:m], t[:m], theta if theta is None else theta[:m]
+        energy, before = np.maximum(new, least), change
         slowness = np.sqrt(0.5 * strip.inertia / energy)
         if timed:
-            time = clock(t0, (strip.pace * slowness) @ rule.weights)
+            time = added(t0, (strip.pace * slowness) @ rule.weights)
             t = time[:-1, None] + (strip.pace * slowness) @ rule.matrix.T
-        left = np.where(change < before, change * np.minimum(change / before, 1.0), change)
-        if step == 0:
-            left = change
-        before = change
         if not (left > _SETTLED).any():
             break
-    good = int(np.argmin(np.append(left < _GOOD, False)))
-    strip, energy, slowness = strip.first(good), energy[:good], slowness[:good]
-    time = clock(t0, (strip.pace * slowness) @ rule.weights)
-    torque = torque_at(strip, loads, t[:good], theta[:good], sense / slowness)
-    return Cells(edges[: good + 1], time, torque, slowness)
+    m = int(np.argmin(np.append(left < _GOOD, False)))
+    strip, slowness, theta = strip.first(m), slowness[:m], theta if theta is None else theta[:m]
+    torque = torque_at(strip, loads, t[:m], theta, sense / slowness)
+    edges = added(start, (sense * strip.pace * torque) @ rule.weights)
+    return Cells(edges, added(t0, (strip.pace * slowness) @ rule.weights), torque, slowness)
 
 
 def _linear(
-    strip: Strip, loads: Branch | Course, t: Array, theta: Array, omega: Array
+    strip: Strip, loads: Branch | Course, t: Array, theta: Array | None, omega: Array
 ) -> tuple[Array, Array]:
     """Torque [N m] and its slope over the energy [1/rad] at the nodes."""
     slope = loads.slope(omega)
@@ -186,9 +201,9 @@ def _linear(
 
 
 def torque_at(
-    strip: Strip, loads: Branch | Course, t: Array, theta: Array, omega: Array
+    strip: Strip, loads: Branch | Course, t: Array, theta: Array | None, omega: Array
 ) -> Array:
-    """Torque of all at the nodes [N m]."""
+    """Torque of all at the nodes [N m]; angles are for functions."""
     torque = strip.torque + loads(t, omega)
     if strip.drags:
         torque = torque - strip.drag * omega
