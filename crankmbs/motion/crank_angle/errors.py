@@ -27,8 +27,9 @@ class Errors(NamedTuple):
     def raised(self, worst: Array, cell: Index) -> None:
         """Raise the largest errors so far at ends and inside of each cell of a grid, shape (2, n),
         to these; NaN where one is."""
-        for most, errors in zip(worst, (self.at_end, self.inside), strict=True):
-            np.maximum.at(most, cell, errors)
+        with np.errstate(invalid="ignore"):
+            for most, errors in zip(worst, (self.at_end, self.inside), strict=True):
+                np.maximum.at(most, cell, errors)
 
 
 def errors_of(window: Window) -> Errors:

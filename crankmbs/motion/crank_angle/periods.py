@@ -50,23 +50,19 @@ class Period(NamedTuple):
         """As many periods as end ``spare`` periods before ``t_end``, ``most`` at most."""
         block = max(8 * spare, _TOGETHER // len(self.gain))
         growth, rise = np.full((2, block), [[self.growth], [self.rise]])
-        done, total = 0, 0.0
+        done, total, clock = 0, 0.0, np.longdouble(time)  # alike in every pass, rounding is unseen
         while done < most:
             with np.errstate(all="ignore"):
                 energies = carried(growth, rise, energy)
                 roots = np.sqrt(energies[:-1, None] * self.gain + self.shift)
-                spent = np.cumsum((1.0 / roots) @ self.weight)
-            ended = int(np.searchsorted(~(time + spent <= t_end), True))
+                spent = clock + np.cumsum((1.0 / roots) @ self.weight, dtype=np.longdouble)
+            ended = int(np.searchsorted(~(spent <= t_end), True))
             count = int(min(ended - spare, most - done))
             if count <= 0:
                 break
             total += float(np.sum(energies[:count]))
-            energy, time, done = (
-                float(energies[count]),
-                time + float(spent[count - 1]),
-                done + count,
-            )
-        return Skipped(done, energy, total / max(done, 1), time)
+            energy, clock, done = float(energies[count]), spent[count - 1], done + count
+        return Skipped(done, energy, total / max(done, 1), float(clock))
 
 
 def period_of(grid: Grid, strip: Strip, branch: Branch, sense: float) -> Period:

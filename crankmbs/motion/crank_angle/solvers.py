@@ -106,8 +106,9 @@ def _affine(grid: Grid, strip: Strip, branch: Branch, begin: Begin) -> Cells:
     if of is not None:
         maps = Maps(*(part.take(of, axis=0) for part in maps))
         push = push.take(of, axis=0)
-    more = 0.0 if of is None else surplus(grid, branch, begin.sense, rises[1:-1]) * strip.width
-    edges = carried(maps.growth, maps.rise, begin.energy, more)
+    whole = of is not None
+    more = surplus(grid, branch, begin.sense, rises[1:-1]) if whole else -grid.rounding
+    edges = carried(maps.growth, maps.rise, begin.energy, more * strip.width)
     energy = edges[:-1, None] + maps.shift
     if branch.c2:
         energy = maps.gain * edges[:-1, None] + maps.shift
@@ -121,11 +122,11 @@ def surplus(grid: Grid, branch: Branch, sense: float, rises: Array) -> float:
     """By how much the rises of one period's cells are too large, per radian [N m].
 
     Weights do no work in a period. What rounding and the rule make of it would be the same in every
-    period and every pass, and come to light in neither. Known where nothing else acts but a
-    constant load.
+    period and every pass, and come to light in neither; where nothing else acts but a constant
+    load, it is known. Else it is less what `Grid.rounding` adds.
     """
     if branch.c2 or not grid.weights_alone:
-        return 0.0
+        return -grid.rounding
     period = float(grid.edges[-1])
     return math.fsum([*rises.tolist(), -sense * branch.c0 * period]) / period
 
@@ -162,7 +163,7 @@ def _newton(grid: Grid, strip: Strip, loads: Branch | Course, begin: Begin) -> C
         push, rate = turned * torque, turned * slope
         missed = edges[:-1, None] + push @ rule.matrix.T - energy
         gain, shift = rule.corrected(missed, rate)
-        rise = push @ rule.weights - np.diff(edges) + (rate * shift) @ rule.weights
+        rise = (push + rate * shift) @ rule.weights - np.diff(edges)
         more = chain((rate * gain) @ rule.weights, rise, 0.0)
         edges, new = edges + more, energy + gain * more[:-1, None] + shift
         change, least = largest_of_row(np.abs(new / energy - 1.0)), _LEAST * energy
@@ -184,7 +185,8 @@ def _newton(grid: Grid, strip: Strip, loads: Branch | Course, begin: Begin) -> C
     m = int(np.argmin(np.append(left < _GOOD, False)))
     strip, slowness, theta = strip.first(m), slowness[:m], theta if theta is None else theta[:m]
     torque = torque_at(strip, loads, t[:m], theta, sense / slowness)
-    edges = added(start, (sense * strip.pace * torque) @ rule.weights)
+    work = (sense * strip.pace * torque) @ rule.weights + grid.rounding * strip.width
+    edges = added(start, work)
     return Cells(edges, added(t0, (strip.pace * slowness) @ rule.weights), torque, slowness)
 
 
