@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -52,7 +53,7 @@ class _Ahead(NamedTuple):
         assert mode.firing is not None
         factor = float(mode.firing.set_in is not None and not mode.firing.over)
         shares = np.vstack([mode.shares, factor * self.parts[n:last]])
-        for before, after in zip(shares[:-1], shares[1:], strict=True):
+        for before, after in pairwise(shares):
             np.copyto(after, before, where=np.isnan(after))
         return shares
 
@@ -98,7 +99,7 @@ def solve_fired(
 
 
 def _foreseen(law: FuelLaw, firing: Firing) -> bool:
-    """Whether shares are known before the motion is, as long as the fuel's window stays as it is."""
+    """Whether shares are known before the motion is, while the fuel's window stays as it is."""
     return law.fuel.governor is None and firing.imposed is None
 
 

@@ -143,8 +143,10 @@ def _alike(grid: Grid, strip: Strip) -> tuple[slice | Array, Array | None]:
 
 
 def _newton(grid: Grid, strip: Strip, loads: Branch | Course, begin: Begin) -> Cells:
-    """Newton's method on energies e at the edges and y at the nodes. With the torque f and its
-    slope k about the last ones, u' the pace, A and b the rule's matrix and weights, they miss
+    """Newton's method on energies e at the edges and y at the nodes.
+
+    With the torque f and its slope k about the last ones, u' the pace, A and b the rule's matrix
+    and weights, they miss
 
         d = e + A u' f - y      at the nodes,      D = b u' f - (next e - e)      at the edge,
 
@@ -174,7 +176,12 @@ def _newton(grid: Grid, strip: Strip, loads: Branch | Course, begin: Begin) -> C
             if m == 0:
                 break
             strip, edges, new, least = strip.first(m), edges[: m + 1], new[:m], least[:m]
-            change, left, t, theta = change[:m], left[:m], t[:m], theta if theta is None else theta[:m]
+            change, left, t, theta = (
+                change[:m],
+                left[:m],
+                t[:m],
+                theta if theta is None else theta[:m],
+            )
         energy, before = np.maximum(new, least), change
         slowness = np.sqrt(0.5 * strip.inertia / energy)
         if timed:
