@@ -44,14 +44,19 @@ class Rule:
     to_legendre: Array
 
     @cached_property
-    def to_integral(self) -> Array:
-        """Node values to the Legendre series of their integral from 0 on, shape (s + 1, s)."""
+    def to_series(self) -> tuple[Array, Array]:
+        """Node values to the Chebyshev series of their polynomial and of its integral from 0 on, as
+        `summed` takes them: shape (s + 1, s) each."""
         s = len(self.nodes)
         share = 0.5 / (2.0 * np.arange(s) + 1.0)  # int P_j dx = (P_{j+1} - P_{j-1}) / (4 j + 2)
-        of_legendre = np.diag(share, -1)[:, :s]
-        of_legendre[: s - 1] -= np.diag(share[1:], 1)[: s - 1, :s]
-        of_legendre[0, 0] = 0.5
-        return np.asarray(of_legendre @ self.to_legendre)
+        integral = np.diag(share, -1)[:, :s]
+        integral[: s - 1] -= np.diag(share[1:], 1)[: s - 1, :s]
+        integral[0, 0] = 0.5
+        chebyshev = np.zeros((s + 1, s + 1))
+        for j, unit in enumerate(np.eye(s + 1)):
+            of_legendre = np.polynomial.chebyshev.poly2cheb(np.polynomial.legendre.leg2poly(unit))
+            chebyshev[: len(of_legendre), j] = of_legendre
+        return chebyshev[:, :s] @ self.to_legendre, chebyshev @ integral @ self.to_legendre
 
     def integrals(self, x: Array) -> Array:
         """Integrals of the s Lagrange polynomials from 0 to x: shape (n,) -> (n, s)."""
@@ -142,19 +147,18 @@ def chain(growth: Array, rise: Array, start: float | Array) -> Array:
 
 
 def summed(series: Array, x: Array) -> Array:
-    """Sums of shifted Legendre polynomials at x in [0, 1]: shape (n,), with coefficients of shape
-    (degrees, ..., n), by ascending degree.
+    """Sums of Chebyshev polynomials of 2 x - 1 at x in [0, 1], by Clenshaw's recurrence: shape
+    (n,), with coefficients of shape (degrees, ..., n), by ascending degree.
 
     >>> summed(np.array([[1.0], [2.0], [4.0]]), np.array([0.5]))
-    array([-1.])
+    array([-3.])
     """
     z = 2.0 * x - 1.0
-    before, p = np.ones_like(z), z
-    total: Array = series[0] + series[1] * z
-    for j, coefficient in enumerate(series[2:], start=2):
-        before, p = p, (2.0 - 1.0 / j) * z * p - (1.0 - 1.0 / j) * before
-        total += coefficient * p
-    return total
+    twice = 2.0 * z
+    last, before = series[-1], np.zeros_like(series[-1])
+    for coefficient in series[-2:0:-1]:
+        last, before = twice * last + (coefficient - before), last
+    return np.asarray(z * last + (series[0] - before))
 
 
 def carried(

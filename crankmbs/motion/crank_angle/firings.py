@@ -72,7 +72,9 @@ def solve_fired(
     while k < count and now.energy > 0.0 and now.time < begin.t_end:
         last = len(ahead.cell) - 1 if foreseen else n
         stop, expected = int(ahead.cell[last]), ahead.expected(n, last, mode)
-        shares = expected.repeat(np.diff([k, *ahead.cell[n : last + 1]]), axis=0)
+        shares = expected[0]
+        if last > n:
+            shares = expected.repeat(np.diff([k, *ahead.cell[n : last + 1]]), axis=0)
         part = strip.part(k, stop).fired(shares)
         solved = solve(grid, part, loads, now)
         m = whole = len(solved.torque)

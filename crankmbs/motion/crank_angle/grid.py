@@ -71,10 +71,10 @@ class Strip:
     def fired(self, shares: Array) -> Strip:
         """With what the combustion adds to the torque, and the rings that it presses; shares of
         each cylinder, shape (cylinders,), or (m, cylinders)."""
-        more = self.combustion * shares[..., None, :]
-        torque = self.torque + more.sum(axis=-1)
+        torque = self.torque + (self.combustion @ shares[..., None])[..., 0]
         if self.rubbed.shape[-1]:
-            torque -= self.against * np.abs(self.rubbed + more).sum(axis=-1)
+            pressing = np.abs(self.rubbed + self.combustion * shares[..., None, :])
+            torque -= self.against * pressing.sum(axis=-1)
         return replace(self, torque=torque)
 
     def angles(self, theta: float, sense: float, rule: Rule) -> Array:

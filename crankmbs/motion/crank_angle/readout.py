@@ -37,8 +37,8 @@ class Curves(NamedTuple):
     def of(rule: Rule, at_edges: tuple[Array, Array, Array], along: tuple[Array, Array]) -> Curves:
         """Of cells with dE/dx and dt/dx at their nodes, shape (m, s) each."""
         push, pace = along
-        legendre = np.vstack([rule.to_legendre, np.zeros(len(rule.nodes))])
-        parts = rule.to_integral @ push.T, rule.to_integral @ pace.T, legendre @ pace.T
+        to_value, to_integral = rule.to_series
+        parts = to_integral @ push.T, to_integral @ pace.T, to_value @ pace.T
         return Curves(*at_edges, np.stack(parts, axis=1))
 
     def at_angles(self, turned: Array) -> Read:
