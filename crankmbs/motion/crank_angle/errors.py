@@ -48,7 +48,7 @@ def errors_of(window: Window) -> Errors:
         energy = window.energy[:-1, None] + sense * pace * gained[:, :-1]
         slowness = np.sqrt(0.5 * strip.inertia / np.maximum(energy, 0.0))
         t = window.time[:-1, None] + pace * spent[:, :-1]
-        theta = strip.angles(window.begin.theta, sense, finer) if loads.functions else None
+        theta = strip.angles(window.begin.theta, sense, finer) if loads.functions else np.empty(0)
         torque = torque_at(strip, loads, t, theta, sense / slowness)
         missed = sense * pace * (torque @ to_nodes - gained)
         late = np.abs(pace * (slowness @ to_nodes - spent))

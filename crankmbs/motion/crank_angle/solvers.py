@@ -15,7 +15,7 @@ import numpy as np
 
 from crankmbs.mechanics.torque import Branch, Course
 from crankmbs.motion.crank_angle.grid import Grid, Strip, largest_of_row
-from crankmbs.numerics.arrays import Array
+from crankmbs.numerics.arrays import Array, Index
 from crankmbs.numerics.collocation import Maps, carried, chain
 
 __all__ = ["Begin", "Cells", "added", "is_affine", "lasting", "solve", "surplus", "torque_at"]
@@ -131,7 +131,7 @@ def surplus(grid: Grid, branch: Branch, sense: float, rises: Array) -> float:
     return math.fsum([*rises.tolist(), -sense * branch.c0 * period]) / period
 
 
-def _alike(grid: Grid, strip: Strip) -> tuple[slice | Array, Array | None]:
+def _alike(grid: Grid, strip: Strip) -> tuple[slice | Index, Index | None]:
     """Cells of which the others are copies, and of which each is one: after a period they come
     again, but for the first and the last, which may be parts, and shares of the fuel."""
     count, period = len(strip.cell), len(grid.edges) - 1
@@ -154,7 +154,9 @@ def _newton(grid: Grid, strip: Strip, loads: Branch | Course, begin: Begin) -> C
     quadrature, so that a load over the time converges as the cells do.
     """
     sense, start, t0, _, angle = begin
-    rule, theta = grid.rule, strip.angles(angle, sense, grid.rule) if loads.functions else None
+    rule, theta = grid.rule, np.empty(0)
+    if loads.functions:
+        theta = strip.angles(angle, sense, rule)
     timed = not loads.is_steady or bool(loads.functions)
     energy, edges = np.full(strip.inertia.shape, start), np.full(len(strip.cell) + 1, start)
     slowness, t = np.sqrt(0.5 * strip.inertia / energy), np.full_like(energy, t0)
@@ -176,12 +178,7 @@ def _newton(grid: Grid, strip: Strip, loads: Branch | Course, begin: Begin) -> C
             if m == 0:
                 break
             strip, edges, new, least = strip.first(m), edges[: m + 1], new[:m], least[:m]
-            change, left, t, theta = (
-                change[:m],
-                left[:m],
-                t[:m],
-                theta if theta is None else theta[:m],
-            )
+            change, left, t, theta = change[:m], left[:m], t[:m], theta[:m]
         energy, before = np.maximum(new, least), change
         slowness = np.sqrt(0.5 * strip.inertia / energy)
         if timed:
@@ -190,7 +187,7 @@ def _newton(grid: Grid, strip: Strip, loads: Branch | Course, begin: Begin) -> C
         if not (left > _SETTLED).any():
             break
     m = int(np.argmin(np.append(left < _GOOD, False)))
-    strip, slowness, theta = strip.first(m), slowness[:m], theta if theta is None else theta[:m]
+    strip, slowness, theta = strip.first(m), slowness[:m], theta[:m]
     torque = torque_at(strip, loads, t[:m], theta, sense / slowness)
     work = (sense * strip.pace * torque) @ rule.weights + grid.rounding * strip.width
     edges = added(start, work)
@@ -198,7 +195,7 @@ def _newton(grid: Grid, strip: Strip, loads: Branch | Course, begin: Begin) -> C
 
 
 def _linear(
-    strip: Strip, loads: Branch | Course, t: Array, theta: Array | None, omega: Array
+    strip: Strip, loads: Branch | Course, t: Array, theta: Array, omega: Array
 ) -> tuple[Array, Array]:
     """Torque [N m] and its slope over the energy [1/rad] at the nodes."""
     slope = loads.slope(omega)
@@ -209,9 +206,7 @@ def _linear(
     return torque_at(strip, loads, t, theta, omega), slope / (strip.inertia * omega)
 
 
-def torque_at(
-    strip: Strip, loads: Branch | Course, t: Array, theta: Array | None, omega: Array
-) -> Array:
+def torque_at(strip: Strip, loads: Branch | Course, t: Array, theta: Array, omega: Array) -> Array:
     """Torque of all at the nodes [N m]; angles are for functions."""
     torque = strip.torque + loads(t, omega)
     if strip.drags:
