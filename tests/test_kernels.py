@@ -2,7 +2,6 @@
 
 import dataclasses
 import importlib
-import math
 import re
 import subprocess
 import sys
@@ -14,7 +13,6 @@ import numpy as np
 import pytest
 
 from crankmbs import (
-    Constant,
     Quadratic,
     Result,
     Run,
@@ -28,13 +26,7 @@ from crankmbs import (
     simulate,
 )
 from crankmbs.mechanics import combined, reduced
-from crankmbs.mechanics.torque import branch_of
-from crankmbs.mechanics.train import CrankTrain
-from crankmbs.motion.crank_angle import cells, loops, readout
-from crankmbs.motion.crank_angle.grid import grid_of
-from crankmbs.motion.crank_angle.solvers import Begin, Cells, solve_affine, solve_newton
 from crankmbs.motion.minimal import stepper
-from crankmbs.numerics.collocation import gauss
 from crankmbs.numerics.kernels import kernel
 from crankmbs.scene.torque import Torque
 
@@ -58,7 +50,7 @@ def scene_with(loads: tuple[Torque, ...], speed: float, every: str) -> Scene:
 
 KERNELS = [
     (module, name)
-    for module in (cells, combined, loops, readout, reduced, stepper)
+    for module in (combined, reduced, stepper)
     for name, function in vars(module).items()
     if hasattr(function, "py_func")
 ]
@@ -92,50 +84,6 @@ def test_plain_and_compiled_loops_agree(
     assert 0.5 < one / other < 2.0 or max(one, other) < 1e-11
 
 
-@pytest.mark.parametrize("solve", [solve_affine, solve_newton])
-def test_clock_and_energy_lose_nothing_over_many_cells(solve: Callable[..., Cells]) -> None:
-    """What rounding takes is the same in every pass, and their difference would not show it."""
-    grid = grid_of(CrankTrain(load_scene("coasting"), None), gauss(3))
-    strip = grid.strip(0.0, 1.0, 4000, math.inf)
-    branch = branch_of((Constant(torque=0.1),), 0.0, 1.0, rising=True)
-    cells = solve(grid, strip, branch, Begin(1.0, 50.0, 0.1, math.inf, 0.0))
-    spent = strip.width * (cells.slowness @ grid.rule.weights)
-    assert abs(cells.time[-1] - math.fsum([0.1, *spent])) <= 2.0 * math.ulp(cells.time[-1])
-    gained = strip.width * (cells.torque @ grid.rule.weights)
-    assert abs(cells.edges[-1] - math.fsum([50.0, *gained])) <= 2.0 * math.ulp(cells.edges[-1])
-
-
-def test_the_worst_errors_of_cells_passed_again_and_what_is_no_number() -> None:
-    most = np.zeros((2, 3))
-    cell = np.array([0, 1, 2, 0, 1, 2])
-    at_end = np.array([2.0, math.nan, 1.0, 1.0, 3.0, 4.0])
-    loops.worst(cell, at_end, 2.0 * at_end[::-1].copy(), most)
-    np.testing.assert_array_equal(most, [[2.0, math.nan, 4.0], [8.0, math.nan, 4.0]])
-
-
-@pytest.mark.parametrize("stages", range(1, 10))
-def test_a_cell_is_read_where_it_is_asked_for(stages: int) -> None:
-    """Of torque x^(s-1) and slowness 2 x^(s-1) in cells of width 0.5, backwards."""
-    rule, x = gauss(stages), np.linspace(0.0, 1.0, 11)
-    power = np.tile(rule.nodes ** (stages - 1), (2, 1))
-    grown = x**stages / stages
-    edges, width = np.array([0.0, 0.5, 1.0]), np.full(2, 0.5)
-    energy, time = (
-        np.array([9.0, 3.0, 3.0 - 0.5 / stages]),
-        np.array([0.0, 5.0, 5.0 + 1.0 / stages]),
-    )
-    solved = edges, width, energy, time, power, 2.0 * power
-    t, kinetic = np.empty((2, 11))
-    readout.inside(1, x, -1.0, rule.to_legendre, solved, (t, kinetic))
-    np.testing.assert_allclose(t, 5.0 + grown, rtol=1e-15)
-    np.testing.assert_allclose(kinetic, 3.0 - 0.5 * grown, rtol=1e-15)
-    cell, (place, again, energy_again) = np.empty(11, np.intp), np.empty((3, 11))
-    found = cell, place, again, energy_again
-    readout.read(0.5 + 0.5 * x, False, -1.0, rule.to_legendre, solved, found)
-    np.testing.assert_allclose(again[1:], t[1:], rtol=1e-15)
-    np.testing.assert_allclose(energy_again[1:], kinetic[1:], rtol=1e-15)
-
-
 @pytest.mark.parametrize("loads", LOADS)
 def test_steps_over_time_are_the_same_compiled_and_plain(
     loads: str, monkeypatch: pytest.MonkeyPatch
@@ -159,7 +107,6 @@ def test_what_is_compiled_names_no_class_of_ours() -> None:
         assert simulate(scene, formulation=formulation).status == 0
     signatures = {name: getattr(module, name).signatures for module, name in KERNELS}
     assert signatures["travel"]
-    assert signatures["affine"]
     assert set(re.findall(r"\b(\w+)\(", str(signatures))) <= {"Array", "Tuple", "UniTuple", "array"}
 
 

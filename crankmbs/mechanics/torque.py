@@ -69,6 +69,11 @@ class Branch:
         return self.c0, self.ct, self.c1, self.c2
 
     @property
+    def is_steady(self) -> bool:
+        """Whether it does not change with the time, but for its functions."""
+        return self.ct == 0.0
+
+    @property
     def tables(self) -> Tables:
         """The same as a course without a row."""
         in_time, in_speed = np.array([[self.c0, self.ct]]), np.array([[0.0, self.c1, self.c2]])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -12,7 +12,7 @@ from scipy.linalg.blas import dtbsv
 
 from crankmbs.numerics.arrays import Array
 
-__all__ = ["Maps", "Rule", "chain", "gauss"]
+__all__ = ["Maps", "Rule", "carried", "chain", "gauss", "summed"]
 
 _SWEEPS = 0.1  # of |h rate|: where no cell has more, sweeps solve it sooner than elimination
 _TOGETHER = 16  # cases: so many together are chained sooner cell by cell than each by itself
@@ -42,6 +42,21 @@ class Rule:
     weights: Array
     matrix: Array
     to_legendre: Array
+
+    @cached_property
+    def to_series(self) -> tuple[Array, Array]:
+        """Node values to the Chebyshev series of their polynomial and of its integral from 0 on, as
+        `summed` takes them: shape (s + 1, s) each."""
+        s = len(self.nodes)
+        share = 0.5 / (2.0 * np.arange(s) + 1.0)  # int P_j dx = (P_{j+1} - P_{j-1}) / (4 j + 2)
+        integral = np.diag(share, -1)[:, :s]
+        integral[: s - 1] -= np.diag(share[1:], 1)[: s - 1, :s]
+        integral[0, 0] = 0.5
+        chebyshev = np.zeros((s + 1, s + 1))
+        for j, unit in enumerate(np.eye(s + 1)):
+            of_legendre = np.polynomial.chebyshev.poly2cheb(np.polynomial.legendre.leg2poly(unit))
+            chebyshev[: len(of_legendre), j] = of_legendre
+        return chebyshev[:, :s] @ self.to_legendre, chebyshev @ integral @ self.to_legendre
 
     def integrals(self, x: Array) -> Array:
         """Integrals of the s Lagrange polynomials from 0 to x: shape (n,) -> (n, s)."""
@@ -82,6 +97,25 @@ class Rule:
         growth = (rate * gain) @ self.weights
         return Maps(gain, shift, growth, (push + rate * shift) @ self.weights)
 
+    def corrected(self, missed: Array, rate: Array) -> tuple[Array, Array]:
+        """Of (I - A rate) y = 1 and = missed, shape (m, s), the answers in each cell, with A the
+        matrix: exact where |rate| is not small, else to a thousandth or better, as a step of
+        Newton's method is repeated.
+
+        rate : shape (m, s), times u' of `maps`
+        """
+        gain = 1.0 + rate @ self.matrix.T
+        gain = 1.0 + (rate * gain) @ self.matrix.T
+        shift = missed + (rate * missed) @ self.matrix.T
+        shift = missed + (rate * shift) @ self.matrix.T
+        stiff = np.abs(rate).max(initial=0.0)
+        if not stiff <= _SWEEPS:
+            which = np.flatnonzero(~(np.abs(rate) <= _SWEEPS).all(axis=1))
+            system = np.eye(len(self.weights)) - self.matrix * rate[which, None, :]
+            right = np.stack([np.ones_like(missed[which]), missed[which]], axis=-1)
+            gain[which], shift[which] = np.moveaxis(np.linalg.solve(system, right), -1, 0)
+        return gain, shift
+
 
 def chain(growth: Array, rise: Array, start: float | Array) -> Array:
     """Energy at the edges of consecutive cells, of which each adds growth E + rise.
@@ -110,6 +144,37 @@ def chain(growth: Array, rise: Array, start: float | Array) -> Array:
         band[1, :-1] = -factors[case]
         edges[case] = dtbsv(1, band, edges[case], lower=1, diag=1)
     return edges
+
+
+def summed(series: Array, x: Array) -> Array:
+    """Sums of Chebyshev polynomials of 2 x - 1 at x in [0, 1], by Clenshaw's recurrence: shape
+    (n,), with coefficients of shape (degrees, ..., n), by ascending degree.
+
+    >>> summed(np.array([[1.0], [2.0], [4.0]]), np.array([0.5]))
+    array([-3.])
+    """
+    z = 2.0 * x - 1.0
+    twice = 2.0 * z
+    last, before = series[-1], np.zeros_like(series[-1])
+    for coefficient in series[-2:0:-1]:
+        last, before = twice * last + (coefficient - before), last
+    return np.asarray(z * last + (series[0] - before))
+
+
+def carried(
+    growth: Array, rise: Array, start: float | Array, surplus: float | Array = 0.0
+) -> Array:
+    """The same edges, each to its own rounding: what the first chain missed is chained behind.
+
+    surplus : shape (..., m), of the rises, so little that they cannot hold it
+
+    >>> edges = carried(np.zeros(1000), np.full(1000, 0.1), 0.0)
+    >>> float(edges[-1]) == math.fsum([0.1] * 1000)
+    True
+    """
+    edges = chain(growth, rise, start)
+    missed = np.diff(edges, axis=-1) - (growth * edges[..., :-1] + rise) + surplus
+    return np.asarray(edges - chain(growth, missed, 0.0))
 
 
 @cache

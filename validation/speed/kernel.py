@@ -1,4 +1,4 @@
-"""The loop over the cells of the crank angle alone: without samples, forces, check and error."""
+"""The cells of the crank angle alone: without samples, forces, check and error."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ import numpy as np
 from crankmbs.mechanics.inertia import inertia_alone
 from crankmbs.mechanics.torque import branch_of
 from crankmbs.mechanics.train import CrankTrain, crank_train
-from crankmbs.motion.crank_angle import readout
 from crankmbs.motion.crank_angle.grid import Grid, grid_of
-from crankmbs.motion.crank_angle.solvers import Begin, solve_affine
+from crankmbs.motion.crank_angle.readout import Curves
+from crankmbs.motion.crank_angle.solvers import Begin, solve
 from crankmbs.motion.minimal.reduced import Reduced
 from crankmbs.numerics.collocation import gauss
 from crankmbs.scene.scene import Scene
@@ -30,9 +30,9 @@ _MOST_CELLS = 1e5  # what memory holds
 
 
 def kernels_of(scene: Scene, reference: Reference) -> tuple[Contender, ...]:
-    """The affine maps of one period and the loop over all cells, with the tables at hand.
+    """The affine maps of one period and the chain of all cells, with the tables at hand.
 
-    None where one such loop does not solve the scene: it starts from rest or turns back, its loads
+    None where one such chain does not solve the scene: it starts from rest or turns back, its loads
     depend on time or on the speed otherwise than by its square, it ends early or is very long.
     """
     start, end = scene.start, reference.trace.end()
@@ -64,7 +64,7 @@ def _grid(scene: Scene, widest: float) -> Grid:
 
 
 def _loop(scene: Scene, grid: Grid, reference: Reference) -> Callable[[], Answer]:
-    """The loop over cells, and the state at the end read from the last one."""
+    """The chain of cells, and the state at the end read from the last one."""
     assert scene.start is not None
     theta, omega = scene.start.angle, scene.start.speed
     sense = math.copysign(1.0, omega)
@@ -79,10 +79,12 @@ def _loop(scene: Scene, grid: Grid, reference: Reference) -> Callable[[], Answer
     no_gas = np.zeros((len(scene.cylinders), 9))
 
     def run() -> Answer:
-        cells = solve_affine(grid, strip, branch, begin)
-        solved = strip.turned, strip.width, cells.edges, cells.time, cells.torque, cells.slowness
-        k, (x, t, kinetic) = np.empty(1, np.intp), np.empty((3, 1))
-        readout.read(given, until_time, sense, grid.rule.to_legendre, solved, (k, x, t, kinetic))
+        cells = solve(grid, strip, branch, begin)
+        edges = strip.turned[: len(cells.edges)], cells.time, cells.edges
+        pace = strip.pace[: len(cells.torque)]
+        along = sense * pace * cells.torque, pace * cells.slowness
+        curves = Curves.of(grid.rule, edges, along)
+        k, x, t, kinetic = curves.at_times(given) if until_time else curves.at_angles(given)
         at = theta + sense * (strip.turned[k] + x * strip.width[k])
         speed = sense * math.sqrt(2.0 * float(kinetic[0]) / reduced(float(at[0]), no_gas)[0])
         return Answer(Trace(t, at, np.array([speed])), cells.torque.size)

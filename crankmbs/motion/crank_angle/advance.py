@@ -22,13 +22,12 @@ from crankmbs.mechanics.friction import friction_torque
 from crankmbs.mechanics.tabulated import tabulate
 from crankmbs.mechanics.torque import Branch, Course, branch_at, course_of
 from crankmbs.motion.base import State
-from crankmbs.motion.crank_angle import loops
-from crankmbs.motion.crank_angle.firings import solve, solve_fired
+from crankmbs.motion.crank_angle.firings import solve_fired
 from crankmbs.motion.crank_angle.grid import Grid, Strip
 from crankmbs.motion.crank_angle.kinks import what_misses
 from crankmbs.motion.crank_angle.periods import period_of
 from crankmbs.motion.crank_angle.rings import sign_changes_in
-from crankmbs.motion.crank_angle.solvers import Begin
+from crankmbs.motion.crank_angle.solvers import Begin, lasting, solve
 from crankmbs.motion.crank_angle.window import Window
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.mode import Mode
@@ -38,7 +37,7 @@ from crankmbs.scene.units import DEGREE
 __all__ = ["advance", "is_fast"]
 
 _SLOW = 0.5 * DEGREE  # where the energy would be gone within this angle, time must be the variable
-_BLOCK = 8192  # cells of one window
+_BLOCK = 4096  # cells of one window; with more BLAS would wake a second thread
 _SPEED_BLOCK = 512  # where the loads' branch may end at a speed, and the rest is for nothing
 _REACH = 1.0  # rad: what Newton's method can hold of loads that are functions, on all cells at once
 _HAIR = 1e-6  # of a cell: as near its edge it is as exact as there
@@ -238,20 +237,13 @@ def _solved(way: _Way, loads: Branch | Course, strip: Strip, t_end: float) -> Wi
     """The cells of a strip, up to where they are too slow."""
     grid, state, energy, sense, *_ = way
     begin = Begin(sense, energy, state.time, t_end, state.theta)
-    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-        modes: tuple[tuple[int, Mode], ...] = ()
-        if grid.train.law is None:
-            cells = solve(grid, strip, loads, begin)
-        else:
-            cells, strip, modes = solve_fired(grid, strip, loads, begin, state)
-        edges, time, torque, slowness = cells
-        strip, more = strip.first(len(torque)), np.empty(0)
-        if loads.functions:
-            at_ends = strip.angles(state.theta, sense, grid.rule)[:, -1]
-            given = time[1:], at_ends, sense / slowness[:, -1]
-            more = np.sum([function(*given) for function in loads.functions], axis=0)
-    course, limits = (loads.tables, more), (grid.scale, grid.least)
-    m = loops.lasting(_SLOW, sense, course, limits, (strip.cell, strip.drag), cells.bare)
+    modes: tuple[tuple[int, Mode], ...] = ()
+    if grid.train.law is None:
+        cells = solve(grid, strip, loads, begin)
+    else:
+        cells, strip, modes = solve_fired(grid, strip, loads, begin, state)
+    strip = strip.first(len(cells.torque))
+    m = lasting(_SLOW, grid, strip, cells)
     if m == 0:
         return None
     return Window(
@@ -261,10 +253,7 @@ def _solved(way: _Way, loads: Branch | Course, strip: Strip, t_end: float) -> Wi
         sense,
         state,
         strip.turned[: m + 1],
-        edges[: m + 1],
-        time[: m + 1],
-        torque[:m],
-        slowness[:m],
+        *cells.first(m),
         (m - 1, 1.0),
         modes=tuple(one for one in modes if one[0] < m),
     )

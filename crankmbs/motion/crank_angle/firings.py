@@ -1,28 +1,29 @@
 """Cells of the crank angle across the decisions on the fuel, which fall on edges of cells.
 
 Between two decisions the shares of the combustion are fixed, and with them the torque over the
-angle: a stretch of cells is solved as any other.
+angle. Shares that are known beforehand, all but a governor's, cut nothing: the strip is solved with
+them at once, and only where a decision turns out otherwise, as a window of the fuel opens or
+closes, does it end there.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import replace
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
-from crankmbs.mechanics.firing import Firing
+from crankmbs.mechanics.firing import Firing, FuelLaw
 from crankmbs.mechanics.torque import Branch, Course
 from crankmbs.motion.base import State
-from crankmbs.motion.crank_angle import loops
-from crankmbs.motion.crank_angle.functions import solve_functions
 from crankmbs.motion.crank_angle.grid import Grid, Strip
-from crankmbs.motion.crank_angle.solvers import Begin, Cells, solve_affine, solve_newton
+from crankmbs.motion.crank_angle.solvers import Begin, Cells, solve
 from crankmbs.motion.mode import Mode, decided
-from crankmbs.numerics.arrays import Array
+from crankmbs.numerics.arrays import Array, Index
 
-__all__ = ["Fired", "fired_by_stretch", "solve", "solve_fired"]
+__all__ = ["Fired", "solve_fired"]
 
 _HAIR = 1e-9  # rad: an edge so near is where the decision falls
 
@@ -36,111 +37,89 @@ class Fired(NamedTuple):
     modes: tuple[tuple[int, Mode], ...]
 
 
-def solve(grid: Grid, strip: Strip, loads: Branch | Course, begin: Begin) -> Cells:
-    """The cells of a strip, by the method that the loads allow."""
-    if isinstance(loads, Branch) and loads.is_affine_in_energy and not strip.drags:
-        return solve_affine(grid, strip, loads, begin)
-    if loads.functions:
-        return solve_functions(grid, strip, loads, begin)
-    return solve_newton(grid, strip, loads, begin)
+class _Ahead(NamedTuple):
+    """Decisions on the way: the cell before which each falls, the last one behind the strip; crank
+    angle [rad] and J [kg m2] there; what misfires and scatter leave of each share, shape
+    (n, cylinders), NaN where a cylinder does not decide."""
+
+    cell: Index
+    angle: Array
+    inertia: Array
+    parts: Array
+
+    def expected(self, n: int, last: int, mode: Mode) -> Array:
+        """The shares before decision n and after it and each up to the last one, which is left out,
+        shape (last - n + 1, cylinders), where what lets fuel in or keeps it out stays as it is."""
+        assert mode.firing is not None
+        factor = float(mode.firing.set_in is not None and not mode.firing.over)
+        shares = np.vstack([mode.shares, factor * self.parts[n:last]])
+        for before, after in pairwise(shares):
+            np.copyto(after, before, where=np.isnan(after))
+        return shares
 
 
 def solve_fired(
     grid: Grid, strip: Strip, loads: Branch | Course, begin: Begin, state: State
 ) -> Fired:
-    """Solve the cells of a strip from a state on, from decision to decision: compiled where loads
-    are tables, else stretch by stretch."""
-    if loads.functions:
-        return fired_by_stretch(grid, strip, loads, begin, state)
+    """Solve the cells of a strip from a state on, as far at once as the shares are foreseen."""
     law, mode = grid.train.law, state.mode
     assert law is not None
     assert mode.firing is not None
-    sense, count = begin.sense, len(strip.width)
+    foreseen = _foreseen(law, mode.firing)
+    ahead, count = _ahead(grid, strip, begin.sense, state), len(strip.cell)
+    torque, modes, parts = strip.torque.copy(), [(0, mode)], list[Cells]()
+    k, n, now = 0, 0, begin
+    while k < count and now.energy > 0.0 and now.time < begin.t_end:
+        last = len(ahead.cell) - 1 if foreseen else n
+        stop, expected = int(ahead.cell[last]), ahead.expected(n, last, mode)
+        shares = expected[0]
+        if last > n:
+            shares = expected.repeat(np.diff([k, *ahead.cell[n : last + 1]]), axis=0)
+        part = strip.part(k, stop).fired(shares)
+        solved = solve(grid, part, loads, now)
+        m = whole = len(solved.torque)
+        for shares_after in [*expected[1:].tolist(), None]:
+            at = int(ahead.cell[n])
+            energy, time = (float(q[min(at - k, whole)]) for q in solved[:2])
+            if at == count or at - k > whole or not energy > 0.0:
+                break
+            omega = begin.sense * math.sqrt(2.0 * energy / ahead.inertia[n])
+            mode, n = decided(grid.train, mode, time, float(ahead.angle[n]), omega), n + 1
+            modes.append((at, mode))
+            if shares_after is None or mode.shares != tuple(shares_after):
+                m = at - k
+                break
+        torque[k : k + m] = part.torque[:m]
+        parts.append(solved.first(m))
+        k, goes_on = k + m, m < whole or whole == stop - k
+        if not goes_on:
+            break
+        now = now._replace(
+            energy=float(solved.edges[m]), time=float(solved.time[m])
+        )  # the angle counts from the strip's begin
+    return Fired(_joined(parts), replace(strip, torque=torque).first(k), tuple(modes))
+
+
+def _foreseen(law: FuelLaw, firing: Firing) -> bool:
+    """Whether shares are known before the motion is, while the fuel's window stays as it is."""
+    return law.fuel.governor is None and firing.imposed is None
+
+
+def _ahead(grid: Grid, strip: Strip, sense: float, state: State) -> _Ahead:
+    """The decisions on a strip from a state on; on a way back all is decided, as far as it went
+    before."""
+    law, mode, count = grid.train.law, state.mode, len(strip.cell)
+    assert law is not None
     first = mode.high if sense > 0.0 else mode.low
-    # on a way back all is decided, as far as it went before
     reach = max(0.0, float(strip.turned[-1]) - sense * (first - state.theta))
     angles, slots, parts = law.ahead(first, sense, reach)
-    at = strip.turned[:count].searchsorted(sense * (angles - state.theta) - _HAIR)
-    at[-1] = count  # beyond the strip
-    kept, shares = np.empty((len(at), 5)), np.empty((len(at), parts.shape[1]))
-    kept[0], shares[0] = _numbers(mode.firing), mode.firing.shares
-    cells, torque = Cells.empty(strip), strip.torque.copy()
-    start, gauss = (begin.energy, begin.time, sense), (grid.rule.matrix, grid.rule.weights)
-    decisions = at, angles, grid.at_decisions[slots], parts
-    solved, decided_ = loops.fired(
-        isinstance(loads, Branch) and loads.is_affine_in_energy and not strip.drags,
-        (loads.tables, (begin.t_end, loads.omega_low, loads.omega_high), start),
-        gauss,
-        (strip.width, strip.inertia, torque, strip.drag),
-        (strip.of_gas, decisions, law.numbers, (kept, shares)),
-        cells.bare,
-    )
-    modes = _modes(mode, sense, angles, kept[: decided_ + 1], shares)
-    of_cells = tuple(zip([0, *at[:decided_].tolist()], modes, strict=True))
-    return Fired(cells.first(solved), replace(strip, torque=torque).first(solved), of_cells)
+    cell = strip.turned[:count].searchsorted(sense * (angles - state.theta) - _HAIR)
+    cell[-1] = count
+    return _Ahead(cell, angles, grid.at_decisions[slots], parts)
 
 
-def fired_by_stretch(
-    grid: Grid, strip: Strip, loads: Branch | Course, begin: Begin, state: State
-) -> Fired:
-    """The same with decisions as `crankmbs.motion.mode.decided` makes them."""
-    cells, torque = Cells.empty(strip), strip.torque.copy()
-    sense, count = begin.sense, len(strip.width)
-    cells.edges[0], cells.time[0] = begin.energy, begin.time
-    mode, k = state.mode, 0
-    modes = [(0, mode)]
-    while k < count:
-        angle = mode.high if sense > 0.0 else mode.low
-        ahead = sense * (angle - state.theta)
-        if ahead <= strip.turned[k] + _HAIR:
-            energy, time = float(cells.edges[k]), float(cells.time[k])
-            mode = decided(grid.train, mode, time, angle, _speed(grid, angle, sense, energy))
-            modes.append((k, mode))
-            continue
-        stop = min(int(strip.turned.searchsorted(ahead - _HAIR)), count)
-        part = fired(strip.part(k, stop), np.array(mode.shares))
-        there = begin._replace(energy=float(cells.edges[k]), time=float(cells.time[k]))
-        found = solve(grid, part, loads, there)
-        torque[k:stop], solved = part.torque, len(found.torque)
-        cells.edges[k : k + solved + 1], cells.time[k : k + solved + 1] = found.edges, found.time
-        cells.torque[k : k + solved], cells.slowness[k : k + solved] = found.torque, found.slowness
-        k += solved
-        if k < stop or not cells.edges[k] > 0.0 or cells.time[k] >= begin.t_end:
-            break
-    return Fired(cells.first(k), replace(strip, torque=torque).first(k), tuple(modes))
-
-
-def fired(strip: Strip, shares: Array) -> Strip:
-    """A strip with the torque of these shares of the combustion, shape (cylinders,)."""
-    torque = strip.torque.copy()
-    loops.fire(torque, *strip.of_gas, shares)
-    return replace(strip, torque=torque)
-
-
-def _speed(grid: Grid, theta: float, sense: float, energy: float) -> float:
-    """The speed [rad/s] at an angle at which a decision falls."""
-    law = grid.train.law
-    assert law is not None
-    inertia = float(grid.at_decisions[law.ahead(theta, sense, 0.0).slots[0]])
-    return sense * math.sqrt(2.0 * energy / inertia)
-
-
-def _numbers(firing: Firing) -> tuple[float, float, float, float, float]:
-    """What has been decided, as `crankmbs.motion.crank_angle.loops.fired` takes it."""
-    set_in = math.nan if firing.set_in is None else firing.set_in
-    return firing.time, firing.theta, firing.integral, set_in, float(firing.over)
-
-
-def _modes(mode: Mode, sense: float, angles: Array, kept: Array, shares: Array) -> list[Mode]:
-    """The mode, and those after each decision at one of these angles."""
-    modes, last = [mode], mode.firing
-    assert last is not None
-    low, high = last.low, last.high
-    rows = zip(kept[1:].tolist(), shares[1:].tolist(), angles[1:].tolist(), strict=False)
-    for (time, theta, integral, set_in, over), each, beyond in rows:
-        low, high = min(theta, low), max(theta, high)
-        begun = None if math.isnan(set_in) else set_in
-        firing = Firing(tuple(each), time, theta, integral, begun, over > 0.0, low, high)
-        before, after = (mode.low, beyond) if sense > 0.0 else (beyond, mode.high)
-        modes.append(Mode(mode.loads, before, after, firing))
-    return modes
+def _joined(parts: list[Cells]) -> Cells:
+    """Cells one after the other; an edge between two is that of the later ones."""
+    edges = [[*(part[i][:-1] for part in parts[:-1]), parts[-1][i]] for i in (0, 1)]
+    nodes = [[part[i] for part in parts] for i in (2, 3)]
+    return Cells(*map(np.concatenate, edges + nodes))

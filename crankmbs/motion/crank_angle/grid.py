@@ -27,6 +27,7 @@ from crankmbs.numerics.cycle import Cycle
 __all__ = ["Grid", "Strip", "grid_of", "largest_of_row"]
 
 
+_EPS = float(np.finfo(float).eps)
 _SLIVER = 1e-12  # rad: a start this close to an edge is on it
 
 
@@ -62,9 +63,19 @@ class Strip:
         return bool(self.drag.shape[-1])
 
     @property
-    def of_gas(self) -> tuple[Array, Array, float]:
-        """What firings add to the torque: combustion, rubbed and against."""
-        return self.combustion, self.rubbed, self.against
+    def pace(self) -> Array:
+        """Angle turned per position in the cell, which is 0 to 1: (m, 1) as it is the same at all
+        nodes [rad]."""
+        return self.width[:, None]
+
+    def fired(self, shares: Array) -> Strip:
+        """With what the combustion adds to the torque, and the rings that it presses; shares of
+        each cylinder, shape (cylinders,), or (m, cylinders)."""
+        torque = self.torque + (self.combustion @ shares[..., None])[..., 0]
+        if self.rubbed.shape[-1]:
+            pressing = np.abs(self.rubbed + self.combustion * shares[..., None, :])
+            torque -= self.against * pressing.sum(axis=-1)
+        return replace(self, torque=torque)
 
     def angles(self, theta: float, sense: float, rule: Rule) -> Array:
         """Crank angles [rad] of the nodes of a rule, shape (m, s), where it begins at one."""
@@ -182,6 +193,21 @@ class Grid:
         from_to = np.searchsorted(middle, around.ravel())
         return np.asarray(np.maximum.reduceat(most, from_to)[::2])
 
+    @property
+    def weights_alone(self) -> bool:
+        """Whether nothing but weights acts over the angle."""
+        train = self.train
+        gas_or_friction = train.pressure is not None or train.scene.friction is not None
+        return not gas_or_friction and self.over_angle is None
+
+    @cached_property
+    def rounding(self) -> float:
+        """Mean torque [N m] that rounding may leave of the works in a period: it is alike in every
+        period and every pass, so a grid that checks another errs by it on purpose, and the
+        difference knows what the motion makes of it. 0 on the others."""
+        works = self.scale * self._widths
+        return float(self.checks * _EPS * np.linalg.norm(works) / self.edges[-1])
+
     @cached_property
     def least(self) -> Array:
         """Smallest J in each cell, shape (n,) [kg m2]."""
@@ -210,13 +236,27 @@ class Grid:
     def strip(self, theta: float, sense: float, count: int, bound: float) -> Strip:
         """At most ``count`` cells from a crank angle on, in the sense of rotation, cut at the
         angle ``bound``; the first and the last may be parts of cells."""
-        from crankmbs.motion.crank_angle import cells  # numba is loaded only where a run needs it
+        n, period, reach = len(self.edges) - 1, float(self.edges[-1]), abs(bound - theta)
+        step = 1 if sense > 0.0 else -1
+        at = self.cell_at(theta, sense) + step * np.arange(count + 1)
+        cell = at[:-1] % n
+        # not the sum of so many widths, which every pass over the same cells would round alike
+        turns, after = np.divmod(at[1:], n)
+        ahead = self.edges[after if step > 0 else after + 1]
+        turned = np.append(0.0, sense * (turns * period + ahead - self._local(theta, sense)))
+        width = self._widths[cell]
+        width[0] = turned[1]
+        m = int(np.searchsorted(turned[1:], reach - _SLIVER)) + 1
+        if m <= count:
+            cell, width, turned = cell[:m], width[:m], turned[: m + 1]
+            if turned[m] > reach:
+                turned[m], width[m - 1] = reach, reach - turned[m - 1]
+        return self._filled(theta, sense, cell, width, turned)
 
-        found = np.empty(count, np.intp), np.empty(count), np.empty(count + 1)
-        begin, reach = (theta, sense, self.cell_at(theta, sense)), abs(bound - theta)
-        m = cells.lay(self.edges, begin, reach, _SLIVER, found)
-        cell, width, turned = found
-        return self._filled(theta, sense, cell[:m], width[:m], turned[: m + 1])
+    def _local(self, theta: float, sense: float) -> float:
+        """An angle [rad] in the period in which the motion goes on."""
+        period = float(self.edges[-1])
+        return theta - math.floor((theta + sense * _SLIVER) / period) * period
 
     def same(self, strip: Strip, theta: float, sense: float) -> Strip:
         """The cells of another grid's strip from a crank angle on, where edges are the same."""
@@ -241,9 +281,7 @@ class Grid:
         parts = (width != self._widths.take(cell)).nonzero()[0]
         anew: tuple[Array, ...] = ()
         if len(parts):
-            period = float(self.edges[-1])
-            local = theta - math.floor((theta + sense * _SLIVER) / period) * period
-            start = local + sense * turned[parts]
+            start = self._local(theta, sense) + sense * turned[parts]
             anew = self._tabulate(start, sense * width[parts])
         if len(parts) == len(cell):
             tables = [*anew]

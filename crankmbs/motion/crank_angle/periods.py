@@ -9,14 +9,15 @@ of speed and of slowness need no other look.
 from __future__ import annotations
 
 import math
-from itertools import accumulate
 from typing import NamedTuple
 
 import numpy as np
 
 from crankmbs.mechanics.torque import Branch
 from crankmbs.motion.crank_angle.grid import Grid, Strip
+from crankmbs.motion.crank_angle.solvers import surplus
 from crankmbs.numerics.arrays import Array
+from crankmbs.numerics.collocation import carried, chain
 
 __all__ = ["Period", "Skipped", "period_of"]
 
@@ -48,45 +49,34 @@ class Period(NamedTuple):
     def run(self, energy: float, time: float, most: float, t_end: float, spare: int) -> Skipped:
         """As many periods as end ``spare`` periods before ``t_end``, ``most`` at most."""
         block = max(8 * spare, _TOGETHER // len(self.gain))
-        done, total = 0, 0.0
+        growth, rise = np.full((2, block), [[self.growth], [self.rise]])
+        done, total, clock = 0, 0.0, np.longdouble(time)  # alike in every pass, rounding is unseen
         while done < most:
-            energies = np.array(
-                list(
-                    accumulate(
-                        range(block),
-                        lambda e, _: e + (self.growth * e + self.rise),
-                        initial=energy,
-                    )
-                )
-            )
-            with np.errstate(invalid="ignore", divide="ignore"):
+            with np.errstate(all="ignore"):
+                energies = carried(growth, rise, energy)
                 roots = np.sqrt(energies[:-1, None] * self.gain + self.shift)
-                spent = np.cumsum((1.0 / roots) @ self.weight)
-            ended = int(np.searchsorted(~(time + spent <= t_end), True))
+                spent = clock + np.cumsum((1.0 / roots) @ self.weight, dtype=np.longdouble)
+            ended = int(np.searchsorted(~(spent <= t_end), True))
             count = int(min(ended - spare, most - done))
             if count <= 0:
                 break
             total += float(np.sum(energies[:count]))
-            energy, time, done = (
-                float(energies[count]),
-                time + float(spent[count - 1]),
-                done + count,
-            )
-        return Skipped(done, energy, total / max(done, 1), time)
+            energy, clock, done = float(energies[count]), spent[count - 1], done + count
+        return Skipped(done, energy, total / max(done, 1), float(clock))
 
 
 def period_of(grid: Grid, strip: Strip, branch: Branch, sense: float) -> Period:
     """Compose the maps of the cells of one period, given as a strip."""
-    from crankmbs.motion.crank_angle import loops  # numba is loaded only where a run needs it
-
-    rule, (growth, rise) = grid.rule, np.empty((2, len(strip.width)))
-    gain, shift, weight = np.empty((3, *strip.inertia.shape))
-    push, rate = strip.torque + branch.c0, 2.0 * branch.c2 / strip.inertia
-    cells = sense * strip.width, strip.width, push, rate, strip.inertia
-    found = gain, shift, weight, growth, rise
-    loops.compose(cells, (rule.matrix, rule.weights), found)
+    rule, inertia = grid.rule, strip.inertia
+    push, rate = strip.torque + branch.c0, 2.0 * branch.c2 / inertia
+    maps = rule.maps(sense * strip.pace, push, rate)
+    grown, risen = chain(maps.growth, np.stack([maps.growth, maps.rise]), np.zeros(2))
+    gain = maps.gain * (1.0 + grown[:-1, None])
+    shift = maps.gain * risen[:-1, None] + maps.shift
+    weight = np.sqrt(0.5 * inertia) * strip.pace * rule.weights
     with np.errstate(divide="ignore", invalid="ignore"):
-        left = (1.0 + growth[-1]) / (1.0 + growth)  # what the rest of the period makes of it
+        left = (1.0 + grown[-1]) / (1.0 + grown[1:])  # what the rest of the period makes of it
     # the cells' rises nearly cancel in a steady motion
-    whole = float(growth[-1]), math.fsum((rise * left).tolist())
-    return Period(*whole, gain.ravel(), shift.ravel(), weight.ravel())
+    rise = math.fsum((maps.rise * left).tolist())
+    rise -= surplus(grid, branch, sense, maps.rise) * float(grid.edges[-1])
+    return Period(float(grown[-1]), rise, gain.ravel(), shift.ravel(), weight.ravel())

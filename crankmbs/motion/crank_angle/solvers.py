@@ -1,18 +1,30 @@
-"""The energy over the crank angle, cell by cell: affine maps, or Newton's method, in the compiled
-loops of `crankmbs.motion.crank_angle.loops`."""
+"""The energy over the crank angle and the time, on all cells of a strip at once.
+
+A load c0 + c2 omega^2 is affine in the energy: one pass over affine maps is the answer. Everything
+else is solved by Newton's method on the whole strip: about the last motion the torque is
+f + rate E, each cell an affine map, and all of them are chained. What a cell does depends on those
+before it alone, so the cells solved are the first ones, up to one that has not converged.
+"""
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 
 from crankmbs.mechanics.torque import Branch, Course
-from crankmbs.motion.crank_angle import loops
-from crankmbs.motion.crank_angle.grid import Grid, Strip
-from crankmbs.numerics.arrays import Array
+from crankmbs.motion.crank_angle.grid import Grid, Strip, largest_of_row
+from crankmbs.numerics.arrays import Array, Index
+from crankmbs.numerics.collocation import Maps, carried, chain
 
-__all__ = ["Begin", "Cells", "solve_affine", "solve_newton"]
+__all__ = ["Begin", "Cells", "added", "is_affine", "lasting", "solve", "surplus", "torque_at"]
+
+_NEWTON = 20  # steps; where they do not suffice the motion goes on from the last cell that is good
+_TRIED = 2  # of them, after which cells are given up from one on whose energy is still cut
+_SETTLED, _GOOD = 1e-14, 1e-11  # relative change of the energy that another step would bring
+_TINY = float(np.finfo(float).tiny)
+_LEAST = 0.1  # of the energy of a node before, that a step leaves it at least
 
 
 class Begin(NamedTuple):
@@ -34,18 +46,6 @@ class Cells(NamedTuple):
     torque: Array
     slowness: Array
 
-    @property
-    def bare(self) -> tuple[Array, Array, Array, Array]:
-        """As a loop takes them."""
-        return self.edges, self.time, self.torque, self.slowness
-
-    @staticmethod
-    def empty(strip: Strip) -> Cells:
-        """Room for the answer of a loop."""
-        edges, time = np.empty((2, len(strip.width) + 1))
-        torque, slowness = np.empty((2, *strip.inertia.shape))
-        return Cells(edges, time, torque, slowness)
-
     def first(self, m: int) -> Cells:
         """The first m cells."""
         if m == len(self.torque):
@@ -53,20 +53,164 @@ class Cells(NamedTuple):
         return Cells(self.edges[: m + 1], self.time[: m + 1], self.torque[:m], self.slowness[:m])
 
 
-def solve_affine(grid: Grid, strip: Strip, branch: Branch, begin: Begin) -> Cells:
+def is_affine(strip: Strip, loads: Branch | Course) -> bool:
+    """Whether the torque is affine in the energy."""
+    return isinstance(loads, Branch) and loads.is_affine_in_energy and not strip.drags
+
+
+def solve(grid: Grid, strip: Strip, loads: Branch | Course, begin: Begin) -> Cells:
+    """The cells of a strip, the last one across the end in time or a bound of the loads in the
+    speed; fewer where the energy is gone or Newton's method does not converge."""
+    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+        if isinstance(loads, Branch) and is_affine(strip, loads):
+            cells = _affine(grid, strip, loads, begin)
+        else:
+            cells = _newton(grid, strip, loads, begin)
+    count = len(cells.torque)
+    if count == 0:
+        return cells
+    if not cells.time[-1] < begin.t_end:  # or it is NaN: then as far as the energy lasts
+        count = min(count, int(np.argmax(~(cells.time[1:] < begin.t_end))) + 1)
+    if math.isfinite(loads.omega_low) or math.isfinite(loads.omega_high):
+        omega = begin.sense / cells.slowness
+        beyond = ((omega < loads.omega_low) | (omega > loads.omega_high)).any(axis=1)
+        count = min(count, int(np.argmax(np.append(beyond, True))) + 1)
+    return cells.first(count)
+
+
+def lasting(slow: float, grid: Grid, strip: Strip, cells: Cells) -> int:
+    """How many solved cells come before one whose energy would be gone within an angle ``slow``
+    [rad], or that has none."""
+    energy, least = cells.edges, grid.least[strip.cell]
+    outside = cells.torque[:, -1] - strip.torque[:, -1]
+    enough = slow * (grid.scale[strip.cell] + np.abs(outside))
+    slowest = largest_of_row(cells.slowness)  # NaN where one is
+    lasts = (energy[:-1] > enough) & (energy[1:] > enough)
+    lasts &= 0.5 * least > enough * slowest**2
+    return int(np.argmin(np.append(lasts, False)))
+
+
+def added(begin: float, steps: Array) -> Array:
+    """What a value is at the edges that changes by steps; summed in more bits where there are:
+    passes over the same cells would round alike, and not see it in their difference."""
+    return np.asarray(begin + np.append(0.0, np.cumsum(steps, dtype=np.longdouble)), np.float64)
+
+
+def _affine(grid: Grid, strip: Strip, branch: Branch, begin: Begin) -> Cells:
     """dE/du = sense (T + c0) + 2 sense c2 E / J: an affine map per cell, the same every period."""
-    alike = grid.train.law is None  # whose shares differ from period to period
-    period = len(grid.edges) - 1 if alike else len(strip.width)
-    cells, rule = Cells.empty(strip), (grid.rule.matrix, grid.rule.weights)
-    tables, loads = (strip.width, strip.inertia, strip.torque), (branch.c0, branch.c2, begin.sense)
-    return cells.first(loops.affine(period, tables, loads, rule, begin[1:4], cells.bare))
+    once, of = _alike(grid, strip)
+    inertia, torque, turned = strip.inertia, strip.torque, begin.sense * strip.pace
+    push, rate = torque[once] + branch.c0, 2.0 * branch.c2 / inertia[once]
+    maps = grid.rule.maps(turned[once], push, rate)
+    rises = maps.rise
+    if of is not None:
+        maps = Maps(*(part.take(of, axis=0) for part in maps))
+        push = push.take(of, axis=0)
+    whole = of is not None
+    more = surplus(grid, branch, begin.sense, rises[1:-1]) if whole else -grid.rounding
+    edges = carried(maps.growth, maps.rise, begin.energy, more * strip.width)
+    energy = edges[:-1, None] + maps.shift
+    if branch.c2:
+        energy = maps.gain * edges[:-1, None] + maps.shift
+        push = push + 2.0 * branch.c2 * energy / inertia
+    slowness = np.sqrt(0.5 * inertia / energy)
+    time = added(begin.time, (strip.pace * slowness) @ grid.rule.weights)
+    return Cells(edges, time, push, slowness)
 
 
-def solve_newton(grid: Grid, strip: Strip, loads: Branch | Course, begin: Begin) -> Cells:
-    """Newton's method, cell after cell."""
-    sense, start, t0, t_end, _ = begin
-    cells = Cells.empty(strip)
-    bounds = (t_end, loads.omega_low, loads.omega_high)
-    tables = (strip.width, strip.inertia, strip.torque, strip.drag)
-    at, gauss = (start, t0, sense), (grid.rule.matrix, grid.rule.weights)
-    return cells.first(loops.newton(loads.tables, bounds, at, gauss, tables, cells.bare))
+def surplus(grid: Grid, branch: Branch, sense: float, rises: Array) -> float:
+    """By how much the rises of one period's cells are too large, per radian [N m].
+
+    Weights do no work in a period. What rounding and the rule make of it would be the same in every
+    period and every pass, and come to light in neither; where nothing else acts but a constant
+    load, it is known. Else it is less what `Grid.rounding` adds.
+    """
+    if branch.c2 or not grid.weights_alone:
+        return -grid.rounding
+    period = float(grid.edges[-1])
+    return math.fsum([*rises.tolist(), -sense * branch.c0 * period]) / period
+
+
+def _alike(grid: Grid, strip: Strip) -> tuple[slice | Index, Index | None]:
+    """Cells of which the others are copies, and of which each is one: after a period they come
+    again, but for the first and the last, which may be parts, and shares of the fuel."""
+    count, period = len(strip.cell), len(grid.edges) - 1
+    if count <= period + 2 or grid.train.law is not None:
+        return slice(None), None
+    of = 1 + (np.arange(count) - 1) % period
+    of[0], of[-1] = 0, period + 1
+    return np.append(np.arange(period + 1), count - 1), of
+
+
+def _newton(grid: Grid, strip: Strip, loads: Branch | Course, begin: Begin) -> Cells:
+    """Newton's method on energies e at the edges and y at the nodes.
+
+    With the torque f and its slope k about the last ones, u' the pace, A and b the rule's matrix
+    and weights, they miss
+
+        d = e + A u' f - y      at the nodes,      D = b u' f - (next e - e)      at the edge,
+
+    and are corrected by dy = de + d + A u' k dy and next de = de + D + b u' k dy. Time follows by
+    quadrature, so that a load over the time converges as the cells do.
+    """
+    sense, start, t0, _, angle = begin
+    rule, theta = grid.rule, np.empty(0)
+    if loads.functions:
+        theta = strip.angles(angle, sense, rule)
+    timed = not loads.is_steady or bool(loads.functions)
+    energy, edges = np.full(strip.inertia.shape, start), np.full(len(strip.cell) + 1, start)
+    slowness, t = np.sqrt(0.5 * strip.inertia / energy), np.full_like(energy, t0)
+    before = np.full(len(energy), math.inf)
+    for step in range(_NEWTON):
+        torque, slope = _linear(strip, loads, t, theta, sense / slowness)
+        turned = sense * strip.pace
+        push, rate = turned * torque, turned * slope
+        missed = edges[:-1, None] + push @ rule.matrix.T - energy
+        gain, shift = rule.corrected(missed, rate)
+        rise = (push + rate * shift) @ rule.weights - np.diff(edges)
+        more = chain((rate * gain) @ rule.weights, rise, 0.0)
+        edges, new = edges + more, energy + gain * more[:-1, None] + shift
+        change, least = largest_of_row(np.abs(new / energy - 1.0)), _LEAST * energy
+        # what another step would bring, by what the last one did
+        left = change * np.minimum(change / np.maximum(before, _TINY), 1.0) if step else change
+        if step >= _TRIED and (new < least).any():
+            m = int(np.argmax((new < least).any(axis=1)))
+            if m == 0:
+                break
+            strip, edges, new, least = strip.first(m), edges[: m + 1], new[:m], least[:m]
+            change, left, t, theta = change[:m], left[:m], t[:m], theta[:m]
+        energy, before = np.maximum(new, least), change
+        slowness = np.sqrt(0.5 * strip.inertia / energy)
+        if timed:
+            time = added(t0, (strip.pace * slowness) @ rule.weights)
+            t = time[:-1, None] + (strip.pace * slowness) @ rule.matrix.T
+        if not (left > _SETTLED).any():
+            break
+    m = int(np.argmin(np.append(left < _GOOD, False)))
+    strip, slowness, theta = strip.first(m), slowness[:m], theta[:m]
+    torque = torque_at(strip, loads, t[:m], theta, sense / slowness)
+    work = (sense * strip.pace * torque) @ rule.weights + grid.rounding * strip.width
+    edges = added(start, work)
+    return Cells(edges, added(t0, (strip.pace * slowness) @ rule.weights), torque, slowness)
+
+
+def _linear(
+    strip: Strip, loads: Branch | Course, t: Array, theta: Array, omega: Array
+) -> tuple[Array, Array]:
+    """Torque [N m] and its slope over the energy [1/rad] at the nodes."""
+    slope = loads.slope(omega)
+    if strip.drags:
+        slope = slope - strip.drag
+    for function in loads.functions:
+        slope = slope + function.slope(t, theta, omega)
+    return torque_at(strip, loads, t, theta, omega), slope / (strip.inertia * omega)
+
+
+def torque_at(strip: Strip, loads: Branch | Course, t: Array, theta: Array, omega: Array) -> Array:
+    """Torque of all at the nodes [N m]; angles are for functions."""
+    torque = strip.torque + loads(t, omega)
+    if strip.drags:
+        torque = torque - strip.drag * omega
+    for function in loads.functions:
+        torque = torque + function(t, theta, omega)
+    return torque

@@ -15,13 +15,14 @@ from crankmbs.mechanics.tabulated import tabulate
 from crankmbs.mechanics.torque import Branch, Course
 from crankmbs.motion.base import NOWHERE, Nodes, Points, Samples, State
 from crankmbs.motion.cells import Acting, Cells
-from crankmbs.motion.crank_angle import readout
 from crankmbs.motion.crank_angle.crossing import crossing
 from crankmbs.motion.crank_angle.errors import Errors, errors_of
 from crankmbs.motion.crank_angle.grid import Grid, Strip
+from crankmbs.motion.crank_angle.readout import Curves
 from crankmbs.motion.mode import Mode, decided
 from crankmbs.motion.plan import Wanted
 from crankmbs.numerics.arrays import Array, Index
+from crankmbs.numerics.collocation import chain
 from crankmbs.numerics.periodic import one_period
 
 __all__ = ["Window"]
@@ -90,11 +91,12 @@ class Window:
     def sample(self, plan: Wanted) -> Samples:
         """The samples of the plan after the beginning, up to the end and with it."""
         if plan.in_time:
-            k, x, t, energy = self._read(plan.between(self.begin.time, self.end.time), in_time=True)
+            times = plan.between(self.begin.time, self.end.time)
+            k, x, t, energy = self._curves.at_times(times)
             return self._samples(k, self._theta(k, x), t, energy)
         theta = plan.between(self.begin.theta, self.end.theta)
         u = self.sense * (theta - self.begin.theta)
-        k, _, t, energy = self._read(u, in_time=False)
+        k, _, t, energy = self._curves.at_angles(u)
         return self._samples(k, theta, t, energy)
 
     def last(self) -> Samples:
@@ -159,7 +161,7 @@ class Window:
         at_bound = math.isfinite(bound) and abs(whole - bound) <= 1e-12 * max(1.0, abs(bound))
         stops = [(self.stop, nowhere._replace(theta=bound) if at_bound else nowhere)]
         if self.time[-1] >= t_end:
-            k, x, *_ = self._read(np.array([t_end]), in_time=True)
+            k, x, *_ = self._curves.at_times(np.array([t_end]))
             stops.append(((int(k[0]), float(x[0])), nowhere._replace(time=t_end)))
         for limit, above in ((self.branch.omega_low, False), (self.branch.omega_high, True)):
             if math.isfinite(limit) and limit * self.sense > 0.0:
@@ -241,8 +243,7 @@ class Window:
         to be linear; in the cell itself the torque is higher by as much throughout."""
         width, weights = self.sense * self.strip.width, self.grid.rule.weights
         rate = self.rate(np.ones(len(width), dtype=np.bool_))
-        more = np.empty_like(self.energy)
-        readout.carried(width * (rate @ weights), gained, more)
+        more = chain(width * (rate @ weights), gained, 0.0)
         before = more[:-1, None]
         torque = self.torque + rate * before + (gained / width)[:, None]
         faster = self.slowness * (self.slowness**2 / self.strip.inertia * before)
@@ -263,10 +264,8 @@ class Window:
 
     def inside(self, k: int, x: Array, landed: State = NOWHERE) -> Samples:
         """The samples at places x in a cell, 0 to 1; what is known exactly as it is."""
-        t, energy = np.empty((2, len(x)))
-        to_legendre = self.grid.rule.to_legendre
-        readout.inside(k, x, self.sense, to_legendre, self._solved, (t, energy))
         cell = np.full(len(x), k)
+        t, energy = self._curves.inside(cell, x)
         theta = _exact(landed.theta, self._theta(cell, x))
         return self._samples(cell, theta, _exact(landed.time, t), energy)
 
@@ -274,19 +273,12 @@ class Window:
         turned = self.edges[k] + x * self.strip.width[k]
         return np.asarray(self.begin.theta + self.sense * turned)
 
-    def _read(self, given: Array, *, in_time: bool) -> tuple[Index, Array, Array, Array]:
-        """Cell, position in it, time and energy at increasing times, or angles turned."""
-        k, (x, t, energy) = np.empty(len(given), np.intp), np.empty((3, len(given)))
-        to_legendre = self.grid.rule.to_legendre
-        found = k, x, t, energy
-        readout.read(given, in_time, self.sense, to_legendre, self._solved, found)
-        return found
-
-    @property
-    def _solved(self) -> tuple[Array, Array, Array, Array, Array, Array]:
-        """As `readout` takes it."""
-        at_edges, at_nodes = (self.energy, self.time), (self.torque, self.slowness)
-        return self.edges, self.strip.width, *at_edges, *at_nodes
+    @cached_property
+    def _curves(self) -> Curves:
+        """What is read between the nodes."""
+        pace = self.strip.pace
+        along = self.sense * pace * self.torque, pace * self.slowness
+        return Curves.of(self.grid.rule, (self.edges, self.time, self.energy), along)
 
     def _samples(self, k: Index, theta: Array, t: Array, energy: Array) -> Samples:
         """Samples in the cells k."""
@@ -303,25 +295,18 @@ class Window:
             inertia, slope, torque = inertia[which], slope[which], torque[which] + more.sum(axis=1)
             over_angle = None if over_angle is None else over_angle[which]
             which = np.arange(len(theta))
-        of_angle = (inertia, slope, torque)  # bare: numba's cache must not name a class
-        rubs = self.grid.train.scene.friction is not None
-        if isinstance(self.branch, Branch) and not self.branch.functions and not rubs:
-            found = omega, outside, alpha = np.empty_like(t), np.empty_like(t), np.empty_like(t)
-            loads = self.branch.coefficients
-            readout.motion(which, of_angle, self.sense, loads, (t, energy), found)
-        else:
-            inertia, slope, torque = (part[which] for part in of_angle)
-            omega = self.sense * np.sqrt(2.0 * np.maximum(energy, 0.0) / inertia)
-            outside = self.branch(t, omega)
-            for function in self.branch.functions:
-                outside = outside + function(t, theta, omega)
-            if rubs:
-                given = own.get("fuel")
-                torque = torque + friction_torque(self.grid.train, theta, omega, self.sense, given)
-                slides = np.full_like(omega, self.sense)
-                forces = friction_forces(self.grid.train, theta, omega, given, slides)
-                own["friction_force"] = forces
-            alpha = (torque + outside - 0.5 * slope * omega**2) / inertia
+        inertia, slope, torque = (part[which] for part in (inertia, slope, torque))
+        omega = self.sense * np.sqrt(2.0 * np.maximum(energy, 0.0) / inertia)
+        outside = self.branch(t, omega)
+        for function in self.branch.functions:
+            outside = outside + function(t, theta, omega)
+        if self.grid.train.scene.friction is not None:
+            given = own.get("fuel")
+            torque = torque + friction_torque(self.grid.train, theta, omega, self.sense, given)
+            slides = np.full_like(omega, self.sense)
+            forces = friction_forces(self.grid.train, theta, omega, given, slides)
+            own["friction_force"] = forces
+        alpha = (torque + outside - 0.5 * slope * omega**2) / inertia
         residual = self.begin.residual - self.missed[k]
         outside = outside if over_angle is None else outside + over_angle[which]
         return Samples(t, theta, omega, alpha, residual, {"external_torque": outside, **own})

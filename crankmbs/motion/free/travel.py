@@ -17,7 +17,6 @@ from crankmbs.mechanics.torque import Branch
 from crankmbs.motion.assemble import ANGLE_ROUNDING
 from crankmbs.motion.base import Samples, State
 from crankmbs.motion.crank_angle import advance as crank_angle
-from crankmbs.motion.crank_angle import loops
 from crankmbs.motion.crank_angle.grid import Grid
 from crankmbs.motion.crank_angle.window import Window
 from crankmbs.motion.ending import Ending
@@ -149,5 +148,4 @@ def _sticks(scene: Scene) -> bool:
 
 def _note(worst: Array, window: Window) -> None:
     """Keep the largest errors so far of a window's cells."""
-    _, at_end, inside = window.errors
-    loops.worst(window.strip.cell, at_end, inside, worst)
+    window.errors.raised(worst, window.strip.cell)

@@ -1,0 +1,153 @@
+"""Cells of the crank angle: solved, chained and read to rounding."""
+
+import math
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from crankmbs import Quadratic, Run, Viscous, load_scene, simulate
+from crankmbs.mechanics.torque import branch_of
+from crankmbs.mechanics.train import CrankTrain, crank_train
+from crankmbs.motion.crank_angle.errors import Errors
+from crankmbs.motion.crank_angle.grid import grid_of
+from crankmbs.motion.crank_angle.periods import period_of
+from crankmbs.motion.crank_angle.readout import Curves
+from crankmbs.motion.crank_angle.solvers import Begin, lasting, solve
+from crankmbs.numerics.collocation import carried, chain, gauss
+from crankmbs.scene.loads import Constant
+
+COASTING = grid_of(CrankTrain(load_scene("coasting"), None), gauss(3))
+DIESEL = grid_of(crank_train(load_scene("yi_diesel_free")), gauss(5))
+
+
+@pytest.mark.parametrize("viscous", [0.0, 1e-13])
+def test_clock_and_energy_lose_nothing_over_many_cells(viscous):
+    """What rounding takes is the same in every pass, and their difference would not show it."""
+    grid = replace(COASTING)
+    grid.__dict__["weights_alone"] = False
+    strip = grid.strip(0.0, 1.0, 4000, math.inf)
+    branch = replace(branch_of((Constant(torque=0.1),), 0.0, 1.0, rising=True), c1=-viscous)
+    cells = solve(grid, strip, branch, Begin(1.0, 50.0, 0.1, math.inf, 0.0))
+    spent = strip.width * (cells.slowness @ grid.rule.weights)
+    assert abs(cells.time[-1] - math.fsum([0.1, *spent])) <= 2.0 * math.ulp(cells.time[-1])
+    gained = strip.width * (cells.torque @ grid.rule.weights)
+    assert abs(cells.edges[-1] - math.fsum([50.0, *gained])) <= 2.0 * math.ulp(cells.edges[-1])
+
+
+def test_weights_do_no_work_in_any_period():
+    strip = COASTING.strip(0.0, 1.0, 4000, math.inf)
+    period = len(COASTING.edges) - 1
+    branch = branch_of((), 0.0, 1.0, rising=True)
+    cells = solve(COASTING, strip, branch, Begin(1.0, 50.0, 0.0, math.inf, 0.0))
+    assert np.ptp(cells.edges) > 1.0
+    assert np.max(np.abs(cells.edges[::period] - 50.0)) <= 2.0 * math.ulp(50.0)
+    once = period_of(COASTING, strip.first(period), branch, 1.0)
+    assert abs(once.rise) <= 1e-30
+    assert once.growth == 0.0
+
+
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_newton_and_affine_maps_agree(sense):
+    """A viscous load that takes nothing sends the same cells through Newton's method."""
+    loads = (Quadratic(coefficient=7e-4),)
+    branch = branch_of(loads, 0.0, sense, rising=sense > 0.0)
+    strip, begin = DIESEL.strip(0.3, sense, 2000, math.inf), Begin(sense, 9e3, 0.0, 1e9, 0.3)
+    affine, newton = (solve(DIESEL, strip, b, begin) for b in (branch, replace(branch, c1=1e-300)))
+    for mine, other in zip(affine, newton, strict=True):
+        scale = np.max(np.abs(mine))
+        np.testing.assert_allclose(mine, other, rtol=0.0, atol=1e-13 * scale)
+
+
+def test_cells_end_before_rest_and_every_one_solves_its_equation():
+    loads = (Viscous(coefficient=5.0),)
+    branch = branch_of(loads, 0.0, 300.0, rising=True)
+    strip = DIESEL.strip(0.0, 1.0, 4000, math.inf)
+    cells = solve(DIESEL, strip, branch, Begin(1.0, 7e3, 0.0, math.inf, 0.0))
+    m = lasting(0.01, DIESEL, strip.first(len(cells.torque)), cells)
+    assert 300 < m < 4000
+    part, rule = strip.first(m), DIESEL.rule
+    energy = cells.edges[:m, None] + part.pace * (cells.torque[:m] @ rule.matrix.T)
+    omega = np.sqrt(2.0 * energy / part.inertia)
+    torque = part.torque - 5.0 * omega
+    np.testing.assert_allclose(cells.torque[:m], torque, atol=1e-10 * np.max(np.abs(torque)))
+    np.testing.assert_allclose(cells.slowness[:m], 1.0 / omega, rtol=1e-11)
+    assert np.all(np.diff(cells.time[: m + 1]) > 0.0)
+
+
+def test_cells_end_behind_the_one_that_passes_the_end_in_time():
+    branch = branch_of((), 0.0, 1.0, rising=True)
+    strip = COASTING.strip(0.0, 1.0, 500, math.inf)
+    cells = solve(COASTING, strip, branch, Begin(1.0, 50.0, 0.0, 0.2, 0.0))
+    assert cells.time[-2] < 0.2 <= cells.time[-1]
+
+
+def test_a_chain_is_exact_to_rounding_of_its_edges():
+    rng = np.random.default_rng(1)
+    growth, rise = 1e-3 * rng.standard_normal(3000), rng.standard_normal(3000)
+    exact = [np.longdouble(1000.0)]
+    for g, r in zip(growth, rise, strict=True):
+        exact.append(exact[-1] + (np.longdouble(g) * exact[-1] + r))
+    edges = carried(growth, rise, 1000.0)
+    ulps = np.abs(edges - np.array(exact)) / np.spacing(np.abs(edges))
+    assert ulps.max() < 3.0
+    assert np.abs(chain(growth, rise, 1000.0) - edges).max() > 0.0
+
+
+def test_the_worst_errors_of_cells_passed_again_and_what_is_no_number():
+    worst, cell = np.zeros((2, 3)), np.array([0, 1, 2, 0, 1, 2])
+    at_end = np.array([2.0, math.nan, 1.0, 1.0, 3.0, 4.0])
+    Errors(at_end, at_end, 2.0 * at_end[::-1]).raised(worst, cell)
+    np.testing.assert_array_equal(worst, [[2.0, math.nan, 4.0], [8.0, math.nan, 4.0]])
+
+
+def test_cells_last_as_long_as_their_energy():
+    """Energy 1 at every edge, torque 0 outside, largest torque 1: 0.9 rad are allowed, 1.1 not."""
+    grid = SimpleNamespace(scale=np.ones(4), least=np.full(4, 2.0))
+    slow = np.full((4, 3), 0.1)
+    strip = SimpleNamespace(cell=np.arange(4), torque=np.zeros((4, 3)))
+    cells = SimpleNamespace(edges=np.ones(5), torque=np.zeros((4, 3)), slowness=slow)
+    assert lasting(0.9, grid, strip, cells) == 4
+    assert lasting(1.1, grid, strip, cells) == 0
+    for k, slowness in ((2, 2.0), (1, math.nan)):
+        slow[k, 1] = slowness
+        assert lasting(0.9, grid, strip, cells) == k
+    cells.edges[1] = math.nan
+    assert lasting(0.9, grid, strip, cells) == 0
+
+
+@pytest.mark.parametrize("stages", range(1, 10))
+def test_a_cell_is_read_where_it_is_asked_for(stages):
+    """Of torque x^(s-1) and slowness 2 x^(s-1) in cells of width 0.5, backwards."""
+    rule, x = gauss(stages), np.linspace(0.0, 1.0, 11)
+    power = np.tile(rule.nodes ** (stages - 1), (2, 1))
+    grown = x**stages / stages
+    edges, energy, time = (
+        np.array([0.0, 0.5, 1.0]),
+        np.array([9.0, 3.0, 3.0 - 0.5 / stages]),
+        np.array([0.0, 5.0, 5.0 + 1.0 / stages]),
+    )
+    curves = Curves.of(rule, (edges, time, energy), (-0.5 * power, power))
+    t, kinetic = curves.inside(np.ones(11, np.intp), x)
+    np.testing.assert_allclose(t, 5.0 + grown, rtol=1e-15)
+    np.testing.assert_allclose(kinetic, 3.0 - 0.5 * grown, rtol=1e-15)
+    at_angles = curves.at_angles(0.5 + 0.5 * x)
+    np.testing.assert_allclose(at_angles.time[1:], t[1:], rtol=1e-15)
+    np.testing.assert_allclose(at_angles.energy[1:], kinetic[1:], rtol=1e-15)
+    at_times = curves.at_times(t)
+    assert at_times.cell.tolist() == [0] + 10 * [1]
+    np.testing.assert_allclose(at_times.energy[1:], kinetic[1:], rtol=1e-14)
+
+
+@pytest.mark.parametrize("cycles", [1_000, 10_000, 100_000])
+def test_the_time_of_a_long_free_run_errs_by_no_more_than_it_states(cycles):
+    """Under weights alone every cycle takes as long as the first."""
+
+    def last(count):
+        run = Run(until=f"{count} cycles", every="none", rtol=1e-9)
+        time = simulate(replace(load_scene("coasting"), run=run)).data["time"]
+        return float(time[-1]), time.attrs["error_estimate"]
+
+    (once, _), (time, error) = last(1), last(cycles)
+    assert abs(time - cycles * once) <= error
