@@ -27,7 +27,6 @@ from crankmbs import (
     load_scene,
     simulate,
 )
-from crankmbs.mechanics import combined, reduced
 from crankmbs.mechanics.torque import branch_of
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion.crank_angle import cells, loops, readout
@@ -58,7 +57,7 @@ def scene_with(loads: tuple[Torque, ...], speed: float, every: str) -> Scene:
 
 KERNELS = [
     (module, name)
-    for module in (cells, combined, loops, readout, reduced, stepper)
+    for module in (cells, loops, readout, stepper)
     for name, function in vars(module).items()
     if hasattr(function, "py_func")
 ]

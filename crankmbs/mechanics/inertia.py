@@ -171,7 +171,7 @@ def reduce(train: CrankTrain, theta: ArrayLike, shares: ArrayLike | None = None)
     each = None
     if shares is not None and train.combustion is not None:
         each = np.broadcast_to(shares, (*theta.shape, len(train.combustion)))
-        each = each.reshape(len(angles), -1).T
+        each = each.reshape(len(angles), each.shape[-1]).T
     found = np.empty((3, len(angles)))
     for begin in range(0, len(angles), _BLOCK):
         block = slice(begin, begin + _BLOCK)
@@ -180,9 +180,7 @@ def reduce(train: CrankTrain, theta: ArrayLike, shares: ArrayLike | None = None)
     return Reduction(*found.reshape(3, *theta.shape))
 
 
-def _reduced(
-    train: CrankTrain, theta: Array, shares: Array | None
-) -> tuple[Array, Array, Array]:
+def _reduced(train: CrankTrain, theta: Array, shares: Array | None) -> tuple[Array, Array, Array]:
     """J, dJ/dtheta and the torque, shape (n,); shares : shape (cylinders, n)."""
     scene = train.scene
     crank, rod, piston = scene.crank, scene.rod, scene.piston
@@ -248,4 +246,4 @@ def fired_torque(train: CrankTrain, theta: ArrayLike) -> Array:
     angles = theta.ravel()
     more = pressures_at(train.combustion, np.add.outer(axes_of(scene).phases, angles))
     torque = -(scene.piston.gas_area or 0.0) * more * closed_loops(scene, angles).x_1
-    return np.asarray(torque.T.reshape(*theta.shape, -1))
+    return np.asarray(torque.T.reshape(*theta.shape, len(torque)))

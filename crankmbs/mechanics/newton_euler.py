@@ -18,7 +18,6 @@ import numpy as np
 
 from crankmbs.mechanics.geometry import Loop, top_position
 from crankmbs.mechanics.inertia import (
-    RodCentre,
     axes_of,
     closed_loops,
     crank_weight,

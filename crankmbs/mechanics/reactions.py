@@ -8,7 +8,6 @@ for each sample.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import accumulate
@@ -31,6 +30,7 @@ __all__ = ["Balances", "Table", "balances", "peaks_of", "reactions"]
 
 
 _PER_SPEED = ("piston_velocity", "rod_angular_speed")
+_RUBBED = "friction_force"
 _BLOCK = 60_000  # numbers at once: half a megabyte, which stays in the cache
 _OFTEN = 3  # so often an angle must come back for its parts to pay
 
@@ -112,6 +112,7 @@ class Balances(NamedTuple):
         belongs to omega^2, alpha and 1, of what depends on the angle alone (rows, 1, angles)
     motion : omega^2, alpha and omega at the samples
     added : by name, what combustion and friction add at the samples, shape (rows, samples)
+    groups : variables that are put together alike, and their rows
     """
 
     period: Period
@@ -120,22 +121,29 @@ class Balances(NamedTuple):
     motion: tuple[Array, Array, Array]
     added: dict[str, Array]
     by_parts: bool
+    groups: tuple[tuple[list[str], slice], ...]
 
     def fill(self, room: Array) -> None:
         """All variables at the samples in their places, shape (rows, samples)."""
-        for names, rows in self._groups():
+        for names, rows in self.groups:
             self.put(names, room[rows])
 
     def apart(self, values: Array) -> Array:
         """Largest absolute difference of each row from one of another motion, NaN where one is:
         values as `fill` gives them; these here are not kept."""
         largest = np.empty(len(values))
-        for names, rows in self._groups():
+        for names, rows in self.groups:
             own = np.empty((rows.stop - rows.start, values.shape[1]))
             self.put(names, own)
             own -= values[rows]
             largest[rows] = peaks_of(own)
         return largest
+
+    def row(self, name: str) -> Array:
+        """A variable of the crank at the samples."""
+        room = np.empty((1, len(self.period.which)))
+        self.put([name], room)
+        return np.asarray(room[0])
 
     def put(self, names: list[str], out: Array) -> None:
         """Variables of equal powers, one behind the other, at the samples, shape (rows,
@@ -164,23 +172,23 @@ class Balances(NamedTuple):
         terms = [(stacked[:, k], sizes[power]) for k, power in zip(places, powers, strict=True)]
         self.period.join(terms, out)
 
-    def _groups(self) -> Iterator[tuple[list[str], slice]]:
-        """Variables next to one another that are put together alike, not too many numbers."""
-        names: list[str] = []
-        places = places_of(self.rows)
-        for name in self.rows:
-            rows = places[name]
-            if names:
-                begin = places[names[0]].start
-                large = (rows.stop - begin) * len(self.period.which) > _BLOCK
-                if large or self._kind(name) != self._kind(names[0]):
-                    yield names, slice(begin, rows.start)
-                    names = []
-            names.append(name)
-        yield names, slice(places[names[0]].start, places[names[-1]].stop)
 
-    def _kind(self, name: str) -> tuple[object, ...]:
-        return name in self.parts, name in _PER_SPEED, powers_of(name)
+def _groups(rows: dict[str, int], samples: int) -> tuple[tuple[list[str], slice], ...]:
+    """Variables next to one another that are put together alike, not too many numbers."""
+    groups: list[tuple[list[str], slice]] = []
+    for name, place in places_of(rows).items():
+        if groups:
+            names, before = groups[-1]
+            small = (place.stop - before.start) * samples <= _BLOCK
+            if small and _kind(name) == _kind(names[0]):
+                groups[-1] = [*names, name], slice(before.start, place.stop)
+                continue
+        groups.append(([name], place))
+    return tuple(groups)
+
+
+def _kind(name: str) -> tuple[object, ...]:
+    return name == _RUBBED, name in _PER_SPEED, powers_of(name)
 
 
 def peaks_of(rows: Array) -> Array:
@@ -213,18 +221,20 @@ def balances(
     motion = UNITS if by_parts else Powers(square[None], alpha[None], np.ones((1, 1)))
     rows, parts = rows_of(scene), balanced(train, period.angles, motion)
     if scene.friction is not None:
-        rows["friction_force"] = len(scene.cylinders)
+        rows[_RUBBED] = len(scene.cylinders)
         if friction is None:
             friction = friction_forces(train, theta, omega, fuel)
     added = _added(train, period, fuel, friction if scene.friction is not None else None)
-    return Balances(period, rows, parts, (square, alpha, omega), added, by_parts)
+    groups = _groups(rows, len(theta))
+    return Balances(period, rows, parts, (square, alpha, omega), added, by_parts, groups)
 
 
 def _added(
     train: CrankTrain, period: Period, fuel: Array | None, friction: Array | None
 ) -> dict[str, Array]:
     """What combustion and friction do at the samples, by variable."""
-    forces, found = [], {}
+    forces: list[Array] = []
+    found: dict[str, Array] = {}
     if fuel is not None and train.combustion is not None:
         phi = np.add.outer(axes_of(train.scene).phases, period.angles)
         more = period.times(pressures_at(train.combustion, phi), np.ascontiguousarray(fuel.T))
@@ -232,5 +242,5 @@ def _added(
         found |= {"gas_pressure": more, "gas_force": forces[0]}
     if friction is not None:
         forces.append(np.ascontiguousarray(friction.T))
-        found["friction_force"] = forces[-1]
+        found[_RUBBED] = forces[-1]
     return found | pushed(train.scene, period, sum(forces[1:], forces[0])) if forces else found

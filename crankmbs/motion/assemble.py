@@ -135,9 +135,7 @@ class _Passes(NamedTuple):
             if samples.own:
                 row = places["external_torque"].start
                 given = samples.own.get("external_torque", before[row])
-                needed = np.empty((1, len(given)))
-                found.put(["external_torque"], needed)
-                missed = peak(needed[0] - given)
+                missed = peak(found.row("external_torque") - given)
             apart[:first] = peaks_of(before[:first] - _motion(samples))
             for name, values in samples.own.items():
                 apart[places[name]] = peaks_of(before[places[name]] - values.T)
@@ -166,12 +164,15 @@ class _Passes(NamedTuple):
         more = math.copysign(peak(recent) - abs(ahead[-1]), ahead[-1])
         given = {name: values for name, values in own.items() if name in _GIVEN}
         last = replace(self.rounded, own=given).select(np.array([-1]))
-        end = _tabled(self.off, replace(last, theta=last.theta + more)).values
-        apart = peaks_of(self.table.values[:, -1:] - end)
+        end = replace(last, theta=last.theta + more)
+        found, first, before = _balances(self.off, end), len(_MOTION), self.table.values[:, -1:]
+        balanced = slice(first, first + sum(found.rows.values()))
+        apart = np.zeros(len(before))
+        apart[:first] = peaks_of(before[:first] - _motion(end))
+        apart[balanced] = found.apart(before[balanced])
         missed = 0.0
         if own:
-            torque = end[places["external_torque"]]
-            missed = peak(own["external_torque"][-1:] - torque)
+            missed = peak(own["external_torque"][-1:] - found.row("external_torque"))
         for name in own:
             apart[places[name]] = 0.0
         return self.table.largest(apart), missed

@@ -22,12 +22,12 @@ class Period(NamedTuple):
 
     angles : shape (n,) [rad], those of one period, then those that do not come back
     which : shape (samples,), which of them every sample is at, whole periods apart
-    count, within : so many angles come back, in order, in so many samples, the first ones
+    size, within : so many angles come back, in order, in so many samples, the first ones
     """
 
     angles: Array
     which: Index
-    count: int
+    size: int
     within: int
 
     def times(self, part: Array, size: Array) -> Array:
@@ -43,7 +43,7 @@ class Period(NamedTuple):
         whole = np.empty((*out.shape[:-1], *self._turns))
         room = np.empty_like(whole) if len(terms) > 1 else whole
         for number, (part, size) in enumerate(terms):
-            ahead = part[..., np.newaxis, : self.count]
+            ahead = part[..., np.newaxis, : self.size]
             if size is None:
                 np.add(ahead, whole if number else 0.0, out=whole)
             elif number == 0:
@@ -52,7 +52,7 @@ class Period(NamedTuple):
                 whole += np.multiply(ahead, self._folded(size), out=room)
         out[..., : self.within] = whole.reshape(*out.shape[:-1], -1)[..., : self.within]
         if self.within < len(self.which):
-            rest, alone = slice(self.within, None), slice(self.count, None)
+            rest, alone = slice(self.within, None), slice(self.size, None)
             parts = (
                 part[..., alone] if size is None else part[..., alone] * size[..., rest]
                 for part, size in terms
@@ -61,7 +61,7 @@ class Period(NamedTuple):
 
     @property
     def _turns(self) -> tuple[int, int]:
-        return -(-self.within // self.count) if self.count else 1, self.count
+        return -(-self.within // self.size) if self.size else 1, self.size
 
     def _folded(self, size: Array) -> Array:
         """A size, shape (..., samples), turn by turn; the last one filled up."""
