@@ -9,8 +9,8 @@ import pytest
 from references import worst_ratio
 
 from crankmbs import load_scene, simulate
+from crankmbs.mechanics.inertia import reduce
 from crankmbs.mechanics.pressure import pressures_of
-from crankmbs.mechanics.tabulated import tabulate
 from crankmbs.mechanics.train import CrankTrain, crank_angle_knots
 from crankmbs.motion.crank_angle.grid import grid_of
 from crankmbs.numerics.collocation import gauss
@@ -33,7 +33,7 @@ def test_no_knot_lies_inside_a_cell():
 
 def test_tables_hold_what_the_angle_gives():
     at = GRID.edges[:-1, None] + np.diff(GRID.edges)[:, None] * GRID.rule.nodes
-    inertia, _, torque = tabulate(CrankTrain(SCENE, PRESSURE), at)
+    inertia, _, torque = reduce(CrankTrain(SCENE, PRESSURE), at)
     np.testing.assert_array_equal(GRID.tables[0], inertia)
     np.testing.assert_array_equal(GRID.tables[1], torque)
 

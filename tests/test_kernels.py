@@ -25,7 +25,6 @@ from crankmbs import (
     load_scene,
     simulate,
 )
-from crankmbs.mechanics import combined, reduced
 from crankmbs.motion.minimal import stepper
 from crankmbs.numerics.kernels import kernel
 from crankmbs.scene.torque import Torque
@@ -50,7 +49,7 @@ def scene_with(loads: tuple[Torque, ...], speed: float, every: str) -> Scene:
 
 KERNELS = [
     (module, name)
-    for module in (combined, reduced, stepper)
+    for module in (stepper,)
     for name, function in vars(module).items()
     if hasattr(function, "py_func")
 ]

@@ -11,7 +11,6 @@ from make_random_references import LEFT_OUT, SEEDS, stored
 from references import true_errors
 
 from crankmbs import simulate
-from crankmbs.mechanics import combined
 from crankmbs.motion.minimal import stepper
 from validation import judge_scene, many
 from validation.__main__ import main
@@ -76,7 +75,7 @@ def test_the_long_run_says_what_it_skips(capsys):
 
 def test_nothing_is_left_to_compile_while_patience_runs():
     judge_scene.judge_seed(0, [], 60.0)
-    for loop in (combined.together, stepper.travel):
+    for loop in (stepper.travel,):
         assert loop.signatures
 
 

@@ -6,11 +6,10 @@ import numpy as np
 import pytest
 
 from crankmbs import load_scene
-from crankmbs.mechanics import reduced
-from crankmbs.mechanics.newton_euler import Powers
+from crankmbs.mechanics.inertia import reduce
+from crankmbs.mechanics.newton_euler import UNITS, Powers, balanced, powers_of, rows_of
 from crankmbs.mechanics.pressure import pressures_of
-from crankmbs.mechanics.reactions import Table, balanced_by_arrays, balances, reactions
-from crankmbs.mechanics.tabulated import balanced, rows_of, tabulate
+from crankmbs.mechanics.reactions import Table, balances, reactions
 from crankmbs.mechanics.train import CrankTrain, crank_train
 from validation.adapter import reference_variables
 from validation.oracles.arithmetic import multiprecision
@@ -53,46 +52,41 @@ def test_every_variable_of_shipped_machines(name):
     assert max(worst.values()) < 1e-12, worst
 
 
-@pytest.mark.parametrize("way", [balanced, balanced_by_arrays])
 @pytest.mark.parametrize("seed", range(12))
-def test_every_balance_both_ways(seed, way):
-    """In the compiled loop, and by arrays; per omega^2, alpha and 1, and put together."""
+def test_every_balance_per_power(seed):
+    """Per omega^2, alpha and 1, of which it has what is said, and put together."""
     scene, (theta, omega, alpha) = random_scene(seed), motion(seed)
     train, exact = crank_train(scene), reference_variables(scene, *motion(seed), DIGITS)
     powers = Powers(*np.atleast_2d(omega**2, alpha, np.ones(7)))
-    units = way(train, theta, Powers(*np.eye(3)[:, :, np.newaxis]))
-    whole = way(train, theta, powers)[:, 0]
-    joined = np.einsum("rui,ui->ri", units, np.concatenate(powers))
-    row = 0
+    units, whole = (balanced(train, theta, of) for of in (UNITS, powers))
+    assert list(units) == list(rows_of(scene))
     for name, count in rows_of(scene).items():
         vector = {name, name.replace("_force_x", "_force_y"), name.replace("_force_y", "_force_x")}
         peak = max(np.abs(exact[part].astype(float)).max() for part in vector) or 1.0
         wanted = np.atleast_2d(exact[name].astype(float).T)
         per_speed = omega if name in ("rod_angular_speed", "piston_velocity") else 1.0
-        for found in (whole, joined):
-            apart = np.abs(found[row : row + count] * per_speed - wanted).max()
-            assert apart < 1e-12 * peak, name
-        row += count
-    assert row == len(whole)
+        of_one = units[name].shape[1] == 1
+        parts = [units[name][:, 0 if of_one else k] * powers[k] for k in powers_of(name)]
+        for found in (sum(parts), whole[name][:, 0]):
+            assert found.shape == (count, 7)
+            assert np.abs(found * per_speed - wanted).max() < 1e-12 * peak, name
+        others = set(range(units[name].shape[1])) - set(powers_of(name))
+        assert of_one or not units[name][:, list(others)].any(), name
 
 
-def test_a_compiled_loop_is_made_once():
-    """Whatever arrays come: with gaps, read-only, broadcast."""
+def test_arrays_of_any_kind_are_taken_and_left():
+    """With gaps, read-only, broadcast."""
     train = crank_train(load_scene("coasting"))
-    theta, omega, alpha = motion(1)
-    reactions(train, theta, omega, alpha)
-    tabulate(train, theta)
-    made = len(reduced.balances.signatures), len(reduced.reduced.signatures)
+    theta, _, alpha = motion(1)
+    expected = reactions(train, theta, 0.0 * theta + 3.0, alpha)
     gaps = np.repeat(theta, 2)[::2]
     still = np.broadcast_to(3.0, 7)
     alpha.flags.writeable = False
     found = reactions(train, gaps, still, alpha)
-    np.testing.assert_array_equal(
-        found["rod_angle"], reactions(train, theta, omega, alpha)["rod_angle"]
-    )
-    np.testing.assert_array_equal(tabulate(train, gaps).inertia, tabulate(train, theta).inertia)
-    tabulate(train, still.reshape(1, 7))
-    assert (len(reduced.balances.signatures), len(reduced.reduced.signatures)) == made
+    for name, values in expected.items():
+        np.testing.assert_array_equal(found[name], values)
+    np.testing.assert_array_equal(reduce(train, gaps).inertia, reduce(train, theta).inertia)
+    assert reduce(train, still.reshape(1, 7)).torque.shape == (1, 7)
 
 
 def test_angles_that_come_back():
@@ -144,7 +138,7 @@ def test_deviations_are_those_between_two_motions(samples):
     pressure, theta = pressures_of(scene), 0.3 + scene.period / 6 * np.arange(samples)
     one, other = ((theta + 1e-3 * k, *motion(k, samples)[1:]) for k in (1, 2))
     first, second = (balances(CrankTrain(scene, pressure), *state) for state in (one, other))
-    values, others = np.empty((2, len(first.parts), samples))
+    values, others = np.empty((2, sum(first.rows.values()), samples))
     first.fill(values)
     second.fill(others)
     apart = np.abs(values - others).max(axis=1)

@@ -153,7 +153,7 @@ def tabulated(train: CrankTrain, period: Period, rule: Rule) -> Pass:
     turned = period.edges[:-1, None] + width[:, None] * rule.nodes
     theta = (period.start + period.sense * turned).ravel()
     cylinders = [of_cylinder(train, theta, _UNITS, k) for k in period.chosen]
-    own, ones = of_crank(scene, theta, _UNITS, []), np.ones(len(scene.cylinders))
+    own, ones = of_crank(scene, theta, _UNITS, None), np.ones(len(scene.cylinders))
     each = {name: np.array([c.variables[name] for c in cylinders]) for name in _OF_CYLINDER}
     friction = _rubbed(train, period, theta, each)
     throws = each["crank_pin_force_x"], each["crank_pin_force_y"]

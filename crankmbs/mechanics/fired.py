@@ -4,77 +4,53 @@ from __future__ import annotations
 
 import numpy as np
 
-from crankmbs.mechanics.geometry import close_loop
-from crankmbs.mechanics.train import CrankTrain
+from crankmbs.mechanics.inertia import axes_of, closed_loops
 from crankmbs.numerics.arrays import Array
+from crankmbs.numerics.periodic import Period, single
 from crankmbs.scene.scene import Scene
 
-__all__ = ["Parts", "fired_parts", "pushed_parts"]
-
-Parts = dict[str, list[dict[int, Array]]]
-"""By variable of the result, for the crank or for each cylinder: what each cylinder, by its number
-from 0, adds, shape (n,) in the variable's unit."""
+__all__ = ["pushed", "pushed_parts"]
 
 
-def fired_parts(train: CrankTrain, theta: Array) -> Parts:
-    """What a share of 1 of each cylinder's combustion adds, at crank angles of shape (n,) [rad].
-
-    >>> sorted(fired_parts(crank_train(load_scene("v_twin")), np.zeros(1)))[:1]
-    ['external_torque']
-    """
-    scene, area = train.scene, train.scene.piston.gas_area or 0.0
-    pressures = [
-        more(theta + cylinder.phase)
-        for cylinder, more in zip(scene.cylinders, train.combustion or (), strict=False)
-    ]
-    forces = [area * pressure for pressure in pressures]
-    fired = pushed_parts(scene, theta, forces)
-    for name, values in (("gas_pressure", pressures), ("gas_force", forces)):
-        fired[name] = [{k: each} for k, each in enumerate(values)]
-    return fired
-
-
-def pushed_parts(scene: Scene, theta: Array, forces: list[Array]) -> Parts:
+def pushed(scene: Scene, period: Period, forces: Array) -> dict[str, Array]:
     """What forces on the pistons towards the crank add: the rods push along themselves.
 
-    theta : shape (n,) [rad]; forces : of each cylinder, shape (n,) [N]
+    forces : shape (cylinders, samples) [N]
+
+    Returns
+    -------
+    by variable of the result, in its unit: shape (1, samples) of the crank, (cylinders, samples) of
+    each cylinder
 
     >>> scene = load_scene("coasting")
-    >>> pushed_parts(scene, np.zeros(1), [np.ones(1)])["piston_pin_force_x"]
-    [{0: array([1.])}]
+    >>> pushed(scene, single(np.zeros(1)), np.ones((1, 1)))["piston_pin_force_x"]
+    array([[1.]])
     """
-    count, crank = len(scene.cylinders), scene.crank
-    shape = (crank.radius, scene.rod.length, scene.piston.offset)
-    of_crank = (
-        "external_torque",
-        "main_bearing_force_x",
-        "main_bearing_force_y",
-        "frame_moment",
-    )
-    fired: Parts = {name: [{}] for name in of_crank}
-    for k, (cylinder, along) in enumerate(zip(scene.cylinders, forces, strict=False)):
-        phi = theta + cylinder.phase
-        loop = close_loop(phi, *shape)
-        across = -along * loop.sin_beta / loop.cos_beta
-        torque = crank.radius * (loop.sin_phi * along - loop.cos_phi * across)
-        cos_bank, sin_bank = np.cos(cylinder.bank), np.sin(cylinder.bank)
-        fired["external_torque"][0][k] = -torque
-        fired["main_bearing_force_x"][0][k] = cos_bank * along - sin_bank * across
-        fired["main_bearing_force_y"][0][k] = sin_bank * along + cos_bank * across
-        fired["frame_moment"][0][k] = loop.x * across - scene.piston.offset * along
-        for name, share in (("journal_torque", 1.0), ("pin_torque", 0.5)):
-            column = fired.setdefault(name, [{} for _ in range(count)])
-            column[k][k] = share * torque
-            for behind in column[k + 1 :]:
-                behind[k] = torque
-        own = {
-            "side_force": -across,
-            "piston_pin_force_x": along,
-            "piston_pin_force_y": across,
-            "crank_pin_force_x": along,
-            "crank_pin_force_y": across,
-            "crank_torque": torque,
-        }
-        for name, values in own.items():
-            fired.setdefault(name, [{} for _ in range(count)])[k][k] = values
-    return fired
+    axes, loop = axes_of(scene), closed_loops(scene, period.angles)
+    tangent = loop.sin_beta / loop.cos_beta
+    lever = scene.crank.radius * (loop.sin_phi + loop.cos_phi * tangent)
+    across = period.times(-tangent, forces)
+    torque = period.times(lever, forces)
+    moment = period.times(-loop.x * tangent - scene.piston.offset, forces)
+    journal = np.cumsum(torque, axis=0)
+    return {
+        "external_torque": -journal[-1:],
+        "main_bearing_force_x": (axes.cos @ forces - axes.sin @ across)[np.newaxis],
+        "main_bearing_force_y": (axes.sin @ forces + axes.cos @ across)[np.newaxis],
+        "frame_moment": moment.sum(axis=0, keepdims=True),
+        "side_force": -across,
+        "piston_pin_force_x": forces,
+        "piston_pin_force_y": across,
+        "crank_pin_force_x": forces,
+        "crank_pin_force_y": across,
+        "crank_torque": torque,
+        "journal_torque": journal,
+        "pin_torque": journal - 0.5 * torque,
+    }
+
+
+def pushed_parts(scene: Scene, theta: Array, forces: list[Array]) -> dict[str, list[list[Array]]]:
+    """The same of every cylinder alone, at crank angles of shape (n,) [rad]: by variable, for each
+    cylinder, what each adds."""
+    found = pushed(scene, single(theta), np.array(forces))
+    return {name: [[each] * len(forces) for each in values] for name, values in found.items()}

@@ -24,13 +24,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import PPoly
 
-from crankmbs.mechanics.geometry import close_loop, dead_centres
-from crankmbs.mechanics.inertia import fired_torque
+from crankmbs.mechanics.geometry import dead_centres
+from crankmbs.mechanics.inertia import axes_of, closed_loops, fired_torque, gas_at
 from crankmbs.mechanics.knots import KNOT, apart
-from crankmbs.mechanics.pressure import PeriodicPressure
+from crankmbs.mechanics.pressure import PeriodicPressure, pressures_at
 from crankmbs.mechanics.train import CrankTrain, merged_knots
 from crankmbs.numerics.arrays import Array
-from crankmbs.numerics.periodic import one_period
+from crankmbs.numerics.periodic import period_of
 from crankmbs.scene.parts import Friction
 from crankmbs.scene.scene import Scene
 
@@ -74,17 +74,20 @@ def rubbing(train: CrankTrain, theta: ArrayLike) -> Rubbing:
     0.0
     """
     scene, friction = train.scene, train.scene.friction or _NONE
-    theta, area = np.asarray(theta, dtype=np.float64), train.scene.piston.gas_area or 0.0
-    rings, drag = np.zeros_like(theta), np.zeros_like(theta)
-    gas = np.zeros((*theta.shape, len(scene.cylinders)))
-    for k, cylinder in enumerate(scene.cylinders):
-        phi = theta + cylinder.phase
-        x_1 = _rise(scene, phi)
-        rings += friction.ring_force * np.abs(x_1)
-        drag += friction.viscous * x_1**2
-        if train.pressure is not None:
-            gas[..., k] = -area * train.pressure[k](phi) * x_1
-    return Rubbing(rings, gas, drag, friction.ring_pressure)
+    theta = np.asarray(theta, dtype=np.float64)
+    angles = theta.ravel()
+    x_1 = closed_loops(scene, angles).x_1
+    rings = friction.ring_force * np.abs(x_1).sum(axis=0)
+    drag = friction.viscous * (x_1**2).sum(axis=0)
+    pressure = gas_at(train, angles)
+    gas = np.zeros_like(x_1) if pressure is None else pressure
+    torque = -(scene.piston.gas_area or 0.0) * gas * x_1
+    return Rubbing(
+        rings.reshape(theta.shape),
+        torque.T.reshape(*theta.shape, len(torque)),
+        drag.reshape(theta.shape),
+        friction.ring_pressure,
+    )
 
 
 def friction_torque(
@@ -137,21 +140,20 @@ def friction_forces(
     scene, friction = train.scene, train.scene.friction or _NONE
     theta, omega = np.asarray(theta, dtype=np.float64), np.asarray(omega, dtype=np.float64)
     slides = np.sign(omega) if slides is None else slides
-    area, forces = scene.piston.gas_area or 0.0, np.empty((len(theta), len(scene.cylinders)))
-    once, which = one_period(theta, train.period)
-    for k, cylinder in enumerate(scene.cylinders):
-        phi = once + cylinder.phase
-        gas = np.zeros(len(theta))
-        if train.pressure is not None:
-            gas = area * train.pressure[k](phi)[which]
-        if train.combustion is not None and fuel is not None:
-            gas = gas + fuel[:, k] * (area * train.combustion[k](phi))[which]
-        sliding = [_towards(scene, phi, sense)[which] for sense in (1.0, -1.0)]
-        towards = np.where(slides >= 0.0, *sliding)
-        limit = friction.ring_force + friction.ring_pressure * np.abs(gas)
-        velocity = -_rise(scene, phi)[which] * omega
-        forces[:, k] = -np.abs(slides) * towards * limit - friction.viscous * velocity
-    return forces
+    area, axes = scene.piston.gas_area or 0.0, axes_of(scene)
+    period = period_of(theta, train.period)
+    phi = np.add.outer(axes.phases, period.angles)
+    gas = np.zeros((len(phi), len(theta)))
+    if train.pressure is not None:
+        gas += (area * pressures_at(train.pressure, phi))[:, period.which]
+    if train.combustion is not None and fuel is not None:
+        gas += fuel.T * (area * pressures_at(train.combustion, phi))[:, period.which]
+    sliding = (_towards(scene, phi, sense)[:, period.which] for sense in (1.0, -1.0))
+    towards = np.where(slides >= 0.0, *sliding)
+    limit = friction.ring_force + friction.ring_pressure * np.abs(gas)
+    velocity = -closed_loops(scene, period.angles).x_1[:, period.which] * omega
+    forces = -np.abs(slides) * towards * limit - friction.viscous * velocity
+    return np.asarray(forces.T)
 
 
 def held_share(
@@ -222,12 +224,6 @@ def _roots(pressure: PeriodicPressure) -> Array:
         discontinuity=False, extrapolate=False
     )
     return np.unique(found[np.isfinite(found)])
-
-
-def _rise(scene: Scene, phi: Array) -> Array:
-    """dx/dphi of the piston pin [m] at cycle angles."""
-    shape = (scene.crank.radius, scene.rod.length, scene.piston.offset)
-    return close_loop(phi, *shape).x_1
 
 
 def _towards(scene: Scene, phi: Array, sense: float) -> Array:

@@ -11,18 +11,17 @@ q' = q_1 omega, q'' = q_2 omega^2 + q_1 alpha.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from crankmbs.numerics.arrays import Array
 
-__all__ = ["Loop", "close_loop", "dead_centres", "top_position"]
+__all__ = ["Loop", "close_loop", "close_loops", "dead_centres", "top_position"]
 
 
-@dataclass(frozen=True)
-class Loop:
+class Loop(NamedTuple):
     """The closed loop at given cycle angles; every field has the shape of the angles.
 
     x [m] piston pin from the crank axis, and the derivatives of it and of the rod angle in phi.
@@ -65,23 +64,50 @@ def close_loop(cycle_angle: ArrayLike, radius: float, rod_length: float, offset:
     0.4
     """
     phi = np.asarray(cycle_angle, dtype=np.float64)
-    r, l, e = radius, rod_length, offset
-    sin_phi, cos_phi = np.sin(phi), np.cos(phi)
-    sin_beta = (r * sin_phi - e) / l
-    # 1 - sin(phi) and 1 + sin(phi): the smaller from their product, as it would cancel near a fold
+    return _closed(np.sin(phi), np.cos(phi), (radius, rod_length, offset))
+
+
+def close_loops(
+    crank_angle: Array, phases: Array, radius: float, rod_length: float, offset: float
+) -> Loop:
+    """Close the loops of several cylinders: one sine and one cosine for each crank angle, turned
+    by the phases.
+
+    crank_angle, phases : shape (n,), (cylinders,) [rad]; every field has shape (cylinders, n)
+
+    >>> close_loops(np.zeros(1), np.array([0.0, math.pi]), 0.1, 0.3, 0.0).x.round(12).tolist()
+    [[0.4], [0.2]]
+    """
+    sin, cos = np.sin(crank_angle), np.cos(crank_angle)
+    if len(phases) == 1 and phases[0] == 0.0:
+        sin, cos = sin[np.newaxis], cos[np.newaxis]
+    else:
+        ahead, beside = np.cos(phases)[:, np.newaxis], np.sin(phases)[:, np.newaxis]
+        sin, cos = sin * ahead + cos * beside, cos * ahead - sin * beside
+    return _closed(sin, cos, (radius, rod_length, offset))
+
+
+def _closed(sin_phi: Array, cos_phi: Array, lengths: tuple[float, float, float]) -> Loop:
+    r, l, e = lengths
+    ratio, skew = r / l, e / l
+    throw, side = ratio * cos_phi, ratio * sin_phi
+    sin_beta = side - skew if e else side
+    # 1 - |sin(phi)| from its product with 1 + |sin(phi)|, as it would cancel near a fold
     wide = 1.0 + np.abs(sin_phi)
-    narrow = cos_phi**2 / wide
-    above, below = np.where(sin_phi > 0.0, (narrow, wide), (wide, narrow))
+    narrow = cos_phi * cos_phi / wide
     # l (1 - sin(beta)) = (l - r + e) + r (1 - sin(phi)); likewise 1 + sin
-    spare, far = max(l - r - abs(e), 0.0), abs(e)
-    cos_beta = np.sqrt((spare + far + e + r * above) * (spare + far - e + r * below)) / l
-    beta_1 = r * cos_phi / (l * cos_beta)
-    # -l cos(beta)^3 beta_2 / r as a sum of terms that are themselves small near a fold
-    towards = below if e >= 0.0 else above
-    bend = sin_phi * (spare / l) * (1.0 + (r + far) / l) + e * r * (towards / l) ** 2
-    beta_2 = -r * bend / (l * cos_beta**3)
-    x_1 = -r * sin_phi - l * sin_beta * beta_1
-    x_2 = -r * cos_phi - l * (cos_beta * beta_1**2 + sin_beta * beta_2)
+    spare, far = max(l - r - abs(e), 0.0) / l, abs(skew)
+    beyond = np.copysign(skew, e * sin_phi) if e else 0.0
+    cos_beta = np.sqrt(
+        (spare + (far + beyond) + ratio * narrow) * (spare + (far - beyond) + ratio * wide)
+    )
+    beta_1 = throw / cos_beta
+    # -cos(beta)^3 beta_2 / lambda as a sum of terms that are themselves small near a fold
+    bend = (spare * (1.0 + ratio + far)) * sin_phi
+    if e:
+        towards = np.where((sin_phi > 0.0) == (e > 0.0), wide, narrow)
+        bend = bend + (skew * ratio) * towards**2
+    beta_2 = -ratio * bend / (cos_beta * cos_beta * cos_beta)
     return Loop(
         sin_phi=sin_phi,
         cos_phi=cos_phi,
@@ -89,9 +115,9 @@ def close_loop(cycle_angle: ArrayLike, radius: float, rod_length: float, offset:
         cos_beta=cos_beta,
         beta_1=beta_1,
         beta_2=beta_2,
-        x=r * cos_phi + l * cos_beta,
-        x_1=x_1,
-        x_2=x_2,
+        x=l * (throw + cos_beta),
+        x_1=-l * (side + sin_beta * beta_1),
+        x_2=-l * (throw + cos_beta * beta_1**2 + sin_beta * beta_2),
     )
 
 

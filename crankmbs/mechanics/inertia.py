@@ -4,36 +4,45 @@ Kinetic energy = J(theta) omega^2 / 2 with
 
     J = J_crank + sum over cylinders of  m_p x_1^2 + m_r (G_x1^2 + G_y1^2) + I_r beta_1^2
 
-where G = (r cos(phi) + a cos(beta), r sin(phi) - a sin(beta)) is the rod's centre of mass.
+where G = (r cos(phi) + a cos(beta), r sin(phi) - a sin(beta)) is the rod's centre of mass. All
+cylinders are an axis in front of the angles.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from crankmbs.mechanics.geometry import Loop, close_loop
+from crankmbs.mechanics.geometry import Loop, close_loops
+from crankmbs.mechanics.pressure import pressures_at
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.numerics.arrays import Array
+from crankmbs.numerics.once import once
 from crankmbs.scene.scene import Scene
 
 __all__ = [
+    "Axes",
     "Reduction",
     "RodCentre",
+    "axes_of",
+    "closed_loops",
+    "crank_weight",
     "fired_torque",
+    "gas_at",
     "gravity_vector",
     "inertia_alone",
+    "moving_inertias",
     "reduce",
     "rod_centre",
 ]
 
+_BLOCK = 2048  # angles at once: what four cylinders make of them stays in the processor's cache
 
-@dataclass(frozen=True)
-class RodCentre:
+
+class RodCentre(NamedTuple):
     """Derivatives of the rod's centre of mass in the cycle angle [m], in the cylinder's frame."""
 
     x_1: Array
@@ -42,16 +51,43 @@ class RodCentre:
     y_2: Array
 
 
-def rod_centre(loop: Loop, radius: float, center_of_mass: float) -> RodCentre:
-    """First and second derivatives in phi of the rod's centre of mass, exact."""
-    r, a = radius, center_of_mass
-    sin_b, cos_b, b_1, b_2 = loop.sin_beta, loop.cos_beta, loop.beta_1, loop.beta_2
+def rod_centre(loop: Loop, radius: float, share: float) -> RodCentre:
+    """First and second derivatives in phi of the rod's centre of mass, exact.
+
+    It divides the line from the crank pin to the piston pin, which moves along the cylinder alone.
+
+    share : from the crank pin to the centre of mass, of the length of the rod
+    """
+    near = (1.0 - share) * radius
+    near_sin, near_cos = near * loop.sin_phi, near * loop.cos_phi
     return RodCentre(
-        x_1=-r * loop.sin_phi - a * sin_b * b_1,
-        y_1=r * loop.cos_phi - a * cos_b * b_1,
-        x_2=-r * loop.cos_phi - a * (cos_b * b_1**2 + sin_b * b_2),
-        y_2=-r * loop.sin_phi - a * (cos_b * b_2 - sin_b * b_1**2),
+        x_1=share * loop.x_1 - near_sin,
+        y_1=near_cos,
+        x_2=share * loop.x_2 - near_cos,
+        y_2=-near_sin,
     )
+
+
+def moving_inertias(scene: Scene, loop: Loop, centre: RodCentre) -> Array:
+    """What piston and rod of each cylinder add to J [kg m2], of the shape of the loop."""
+    rod = scene.rod
+    inertia = scene.piston.mass * loop.x_1**2
+    if rod.mass:
+        inertia += rod.mass * (centre.x_1**2 + centre.y_1**2)
+    if rod.moment_of_inertia:
+        inertia += rod.moment_of_inertia * loop.beta_1**2
+    return np.asarray(inertia)
+
+
+def _half_slopes(scene: Scene, loop: Loop, centre: RodCentre) -> Array:
+    """Half of its derivative [kg m2/rad]."""
+    rod = scene.rod
+    slope = scene.piston.mass * loop.x_1 * loop.x_2
+    if rod.mass:
+        slope += rod.mass * (centre.x_1 * centre.x_2 + centre.y_1 * centre.y_2)
+    if rod.moment_of_inertia:
+        slope += rod.moment_of_inertia * loop.beta_1 * loop.beta_2
+    return np.asarray(slope)
 
 
 def gravity_vector(scene: Scene, bank: float = 0.0) -> tuple[float, float]:
@@ -61,6 +97,33 @@ def gravity_vector(scene: Scene, bank: float = 0.0) -> tuple[float, float]:
     angle = scene.gravity.angle - bank
     g = scene.gravity.acceleration
     return g * math.cos(angle), g * math.sin(angle)
+
+
+class Axes(NamedTuple):
+    """Where the cylinders stand.
+
+    phases : shape (cylinders,) [rad]
+    cos, sin : of the banks, shape (cylinders,)
+    gravity : along and across each axis, shape (2, cylinders, 1) [m/s2]
+    """
+
+    phases: Array
+    cos: Array
+    sin: Array
+    gravity: Array
+
+
+@once
+def axes_of(scene: Scene) -> Axes:
+    """The axes of a scene's cylinders.
+
+    >>> axes_of(load_scene("v_twin")).phases.shape
+    (2,)
+    """
+    banks = np.array([c.bank for c in scene.cylinders])
+    gravity = np.array([gravity_vector(scene, c.bank) for c in scene.cylinders])
+    phases = np.array([c.phase for c in scene.cylinders])
+    return Axes(phases, np.cos(banks), np.sin(banks), gravity.T[:, :, np.newaxis])
 
 
 class Reduction(NamedTuple):
@@ -103,31 +166,71 @@ def reduce(train: CrankTrain, theta: ArrayLike, shares: ArrayLike | None = None)
 
     >>> inertia, slope, torque = reduce(crank_train(load_scene("torque_driven")), 0.0)
     """
-    scene, pressure = train.scene, train.pressure
     theta = np.asarray(theta, dtype=np.float64)
-    crank, rod, piston = scene.crank, scene.rod, scene.piston
-    inertia = np.full(theta.shape, crank.moment_of_inertia)
-    slope = np.zeros(theta.shape)
-    gx, gy = gravity_vector(scene)
-    torque = (crank.mass * crank.center_of_mass) * (gy * np.cos(theta) - gx * np.sin(theta))
-    for k, cylinder in enumerate(scene.cylinders):
-        loop = close_loop(theta + cylinder.phase, crank.radius, rod.length, piston.offset)
-        g = rod_centre(loop, crank.radius, rod.center_of_mass)
-        inertia += piston.mass * loop.x_1**2
-        slope += 2.0 * piston.mass * loop.x_1 * loop.x_2
-        if rod.mass or rod.moment_of_inertia:
-            inertia += rod.mass * (g.x_1**2 + g.y_1**2) + rod.moment_of_inertia * loop.beta_1**2
-            slope += 2.0 * (
-                rod.mass * (g.x_1 * g.x_2 + g.y_1 * g.y_2)
-                + rod.moment_of_inertia * loop.beta_1 * loop.beta_2
-            )
-        gx, gy = gravity_vector(scene, cylinder.bank)
-        if pressure is not None:
-            torque -= (piston.gas_area or 0.0) * pressure[k](theta + cylinder.phase) * loop.x_1
-        torque += piston.mass * gx * loop.x_1 + rod.mass * (gx * g.x_1 + gy * g.y_1)
+    angles = theta.ravel()
+    each = None
     if shares is not None and train.combustion is not None:
-        torque += np.sum(fired_torque(train, theta) * np.asarray(shares), axis=-1)
-    return Reduction(inertia, slope, torque)
+        each = np.broadcast_to(shares, (*theta.shape, len(train.combustion)))
+        each = each.reshape(len(angles), each.shape[-1]).T
+    found = np.empty((3, len(angles)))
+    for begin in range(0, len(angles), _BLOCK):
+        block = slice(begin, begin + _BLOCK)
+        shared = None if each is None else each[:, block]
+        found[:, block] = _reduced(train, angles[block], shared)
+    return Reduction(*found.reshape(3, *theta.shape))
+
+
+def _reduced(train: CrankTrain, theta: Array, shares: Array | None) -> tuple[Array, Array, Array]:
+    """J, dJ/dtheta and the torque, shape (n,); shares : shape (cylinders, n)."""
+    scene = train.scene
+    crank, rod, piston = scene.crank, scene.rod, scene.piston
+    loop = closed_loops(scene, theta)
+    g = rod_centre(loop, crank.radius, rod.center_of_mass / rod.length)
+    inertia = crank.moment_of_inertia + moving_inertias(scene, loop, g).sum(axis=0)
+    slope = 2.0 * _half_slopes(scene, loop, g).sum(axis=0)
+    torque = np.zeros(len(theta))
+    if scene.gravity is not None:
+        torque += crank_weight(scene, theta)
+        (gx, gy), mass = axes_of(scene).gravity, rod.mass
+        torque += (((piston.mass * gx) * loop.x_1) + (mass * gx) * g.x_1 + (mass * gy) * g.y_1).sum(
+            axis=0
+        )
+    gas = gas_at(train, theta, shares)
+    if gas is not None:
+        torque -= (piston.gas_area or 0.0) * (gas * loop.x_1).sum(axis=0)
+    return inertia, slope, torque
+
+
+def crank_weight(scene: Scene, theta: Array) -> Array | float:
+    """Torque of the crank's own weight [N m] at crank angles of shape (n,) [rad]."""
+    moment = scene.crank.mass * scene.crank.center_of_mass
+    if moment == 0.0:
+        return 0.0
+    gx, gy = gravity_vector(scene)
+    return np.asarray(moment * (gy * np.cos(theta) - gx * np.sin(theta)))
+
+
+def closed_loops(scene: Scene, theta: Array) -> Loop:
+    """The closed loop of every cylinder at crank angles of shape (n,) [rad]; every field has shape
+    (cylinders, n)."""
+    r, l, e = scene.crank.radius, scene.rod.length, scene.piston.offset
+    return close_loops(theta, axes_of(scene).phases, r, l, e)
+
+
+def gas_at(train: CrankTrain, theta: Array, shares: Array | None = None) -> Array | None:
+    """Pressure difference across every piston [Pa] at crank angles of shape (n,) [rad], with these
+    shares of the combustion, shape (cylinders, n); None without gas.
+
+    >>> gas_at(crank_train(load_scene("coasting")), np.zeros(1)) is None
+    True
+    """
+    if train.pressure is None:
+        return None
+    phi = np.add.outer(axes_of(train.scene).phases, theta)
+    gas = pressures_at(train.pressure, phi)
+    if shares is not None and train.combustion is not None:
+        gas += shares * pressures_at(train.combustion, phi)
+    return gas
 
 
 def fired_torque(train: CrankTrain, theta: ArrayLike) -> Array:
@@ -138,11 +241,9 @@ def fired_torque(train: CrankTrain, theta: ArrayLike) -> Array:
     (1, 0)
     """
     scene, theta = train.scene, np.asarray(theta, dtype=np.float64)
-    area, shape = scene.piston.gas_area or 0.0, (scene.crank.radius, scene.rod.length)
-    found = np.empty((*theta.shape, len(train.combustion or ())))
-    for k, (more, cylinder) in enumerate(
-        zip(train.combustion or (), scene.cylinders, strict=False)
-    ):
-        phi = theta + cylinder.phase
-        found[..., k] = -area * more(phi) * close_loop(phi, *shape, scene.piston.offset).x_1
-    return found
+    if train.combustion is None:
+        return np.empty((*theta.shape, 0))
+    angles = theta.ravel()
+    more = pressures_at(train.combustion, np.add.outer(axes_of(scene).phases, angles))
+    torque = -(scene.piston.gas_area or 0.0) * more * closed_loops(scene, angles).x_1
+    return np.asarray(torque.T.reshape(*theta.shape, len(torque)))

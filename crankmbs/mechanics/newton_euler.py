@@ -5,6 +5,9 @@ gives it across, the piston's Y balance the wall, the rod's balance the crank pi
 balance the main bearing and the torque from outside. Gas pushes the piston towards the crank, -X.
 The frame, on mounts, feels m (g - a) of every moving part and, about the crank axis, the walls and
 the gas on the heads.
+
+Every balance is linear in omega^2, alpha and 1. All cylinders are an axis in front: shape
+(cylinders, u, n) for u motions at n angles.
 """
 
 from __future__ import annotations
@@ -13,75 +16,138 @@ from typing import NamedTuple
 
 import numpy as np
 
-from crankmbs.mechanics.geometry import close_loop, top_position
-from crankmbs.mechanics.inertia import gravity_vector, rod_centre
+from crankmbs.mechanics.geometry import Loop, top_position
+from crankmbs.mechanics.inertia import (
+    axes_of,
+    closed_loops,
+    crank_weight,
+    gas_at,
+    gravity_vector,
+    moving_inertias,
+    rod_centre,
+)
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 
-__all__ = ["Cylinder", "Powers", "of_crank", "of_cylinder"]
+__all__ = [
+    "UNITS",
+    "Cylinder",
+    "Cylinders",
+    "Powers",
+    "balanced",
+    "of_crank",
+    "of_cylinder",
+    "of_cylinders",
+    "powers_of",
+    "rows_of",
+]
 
 
 class Powers(NamedTuple):
-    """omega^2, alpha and 1 at the samples, shape (n,); or three units of them, shape (3, 1)."""
+    """omega^2, alpha and 1, shape (u, n) or (u, 1) each."""
 
     square: Array
     alpha: Array
     one: Array
 
 
-class Cylinder(NamedTuple):
-    """The variables of one cylinder by name, for velocities those per speed; what it adds to the
-    balance of the crank and of the frame, in the engine's frame."""
+UNITS = Powers(*np.eye(3)[:, :, np.newaxis])
+"""Three motions, each of one of them alone: what each balance has of it."""
+
+_OF_CRANK = (
+    "kinetic_energy",
+    "external_torque",
+    "main_bearing_force_x",
+    "main_bearing_force_y",
+    "frame_force_x",
+    "frame_force_y",
+    "frame_moment",
+)
+_OF_JOINTS = (
+    "side_force",
+    "piston_pin_force_x",
+    "piston_pin_force_y",
+    "crank_pin_force_x",
+    "crank_pin_force_y",
+    "crank_torque",
+    "journal_torque",
+    "pin_torque",
+)
+_ACCELERATIONS = ("rod_angular_acceleration", "piston_acceleration")
+_VELOCITIES = ("rod_angular_speed", "piston_velocity")
+_OF_PLACE = ("rod_angle", "piston_position", "piston_displacement", "gas_pressure", "gas_force")
+_OF_ANGLE = (*_VELOCITIES, *_OF_PLACE)
+_OF_CYLINDER = (*_OF_JOINTS, *_ACCELERATIONS, *_OF_ANGLE)
+
+
+def rows_of(scene: Scene) -> dict[str, int]:
+    """How many rows `balanced` has of each variable, in its order: one, or one a cylinder.
+
+    >>> sum(rows_of(load_scene("v_twin")).values())
+    41
+    """
+    count = len(scene.cylinders)
+    rocking = () if scene.levers is None else ("rocking_moment_x", "rocking_moment_y")
+    return dict.fromkeys((*_OF_CRANK, *rocking), 1) | dict.fromkeys(_OF_CYLINDER, count)
+
+
+def powers_of(name: str) -> tuple[int, ...]:
+    """Which of omega^2, alpha and 1, from 0, a variable has a part of.
+
+    >>> powers_of("kinetic_energy")
+    (0,)
+    """
+    if name in _OF_ANGLE:
+        return (2,)
+    if name == "kinetic_energy":
+        return (0,)
+    return (0, 1) if name in _ACCELERATIONS else (0, 1, 2)
+
+
+class Cylinders(NamedTuple):
+    """The variables of the cylinders by name, shape (cylinders, u, n), for velocities those per
+    speed, shape (cylinders, 1, n) of what depends on the angle alone; what each adds to the
+    balance of the frame, in its own axes, and to J [kg m2], shape (cylinders, 1, n)."""
 
     variables: dict[str, Array]
-    pull_x: Array
-    pull_y: Array
-    kinetic_energy: Array
     shake_x: Array
     shake_y: Array
     moment: Array
+    inertia: Array
 
 
-def of_cylinder(
-    train: CrankTrain,
-    theta: Array,
-    motion: Powers,
-    number: int,
-) -> Cylinder:
-    """The variables of the cylinder with an index, at crank angles of shape (n,) [rad]; balance
-    after balance, in the order in which each needs the one before, hence over 50 lines."""
-    scene, cylinder = train.scene, train.scene.cylinders[number]
-    crank, rod, piston = scene.crank, scene.rod, scene.piston
-    area = piston.gas_area or 0.0
-    r, l, a = crank.radius, rod.length, rod.center_of_mass
+def of_cylinders(train: CrankTrain, theta: Array, motion: Powers) -> Cylinders:
+    """The variables of every cylinder, at crank angles of shape (n,) [rad]; balance after balance,
+    in the order in which each needs the one before."""
+    scene = train.scene
+    rod, piston, area = scene.rod, scene.piston, scene.piston.gas_area or 0.0
+    r, l, a = scene.crank.radius, rod.length, rod.center_of_mass
     square, alpha, one = motion
-    gx, gy = gravity_vector(scene, cylinder.bank)
-    phi = theta + cylinder.phase
-    loop = close_loop(phi, r, l, piston.offset)
-    g = rod_centre(loop, r, a)
+    gx, gy = axes_of(scene).gravity[..., np.newaxis]
+    loop = Loop(*(part[:, np.newaxis] for part in closed_loops(scene, theta)))
+    g = rod_centre(loop, r, a / l)
+    pressure = gas_at(train, theta)
+    gas = np.zeros_like(loop.x) if pressure is None else pressure[:, np.newaxis]
     sin_b, cos_b = loop.sin_beta, loop.cos_beta
-    gas = np.zeros_like(phi) if train.pressure is None else train.pressure[number](phi)
 
     x_tt = loop.x_2 * square + loop.x_1 * alpha
     beta_tt = loop.beta_2 * square + loop.beta_1 * alpha
     felt_x = g.x_2 * square + g.x_1 * alpha - gx * one  # the rod's acceleration minus gravity
     felt_y = g.y_2 * square + g.y_1 * alpha - gy * one
     felt = x_tt - gx * one  # the piston's, along the cylinder
-    pin_x = piston.mass * felt + gas * area * one
-    weight = rod.mass * (cos_b * felt_y + sin_b * felt_x)
+    force = gas * area
+    push = force * one
+    inertial_x, inertial_y = rod.mass * felt_x, rod.mass * felt_y
+    carried = piston.mass * felt
+    pin_x = carried + push
+    weight = cos_b * inertial_y + sin_b * inertial_x
     pin_y = ((rod.moment_of_inertia * beta_tt - a * weight) / l - pin_x * sin_b) / cos_b
-    throw_x = rod.mass * felt_x + pin_x
-    throw_y = rod.mass * felt_y + pin_y
-    side = -pin_y - piston.mass * gy * one
-    shake_x = -rod.mass * felt_x - piston.mass * felt
-    shake_y = -rod.mass * felt_y + piston.mass * gy * one
-    cos_bank, sin_bank = np.cos(cylinder.bank), np.sin(cylinder.bank)
-    inertia = (
-        piston.mass * loop.x_1**2
-        + rod.mass * (g.x_1**2 + g.y_1**2)
-        + rod.moment_of_inertia * loop.beta_1**2
-    )
+    throw_x, throw_y = inertial_x + pin_x, inertial_y + pin_y
+    leaning = piston.mass * gy * one
+    side = -pin_y - leaning
+    torque = r * (loop.sin_phi * throw_x - loop.cos_phi * throw_y)
+    journal = np.cumsum(torque, axis=0)
     variables = {
         "rod_angle": loop.beta,
         "rod_angular_speed": loop.beta_1,
@@ -91,65 +157,106 @@ def of_cylinder(
         "piston_velocity": -loop.x_1,
         "piston_acceleration": -x_tt,
         "gas_pressure": gas,
-        "gas_force": gas * area,
+        "gas_force": force,
         "side_force": side,
         "piston_pin_force_x": pin_x,
         "piston_pin_force_y": pin_y,
         "crank_pin_force_x": throw_x,
         "crank_pin_force_y": throw_y,
-        "crank_torque": r * (loop.sin_phi * throw_x - loop.cos_phi * throw_y),
+        "crank_torque": torque,
+        "journal_torque": journal,
+        "pin_torque": journal - 0.5 * torque,
     }
-    return Cylinder(
-        variables,
-        cos_bank * throw_x - sin_bank * throw_y,
-        sin_bank * throw_x + cos_bank * throw_y,
-        0.5 * inertia * square,
-        cos_bank * shake_x - sin_bank * shake_y,
-        sin_bank * shake_x + cos_bank * shake_y,
-        -loop.x * side - piston.offset * gas * area * one,
-    )
+    shake_x, shake_y = -inertial_x - carried, leaning - inertial_y
+    moment = -loop.x * side - piston.offset * push
+    return Cylinders(variables, shake_x, shake_y, moment, moving_inertias(scene, loop, g))
 
 
 def of_crank(
-    scene: Scene, theta: Array, motion: Powers, cylinders: list[Cylinder]
+    scene: Scene, theta: Array, motion: Powers, cylinders: Cylinders | None
 ) -> dict[str, Array]:
-    """The variables of the crank and of the frame, at crank angles of shape (n,) [rad]; without
-    cylinders what belongs to the crank alone."""
+    """The variables of the crank and of the frame, shape (u, n), at crank angles of shape (n,)
+    [rad]; without cylinders what belongs to the crank alone."""
     crank, (square, alpha, one) = scene.crank, motion
     first_moment = crank.mass * crank.center_of_mass
     sin_theta, cos_theta = np.sin(theta), np.cos(theta)
     gx, gy = gravity_vector(scene)
-    x_tt = -cos_theta * square - sin_theta * alpha
-    y_tt = -sin_theta * square + cos_theta * alpha
-    weight = first_moment * (cos_theta * gy - sin_theta * gx)
-    return _rocking(scene, cylinders) | {
-        "external_torque": crank.moment_of_inertia * alpha
-        - weight * one
-        - sum(c.variables["crank_torque"] for c in cylinders),
-        "main_bearing_force_x": first_moment * x_tt
-        - crank.mass * gx * one
-        + sum(c.pull_x for c in cylinders),
-        "main_bearing_force_y": first_moment * y_tt
-        - crank.mass * gy * one
-        + sum(c.pull_y for c in cylinders),
-        "frame_force_x": crank.mass * gx * one
-        - first_moment * x_tt
-        + sum(c.shake_x for c in cylinders),
-        "frame_force_y": crank.mass * gy * one
-        - first_moment * y_tt
-        + sum(c.shake_y for c in cylinders),
-        "frame_moment": np.asarray(sum(c.moment for c in cylinders)),
-        "kinetic_energy": 0.5 * crank.moment_of_inertia * square
-        + sum(c.kinetic_energy for c in cylinders),
+    pull_x = first_moment * (-cos_theta * square - sin_theta * alpha) - crank.mass * gx * one
+    pull_y = first_moment * (-sin_theta * square + cos_theta * alpha) - crank.mass * gy * one
+    found = {
+        "external_torque": crank.moment_of_inertia * alpha - crank_weight(scene, theta) * one,
+        "main_bearing_force_x": pull_x,
+        "main_bearing_force_y": pull_y,
+        "frame_force_x": -pull_x,
+        "frame_force_y": -pull_y,
+        "frame_moment": np.zeros_like(pull_x),
+        "kinetic_energy": 0.5 * crank.moment_of_inertia * square,
     }
+    if cylinders is None:
+        return found
+    throw_x, throw_y = (cylinders.variables[f"crank_pin_force_{axis}"] for axis in "xy")
+    shake = cylinders.shake_x, cylinders.shake_y
+    ones = np.ones(len(throw_x))
+    bearing, frame = (_in_the_engine(scene, ones, *each) for each in ((throw_x, throw_y), shake))
+    found["external_torque"] = found["external_torque"] - cylinders.variables["journal_torque"][-1]
+    found["main_bearing_force_x"] += bearing[0]
+    found["main_bearing_force_y"] += bearing[1]
+    found["frame_force_x"] += frame[0]
+    found["frame_force_y"] += frame[1]
+    found["frame_moment"] += cylinders.moment.sum(axis=0)
+    found["kinetic_energy"] = found["kinetic_energy"] + 0.5 * cylinders.inertia.sum(axis=0) * square
+    if scene.levers is not None:
+        along_x, along_y = _in_the_engine(scene, np.array(scene.levers), *shake)
+        found |= {"rocking_moment_x": -along_y, "rocking_moment_y": along_x}
+    return found
 
 
-def _rocking(scene: Scene, cylinders: list[Cylinder]) -> dict[str, Array]:
-    """Moments about the middle of the crank, where every cylinder has its place along it."""
-    if scene.levers is None or not cylinders:
-        return {}
-    levers = np.array(scene.levers)
-    return {
-        "rocking_moment_x": -np.tensordot(levers, [c.shake_y for c in cylinders], 1),
-        "rocking_moment_y": np.tensordot(levers, [c.shake_x for c in cylinders], 1),
+def _in_the_engine(scene: Scene, weights: Array, x: Array, y: Array) -> tuple[Array, Array]:
+    """Weighted sums over the cylinders of forces in their own axes, shape (cylinders, u, n); along
+    the engine's axes, shape (u, n)."""
+    axes = axes_of(scene)
+    cos, sin = weights * axes.cos, weights * axes.sin
+    return (
+        np.tensordot(cos, x, 1) - np.tensordot(sin, y, 1),
+        np.tensordot(sin, x, 1) + np.tensordot(cos, y, 1),
+    )
+
+
+def balanced(train: CrankTrain, theta: Array, motion: Powers) -> dict[str, Array]:
+    """What the balances say of every variable but friction, velocities per speed, in SI units, in
+    the order of `rows_of`.
+
+    theta : shape (n,) [rad]
+
+    Returns
+    -------
+    shape (1, u, n) of the crank, (cylinders, u, n) of each cylinder; u is 1 of what depends on the
+    angle alone, which belongs to 1
+
+    >>> train = crank_train(load_scene("torque_driven"))
+    >>> balanced(train, np.zeros(2), UNITS)["side_force"].shape
+    (1, 3, 2)
+    """
+    cylinders = of_cylinders(train, theta, motion)
+    crank = of_crank(train.scene, theta, motion, cylinders)
+    of_one = {name: values[np.newaxis] for name, values in crank.items()}
+    every = of_one | cylinders.variables
+    return {name: every[name] for name in rows_of(train.scene)}
+
+
+class Cylinder(NamedTuple):
+    """The variables of one cylinder by name, shape (u, n) or (n,), for velocities those per speed;
+    and its kinetic energy, shape (u, n)."""
+
+    variables: dict[str, Array]
+    kinetic_energy: Array
+
+
+def of_cylinder(train: CrankTrain, theta: Array, motion: Powers, number: int) -> Cylinder:
+    """The variables of the cylinder with an index."""
+    found = of_cylinders(train, theta, motion)
+    variables = {
+        name: values[number, 0] if name in _OF_ANGLE else values[number]
+        for name, values in found.variables.items()
     }
+    return Cylinder(variables, 0.5 * found.inertia[number] * motion.square)

@@ -8,18 +8,18 @@ continued beyond its knots.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.interpolate import PPoly
 
 from crankmbs.mechanics.cycle_rows import rows_of, rows_of_table
 from crankmbs.mechanics.indicator import INDICATOR_RTOL, fit, indicator_pieces, relative_volume
 from crankmbs.mechanics.knots import KNOT, apart, repeat
-from crankmbs.numerics.arrays import Array
+from crankmbs.numerics.arrays import Array, Index
 from crankmbs.scene.cycles import cycles_in
 from crankmbs.scene.gas import Gas, Polytrope, PressureGiven, tables_of
 from crankmbs.scene.pressure_rows import closing_row, interpolate, overshoot
@@ -31,6 +31,7 @@ __all__ = [
     "PeriodicPressure",
     "combustion_of",
     "motored_of",
+    "pressures_at",
     "pressures_of",
     "remarks",
 ]
@@ -116,16 +117,39 @@ class PeriodicPressure:
 
         cycle_angle : shape (...) [rad], any number of periods
         """
-        angle = np.asarray(cycle_angle, dtype=np.float64)
-        within = np.mod(angle - self.knots[0] + KNOT, self.period) - KNOT
-        index = np.searchsorted(self.knots[1:-1] - self.knots[0], within + KNOT, side="right")
-        return self.piece(index, within - (self.knots[index] - self.knots[0]))
+        first, period, starts = self._layout
+        behind = np.asarray(cycle_angle, dtype=np.float64) - (first - KNOT)
+        behind = behind - period * np.floor(behind / period)
+        index = starts[1:].searchsorted(behind, side="right")
+        return self.piece(index, behind - KNOT - starts.take(index))
 
-    def piece(self, index: NDArray[np.intp], distance: ArrayLike) -> Array:
+    @cached_property
+    def _layout(self) -> tuple[float, float, Array]:
+        """First knot, period, and the first knot of each piece behind that one [rad]."""
+        return float(self.knots[0]), self.period, self.knots[:-1] - self.knots[0]
+
+    def piece(self, index: Index, distance: ArrayLike) -> Array:
         """Value [Pa] of the pieces ``index`` at ``distance`` [rad] behind their first knot."""
-        a, b, c, d = self.coefficients[:, index]
         x = np.asarray(distance, dtype=np.float64)
+        a, b, c, d = (power.take(index) for power in self.coefficients)
         return np.asarray(((a * x + b) * x + c) * x + d)
+
+
+def pressures_at(pressures: Sequence[PeriodicPressure], cycle_angles: Array) -> Array:
+    """Pressure differences across the pistons [Pa], each at its own cycle angles, shape
+    (cylinders, ...) [rad]; cylinders of one pressure are looked up together.
+
+    >>> pressures_at(pressures_of(load_scene("v_twin")), np.zeros((2, 3))).shape
+    (2, 3)
+    """
+    once = list(dict.fromkeys(pressures))
+    if len(once) == 1:
+        return once[0](cycle_angles)
+    found = np.empty_like(cycle_angles)
+    for each in once:
+        rows = [k for k, pressure in enumerate(pressures) if pressure is each]
+        found[rows] = each(cycle_angles[rows])
+    return found
 
 
 def _moved(cubics: Array, x: Array) -> Array:

@@ -8,31 +8,31 @@ for each sample.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cached_property
 from itertools import accumulate
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from crankmbs.mechanics.fired import Parts, fired_parts, pushed_parts
+from crankmbs.mechanics.fired import pushed
 from crankmbs.mechanics.friction import friction_forces
-from crankmbs.mechanics.newton_euler import Powers, of_crank, of_cylinder
-from crankmbs.mechanics.tabulated import balanced, rows_of
+from crankmbs.mechanics.inertia import axes_of
+from crankmbs.mechanics.newton_euler import UNITS, Powers, balanced, powers_of, rows_of
+from crankmbs.mechanics.pressure import pressures_at
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.variables import EVERY
 from crankmbs.numerics.arrays import Array
-from crankmbs.numerics.periodic import one_period
-from crankmbs.scene.scene import Scene
+from crankmbs.numerics.periodic import Period, period_of, single
 
-__all__ = ["Balances", "Table", "balances", "reactions"]
+__all__ = ["Balances", "Table", "balances", "peaks_of", "reactions"]
 
 
 _PER_SPEED = ("piston_velocity", "rod_angular_speed")
+_RUBBED = "friction_force"
+_BLOCK = 60_000  # numbers at once: half a megabyte, which stays in the cache
 _OFTEN = 3  # so often an angle must come back for its parts to pay
-_UNITS = Powers(*np.eye(3)[:, :, np.newaxis])
 
 
 @dataclass(frozen=True)
@@ -48,9 +48,7 @@ class Table:
     @cached_property
     def places(self) -> dict[str, slice]:
         """The rows of each variable."""
-        ends = accumulate(self.rows.values())
-        pairs = zip(self.rows.items(), ends, strict=True)
-        return {name: slice(end - count, end) for (name, count), end in pairs}
+        return places_of(self.rows)
 
     @property
     def variables(self) -> dict[str, Array]:
@@ -64,6 +62,12 @@ class Table:
             return of_rows
         counts = np.array(list(self.rows.values()))
         return np.asarray(np.maximum.reduceat(of_rows, np.cumsum(counts) - counts))
+
+
+def places_of(rows: dict[str, int]) -> dict[str, slice]:
+    """Where the rows of each variable are, of those one after the other."""
+    pairs = zip(rows.items(), accumulate(rows.values()), strict=True)
+    return {name: slice(end - count, end) for (name, count), end in pairs}
 
 
 def reactions(
@@ -94,7 +98,7 @@ def reactions(
     """
     found = balances(train, theta, omega, alpha, fuel, friction)
     # one piece of memory, so large that the system is not asked for every run's anew
-    table = Table(found.rows, np.empty((len(found.parts), len(found.omega))))
+    table = Table(found.rows, np.empty((sum(found.rows.values()), len(found.period.which))))
     found.fill(table.values)
     return table.variables
 
@@ -102,82 +106,95 @@ def reactions(
 class Balances(NamedTuple):
     """Every variable at the samples, not yet put together.
 
-    angles : shape (n,) [rad], at which the parts are
-    rows : how many of each variable; swift : shape (rows,), which are velocities
-    parts : shape (rows, 1, samples), velocities per speed; or (rows, 3, n), what belongs to
-        omega^2, alpha and 1 at the angles of one period
-    which : shape (samples,), which of the n angles a sample is at; None where n are the samples
-    more : of the combustion and the friction, each: what a share of 1, or 1 N, on each cylinder
-        adds at the n angles; and the shares, or forces, shape (samples, cylinders)
+    period : of the angles at which the parts are
+    rows : how many of each variable, in their order
+    parts : by name, shape (rows, 1, samples), velocities per speed; or (rows, 3, angles), what
+        belongs to omega^2, alpha and 1, of what depends on the angle alone (rows, 1, angles)
+    motion : omega^2, alpha and omega at the samples
+    added : by name, what combustion and friction add at the samples, shape (rows, samples)
+    groups : variables that are put together alike, and their rows
     """
 
-    angles: Array
+    period: Period
     rows: dict[str, int]
-    swift: NDArray[np.bool_]
-    parts: Array
-    which: NDArray[np.intp] | None
-    at: Powers
-    omega: Array
-    more: tuple[tuple[Parts, Array], ...]
+    parts: dict[str, Array]
+    motion: tuple[Array, Array, Array]
+    added: dict[str, Array]
+    by_parts: bool
+    groups: tuple[tuple[list[str], slice], ...]
 
     def fill(self, room: Array) -> None:
         """All variables at the samples in their places, shape (rows, samples)."""
-        self._put(slice(None), room)
-        for row, added in self._added():
-            added(room[row])
+        for names, rows in self.groups:
+            self.put(names, room[rows])
 
     def apart(self, values: Array) -> Array:
         """Largest absolute difference of each row from one of another motion, NaN where one is:
         values as `fill` gives them; these here are not kept."""
-        if self.which is None:
-            own = np.empty_like(values)
-            self.fill(own)
-            return np.asarray(np.abs(own - values).max(axis=1, initial=0.0))
-        from crankmbs.mechanics import combined
-
-        largest, motion = np.empty(len(values)), (self.at.square, self.at.alpha, self.omega)
-        combined.apart(self.parts, self.swift, self.which, motion, (values, largest))
-        own = np.empty((1, len(self.omega)))
-        for row, added in self._added():
-            self._put(slice(row, row + 1), own)
-            added(own[0])
-            largest[row] = np.abs(own[0] - values[row]).max(initial=0.0)
+        largest = np.empty(len(values))
+        for names, rows in self.groups:
+            own = np.empty((rows.stop - rows.start, values.shape[1]))
+            self.put(names, own)
+            own -= values[rows]
+            largest[rows] = peaks_of(own)
         return largest
 
-    def row(self, number: int) -> Array:
-        """One row at the samples."""
-        room = np.empty((1, len(self.omega)))
-        self._put(slice(number, number + 1), room)
-        for row, added in self._added():
-            if row == number:
-                added(room[0])
+    def row(self, name: str) -> Array:
+        """A variable of the crank at the samples."""
+        room = np.empty((1, len(self.period.which)))
+        self.put([name], room)
         return np.asarray(room[0])
 
-    def _put(self, rows: slice, room: Array) -> None:
-        """Rows at the samples from their parts alone."""
-        if self.which is None:
-            room[:] = self.parts[rows, 0]
-            room[self.swift[rows]] *= self.omega
-        else:
-            from crankmbs.mechanics import combined  # numba is loaded only where angles repeat
+    def put(self, names: list[str], out: Array) -> None:
+        """Variables of equal powers, one behind the other, at the samples, shape (rows,
+        samples)."""
+        if self.by_parts and names[0] in self.parts:
+            self._join(names, out)
+        places = places_of({name: self.rows[name] for name in names})
+        for name, rows in places.items():
+            if not self.by_parts and name in self.parts:
+                out[rows] = self.parts[name][:, 0]
+                if name in _PER_SPEED:
+                    out[rows] *= self.motion[2]
+            if name not in self.parts:
+                out[rows] = self.added[name]
+            elif name in self.added:
+                out[rows] += self.added[name]
 
-            motion = self.at.square, self.at.alpha, self.omega
-            combined.together(self.parts[rows], self.swift[rows], self.which, motion, room)
+    def _join(self, names: list[str], out: Array) -> None:
+        """Parts at the angles of one period, together at the samples."""
+        parts = [self.parts[name] for name in names]
+        stacked = parts[0] if len(parts) == 1 else np.concatenate(parts)
+        square, alpha, omega = self.motion
+        sizes = square, alpha, omega if names[0] in _PER_SPEED else None
+        powers = powers_of(names[0])
+        places = range(len(powers)) if stacked.shape[1] == len(powers) else powers
+        terms = [(stacked[:, k], sizes[power]) for k, power in zip(places, powers, strict=True)]
+        self.period.join(terms, out)
 
-    def _added(self) -> Iterator[tuple[int, Callable[[Array], None]]]:
-        """The rows that combustion and friction add to, each with what adds it."""
-        if not self.more:
-            return
-        places = ((name, k) for name, count in self.rows.items() for k in range(count))
-        for row, (name, k) in enumerate(places):
-            given = [(others[name][k], size) for others, size in self.more if name in others]
-            if any(of_row for of_row, _ in given):
-                yield row, partial(self._add, given)
 
-    def _add(self, given: list[tuple[dict[int, Array], Array]], variable: Array) -> None:
-        for of_row, size in given:
-            for k, part in of_row.items():
-                variable += size[:, k] * (part if self.which is None else part[self.which])
+def _groups(rows: dict[str, int], samples: int) -> tuple[tuple[list[str], slice], ...]:
+    """Variables next to one another that are put together alike, not too many numbers."""
+    groups: list[tuple[list[str], slice]] = []
+    for name, place in places_of(rows).items():
+        if groups:
+            names, before = groups[-1]
+            small = (place.stop - before.start) * samples <= _BLOCK
+            if small and _kind(name) == _kind(names[0]):
+                groups[-1] = [*names, name], slice(before.start, place.stop)
+                continue
+        groups.append(([name], place))
+    return tuple(groups)
+
+
+def _kind(name: str) -> tuple[object, ...]:
+    return name == _RUBBED, name in _PER_SPEED, powers_of(name)
+
+
+def peaks_of(rows: Array) -> Array:
+    """Largest absolute value of each row, 0 of none."""
+    low, high = rows.min(axis=1, initial=0.0), rows.max(axis=1, initial=0.0)
+    return np.asarray(np.maximum(-low, high))
 
 
 def balances(
@@ -195,50 +212,35 @@ def balances(
     24
     """
     scene = train.scene
-    # copies: a compiled loop is made for every kind of array, read-only or with gaps, that it meets
-    theta, omega, alpha = (np.array(q, dtype=np.float64, order="C") for q in (theta, omega, alpha))
-    samples = Powers(omega**2, alpha, np.ones(1))
-    once, which = one_period(theta, train.repeats)
-    by_parts = len(theta) > _OFTEN * len(once)
-    once, motion = (once, _UNITS) if by_parts else (theta, Powers(*map(np.atleast_2d, samples)))
-    # numba is loaded only where angles repeat, or the motion has taken it already
-    balances = balanced if by_parts or scene.motion is None else balanced_by_arrays
-    rows, parts = rows_of(scene), balances(train, once, motion)
-    more = [] if fuel is None else [(fired_parts(train, once), fuel)]
+    theta, omega, alpha = (np.asarray(q, dtype=np.float64) for q in (theta, omega, alpha))
+    square = omega**2
+    period = period_of(theta, train.repeats)
+    by_parts = len(theta) > _OFTEN * len(period.angles)
+    if not by_parts:
+        period = single(theta)
+    motion = UNITS if by_parts else Powers(square[None], alpha[None], np.ones((1, 1)))
+    rows, parts = rows_of(scene), balanced(train, period.angles, motion)
     if scene.friction is not None:
+        rows[_RUBBED] = len(scene.cylinders)
         if friction is None:
             friction = friction_forces(train, theta, omega, fuel)
-        rows["friction_force"] = len(scene.cylinders)
-        parts = np.pad(parts, ((0, len(scene.cylinders)), (0, 0), (0, 0)))
-        more.append((_rubbed_parts(scene, once), friction))
-    swift = np.repeat([name in _PER_SPEED for name in rows], list(rows.values()))
-    return Balances(
-        once, rows, swift, parts, which if by_parts else None, samples, omega, tuple(more)
-    )
+    added = _added(train, period, fuel, friction if scene.friction is not None else None)
+    groups = _groups(rows, len(theta))
+    return Balances(period, rows, parts, (square, alpha, omega), added, by_parts, groups)
 
 
-def balanced_by_arrays(train: CrankTrain, theta: Array, motion: Powers) -> Array:
-    """The same as `crankmbs.mechanics.tabulated.balanced`, by NumPy."""
-    scene = train.scene
-    cylinders = [of_cylinder(train, theta, motion, k) for k in range(len(scene.cylinders))]
-    columns = {name: [part] for name, part in of_crank(scene, theta, motion, cylinders).items()}
-    for name in cylinders[0].variables:
-        columns[name] = [c.variables[name] for c in cylinders]
-    torque = columns["crank_torque"]
-    columns["journal_torque"] = list(accumulate(torque))
-    pairs = zip(columns["journal_torque"], torque, strict=True)
-    columns["pin_torque"] = [journal - 0.5 * own for journal, own in pairs]
-    shape = (len(motion.one), len(theta))
-    # what depends on the angle alone belongs to 1
-    every = [
-        part if part.ndim > 1 else part * motion.one for n in rows_of(scene) for part in columns[n]
-    ]
-    return np.array([np.broadcast_to(part, shape) for part in every])
-
-
-def _rubbed_parts(scene: Scene, theta: Array) -> Parts:
-    """What 1 N of friction on each piston adds."""
-    ones = [np.ones_like(theta) for _ in scene.cylinders]
-    parts = pushed_parts(scene, theta, ones)
-    parts["friction_force"] = [{k: one} for k, one in enumerate(ones)]
-    return parts
+def _added(
+    train: CrankTrain, period: Period, fuel: Array | None, friction: Array | None
+) -> dict[str, Array]:
+    """What combustion and friction do at the samples, by variable."""
+    forces: list[Array] = []
+    found: dict[str, Array] = {}
+    if fuel is not None and train.combustion is not None:
+        phi = np.add.outer(axes_of(train.scene).phases, period.angles)
+        more = period.times(pressures_at(train.combustion, phi), np.ascontiguousarray(fuel.T))
+        forces.append((train.scene.piston.gas_area or 0.0) * more)
+        found |= {"gas_pressure": more, "gas_force": forces[0]}
+    if friction is not None:
+        forces.append(np.ascontiguousarray(friction.T))
+        found[_RUBBED] = forces[-1]
+    return found | pushed(train.scene, period, sum(forces[1:], forces[0])) if forces else found

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from crankmbs.mechanics.inertia import reduce
 from crankmbs.mechanics.peaks import peak, relative_error
-from crankmbs.mechanics.reactions import Balances, Table, balances
-from crankmbs.mechanics.tabulated import tabulate
+from crankmbs.mechanics.reactions import Balances, Table, balances, peaks_of
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.variables import EVERY, SUMS
 from crankmbs.motion.base import Samples, Solution
@@ -75,7 +75,7 @@ def assemble(train: CrankTrain, solution: Solution) -> Assembled:
     Where the formulation states errors they are taken.
     """
     table = _tabled(train, solution.samples)
-    peaks = table.largest(_peaks(table.values))
+    peaks = table.largest(peaks_of(table.values))
     by_name = dict(zip(table.rows, peaks.tolist(), strict=True))
     errors = dict(solution.errors) or _errors(train, solution, table, by_name)
     return Assembled(solution, table, by_name, errors)
@@ -98,7 +98,7 @@ def _errors(
         largest = np.maximum(largest, apart + rounded)
     errors = dict(zip(table.rows, largest.tolist(), strict=True))
     if missed:  # of a free crank, which has inertia at every angle; a driven one may have none
-        errors["crank_acceleration"] += missed / float(tabulate(train, angles).inertia.min())
+        errors["crank_acceleration"] += missed / float(reduce(train, angles).inertia.min())
     errors["crank_angle"] = peak(ahead) + _ROUNDING * peaks["crank_angle"]
     errors["energy_residual"] = peaks["energy_residual"] + _ROUNDING * peaks["kinetic_energy"]
     return errors
@@ -129,20 +129,20 @@ class _Passes(NamedTuple):
         total = np.zeros(len(self.table.rows))
         for samples in self._chain():
             found, apart = _balances(self.off, samples), np.zeros(len(before))
-            balanced = slice(first, first + len(found.parts))
+            balanced = slice(first, first + sum(found.rows.values()))
             apart[balanced] = found.apart(before[balanced])
             missed = 0.0
             if samples.own:
                 row = places["external_torque"].start
                 given = samples.own.get("external_torque", before[row])
-                missed = peak(found.row(row - first) - given)
-            apart[:first] = _peaks(before[:first] - _motion(samples))
+                missed = peak(found.row("external_torque") - given)
+            apart[:first] = peaks_of(before[:first] - _motion(samples))
             for name, values in samples.own.items():
-                apart[places[name]] = _peaks(before[places[name]] - values.T)
+                apart[places[name]] = peaks_of(before[places[name]] - values.T)
             total += self.table.largest(apart)
             if samples is not self.rounded:
                 before = _tabled(self.off, samples).values
-        return total, missed, found.angles
+        return total, missed, found.period.angles
 
     def _chain(self) -> list[Samples]:
         if len(self.answer.time) > _FEW:
@@ -164,12 +164,15 @@ class _Passes(NamedTuple):
         more = math.copysign(peak(recent) - abs(ahead[-1]), ahead[-1])
         given = {name: values for name, values in own.items() if name in _GIVEN}
         last = replace(self.rounded, own=given).select(np.array([-1]))
-        end = _tabled(self.off, replace(last, theta=last.theta + more)).values
-        apart = _peaks(self.table.values[:, -1:] - end)
+        end = replace(last, theta=last.theta + more)
+        found, first, before = _balances(self.off, end), len(_MOTION), self.table.values[:, -1:]
+        balanced = slice(first, first + sum(found.rows.values()))
+        apart = np.zeros(len(before))
+        apart[:first] = peaks_of(before[:first] - _motion(end))
+        apart[balanced] = found.apart(before[balanced])
         missed = 0.0
         if own:
-            torque = end[places["external_torque"]]
-            missed = peak(own["external_torque"][-1:] - torque)
+            missed = peak(own["external_torque"][-1:] - found.row("external_torque"))
         for name in own:
             apart[places[name]] = 0.0
         return self.table.largest(apart), missed
@@ -223,7 +226,7 @@ def _tabled(train: CrankTrain, samples: Samples) -> Table:
     # one piece of memory, so large that the system is not asked for every run's anew
     table = Table(rows, np.empty((sum(rows.values()), len(samples.time))))
     table.values[: len(_MOTION)] = _motion(samples)
-    found.fill(table.values[len(_MOTION) :][: len(found.parts)])
+    found.fill(table.values[len(_MOTION) :][: sum(found.rows.values())])
     places = table.places
     for name, values in own.items():
         table.values[places[name]] = values.T
@@ -239,12 +242,6 @@ def _motion(samples: Samples) -> Array:
     """The rows of `_MOTION`."""
     of_time = samples.time, samples.theta, samples.omega, samples.alpha
     return np.array([*of_time, samples.energy_residual])
-
-
-def _peaks(rows: Array) -> Array:
-    """Largest absolute value of each row, 0 of none."""
-    low, high = rows.min(axis=1, initial=0.0), rows.max(axis=1, initial=0.0)
-    return np.asarray(np.maximum(-low, high))
 
 
 def _sizes(peaks: dict[str, float]) -> list[float]:

@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 
 from crankmbs.mechanics.friction import friction_forces, friction_torque, held_share
-from crankmbs.mechanics.tabulated import tabulate
+from crankmbs.mechanics.inertia import reduce
 from crankmbs.mechanics.torque import branch_at, branch_of
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion.base import Samples, State
@@ -23,7 +23,7 @@ def first_sample(train: CrankTrain, state: State, of_angle: float) -> Samples:
     of_angle [N m] : what the loads give over the crank angle
     """
     shares, (time, theta, omega, *_) = state.mode.shares, state
-    reduction = tabulate(train, theta, shares)
+    reduction = reduce(train, theta, shares)
     of_angle += state.mode.held
     rest = float(reduction.rest(omega)) + of_angle
     torques, phases = train.scene.torque, state.mode.loads
