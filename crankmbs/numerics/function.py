@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Callable
 from functools import cached_property
-from typing import Any, cast
 
 import numpy as np
 
@@ -84,32 +82,16 @@ class Function:
         return np.asarray((self(t, theta, omega + nudge) - self(t, theta, omega)) / nudge)
 
     def _quick(self, at: list[Array]) -> Array | None:
-        """Its values by the compiled function, if there is one and all are finite."""
-        if self._loop is None:
-            return None
-        values = np.empty(len(at[0]))
+        """Its values, if none raises and all are finite numbers."""
         try:
-            self._loop(*at, values)
-        except Exception:  # again without the compiler, which tells where it was
+            values = np.asarray(self._each(*at), dtype=np.float64)
+        except Exception:  # again one by one, which tells where it was
             return None
         return values if np.isfinite(values).all() else None
 
     @cached_property
-    def _loop(self) -> Callable[..., None] | None:
-        """A compiled loop over all its values; None where numba does not know what it does."""
-        from numba import njit
-
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            try:
-                one: Any = njit(self._function)
-
-                def loop(t: Array, theta: Array, omega: Array, out: Array) -> None:
-                    for i in range(len(out)):
-                        out[i] = one(t[i], theta[i], omega[i])
-
-                compiled: Any = njit(loop)
-                compiled(*np.ones((3, 0)), np.empty(0))
-            except Exception:  # of whatever kind: then it runs as it is
-                return None
-        return cast(Callable[..., None], compiled)
+    def _each(self) -> np.ufunc:
+        """The function of one number after the other, as Python floats."""
+        function = self._function
+        each: np.ufunc = np.frompyfunc(lambda *at: float(function(*at)), 3, 1)
+        return each

@@ -40,7 +40,7 @@ def _function(value: Any, info: ValidationInfo) -> Any:
 @part
 class Load(Torque):
     """The torque [N m] that a function(t, theta, omega) gives, of time [s], crank angle [rad] and
-    speed [rad/s], three floats in, one out; it must be pure. Compiled by numba where it can be.
+    speed [rad/s], three floats in, one out; it must be pure.
 
     kink_times [s], kink_angles [rad], kink_speeds [rad/s] : where it bends or jumps, the angles
         every ``period``, without one every revolution; what is not declared is found by finer
