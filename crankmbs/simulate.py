@@ -71,7 +71,7 @@ def simulate(
         error=Error(asked, assembled.relative_error),
         decay=solution.decay,
         keep=solution.keep,
-        motion=solution.motion,
+        motion=assembled.motion,
     )
 
 

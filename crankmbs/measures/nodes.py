@@ -17,8 +17,9 @@ import numpy as np
 from crankmbs.mechanics.friction import friction_knots
 from crankmbs.mechanics.torque import knots_over_angle
 from crankmbs.mechanics.train import CrankTrain, crank_angle_knots
-from crankmbs.motion.cells import Cells, States
+from crankmbs.motion.cells import Cells
 from crankmbs.motion.motion import Motion
+from crankmbs.motion.states import States, states_in
 from crankmbs.numerics.arrays import Array, Index
 from crankmbs.numerics.lagrange import Lagrange, ends_and_nodes
 from crankmbs.numerics.once import once
@@ -156,7 +157,7 @@ class Nodes:
             which = np.flatnonzero(block == number)
             k = np.tile(cell[which], count)
             x = places[:, which].ravel()
-            parts.append(self._blocks[number].cells.states(self.train, k, x))
+            parts.append(states_in(self._blocks[number].cells, self.train, k, x))
             order += [which + len(block) * n for n in range(count)]
         return States.joined(parts, np.argsort(np.concatenate(order)))
 
@@ -179,7 +180,7 @@ def _states(train: CrankTrain, blocks: Sequence[_Block]) -> States:
     parts = []
     for one in blocks:
         k = np.repeat(np.arange(len(one.cells.time)), one.cells.time.shape[1])
-        parts.append(one.cells.states(train, k, one.cells.inner().ravel()))
+        parts.append(states_in(one.cells, train, k, one.cells.inner().ravel()))
     return States.joined(parts)
 
 

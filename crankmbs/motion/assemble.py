@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
@@ -15,6 +16,7 @@ from crankmbs.mechanics.reactions import Balances, Table, balances, peaks_of
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.variables import EVERY, SUMS
 from crankmbs.motion.base import Samples, Solution
+from crankmbs.motion.motion import Passes
 from crankmbs.numerics.arrays import Array
 
 if TYPE_CHECKING:
@@ -32,12 +34,16 @@ ANGLE_ROUNDING = 2 * float(np.finfo(float).eps)  # of the crank angle
 @dataclass(frozen=True)
 class Assembled:
     """A solution, every variable of the result at its samples, its largest absolute value there,
-    and an estimate of its error."""
+    and an estimate of its error.
+
+    motion : makes the passes of the motion as they were solved; None where samples are all there is
+    """
 
     solution: Solution
     table: Table
     peaks: dict[str, float]
     errors: dict[str, float]
+    motion: Callable[[], Passes] | None = None
 
     @property
     def variables(self) -> dict[str, Array]:

@@ -11,9 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crankmbs.motion.account import Keep
-from crankmbs.motion.cells import Cells
 from crankmbs.motion.mode import Mode
-from crankmbs.motion.motion import Passes
 from crankmbs.motion.plan import Wanted
 from crankmbs.numerics.arrays import Array
 
@@ -21,7 +19,6 @@ __all__ = [
     "NOWHERE",
     "Decay",
     "Nodes",
-    "Piece",
     "Points",
     "Samples",
     "Solution",
@@ -90,7 +87,6 @@ class Solution:
     reasons : sentences about what the run had to do, beside the choice of the formulation
     decay : of a settled motion
     keep : makes the account of what happened on the way
-    motion : makes the passes of the motion as they were solved; None where samples are all there is
     """
 
     samples: Samples
@@ -103,7 +99,6 @@ class Solution:
     reasons: tuple[str, ...] = ()
     decay: Decay | None = None
     keep: Keep | None = None
-    motion: Callable[[], Passes] | None = None
 
 
 class State(NamedTuple):
@@ -162,21 +157,3 @@ class Solved(Stretched, Protocol):
 
     def sample(self, plan: Wanted) -> Samples:
         """Its samples of a plan, or at chosen places."""
-
-
-class Piece(Solved, Protocol):
-    """A solved stretch of a free motion."""
-
-    def cells(self) -> Cells:
-        """Its cells or steps as cells of a motion."""
-
-    @property
-    def steps(self) -> int:
-        """Steps or cells in it."""
-
-    @property
-    def evaluations(self) -> int:
-        """Evaluations of the equation of motion that it took."""
-
-    def last(self) -> Samples:
-        """The one sample at the end."""

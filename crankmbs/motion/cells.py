@@ -1,33 +1,41 @@
-"""Cells of a solved motion, and the state anywhere in them by the polynomials it was solved with.
+"""Cells of a solved motion: the polynomials that it was solved with.
 
 In a cell time and crank angle, and energy or speed, are polynomials of a place x from 0 to 1, given
-by their values at both ends and at the nodes of a Gauss rule. What follows from them, acceleration,
-torques and the friction on the pistons, is algebra with what acts in the cell.
+by their values at both ends and at the nodes of a Gauss rule. What follows from them belongs in
+`crankmbs.motion.states`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from crankmbs.mechanics.friction import friction_forces, friction_torque, held_share
 from crankmbs.mechanics.knots import KNOT, repeat
-from crankmbs.mechanics.reactions import reactions
-from crankmbs.mechanics.tabulated import tabulate
-from crankmbs.mechanics.torque import Branch, Course, over_angle
-from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.windows import Phases
 from crankmbs.numerics.arrays import Array, Index
+from crankmbs.numerics.function import Function
 from crankmbs.numerics.lagrange import Lagrange, ends_and_nodes
 
-__all__ = ["Acting", "Cells", "States"]
+__all__ = ["Acting", "Cells", "Loads"]
 
 _INSIDE = 2.0 * KNOT  # rad: so far from the end of a cell nothing counts as on a knot there
 _MOST = 0.25  # of a cell
 _ROWS = ("time", "angle", "speed", "shares", "energy", "acceleration", "outside")
+
+
+class Loads(Protocol):
+    """The torque of loads."""
+
+    @property
+    def functions(self) -> tuple[Function, ...]:
+        """Those of time, angle and speed together."""
+
+    def __call__(self, t: ArrayLike, omega: ArrayLike) -> Array:
+        """Of all others [N m] at times [s] and speeds [rad/s]."""
 
 
 class Acting(NamedTuple):
@@ -41,45 +49,7 @@ class Acting(NamedTuple):
     sense: float
     holds: bool = False
     phases: Phases = ()
-    loads: Branch | Course | None = None
-
-
-class States(NamedTuple):
-    """The motion at points, shape (p,) each [s, rad, rad/s, rad/s2, N m].
-
-    external_torque : None where it is what the acceleration takes
-    fuel : shares of the combustion, friction : on every piston [N], shape (p, cylinders); or None
-    """
-
-    time: Array
-    angle: Array
-    speed: Array
-    acceleration: Array
-    external_torque: Array | None
-    fuel: Array | None
-    friction: Array | None
-
-    @staticmethod
-    def joined(parts: Sequence[States], order: Index | slice = slice(None)) -> States:
-        """States one after the other, then in an order."""
-        rows: list[Any] = [
-            None if row[0] is None else np.concatenate(row)[order]
-            for row in zip(*parts, strict=True)
-        ]
-        return States(*rows)
-
-    def variables(self, train: CrankTrain) -> dict[str, Array]:
-        """Every variable of a result by name but the energy residual, shape (p,) or
-        (p, cylinders)."""
-        motion = self.angle, self.speed, self.acceleration
-        values = reactions(train, *motion, self.fuel, self.friction)
-        values |= {"time": self.time, "crank_angle": self.angle}
-        values |= {"crank_speed": self.speed, "crank_acceleration": self.acceleration}
-        if self.external_torque is not None:
-            values["external_torque"] = self.external_torque
-        if self.fuel is not None:
-            values["fuel"] = self.fuel
-        return values
+    loads: Loads | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,7 +99,7 @@ class Cells:
     def part(self, k: Index, low: Array, high: Array) -> Cells:
         """Parts of cells, each from a place in it to another, as cells; shape (p,) each."""
         shape = len(k), len(self.places)
-        basis = self._basis(low[:, None] + (high - low)[:, None] * self.places)
+        basis = self.basis(low[:, None] + (high - low)[:, None] * self.places)
         cell = np.repeat(k, shape[1])
 
         def cut(rows: Array) -> Array:
@@ -217,49 +187,10 @@ class Cells:
         places[:, -1] = 1.0 - places[:, 0]
         return places
 
-    def states(self, train: CrankTrain, k: Index, x: Array) -> States:
-        """The motion at places in the cells k, shape (p,) each."""
-        basis, polynomials = self._basis(x), self._polynomials
-        time, angle = (polynomials.values(rows, k, basis) for rows in (self.time, self.angle))
-        shares = self.shares[k] if self.shares.shape[1] else None
-        reduction = tabulate(train, angle, shares)
-        sense = self.acting.sense
-        if self.energy is None:
-            speed = polynomials.values(self.speed, k, basis)
-        else:
-            energy = np.maximum(polynomials.values(self.energy, k, basis), 0.0)
-            speed = sense * np.sqrt(2.0 * energy / reduction.inertia)
-        slides = np.full_like(speed, sense)
-        outside, rate = None, None
-        if self.outside is not None:
-            outside = polynomials.values(self.outside, k, basis)
-        elif self.acting.loads is not None:
-            outside = self._outside(train, time, angle, speed)
-        if outside is not None:
-            if self.acting.holds and train.scene.friction is not None:
-                given = reduction.torque + outside
-                share = held_share(train, float(angle[0]), given, tuple(self.shares[0].tolist()))
-                slides = np.clip(share, -1.0, 1.0)
-            rubbed = friction_torque(train, angle, speed, slides, shares)
-            rest = reduction.rest(speed) + rubbed
-            outside = -rest if self.acting.holds else outside
-            rate = (rest + outside) / reduction.inertia
-        if self.acceleration is not None:
-            rate = polynomials.values(self.acceleration, k, basis)
-        assert rate is not None
-        friction = None
-        if train.scene.friction is not None:
-            friction = friction_forces(train, angle, speed, shares, slides)
-        return States(time, angle, speed, rate, outside, shares, friction)
+    def values(self, row: Array, k: Index, basis: Array) -> Array:
+        """A row at the places in the cells k that a basis was made for, shape (p,)."""
+        return self._polynomials.values(row, k, basis)
 
-    def _basis(self, x: Array) -> Array:
+    def basis(self, x: Array) -> Array:
+        """Of places, for `values`."""
         return self._polynomials.basis(x.ravel())
-
-    def _outside(self, train: CrankTrain, time: Array, angle: Array, speed: Array) -> Array:
-        """Torque of all loads that act [N m]."""
-        loads, of_angle = self.acting.loads, over_angle(train.scene, self.acting.phases)
-        assert loads is not None
-        outside = loads(time, speed) + (0.0 if of_angle is None else of_angle(angle))
-        for function in loads.functions:
-            outside = outside + function(time, angle, speed)
-        return np.asarray(outside)

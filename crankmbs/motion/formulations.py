@@ -6,6 +6,7 @@ A new formulation is a file in this room that gives samples of the motion, and o
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
 
@@ -81,7 +82,8 @@ def _may_be_held(scene: Scene) -> bool:
 
 
 def _kinetostatic(train: CrankTrain, _rtol: float, _cost_cap: float) -> Assembled:
-    return assemble(train, kinetostatic.run(train))
+    assembled = assemble(train, kinetostatic.run(train))
+    return replace(assembled, motion=partial(kinetostatic.passes, train))
 
 
 def _free(train: CrankTrain, rtol: float, cost_cap: float, *, by_angle: bool) -> Assembled:

@@ -28,7 +28,7 @@ from crankmbs.motion.prescribed import monotone_stretches
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.units import DEGREE
 
-__all__ = ["run"]
+__all__ = ["passes", "run"]
 
 _POINTS = (6, 8)  # of Gauss in a panel, in either look at what happens on the way
 _PANEL = 5.0 * DEGREE  # widest panel of the work integral; Gauss with 4 points errs below 1e-12
@@ -48,8 +48,7 @@ def run(train: CrankTrain) -> Solution:
     law = speed_law(scene.motion)
     stretches, reached = monotone_stretches(plan, law)
     firings = None if train.law is None else _firings(driven(_way(train, law), stretches))
-    whole = tuple(stretches)
-    keep = partial(_account, train, law, whole, rests=not reached)
+    keep = partial(_account, train, law, tuple(stretches), rests=not reached)
     stretches = _kept(plan, law, stretches)
     time, theta = _sample(plan, law, stretches, reached)
     _, omega, alpha = law.at_time(time)
@@ -63,18 +62,19 @@ def run(train: CrankTrain) -> Solution:
     by_angle = np.full(len(time), not plan.in_time)
     by_angle[-1] = reached and not plan.until_time
     better = None if law.off is law else _by(law.off, samples, by_angle)
-    said = ending.said(float(theta[-1]))
-    motion = partial(_motion, train, law, whole)
-    return Solution(samples, *said, len(time), 0, better, keep=keep, motion=motion)
+    return Solution(samples, *ending.said(float(theta[-1])), len(time), 0, better, keep=keep)
 
 
-def _motion(train: CrankTrain, law: SpeedLaw, stretches: tuple[tuple[float, float], ...]) -> Passes:
+def passes(train: CrankTrain) -> Passes:
     """The law as cells, twice, the second time finer and as far off as law and pressures may be."""
-    passes = [
+    assert train.scene.motion is not None
+    law = speed_law(train.scene.motion)
+    stretches, _ = monotone_stretches(plan_of(train.scene), law)
+    answer, check = (
         Motion(one, list(driven(_way(one, of, finer=finer), stretches)))
         for one, of, finer in ((train, law, False), (train.off, law.off, True))
-    ]
-    return Passes(passes[0], (passes[1],))
+    )
+    return Passes(answer, (check,))
 
 
 def _account(

@@ -10,7 +10,8 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from crankmbs.mechanics.train import CrankTrain
-from crankmbs.motion.cells import Cells, States
+from crankmbs.motion.cells import Cells
+from crankmbs.motion.states import States, states_in
 from crankmbs.numerics.arrays import Array
 
 __all__ = ["Motion", "Passes"]
@@ -90,7 +91,7 @@ class Motion:
             cells = self.cells[number]
             k = cell[of_piece] - (counts[number] - len(rows[number]))
             x = cells.place(k, values[of_piece], in_time=in_time)
-            states = cells.states(self.train, k, x)
+            states = states_in(cells, self.train, k, x)
             exact = "time" if in_time else "angle"
             parts.append(states._replace(**{exact: values[of_piece]}))
             order.append(of_piece)

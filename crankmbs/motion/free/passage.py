@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Callable, Generator
-from typing import TypeVar
+from typing import Protocol, TypeVar
 
 import numpy as np
 
-from crankmbs.motion.base import Piece, Samples, State
+from crankmbs.motion.base import Samples, Solved, State
+from crankmbs.motion.cells import Cells
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.events import Log
 from crankmbs.motion.plan import Chosen, Plan
@@ -18,6 +19,25 @@ __all__ = ["Passage"]
 
 _VAIN = 20  # as many reversals that reach no farther, and the end is not coming
 _SAMPLE = 200  # evaluations as costly as a sample of a swing
+
+
+class Piece(Solved, Protocol):
+    """A solved stretch of a free motion."""
+
+    def cells(self) -> Cells:
+        """Its cells or steps as cells of a motion."""
+
+    @property
+    def steps(self) -> int:
+        """Steps or cells in it."""
+
+    @property
+    def evaluations(self) -> int:
+        """Evaluations of the equation of motion that it took."""
+
+    def last(self) -> Samples:
+        """The one sample at the end."""
+
 
 AnyPiece = TypeVar("AnyPiece", bound=Piece)
 

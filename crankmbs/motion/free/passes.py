@@ -131,11 +131,11 @@ def run(
     first, *others = (Motion(one.grid.train, [*one.made.path.pieces]) for one in followed)
     motion = Passes(first, tuple(others), share)
     keep = partial(_account, followed, way, share, by_angle=by_angle)
-    solution = replace(best.solution, keep=keep, motion=lambda: motion)
+    solution = replace(best.solution, keep=keep)
     if best.relative_error > rtol and solution.status >= 0:
         text = f"asked for {rtol:.0e}, reached {best.relative_error:.0e}"
         solution = replace(solution, message=f"{solution.message}; {text}")
-    return replace(best, solution=solution)
+    return replace(best, solution=solution, motion=lambda: motion)
 
 
 class _Made(NamedTuple):
