@@ -10,6 +10,7 @@ least value. A largest value is sought on the polynomial through the nodes and e
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -176,11 +177,7 @@ def _marks(train: CrankTrain, widest: float) -> tuple[Array, Array]:
 
 
 def _states(train: CrankTrain, blocks: Sequence[_Block]) -> States:
-    parts = []
-    for one in blocks:
-        k = np.repeat(np.arange(len(one.cells.time)), one.cells.time.shape[1])
-        parts.append(one.cells.states(train, k, one.cells.inner().ravel()))
-    return States.joined(parts)
+    return States.joined([block.cells.inner_states(train) for block in blocks])
 
 
 def _highest(cells: Cells, values: Array) -> tuple[Array, Index, Array, np.ndarray]:
@@ -234,12 +231,15 @@ def _bent(block: _Block, parts: Array) -> Array:
     rows[..., -1] += hair * slopes[..., -1]
     sizes = ((rows @ polynomials.basis(fine).T) ** 2).sum(axis=1)
     x = _least(rows, fine[np.argmin(sizes, axis=1)], fine[1], n)
-    x, weight = _graded(x)
-    basis = polynomials.basis(x.ravel()).reshape(*x.shape, n)
-    size = np.sqrt((np.einsum("fcn,fpn->fcp", rows, basis) ** 2).sum(axis=1))
-    spent = np.einsum("fn,fpn->fp", cells.spent[k], basis)
-    exact = (size * spent * weight).sum(axis=1)
-    by_rule = (np.sqrt((rows**2).sum(axis=1)) * cells.spent[k]) @ cells.weights
+    rows = np.concatenate([rows, cells.spent[k][:, None]], axis=1)
+    exact, (graded, weights) = 0.0, _graded(n)
+    for far in (0.0, 1.0):  # the part of the cell on either side of it, as a cell of its own
+        places = x[:, None] + (far - x)[:, None] * polynomials.places
+        basis = polynomials.basis(places.ravel()).reshape(*places.shape, n)
+        at = np.matmul(rows, basis.transpose(0, 2, 1)) @ graded.T
+        size = np.sqrt((at[:, :-1] ** 2).sum(axis=1))
+        exact = exact + np.abs(far - x) * ((size * at[:, -1]) @ weights)
+    by_rule = (np.sqrt((rows[:, :-1] ** 2).sum(axis=1)) * rows[:, -1]) @ cells.weights
     np.add.at(missed, which, exact - by_rule)
     return missed
 
@@ -260,14 +260,13 @@ def _least(rows: Array, x: Array, step: float, n: int) -> Array:
     return x
 
 
-def _graded(middle: Array) -> tuple[Array, Array]:
-    """Points and weights of Gauss in panels of the unit interval that halve towards a place in it,
-    shape (f,) -> (f, points)."""
+@cache
+def _graded(n: int) -> tuple[Array, Array]:
+    """Points of Gauss in panels of the unit interval that halve towards its begin: from values at
+    n places to those at the points, shape (points, n), and their weights."""
     nodes, weights = np.polynomial.legendre.leggauss(_POINTS)
     nodes, weights = 0.5 * (1.0 + nodes), 0.5 * weights
     ends = np.concatenate([[0.0], 0.5 ** np.arange(_PANELS, -1, -1)])
-    inside = (ends[:-1, None] + np.diff(ends)[:, None] * nodes).ravel()
-    share = (np.diff(ends)[:, None] * weights).ravel()
-    m = middle[:, None]
-    x = np.concatenate([m - m * inside, m + (1.0 - m) * inside], axis=1)
-    return x, np.concatenate([m * share, (1.0 - m) * share], axis=1)
+    points = ends[:-1, None] + np.diff(ends)[:, None] * nodes
+    shares = np.diff(ends)[:, None] * weights
+    return ends_and_nodes(n - 2).basis(points.ravel()), shares.ravel()

@@ -68,8 +68,8 @@ def measure(result: Result) -> Measures:
     window, scene = measured_span(result), result.scene
     passes = passes_over(result, window)
     found = estimates(passes, partial(_numbers, scene, window))
-    angles = nodes_of(passes.answer).tops(partial(_sought, scene)).angle.tolist()
-    joints = zip(joints_of(scene), found["peaks"], found["means"], angles, strict=False)
+    angles = [angle.value for angle in found["angles"]]
+    joints = zip(joints_of(scene), found["peaks"], found["means"], angles, strict=True)
 
     def single(name: str) -> Estimate | None:
         return found[name][0] if name in found else None
@@ -155,6 +155,7 @@ def _numbers(scene: Scene, window: Span, motion: Motion) -> Numbers:
         "fluctuation": _fluctuation(tops[-2:], mean),
         "speed_gain": _speed_gain(motion),
         "peaks": Number(tops[: len(forces)], sizes),
+        "angles": Number(found.angle[: len(forces)], np.abs(found.angle[: len(forces)])),
         "means": Number(over, sizes),
     }
     turned = motion.turned

@@ -97,6 +97,8 @@ def reactions(
     0.0
     """
     found = balances(train, theta, omega, alpha, fuel, friction)
+    if not found.by_parts:
+        return found.alone
     # one piece of memory, so large that the system is not asked for every run's anew
     table = Table(found.rows, np.empty((sum(found.rows.values()), len(found.period.which))))
     found.fill(table.values)
@@ -122,6 +124,22 @@ class Balances(NamedTuple):
     added: dict[str, Array]
     by_parts: bool
     groups: tuple[tuple[list[str], slice], ...]
+
+    @property
+    def alone(self) -> dict[str, Array]:
+        """The variables at samples whose angles do not come back, as `reactions` returns them."""
+        found = {}
+        for name in self.rows:
+            values: Array | float = 0.0
+            if name in self.parts:
+                values = self.parts[name][:, 0]
+                if name in _PER_SPEED:
+                    values = values * self.motion[2]
+            if name in self.added:
+                values = values + self.added[name]
+            rows = np.asarray(values)
+            found[name] = rows.T if EVERY[name].per_cylinder else rows[0]
+        return found
 
     def fill(self, room: Array) -> None:
         """All variables at the samples in their places, shape (rows, samples)."""

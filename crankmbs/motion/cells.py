@@ -219,20 +219,37 @@ class Cells:
 
     def states(self, train: CrankTrain, k: Index, x: Array) -> States:
         """The motion at places in the cells k, shape (p,) each."""
-        basis, polynomials = self._basis(x), self._polynomials
-        time, angle = (polynomials.values(rows, k, basis) for rows in (self.time, self.angle))
+        basis = self._basis(x)
+        return self._states(train, k, lambda rows: self._polynomials.values(rows, k, basis))
+
+    def inner_states(self, train: CrankTrain) -> States:
+        """The motion at the places of `inner`, cell by cell."""
+        every, places = np.arange(len(self.time)), self.inner()
+        ends = [(at, self._basis(places[:, at])) for at in (0, -1)]
+
+        def read(rows: Array) -> Array:
+            values = rows.copy()
+            for at, basis in ends:
+                values[:, at] = self._polynomials.values(rows, every, basis)
+            return values.ravel()
+
+        return self._states(train, np.repeat(every, places.shape[1]), read)
+
+    def _states(self, train: CrankTrain, k: Index, read: Callable[[Array], Array]) -> States:
+        """The motion at points in the cells k, shape (p,), at which rows are read."""
+        time, angle = read(self.time), read(self.angle)
         shares = self.shares[k] if self.shares.shape[1] else None
         reduction = tabulate(train, angle, shares)
         sense = self.acting.sense
         if self.energy is None:
-            speed = polynomials.values(self.speed, k, basis)
+            speed = read(self.speed)
         else:
-            energy = np.maximum(polynomials.values(self.energy, k, basis), 0.0)
+            energy = np.maximum(read(self.energy), 0.0)
             speed = sense * np.sqrt(2.0 * energy / reduction.inertia)
         slides = np.full_like(speed, sense)
         outside, rate = None, None
         if self.outside is not None:
-            outside = polynomials.values(self.outside, k, basis)
+            outside = read(self.outside)
         elif self.acting.loads is not None:
             outside = self._outside(train, time, angle, speed)
         if outside is not None:
@@ -245,7 +262,7 @@ class Cells:
             outside = -rest if self.acting.holds else outside
             rate = (rest + outside) / reduction.inertia
         if self.acceleration is not None:
-            rate = polynomials.values(self.acceleration, k, basis)
+            rate = read(self.acceleration)
         assert rate is not None
         friction = None
         if train.scene.friction is not None:
