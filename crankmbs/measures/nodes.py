@@ -186,7 +186,7 @@ def _highest(cells: Cells, values: Array) -> tuple[Array, Index, Array, np.ndarr
     n = len(cells.places)
     polynomials, inner = ends_and_nodes(n - 2), cells.inner()
     fine = np.linspace(0.0, 1.0, _FINE * n + 1)
-    highest, lowest = values.max(axis=-1), values.min(axis=-1)
+    highest, lowest = _extremes(values)
     # a polynomial goes hardly farther beyond its values than they lie apart
     which, k = np.nonzero(2.0 * highest - lowest >= highest.max(axis=1, keepdims=True))
     heights = values[which, k] @ polynomials.basis(fine).T
@@ -212,6 +212,12 @@ def _highest(cells: Cells, values: Array) -> tuple[Array, Index, Array, np.ndarr
     return height(x), cell, x, at_end
 
 
+def _extremes(values: Array) -> tuple[Array, Array]:
+    """Largest and least along the last axis: ten times faster than along an axis of few."""
+    first = np.moveaxis(values, -1, 0).copy()
+    return first.max(axis=0), first.min(axis=0)
+
+
 def _bent(block: _Block, parts: Array) -> Array:
     """What the rule of the cells misses of the magnitudes, shape (q,), of parts at their nodes,
     shape (q, c, m, n), in those cells where they come near zero."""
@@ -219,9 +225,9 @@ def _bent(block: _Block, parts: Array) -> Array:
     n = len(cells.places)
     polynomials = ends_and_nodes(n - 2)
     fine = np.linspace(0.0, 1.0, _FINE * n + 1)
-    squares, changes = (parts**2).sum(axis=1), np.ptp(parts, axis=-1)
-    least = squares.min(axis=-1) < _NEAR**2 * (changes**2).sum(axis=1)
-    which, k = np.nonzero(least & (squares.max(axis=-1) > 0.0))
+    (most, least), (high, low) = _extremes((parts**2).sum(axis=1)), _extremes(parts)
+    near = least < _NEAR**2 * ((high - low) ** 2).sum(axis=1)
+    which, k = np.nonzero(near & (most > 0.0))
     missed = np.zeros(len(parts))
     if len(k) == 0:
         return missed

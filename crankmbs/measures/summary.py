@@ -248,6 +248,6 @@ def _last(values: Array) -> Array:
 
 
 def _energy_closure(result: Result) -> float:
-    peak = float(np.max(result.data["kinetic_energy"].values))
-    worst = float(np.max(np.abs(result.data["energy_residual"].values)))
+    peak = float(np.max(result.sampled("kinetic_energy")))
+    worst = float(np.max(np.abs(result.sampled("energy_residual"))))
     return worst / peak if peak > 0.0 else 0.0

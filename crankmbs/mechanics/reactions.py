@@ -9,7 +9,7 @@ for each sample.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import accumulate
 from typing import NamedTuple
 
@@ -191,10 +191,11 @@ class Balances(NamedTuple):
         self.period.join(terms, out)
 
 
-def _groups(rows: dict[str, int], samples: int) -> tuple[tuple[list[str], slice], ...]:
+@lru_cache(maxsize=16)
+def _groups(rows: tuple[tuple[str, int], ...], samples: int) -> tuple[tuple[list[str], slice], ...]:
     """Variables next to one another that are put together alike, not too many numbers."""
     groups: list[tuple[list[str], slice]] = []
-    for name, place in places_of(rows).items():
+    for name, place in places_of(dict(rows)).items():
         if groups:
             names, before = groups[-1]
             small = (place.stop - before.start) * samples <= _BLOCK
@@ -243,7 +244,7 @@ def balances(
         if friction is None:
             friction = friction_forces(train, theta, omega, fuel)
     added = _added(train, period, fuel, friction if scene.friction is not None else None)
-    groups = _groups(rows, len(theta))
+    groups = _groups(tuple(rows.items()), len(theta))
     return Balances(period, rows, parts, (square, alpha, omega), added, by_parts, groups)
 
 
