@@ -62,6 +62,7 @@ def simulate(
     solution = assembled.solution
     return Result.unlabelled(
         partial(dataset, assembled),
+        assembled.variables,
         scene=scene,
         formulation=choice.formulation,
         reasons=choice.reasons + remarks(scene) + speed_remarks(scene) + solution.reasons,

@@ -10,6 +10,7 @@ least value. A largest value is sought on the polynomial through the nodes and e
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -19,7 +20,7 @@ from crankmbs.mechanics.torque import knots_over_angle
 from crankmbs.mechanics.train import CrankTrain, crank_angle_knots
 from crankmbs.motion.cells import Cells
 from crankmbs.motion.motion import Motion
-from crankmbs.motion.states import States, states_in
+from crankmbs.motion.states import States, inner_states, states_in
 from crankmbs.numerics.arrays import Array, Index
 from crankmbs.numerics.lagrange import Lagrange, ends_and_nodes
 from crankmbs.numerics.once import once
@@ -129,7 +130,8 @@ class Nodes:
         more = higher > best
         angle_there = states.angle[q]
         turned = np.abs(angle_there - states.angle[q + len(q)])
-        slope = np.divide(np.abs(top - there[:, 1]), turned, out=np.zeros(len(q)), where=turned > 0.0)
+        fall, flat = np.abs(top - there[:, 1]), np.zeros(len(q))
+        slope = np.divide(fall, turned, out=flat, where=turned > 0.0)
         return Tops(
             np.where(more, higher, best),
             np.where(more, angle_there, angle),
@@ -177,11 +179,7 @@ def _marks(train: CrankTrain, widest: float) -> tuple[Array, Array]:
 
 
 def _states(train: CrankTrain, blocks: Sequence[_Block]) -> States:
-    parts = []
-    for one in blocks:
-        k = np.repeat(np.arange(len(one.cells.time)), one.cells.time.shape[1])
-        parts.append(states_in(one.cells, train, k, one.cells.inner().ravel()))
-    return States.joined(parts)
+    return States.joined([inner_states(block.cells, train) for block in blocks])
 
 
 def _highest(cells: Cells, values: Array) -> tuple[Array, Index, Array, np.ndarray]:
@@ -190,7 +188,7 @@ def _highest(cells: Cells, values: Array) -> tuple[Array, Index, Array, np.ndarr
     n = len(cells.places)
     polynomials, inner = ends_and_nodes(n - 2), cells.inner()
     fine = np.linspace(0.0, 1.0, _FINE * n + 1)
-    highest, lowest = values.max(axis=-1), values.min(axis=-1)
+    highest, lowest = _extremes(values)
     # a polynomial goes hardly farther beyond its values than they lie apart
     which, k = np.nonzero(2.0 * highest - lowest >= highest.max(axis=1, keepdims=True))
     heights = values[which, k] @ polynomials.basis(fine).T
@@ -216,6 +214,12 @@ def _highest(cells: Cells, values: Array) -> tuple[Array, Index, Array, np.ndarr
     return height(x), cell, x, at_end
 
 
+def _extremes(values: Array) -> tuple[Array, Array]:
+    """Largest and least along the last axis: ten times faster than along an axis of few."""
+    first = np.moveaxis(values, -1, 0).copy()
+    return first.max(axis=0), first.min(axis=0)
+
+
 def _bent(block: _Block, parts: Array) -> Array:
     """What the rule of the cells misses of the magnitudes, shape (q,), of parts at their nodes,
     shape (q, c, m, n), in those cells where they come near zero."""
@@ -223,9 +227,9 @@ def _bent(block: _Block, parts: Array) -> Array:
     n = len(cells.places)
     polynomials = ends_and_nodes(n - 2)
     fine = np.linspace(0.0, 1.0, _FINE * n + 1)
-    squares, changes = (parts**2).sum(axis=1), np.ptp(parts, axis=-1)
-    least = squares.min(axis=-1) < _NEAR**2 * (changes**2).sum(axis=1)
-    which, k = np.nonzero(least & (squares.max(axis=-1) > 0.0))
+    (most, least), (high, low) = _extremes((parts**2).sum(axis=1)), _extremes(parts)
+    near = least < _NEAR**2 * ((high - low) ** 2).sum(axis=1)
+    which, k = np.nonzero(near & (most > 0.0))
     missed = np.zeros(len(parts))
     if len(k) == 0:
         return missed
@@ -235,12 +239,15 @@ def _bent(block: _Block, parts: Array) -> Array:
     rows[..., -1] += hair * slopes[..., -1]
     sizes = ((rows @ polynomials.basis(fine).T) ** 2).sum(axis=1)
     x = _least(rows, fine[np.argmin(sizes, axis=1)], fine[1], n)
-    x, weight = _graded(x)
-    basis = polynomials.basis(x.ravel()).reshape(*x.shape, n)
-    size = np.sqrt((np.einsum("fcn,fpn->fcp", rows, basis) ** 2).sum(axis=1))
-    spent = np.einsum("fn,fpn->fp", cells.spent[k], basis)
-    exact = (size * spent * weight).sum(axis=1)
-    by_rule = (np.sqrt((rows**2).sum(axis=1)) * cells.spent[k]) @ cells.weights
+    rows = np.concatenate([rows, cells.spent[k][:, None]], axis=1)
+    exact, (graded, weights) = 0.0, _graded(n)
+    for far in (0.0, 1.0):  # the part of the cell on either side of it, as a cell of its own
+        places = x[:, None] + (far - x)[:, None] * polynomials.places
+        basis = polynomials.basis(places.ravel()).reshape(*places.shape, n)
+        at = np.matmul(rows, basis.transpose(0, 2, 1)) @ graded.T
+        size = np.sqrt((at[:, :-1] ** 2).sum(axis=1))
+        exact = exact + np.abs(far - x) * ((size * at[:, -1]) @ weights)
+    by_rule = (np.sqrt((rows[:, :-1] ** 2).sum(axis=1)) * rows[:, -1]) @ cells.weights
     np.add.at(missed, which, exact - by_rule)
     return missed
 
@@ -261,14 +268,13 @@ def _least(rows: Array, x: Array, step: float, n: int) -> Array:
     return x
 
 
-def _graded(middle: Array) -> tuple[Array, Array]:
-    """Points and weights of Gauss in panels of the unit interval that halve towards a place in it,
-    shape (f,) -> (f, points)."""
+@cache
+def _graded(n: int) -> tuple[Array, Array]:
+    """Points of Gauss in panels of the unit interval that halve towards its begin: from values at
+    n places to those at the points, shape (points, n), and their weights."""
     nodes, weights = np.polynomial.legendre.leggauss(_POINTS)
     nodes, weights = 0.5 * (1.0 + nodes), 0.5 * weights
     ends = np.concatenate([[0.0], 0.5 ** np.arange(_PANELS, -1, -1)])
-    inside = (ends[:-1, None] + np.diff(ends)[:, None] * nodes).ravel()
-    share = (np.diff(ends)[:, None] * weights).ravel()
-    m = middle[:, None]
-    x = np.concatenate([m - m * inside, m + (1.0 - m) * inside], axis=1)
-    return x, np.concatenate([m * share, (1.0 - m) * share], axis=1)
+    points = ends[:-1, None] + np.diff(ends)[:, None] * nodes
+    shares = np.diff(ends)[:, None] * weights
+    return ends_and_nodes(n - 2).basis(points.ravel()), shares.ravel()

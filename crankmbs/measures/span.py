@@ -75,7 +75,7 @@ def passes_over(result: Result, window: Span) -> Passes:
 
 def _ending(result: Result, kind: str, wanted: float) -> Span | None:
     """The stretch up to the end in which the crank turns through an angle [rad], if any."""
-    time, angle = result.data["time"].values, result.data["crank_angle"].values
+    time, angle = result.sampled("time"), result.sampled("crank_angle")
     turned = np.abs(angle[-1] - angle)
     before = np.flatnonzero(turned >= wanted - _SAME_ANGLE)
     if len(before) == 0:
@@ -91,6 +91,6 @@ def _ending(result: Result, kind: str, wanted: float) -> Span | None:
 
 
 def _whole_run(result: Result) -> Span:
-    time, angle = result.data["time"].values, result.data["crank_angle"].values
+    time, angle = result.sampled("time"), result.sampled("crank_angle")
     whole = float(angle[-1] - angle[0])
     return Span("whole run", float(time[0]), float(time[-1]), whole, 0, 0)

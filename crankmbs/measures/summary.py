@@ -69,8 +69,7 @@ def measure(result: Result) -> Measures:
     window, scene = measured_span(result), result.scene
     passes = passes_over(result, window)
     found = estimates(passes, partial(_numbers, scene, window))
-    angles = nodes_of(passes.answer).tops(partial(_sought, scene)).angle.tolist()
-    joints = zip(joints_of(scene), found["peaks"], found["means"], angles, strict=False)
+    joints = zip(joints_of(scene), found["peaks"], found["means"], found["angles"], strict=True)
 
     def single(name: str) -> Estimate | None:
         return found[name][0] if name in found else None
@@ -80,7 +79,9 @@ def measure(result: Result) -> Measures:
         mean_speed=found["mean_speed"][0],
         fluctuation=found["fluctuation"][0],
         speed_gain=found["speed_gain"][0],
-        joints=tuple(joint.labelled(scene, *of_joint) for joint, *of_joint in joints),
+        joints=tuple(
+            joint.labelled(scene, peak, mean, angle.value) for joint, peak, mean, angle in joints
+        ),
         crank_torque=found["crank_torque"][0],
         external_torque=found["external_torque"][0],
         indicated_power=single("indicated_power"),
@@ -156,6 +157,7 @@ def _numbers(scene: Scene, window: Span, motion: Motion) -> Numbers:
         "fluctuation": _fluctuation(tops[-2:], mean),
         "speed_gain": _speed_gain(motion),
         "peaks": Number(tops[: len(forces)], sizes),
+        "angles": Number(found.angle[: len(forces)], np.abs(found.angle[: len(forces)])),
         "means": Number(over, sizes),
     }
     turned = motion.turned
@@ -248,6 +250,6 @@ def _last(values: Array) -> Array:
 
 
 def _energy_closure(result: Result) -> float:
-    peak = float(np.max(result.data["kinetic_energy"].values))
-    worst = float(np.max(np.abs(result.data["energy_residual"].values)))
+    peak = float(np.max(result.sampled("kinetic_energy")))
+    worst = float(np.max(np.abs(result.sampled("energy_residual"))))
     return worst / peak if peak > 0.0 else 0.0

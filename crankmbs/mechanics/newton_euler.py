@@ -216,10 +216,9 @@ def _in_the_engine(scene: Scene, weights: Array, x: Array, y: Array) -> tuple[Ar
     the engine's axes, shape (u, n)."""
     axes = axes_of(scene)
     cos, sin = weights * axes.cos, weights * axes.sin
-    return (
-        np.tensordot(cos, x, 1) - np.tensordot(sin, y, 1),
-        np.tensordot(sin, x, 1) + np.tensordot(cos, y, 1),
-    )
+    turned = np.array([[*cos, *-sin], [*sin, *cos]])
+    along_x, along_y = turned @ np.concatenate([x, y]).reshape(2 * len(x), -1)
+    return along_x.reshape(x.shape[1:]), along_y.reshape(x.shape[1:])
 
 
 def balanced(train: CrankTrain, theta: Array, motion: Powers) -> dict[str, Array]:

@@ -9,7 +9,7 @@ for each sample.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import accumulate
 from typing import NamedTuple
 
@@ -97,6 +97,8 @@ def reactions(
     0.0
     """
     found = balances(train, theta, omega, alpha, fuel, friction)
+    if not found.by_parts:
+        return found.alone
     # one piece of memory, so large that the system is not asked for every run's anew
     table = Table(found.rows, np.empty((sum(found.rows.values()), len(found.period.which))))
     found.fill(table.values)
@@ -122,6 +124,22 @@ class Balances(NamedTuple):
     added: dict[str, Array]
     by_parts: bool
     groups: tuple[tuple[list[str], slice], ...]
+
+    @property
+    def alone(self) -> dict[str, Array]:
+        """The variables at samples whose angles do not come back, as `reactions` returns them."""
+        found = {}
+        for name in self.rows:
+            values: Array | float = 0.0
+            if name in self.parts:
+                values = self.parts[name][:, 0]
+                if name in _PER_SPEED:
+                    values = values * self.motion[2]
+            if name in self.added:
+                values = values + self.added[name]
+            rows = np.asarray(values)
+            found[name] = rows.T if EVERY[name].per_cylinder else rows[0]
+        return found
 
     def fill(self, room: Array) -> None:
         """All variables at the samples in their places, shape (rows, samples)."""
@@ -173,10 +191,11 @@ class Balances(NamedTuple):
         self.period.join(terms, out)
 
 
-def _groups(rows: dict[str, int], samples: int) -> tuple[tuple[list[str], slice], ...]:
+@lru_cache(maxsize=16)
+def _groups(rows: tuple[tuple[str, int], ...], samples: int) -> tuple[tuple[list[str], slice], ...]:
     """Variables next to one another that are put together alike, not too many numbers."""
     groups: list[tuple[list[str], slice]] = []
-    for name, place in places_of(rows).items():
+    for name, place in places_of(dict(rows)).items():
         if groups:
             names, before = groups[-1]
             small = (place.stop - before.start) * samples <= _BLOCK
@@ -225,7 +244,7 @@ def balances(
         if friction is None:
             friction = friction_forces(train, theta, omega, fuel)
     added = _added(train, period, fuel, friction if scene.friction is not None else None)
-    groups = _groups(rows, len(theta))
+    groups = _groups(tuple(rows.items()), len(theta))
     return Balances(period, rows, parts, (square, alpha, omega), added, by_parts, groups)
 
 

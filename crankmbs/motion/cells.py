@@ -187,6 +187,19 @@ class Cells:
         places[:, -1] = 1.0 - places[:, 0]
         return places
 
+    def inner_reader(self) -> Callable[[Array], Array]:
+        """What reads a row at the places of `inner`, cell after cell: at the nodes as it is."""
+        every, places = np.arange(len(self.time)), self.inner()
+        ends = [(at, self.basis(places[:, at])) for at in (0, -1)]
+
+        def read(row: Array) -> Array:
+            values = row.copy()
+            for at, basis in ends:
+                values[:, at] = self.values(row, every, basis)
+            return values.ravel()
+
+        return read
+
     def values(self, row: Array, k: Index, basis: Array) -> Array:
         """A row at the places in the cells k that a basis was made for, shape (p,)."""
         return self._polynomials.values(row, k, basis)

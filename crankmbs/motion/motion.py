@@ -13,6 +13,7 @@ from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion.cells import Cells
 from crankmbs.motion.states import States, states_in
 from crankmbs.numerics.arrays import Array
+from crankmbs.numerics.once import once
 
 __all__ = ["Motion", "Passes"]
 
@@ -108,6 +109,7 @@ class Motion:
                 return Motion(self.train, [cells.since(k, x), *self._pieces[number + 1 :]])
         return self
 
+    @once
     def last(self, turned: float) -> Motion | None:
         """Its end, in which the crank turns through an angle [rad]; None where it does not."""
         final = float(self._cells(len(self._pieces) - 1).angle[-1, -1])

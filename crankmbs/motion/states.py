@@ -5,7 +5,7 @@ They are algebra with the polynomials of a cell and what acts in it.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,7 +18,7 @@ from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion.cells import Cells
 from crankmbs.numerics.arrays import Array, Index
 
-__all__ = ["States", "states_in"]
+__all__ = ["States", "inner_states", "states_in"]
 
 
 class States(NamedTuple):
@@ -62,18 +62,29 @@ class States(NamedTuple):
 def states_in(cells: Cells, train: CrankTrain, k: Index, x: Array) -> States:
     """The motion at places x in the cells k, shape (p,) each."""
     basis = cells.basis(x)
-    time, angle = (cells.values(row, k, basis) for row in (cells.time, cells.angle))
+    return _states(cells, train, k, lambda row: cells.values(row, k, basis))
+
+
+def inner_states(cells: Cells, train: CrankTrain) -> States:
+    """The motion at the nodes of all cells, and a hair inside their ends, cell after cell."""
+    k = np.repeat(np.arange(len(cells.time)), cells.time.shape[1])
+    return _states(cells, train, k, cells.inner_reader())
+
+
+def _states(cells: Cells, train: CrankTrain, k: Index, read: Callable[[Array], Array]) -> States:
+    """The motion at points in the cells k, shape (p,), at which rows are read."""
+    time, angle = read(cells.time), read(cells.angle)
     shares = cells.shares[k] if cells.shares.shape[1] else None
     reduction, sense = reduce(train, angle, shares), cells.acting.sense
     if cells.energy is None:
-        speed = cells.values(cells.speed, k, basis)
+        speed = read(cells.speed)
     else:
-        energy = np.maximum(cells.values(cells.energy, k, basis), 0.0)
+        energy = np.maximum(read(cells.energy), 0.0)
         speed = sense * np.sqrt(2.0 * energy / reduction.inertia)
     slides = np.full_like(speed, sense)
     outside, rate = None, None
     if cells.outside is not None:
-        outside = cells.values(cells.outside, k, basis)
+        outside = read(cells.outside)
     elif cells.acting.loads is not None:
         outside = _outside(cells, train, time, angle, speed)
     if outside is not None:
@@ -84,7 +95,7 @@ def states_in(cells: Cells, train: CrankTrain, k: Index, x: Array) -> States:
         outside = -rest if cells.acting.holds else outside
         rate = (rest + outside) / reduction.inertia
     if cells.acceleration is not None:
-        rate = cells.values(cells.acceleration, k, basis)
+        rate = read(cells.acceleration)
     assert rate is not None
     friction = None
     if train.scene.friction is not None:

@@ -134,15 +134,18 @@ def chain(growth: Array, rise: Array, start: float | Array) -> Array:
     edges = np.empty((*cases, cells + 1))
     edges[..., 0], edges[..., 1:] = start, rise
     factors = 1.0 + np.broadcast_to(growth, rise.shape)
-    if math.prod(cases) > _TOGETHER:
+    count = math.prod(cases)
+    if count > _TOGETHER:
         along = np.moveaxis(edges, -1, 0)
         for k, factor in enumerate(np.moveaxis(factors, -1, 0)):
             along[k + 1] += factor * along[k]
         return edges
     band = np.zeros((2, cells + 1), order="F")
-    for case in np.ndindex(cases):  # a triangle of two diagonals, of which the first is 1
-        band[1, :-1] = -factors[case]
-        edges[case] = dtbsv(1, band, edges[case], lower=1, diag=1)
+    # a triangle of two diagonals, of which the first is 1
+    pairs = zip(edges.reshape(count, cells + 1), factors.reshape(count, cells), strict=True)
+    for case, factor in pairs:
+        np.negative(factor, out=band[1, :-1])
+        case[:] = dtbsv(1, band, case, lower=1, diag=1)
     return edges
 
 
@@ -154,9 +157,11 @@ def summed(series: Array, x: Array) -> Array:
     array([-3.])
     """
     z = 2.0 * x - 1.0
+    if len(series) == 2:
+        return np.asarray(z * series[1] + series[0])
     twice = 2.0 * z
-    last, before = series[-1], np.zeros_like(series[-1])
-    for coefficient in series[-2:0:-1]:
+    last, before = twice * series[-1] + series[-2], series[-1]
+    for coefficient in series[-3:0:-1]:
         last, before = twice * last + (coefficient - before), last
     return np.asarray(z * last + (series[0] - before))
 

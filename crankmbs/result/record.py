@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -18,6 +18,7 @@ from crankmbs.motion.base import Decay
 from crankmbs.motion.labels import cycles_dataset, events_dataset
 from crankmbs.motion.motion import Passes
 from crankmbs.motion.sampled import through_samples
+from crankmbs.numerics.arrays import Array
 from crankmbs.result.about import Cost, Error, read_saved, write_saved
 from crankmbs.result.columns import data_frame, write_csv
 from crankmbs.scene.scene import Scene
@@ -63,15 +64,17 @@ class Result:
     motion: Callable[[], Passes] | None = field(default=None, repr=False, compare=False)
 
     @classmethod
-    def unlabelled(cls, label: Callable[[], xr.Dataset], **fields: Any) -> Result:
+    def unlabelled(
+        cls, label: Callable[[], xr.Dataset], variables: Mapping[str, Array], **fields: Any
+    ) -> Result:
         """A result whose ``data`` are labelled when they are first asked for: that takes longer
         than a short run.
 
-        label : makes the data; fields : all others, by name
+        label : makes the data of the variables; fields : all others, by name
         """
         result = cls(data=None, **fields)  # type: ignore[arg-type]
         del result.__dict__["data"]
-        result.__dict__["_label"] = label
+        result.__dict__["_label"], result.__dict__["_variables"] = label, variables
         return result
 
     if not TYPE_CHECKING:
@@ -83,7 +86,17 @@ class Result:
                 raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
             data = self.__dict__["data"] = label()
             self.__dict__.pop("_label", None)
+            self.__dict__.pop("_variables", None)
             return data
+
+    def sampled(self, name: str) -> Array:
+        """The values of a variable of ``data``, without the labels.
+
+        >>> simulate(load_scene("coasting")).sampled("time")[0]
+        0.0
+        """
+        variables = self.__dict__.get("_variables")
+        return np.asarray(self.data[name].values if variables is None else variables[name])
 
     @cached_property
     def events(self) -> xr.Dataset:

@@ -3,8 +3,9 @@
 Over time dt = dtheta / omega: the magnitude of every joint's force. Over the angle: the moment of
 the rods and the torque from outside. Panels end at every knot of the pressures and dead centre,
 and are halved until both halves agree with the whole, so that a magnitude that passes zero is
-resolved too, unless it does so just beside a knot, where no node of a wide panel sees it. The speed is constant, or that of a free crank with the loads c0 - c omega^2, whose
-energy obeys dE/dtheta = T + c0 - 2 c E / J.
+resolved too, unless it does so just beside a knot, where no node of a wide panel sees it. The speed
+is constant, or that of a free crank with the loads c0 - c omega^2, whose energy obeys
+dE/dtheta = T + c0 - 2 c E / J.
 """
 
 import math
