@@ -19,6 +19,7 @@ from crankmbs.mechanics.speed import SpeedLaw, speed_law
 from crankmbs.mechanics.train import CrankTrain, crank_angle_knots
 from crankmbs.motion.account import Account
 from crankmbs.motion.base import Samples, Solution
+from crankmbs.motion.cells import Acting, Cells
 from crankmbs.motion.driven import Driven, Way, driven, driven_observer
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.motion import Motion, Passes
@@ -26,6 +27,7 @@ from crankmbs.motion.observer import account_of
 from crankmbs.motion.plan import Plan, plan_of
 from crankmbs.motion.prescribed import monotone_stretches
 from crankmbs.numerics.arrays import Array
+from crankmbs.numerics.lagrange import ends_and_nodes
 from crankmbs.scene.units import DEGREE
 
 __all__ = ["run"]
@@ -68,10 +70,30 @@ def run(train: CrankTrain) -> Solution:
     return Solution(samples, *said, len(time), 0, better, keep=keep, motion=motion)
 
 
+class _Panels(NamedTuple):
+    """The panels of a stretch of a prescribed motion."""
+
+    piece: Driven
+
+    def cells(self) -> Cells:
+        """As cells of a motion."""
+        law, points = self.piece.way.law, self.piece.way.points
+        edges, places = self.piece.nodes().edges, ends_and_nodes(points).places
+        time = edges[:-1, None] + np.diff(edges)[:, None] * places
+        angle, speed, rate = law.at_time(time)
+        rate[:, -1] = law.at_time(np.nextafter(time[:, -1], -math.inf))[2]  # before a corner
+        begin, decided = self.piece.begin, self.piece.decisions
+        sense = float(np.sign(self.piece.end.theta - begin.theta))
+        modes = [begin.mode, *(state.mode for state in decided)]
+        which = np.searchsorted([state.time for state in decided], time[:, points // 2])
+        shares = np.array([mode.shares for mode in modes])[which]
+        return Cells(time, angle, speed, Acting(sense), shares, acceleration=rate)
+
+
 def _motion(train: CrankTrain, law: SpeedLaw, stretches: tuple[tuple[float, float], ...]) -> Passes:
     """The law as cells, twice, the second time finer and as far off as law and pressures may be."""
     passes = [
-        Motion(one, list(driven(_way(one, of, finer=finer), stretches)))
+        Motion(one, [_Panels(piece) for piece in driven(_way(one, of, finer=finer), stretches)])
         for one, of, finer in ((train, law, False), (train.off, law.off, True))
     ]
     return Passes(passes[0], (passes[1],))
