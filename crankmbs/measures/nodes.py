@@ -128,7 +128,8 @@ class Nodes:
         more = higher > best
         angle_there = states.angle[q]
         turned = np.abs(angle_there - states.angle[q + len(q)])
-        slope = np.divide(np.abs(top - there[:, 1]), turned, out=np.zeros(len(q)), where=at_end)
+        slope = np.zeros(len(q))
+        np.divide(np.abs(top - there[:, 1]), turned, out=slope, where=at_end & (turned > 0.0))
         return Tops(
             np.where(more, higher, best),
             np.where(more, angle_there, angle),

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from crankmbs.mechanics.knots import repeat
+from crankmbs.mechanics.knots import KNOT, apart, repeat
 from crankmbs.mechanics.speed import SpeedLaw
 from crankmbs.mechanics.train import CrankTrain, crank_angle_knots
 from crankmbs.motion.base import Nodes, Points, Samples, State
@@ -60,10 +60,13 @@ class Driven:
         low, high = sorted((begin.theta, end.theta))
         train, law = self.way.train, self.way.law
         knots = repeat(crank_angle_knots(train), train.period, low, high)
-        angles = np.concatenate([np.linspace(low, high, count + 1)[1:-1], knots])
-        corners = law.corners(begin.time, end.time)
-        decided = [state.time for state in self.decisions]
-        edges = np.unique([begin.time, *self._times(angles), *corners, *decided, end.time])
+        decided = [state.theta for state in self.decisions]
+        angles = apart(np.concatenate([np.linspace(low, high, count + 1)[1:-1], knots, decided]))
+        corners = np.unique([begin.time, *law.corners(begin.time, end.time), end.time])
+        at = np.sort(law.at_time(corners)[0])
+        after = np.clip(np.searchsorted(at, angles), 1, len(at) - 1)
+        away = np.minimum(angles - at[after - 1], at[after] - angles)
+        edges = np.unique([*corners, *self._times(angles[away > KNOT])])
         width = np.diff(edges)[:, None]
         places, weights = np.polynomial.legendre.leggauss(self.way.points)
         time = edges[:-1, None] + 0.5 * width * (1.0 + places)
