@@ -128,10 +128,12 @@ def run(
         # what is left is rounding, in both passes alike, and their difference too small an estimate
         best = _doubled(best)
         share *= 2.0
-    first, *others = (Motion(one.grid.train, [*one.made.path.pieces]) for one in followed)
-    motion = Passes(first, tuple(others), share)
     keep = partial(_account, followed, way, share, by_angle=by_angle)
-    solution = replace(best.solution, keep=keep, motion=lambda: motion)
+    solution = replace(best.solution, keep=keep)
+    if all(one.made.path.pieces for one in followed):  # none where the crank never moves
+        first, *others = (Motion(one.grid.train, [*one.made.path.pieces]) for one in followed)
+        motion = Passes(first, tuple(others), share)
+        solution = replace(solution, motion=lambda: motion)
     if best.relative_error > rtol and solution.status >= 0:
         text = f"asked for {rtol:.0e}, reached {best.relative_error:.0e}"
         solution = replace(solution, message=f"{solution.message}; {text}")
