@@ -9,17 +9,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from crankmbs.mechanics.knots import repeat
+from crankmbs.mechanics.knots import KNOT, apart, repeat
 from crankmbs.mechanics.speed import SpeedLaw
 from crankmbs.mechanics.train import CrankTrain, crank_angle_knots
 from crankmbs.motion.base import Nodes, Points, Samples, State
-from crankmbs.motion.cells import Acting, Cells
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.mode import Mode, begun, decided
 from crankmbs.motion.observer import Observer
 from crankmbs.motion.plan import Wanted
 from crankmbs.numerics.arrays import Array
-from crankmbs.numerics.lagrange import ends_and_nodes
 from crankmbs.scene.units import DEGREE
 
 __all__ = ["Driven", "Moving", "Way", "decisions", "driven", "driven_observer", "own_energy"]
@@ -55,20 +53,6 @@ class Driven:
     end: State
     decisions: tuple[State, ...]
 
-    def cells(self) -> Cells:
-        """Its panels as cells of a motion."""
-        law, points = self.way.law, self.way.points
-        nodes, places = self.nodes(), ends_and_nodes(points).places
-        edges = nodes.edges
-        time = edges[:-1, None] + np.diff(edges)[:, None] * places
-        angle, speed, rate = law.at_time(time)
-        rate[:, -1] = law.at_time(np.nextafter(time[:, -1], -math.inf))[2]  # before a corner
-        sense = float(np.sign(self.end.theta - self.begin.theta))
-        modes = [self.begin.mode, *(state.mode for state in self.decisions)]
-        which = np.searchsorted([state.time for state in self.decisions], time[:, points // 2])
-        shares = np.array([mode.shares for mode in modes])[which]
-        return Cells(time, angle, speed, Acting(sense), shares, acceleration=rate)
-
     def nodes(self) -> Nodes:
         """Panels of at most 5 degrees, and Gauss points in them."""
         begin, end = self.begin, self.end
@@ -76,10 +60,13 @@ class Driven:
         low, high = sorted((begin.theta, end.theta))
         train, law = self.way.train, self.way.law
         knots = repeat(crank_angle_knots(train), train.period, low, high)
-        angles = np.concatenate([np.linspace(low, high, count + 1)[1:-1], knots])
-        corners = law.corners(begin.time, end.time)
-        decided = [state.time for state in self.decisions]
-        edges = np.unique([begin.time, *self._times(angles), *corners, *decided, end.time])
+        decided = [state.theta for state in self.decisions]
+        angles = apart(np.concatenate([np.linspace(low, high, count + 1)[1:-1], knots, decided]))
+        corners = np.unique([begin.time, *law.corners(begin.time, end.time), end.time])
+        at = np.sort(law.at_time(corners)[0])
+        after = np.clip(np.searchsorted(at, angles), 1, len(at) - 1)
+        away = np.minimum(angles - at[after - 1], at[after] - angles)
+        edges = np.unique([*corners, *self._times(angles[away > KNOT])])
         width = np.diff(edges)[:, None]
         places, weights = np.polynomial.legendre.leggauss(self.way.points)
         time = edges[:-1, None] + 0.5 * width * (1.0 + places)

@@ -37,19 +37,28 @@ def through_samples(data: xr.Dataset, scene: Scene) -> Passes:
     errors = [float(data[name].attrs["error_estimate"]) for name in names]
     shares = data["fuel"].values if "fuel" in data else np.empty((len(time), 0))
     train = crank_train(scene)
-    answer, coarse = (Motion(train, _stretches(time, rows[:n], shares)) for n in (3, 2))
-    if not np.all(np.isfinite(errors)):
-        return Passes(answer, ())
     off = [row + error for row, error in zip(rows, errors, strict=True)]
+    known = bool(np.all(np.isfinite(errors)))
+    if len(time) == 1:
+        instants = [Motion(train, [_instant([time, *of], shares)]) for of in (rows, off)]
+        return Passes(instants[0], tuple(instants[1:]) if known else ())
+    answer, coarse = (Motion(train, _stretches(time, rows[:n], shares)) for n in (3, 2))
+    if not known:
+        return Passes(answer, ())
     return Passes(answer, (coarse, Motion(train, _stretches(time, off, shares))), _SHARE)
+
+
+def _instant(rows: list[Array], shares: Array) -> Cells:
+    """A cell of no duration, from time, angle, speed and acceleration of one sample."""
+    stages = len(ends_and_nodes(_STAGES).places)
+    time, angle, speed, rate = (np.repeat(row[:, None], stages, axis=1) for row in rows)
+    return Cells(time, angle, speed, Acting(0.0), shares, acceleration=rate)
 
 
 def _stretches(time: Array, rows: list[Array], shares: Array) -> list[Cells]:
     """The cells between samples, in stretches of one sense of rotation."""
-    if len(time) == 1:
-        time, rows, shares = np.repeat(time, 2), [np.repeat(r, 2) for r in rows], shares[[0, 0]]
     places = ends_and_nodes(_STAGES).places
-    width = np.maximum(np.diff(time), np.finfo(float).tiny)
+    width = np.diff(time)
     angle, speed, rate = _polynomials(rows, width, places)
     at = time[:-1, None] + width[:, None] * places
     cells = Cells(at, angle, speed, Acting(0.0), shares[1:], acceleration=rate)

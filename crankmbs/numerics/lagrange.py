@@ -36,7 +36,7 @@ class Lagrange:
         """What each value adds at x: shape (p,) -> (p, n).
 
         >>> ends_and_nodes(1).basis(np.array([0.25])).round(12)
-        array([[0.375, 0.75 , -0.125]])
+        array([[ 0.375,  0.75 , -0.125]])
         """
         apart = x[:, None] - self.places
         at, which = np.nonzero(apart == 0.0)
