@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,10 +14,6 @@ from crankmbs.motion.account import Keep
 from crankmbs.motion.mode import Mode
 from crankmbs.motion.plan import Wanted
 from crankmbs.numerics.arrays import Array
-
-if TYPE_CHECKING:
-    from crankmbs.motion.cells import Cells
-    from crankmbs.motion.motion import Passes
 
 __all__ = [
     "NOWHERE",

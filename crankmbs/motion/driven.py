@@ -13,11 +13,13 @@ from crankmbs.mechanics.knots import KNOT, apart, repeat
 from crankmbs.mechanics.speed import SpeedLaw
 from crankmbs.mechanics.train import CrankTrain, crank_angle_knots
 from crankmbs.motion.base import Nodes, Points, Samples, State
+from crankmbs.motion.cells import Acting, Cells
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.mode import Mode, begun, decided
 from crankmbs.motion.observer import Observer
 from crankmbs.motion.plan import Wanted
 from crankmbs.numerics.arrays import Array
+from crankmbs.numerics.lagrange import ends_and_nodes
 from crankmbs.scene.units import DEGREE
 
 __all__ = ["Driven", "Moving", "Way", "decisions", "driven", "driven_observer", "own_energy"]
@@ -52,6 +54,19 @@ class Driven:
     begin: State
     end: State
     decisions: tuple[State, ...]
+
+    def cells(self) -> Cells:
+        """Its panels as cells of a motion."""
+        law, points = self.way.law, self.way.points
+        edges, places = self.nodes().edges, ends_and_nodes(points).places
+        time = edges[:-1, None] + np.diff(edges)[:, None] * places
+        angle, speed, rate = law.at_time(time)
+        rate[:, -1] = law.at_time(np.nextafter(time[:, -1], -math.inf))[2]  # before a corner
+        sense = float(np.sign(self.end.theta - self.begin.theta))
+        modes = [self.begin.mode, *(state.mode for state in self.decisions)]
+        which = np.searchsorted([state.time for state in self.decisions], time[:, points // 2])
+        shares = np.array([mode.shares for mode in modes])[which]
+        return Cells(time, angle, speed, Acting(sense), shares, acceleration=rate)
 
     def nodes(self) -> Nodes:
         """Panels of at most 5 degrees, and Gauss points in them."""

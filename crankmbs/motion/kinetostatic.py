@@ -19,7 +19,6 @@ from crankmbs.mechanics.speed import SpeedLaw, speed_law
 from crankmbs.mechanics.train import CrankTrain, crank_angle_knots
 from crankmbs.motion.account import Account
 from crankmbs.motion.base import Samples, Solution
-from crankmbs.motion.cells import Acting, Cells
 from crankmbs.motion.driven import Driven, Way, driven, driven_observer
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.motion import Motion, Passes
@@ -27,7 +26,6 @@ from crankmbs.motion.observer import account_of
 from crankmbs.motion.plan import Plan, plan_of
 from crankmbs.motion.prescribed import monotone_stretches
 from crankmbs.numerics.arrays import Array
-from crankmbs.numerics.lagrange import ends_and_nodes
 from crankmbs.scene.units import DEGREE
 
 __all__ = ["passes", "run"]

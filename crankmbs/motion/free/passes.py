@@ -128,6 +128,8 @@ def run(
         # what is left is rounding, in both passes alike, and their difference too small an estimate
         best = _doubled(best)
         share *= 2.0
+    first, *others = (Motion(one.grid.train, [*one.made.path.pieces]) for one in followed)
+    motion = Passes(first, tuple(others), share)
     keep = partial(_account, followed, way, share, by_angle=by_angle)
     solution = replace(best.solution, keep=keep)
     if best.relative_error > rtol and solution.status >= 0:
