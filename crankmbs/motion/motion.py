@@ -127,9 +127,11 @@ class Motion:
     @once
     def last(self, turned: float) -> Motion | None:
         """Its end, in which the crank turns through an angle [rad]; None where it does not."""
-        final = float(self._ending(len(self._pieces) - 1, 0.0).angle[-1, -1])
-        for number in reversed(range(len(self._pieces))):
-            cells = self._ending(number, turned)
+        last = len(self._pieces) - 1
+        cells = self._ending(last, turned)
+        final = float(cells.angle[-1, -1])
+        for number in reversed(range(last + 1)):
+            cells = cells if number == last else self._ending(number, turned)
             away = np.abs(final - cells.angle[:, 0])
             before = np.flatnonzero(away >= turned - _SAME_ANGLE)
             if len(before):
