@@ -242,7 +242,7 @@ def _sought(scene: Scene, variables: dict[str, Array]) -> Array:
 
 
 def _magnitudes(forces: Array) -> Array:
-    return np.asarray(np.hypot(forces[:, 0], forces[:, 1]))
+    return np.asarray(np.sqrt((forces**2).sum(axis=1)))
 
 
 def _last(values: Array) -> Array:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import cached_property
-from typing import NamedTuple, Protocol
+from typing import NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -25,6 +25,14 @@ class _Solved(Protocol):
 
     def cells(self) -> Cells:
         """All of them."""
+
+
+@runtime_checkable
+class _Long(Protocol):
+    """One that can give those near its end alone."""
+
+    def ending(self, turned: float) -> Cells:
+        """Its cells from one on that begins so far before its end [rad], or all."""
 
 
 class Motion:
@@ -51,6 +59,13 @@ class Motion:
         if k not in self._solved:
             self._solved[k] = piece.cells()
         return self._solved[k]
+
+    def _ending(self, k: int, turned: float) -> Cells:
+        """The cells of one stretch, as far as it turns through an angle [rad] up to its end."""
+        piece = self._pieces[k]
+        if k in self._solved or not isinstance(piece, _Long):
+            return self._cells(k)
+        return piece.ending(turned)
 
     @property
     def begin(self) -> float:
@@ -112,9 +127,11 @@ class Motion:
     @once
     def last(self, turned: float) -> Motion | None:
         """Its end, in which the crank turns through an angle [rad]; None where it does not."""
-        final = float(self._cells(len(self._pieces) - 1).angle[-1, -1])
-        for number in reversed(range(len(self._pieces))):
-            cells = self._cells(number)
+        last = len(self._pieces) - 1
+        cells = self._ending(last, turned)
+        final = float(cells.angle[-1, -1])
+        for number in reversed(range(last + 1)):
+            cells = cells if number == last else self._ending(number, turned)
             away = np.abs(final - cells.angle[:, 0])
             before = np.flatnonzero(away >= turned - _SAME_ANGLE)
             if len(before):

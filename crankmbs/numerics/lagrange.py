@@ -14,7 +14,7 @@ __all__ = ["Lagrange", "ends_and_nodes"]
 
 
 class Lagrange:
-    """The polynomials through values at n places, by the barycentric formula.
+    """The polynomials through values at n places, summed from Chebyshev's.
 
     places : shape (n,), increasing
     weights : shape (n,), whose sum with the values is the integral over a unit interval; zero where
@@ -23,10 +23,11 @@ class Lagrange:
 
     def __init__(self, places: Array, weights: Array) -> None:
         self.places, self.weights = places, weights
+        self._series = np.linalg.inv(self._chebyshev(places))
         apart = places[:, None] - places
         np.fill_diagonal(apart, 1.0)
-        self._barycentric = 1.0 / apart.prod(axis=1)
-        ratio = self._barycentric / self._barycentric[:, None] / apart
+        barycentric = 1.0 / apart.prod(axis=1)
+        ratio = barycentric / barycentric[:, None] / apart
         np.fill_diagonal(ratio, 0.0)
         np.fill_diagonal(ratio, -ratio.sum(axis=1))
         self.slopes = ratio
@@ -38,14 +39,12 @@ class Lagrange:
         >>> ends_and_nodes(1).basis(np.array([0.25])).round(12)
         array([[ 0.375,  0.75 , -0.125]])
         """
-        apart = x[:, None] - self.places
-        at, which = np.nonzero(apart == 0.0)
-        apart[at, which] = 1.0
-        terms = self._barycentric / apart
-        terms /= terms.sum(axis=1, keepdims=True)
-        terms[at] = 0.0
-        terms[at, which] = 1.0
-        return np.asarray(terms)
+        return np.asarray(self._chebyshev(x) @ self._series)
+
+    def _chebyshev(self, x: Array) -> Array:
+        first, last = self.places[0], self.places[-1]
+        z = (2.0 * x - (first + last)) / (last - first)
+        return np.polynomial.chebyshev.chebvander(z, len(self.places) - 1)
 
     def values(self, rows: Array, k: Index, basis: Array) -> Array:
         """The polynomials through rows k, shape (m, n), where a basis was made, shape (p,)."""

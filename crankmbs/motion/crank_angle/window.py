@@ -27,6 +27,8 @@ from crankmbs.numerics.periodic import one_period
 
 __all__ = ["Window"]
 
+_SAME = 1e-6  # rad: more than rounding of an angle, less than a cell
+
 
 @dataclass(frozen=True)
 class Window:
@@ -56,23 +58,34 @@ class Window:
 
     def cells(self) -> Cells:
         """Its cells, the last one up to where it ends."""
+        return self._cells(0)
+
+    def ending(self, turned: float) -> Cells:
+        """Its cells from one on that begins so far before its end [rad], or farther."""
+        k, x = self.stop
+        begin = float(self.edges[k]) + x * float(self.strip.width[k]) - turned
+        return self._cells(max(int(np.searchsorted(self.edges, begin - _SAME)) - 1, 0))
+
+    def _cells(self, first: int) -> Cells:
+        """The cells from the first one on."""
         (k, x), rule, sense = self.stop, self.grid.rule, self.sense
-        m = k + 1
-        strip, width = self.strip.first(m), self.strip.width[:m, None]
-        angle, energy, time, speed = np.empty((4, m, len(rule.nodes) + 2))
+        some, edges = slice(first, k + 1), np.arange(first, k + 2)
+        strip, width = self.strip.part(first, k + 1), self.strip.width[some, None]
+        angle, energy, time, speed = np.empty((4, len(width), len(rule.nodes) + 2))
         angle[:, 1:-1] = strip.angles(self.begin.theta, sense, rule)
-        energy[:, 1:-1] = self.energy[:m, None] + sense * width * (self.torque[:m] @ rule.matrix.T)
-        time[:, 1:-1] = self.time[:m, None] + width * (self.slowness[:m] @ rule.matrix.T)
-        speed[:, 1:-1] = sense / self.slowness[:m]
-        edges = self.begin.theta + sense * self.edges, self.energy, self.time
-        ends = *edges, self.speeds_at(np.arange(len(self.edges)))
+        gained, spent = self.torque[some] @ rule.matrix.T, self.slowness[some] @ rule.matrix.T
+        energy[:, 1:-1] = self.energy[some, None] + sense * width * gained
+        time[:, 1:-1] = self.time[some, None] + width * spent
+        speed[:, 1:-1] = sense / self.slowness[some]
+        turned = self.begin.theta + sense * self.edges[edges]
+        ends = turned, self.energy[edges], self.time[edges], self.speeds_at(edges)
         for inside, at in zip((angle, energy, time, speed), ends, strict=True):
-            inside[:, 0], inside[:, -1] = at[:m], at[1 : m + 1]
+            inside[:, 0], inside[:, -1] = at[:-1], at[1:]
         acting = Acting(sense, phases=self.begin.mode.loads, loads=self.branch)
-        cells = Cells(time, angle, speed, acting, self.shares[:m], energy)
+        cells = Cells(time, angle, speed, acting, self.shares[some], energy)
         if x < 1.0:
-            last = cells.part(np.array([k]), np.zeros(1), np.array([x]))
-            cells = cells.first(k).joined(last)
+            last = cells.part(np.array([k - first]), np.zeros(1), np.array([x]))
+            cells = cells.first(k - first).joined(last)
         cells.time[-1, -1], cells.angle[-1, -1] = self.end.time, self.end.theta
         return cells
 
