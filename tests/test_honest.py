@@ -8,6 +8,7 @@ from references import reference_at_angles, true_errors
 
 from crankmbs import Run, load_scene, shipped_scenes, simulate
 from crankmbs.mechanics.indicator import INDICATOR_RTOL
+from crankmbs.mechanics.variables import EVERY, SUMS
 from crankmbs.motion.plan import plan_of
 
 RUNS = {
@@ -49,8 +50,12 @@ def test_stated_errors(name, rtol, formulation):
     assert result.status == 0
     shared = INDICATOR_RTOL if scene.gas and scene.gas.indicator else 0.0
     assert result.error.estimated <= rtol + 5.0 * shared
-    for variable, error in true_errors(result, exact(name)).items():
+    errors = true_errors(result, exact(name))
+    largest = {EVERY[n].units: e.peak for n, e in sorted(errors.items(), key=lambda e: e[1].peak)}
+    for variable, error in errors.items():
         assert error.true <= 2.0 * error.stated + TINY * error.peak, (variable, error)
         # the oracle has the indicator's own pieces; what they miss of the diagram is stated, too
         unseen = error.true + shared * error.peak
-        assert error.stated <= IDLE * unseen + TINY * error.peak, (variable, error)
+        # what cancels in a sum is rounded all the same
+        rounded = largest[EVERY[variable].units] if variable in SUMS else error.peak
+        assert error.stated <= IDLE * unseen + TINY * rounded, (variable, error)

@@ -130,14 +130,16 @@ class _Walk:
             decay = np.exp(-lost.whole)
             for k in range(1, len(begin)):
                 energies[k] = decay[k - 1] * (energies[k - 1] + lost.gained[k - 1] @ self.weights)
-        values, _ = self._values(begin, end, energies)
+        values, _, _ = self._values(begin, end, energies)
         largest, total = np.abs(values).sum(axis=0), values.sum(axis=0) * 0
         largest[-2:] = largest[-2:].max()  # without a load the torque from outside is rounding
         for _ in range(_HALVINGS):
             middle = (begin + end) / 2
-            low, at_middle = self._values(begin, middle, energies)
-            high, _ = self._values(middle, end, at_middle)
-            done = (np.abs(low + high - values) <= _CLOSE * largest).all(axis=1)
+            low, at_middle, beyond_low = self._values(begin, middle, energies)
+            high, _, beyond_high = self._values(middle, end, at_middle)
+            apart = np.abs(low + high - values)
+            apart[:, -2 - beyond_low.shape[1] : -2] += beyond_low + beyond_high
+            done = (apart <= _CLOSE * largest).all(axis=1)
             total = total + (low + high)[done].sum(axis=0)
             if done.all():
                 return np.asarray(total)
@@ -184,9 +186,10 @@ class _Walk:
         each = [newton_euler(one, theta, omega, theta * 0, DOUBLE) for one in self.alone]
         return np.asarray(sum(one.external_torque for one in each))
 
-    def _values(self, begin: Array, end: Array, energy: Array) -> tuple[Array, Array]:
+    def _values(self, begin: Array, end: Array, energy: Array) -> tuple[Array, Array, Array]:
         """Integrals over panels, shape (panels, 4 + 3 n), and the energy at their ends: the time,
-        forces over time, torques over angle."""
+        forces over time, torques over angle; and what side forces that pass zero between an end and
+        the node beside it may add, shape (panels, n), which no node sees."""
         half = (end - begin)[:, None] / 2
         states = self._states(begin, end, energy)
         theta, omega, alpha, at_end = states
@@ -198,7 +201,25 @@ class _Walk:
         ]
         rows = np.stack([1 / omega, *(force / omega for force in forces), *torques])
         shaped = rows.reshape(len(rows), len(begin), NODES) * half
-        return np.asarray((shaped @ self.weights).T), at_end
+        sides = [self._across(one, theta, k) / omega for k, one in enumerate(each)]
+        beyond = self._beyond(np.stack(sides, axis=1).reshape(len(begin), NODES, -1), half)
+        return np.asarray((shaped @ self.weights).T), at_end, beyond
+
+    def _beyond(self, rows: Array, half: Array) -> Array:
+        """Of panels' values at the nodes, shape (panels, NODES, n): those at the ends times the
+        width, where their signs differ from those beside them."""
+        found = np.zeros((len(rows), rows.shape[2]))
+        for side, at in ((-1.0, 0), (1.0, -1)):
+            there = np.tensordot(self._to_end(side), rows, (0, 1))
+            found += np.where(there * rows[:, at] < 0, np.abs(there) * 2 * half, 0)
+        return found
+
+    def _to_end(self, side: float) -> Array:
+        """What the value at each node adds at an end of the panel, by the polynomial of all."""
+        apart = self.nodes[:, None] - self.nodes
+        np.fill_diagonal(apart, 1)
+        away = np.where(np.eye(NODES, dtype=bool), 1, side - self.nodes[None, :])
+        return np.asarray((away / apart).prod(axis=1))
 
     def _forces(self, each: list[Reactions], theta: Array) -> list[Array]:
         """Magnitude of the force in every joint [N], shape (samples,): the main bearing, crank
@@ -217,6 +238,11 @@ class _Walk:
             of_joint[1].append(np.hypot(*piston))
             of_joint[2].append(np.abs(found.side_force[:, 0] - across))
         return [np.hypot(bearing_x, bearing_y), *of_joint[0], *of_joint[1], *of_joint[2]]
+
+    def _across(self, found: Reactions, theta: Array, k: int) -> Array:
+        """The side force of cylinder k [N], with what friction adds, and its sign."""
+        throw = theta + LONG.number(self.machine.cylinders[k][0])
+        return np.asarray(found.side_force[:, 0] - self._rubbed(found) * self._slope(found, throw))
 
     def _rubbed(self, found: Reactions) -> Array:
         """Friction on a piston [N], towards the crank."""
