@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from crankmbs.mechanics.friction import friction_torque
-from crankmbs.mechanics.tabulated import tabulate
+from crankmbs.mechanics.inertia import reduce
 from crankmbs.mechanics.torque import Branch, Course, branch_at, course_of
 from crankmbs.motion.base import State
 from crankmbs.motion.crank_angle.firings import solve_fired
@@ -53,7 +53,7 @@ def is_fast(grid: Grid, state: State, branch: Branch, times: float) -> bool:
     outside = float(branch(state.time, state.omega))
     outside += sum(f.number(state.time, state.theta, state.omega) for f in branch.functions)
     scale += abs(outside)
-    inertia = float(tabulate(grid.train, state.theta).inertia)
+    inertia = float(reduce(grid.train, state.theta).inertia)
     return bool(0.5 * inertia * state.omega**2 > times * _SLOW * scale)
 
 
@@ -164,7 +164,7 @@ def _skip(way: _Way, branch: Branch, last: float) -> tuple[State, int]:
     def at(time: float, turned: float, energy: float) -> Window | None:
         """The period that begins with this energy, if the motion passes it whole."""
         theta = state.theta + sense * turned
-        omega = sense * math.sqrt(2.0 * energy / float(tabulate(grid.train, theta).inertia))
+        omega = sense * math.sqrt(2.0 * energy / float(reduce(grid.train, theta).inertia))
         begin = state._replace(time=time, theta=theta, omega=omega)
         end = theta + sense * period
         from_there = way._replace(state=begin, energy=energy, bound=end, t_end=math.inf)
@@ -197,7 +197,7 @@ def _skip(way: _Way, branch: Branch, last: float) -> tuple[State, int]:
 def _enter(grid: Grid, state: State) -> tuple[Branch | None, float]:
     """The branch of the loads that the motion enters, and its kinetic energy [J]."""
     train, (time, theta, omega, _, mode) = grid.train, state
-    reduction = tabulate(train, theta, mode.shares)
+    reduction = reduce(train, theta, mode.shares)
     rest = reduction.rest(omega) + grid.outside(np.asarray(theta))
     rest += friction_torque(train, theta, omega, math.copysign(1.0, omega), mode.shares or None)
     branch = branch_at(train.scene.torque, (time, theta, omega), float(rest), mode.loads)

@@ -14,8 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crankmbs.mechanics.friction import rubbing
-from crankmbs.mechanics.inertia import fired_torque
-from crankmbs.mechanics.tabulated import tabulate
+from crankmbs.mechanics.inertia import fired_torque, reduce
 from crankmbs.mechanics.torque import over_angle
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.windows import Phases
@@ -160,7 +159,7 @@ class Grid:
     def at_decisions(self) -> Array:
         """J [kg m2] at the crank angles of one period at which the fuel is decided."""
         law = self.train.law
-        return tabulate(self.train, np.array(law.angles if law else ())).inertia
+        return reduce(self.train, np.array(law.angles if law else ())).inertia
 
     def outside(self, theta: Array) -> Array | float:
         """Torque of loads over the angle [N m], at angles [rad]."""
@@ -300,7 +299,7 @@ class Grid:
 
     def _tabulate(self, start: Array, width: Array) -> _Tables:
         theta = start[:, None] + width[:, None] * self.rule.nodes
-        found = tabulate(self.train, theta)
+        found = reduce(self.train, theta)
         torque = np.asarray(found.torque + self.outside(theta))
         return _Tables(found.inertia, torque, fired_torque(self.train, theta), *self._rub(theta))
 

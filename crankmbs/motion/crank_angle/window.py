@@ -10,8 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crankmbs.mechanics.friction import friction_forces, friction_torque
-from crankmbs.mechanics.inertia import fired_torque
-from crankmbs.mechanics.tabulated import tabulate
+from crankmbs.mechanics.inertia import fired_torque, reduce
 from crankmbs.mechanics.torque import Branch, Course
 from crankmbs.motion.base import NOWHERE, Nodes, Points, Samples, State
 from crankmbs.motion.cells import Acting, Cells
@@ -272,7 +271,7 @@ class Window:
     def speeds_at(self, k: Index) -> Array:
         """Speed [rad/s] at these edges."""
         theta = self.begin.theta + self.sense * self.edges[k]
-        inertia = tabulate(self.grid.train, theta).inertia
+        inertia = reduce(self.grid.train, theta).inertia
         return np.asarray(self.sense * np.sqrt(2.0 * self.energy[k] / inertia))
 
     def inside(self, k: int, x: Array, landed: State = NOWHERE) -> Samples:
@@ -296,7 +295,7 @@ class Window:
     def _samples(self, k: Index, theta: Array, t: Array, energy: Array) -> Samples:
         """Samples in the cells k."""
         once, which = one_period(theta, self.grid.train.repeats)
-        inertia, slope, torque = tabulate(self.grid.train, once)
+        inertia, slope, torque = reduce(self.grid.train, once)
         over_angle: Array | None = None
         if self.grid.over_angle is not None:
             over_angle = self.grid.over_angle(once)

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from crankmbs.mechanics.tabulated import tabulate
+from crankmbs.mechanics.inertia import reduce
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion.base import Decay, State
 from crankmbs.motion.crank_angle.grid import Grid
@@ -60,7 +60,7 @@ class Fuelled:
         assert scene.start is not None
         self._train, self._grid, self._angle = train, grid, scene.start.angle
         self._period, self._start = scene.settled_period, scene.start
-        self._inertia = float(tabulate(train, self._angle).inertia)
+        self._inertia = float(reduce(train, self._angle).inertia)
         self._plan = replace(plan_of(scene), every=self._period, in_time=False, last=math.inf)
         self._allowed, self._by_angle = allowed, by_angle
         begin = State(0.0, self._angle, self._start.speed, 0.0, begun(train))

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from crankmbs.mechanics.friction import rubbing
-from crankmbs.mechanics.tabulated import tabulate
+from crankmbs.mechanics.inertia import reduce
 from crankmbs.mechanics.torque import branch_of, torque_at
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion.base import State
@@ -81,7 +81,7 @@ class Section:
         scene = train.scene
         assert scene.start is not None
         self._train, self.scene, self.start = train, scene, scene.start
-        self.inertia = float(tabulate(train, scene.start.angle).inertia)
+        self.inertia = float(reduce(train, scene.start.angle).inertia)
         every = scene.settled_period / _SAMPLES
         over_speed = [load.parts.over_speed for load in scene.torque]
         tables = [np.abs(part.knots) for part in over_speed if part is not None]
@@ -94,7 +94,7 @@ class Section:
     @cached_property
     def _inertias(self) -> Array:
         angles = np.linspace(0.0, self.scene.settled_period, _ANGLES)
-        return tabulate(self._train, angles).inertia
+        return reduce(self._train, angles).inertia
 
     @property
     def least_inertia(self) -> float:
