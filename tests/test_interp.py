@@ -108,8 +108,8 @@ def test_backwards_an_angle_is_found_too():
         ({"time": [0.001, math.nan]}, r"time must be finite numbers \[s\] in a row"),
         ({"time": [[0.001]]}, r"in a row; \[\[0.001\]\] came"),
         ({"time": []}, r"in a row; \[\] came"),
-        ({"time": 9.0}, r"within the samples, 0 to 0.0\d+ s; 9 s came"),
-        ({"crank_angle": -1.0}, r"within the samples, 0 to 6.2831\d+ rad; -1 rad came"),
+        ({"time": 9.0}, r"within what is kept of the run, 0 to 0.0\d+ s; 9 s came"),
+        ({"crank_angle": -1.0}, r"within what is kept of the run, 0 to 6.2831\d+ rad; -1 rad came"),
     ],
 )
 def test_what_cannot_be_is_refused(short, given, said):

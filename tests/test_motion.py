@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from crankmbs import InputError, Result, load_scene, simulate
+from crankmbs import InputError, Result, Viscous, load_scene, simulate
 from crankmbs.errors import OutputError
 from crankmbs.measures.nodes import nodes_of
+from crankmbs.motion.free import passage
 from crankmbs.motion.sampled import through_samples
 from crankmbs.numerics.lagrange import ends_and_nodes
 from crankmbs.storage.netcdf import read_netcdf, write_netcdf
@@ -195,3 +196,22 @@ def test_by_angle_a_motion_that_turns_back_is_refused():
         result.interp(crank_angle=[1.0])
     unchecked = replace(result, motion=lambda: result.passes._replace(checks=()))
     assert unchecked.measures().mean_speed.error == math.inf
+
+
+def test_of_a_long_run_with_few_samples_the_end_is_kept(monkeypatch):
+    """Its events and cycles all the same, by following it once more."""
+    monkeypatch.setattr(passage, "_MOST_HELD", 20_000)
+    long = load_scene("yi_diesel_free").with_(run__until="30 cycles", run__every="1 cycle")
+    long = replace(long, torque=(Viscous(coefficient=0.26),))
+    result = simulate(long)
+    kept = result.passes.answer
+    assert 0.5 * result.data["time"].values[-1] < kept.begin
+    assert kept.last(long.period) is not None
+    assert result.cycles.sizes["cycle"] == 30
+    with pytest.raises(InputError, match=r"within what is kept of the run, 0\.\d+ to"):
+        result.interp(time=[0.001])
+    monkeypatch.undo()
+    whole = simulate(long)
+    assert whole.passes.answer.begin == 0.0
+    assert whole.measures() == result.measures()
+    assert whole.cycles.equals(result.cycles)

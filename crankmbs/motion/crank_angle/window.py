@@ -127,6 +127,11 @@ class Window:
         return self.skipped + len(self.torque)
 
     @property
+    def size(self) -> int:
+        """About how many numbers it holds."""
+        return 10 * self.torque.size + self.strip.combustion.size
+
+    @property
     def evaluations(self) -> int:
         """Nodes in the window and before it."""
         return self.steps * len(self.grid.rule.nodes)

@@ -15,14 +15,20 @@ from crankmbs.motion.ending import Ending
 from crankmbs.motion.events import Log
 from crankmbs.motion.plan import Chosen, Plan
 
-__all__ = ["Passage"]
+__all__ = ["Passage", "Piece", "Watch"]
 
 _VAIN = 20  # as many reversals that reach no farther, and the end is not coming
+_MOST_HELD, _A_SAMPLE = 10_000_000, 100  # numbers in pieces: at most, or as many for each sample
+_KEPT_AT_LEAST = 8.0 * math.pi  # rad: the end of a run that is always kept, two cycles
 _SAMPLE = 200  # evaluations as costly as a sample of a swing
 
 
 class Piece(Solved, Protocol):
     """A solved stretch of a free motion."""
+
+    @property
+    def size(self) -> int:
+        """About how many numbers it holds."""
 
     def cells(self) -> Cells:
         """Its cells or steps as cells of a motion."""
@@ -39,6 +45,7 @@ class Piece(Solved, Protocol):
         """The one sample at the end."""
 
 
+Watch = Callable[[Piece], None]
 AnyPiece = TypeVar("AnyPiece", bound=Piece)
 
 
@@ -47,12 +54,21 @@ class Passage:
 
     can_swing : whether a swing that reaches no farther is known to go on so for ever
     left : evaluations over time that are still allowed
-    log : of the events
+    log : of the events; watch : is shown every piece
+    dropped : whether pieces were given up, as memory would not hold all
     """
 
     def __init__(
-        self, plan: Plan, first: Samples, log: Log, *, can_swing: bool, allowed: int
+        self,
+        plan: Plan,
+        first: Samples,
+        log: Log,
+        *,
+        can_swing: bool,
+        allowed: int,
+        watch: Watch | None = None,
     ) -> None:
+        self._watch, self.dropped, self._held = watch, False, 0
         self._plan, self._can_swing, self.left, self.log = plan, can_swing, allowed, log
         self._farthest, self._since = 0.0, 0  # reach [rad], and reversals that reached no farther
         self.turned_back = plan.start  # crank angle of the last reversal [rad]
@@ -91,6 +107,8 @@ class Passage:
 
     def _add(self, piece: Piece) -> None:
         self.log.add(piece)
+        if self._watch is not None:
+            self._watch(piece)
         self.steps += piece.steps
         self.evaluations += piece.evaluations
         if piece.end.omega == 0.0:
@@ -107,9 +125,17 @@ class Passage:
             self._count += len(self._blocks[-1].time)
             self._plan.room.check(self._count)
         self.pieces.append(piece)
-        while abs(piece.end.theta - self.pieces[0].end.theta) > self._plan.last:
-            self.pieces.popleft()
-            self._blocks = []  # the sample at the start lies before what is kept
+        self._held += piece.size
+        while self._is_spare(abs(piece.end.theta - self.pieces[0].end.theta)):
+            self._held -= self.pieces.popleft().size
+            self.dropped = True
+            if math.isfinite(self._plan.last):
+                self._blocks = []  # the sample at the start lies before what is kept
+
+    def _is_spare(self, behind: float) -> bool:
+        """Whether a piece that ends an angle [rad] behind the motion's end is given up."""
+        most = max(_MOST_HELD, _A_SAMPLE * self._count)
+        return behind > self._plan.last or (self._held > most and behind > _KEPT_AT_LEAST)
 
     def _begun_by(self, piece: Piece, before: Samples) -> Samples:
         """Samples up to the time at which a piece begins: one there has its values, as a load that

@@ -156,14 +156,14 @@ def _account(passes: tuple[_Made, ...], way: Way, share: float, *, by_angle: boo
         def kinetic(at: Samples, scene: Scene = scene) -> Array:
             return np.asarray(0.5 * inertia_alone(scene, at.theta) * at.omega**2)
 
-        if math.isfinite(way.plan.last):
-            plan = replace(way.plan, last=(MOST_CYCLES + 1) * scene.period)
-            again = Way(partial(_given, made.trail.state), plan, way.allowed)
-            first = None if k == 0 else trail
-            made = travel(grid, again, local, by_angle=by_angle, first=first)
         cycles.append(Cycles(grid.train, made.trail.state.theta, kinetic, finer=k > 0))
-        for piece in made.path.pieces:
-            cycles[-1].add(piece)
+        if not (math.isfinite(way.plan.last) or made.path.dropped):
+            for piece in made.path.pieces:
+                cycles[-1].add(piece)
+            continue
+        plan = replace(way.plan, last=(MOST_CYCLES + 1) * scene.period)
+        again = Way(partial(_given, made.trail.state), plan, way.allowed, cycles[-1].add)
+        travel(grid, again, local, by_angle=by_angle, first=None if k == 0 else trail)
     events = events_of([one.made.path.log for one in passes], share)
     return Account(events, cycles_of(cycles, share))
 

@@ -22,7 +22,7 @@ from crankmbs.motion.crank_angle.window import Window
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.events import Log
 from crankmbs.motion.first import first_sample
-from crankmbs.motion.free.passage import Passage
+from crankmbs.motion.free.passage import Passage, Watch
 from crankmbs.motion.minimal import advance as minimal
 from crankmbs.motion.minimal.reduced import Reduced
 from crankmbs.motion.mode import begun
@@ -43,11 +43,15 @@ FINEST_STEP = 1e-15  # what rounding leaves of a step over time
 
 
 class Way(NamedTuple):
-    """What a pass follows: from where, sampled how, and the evaluations over time it may take."""
+    """What a pass follows: from where, sampled how, and the evaluations over time it may take.
+
+    watch : is shown every piece
+    """
 
     begin: Begin
     plan: Plan
     allowed: int
+    watch: Watch | None = None
 
 
 class Trail(NamedTuple):
@@ -96,7 +100,7 @@ def travel(
     log = Log(grid.train)
     if not scene.settles:  # a periodic motion has no start: what acts was decided before
         log.start(state)
-    path = Passage(plan, begin, log, can_swing=steady, allowed=way.allowed)
+    path = Passage(plan, begin, log, can_swing=steady, allowed=way.allowed, watch=way.watch)
     if first:  # it begins a rounding ahead: so the difference knows what the motion makes of one
         ahead = math.copysign(ANGLE_ROUNDING * state.theta, state.omega or float(begin.alpha[0]))
         state = state._replace(theta=state.theta + ahead)

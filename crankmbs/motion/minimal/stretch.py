@@ -164,6 +164,11 @@ class Stretch:
         return len(self.track.widths)
 
     @property
+    def size(self) -> int:
+        """About how many numbers it holds."""
+        return self.track.rows.size
+
+    @property
     def evaluations(self) -> int:
         """Evaluations of the equation of motion."""
         return self.track.evaluations
