@@ -17,7 +17,7 @@ Rule = tuple[Array, Array, Array, Array]  # as `crankmbs.batch.tables.Pass` has 
 
 _STEPS, _CLOSE = 16, 1e-7  # towards a zero; of a cell
 _BENT = 0.6  # of what a force changes by across a piece: where it is less it has a bend, or nearly
-_DEEPEST = 8  # halvings of a cell
+_DEEPEST = 16  # halvings of a cell
 
 
 @kernel

@@ -65,8 +65,12 @@ def _shares(excerpt: Excerpt, pairs: list[Pair], motion: Motion) -> Numbers:
     whole = tops.value[of]
     share = np.full(len(pairs), np.nan)
     np.divide(tops.value, whole, out=share, where=whole > 0.0)
-    size = np.divide(tops.sizes + share * tops.sizes[of], whole, out=1.0 + share, where=whole > 0.0)
-    return {"shares": Number(share, 1.0 + share + size)}
+    units = np.array([QUANTITIES[name][0] for _, name in pairs])
+    # what is rounded of a force or a torque is the largest that it is made of
+    sizes = np.array([np.max(tops.sizes[runs][units[runs] == unit]) for unit in units])
+    size = np.divide((1.0 + share) * sizes, whole, out=1.0 + share, where=whole > 0.0)
+    late = motion.end / duration if duration > 0.0 else 0.0  # units of rounding of the duration
+    return {"shares": Number(share, (1.0 + late) * (1.0 + share + size))}
 
 
 def _answers(excerpt: Excerpt, variables: Answer) -> dict[str, Answer]:

@@ -152,13 +152,14 @@ def _numbers(scene: Scene, window: Span, motion: Motion) -> Numbers:
     over = nodes.magnitude(forces) / duration if duration else _last(_magnitudes(forces))
     sizes = found.sizes[: len(forces)]
     sizes[0] = sizes.max()  # the main bearing's is a sum of the pins'
+    late = 1.0 + (motion.end / duration if duration else 0.0)  # units of rounding of the duration
     numbers = {
         "mean_speed": mean,
         "fluctuation": _fluctuation(tops[-2:], mean),
         "speed_gain": _speed_gain(motion),
         "peaks": Number(tops[: len(forces)], sizes),
         "angles": Number(found.angle[: len(forces)], np.abs(found.angle[: len(forces)])),
-        "means": Number(over, sizes),
+        "means": Number(over, late * sizes),
     }
     turned = motion.turned
     for name, values in torque.items():
@@ -167,14 +168,15 @@ def _numbers(scene: Scene, window: Span, motion: Motion) -> Numbers:
             numbers[name] = work.over(turned)
         else:
             numbers[name] = Number(_last(values[None]), np.abs(_last(values[None])))
-    return numbers | (_powers(scene, window, nodes, duration) if duration else {})
+    return numbers | (_powers(scene, window, nodes, late) if duration else {})
 
 
-def _powers(scene: Scene, window: Span, nodes: Nodes, duration: float) -> Numbers:
-    """Of gas and friction on the pistons."""
+def _powers(scene: Scene, window: Span, nodes: Nodes, late: float) -> Numbers:
+    """Of gas and friction on the pistons; late : units of rounding of the duration."""
+    duration = nodes.motion.end - nodes.motion.begin
     numbers, velocity = {}, nodes.variables["piston_velocity"]
     of_gas, rubbed = (
-        Number(nodes.integral(power), nodes.integral(np.abs(power)))
+        Number(nodes.integral(power), late * nodes.integral(np.abs(power)))
         for power in (
             nodes.variables[name] * velocity if name in nodes.variables else 0.0 * velocity
             for name in ("gas_force", "friction_force")

@@ -92,7 +92,7 @@ class Result:
     def sampled(self, name: str) -> Array:
         """The values of a variable of ``data``, without the labels.
 
-        >>> simulate(load_scene("coasting")).sampled("time")[0]
+        >>> float(simulate(load_scene("coasting")).sampled("time")[0])
         0.0
         """
         variables = self.__dict__.get("_variables")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
@@ -128,14 +129,16 @@ def run(
         # what is left is rounding, in both passes alike, and their difference too small an estimate
         best = _doubled(best)
         share *= 2.0
-    first, *others = (Motion(one.grid.train, [*one.made.path.pieces]) for one in followed)
-    motion = Passes(first, tuple(others), share)
+    motion: Callable[[], Passes] | None = None
+    if all(one.made.path.pieces for one in followed):  # none where the crank never moves
+        first, *others = (Motion(one.grid.train, [*one.made.path.pieces]) for one in followed)
+        motion = partial(Passes, first, tuple(others), share)
     keep = partial(_account, followed, way, share, by_angle=by_angle)
     solution = replace(best.solution, keep=keep)
     if best.relative_error > rtol and solution.status >= 0:
         text = f"asked for {rtol:.0e}, reached {best.relative_error:.0e}"
         solution = replace(solution, message=f"{solution.message}; {text}")
-    return replace(best, solution=solution, motion=lambda: motion)
+    return replace(best, solution=solution, motion=motion)
 
 
 class _Made(NamedTuple):

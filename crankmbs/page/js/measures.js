@@ -8,6 +8,8 @@ import { bottomPosition, topPosition } from "./geometry.js";
 import { reactionsAt } from "./reactions.js";
 
 const ROUGH = 1e-7; // of a quantity: such a tail of its polynomial, and the sum errs by its square
+const AT_ENDS = 1e-6; // of a quantity: so far off its polynomial at an end it has a kink beside it
+const HAIR = 2e-9; // rad: so far inside the end of a panel nothing counts as on a knot
 const DEEPEST = 24; // halvings of one panel
 const CANDIDATES = 6;
 const GOLDEN = 0.5 * (Math.sqrt(5) - 1);
@@ -119,7 +121,9 @@ function panelsOf(motion, rule, span, row) {
     rows.forEach((each) => each.forEach((value, q) => {
       scale[q] = Math.max(scale[q] ?? 0, Math.abs(value));
     }));
-    if (depth < DEEPEST && isRough(rows, rule, scale)) {
+    const hair = HAIR * Math.sign(to - from);
+    const ends = [from + hair, to - hair].map((theta) => row(motion.at(theta)));
+    if (depth < DEEPEST && isRough(rows, ends, rule, scale)) {
       const middle = 0.5 * (from + to);
       open.push([middle, to, depth + 1], [from, middle, depth + 1]);
     } else {
@@ -130,17 +134,21 @@ function panelsOf(motion, rule, span, row) {
   return done;
 }
 
-/** Whether the polynomial through the nodes still has much in its last two coefficients. */
-function isRough(rows, rule, scale) {
+/** Whether the polynomial through the nodes still has much in its last two coefficients, or is off
+ * at an end, beside which no node sees a kink. */
+function isRough(rows, [first, last], rule, scale) {
   const s = rule.nodes.length;
   return scale.some((size, q) => {
-    let tail = 0;
-    for (const j of [s - 2, s - 1]) {
+    let [tail, atFirst, atLast] = [0, 0, 0];
+    for (let j = 0; j < s; j++) {
       let sum = 0;
       for (let i = 0; i < s; i++) sum += rule.to_legendre[j * s + i] * rows[i][q];
-      tail += Math.abs(sum);
+      atFirst += j % 2 ? -sum : sum;
+      atLast += sum;
+      if (j >= s - 2) tail += Math.abs(sum);
     }
-    return tail > ROUGH * size;
+    const off = Math.abs(atFirst - first[q]) + Math.abs(atLast - last[q]);
+    return tail > ROUGH * size || off > AT_ENDS * size;
   });
 }
 
