@@ -308,7 +308,7 @@ def test_cells_solved_at_once_are_those_from_decision_to_decision(name, loads, s
         assert mine.firing.time == pytest.approx(other.firing.time, rel=1e-13)
     m = int(np.argmax(np.append(once.cells.edges, 0.0) < 1000.0)) - 1  # near rest rounding grows
     assert m > 1000
-    for mine, other in zip(once.cells.first(m), each.cells.first(m), strict=True):
-        np.testing.assert_allclose(mine, other, rtol=1e-12, atol=1e-10)
+    for row, beside in zip(once.cells.first(m), each.cells.first(m), strict=True):
+        np.testing.assert_allclose(row, beside, rtol=1e-12, atol=1e-10)
     torques = once.strip.torque[:m], each.strip.torque[:m]
     np.testing.assert_allclose(*torques, rtol=1e-12, atol=1e-10)
