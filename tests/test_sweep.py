@@ -65,15 +65,16 @@ def test_it_is_labelled_by_what_is_varied(grid):
     assert grid["status"].dtype.kind == "i"
 
 
-def test_a_deviation_of_a_lecture_may_rise_by_its_error_between_samples():
+def test_a_deviation_of_a_lecture_does_not_depend_on_the_samples():
     coarse, fine = (
         sweep(ENGINE.with_(run__every=every), {"rod.length": [0.15]}, executor=1).squeeze()
-        for every in ("1 deg", "0.1 deg")
+        for every in ("30 deg", "0.1 deg")
     )
     apart = fine["lecture_deviation"] - coarse["lecture_deviation"]
-    assert float(apart.max()) > 0.0
-    rises = coarse["lecture_deviation_error"] + fine["lecture_deviation_error"]
-    assert bool((abs(apart) <= rises).where(apart.notnull(), True).all())
+    assert int(apart.notnull().sum()) > 40
+    stated = coarse["lecture_deviation_error"] + fine["lecture_deviation_error"]
+    assert bool((abs(apart) <= stated).where(apart.notnull(), True).all())
+    assert float(stated.max()) < 1e-6
 
 
 def test_a_scene_that_cannot_be_is_a_row():
