@@ -10,7 +10,7 @@ import { reactionsAt } from "./reactions.js";
 const ROUGH = 1e-7; // of a quantity: such a tail of its polynomial, and the sum errs by its square
 const AT_ENDS = 1e-6; // of a quantity: so far off its polynomial at an end it has a kink beside it
 const HAIR = 2e-9; // rad: so far inside the end of a panel nothing counts as on a knot
-const DEEPEST = 24; // halvings of one panel
+const SHORTEST = 10 * HAIR; // of panels that are halved
 const CANDIDATES = 6;
 const GOLDEN = 0.5 * (Math.sqrt(5) - 1);
 const CLOSENESS = 45; // steps of the golden section: to 4e-10 of a panel
@@ -111,11 +111,11 @@ function rowOf(train, places, sample) {
 function panelsOf(motion, rule, span, row) {
   const edges = motion.smoothBetween(span.from, span.to);
   const open = [];
-  for (let k = edges.length - 1; k > 0; k--) open.push([edges[k - 1], edges[k], 0]);
+  for (let k = edges.length - 1; k > 0; k--) open.push([edges[k - 1], edges[k]]);
   const done = [];
   const scale = [];
   while (open.length) {
-    const [from, to, depth] = open.pop();
+    const [from, to] = open.pop();
     const samples = Array.from(rule.nodes, (node) => motion.at(from + (to - from) * node));
     const rows = samples.map(row);
     rows.forEach((each) => each.forEach((value, q) => {
@@ -123,9 +123,9 @@ function panelsOf(motion, rule, span, row) {
     }));
     const hair = HAIR * Math.sign(to - from);
     const ends = [from + hair, to - hair].map((theta) => row(motion.at(theta)));
-    if (depth < DEEPEST && isRough(rows, ends, rule, scale)) {
+    if (Math.abs(to - from) > SHORTEST && isRough(rows, ends, rule, scale)) {
       const middle = 0.5 * (from + to);
-      open.push([middle, to, depth + 1], [from, middle, depth + 1]);
+      open.push([middle, to], [from, middle]);
     } else {
       const spent = samples.map(({ omega }) => (to - from) / omega);
       done.push({ from, to, rows, spent });
