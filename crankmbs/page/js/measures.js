@@ -123,7 +123,8 @@ function panelsOf(motion, rule, span, row) {
     }));
     const hair = HAIR * Math.sign(to - from);
     const ends = [from + hair, to - hair].map((theta) => row(motion.at(theta)));
-    if (Math.abs(to - from) > SHORTEST && isRough(rows, ends, rule, scale)) {
+    const legendre = legendreAt(1.0 - 2.0 * HAIR / Math.abs(to - from), rule.nodes.length);
+    if (Math.abs(to - from) > SHORTEST && isRough(rows, ends, rule, scale, legendre)) {
       const middle = 0.5 * (from + to);
       open.push([middle, to], [from, middle]);
     } else {
@@ -134,17 +135,27 @@ function panelsOf(motion, rule, span, row) {
   return done;
 }
 
+/** Legendre's polynomials below a degree, at a place from -1 to 1. */
+function legendreAt(z, count) {
+  const values = [1.0, z];
+  for (let j = 1; j + 1 < count; j++) {
+    values.push(((2 * j + 1) * z * values[j] - j * values[j - 1]) / (j + 1));
+  }
+  return values;
+}
+
 /** Whether the polynomial through the nodes still has much in its last two coefficients, or is off
- * at an end, beside which no node sees a kink. */
-function isRough(rows, [first, last], rule, scale) {
+ * beside an end, where no node sees a kink; legendre : Legendre's polynomials at the later of these
+ * places. */
+function isRough(rows, [first, last], rule, scale, legendre) {
   const s = rule.nodes.length;
   return scale.some((size, q) => {
     let [tail, atFirst, atLast] = [0, 0, 0];
     for (let j = 0; j < s; j++) {
       let sum = 0;
       for (let i = 0; i < s; i++) sum += rule.to_legendre[j * s + i] * rows[i][q];
-      atFirst += j % 2 ? -sum : sum;
-      atLast += sum;
+      atFirst += (j % 2 ? -sum : sum) * legendre[j];
+      atLast += sum * legendre[j];
       if (j >= s - 2) tail += Math.abs(sum);
     }
     const off = Math.abs(atFirst - first[q]) + Math.abs(atLast - last[q]);
