@@ -16,6 +16,7 @@ from crankmbs.errors import FormulationError, InputError, shown
 from crankmbs.mechanics.train import crank_train
 from crankmbs.motion.assemble import dataset
 from crankmbs.motion.stepwise.driven import Prescribed
+from crankmbs.motion.stepwise.free import Free
 from crankmbs.motion.stepwise.standing import Standing, Steps
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.units import check_size
@@ -221,8 +222,6 @@ def _steps(scene: Scene) -> Steps:
     train = crank_train(scene)
     if scene.motion is not None:
         return Prescribed(train)
-    from crankmbs.motion.stepwise.free import Free  # numba is loaded only when it is used
-
     return Free(train)
 
 

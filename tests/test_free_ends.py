@@ -12,7 +12,7 @@ from crankmbs import InputError, Run, Start, Table, TimeTable, load_scene, simul
 from crankmbs.mechanics.variables import variables_of
 
 COASTING = load_scene("coasting")
-PER_SECOND = 2_000_000  # evaluations over time that a second of the cost cap allows
+PER_SECOND = 50_000  # evaluations over time that a second of the cost cap allows
 
 
 def stated(result, name):

@@ -11,7 +11,6 @@ from make_random_references import LEFT_OUT, SEEDS, stored
 from references import true_errors
 
 from crankmbs import simulate
-from crankmbs.motion.minimal import stepper
 from validation import judge_scene, many
 from validation.__main__ import main
 from validation.random_scenes import random_scene
@@ -71,12 +70,6 @@ def test_the_long_run_says_what_it_skips(capsys):
     out = capsys.readouterr().out
     assert "seed 0, crank_angle: skipped, takes longer than 1e-06 s" in out
     assert "0 judged, 1 skipped" in out
-
-
-def test_nothing_is_left_to_compile_while_patience_runs():
-    judge_scene.judge_seed(0, [], 60.0)
-    for loop in (stepper.travel,):
-        assert loop.signatures
 
 
 def test_a_scene_that_raises_is_red(monkeypatch):

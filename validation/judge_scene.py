@@ -7,15 +7,12 @@ import signal
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from functools import cache
 from types import FrameType
 
 import numpy as np
 
-from crankmbs import Run, Viscous, load_scene
 from crankmbs.errors import InputError
 from crankmbs.result import Result
-from crankmbs.scene.run import Extent
 from crankmbs.scene.scene import Scene
 from crankmbs.simulate import simulate
 from validation.adapter import machine_of, reference_motion
@@ -49,7 +46,6 @@ class _TooLongError(Exception):
 
 def judge_seed(seed: int, formulations: Sequence[str], patience: float) -> list[Judgement]:
     """Judge the scene of a seed; with more than ``patience`` [s] of wall time it is given up."""
-    _compile()
     found: list[Judgement] = []
     scene = random_scene(seed)
     paths = _paths(scene)
@@ -62,16 +58,6 @@ def judge_seed(seed: int, formulations: Sequence[str], patience: float) -> list[
         said = f"skipped, takes longer than {patience:g} s"
         found += [Judgement(seed, left, None, said) for left in formulations[len(found) :]]
     return found
-
-
-@cache
-def _compile() -> None:
-    """Compile what runs call: numba must not be interrupted, and a scene not wait for it."""
-    run = Run(until=Extent(value=5.0, unit="cycle"), every=Extent(value=math.pi / 6, unit="rad"))
-    short = replace(load_scene("coasting"), run=run)
-    for torque in ((), (Viscous(coefficient=1e-3),)):
-        for formulation in ("crank_angle", "minimal"):
-            simulate(replace(short, torque=torque), formulation=formulation)
 
 
 def judge(scene: Scene, formulation: str, paths: list[Path]) -> tuple[float | None, str]:

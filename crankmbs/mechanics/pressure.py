@@ -39,8 +39,6 @@ __all__ = [
 
 _OVERSHOOT = 0.05  # of the range: a sine in rows 45 degrees apart is overshot by 0.04
 
-_WORTH = (0.5, 1 / 12, 0.0081, 1 / 720)  # max |B| / (m + 1)! of `PeriodicPressure.bends`
-
 
 @dataclass(frozen=True, eq=False)
 class PeriodicPressure:
@@ -80,28 +78,6 @@ class PeriodicPressure:
         highest = np.flatnonzero(value >= value.max() - 1e-9 * abs(value.max()))
         first = highest[np.argmin(angle[highest])]
         return float(np.mod(angle[first] + KNOT, self.period) - KNOT), float(value[first])
-
-    def bends(self, least: float) -> Array:
-        """Knots [rad] of the first period where the pieces differ from one smooth curve by more
-        than ``least`` [Pa].
-
-        A jump of the derivative m at each of knots w apart is worth w^m max |B| / (m + 1)! of it,
-        with the Bernoulli polynomial B of degree m + 1.
-        """
-        width = np.diff(self.knots)
-        a, b, c, d = self.coefficients
-        before = np.array(
-            [
-                ((a * width + b) * width + c) * width + d,
-                (3.0 * a * width + 2.0 * b) * width + c,
-                6.0 * a * width + 2.0 * b,
-                6.0 * a,
-            ]
-        )
-        jumps = np.abs(np.roll(before, 1, axis=1) - np.array([d, c, 2.0 * b, 6.0 * a]))
-        wide = np.maximum(width, np.roll(width, 1)) ** np.arange(4.0)[:, None]
-        worth = np.array(_WORTH) @ (jumps * wide)
-        return np.asarray(self.knots[:-1][worth > least])
 
     def on(self, knots: Array) -> PeriodicPressure:
         """The same between knots of another set [rad], in each of which lies one piece."""

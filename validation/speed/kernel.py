@@ -10,11 +10,10 @@ import numpy as np
 
 from crankmbs.mechanics.inertia import inertia_alone
 from crankmbs.mechanics.torque import branch_of
-from crankmbs.mechanics.train import CrankTrain, crank_train
+from crankmbs.mechanics.train import crank_train
 from crankmbs.motion.crank_angle.grid import Grid, grid_of
 from crankmbs.motion.crank_angle.readout import Curves
 from crankmbs.motion.crank_angle.solvers import Begin, solve
-from crankmbs.motion.minimal.reduced import Reduced
 from crankmbs.numerics.collocation import gauss
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.units import DEGREE
@@ -75,8 +74,7 @@ def _loop(scene: Scene, grid: Grid, reference: Reference) -> Callable[[], Answer
     strip = grid.strip(theta, sense, count, far)
     energy = 0.5 * float(inertia_alone(scene, theta)) * omega**2
     begin = Begin(sense, energy, 0.0, until if until_time else math.inf, theta)
-    reduced, given = Reduced(CrankTrain(scene, None)), np.array([until])
-    no_gas = np.zeros((len(scene.cylinders), 9))
+    given = np.array([until])
 
     def run() -> Answer:
         cells = solve(grid, strip, branch, begin)
@@ -86,7 +84,7 @@ def _loop(scene: Scene, grid: Grid, reference: Reference) -> Callable[[], Answer
         curves = Curves.of(grid.rule, edges, along)
         k, x, t, kinetic = curves.at_times(given) if until_time else curves.at_angles(given)
         at = theta + sense * (strip.turned[k] + x * strip.width[k])
-        speed = sense * math.sqrt(2.0 * float(kinetic[0]) / reduced(float(at[0]), no_gas)[0])
+        speed = sense * math.sqrt(2.0 * float(kinetic[0]) / float(inertia_alone(scene, at[0])))
         return Answer(Trace(t, at, np.array([speed])), cells.torque.size)
 
     return run

@@ -41,8 +41,7 @@ from crankmbs.scene.scene import Scene
 __all__ = ["Lead", "evaluations", "first_grid", "run"]
 
 _PASSES = 12  # at most; each splits cells, or asks for less of an error
-_EVALUATIONS = 2_000_000  # over time, for which a second of the cost cap stands: as measured
-_OF_FUNCTIONS = 30_000  # the same where loads are functions of Python
+_EVALUATIONS = 50_000  # over time, for which a second of the cost cap stands: as measured
 _PLACES = np.array([0.225, 0.725])  # of new edges in a cell: an old edge is then at 0.55 of a new
 # cell, where no Gauss rule of few nodes takes a jump to be
 _MOST_CELLS = 20_000
@@ -67,10 +66,9 @@ def first_grid(train: CrankTrain, rtol: float) -> Grid:
     return grid_of(train, gauss(min(3 + round(-math.log10(rtol) / 3.0), 7)))
 
 
-def evaluations(train: CrankTrain, cost_cap: float) -> int:
+def evaluations(cost_cap: float) -> int:
     """Evaluations over time that a cost cap [s] stands for."""
-    rate = _OF_FUNCTIONS if _has_functions(train) else _EVALUATIONS
-    return int(min(cost_cap * rate, 1e18))
+    return int(min(cost_cap * _EVALUATIONS, 1e18))
 
 
 def _has_functions(train: CrankTrain) -> bool:
@@ -92,7 +90,7 @@ def run(
     lead : of a motion that does not begin at the start
     """
     grid, local, begin = lead or Lead(first_grid(train, rtol), rtol, begin_at_start)
-    way = Way(begin, plan_of(train.scene), evaluations(train, cost_cap))
+    way = Way(begin, plan_of(train.scene), evaluations(cost_cap))
     functions = _has_functions(train)
     best: Assembled | None = None
     least, rounded = math.inf, False

@@ -37,7 +37,7 @@ def run(train: CrankTrain, rtol: float, cost_cap: float, *, by_angle: bool) -> A
     """
     if not train.scene.settles:
         return passes.run(train, rtol, cost_cap, by_angle=by_angle)
-    allowed = passes.evaluations(train, cost_cap)
+    allowed = passes.evaluations(cost_cap)
     try:
         grid = passes.first_grid(train, rtol)
         settling: _Settling | Fuelled

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from functools import cache, partial
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -38,7 +38,6 @@ _VAIN = 8  # after as many vain hand-overs the crank must turn through a period 
 _FAST = (2.0, 8.0)  # as many times as fast as need be either pass takes over: the better one later
 # what either pass may miss at kinks of the loads: of the local tolerance, and at most
 _KINKS, _MOST_MISSED = 0.2, (math.inf, 1e-11)
-_ROAMING = 3.0  # of a step's tolerance: what it may miss of the largest torque across knots
 FINEST_STEP = 1e-15  # what rounding leaves of a step over time
 
 
@@ -105,8 +104,7 @@ def travel(
         ahead = math.copysign(ANGLE_ROUNDING * state.theta, state.omega or float(begin.alpha[0]))
         state = state._replace(theta=state.theta + ahead)
     tolerance = max(0.01 * local, FINEST_STEP)
-    roaming = partial(Reduced, grid.train, _ROAMING * tolerance)
-    reduced = cache(roaming)  # where the crank angle serves only near rest is it needed
+    reduced = Reduced(grid.train, grid.checks)
     worst = np.zeros((2, len(grid.edges) - 1))
     fast: list[tuple[float, float]] = []
     slow: list[float] = []
@@ -127,7 +125,7 @@ def travel(
         if over_time:
             effort = minimal.Effort(tolerance, 2 if grid.checks else 1, path.left)
             slow.append(at.time)
-            pieces = minimal.advance(reduced(), at, plan, effort, is_fast)
+            pieces = minimal.advance(reduced, at, plan, effort, is_fast)
             ending = path.follow(pieces, over_time=True)
         else:
             windows = crank_angle.advance(grid, at, plan, kinks)

@@ -1,6 +1,6 @@
 """The formulation `minimal`: angle and speed over time, piece by piece, also at rest and
 backwards.
 
-Its mechanics are scalars of its own (`reduced`, `stepper`); tables over the angle belong in
-`crank_angle`.
+SciPy takes the steps (`advance`), on polynomials over the crank angle (`reduced`); it shares the
+mechanics with `crank_angle`, and no more.
 """

@@ -2,16 +2,17 @@
 
     alpha = (T_gas + T_gravity + T_outside - J_1 omega^2 / 2) / J
 
-The `stepper` integrates piece by piece: between two knots of the pressure each cylinder keeps its
-polynomial, continued beyond the knot, and the piece is cut exactly at the knot; likewise at a bound
-of the loads' branch and at a reversal. Where a load damps the speed far faster than the crank
-turns, SciPy's Radau takes its place.
+SciPy's DOP853 takes one step after the other: between two knots on the polynomials that hold there,
+continued a little beyond the knot, where the step is cut; likewise at a bound of the loads' branch
+and at a reversal. Where a load damps the speed far faster than the crank turns, its Radau takes
+the place.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Generator
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -20,18 +21,20 @@ from scipy.integrate import DOP853, Radau
 from crankmbs.mechanics.torque import Branch
 from crankmbs.motion.base import State
 from crankmbs.motion.ending import Ending
-from crankmbs.motion.minimal import stepper
 from crankmbs.motion.minimal.entering import enter
+from crankmbs.motion.minimal.equation import Equation
+from crankmbs.motion.minimal.exits import first_exit, interpolant, value
 from crankmbs.motion.minimal.reduced import Reduced
-from crankmbs.motion.minimal.stretch import Equation, Stretch, Track
+from crankmbs.motion.minimal.stretch import Stretch, Track
 from crankmbs.motion.plan import Plan
 from crankmbs.numerics.arrays import Array
 
 __all__ = ["Effort", "advance"]
 
 _MOST_STEPS = 4096  # of one stretch
-_SLACK = 1.001  # of a part: none is left over where the parts of a step sum up to less by rounding
-_RADAU = 1e-13  # finest tolerance of a step, half of it where steps are halved; SciPy's is 2.3e-14
+_FINEST, _RADAU = 2.3e-14, 1e-13  # tolerances of a step relative to a value, SciPy's; of Radau
+_BEYOND = 1.02  # of the way to a knot: a step that goes there, so that it is passed
+_LEAVES = 1e-12  # of a step: a motion that leaves a limit before has not set out
 
 
 class Effort(NamedTuple):
@@ -62,9 +65,7 @@ def advance(
     tolerance, parts, allowed, room = effort
     scale = reduced.torque_scale + abs(state.mode.held)
     evaluations, most, h = 0, 0.0, math.inf
-    base = reduced
     while evaluations < allowed:
-        reduced = base.at(state.mode.loads).fired(state.mode.shares)
         equation = enter(reduced, state, scale)
         if isinstance(equation, Ending):
             return equation
@@ -74,17 +75,22 @@ def advance(
             if state.time >= plan.time_bound:
                 return Ending.COMPLETE
             continue
-        inertia = reduced(state.theta, equation.between.pieces)[0]
+        inertia = equation.piece(state.theta - equation.piece.middle)[0]
         speed = max(abs(state.omega), math.sqrt(2.0 * scale / inertia), 1e-150)
         h = tolerance**0.125 / speed if math.isinf(h) else h
-        bound = min(plan.time_bound, equation.branch.t_end)
         room = min(room, (allowed - evaluations) // 12 + 1)
-        control = _Control(tolerance, speed, bound, h, most, room, parts)
-        speeds = (0.0, equation.branch.omega_low, equation.branch.omega_high)
         low, high = plan.angle_bounds
-        angles = max(low, state.mode.low), min(high, state.mode.high)
-        limits = np.array([*equation.between[:2], *angles, *speeds])
-        track = _track(equation, state, control, limits, stiff=equation.is_stiff(state, inertia))
+        control = _Control(
+            tolerance,
+            speed,
+            min(plan.time_bound, equation.branch.t_end),
+            (max(low, state.mode.low), min(high, state.mode.high)),
+            room,
+            parts,
+        )
+        walk = _Walk(equation, control, state, h, most)
+        with np.errstate(all="ignore"):
+            track = walk.track()
         if len(track.widths) == 0:
             return Ending.FAILED
         stretch = Stretch.of(equation, track, state)
@@ -93,116 +99,150 @@ def advance(
         evaluations, room = evaluations + track.evaluations, min(2 * room, _MOST_STEPS)
         if state.time >= plan.time_bound or state.theta in plan.angle_bounds:
             return Ending.COMPLETE
+        equation = track.equation
         kinetic = equation.kinetic(state.theta, state.omega)
-        dead = equation.is_stuck(begin, state) or equation.is_balanced(state, scale)
-        if kinetic <= tolerance**2 * most and dead:
+        if kinetic <= tolerance**2 * most and (
+            equation.is_stuck(begin, state)
+            or equation.is_balanced(state, scale)
+            or equation.is_caught(state, tolerance)
+        ):
             return Ending.REST
         if is_fast(state, equation.branch):
             return None
     return Ending.COSTLY
 
 
-class _Control(NamedTuple):
-    """Tolerance of a step, speed [rad/s] to which it is relative, end in time [s], next step [s],
-    largest kinetic energy so far [J], most steps, and into how many each is divided."""
+@dataclass(frozen=True)
+class _Control:
+    """Tolerance of a step, speed [rad/s] to which it is relative, end in time [s], crank angles
+    [rad] at which a stretch ends, most steps, and into how many each is divided: of a second answer
+    none is as long as of the first."""
 
     tolerance: float
     speed: float
     bound: float
-    h: float
-    most: float
+    angles: tuple[float, float]
     room: int
     parts: int
 
 
-def _track(
-    equation: Equation, begin: State, control: _Control, limits: Array, *, stiff: bool
-) -> Track:
-    """The next steps, by the method that serves them."""
-    if stiff:
-        return _by_scipy(Radau, equation, begin, control, limits)
-    if equation.branch.functions:  # of which the compiled stepper knows nothing
-        return _by_scipy(DOP853, equation, begin, control, limits)
-    return _dop853(equation, begin, control, limits)
+class _Step(NamedTuple):
+    """A step: its polynomial, as in `crankmbs.motion.minimal.exits`, its length [s], what it adds
+    to the state, the next length; where it first leaves a limit, and which, as in `first_exit`."""
+
+    row: Array
+    width: float
+    gained: Array
+    h: float
+    x: float
+    which: int
+    limit: float
 
 
-def _dop853(equation: Equation, begin: State, control: _Control, limits: Array) -> Track:
-    """Steps of order 8."""
-    begins, widths = np.empty((2, control.room + 1))
-    rows, y = np.empty((control.room + 1, 8, 3)), np.array([begin.theta, begin.omega, 0.0])
-    asked = (*control[:3], control.parts)
-    start = (begin.time, control.h, control.most)
-    with np.errstate(all="ignore"):
-        n, t, h, most, evaluations = stepper.travel(
-            equation.system, asked, start, y, limits, (begins, widths, rows)
+class _Walk:
+    """Step from knot to knot on one branch of the loads, in one sense of rotation."""
+
+    def __init__(
+        self, equation: Equation, control: _Control, begin: State, h: float, most: float
+    ) -> None:
+        self._equation, self._control = equation, control
+        self._time, self._y = begin.time, np.array([begin.theta, begin.omega, 0.0])
+        self._h, self._most, self._evaluations = h, most, 0
+        self._steps: list[tuple[float, float, Array]] = []
+        branch = equation.branch
+        self._speeds = 0.0, branch.omega_low, branch.omega_high
+        self._inside = 0  # steps in this piece
+
+    def track(self) -> Track:
+        """The steps, up to the end of the stretch."""
+        self._most = max(self._most, self._kinetic())
+        while len(self._steps) < self._control.room and self._step():
+            kinetic = self._kinetic()
+            self._most = max(self._most, kinetic)
+            dies = kinetic <= self._control.tolerance**2 * self._most
+            if dies or self._time >= self._control.bound:
+                break
+        columns = ([step[k] for step in self._steps] for k in range(3))
+        begins, widths, rows = (np.array(column) for column in columns)
+        at_end = self._y, self._equation, self._h, self._most, self._evaluations
+        return Track(begins, widths, rows, self._time, *at_end)
+
+    def _kinetic(self) -> float:
+        return self._equation.kinetic(float(self._y[0]), float(self._y[1]))
+
+    def _step(self) -> bool:
+        """The next step; whether the stretch goes on."""
+        width, left = self._width(), self._control.bound - self._time
+        step = self._tried(width)
+        if step is None:
+            return False
+        self._h, begin = step.h, self._time
+        self._inside += 1
+        if step.x > _LEAVES:
+            self._steps.append((begin, step.width, step.row))
+            self._time = begin + step.x * step.width
+        if step.which >= 0:
+            return self._landed(step)
+        self._y = self._y + step.gained
+        if step.width == width == left:
+            self._time = self._control.bound
+        return True
+
+    def _tried(self, width: float) -> _Step | None:
+        """A step no longer than this [s]; None where none is short enough."""
+        equation, control, middle = self._equation, self._control, self._equation.piece.middle
+        time, y = self._time, self._y - [middle, 0.0, 0.0]
+        begin = State(time, float(self._y[0]), float(self._y[1]), 0.0)
+        stiff = equation.is_stiff(begin, control.tolerance * control.speed)
+        method: Any = Radau if stiff else DOP853
+        tolerance = max(control.tolerance, _RADAU / control.parts if stiff else _FINEST)
+        absolute = tolerance if stiff else control.tolerance
+        solver = method(  # of what a step adds: relative to the values SciPy asks for 100 roundings
+            lambda t, gained: equation.slopes(time + t, y + gained),
+            0.0,
+            np.zeros(3),
+            width,
+            first_step=width,
+            max_step=width,
+            rtol=tolerance,
+            atol=np.array([absolute, absolute * control.speed, math.inf]),
         )
-    return Track(begins[:n], widths[:n], rows[:n], t, y, h, most, evaluations)
+        failed = solver.step()
+        self._evaluations += solver.nfev
+        if failed:
+            return None
+        row = interpolant(solver)
+        row[0] = self._y
+        knots = zip(equation.piece[:2], control.angles, (max, min), strict=True)
+        low, high = (nearer(knot, angle) for knot, angle, nearer in knots)
+        found = first_exit(row, (low, high), self._speeds)
+        return _Step(row, float(solver.t), solver.y, float(solver.h_abs), *found)
 
+    def _width(self) -> float:
+        """Length of the next step [s]: what the errors allow, and not much beyond the next knot."""
+        equation, control, piece = self._equation, self._control, self._equation.piece
+        theta, omega, _ = self._y.tolist()
+        alpha = float(equation.slopes(self._time, self._y - [piece.middle, 0.0, 0.0])[1])
+        sense = math.copysign(1.0, omega or alpha)
+        distance = sense * ((piece.high if sense > 0.0 else piece.low) - theta)
+        square = omega * omega + 2.0 * sense * alpha * distance
+        reach = math.inf
+        if square > 0.0:
+            reach = 2.0 * distance / (abs(omega) + math.sqrt(square))
+            parted = self._inside + 1 < control.parts
+            reach *= 1.0 / control.parts if parted else _BEYOND
+        return min(self._h / control.parts, reach, control.bound - self._time)
 
-def _by_scipy(
-    method: type[Radau | DOP853],
-    equation: Equation,
-    begin: State,
-    control: _Control,
-    limits: Array,
-) -> Track:
-    """Steps of a method of SciPy's, up to the end of the piece."""
-    parts = control.parts
-    tolerance = max(control.tolerance, _RADAU / parts)
-    atol = np.array([tolerance, tolerance * control.speed, math.inf])
-    options: dict[str, Any] = {"rtol": tolerance, "atol": atol}
-
-    function: Any = equation
-
-    def start(t: float, y: Array, bound: float, first: float, longest: float) -> Radau | DOP853:
-        first = min(first, longest, bound - t)
-        return method(function, t, y, bound, first_step=first, max_step=longest, **options)
-
-    track: list[tuple[float, float, Array]] = []
-    most, evaluations, y = control.most, 0, np.array([begin.theta, begin.omega, 0.0])
-    longest = (control.bound - begin.time) / parts if parts > 1 else math.inf
-    solver = start(begin.time, y, control.bound, control.h, longest)
-    t, h, i = begin.time, control.h, -1
-    while solver.status == "running" and len(track) < control.room and i < 0:
-        if solver.step():  # a sentence why it failed
-            break
-        track.append(_interpolant(solver))
-        x, i = stepper.first_exit(track[-1][2], solver.y, limits)
-        if i < 0:
-            t, y, h = float(solver.t), solver.y, solver.h_abs
-        elif x > 0.0:  # again, up to there only: its end is more exact than its inside
-            t, width, row = track.pop()
-            y, part = row[0], x * width / parts
-            again = start(t, y, t + x * width, part, _SLACK * part)
-            while again.status == "running" and not again.step():
-                track.append(_interpolant(again))
-            t, y, evaluations = float(again.t), again.y, evaluations + again.nfev
-        state = State(t, float(y[0]), float(y[1]), 0.0)
-        kinetic = equation.kinetic(state.theta, state.omega)
-        most = max(most, kinetic)
-        inertia = equation.reduced(state.theta, equation.between.pieces)[0]
-        stiff = equation.is_stiff(state, inertia)
-        if kinetic <= control.tolerance**2 * most or stiff != (method is Radau):
-            break
-    y = np.array(y)
-    if i >= 0:
-        near = stepper.NEAR * track[-1][1]
-        t = stepper.land(t, y, equation(t, y), 0 if i < 4 else 1, limits[i], near)
-    begins, widths, rows = ([step[part] for step in track] for part in range(3))
-    arrays = np.array(begins), np.array(widths), np.array(rows)
-    return Track(*arrays, t, y, h, most, evaluations + solver.nfev)
-
-
-def _interpolant(solver: Radau | DOP853) -> tuple[float, float, Array]:
-    """Beginning and length of the last step, and its polynomial as the `stepper` takes it: SciPy's
-    own of order 7, of Radau the cubic."""
-    dense: Any = solver.dense_output()
-    begin, width, row = float(dense.t_min), float(dense.t_max - dense.t_min), np.zeros((8, 3))
-    old = np.asarray(solver.y_old)
-    if isinstance(solver, DOP853):
-        row[0], row[1:] = old, dense.F
-        return begin, width, row
-    rise = solver.y - old
-    near, far = (4.5 * (dense(begin + x * width) - old - x * rise) for x in (1 / 3, 2 / 3))
-    row[:4] = old, rise, 2.0 * near - far, 3.0 * (far - near)
-    return begin, width, row
+    def _landed(self, step: _Step) -> bool:
+        """Put the motion on the limit that it has come to; whether it goes on there."""
+        begin = float(self._y[0])
+        self._y = np.array(value(step.row, step.x))
+        self._y[step.which] = step.limit
+        if step.which == 0 and not self._y[1] * (step.limit - begin) >= 0.0:
+            self._y[1] = 0.0  # it turns there
+        if step.which == 1 or self._y[1] == 0.0 or step.limit in self._control.angles:
+            return False
+        sense = math.copysign(1.0, self._y[1])
+        piece = self._equation.pieces.around(step.limit, sense)
+        self._equation, self._inside = replace(self._equation, piece=piece), 0
+        return True

@@ -11,8 +11,8 @@ from crankmbs.mechanics.torque import Branch, branch_at, branch_of
 from crankmbs.mechanics.windows import phase_ends
 from crankmbs.motion.base import State
 from crankmbs.motion.ending import Ending
+from crankmbs.motion.minimal.equation import BALANCED, Equation
 from crankmbs.motion.minimal.reduced import Reduced
-from crankmbs.motion.minimal.stretch import BALANCED, Equation
 
 __all__ = ["enter"]
 
@@ -28,21 +28,20 @@ def enter(reduced: Reduced, state: State, scale: float) -> Equation | Ending:
     scale [N m] : largest torque, against which rounding is told
     """
     torques, phases = reduced.train.scene.torque, state.mode.loads
+    pieces = reduced.at(state.mode)
     if state.omega != 0.0:
-        between = reduced.around(state.theta, math.copysign(1.0, state.omega), state.mode.shares)
-        _, slope, torque = reduced(state.theta, between.pieces)
-        torque -= reduced.drag(state.theta, between.pieces) * state.omega
-        rest = torque - 0.5 * slope * state.omega**2
+        piece = pieces.around(state.theta, math.copysign(1.0, state.omega))
+        _, slope, torque, drag = piece(state.theta - piece.middle)
+        rest = torque - drag * state.omega - 0.5 * slope * state.omega**2
         branch = branch_at(torques, state[:3], rest + state.mode.held, phases)
         if branch is None:
             return Ending.HELD
-        return Equation(reduced, between, _with_held(branch, state))
+        return Equation(pieces, piece, _with_held(branch, state))
     sides: list[Equation] = []
     resisted = False
     for sense in (1.0, -1.0):
         branch = branch_of(torques, state.time, 0.0, rising=sense > 0.0, phases=phases)
-        between = reduced.around(state.theta, sense, state.mode.shares)
-        equation = Equation(reduced, between, _with_held(branch, state))
+        equation = Equation(pieces, pieces.around(state.theta, sense), _with_held(branch, state))
         pull = equation.pull(state)
         if pull * sense > BALANCED * scale:
             return equation
@@ -55,8 +54,11 @@ def enter(reduced: Reduced, state: State, scale: float) -> Equation | Ending:
         if waits or (rubs and until < math.inf):
             return replace(sides[0], holds=True, until=until)
         return Ending.STICKS if rubs else Ending.HELD
-    later = sides[1] if sides[0].branch.ct < 0.0 else sides[0]  # where a load that sets in drives
-    return Ending.STUCK if later.is_balanced(state, scale) else later
+    if sides[0].is_balanced(state, scale):
+        return Ending.STUCK
+    if sides[0].branch.functions:
+        return sides[0]
+    return replace(sides[0], holds=True, until=_until(sides, state, scale))
 
 
 def _with_held(branch: Branch, state: State) -> Branch:
@@ -66,7 +68,7 @@ def _with_held(branch: Branch, state: State) -> Branch:
 
 
 def _until(sides: list[Equation], state: State, scale: float) -> float:
-    """Until when [s] friction holds a crank at rest, if the loads' branch does not end before: a
+    """Until when [s] a crank at rest stays there, if the loads' branch does not end before: a
     line over time is met where it is, a function of Python where it is first seen to be."""
     until = sides[0].branch.t_end
     for equation, sense in zip(sides, (1.0, -1.0), strict=True):
@@ -76,7 +78,7 @@ def _until(sides: list[Equation], state: State, scale: float) -> float:
             until = min(until, state.time + missing / rate)
         elif equation.branch.functions:
             until = min(until, _first_pull(equation, sense, state, BALANCED * scale))
-    return until
+    return max(until, math.nextafter(state.time, math.inf))
 
 
 def _first_pull(equation: Equation, sense: float, state: State, least: float) -> float:

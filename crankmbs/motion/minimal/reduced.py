@@ -1,149 +1,108 @@
-"""The crank train reduced to one rotation, at one crank angle: what the `stepper` works on.
+"""The crank train reduced to one rotation, piece by piece: between two knots of gas, loads and
+friction everything that depends on the angle is smooth, and a polynomial to rounding.
 
-The pressure is given as the polynomials between two knots, which can be continued beyond them.
+A `Piece` gives them from number to number, and continues them a little beyond its knots.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from copy import copy
+from bisect import bisect_right
+from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
-from crankmbs.mechanics.friction import friction_knots, friction_torque, sign_changes
-from crankmbs.mechanics.inertia import reduce
+from crankmbs.mechanics.friction import friction_knots, friction_torque, rubbing, sign_changes
+from crankmbs.mechanics.inertia import fired_torque, reduce
+from crankmbs.mechanics.knots import KNOT, apart
 from crankmbs.mechanics.torque import knots_over_angle, over_angle
-from crankmbs.mechanics.train import CrankTrain, crank_angle_knots, merged_knots
+from crankmbs.mechanics.train import CrankTrain, crank_angle_knots
 from crankmbs.mechanics.windows import Phases
-from crankmbs.motion.minimal import stepper
-from crankmbs.motion.minimal.system import Gas, Knots, Machine, Masses, OverAngle, Rubbing, bare
-from crankmbs.numerics.arrays import Array
-from crankmbs.numerics.cycle import NEAR
-from crankmbs.scene.parts import Friction
+from crankmbs.motion.mode import Mode
+from crankmbs.numerics.arrays import Array, Index
+from crankmbs.numerics.cycle import Cycle
 
-__all__ = ["KnotPair", "Reduced"]
+__all__ = ["Piece", "Pieces", "Reduced"]
+
+_TERMS, _MORE = 12, 2  # of the polynomials; more of them in a reduction that checks another, whose
+# pieces are the same: they bound the steps
+_ROUGH, _ROUNDING = 1e-14, 1e-16  # of the largest value: last terms of more want narrower pieces;
+# terms of less are left out
+_NOISE, _FALLS = 1e-11, 0.25  # what is less may be rounding; by halving of what is none is left
+_NARROW, _STRAIGHT = 1e-6, 3  # rad: in a narrower piece so few terms are all there is
+_ALONE = 5  # functions of the angle that are the train's, not a cylinder's
+_PASSED = 8 * float(np.finfo(float).eps)  # of the angle: a knot this close ahead has been passed
 
 
-class KnotPair(NamedTuple):
-    """Two neighbouring knots [rad], and the pressure of every cylinder between them, as
-    `stepper.enter` says."""
+class Piece(NamedTuple):
+    """Two neighbouring knots low, high [rad], and what holds between them.
+
+    middle, half [rad] : of the polynomials, whose variable is (theta - middle) / half
+    powers : coefficients of J, dJ/dtheta, torque and drag, as they are given, highest power first
+    """
 
     low: float
     high: float
-    pieces: Array
+    middle: float
+    half: float
+    powers: list[tuple[float, float, float, float]]
+
+    def __call__(self, ahead: float) -> tuple[float, float, float, float]:
+        """J [kg m2], dJ/dtheta [kg m2/rad], torque over the angle without viscous friction [N m],
+        and the torque of that per speed [N m s/rad], at an angle ``ahead`` of the middle [rad]."""
+        x = ahead / self.half
+        inertia = slope = torque = drag = 0.0
+        for a, b, c, d in self.powers:
+            inertia = inertia * x + a
+            slope = slope * x + b
+            torque = torque * x + c
+            drag = drag * x + d
+        return inertia, slope, torque, drag
 
 
-class Reduced:
-    """J, J_1 and the torque of gas and gravity at one crank angle, in plain floats.
+class _Fits(NamedTuple):
+    """Chebyshev coefficients in every piece of one period, by ascending degree.
 
-    missed : of the largest torque, what a step across knots may miss of the gas
-    phases : of the loads' windows
+    edges : of the pieces [rad], from 0 to one period
+    inertia, slope, torque, rings, drag : shape (n, terms); the slope is that of J, the torque
+        without friction, loads and combustion
+    gas, combustion : shape (n, terms, cylinders) [N m], what presses rings, and what firings of
+        share 1 add; no cylinders where there is none
     """
 
-    def __init__(self, train: CrankTrain, missed: float = 0.0, phases: Phases = ()) -> None:
-        self.train, scene, pressure = train, train.scene, train.pressure
-        self._missed, self._known = missed, {phases: self}
-        self._last: tuple[tuple[float, ...], Reduced] | None = None
-        self.over_angle = over_angle(scene, phases)
-        knots = self._with_others(crank_angle_knots(train))
-        if len(knots) == 0:  # no step of many turns: it would overlook a light rod near a fold
-            knots = np.arange(0.0, train.period, 0.5)
-        bends = knots
-        if pressure and missed > 0.0 and train.combustion is None:
-            lever = (scene.piston.gas_area or 0.0) * scene.crank.radius
-            least = missed * self.torque_scale / lever
-            bends = self._with_others(merged_knots(train, [each.bends(least) for each in pressure]))
-        self.machine = bare(self._machine(knots, bends))
+    edges: list[float]
+    inertia: Array
+    slope: Array
+    torque: Array
+    rings: Array
+    drag: Array
+    gas: Array
+    combustion: Array
 
-    def _machine(self, knots: Array, bends: Array) -> Machine:
-        """The crank train with its knots."""
-        train, scene, load = self.train, self.train.scene, self.over_angle
-        crank, rod, piston = scene.crank, scene.rod, scene.piston
-        friction, pressures = scene.friction or Friction(), train.pressure or ()
-        g = scene.gravity.acceleration if scene.gravity else 0.0
-        pull = scene.gravity.angle if scene.gravity else 0.0
-        firsts = [each.knots[0] for each in pressures] or [0.0] * len(scene.cylinders)
-        axes = [
-            (c.phase, g * math.cos(pull - c.bank), g * math.sin(pull - c.bank), first)
-            for c, first in zip(scene.cylinders, firsts, strict=True)
-        ]
-        ends = np.cumsum([0, *(len(each.knots) for each in pressures)])
-        return Machine(
-            lengths=(crank.radius, rod.length, rod.center_of_mass, piston.offset),
-            masses=Masses(
-                crank_inertia=crank.moment_of_inertia,
-                rod_inertia=rod.moment_of_inertia,
-                rod=rod.mass,
-                piston=piston.mass,
-                first_moment=crank.mass * crank.center_of_mass,
-            ),
-            gravity=(g * math.cos(pull), g * math.sin(pull)),
-            cylinders=np.array(axes),
-            knots=Knots(knots, bends, train.period),
-            gas=Gas(
-                area=piston.gas_area or 0.0,
-                places=np.column_stack([ends[:-1], ends[1:]]),
-                starts=np.concatenate(
-                    [np.empty(0), *(each.knots - each.knots[0] for each in pressures)]
-                ),
-                coefficients=_side_by_side([p.coefficients for p in pressures]),
-                combustion=_side_by_side([p.coefficients for p in train.combustion or ()]),
-            ),
-            over_angle=OverAngle(
-                first=float(load.knots[0]) if load else 0.0,
-                starts=load.knots - load.knots[0] if load else np.empty(0),
-                coefficients=load.coefficients.copy() if load else np.empty((4, 0)),
-            ),
-            friction=Rubbing(friction.ring_force, friction.ring_pressure, friction.viscous),
-        )
 
-    def at(self, phases: Phases) -> Reduced:
-        """The same in other phases of the loads."""
-        if phases not in self._known and not self._varies:
-            return self
-        if phases not in self._known:
-            self._known[phases] = Reduced(self.train, self._missed, phases)
-            self._known[phases]._known = self._known
-        return self._known[phases]
+@dataclass(frozen=True)
+class Reduced:
+    """The crank train reduced to one rotation, with the loads and shares of a mode.
+
+    checks : whether it is there to check another, which has fewer terms
+    """
+
+    train: CrankTrain
+    checks: bool = False
+
+    def at(self, mode: Mode) -> Pieces:
+        """What acts in a mode."""
+        key = mode.loads, mode.shares
+        if key not in self._known:
+            self._known.clear()  # shares come once; phases seldom come back
+            self._known[key] = Pieces(self, *key)
+        return self._known[key]
 
     @cached_property
-    def _varies(self) -> bool:
-        """Whether a load depends on the angle."""
-        return any(load.parts.over_angle is not None for load in self.train.scene.torque)
-
-    def fired(self, shares: tuple[float, ...]) -> Reduced:
-        """The same with knots where a gas force changes its sign with these shares of the
-        combustion, where rings feel it."""
-        if self.train.combustion is None or len(sign_changes(self.train, shares)) == 0:
-            return self
-        if self._last is None or self._last[0] != shares:
-            again, machine = copy(self), Machine(*self.machine)
-            every, _, period = machine.knots
-            knots = np.unique(np.append(every, sign_changes(self.train, shares)))
-            knots = knots[np.append(True, np.diff(knots) > NEAR)]
-            again.machine = bare(machine._replace(knots=Knots(knots, knots, period)))
-            self._last = shares, again
-        return self._last[1]
-
-    def _with_others(self, knots: Array) -> Array:
-        """Knots of the pressures, and those of loads and friction."""
-        own = np.concatenate([knots_over_angle(self.train), friction_knots(self.train)])
-        if len(own) == 0:
-            return knots
-        merged = np.unique(np.concatenate([knots, own]))
-        return np.asarray(merged[np.append(True, np.diff(merged) > NEAR)])
-
-    def around(self, theta: float, sense: float, shares: Sequence[float] = ()) -> KnotPair:
-        """The knots next to theta in the sense of rotation, and the polynomials between them, with
-        these shares of the combustion."""
-        count = len(self.train.scene.cylinders)
-        pieces = np.zeros((count + (self.over_angle is not None), 9))
-        pieces[:count, 6] = shares or 0.0
-        low, high = stepper.enter(theta, sense, self.machine, pieces)
-        return KnotPair(low, high, pieces)
+    def _known(self) -> dict[tuple[Phases, tuple[float, ...]], Pieces]:
+        return {}
 
     @cached_property
     def torque_scale(self) -> float:
@@ -164,16 +123,148 @@ class Reduced:
         rubbed = friction_torque(self.train, angles, 0.0, 1.0, shares)
         return load + float(np.max(most - rubbed))
 
-    def __call__(self, theta: float, pieces: Array) -> tuple[float, float, float]:
-        """J [kg m2], dJ/dtheta [kg m2/rad], torque over the angle [N m]."""
-        return stepper.reduced(theta, self.machine, pieces)[:3]
+    @cached_property
+    def fits(self) -> _Fits:
+        """The polynomials of one period; pieces in which they do not fall are halved."""
+        train, period = self.train, self.train.period
+        knots = [crank_angle_knots(train), knots_over_angle(train), friction_knots(train)]
+        marks = apart(np.concatenate([*knots, [0.0]]))
+        edges = np.append(marks[marks < period - KNOT], period)
+        parts, before = np.ones(len(edges) - 1, dtype=np.intp), np.full(len(edges) - 1, np.inf)
+        while True:
+            edges, before = _split(edges, parts), np.repeat(before, parts)
+            found = self._fitted(edges)
+            narrow = np.diff(edges) <= _NARROW
+            found[narrow, _STRAIGHT:] = 0.0
+            inside = found.reshape(*found.shape[:2], -1)
+            largest = np.abs(inside).max(axis=(0, 1), initial=1e-300)
+            last = (np.abs(inside[:, _TERMS - 2 : _TERMS]) / largest).max(axis=(1, 2))
+            rough = (last > _NOISE) | ((last > _ROUGH) & (last < _FALLS * before))
+            if not rough.any():
+                break
+            parts, before = np.where(rough, 2, 1), np.where(rough, last, before)
+        end = _ALONE + len(train.scene.cylinders) * self._presses
+        inertia, slope, torque, rings, drag = np.moveaxis(found[..., :_ALONE], -1, 0)
+        of_cylinders = found[..., _ALONE:end], found[..., end:]
+        return _Fits(edges.tolist(), inertia, slope, torque, rings, drag, *of_cylinders)
 
-    def drag(self, theta: float, pieces: Array) -> float:
-        """Torque of viscous friction per speed [N m s/rad]."""
-        return stepper.reduced(theta, self.machine, pieces)[3]
+    @property
+    def _presses(self) -> bool:
+        """Whether rings are pressed by the gas."""
+        friction = self.train.scene.friction
+        return friction is not None and friction.ring_pressure > 0.0
+
+    def _fitted(self, edges: Array) -> Array:
+        """Coefficients of all that depends on the angle, shape (n, terms, functions)."""
+        theta = self.nodes(edges)
+        found, rubs = reduce(self.train, theta), rubbing(self.train, theta)
+        alone = np.stack([*found, rubs.rings, rubs.drag], axis=-1)
+        gas = rubs.gas if self._presses else rubs.gas[..., :0]
+        values = np.concatenate([alone, gas, fired_torque(self.train, theta)], axis=-1)
+        return np.asarray(self.to_chebyshev @ values)
+
+    def nodes(self, edges: Array) -> Array:
+        """The angles [rad], shape (n, terms), at which pieces are fitted."""
+        x = np.polynomial.chebyshev.chebpts1(self._terms)
+        middle, half = _placed(edges[:-1], edges[1:])
+        return np.asarray(middle[:, None] + half[:, None] * x)
+
+    @property
+    def _terms(self) -> int:
+        return _TERMS + _MORE * self.checks
+
+    @cached_property
+    def to_chebyshev(self) -> Array:
+        """Values at the nodes to coefficients."""
+        x = np.polynomial.chebyshev.chebpts1(self._terms)
+        weights = np.full((self._terms, 1), 2.0 / self._terms)
+        weights[0] = 1.0 / self._terms
+        return np.asarray(weights * np.polynomial.chebyshev.chebvander(x, self._terms - 1).T)
 
 
-def _side_by_side(coefficients: Sequence[Array]) -> Array:
-    """Cubics of every cylinder, shape (4, n); behind each cylinder's an empty column, as it has a
-    knot more than cubics."""
-    return np.hstack([np.empty((4, 0)), *(np.pad(each, ((0, 0), (0, 1))) for each in coefficients)])
+class Pieces:
+    """The pieces of a reduction in some phases of the loads, with shares of the combustion."""
+
+    def __init__(self, base: Reduced, phases: Phases, shares: tuple[float, ...]) -> None:
+        self.train, self.torque_scale = base.train, base.torque_scale
+        self._base, self._shares = base, np.array(shares)
+        self.over_angle: Cycle | None = over_angle(base.train.scene, phases)
+        fired = base.train.combustion is not None
+        self._bends = sign_changes(base.train, shares).tolist() if fired else []
+
+    def around(self, theta: float, sense: float) -> Piece:
+        """The piece that the motion enters at an angle [rad] in a sense of rotation."""
+        fits, period = self._base.fits, self.train.period
+        ahead = theta + sense * _PASSED * max(abs(theta), period)
+        turns = math.floor(ahead / period)
+        local = ahead - turns * period
+        k = min(bisect_right(fits.edges, local), len(fits.edges) - 1) - 1
+        i = bisect_right(self._bends, local)
+        low = max([fits.edges[k], *self._bends[max(i - 1, 0) : i]])
+        high = min([fits.edges[k + 1], *self._bends[i : i + 1]])
+        found, base = self._piece(k, low, high, sense), turns * period
+        if turns == 0:
+            return found
+        knots = found.low + base, found.high + base, found.middle + base
+        return Piece(*knots, found.half, found.powers)
+
+    @cached_property
+    def _loads(self) -> Array | None:
+        """Coefficients of the loads over the angle."""
+        if self.over_angle is None:
+            return None
+        values = self.over_angle(self._base.nodes(np.array(self._base.fits.edges)))
+        return np.asarray(values @ self._base.to_chebyshev.T)
+
+    def _piece(self, k: int, low: float, high: float, sense: float) -> Piece:
+        """A part of the piece k, where friction keeps its signs."""
+        fits = self._base.fits
+        begin, end = np.array(fits.edges[k : k + 2])
+        middle, half = (float(each) for each in _placed(begin, end))
+        torque = fits.torque[k] + 0.0
+        if self._loads is not None:
+            torque += self._loads[k]
+        more = np.zeros((1, 1))
+        if len(self._shares):
+            more = fits.combustion[k] * self._shares
+            torque += more.sum(axis=-1)
+        torque -= sense * fits.rings[k]
+        friction, gas = self.train.scene.friction, fits.gas[k]
+        if friction is not None and gas.shape[-1]:
+            at = (0.5 * (low + high) - middle) / half
+            gas = gas + more
+            pressing = gas * np.sign(np.polynomial.chebyshev.chebval(at, gas))
+            torque -= sense * friction.ring_pressure * pressing.sum(axis=-1)
+        rows = np.stack([fits.inertia[k], fits.slope[k], torque, fits.drag[k]])
+        matters = (np.abs(rows) > _ROUNDING * np.abs(rows).max(axis=1, keepdims=True)).any(axis=0)
+        count = int(np.flatnonzero(matters)[-1]) + 1
+        powers = rows[:, :count] @ _powers(count)
+        return Piece(low, high, middle, half, [*map(tuple, powers.T[::-1].tolist())])
+
+
+def _placed(begin: Array, end: Array) -> tuple[Array, Array]:
+    """Middle and half [rad] of what pieces are fitted on: no angle so close to the end that it
+    counts as on the knot there."""
+    half = 0.5 * (end - begin)
+    return 0.5 * (begin + end), np.maximum(half - KNOT, 0.5 * half)
+
+
+def _split(edges: Array, parts: Index) -> Array:
+    """Edges of pieces cut into equal parts."""
+    cell = np.repeat(np.arange(len(parts)), parts)
+    part = np.arange(len(cell)) - (np.cumsum(parts) - parts)[cell]
+    return np.append(edges[cell] + part * (np.diff(edges) / parts)[cell], edges[-1])
+
+
+def _powers(count: int) -> Array:
+    """Chebyshev coefficients to those of the powers, shape (count, count), as rows."""
+    if count not in _POWERS:
+        table = np.zeros((count, count))
+        for j, unit in enumerate(np.eye(count)):
+            row = np.polynomial.chebyshev.cheb2poly(unit)
+            table[j, : len(row)] = row
+        _POWERS[count] = table
+    return _POWERS[count]
+
+
+_POWERS: dict[int, Array] = {}

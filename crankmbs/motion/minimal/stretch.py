@@ -1,4 +1,4 @@
-"""The equation of motion over time on one piece, and its solution on a stretch of steps."""
+"""The solution over time on a stretch of steps."""
 
 from __future__ import annotations
 
@@ -11,108 +11,28 @@ from numpy.typing import NDArray
 
 from crankmbs.mechanics.friction import friction_forces, friction_torque, held_share
 from crankmbs.mechanics.inertia import reduce
-from crankmbs.mechanics.torque import Branch
 from crankmbs.motion.base import Nodes, Points, Samples, State
 from crankmbs.motion.cells import Acting, Cells
-from crankmbs.motion.minimal import stepper
-from crankmbs.motion.minimal.reduced import KnotPair, Reduced
-from crankmbs.motion.minimal.system import System
+from crankmbs.motion.minimal.equation import Equation
 from crankmbs.motion.mode import decided
 from crankmbs.motion.plan import Wanted
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.lagrange import ends_and_nodes
 from crankmbs.numerics.roots import invert_monotone
-from crankmbs.scene.units import DEGREE
 
-__all__ = ["BALANCED", "Equation", "Stretch", "Track"]
+__all__ = ["Stretch", "Track"]
 
 _STAGES = 8  # of the rule at whose nodes, and at both ends, a step of degree 7 is told
 _GAUSS = np.polynomial.legendre.leggauss(8)  # what a step's polynomials give is of degree 15
 _PLACES, _WEIGHTS = 0.5 * (1.0 + _GAUSS[0]), 0.5 * _GAUSS[1]
-
-BALANCED = 1e-13  # of the largest torque: what the rounding of an angle leaves at a dead centre
-
-
-@dataclass(frozen=True)
-class Equation:
-    """The equation of motion on one piece: between two knots and on one branch of the loads.
-
-    holds : whether the crank is at rest and its loads or friction hold it there, until a time [s]
-    """
-
-    reduced: Reduced
-    between: KnotPair
-    branch: Branch
-    holds: bool = False
-    until: float = math.inf
-
-    def __call__(self, t: float, y: Array) -> Array:
-        """Slopes of (theta, omega, work) in time."""
-        out = np.empty(3)
-        with np.errstate(all="ignore"):
-            stepper.slopes(t, y, self.system, out)
-        theta, omega, _ = y.tolist()
-        if self.branch.functions and math.isfinite(out[1]):
-            torque = self._of_functions(t, theta, omega)
-            out[1] += torque / self.reduced(theta, self.between.pieces)[0]
-            out[2] += torque * omega
-        return out
-
-    @property
-    def system(self) -> System:
-        """The same for `crankmbs.motion.minimal.stepper`."""
-        return self.reduced.machine, self.between.pieces, self.branch.coefficients
-
-    def outside(self, t: float, omega: float) -> float:
-        """Torque from outside [N m]."""
-        b = self.branch
-        return b.c0 + b.ct * t + (b.c1 + b.c2 * omega) * omega
-
-    def _of_functions(self, t: float, theta: float, omega: float) -> float:
-        return sum(function.number(t, theta, omega) for function in self.branch.functions)
-
-    def is_stiff(self, state: State, inertia: float) -> bool:
-        """Whether the loads damp the speed a thousand times while the crank turns 5 degrees, and
-        what they had to damp is gone: while it still dies away small steps are needed anyway."""
-        drag = self.reduced.drag(state.theta, self.between.pieces)
-        damping = abs(self.branch.c1 + 2.0 * self.branch.c2 * state.omega - drag) / inertia
-        strong = damping * 5.0 * DEGREE > 1e3 * abs(state.omega)
-        return strong and abs(self.pull(state)) < 0.01 * inertia * damping * abs(state.omega)
-
-    @property
-    def changes(self) -> bool:
-        """Whether the torque at one angle and speed may be another later."""
-        later = self.branch.ct != 0.0 or math.isfinite(self.branch.t_end)
-        return later or bool(self.branch.functions)
-
-    def is_balanced(self, state: State, scale: float) -> bool:
-        """Whether no torque acts on a crank at rest here, now or later."""
-        return not self.changes and abs(self.pull(state._replace(omega=0.0))) <= BALANCED * scale
-
-    def is_stuck(self, begin: State, end: State) -> bool:
-        """Whether a torque is left, so small that a step leads from rest to rest at the same angle:
-        so does every other."""
-        at_rest = begin.omega == end.omega == 0.0 and begin.theta == end.theta
-        return at_rest and not self.changes
-
-    def pull(self, state: State) -> float:
-        """Torque of gas, gravity, friction and loads at a state [N m]."""
-        torque = self.reduced(state.theta, self.between.pieces)[2]
-        torque -= self.reduced.drag(state.theta, self.between.pieces) * state.omega
-        at = state.time, state.theta, state.omega
-        return torque + self.outside(state.time, state.omega) + self._of_functions(*at)
-
-    def kinetic(self, theta: float, omega: float) -> float:
-        """Kinetic energy [J]."""
-        return 0.5 * self.reduced(theta, self.between.pieces)[0] * omega * omega
 
 
 class Track(NamedTuple):
     """Steps one after the other.
 
     begins, widths : shape (n,) [s]
-    rows : shape (n, 8, 3), their interpolants, as in `crankmbs.motion.minimal.stepper.first_exit`
-    time [s], y : the end, and (theta, omega, work) there
+    rows : shape (n, 8, 3), their polynomials, as in `crankmbs.motion.minimal.exits`
+    time [s], y : the end, and (theta, omega, work) there; equation : that holds there
     next_step [s] : what the error control proposes; most [J] : largest kinetic energy so far
     """
 
@@ -121,6 +41,7 @@ class Track(NamedTuple):
     rows: Array
     time: float
     y: Array
+    equation: Equation
     next_step: float
     most: float
     evaluations: int
@@ -129,10 +50,10 @@ class Track(NamedTuple):
         """(theta, omega, work), shape (3, n), at times in the steps k."""
         x = ((t - self.begins[k]) / self.widths[k])[:, None]
         row = self.rows[k]
-        y = np.zeros((len(t), 3))
-        for i in range(7):
-            y = (y + row[:, 7 - i]) * (x if i % 2 == 0 else 1.0 - x)
-        return np.asarray((row[:, 0] + y).T)
+        y = row[:, -1]
+        for coefficients in np.moveaxis(row, 1, 0)[-2::-1]:
+            y = y * x + coefficients
+        return np.asarray(y.T)
 
 
 @dataclass(frozen=True)
@@ -148,8 +69,9 @@ class Stretch:
     def of(cls, equation: Equation, track: Track, begin: State) -> Stretch:
         """The steps of a track, and the state after them."""
         theta, omega, work = track.y.tolist()
-        gained = equation.kinetic(theta, omega) - equation.kinetic(begin.theta, begin.omega)
-        mode = decided(equation.reduced.train, begin.mode, track.time, theta, omega)
+        gained = track.equation.kinetic(theta, omega)
+        gained -= equation.kinetic(begin.theta, begin.omega)
+        mode = decided(equation.pieces.train, begin.mode, track.time, theta, omega)
         end = State(track.time, theta, omega, begin.residual + gained - work, mode)
         return cls(equation, track, begin, end)
 
@@ -230,26 +152,26 @@ class Stretch:
         rows = np.zeros((1, 8, 3))
         rows[0, 0] = y
         times = np.array([begin.time]), np.array([until - begin.time])
-        return _Rest.of(equation, Track(*times, rows, until, y, math.inf, 0.0, 0), begin)
+        return _Rest.of(equation, Track(*times, rows, until, y, equation, math.inf, 0.0, 0), begin)
 
     def _samples(self, t: Array, k: NDArray[np.intp], theta: Array | None = None) -> Samples:
         reached, omega, work = self.track.at(t, k)
         theta = reached if theta is None else theta
         # on a step of the pressure the value after it counts, here as in the joint forces
-        reduced = self.equation.reduced
+        train, over_angle = self.equation.pieces.train, self.equation.pieces.over_angle
         shares = self.begin.mode.shares
-        inertia, slope, torque = reduce(reduced.train, theta, shares)
+        inertia, slope, torque = reduce(train, theta, shares)
         outside = self.equation.branch(t, omega)
-        if reduced.over_angle is not None:
-            outside = outside + reduced.over_angle(theta)
+        if over_angle is not None:
+            outside = outside + over_angle(theta)
         for function in self.equation.branch.functions:
             outside = outside + function(t, theta, omega)
         own = {"fuel": np.tile(shares, (len(t), 1))} if shares else {}
-        if reduced.train.scene.friction is not None:
+        if train.scene.friction is not None:
             sense = self.end.theta - self.begin.theta or self.begin.omega or self.end.omega
             slides = np.full_like(t, np.sign(sense))
-            torque = torque + friction_torque(reduced.train, theta, omega, slides, shares or None)
-            forces = friction_forces(reduced.train, theta, omega, own.get("fuel"), slides)
+            torque = torque + friction_torque(train, theta, omega, slides, shares or None)
+            forces = friction_forces(train, theta, omega, own.get("fuel"), slides)
             own["friction_force"] = forces
         alpha = (torque + outside - 0.5 * slope * omega**2) / inertia
         start = self.equation.kinetic(self.begin.theta, self.begin.omega)
@@ -261,7 +183,7 @@ class _Rest(Stretch):
     """A stretch at rest: friction gives what it takes, and loads the rest."""
 
     def _samples(self, t: Array, k: NDArray[np.intp], theta: Array | None = None) -> Samples:
-        at, train = super()._samples(t, k, theta), self.equation.reduced.train
+        at, train = super()._samples(t, k, theta), self.equation.pieces.train
         shares = self.begin.mode.shares
         given = reduce(train, at.theta, shares).torque
         own = dict(at.own)

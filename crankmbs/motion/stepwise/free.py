@@ -27,9 +27,8 @@ _STEP = 1e-2  # of rtol: what a step over time may err
 _BETTER = 1e-2  # of that: what one of the better pass may
 _FINEST = 1e-15  # what rounding leaves of a step
 _NEAR = 1e-12  # rtol: from there on rounding, in both passes alike, is most of the error
-_ROAMING = 3.0  # of a step's tolerance: what it may miss of the largest torque across knots
 _ROOM = 64  # steps of a stretch
-_ALLOWED, _OF_FUNCTIONS = 20_000_000, 300_000  # evaluations in one step; half a minute
+_ALLOWED = 1_500_000  # evaluations in one step: half a minute
 _ROUNDING = 64 * float(np.finfo(float).eps)  # as in `assemble`
 
 
@@ -48,12 +47,12 @@ class Free:
         functions = any(load.parts.function is not None for load in scene.torque)
         # as in a run: twice where rounding is left, or what functions do undeclared
         self._share = 2.0 if functions or scene.run.rtol <= _NEAR else 1.0
-        self._allowed = _OF_FUNCTIONS if functions else _ALLOWED
+        self._allowed = _ALLOWED
         step = max(_STEP * scene.run.rtol, _FINEST)
         tolerances = step, max(_BETTER * step, _FINEST)
         trains = train, train.off
         self._passes = tuple(
-            _Pass(Reduced(one, _ROAMING * each), Effort(each, parts, self._allowed, _ROOM))
+            _Pass(Reduced(one, checks=parts > 1), Effort(each, parts, self._allowed, _ROOM))
             for one, each, parts in zip(trains, tolerances, (1, 2), strict=True)
         )
         folds = folds_of(scene, scene.start.angle)
@@ -118,12 +117,13 @@ class Free:
 
     def _acceleration(self, state: State) -> float:
         """With which the crank sets out from a state [rad/s2]."""
-        reduced = self._passes[0].reduced.at(state.mode.loads).fired(state.mode.shares)
+        reduced = self._passes[0].reduced
         scale = reduced.torque_scale + abs(state.mode.held)
         equation = enter(reduced, self._known(state), scale)
         if isinstance(equation, Ending) or equation.holds:
             return 0.0
-        return float(equation(state.time, np.array([state.theta, state.omega, 0.0]))[1])
+        y = np.array([state.theta - equation.piece.middle, state.omega, 0.0])
+        return float(equation.slopes(state.time, y)[1])
 
     def said(self, standing: Standing) -> tuple[int, str]:
         """Status and sentence of the last step."""
@@ -144,7 +144,7 @@ class Free:
         return replace(found, errors=errors)
 
     def _sample(self, train: CrankTrain, state: State) -> Samples:
-        over_angle = self._passes[0].reduced.at(state.mode.loads).over_angle
+        over_angle = self._passes[0].reduced.at(state.mode).over_angle
         of_angle = float(over_angle(state.theta)) if over_angle is not None else 0.0
         found = first_sample(train, self._known(state), of_angle)
         return replace(found, time=np.array([state.time]))
