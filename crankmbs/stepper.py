@@ -70,8 +70,8 @@ class Stepper:
     some revolutions comes near it; nothing is refined afterwards, and the errors say what has come
     of it. They are what two passes, carried side by side, have differed by at most.
 
-    A free crank is carried over time, across rest and reversal (`minimal`); a prescribed speed is
-    followed (`kinetostatic`). The memory does not grow.
+    A free crank is carried as in a run, over the crank angle, and over time across rest and
+    reversal; a prescribed speed is followed (`kinetostatic`). The memory does not grow.
 
     Raises
     ------

@@ -63,6 +63,10 @@ class Branch:
         omega = np.asarray(omega, dtype=np.float64)
         return np.asarray(self.c0 + self.ct * np.asarray(t) + (self.c1 + self.c2 * omega) * omega)
 
+    def plus(self, torque: float) -> Branch:
+        """With a constant torque [N m] more."""
+        return replace(self, c0=self.c0 + torque)
+
     @property
     def coefficients(self) -> tuple[float, float, float, float]:
         """c0, ct, c1 and c2."""
@@ -110,6 +114,10 @@ class Course:
     functions: tuple[Function, ...] = ()
 
     is_affine_in_energy = False
+
+    def plus(self, torque: float) -> Course:
+        """With a constant torque [N m] more."""
+        return replace(self, in_time=self.in_time + np.array([torque, 0.0]))
 
     @property
     def is_steady(self) -> bool:

@@ -26,7 +26,7 @@ __all__ = ["Mode", "begun", "decided"]
 class Mode(NamedTuple):
     """loads : phase of each load's window; low, high [rad] : the crank angles, backwards and
     forwards, at which the next decision falls; firing : what has been decided of the fuel;
-    held : torque [N m] beside the scene's loads, which only `minimal` knows."""
+    held : torque [N m] beside the scene's loads."""
 
     loads: Phases = ()
     low: float = -math.inf

@@ -117,6 +117,7 @@ def _stretch(way: _Way, branch: Branch) -> Window | None:
     course = course_of(way.grid.train.scene.torque, branch, way.state.time, way.state.mode.loads)
     if isinstance(course, Branch):
         return _solve(way, course)
+    course = course.plus(way.state.mode.held)
     affine = branch.is_affine_in_energy and not way.grid.drags
     window = _before_kink(way, branch, course) if affine else None
     return window or _solve(way, course) or _solve(way, branch)
@@ -200,8 +201,9 @@ def _enter(grid: Grid, state: State) -> tuple[Branch | None, float]:
     reduction = reduce(train, theta, mode.shares)
     rest = reduction.rest(omega) + grid.outside(np.asarray(theta))
     rest += friction_torque(train, theta, omega, math.copysign(1.0, omega), mode.shares or None)
+    rest += mode.held
     branch = branch_at(train.scene.torque, (time, theta, omega), float(rest), mode.loads)
-    return branch, 0.5 * float(reduction.inertia) * omega**2
+    return branch and branch.plus(mode.held), 0.5 * float(reduction.inertia) * omega**2
 
 
 def _solve(way: _Way, loads: Branch | Course) -> Window | None:

@@ -23,10 +23,14 @@ from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.collocation import Rule, gauss
 from crankmbs.numerics.cycle import Cycle
 
-__all__ = ["Grid", "Strip", "grid_of", "largest_of_row"]
+__all__ = ["FINEST_CELL", "Grid", "Strip", "grid_of", "largest_of_row"]
 
+
+FINEST_CELL = 3e-14
+"""What rounding leaves of a cell's relative error."""
 
 _EPS = float(np.finfo(float).eps)
+_MOST_CELLS = 20_000
 _SLIVER = 1e-12  # rad: a start this close to an edge is on it
 
 
@@ -225,6 +229,21 @@ class Grid:
         part = np.arange(len(cell)) - (np.cumsum(parts) - parts)[cell]
         edges = self.edges[cell] + part * (np.diff(self.edges) / parts)[cell]
         return Grid(self.train, np.append(edges, self.edges[-1]), self.rule)
+
+    def refined(self, worst: Array, local: float) -> Grid:
+        """Cells so fine that each errs by ``local`` per radian at its end, and by ``local`` inside,
+        where the order is lower; itself where they are, or where there are too many.
+
+        worst : shape (2, n), relative errors of the cells at ends and inside
+        """
+        stages, widths = len(self.rule.nodes), self._widths
+        at_end = worst[0] / np.maximum(local * widths, FINEST_CELL)
+        inside = worst[1] / max(local, FINEST_CELL)
+        enough = at_end.max() <= 1.0 and inside.max() <= 1.0
+        if enough or len(self.edges) >= _MOST_CELLS:
+            return self
+        parts = np.ceil(np.maximum(at_end ** (0.5 / stages), inside ** (1.0 / (stages + 1))))
+        return self.split(np.clip(np.nan_to_num(parts, nan=2.0), 1, 4).astype(np.intp))
 
     def cell_at(self, theta: float, sense: float) -> int:
         """Number of the cell that the motion is about to pass at a crank angle [rad]."""

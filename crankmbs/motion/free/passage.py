@@ -5,14 +5,16 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Callable, Generator
-from typing import Protocol, TypeVar
+from typing import Protocol
 
 import numpy as np
 
 from crankmbs.motion.base import Samples, Solved, State
 from crankmbs.motion.cells import Cells
+from crankmbs.motion.crank_angle.window import Window
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.events import Log
+from crankmbs.motion.minimal.stretch import Stretch
 from crankmbs.motion.plan import Chosen, Plan
 
 __all__ = ["Passage", "Piece", "Watch"]
@@ -46,15 +48,15 @@ class Piece(Solved, Protocol):
 
 
 Watch = Callable[[Piece], None]
-AnyPiece = TypeVar("AnyPiece", bound=Piece)
 
 
 class Passage:
     """The pieces of one pass, sampled as they come; with a finite plan.last only the last stay.
 
     can_swing : whether a swing that reaches no farther is known to go on so for ever
-    left : evaluations over time that are still allowed
+    allowed : evaluations over time
     log : of the events; watch : is shown every piece
+    fast : spans of time [s] that the crank angle carries; slow : times at which time takes over
     dropped : whether pieces were given up, as memory would not hold all
     """
 
@@ -69,41 +71,51 @@ class Passage:
         watch: Watch | None = None,
     ) -> None:
         self._watch, self.dropped, self._held = watch, False, 0
-        self._plan, self._can_swing, self.left, self.log = plan, can_swing, allowed, log
+        self._plan, self._can_swing, self._left, self.log = plan, can_swing, allowed, log
         self._farthest, self._since = 0.0, 0  # reach [rad], and reversals that reached no farther
-        self.turned_back = plan.start  # crank angle of the last reversal [rad]
+        self._over_time: bool | None = None
+        self.fast, self.slow = list[tuple[float, float]](), list[float]()
         self._blocks, self._count = [first], 1
         self.pieces: deque[Piece] = deque()
         self.reversals = self.steps = self.evaluations = 0
 
     def follow(
         self,
-        pieces: Generator[AnyPiece, None, Ending | None],
-        *,
-        over_time: bool,
-        note: Callable[[AnyPiece], None] | None = None,
-    ) -> Ending | None:
-        """Add every piece; return how the motion ends, None where it goes on otherwise.
+        pieces: Generator[Window | Stretch, None, Ending],
+        note: Callable[[Window], None] | None = None,
+    ) -> Ending:
+        """Add every piece; return how the motion ends.
 
-        note : is shown every piece before
+        note : is shown every window before
         """
         while True:
             try:
                 piece = next(pieces)
             except StopIteration as stop:
-                ending: Ending | None = stop.value
+                ending: Ending = stop.value
                 return ending
-            if note is not None:
+            over_time = isinstance(piece, Stretch)
+            if note is not None and isinstance(piece, Window):
                 note(piece)
+            self._span(piece.begin.time, piece.end.time, over_time=over_time)
             count = self._count
             self._add(piece)
-            self.left -= piece.evaluations if over_time else 0
+            self._left -= piece.evaluations if over_time else 0
             if self._swings():
                 if self._can_swing:
                     return Ending.SWING
-                self.left -= _SAMPLE * (self._count - count)
-                if self.left <= 0:
+                self._left -= _SAMPLE * (self._count - count)
+                if self._left <= 0:
                     return Ending.COSTLY
+
+    def _span(self, begin: float, end: float, *, over_time: bool) -> None:
+        """Note from when to when [s] what carries the motion."""
+        goes_on, self._over_time = over_time is self._over_time, over_time
+        if not goes_on:
+            self.slow += [begin] if over_time else []
+            self.fast += [] if over_time else [(begin, end)]
+        elif not over_time:
+            self.fast[-1] = self.fast[-1][0], end
 
     def _add(self, piece: Piece) -> None:
         self.log.add(piece)
@@ -112,7 +124,6 @@ class Passage:
         self.steps += piece.steps
         self.evaluations += piece.evaluations
         if piece.end.omega == 0.0:
-            self.turned_back = piece.end.theta
             self.reversals += 1
             reach = abs(piece.end.theta - self._plan.start)
             if reach > self._farthest * (1.0 + 1e-4):

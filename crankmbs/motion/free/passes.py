@@ -9,7 +9,6 @@ from functools import partial
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crankmbs.mechanics.inertia import inertia_alone
 from crankmbs.mechanics.train import CrankTrain
@@ -17,13 +16,13 @@ from crankmbs.mechanics.variables import VARIABLES
 from crankmbs.motion.account import Account
 from crankmbs.motion.assemble import Assembled, assemble
 from crankmbs.motion.base import Samples, Solution, State
-from crankmbs.motion.crank_angle.grid import Grid, grid_of
+from crankmbs.motion.crank_angle.grid import FINEST_CELL, Grid, grid_of
 from crankmbs.motion.cycles import MOST_CYCLES, Cycles, cycles_of
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.events import events_of
+from crankmbs.motion.free.handover import FINEST_STEP
 from crankmbs.motion.free.matching import match, stays
 from crankmbs.motion.free.travel import (
-    FINEST_STEP,
     Begin,
     Pass,
     Way,
@@ -44,8 +43,6 @@ _PASSES = 12  # at most; each splits cells, or asks for less of an error
 _EVALUATIONS = 50_000  # over time, for which a second of the cost cap stands: as measured
 _PLACES = np.array([0.225, 0.725])  # of new edges in a cell: an old edge is then at 0.55 of a new
 # cell, where no Gauss rule of few nodes takes a jump to be
-_MOST_CELLS = 20_000
-_FINEST = 3e-14  # what rounding leaves of a cell
 # what a pass may say that has not seen yet, or by its errors never, that the crank is at rest
 _RESTING = {Ending.REST, Ending.SWING, Ending.COMPLETE}
 _BROKEN = (Ending.COSTLY, Ending.FAILED)
@@ -94,13 +91,13 @@ def run(
     functions = _has_functions(train)
     best: Assembled | None = None
     least, rounded = math.inf, False
-    finest = _FINEST if by_angle else 100.0 * FINEST_STEP
+    finest = FINEST_CELL if by_angle else 100.0 * FINEST_STEP
     local = max(local, finest)
     for left in reversed(range(_PASSES)):
         answer = travel(grid, way, local, by_angle=by_angle)
-        parts = _parts(grid, answer.local, local)
-        if left and parts.max() > 1 and len(grid.edges) < _MOST_CELLS:
-            grid = grid.split(parts)
+        refined = grid.refined(answer.local, local)
+        if left and refined is not grid:
+            grid = refined
             continue
         trail = answer.trail
         better = travel(grid.finer, way, 1e-2 * local, by_angle=by_angle, first=trail)
@@ -191,18 +188,6 @@ def _stated_twice(by_order: Assembled, by_place: Assembled) -> Assembled:
 def _doubled(one: Assembled) -> Assembled:
     """With twice the errors."""
     return replace(one, errors={name: 2.0 * error for name, error in one.errors.items()})
-
-
-def _parts(grid: Grid, worst: Array, local: float) -> NDArray[np.intp]:
-    """Into how many parts to cut every cell, to err by ``local`` per radian at its end, and by
-    ``local`` inside, where the order is lower."""
-    stages = len(grid.rule.nodes)
-    at_end = worst[0] / np.maximum(local * np.diff(grid.edges), _FINEST)
-    inside = worst[1] / max(local, _FINEST)
-    if at_end.max() <= 1.0 and inside.max() <= 1.0:
-        return np.ones(len(at_end), dtype=np.intp)
-    parts = np.ceil(np.maximum(at_end ** (0.5 / stages), inside ** (1.0 / (stages + 1))))
-    return np.asarray(np.clip(np.nan_to_num(parts, nan=2.0), 1, 4), dtype=np.intp)
 
 
 def _solution(scene: Scene, answer: Pass, better: Pass, way: Way) -> Solution:

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from crankmbs.mechanics.torque import Branch, branch_at, branch_of
+from crankmbs.mechanics.torque import branch_at, branch_of
 from crankmbs.mechanics.windows import phase_ends
 from crankmbs.motion.base import State
 from crankmbs.motion.ending import Ending
@@ -36,12 +36,12 @@ def enter(reduced: Reduced, state: State, scale: float) -> Equation | Ending:
         branch = branch_at(torques, state[:3], rest + state.mode.held, phases)
         if branch is None:
             return Ending.HELD
-        return Equation(pieces, piece, _with_held(branch, state))
+        return Equation(pieces, piece, branch.plus(state.mode.held))
     sides: list[Equation] = []
     resisted = False
     for sense in (1.0, -1.0):
         branch = branch_of(torques, state.time, 0.0, rising=sense > 0.0, phases=phases)
-        equation = Equation(pieces, pieces.around(state.theta, sense), _with_held(branch, state))
+        equation = Equation(pieces, pieces.around(state.theta, sense), branch.plus(state.mode.held))
         pull = equation.pull(state)
         if pull * sense > BALANCED * scale:
             return equation
@@ -59,12 +59,6 @@ def enter(reduced: Reduced, state: State, scale: float) -> Equation | Ending:
     if sides[0].branch.functions:
         return sides[0]
     return replace(sides[0], holds=True, until=_until(sides, state, scale))
-
-
-def _with_held(branch: Branch, state: State) -> Branch:
-    """A branch of the scene's loads with the torque that is held beside them."""
-    held = state.mode.held
-    return replace(branch, c0=branch.c0 + held) if held else branch
 
 
 def _until(sides: list[Equation], state: State, scale: float) -> float:

@@ -1,4 +1,4 @@
-"""A free motion in steps over time: two passes side by side, carried by `minimal`."""
+"""A free motion in steps over time: two passes side by side, carried as those of a run are."""
 
 from __future__ import annotations
 
@@ -12,33 +12,40 @@ from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.windows import acting
 from crankmbs.motion.assemble import ANGLE_ROUNDING, Assembled, assemble
 from crankmbs.motion.base import Samples, Solution, State
+from crankmbs.motion.crank_angle.grid import FINEST_CELL, Grid
+from crankmbs.motion.crank_angle.window import Window
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.first import first_sample
-from crankmbs.motion.minimal.advance import Effort, advance
+from crankmbs.motion.free.handover import Handover, Spans
+from crankmbs.motion.free.passes import first_grid
 from crankmbs.motion.minimal.entering import enter
 from crankmbs.motion.minimal.reduced import Reduced
 from crankmbs.motion.mode import begun
 from crankmbs.motion.plan import Plan, folds_of
 from crankmbs.motion.stepwise.standing import AT_REST, Moving, Standing, commanded, said
+from crankmbs.numerics.arrays import Array
 
 __all__ = ["Free"]
 
-_STEP = 1e-2  # of rtol: what a step over time may err
-_BETTER = 1e-2  # of that: what one of the better pass may
-_FINEST = 1e-15  # what rounding leaves of a step
+_LOCAL = 0.1  # of rtol: what a pass may err locally
+_BETTER = 1e-2  # of that: what the better pass may
 _NEAR = 1e-12  # rtol: from there on rounding, in both passes alike, is most of the error
-_ROOM = 64  # steps of a stretch
 _ALLOWED = 1_500_000  # evaluations in one step: half a minute
 _ROUNDING = 64 * float(np.finfo(float).eps)  # as in `assemble`
 
 
-class _Pass(NamedTuple):
-    reduced: Reduced
-    effort: Effort
+class _Carried(NamedTuple):
+    """A pass carried on: the state, how it ended, spans of time [s] that the crank angle carried,
+    and the largest errors so far at ends and inside of each cell, shape (2, cells)."""
+
+    state: State
+    ending: Ending
+    spans: Spans
+    worst: Array
 
 
 class Free:
-    """The steps of a free crank train; the better pass takes finer ones, all of them halved."""
+    """The steps of a free crank train; the better pass is of higher order, in finer steps."""
 
     def __init__(self, train: CrankTrain) -> None:
         scene = train.scene
@@ -47,14 +54,10 @@ class Free:
         functions = any(load.parts.function is not None for load in scene.torque)
         # as in a run: twice where rounding is left, or what functions do undeclared
         self._share = 2.0 if functions or scene.run.rtol <= _NEAR else 1.0
-        self._allowed = _ALLOWED
-        step = max(_STEP * scene.run.rtol, _FINEST)
-        tolerances = step, max(_BETTER * step, _FINEST)
-        trains = train, train.off
-        self._passes = tuple(
-            _Pass(Reduced(one, checks=parts > 1), Effort(each, parts, self._allowed, _ROOM))
-            for one, each, parts in zip(trains, tolerances, (1, 2), strict=True)
-        )
+        self._local = max(_LOCAL * scene.run.rtol, FINEST_CELL)
+        self._reduced = Reduced(train), Reduced(train.off, checks=True)
+        self._coarsest = first_grid(train, scene.run.rtol)
+        self._refined: tuple[tuple[float, ...], Grid] = (), self._coarsest  # the last, by its edges
         folds = folds_of(scene, scene.start.angle)
         self._plan = Plan(scene.start.angle, 1.0, True, 0.0, True, folds=folds)
 
@@ -69,42 +72,64 @@ class Free:
         self, standing: Standing, until: float, torque: float, share: float | None
     ) -> Standing:
         """One step of both passes; see `crankmbs.motion.stepwise.standing.Steps`."""
-        found = [
-            self._carried(one, commanded(state, torque, share), until)
-            for one, state in zip(self._passes, standing.states, strict=True)
-        ]
-        (one, other), endings = zip(*found, strict=True)
-        for state, ending in found:
+        begins = [commanded(state, torque, share) for state in standing.states]
+        grid, edges = self._grid_of(standing.edges), standing.edges
+        while True:
+            answer = self._carried(Handover(grid, self._reduced[0], self._local), begins[0], until)
+            refined = grid.refined(answer.worst, self._local)
+            if refined is grid:
+                break
+            grid, edges = refined, tuple(refined.edges.tolist())
+            self._refined = edges, grid
+        local = _BETTER * self._local
+        finer = Handover(grid.finer, self._reduced[1], local, usable=answer.spans)
+        better = self._carried(finer, begins[1], until)
+        for state, ending in (answer[:2], better[:2]):
             if ending.value[0] < 0:
                 return standing._replace(ending=ending, where=state.theta)
+        one, other = answer.state, better.state
         ahead = other.theta - one.theta - one.omega * (other.time - one.time)
         return Standing(
             (one, other),
             max(standing.ahead, abs(ahead)),
             max(standing.faster, abs(other.omega - one.omega)),
-            _worse(*endings),
+            _worse(answer.ending, better.ending),
             one.theta,
+            edges,
         )
 
-    def _carried(self, one: _Pass, state: State, until: float) -> tuple[State, Ending]:
+    def _grid_of(self, edges: tuple[float, ...]) -> Grid:
+        """The grid with these edges, the coarsest one without."""
+        if edges and edges != self._refined[0]:
+            self._refined = edges, Grid(self._train, np.array(edges), self._coarsest.rule)
+        return self._refined[1] if edges else self._coarsest
+
+    def _carried(self, hand: Handover, state: State, until: float) -> _Carried:
         """A pass carried on to a time [s]; a crank at rest for good stays there."""
+        worst, spans = np.zeros((2, len(hand.grid.edges) - 1)), list[tuple[float, float]]()
         if state.time >= until:
-            return state, Ending.COMPLETE
+            return _Carried(state, Ending.COMPLETE, (), worst)
         if self._plan.folds_at(state.theta):
-            return state, Ending.FOLD
-        plan = replace(self._plan, until=until)
-        pieces = advance(one.reduced, state, plan, one.effort, lambda *_: False)
+            return _Carried(state, Ending.FOLD, (), worst)
+        pieces = hand.pieces(state, replace(self._plan, until=until), _ALLOWED)
         ending: Ending | None = None
         while ending is None:
             try:
-                state = next(pieces).end
+                piece = next(pieces)
             except StopIteration as stop:
                 ending = stop.value
+                continue
+            state = piece.end
+            if isinstance(piece, Window):
+                spans.append((piece.begin.time, state.time))
+                if not hand.grid.checks:
+                    piece.errors.raised(worst, piece.strip.cell)
         if ending is Ending.REST or (ending in AT_REST and state.omega == 0.0):
-            return state._replace(time=until, omega=0.0), ending
-        if ending is Ending.COMPLETE and state.time < until:
+            state = state._replace(time=until, omega=0.0)
+        elif ending is Ending.COMPLETE and state.time < until:
             ending = Ending.FOLD
-        return state, Ending.LABOURS if ending is Ending.COSTLY else ending
+        ending = Ending.LABOURS if ending is Ending.COSTLY else ending
+        return _Carried(state, ending, tuple(spans), worst)
 
     def moving(self, standing: Standing) -> Moving:
         """The motion of the answer, with the most that the passes have differed by."""
@@ -117,7 +142,7 @@ class Free:
 
     def _acceleration(self, state: State) -> float:
         """With which the crank sets out from a state [rad/s2]."""
-        reduced = self._passes[0].reduced
+        reduced = self._reduced[0]
         scale = reduced.torque_scale + abs(state.mode.held)
         equation = enter(reduced, self._known(state), scale)
         if isinstance(equation, Ending) or equation.holds:
@@ -127,7 +152,7 @@ class Free:
 
     def said(self, standing: Standing) -> tuple[int, str]:
         """Status and sentence of the last step."""
-        return said(standing, self._allowed)
+        return said(standing, _ALLOWED)
 
     def assembled(self, standing: Standing) -> Assembled:
         """Every variable of the answer, beside a motion that is as far from it as the passes have
@@ -144,7 +169,7 @@ class Free:
         return replace(found, errors=errors)
 
     def _sample(self, train: CrankTrain, state: State) -> Samples:
-        over_angle = self._passes[0].reduced.at(state.mode).over_angle
+        over_angle = self._reduced[0].at(state.mode).over_angle
         of_angle = float(over_angle(state.theta)) if over_angle is not None else 0.0
         found = first_sample(train, self._known(state), of_angle)
         return replace(found, time=np.array([state.time]))

@@ -20,6 +20,7 @@ class Standing(NamedTuple):
 
     states : of the answer, and where there is one of the better pass
     ahead [rad], faster [rad/s] : the most by which the passes have differed so far, at equal time
+    edges [rad] : of the crank angle's cells, where steps so far needed finer ones than at first
     ending : of the last step; COMPLETE where it came to its time. A broken one was not taken
     where [rad] : crank angle at which it ended, or broke
     """
@@ -29,6 +30,7 @@ class Standing(NamedTuple):
     faster: float = 0.0
     ending: Ending = Ending.COMPLETE
     where: float = math.nan
+    edges: tuple[float, ...] = ()
 
 
 class Moving(NamedTuple):

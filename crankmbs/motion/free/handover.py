@@ -1,0 +1,97 @@
+"""A free motion piece by piece: the crank angle carries it wherever the crank turns fast enough,
+time across rest and reversal. This is where the one hands over to the other.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Generator, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from crankmbs.mechanics.torque import Branch
+from crankmbs.motion.base import State
+from crankmbs.motion.crank_angle import advance as crank_angle
+from crankmbs.motion.crank_angle.grid import Grid
+from crankmbs.motion.crank_angle.window import Window
+from crankmbs.motion.ending import Ending
+from crankmbs.motion.minimal import advance as minimal
+from crankmbs.motion.minimal.reduced import Reduced
+from crankmbs.motion.minimal.stretch import Stretch
+from crankmbs.motion.plan import Plan
+
+__all__ = ["FINEST_STEP", "Handover", "Spans"]
+
+Spans = tuple[tuple[float, float], ...]
+
+_VAIN = 8  # after as many vain hand-overs the crank must turn through a period before the next
+_FAST = (2.0, 8.0)  # as many times as fast as need be either pass takes over: the better one later
+# what either pass may miss at kinks of the loads: of the local tolerance, and at most
+_KINKS, _MOST_MISSED = 0.2, (math.inf, 1e-11)
+FINEST_STEP = 1e-15
+"""What rounding leaves of a step over time."""
+
+
+@dataclass(frozen=True)
+class Handover:
+    """What carries a pass.
+
+    grid : cells of the crank angle; reduced : the crank train over time
+    local : what may be erred locally
+    by_angle : the crank angle is the variable wherever it can be; else time throughout
+    usable : spans of time [s] in which it can be; None: all
+    """
+
+    grid: Grid
+    reduced: Reduced
+    local: float
+    by_angle: bool = True
+    usable: Spans | None = None
+
+    def pieces(
+        self, state: State, plan: Plan, allowed: int
+    ) -> Generator[Window | Stretch, None, Ending]:
+        """The pieces from a state on; return how the motion ends.
+
+        allowed : evaluations over time
+        """
+        grid, period = self.grid, self.grid.train.scene.period
+        kinks = max(min(_KINKS * self.local, _MOST_MISSED[grid.checks]), FINEST_STEP)
+        tolerance, parts = max(0.01 * self.local, FINEST_STEP), 2 if grid.checks else 1
+        turned_back, vain = plan.start, 0  # hand-overs that did not carry it through a period
+
+        def is_fast(at: State, branch: Branch) -> bool:
+            swings = abs(at.theta - turned_back) < min(vain / _VAIN, 1.0) * period
+            return not swings and self._may(at) and self._is_fast(at, branch)
+
+        over_time, slow = not self.by_angle or state.omega == 0.0, False
+        while True:
+            begin = state
+            found: Iterator[Any] = crank_angle.advance(grid, state, plan, kinks)
+            if over_time:
+                effort = minimal.Effort(tolerance, parts, allowed)
+                found = minimal.advance(self.reduced, state, plan, effort, is_fast)
+            while True:
+                try:
+                    piece: Window | Stretch = next(found)
+                except StopIteration as stop:
+                    ending: Ending | None = stop.value
+                    break
+                state = piece.end
+                turned_back = state.theta if state.omega == 0.0 else turned_back
+                allowed -= piece.evaluations if over_time else 0
+                yield piece
+            if ending is not None:
+                return ending
+            vain += not over_time and slow and abs(state.theta - begin.theta) < period
+            over_time, slow = not over_time, slow or over_time
+
+    def _may(self, at: State) -> bool:
+        """Whether the crank angle may carry it here."""
+        if not self.by_angle or at.omega == 0.0:
+            return False
+        # the grid is as fine as it must be where the first pass used it, and only there
+        return self.usable is None or any(low <= at.time < high for low, high in self.usable)
+
+    def _is_fast(self, at: State, branch: Branch) -> bool:
+        return crank_angle.is_fast(self.grid, at, branch, _FAST[self.usable is not None])
