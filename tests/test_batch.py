@@ -1,6 +1,5 @@
 """Scenes solved together have what each of them has alone, within the errors of both."""
 
-import re
 from dataclasses import replace
 
 import numpy as np
@@ -8,13 +7,10 @@ import pytest
 from beside_alone import assert_agree, by_hand
 
 from crankmbs import load_scene, simulate
-from crankmbs.batch import courses, machine, means, peaks, periodic, settled, straight
-from crankmbs.batch.group import Cases
 from crankmbs.batch.machine import machine_of
 from crankmbs.batch.rows import rows_of
 from crankmbs.batch.serves import loads_of
 from crankmbs.batch.solve import solved_together
-from crankmbs.compare import QUANTITIES
 from crankmbs.scene.loads import Constant, Quadratic, SpeedTable, Viscous
 from crankmbs.scene.parts import Cylinder, Friction
 from crankmbs.scene.tables import Table
@@ -99,10 +95,10 @@ def test_more_stages_are_taken_where_fewer_err_too_much():
         next(solved_together([settling("yi_diesel_free", run__rtol=rtol)]))
         for rtol in (1e-6, 1e-10)
     )
-    count = [len(one.machine.answer.rule[2]) for one in (rough, fine)]
+    count = [len(one.machine.answer.rule.nodes) for one in (rough, fine)]
     assert count[0] < count[1]
-    assert rough.relative[0] <= 1e-6
-    assert fine.relative[0] <= 1e-10
+    assert rough.numbers["relative"][0] <= 1e-6
+    assert fine.numbers["relative"][0] <= 1e-10
 
 
 def test_none_is_better_than_one_that_errs_more_than_it_may():
@@ -185,21 +181,33 @@ def test_a_load_that_stalls_the_crank_says_so_alone():
 
 
 def test_in_an_even_engine_the_other_cylinders_are_as_the_first():
-    assert machine_of(SHIPPED[1]).alike == (0, 0, 0, 0)
+    assert machine_of(SHIPPED[1]).shares == 4
     weighed = settling("yi_diesel_free", gravity={"acceleration": 9.81, "angle": 0.5})
-    assert machine_of(weighed).alike == (0, 1, 2, 3)
-    (rows,), (alone, _) = rows_of([weighed]), by_hand(weighed)
+    pulled = settling("yi_diesel_free", crank__mass=5.0, crank__center_of_mass=0.01)
+    for scene in (weighed, pulled):
+        assert machine_of(scene).shares == 1
+        (rows,), (alone, _) = rows_of([scene]), by_hand(scene)
+        assert_agree(rows, 0, alone)
+
+
+def test_in_an_uneven_engine_every_cylinder_is_by_itself():
+    uneven = tuple(Cylinder(phase=f"{phase} deg") for phase in (0, 180, 340, 540))
+    scene = settling("yi_diesel_free", layout={"cylinders": uneven})
+    assert machine_of(scene).shares == 1
+    (rows,), (alone, _) = rows_of([scene]), by_hand(scene)
     assert_agree(rows, 0, alone)
 
 
-@pytest.mark.parametrize(("speed", "drive"), [(300.0, 8.0), (-300.0, -72.0)])
-def test_in_an_even_star_every_cylinder_has_its_bank_and_its_turn(speed, drive):
+@pytest.mark.parametrize(
+    ("speed", "drive", "center"), [(300.0, 8.0, 0.01), (-300.0, -72.0, 0.01), (300.0, 8.0, 0.0)]
+)
+def test_in_an_even_star_every_cylinder_has_its_bank_and_its_turn(speed, drive, center):
     star = tuple(Cylinder(phase=f"{240 * k} deg", bank=f"{120 * k} deg") for k in range(3))
     loads = Constant(torque=drive), Quadratic(coefficient=4e-4)
     scene = settling("propeller", layout={"cylinders": star}, start__angle="217 deg")
-    scene = scene.with_(start__speed=speed, crank__center_of_mass=0.01)
+    scene = scene.with_(start__speed=speed, crank__center_of_mass=center)
     scene = replace(scene, torque=loads, gravity=None)
-    assert machine_of(scene).alike == (0, 0, 0)
+    assert machine_of(scene).shares == 1
     (rows,), (alone, _) = rows_of([scene]), by_hand(scene)
     assert_agree(rows, 0, alone)
 
@@ -213,55 +221,29 @@ def test_with_another_shape_in_every_case_each_is_as_alone():
         assert_agree(rows, 0, by_hand(scene)[0])
 
 
-def test_its_loops_are_the_same_compiled_and_plain(monkeypatch):
-    scene = settling("propeller", run__rtol=1e-5)
-    scene = replace(scene, torque=(*scene.torque, Viscous(coefficient=1e-3)))
-    (compiled,) = solved_together([scene])
-    kernels = {
-        (of, name): one
-        for of in (courses, means, peaks, periodic, straight)
-        for name, one in vars(of).items()
-        if hasattr(one, "py_func")
-    }
-    for (of, name), one in kernels.items():
-        monkeypatch.setattr(of, name, one.py_func)
-    (plain,) = solved_together([scene])
-    np.testing.assert_allclose(plain.answer, compiled.answer, rtol=1e-7, atol=1e-9)
-    signatures = str([one.signatures for one in kernels.values()])
-    assert set(re.findall(r"\b(\w+)\(", signatures)) <= {"Array", "Tuple", "UniTuple", "array"}
-    assert all(one.targetoptions["nogil"] for one in kernels.values())
-
-
 def test_beside_a_case_without_a_motion_it_is_as_alone():
-    """What is of the angle alone is sought in one case, which must have a motion."""
     stalls = replace(SHIPPED[0], torque=(*SHIPPED[0].torque, Constant(torque=-900.0)))
-    both = [stalls, SHIPPED[0]]
-    cases = Cases(None, both, np.array([loads_of(one) for one in both]), np.full(2, 1e-9))
-    group = settled.solved(machine_of(SHIPPED[0]), np.arange(2), cases)
-    assert np.isnan(group.answer[0, 2:]).all()
-    (alone,) = solved_together([SHIPPED[0]])
-    np.testing.assert_array_equal(group.answer[1], alone.answer[0])
+    (rows,), (alone,) = rows_of([stalls, SHIPPED[0]]), rows_of([SHIPPED[0]])
+    assert rows.which.tolist() == [1]
+    for name, values in alone.columns.items():
+        np.testing.assert_array_equal(rows.columns[name], values)
+
+
+def test_a_viscous_load_is_as_alone_beside_others():
+    several = [
+        replace(SHIPPED[0], torque=(*SHIPPED[0].torque, Viscous(coefficient=drag)))
+        for drag in (0.0, 1e-3, 0.02)
+    ]
+    (rows,) = rows_of(several)
+    for number, scene in enumerate(several):
+        assert_agree(rows, number, by_hand(scene)[0])
 
 
 def test_a_force_that_passes_zero_has_its_mean():
     """By other nodes it is the same, and by a fine sum."""
     (group,) = solved_together([SHIPPED[0]])
-    side = slice(machine.OWN + 14, machine.OWN + 15)
     result = simulate(SHIPPED[0].with_(run__every="0.02 deg"), rtol=1e-12)
     time, force = result.data["time"].values, np.abs(result.data["side_force"].values[:, 0])
     fine = np.trapezoid(force, time) / (time[-1] - time[0])
-    assert abs(fine / group.answer[0, side] - 1.0) < 2e-7
-    assert group.error[0, side] < 1e-11 * fine
-
-
-def test_what_is_the_same_is_sought_once():
-    """Where lectures say the same, and what is of the angle alone."""
-    for scene in SHIPPED[:2]:
-        (group,) = solved_together([scene])
-        twin, steady = group.machine.answer.parts[4]
-        names = [name for name, is_so in zip(QUANTITIES, steady, strict=True) if is_so]
-        assert names == ["piston displacement", "gas torque"]
-        assert (twin[:, 0] == 0).all()
-        assert (twin[:, 1] == 1).all()  # another than the quantity itself
-        accelerates = list(QUANTITIES).index("piston acceleration")
-        assert twin[accelerates].tolist() == [0, 1, 2, 2]
+    assert abs(fine / group.numbers["means"][0, -1] - 1.0) < 2e-7
+    assert group.errors["means"][0, -1] < 1e-11 * fine

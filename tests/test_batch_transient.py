@@ -1,7 +1,6 @@
 """Free runs solved together have what each of them has alone, within the errors of both."""
 
 import math
-import re
 from dataclasses import replace
 
 import numpy as np
@@ -9,9 +8,8 @@ import pytest
 from beside_alone import assert_agree, by_hand
 
 from crankmbs import load_scene, simulate
-from crankmbs.batch import transient
-from crankmbs.batch.lanes import LANES, laid, taken
 from crankmbs.batch.machine import machine_of
+from crankmbs.batch.motion import Cases, over_periods, to_times
 from crankmbs.batch.rows import rows_of
 from crankmbs.batch.serves import loads_of
 from crankmbs.batch.solve import solved_together
@@ -91,13 +89,15 @@ def test_random_runs_agree(seed):
 @pytest.mark.parametrize("name", ["an angle", "viscous in time", "backwards"])
 def test_what_the_torques_do_is_what_the_crank_gains(name):
     (group,) = solved_together([SERVED[name]])
-    scene, (begun, gained) = SERVED[name], group.answer[0, :2]
+    scene, of = SERVED[name], {key: values[0] for key, values in group.numbers.items()}
     assert scene.start is not None
     sense, mass = math.copysign(1.0, scene.start.speed), scene.crank.moment_of_inertia
-    total = float(inertia_alone(scene, group.begin[0]))
-    before = sense * math.sqrt(2.0 * begun / total)
-    work = sense * scene.period * float(group.answer[0, 7:9].sum())
-    assert work == pytest.approx(0.5 * mass * gained * (2.0 * before + gained), abs=1e-9 * begun)
+    end = simulate(scene, rtol=1e-12).data["crank_angle"].values[-1]
+    total = float(inertia_alone(scene, end - sense * scene.period))
+    before = sense * math.sqrt(2.0 * of["energy"] / total)
+    work = sense * scene.period * float(of["rods"] + of["outside"])
+    gained = 0.5 * mass * of["gained"] * (2.0 * before + of["gained"])
+    assert work == pytest.approx(gained, abs=1e-9 * of["energy"])
 
 
 def test_many_periods_state_what_rounding_makes_of_them():
@@ -113,9 +113,9 @@ def test_more_stages_are_taken_where_fewer_err_too_much():
         next(solved_together([running("yi_diesel_free", "3 cycles", run__rtol=rtol)]))
         for rtol in (1e-6, 1e-10)
     )
-    assert len(rough.machine.answer.rule[2]) < len(fine.machine.answer.rule[2])
-    assert rough.relative[0] <= 1e-6
-    assert fine.relative[0] <= 1e-10
+    assert len(rough.machine.answer.rule.nodes) < len(fine.machine.answer.rule.nodes)
+    assert rough.numbers["relative"][0] <= 1e-6
+    assert fine.numbers["relative"][0] <= 1e-10
 
 
 @pytest.mark.parametrize("until", ["5 cycles", "0.3 s"])
@@ -127,7 +127,7 @@ def test_alone_and_among_others_it_is_the_same(until):
         for speed in np.linspace(280.0, 340.0, 22).tolist()
     ]
     (rows,) = rows_of(several)
-    assert rows.which.tolist() == list(range(2 * LANES + 2))  # the first one alone, then the rest
+    assert rows.which.tolist() == list(range(len(several)))
     for number, scene in enumerate(several):
         (alone,) = rows_of([scene])
         for name, values in alone.columns.items():
@@ -183,48 +183,52 @@ def test_a_run_that_comes_to_rest_or_turns_back_is_followed_alone(until, load):
     assert np.min(result.data["crank_speed"].values) < 100.0
 
 
-@pytest.mark.parametrize("name", ["a time", "viscous", "viscous in time", "an angle"])
-def test_its_loops_are_the_same_compiled_and_plain(name, monkeypatch):
-    scene = SERVED[name].with_(run__rtol=1e-5)
-    (compiled,) = solved_together([scene])
-    kernels = {n: f for n, f in vars(transient).items() if hasattr(f, "py_func")}
-    for kernel, one in kernels.items():
-        monkeypatch.setattr(transient, kernel, one.py_func)
-    (plain,) = solved_together([scene])
-    np.testing.assert_allclose(plain.answer, compiled.answer, rtol=1e-7, atol=1e-9)
-    signatures = str([one.signatures for one in kernels.values()])
-    assert set(re.findall(r"\b(\w+)\(", signatures)) <= {"Array", "Tuple", "UniTuple", "array"}
-    assert all(one.targetoptions["nogil"] for one in kernels.values())
-
-
-def carried(given, *, in_time):
-    """What `carry` fills for cases of the propeller's machine, one after the other."""
-    machine = machine_of(PROPELLER)
-    (width, inertia, _, torque), cases = machine.answer.of_angle, laid(np.asarray(given))
-    groups, _, lanes = cases.shape
-    energy = np.empty((groups, *inertia.shape, lanes))
-    ends, seen = np.empty((groups, len(width), lanes)), np.empty((groups, 4, lanes))
-    about, shared = (machine.sense, 0, 0.0, in_time), (width, inertia, torque)
-    transient.carry(about, machine.answer.rule, shared, cases, (energy, ends, seen))
-    return taken(ends, len(given)), taken(seen, len(given))
+def over(case, periods, passes=over_periods):
+    """The course of a case of the propeller's machine: inertia of the crank, c0, c1, c2 and the
+    energy at the start."""
+    machine, (*own, energy) = machine_of(PROPELLER), case
+    cases = Cases(*np.array([[*own, 300.0, periods, 1e-9]]).T)
+    start = np.array([energy])
+    if passes is to_times:
+        return to_times(machine.answer, cases, machine.sense, start, 0.0)[1]
+    return over_periods(machine.answer, cases, machine.sense, (0, start), 0.0)
 
 
 def test_leaping_over_periods_is_passing_them():
-    own = [0.02, 1.0, 0.0, -1e-4, 2500.0]
-    ends, seen = carried([[*own, 9.0]], in_time=False)
-    viscous, then = carried([[*own[:2], -1e-15, *own[3:], 9.0]], in_time=False)
-    np.testing.assert_allclose(ends, viscous, rtol=1e-12)
-    np.testing.assert_allclose(seen[:, [0, 3]], then[:, [0, 3]], rtol=1e-12)
+    for c2 in (-1e-4, 0.0):
+        plain = over([0.02, 1.0, 0.0, c2, 2500.0], 9)
+        viscous = over([0.02, 1.0, -1e-15, c2, 2500.0], 9)  # passes period after period
+        for one, other in zip(plain, viscous, strict=True):
+            np.testing.assert_allclose(one, other, rtol=1e-12)
 
 
 def test_the_least_energy_is_that_of_all_periods():
-    falling = [0.02, 0.0, 0.0, -1e-3, 2500.0, 6.0]
-    rising = [0.02, 60.0, 0.0, 0.0, 1200.0, 6.0]
+    falling = [0.02, 0.0, 0.0, -1e-3, 2500.0]
+    rising = [0.02, 60.0, 0.0, 0.0, 1200.0]
     for case, last in ((falling, True), (rising, False)):
-        _, whole = carried([case], in_time=False)
-        _, one = carried([[*case[:5], 1.0]], in_time=False)
-        assert (whole[0, 3] < one[0, 3]) == last
-        assert whole[0, 3] <= one[0, 3]
+        whole, one = (over(case, periods).least[0] for periods in (6, 1))
+        assert (whole < one) == last
+        assert whole <= one
+
+
+def test_the_least_energy_in_time_is_that_of_all_periods():
+    falling = [0.02, 0.0, 0.0, -3e-4, 2500.0]
+    short, long = (over(falling, time, to_times).least[0] for time in (0.06, 0.3))
+    assert long < short < 2500.0
+
+
+def test_a_run_ends_where_its_time_is_over():
+    """Its last cell, and the first one, are parts of one whose widths add up to it."""
+    scene = SERVED["a time"]
+    (group,) = solved_together([scene])
+    result = simulate(scene, rtol=1e-12)
+    speed = result.data["crank_speed"].values[-1]
+    gained = result.measures().speed_gain
+    assert scene.end == (result.data["time"].values[-1], True)
+    assert (
+        abs(group.numbers["gained"][0] - gained.value) <= gained.error + group.errors["gained"][0]
+    )
+    assert group.numbers["slow"][0] <= abs(speed) <= group.numbers["fast"][0]
 
 
 def test_a_peak_beside_the_end_of_a_cell_that_is_less_exact_is_within_the_errors():

@@ -58,22 +58,12 @@ def test_threads_write_the_bytes_of_one(alone, tmp_path):
     assert files(tmp_path / "two") == files(alone)
 
 
-@pytest.mark.parametrize(
-    ("vary", "by_threads"), [({}, True), ({"rod.length": "150 mm, 160 mm"}, False)]
-)
-def test_threads_compute_where_all_cases_are_solved_together(
-    monkeypatch, tmp_path, vary, by_threads
-):
+def test_cases_solved_together_are_the_same_by_two_workers(tmp_path):
     scene = load_scene("propeller").with_(run__until="settled")
-    vary = {"crank.inertia": "0.1..0.5 kg m^2:36", **vary}
-    monkeypatch.setattr(workers, "_Processes", None)
-    if by_threads:
-        sweep(scene, vary, out=tmp_path / "two", executor=2)
-        sweep(scene, vary, out=tmp_path / "one", executor=1)
-        assert files(tmp_path / "two") == files(tmp_path / "one")
-    else:
-        with pytest.raises(TypeError):
-            sweep(scene, vary, executor=2)
+    vary = {"crank.inertia": "0.1..0.5 kg m^2:36"}
+    sweep(scene, vary, out=tmp_path / "two", executor=2)
+    sweep(scene, vary, out=tmp_path / "one", executor=1)
+    assert files(tmp_path / "two") == files(tmp_path / "one")
 
 
 class Lazy(ThreadPoolExecutor):

@@ -21,11 +21,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crankmbs import Sample, Scene, load_scene, simulate, sweep
-from crankmbs.batch.lanes import LANES, laid, taken
-from crankmbs.batch.periodic import find_periodic
+from crankmbs.batch.machine import Pass
+from crankmbs.batch.motion import Cases, settled
 from crankmbs.batch.rows import rows_of
 from crankmbs.batch.solve import solved_together
-from crankmbs.batch.tables import Pass
 from crankmbs.scene.loads import Quadratic
 from crankmbs.sweep.columns import row_of
 from crankmbs.sweep.scenes import scene_of
@@ -89,25 +88,20 @@ def _motion_alone(scene: Scene) -> None:
     """The periodic motion without measures over the limit in C."""
     (group,) = solved_together([scene])
     tables, sense = group.machine.answer, group.machine.sense
-    width, inertia, _, torque = tables.of_angle
-    by = np.linspace(1.0, _LEAST, 8 * LANES)
+    by = np.linspace(1.0, _LEAST, _BLOCK)
     of_crank, load = _own(scene)
-    inertias, squares = of_crank * by, -load * by[::-1]
-    none = np.zeros_like(by)
+    inertias, squares, none = of_crank * by, -load * by[::-1], np.zeros_like(by)
     assert scene.start is not None
     speeds = np.full_like(by, scene.start.speed)
-    cases = laid(np.stack([inertias, none, none, squares, speeds, none], axis=1))
-    shape = len(cases), *inertia.shape, LANES
-    found = np.empty(shape), np.empty((*shape[:2], LANES)), np.empty((shape[0], 2, LANES))
+    cases = Cases(inertias, none, none, squares, speeds, none, none)
     try:
         solve, answer = _in_c(tables, np.stack([inertias, none, squares], axis=1))
     except NotServed as absent:
         print(f"  no limit in C: {absent}")
         return
-    shared = width, inertia, torque
-    own = _seconds(lambda: find_periodic(sense, tables.rule, shared, cases, found))
+    own = _seconds(lambda: settled(tables, cases, sense, 0.0))
     least = _seconds(solve)
-    apart = np.max(np.abs(taken(found[2], len(by))[:, 0] / answer - 1.0))
+    apart = np.max(np.abs(settled(tables, cases, sense, 0.0).edges[:, 0] / answer - 1.0))
     print(
         f"  its periodic motion {1e6 * own / len(by):.1f} us, in C {1e6 * least / len(by):.1f} us: "
         f"{least / own:.2f} of the limit's speed; energies {apart:.0e} apart"
@@ -116,12 +110,12 @@ def _motion_alone(scene: Scene) -> None:
 
 def _in_c(tables: Pass, given: Array) -> tuple[Callable[[], object], Array]:
     """A call of settled.c for cases (inertia, c0, c2), and its answer: energies [J]."""
-    width, inertia, _, torque = tables.of_angle
-    (m, s), (matrix, weights, _, _) = inertia.shape, tables.rule
+    (m, s), rule = tables.inertia.shape, tables.rule
     answer = np.empty(len(given))
-    room = np.empty(2 * m * (s + 1) * LANES)
-    rule = np.concatenate([matrix.ravel(), weights])
-    arrays = [np.ascontiguousarray(a) for a in (rule, width, inertia, torque, given, room, answer)]
+    room = np.empty(2 * m * (s + 1) * limit.LANES)
+    constants = np.concatenate([rule.matrix.ravel(), rule.weights])
+    every = constants, tables.width, tables.inertia, tables.torque, given, room, answer
+    arrays = [np.ascontiguousarray(a) for a in every]
     sizes = (ctypes.c_int(size) for size in (len(given), m, s))
     held = [*sizes, *(array.ctypes.data_as(ctypes.c_void_p) for array in arrays)]
     function = limit.library(_LIMIT).settle

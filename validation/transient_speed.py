@@ -16,11 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crankmbs import Scene, simulate
-from crankmbs.batch.lanes import LANES, laid, taken
-from crankmbs.batch.machine import machine_of
+from crankmbs.batch.machine import Pass, machine_of
+from crankmbs.batch.motion import Cases, to_times
 from crankmbs.batch.rows import rows_of
-from crankmbs.batch.tables import Pass
-from crankmbs.batch.transient import carry
 from crankmbs.scene.loads import Quadratic
 from crankmbs.sweep.columns import row_of
 from crankmbs.sweep.scenes import scene_of
@@ -70,25 +68,23 @@ def _over_limit(scene: Scene, periods: int, alike: bool, seconds: Seconds) -> No
     machine, load = machine_of(scene), scene.torque[0]
     assert scene.start is not None
     assert isinstance(load, Quadratic)
-    tables, by = machine.answer, np.linspace(1.0, 1.5, 8 * LANES)
+    tables, by = machine.answer, np.linspace(1.0, 1.5, _BLOCK)
     factor = np.ones_like(by) if alike else by
     inertias, squares = scene.crank.moment_of_inertia * factor, -load.coefficient * factor
-    starts = 0.5 * (inertias + machine.inertias[0]) * (scene.start.speed * by) ** 2
-    given, none = np.stack([inertias, 0.0 * by, squares], axis=1), np.zeros_like(by)
+    speeds, none = scene.start.speed * by, 0.0 * by
+    starts = 0.5 * (inertias + machine.at_start) * speeds**2
+    given = np.stack([inertias, none, squares], axis=1)
     try:
         solve, answer = _in_c(tables, (given, starts), periods, alike)
     except NotServed as absent:
         print(f"  no limit in C: {absent}")
         return
     least = seconds(solve)
-    width, inertia, _, torque = tables.of_angle
     ends = answer[:, 1] * (1.0 - _HAIR)
-    cases = laid(np.stack([inertias, none, none, squares, starts, ends], axis=1))
-    shape = len(cases), *inertia.shape, LANES
-    found = np.empty(shape), np.empty((*shape[:2], LANES)), np.empty((shape[0], 4, LANES))
-    about, shared = (machine.sense, 0, 0.0, True), (width, inertia, torque)
-    own = seconds(lambda: carry(about, tables.rule, shared, cases, found))
-    apart = np.max(np.abs(taken(found[1], len(by))[:, -1] / answer[:, 0] - 1.0))
+    cases = Cases(inertias, none, none, squares, speeds, ends, none)
+    own = seconds(lambda: to_times(tables, cases, machine.sense, starts, 0.0))
+    _, found = to_times(tables, cases, machine.sense, starts, 0.0)
+    apart = np.max(np.abs(found.edges[:, -1] / answer[:, 0] - 1.0))
     each, what = 1e6 / (len(by) * periods), "starts" if alike else "inertia and load"
     print(
         f"  {periods} cycles, {what} differ: {own * each:.2f} us a cycle, in C "
@@ -101,11 +97,10 @@ def _in_c(
 ) -> tuple[Callable[[], object], Array]:
     """A call of transient.c for cases (inertia, c0, c2) and their energies at the start, and its
     answer: energy at the end, and duration."""
-    width, inertia, _, torque = tables.of_angle
-    (m, s), (matrix, weights, _, _) = inertia.shape, tables.rule
-    answer, room = np.empty((len(cases[1]), 2)), np.empty((3 * m * s + 2 * m) * LANES)
-    rule = np.concatenate([matrix.ravel(), weights])
-    given = rule, width, inertia, torque, *cases, room, answer
+    (m, s), rule = tables.inertia.shape, tables.rule
+    answer, room = np.empty((len(cases[1]), 2)), np.empty((3 * m * s + 2 * m) * limit.LANES)
+    constants = np.concatenate([rule.matrix.ravel(), rule.weights])
+    given = constants, tables.width, tables.inertia, tables.torque, *cases, room, answer
     arrays = [np.ascontiguousarray(array) for array in given]
     sizes = (ctypes.c_int(size) for size in (len(answer), m, s, periods))
     held = [*sizes, *(array.ctypes.data_as(ctypes.c_void_p) for array in arrays)]

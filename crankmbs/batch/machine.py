@@ -5,62 +5,131 @@ from __future__ import annotations
 
 import math
 from collections.abc import Hashable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from crankmbs.batch.curves import WIDEST
-from crankmbs.batch.tables import Pass, Period, tabulated
+from crankmbs.batch.balances import balances
+from crankmbs.batch.lectures import Cuts, Deviations, basis_at
 from crankmbs.mechanics.geometry import close_loop, dead_centres
-from crankmbs.mechanics.newton_euler import Powers, of_cylinder
+from crankmbs.mechanics.inertia import inertia_alone
 from crankmbs.mechanics.train import CrankTrain, crank_train
 from crankmbs.motion.crank_angle.grid import grid_of
 from crankmbs.numerics.arrays import Array
-from crankmbs.numerics.collocation import gauss
+from crankmbs.numerics.collocation import Rule, gauss
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.units import DEGREE
 
-__all__ = ["OWN", "Machine", "ahead_of", "key_of", "machine_of"]
+__all__ = ["Machine", "Pass", "ahead_of", "key_of", "machine_of"]
 
+_WIDEST = 12.0 * DEGREE  # of a cell
 _NARROW = 4.0 * DEGREE  # of a cell, on average
 _FEW, _MANY = (6, 5), (10, 8)  # stages of the answer's rule and of its check's
 _SLIVER = 1e-9  # rad: a start so near an edge is on it
 _SAME = 1e-12  # rad: of phases, no more than rounding
-_UNITS = Powers(*np.eye(3)[:, :, np.newaxis])
 _FOLDED = 0.05  # cosine of the rod angle
+_PINS = ("crank_pin_force", "piston_pin_force")
 
-OWN = 11
-"""Columns of a case before those of its joints, as `crankmbs.batch.walk.walk` fills them."""
+
+@dataclass(frozen=True)
+class Pass:
+    """Tables at the s nodes of a rule in the m cells of a period, or of a share of it.
+
+    width : of the cells [rad], shape (m,); at_begin : J without the crank's where they begin
+    inertia, slope, torque : J without the crank's, dJ/dtheta and the torque, shape (m, s)
+    rods : torque of all rods, shape (3, m, s)
+    forces : of the joints, the main bearing, crank pins, piston pins and side forces, which have no
+        second component, shape (joints, 2, 3, m, s)
+    works, rubbed : of the gas and of the friction on each piston there, shape (cylinders,) [J]
+    cuts : where the periods of k cases begin and end, where these are cut: all but works have an
+        axis (k,) in front
+    """
+
+    rule: Rule
+    width: Array
+    at_begin: float | Array
+    inertia: Array
+    slope: Array
+    torque: Array
+    rods: Array
+    forces: Array
+    lectures: Deviations
+    works: Array
+    rubbed: Array
+    cuts: Cuts | None = None
+
+    @property
+    def places(self) -> tuple[Array, Array]:
+        """Angles turned [rad] to where cells begin, and their widths, shape (1 or k, cells)."""
+        if self.cuts is None:
+            return (np.cumsum(self.width) - self.width)[np.newaxis], self.width[np.newaxis]
+        each, whole = np.arange(len(self.width)), self.width.copy()
+        whole[each, self.cuts.cell] += whole[:, -1]
+        starts = np.cumsum(whole, axis=1) - whole
+        starts[:, -1] = starts[each, self.cuts.cell] + self.width[each, self.cuts.cell]
+        return starts, self.width
+
+    def cut(self, cuts: Cuts) -> Pass:
+        """The tables over periods that begin and end in cells, of k cases: shape (k, ...)."""
+        (cell, place), k, nodes = cuts, len(cuts.cell), self.rule.nodes
+        ahead = basis_at(self.rule, place[:, None] * nodes)
+        behind = basis_at(self.rule, place[:, None] + (1.0 - place[:, None]) * nodes)
+
+        def cut_table(table: Array) -> Array:
+            room = np.concatenate([table, table[..., :1, :]], axis=-2)
+            every = np.repeat(room[np.newaxis], k, axis=0)
+            own = np.moveaxis(table[..., cell, :], -2, 0)
+            flat, shape = own.reshape(k, -1, len(nodes)), own.shape
+            every[np.arange(k), ..., cell, :] = np.matmul(flat, ahead.swapaxes(1, 2)).reshape(shape)
+            every[..., -1, :] = np.matmul(flat, behind.swapaxes(1, 2)).reshape(shape)
+            return every
+
+        width = np.tile(np.append(self.width, 0.0), (k, 1))
+        width[:, -1] = (1.0 - place) * self.width[cell]
+        width[np.arange(k), cell] *= place
+        at_begin = (basis_at(self.rule, place[:, None])[:, 0] * self.inertia[cell]).sum(axis=1)
+        return replace(
+            self,
+            width=width,
+            at_begin=at_begin,
+            inertia=cut_table(self.inertia),
+            slope=cut_table(self.slope),
+            torque=cut_table(self.torque),
+            rods=cut_table(self.rods),
+            forces=cut_table(self.forces),
+            cuts=cuts,
+        )
 
 
 @dataclass(frozen=True)
 class Machine:
     """What motions of a machine share.
 
-    sense : of rotation; answer, check : tables of either pass; finest : whether by the finest rules
+    scene : one of them; sense : of rotation; answer, check : tables of either pass; finest :
+        whether by the finest rules
     begin : crank angle at which the tables begin [rad]; first : number of the cell at whose
-        beginning a motion starts; inertias : J there and where the tables begin, without the
-        crank's [kg m2]
-    alike : of every cylinder the first one that has the same forces at the same cycle angles; those
-        of the others are not tabulated
+        beginning a motion starts; at_start : J there, without the crank's [kg m2]
+    shares : in how many equal shares of the period all comes again with another cylinder; the
+        tables are those of one
     displaced : of one cylinder [m3]; folds : whether a rod nearly folds onto the crank
     """
 
+    scene: Scene
     sense: float
     answer: Pass
     check: Pass
     finest: bool
     begin: float
     first: int
-    inertias: tuple[float, float]
-    alike: tuple[int, ...]
+    at_start: float
+    shares: int
     displaced: float
     folds: bool
 
     @property
-    def joints(self) -> int:
-        """How many are tabulated: the main bearing and three of each cylinder."""
-        return 1 + 3 * len(set(self.alike))
+    def in_time(self) -> bool:
+        """Whether motions end at a time."""
+        return self.scene.end[1] and not self.scene.settles
 
 
 def key_of(scene: Scene) -> Hashable:
@@ -91,60 +160,87 @@ def machine_of(scene: Scene, *, finest: bool = False) -> Machine:
     """The tables of a scene's machine, over a period from where the last one begins on, by rules
     with few nodes where its cells are narrow; or by the finest.
 
-    >>> machine_of(load_scene("yi_diesel_free").with_(run__until="settled")).alike
-    (0, 0, 0, 0)
+    >>> machine_of(load_scene("yi_diesel_free").with_(run__until="settled")).shares
+    4
     """
     assert scene.start is not None
     sense, start, ahead = math.copysign(1.0, scene.start.speed), scene.start.angle, ahead_of(scene)
     train, begin = crank_train(scene), start + sense * ahead
     starts = (train.period - ahead) % train.period
-    alike = _alike(train) if scene.settles else tuple(range(len(scene.cylinders)))
-    period = Period(begin, sense, _edges(train, begin, sense, alike, starts), alike)
+    parts, shares = _shares(train) if scene.settles else (1, 1)
+    edges = _edges(train, begin, sense, parts, starts)
+    edges = edges[: (len(edges) - 1) // shares + 1]
     shape = scene.crank.radius, scene.rod.length, scene.piston.offset
     top, bottom = close_loop(dead_centres(*shape), *shape).x
-    narrow = float(np.mean(np.diff(period.edges))) < _NARROW and not finest
+    narrow = float(np.mean(np.diff(edges))) < _NARROW and not finest
     answer, check = (
-        tabulated(one, period, gauss(stages))
+        _tabulated(one, begin, sense, gauss(stages), np.diff(edges), shares)
         for one, stages in zip((train, train.off), _FEW if narrow else _MANY, strict=True)
     )
     angles = np.linspace(0.0, 2.0 * math.pi, 361)
     folds = bool(np.min(close_loop(angles, *shape).cos_beta) < _FOLDED)
     displaced = (scene.piston.gas_area or 0.0) * float(top - bottom)
-    first = int(np.argmin(np.abs(period.edges[:-1] - starts)))
-    at_start, at_begin = _inertia(train, np.array([start, begin])).tolist()
-    about = not narrow, begin, first, (at_start, at_begin)
-    return Machine(sense, answer, check, *about, alike, displaced, folds)
+    first = int(np.argmin(np.abs(edges[:-1] - starts)))
+    at_start = float(inertia_alone(scene, start)) - scene.crank.moment_of_inertia
+    about = not narrow, begin, first, at_start, shares, displaced, folds
+    return Machine(scene, sense, answer, check, *about)
 
 
-def _inertia(train: CrankTrain, theta: Array) -> Array:
-    """J without the crank's [kg m2] at crank angles of shape (n,)."""
-    count = len(train.scene.cylinders)
-    twice = [of_cylinder(train, theta, _UNITS, k).kinetic_energy[0] for k in range(count)]
-    return np.asarray(2.0 * np.sum(twice, axis=0))
-
-
-def _edges(
-    train: CrankTrain, begin: float, sense: float, alike: tuple[int, ...], more: float
-) -> Array:
+def _edges(train: CrankTrain, begin: float, sense: float, parts: int, more: float) -> Array:
     """Of the cells, angles turned [rad] from 0 to a period, so that no knot of the pressure lies in
-    one, and ``more`` is one of them; the same in every firing's share of the period where all
-    cylinders are alike."""
-    shares = len(alike) if len(set(alike)) == 1 else 1
-    share = train.period / shares
-    edges = np.mod(sense * (grid_of(train, gauss(1), WIDEST).edges[:-1] - begin), share)
-    edges = np.unique(np.concatenate([[0.0, more], edges, [share]]))
+    one, and ``more`` is one of them; the same in equal parts of the period."""
+    part = train.period / parts
+    edges = np.mod(sense * (grid_of(train, gauss(1), _WIDEST).edges[:-1] - begin), part)
+    edges = np.unique(np.concatenate([[0.0, more], edges, [part]]))
     edges = edges[np.append(np.diff(edges) > _SLIVER, True)]
     edges[0] = 0.0
-    firings = share * np.arange(shares)
-    return np.append(np.add.outer(firings, edges[:-1]).ravel(), train.period)
+    every = np.add.outer(part * np.arange(parts), edges[:-1])
+    return np.append(every.ravel(), train.period)
 
 
-def _alike(train: CrankTrain) -> tuple[int, ...]:
-    """Where cylinders of one pressure are spread evenly over the period, and nothing has weight,
-    the speed is the same whenever one of them is where another was."""
+def _shares(train: CrankTrain) -> tuple[int, int]:
+    """In how many equal parts of the period the speed comes again, and all forces, too.
+
+    Where cylinders of one pressure are spread evenly over the period, and nothing has weight, the
+    speed is the same whenever one of them is where another was; and so is the main bearing's force
+    where they stand in line and the crank itself does not pull.
+    """
     scene, count = train.scene, len(train.scene.cylinders)
     one = train.pressure is None or len({id(each) for each in train.pressure}) == 1
     phases = np.sort([np.mod(c.phase + _SLIVER, train.period) for c in scene.cylinders])
     even = np.all(np.abs(np.diff(phases) - train.period / count) < _SAME)
-    same = one and even and scene.gravity is None
-    return (0,) * count if same else tuple(range(count))
+    if not (one and even and scene.gravity is None):
+        return 1, 1
+    in_line = len({c.bank for c in scene.cylinders}) == 1
+    pulls = scene.crank.mass * scene.crank.center_of_mass != 0.0
+    return count, count if in_line and not pulls else 1
+
+
+def _tabulated(
+    train: CrankTrain, begin: float, sense: float, rule: Rule, width: Array, shares: int
+) -> Pass:
+    """The tables at the nodes of a rule in every cell."""
+    turned = np.cumsum(width)[:, None] + width[:, None] * (rule.nodes - 1.0)
+    theta = (begin + sense * turned).ravel()
+    found = balances(train, theta, sense)
+    crank, cylinders = found.crank, found.cylinders
+    bearing = np.array([[crank[f"main_bearing_force_{axis}"] for axis in "xy"]])
+    pins = [np.stack([cylinders[f"{pin}_{axis}"] for axis in "xy"], axis=1) for pin in _PINS]
+    side = np.stack([cylinders["side_force"], 0.0 * cylinders["side_force"]], axis=1)
+    forces = np.concatenate([bearing, *pins, side])
+    rods = cylinders["journal_torque"][-1]
+    slope, torque = -2.0 * rods[0], -crank["external_torque"][2]
+    path = sense * (width[:, None] * rule.weights).ravel() * cylinders["piston_velocity"][:, 0]
+    return Pass(
+        rule,
+        width,
+        float(inertia_alone(train.scene, begin)) - train.scene.crank.moment_of_inertia,
+        found.inertia.reshape(turned.shape),
+        slope.reshape(turned.shape),
+        torque.reshape(turned.shape),
+        rods.reshape(3, *turned.shape),
+        forces.reshape(-1, 2, 3, *turned.shape),
+        Deviations(train, begin, sense, rule, np.tile(width, shares)),
+        (cylinders["gas_force"][:, 0] * path).sum(axis=1),
+        (found.friction * path).sum(axis=1),
+    )

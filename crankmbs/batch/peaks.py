@@ -1,353 +1,215 @@
-"""Where curves of motions have their peaks: loops over curves and cases, compiled by numba
-(`crankmbs.numerics.kernels`).
-
-Every curve is A u + B alpha + C + D p, where u is omega^2 - p, or omega - p, with a level p; and A,
-B, C and D are of the angle alone. Between the nodes of a cell all is the polynomial through them.
-
-No curve is made as a whole. Within a cell, and within a block of cells, what it is made of is
-straight but for a rest (`crankmbs.batch.straight`), so that the curve is, but for a rest which is
-bounded. Only where that could exceed what is found it is made, and sought in. A second pass with
-another rule looks where the first one found the peaks: what it has there tells how far they are
-off.
-"""
+"""Largest sizes of curves over the angle: the cells in which they may lie, and the tops of the
+polynomials through the nodes there."""
 
 from __future__ import annotations
 
-import math
+from collections.abc import Callable
+from functools import cache
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from crankmbs.numerics.arrays import Array
-from crankmbs.numerics.kernels import kernel
+from crankmbs.numerics.arrays import Array, Index
+from crankmbs.numerics.collocation import gauss, summed
+from crankmbs.numerics.lagrange import Lagrange
+from crankmbs.scene.units import DEGREE
 
-__all__ = ["find"]
+__all__ = [
+    "Curves",
+    "Peaks",
+    "Which",
+    "find_peaks",
+    "polynomials_of",
+    "series_of",
+    "sizes_at",
+    "sparse_nodes",
+]
 
-Curves = tuple[Array, Array, Array, Array]  # A and B, C and D; both in straight lines
-Indices = NDArray[np.intp]
+_APART = 6.0 * DEGREE  # nodes at which it is seen where a curve may be largest
+_MANY = 40_000  # sizes at once: so many stay in the processor's cache
+_FINE = 2  # places a node at which polynomials are looked at
+_STEPS = 3  # of Newton's method from the highest of them
+_ROUNDING = 64 * float(np.finfo(float).eps)
+_TAILS = (
+    2.0  # times the last Legendre coefficient: what the polynomial of a cell misses at its ends
+)
 
-_STEPS, _CLOSE, _BESIDE = 16, 1e-7, 1e-4  # towards a peak; of a cell
-_CANDIDATES = 64  # cells of a curve that are sought in; more are ripples of rounding
-_ROUNDING = 64 * 2.0**-52  # of a quantity
-_TAILS = 2.0  # times the last coefficient: what the polynomial of a cell misses at its ends
+
+class Which(NamedTuple):
+    """Some cells of some curves of some cases, shape (c,) each."""
+
+    case: Index
+    curve: Index
+    cell: Index
 
 
-@kernel
-def find(
-    sought: bool,
-    asked: Indices,
-    curves: Curves,
-    grid: tuple[Array, Indices, Array],
-    motions: tuple[Array, Array, Array],
-    found: tuple[Array, Array],
-) -> None:
-    """Fill the largest sizes of curves over the period, the angles turned to there [rad] and what
-    they may err: how much more any cell could have by the last coefficient of its polynomial. Where
-    they are is sought and filled, or given; then no error is told.
+class Curves(NamedTuple):
+    """r curves of k cases, vectors that are polynomials in each of m cells.
 
-    asked : shape (q, 8); of every curve its first row, how many rows make it up, number of C and D,
-        whether u is of omega, number of its level, of the curve before whose size has a rounding
-        that is nothing to it, of the one before that is the same, or -1, and whether it is the
-        same in every case
-    curves : as `crankmbs.batch.walk.walk` has them
-    grid : `crankmbs.batch.curves.Grid`
-    motions : omega^2, alpha and omega of the cases, shape (k, 3, n), and all three in straight
-        lines, shape (k, 9, m + b); and levels p, no numbers where there is no motion, shape (k,
-        any)
-    found : cells and places in them, 0 to 1, shape (k, q, 2); filled, sizes, angles and errors,
-        shape (k, q, 3); no numbers where there is no motion
+    shape : k and r; alike : so many in a row are of one size, whose rounding is nothing to any
+    sizes : of a case at some nodes, so near to one another that a curve goes hardly farther beyond
+        the values there than neighbours lie apart, shape (r, n)
+    cells : of these nodes, shape (n,)
+    rows : values at all nodes of some cells, shape (c, components, s)
+    always : cells of every case that are looked at besides, shape (k, any)
     """
-    (courses, tracks, levels), (places, peaks), s = motions, found, grid[2].shape[1]
-    room, first = (np.empty((7, tracks.shape[2])), np.zeros((3, s))), 0
-    while first < len(levels) and levels[first, 0] != levels[first, 0]:
-        first += 1
-    peaks[:] = math.nan
-    if sought:
-        places[:] = math.nan
-    for q in range(len(asked)):
-        row, rows, kind, linear, of_level, base, twin, steady = asked[q]
-        which = row, rows, kind, linear > 0
-        for k in range(first, len(levels)):
-            if levels[k, 0] != levels[k, 0]:
-                continue
-            like, one = (k, twin) if twin >= 0 else (first if steady > 0 else k, q)
-            if like != k or one != q:
-                for i in range(3):
-                    peaks[k, q, i] = peaks[like, one, i]
-                for i in range(2):
-                    places[k, q, i] = places[like, one, i]
-                continue
-            level, scale = levels[k, of_level], peaks[k, base, 0] if base >= 0 else 0.0
-            motion, into = (courses[k], tracks[k], level, scale), (places[k, q], peaks[k, q])
-            if sought:
-                _seek(which, curves, grid, motion, (room, into))
-            else:
-                _look(which, curves, grid, motion, (room, into))
+
+    shape: tuple[int, int]
+    alike: int
+    sizes: Callable[[slice], Array]
+    cells: Index
+    rows: Callable[[Which], Array]
+    always: Index | None = None
 
 
-@kernel
-def _look(
-    which: tuple[int, int, int, bool],
-    curves: Curves,
-    grid: tuple[Array, Indices, Array],
-    motion: tuple[Array, Array, float, float],
-    found: tuple[tuple[Array, Array], tuple[Array, Array]],
-) -> None:
-    """Do so for one curve of one case where it is given."""
-    (row, rows, kind, linear), (of, rest, _, _), (edges, _, gauss) = which, curves, grid
-    (course, _, level, _), ((_, values), ((cell, x), peak)) = motion, found
-    if cell != cell:
-        return
-    c, squares = int(cell), 0.0
-    for r in range(rows):
-        _make((c, linear, level), of[row + r], rest[row + r, kind], course, values[r])
-        above = below = 0.0
-        for j in range(gauss.shape[1]):
-            apart = x - gauss[0, j]
-            weight = gauss[1, j] / (apart if apart != 0.0 else 1e-200)
-            above, below = above + weight * values[r, j], below + weight
-        squares += (above / below) ** 2
-    peak[0], peak[2] = math.sqrt(squares), 0.0
-    peak[1] = edges[c] + x * (edges[c + 1] - edges[c])
+class Peaks(NamedTuple):
+    """Of every curve its largest size, the cell and the place in it, 0 to 1, where that is, and by
+    how much the polynomials may miss it, shape (k, r); no numbers of a curve without any."""
+
+    size: Array
+    cell: Index
+    place: Array
+    missed: Array
 
 
-@kernel
-def _seek(
-    which: tuple[int, int, int, bool],
-    curves: Curves,
-    grid: tuple[Array, Indices, Array],
-    motion: tuple[Array, Array, float, float],
-    found: tuple[tuple[Array, Array], tuple[Array, Array]],
-) -> None:
-    """Do so for one curve of one case; which : the first four of what is `asked`; motion : course
-    and track, p, and the scale whose rounding is nothing; found : room for bounds and values, and
-    what is filled."""
-    (row, rows, kind, linear), (of, rest, lines_of, lines_rest) = which, curves
-    (edges, starts, gauss), ((room, values), (there, peak)) = grid, found
-    (course, track, level, scale), bounds = motion, room[6]
-    m, s, blocks = len(edges) - 1, gauss.shape[1], len(starts) - 1
-    most_of, paired = 0.0, rows == 2
-    for j in range(s):
-        most_of += abs(gauss[3, j])
-    highest, limit, left, seen = -1.0, -1.0, -1.0, 0
-    for r in range(rows):
-        lines = (lines_of[row + r], lines_rest[row + r, kind])
-        _bound((r, linear, level), lines, track, (m, m + blocks), room)
-    _join(paired, most_of, (m, m + blocks), room)
-    best = m
-    for b in range(m + 1, m + blocks):
-        best = b if bounds[b] > bounds[best] else best
-    for step in range(m - 1, m + blocks):
-        block = best if step < m else step
-        if not bounds[block] > limit or step == best:
-            continue
-        begin, end = starts[block - m], starts[block - m + 1]
-        bounds[begin] = bounds[block]
-        if end - begin > 1:
-            for r in range(rows):
-                lines = (lines_of[row + r], lines_rest[row + r, kind])
-                _bound((r, linear, level), lines, track, (begin, end), room)
-            _join(paired, most_of, (begin, end), room)
-        top = begin
-        for c in range(begin + 1, end):
-            top = c if bounds[c] > bounds[top] else top
-        for turn in range(begin - 1, end):
-            c = top if turn < begin else turn
-            if not bounds[c] > limit or turn == top:
-                continue
-            if seen == _CANDIDATES:
-                left = max(left, bounds[c])
-                continue
-            seen += 1
-            for r in range(rows):
-                _make((c, linear, level), of[row + r], rest[row + r, kind], course, values[r])
-            for j in range(s):
-                if paired:
-                    values[2, j] = math.sqrt(values[0, j] ** 2 + values[1, j] ** 2)
-                else:
-                    values[2, j] = abs(values[0, j])
-            size, x = _top(paired, values, gauss, limit)
-            one = other = 0.0
-            for j in range(s):
-                one += gauss[1, j] * values[0, j]
-                other += gauss[1, j] * values[1, j]
-            tail = math.sqrt(one * one + (other * other if paired else 0.0))
-            left = max(left, size + _TAILS * tail)
-            if size > highest:
-                highest, limit = size, size + _ROUNDING * max(scale, size)
-                there[0], there[1] = c, x
-                peak[0], peak[1] = size, edges[c] + x * (edges[c + 1] - edges[c])
-    peak[2] = left - highest
+@cache
+def polynomials_of(stages: int) -> Lagrange:
+    """The polynomials through the nodes of a Gauss rule.
 
-
-@kernel
-def _make(
-    which: tuple[int, bool, float], of: Array, rest: Array, course: Array, values: Array
-) -> None:
-    """Fill what one component of a curve is at the nodes of a cell; which : the cell, whether u is
-    of omega, and the level p."""
-    (c, linear, level), s = which, len(values)
-    for j in range(s):
-        i = c * s + j
-        u = course[2, i] if linear else course[0, i]
-        values[j] = (
-            of[0, i] * (u - level) + of[1, i] * course[1, i] + (rest[0, i] + rest[1, i] * level)
-        )
-
-
-@kernel
-def _bound(
-    which: tuple[int, bool, float],
-    lines: tuple[Array, Array],
-    track: Array,
-    span: tuple[int, int],
-    room: Array,
-) -> None:
-    """Fill middle, rise and rest of a curve in cells, or blocks, from some number to another.
-
-    (a + a' x + da) (u + u' x + du) is straight but for a' u' x^2, which is a' u' / 4 at most, da u
-    and (a + a' x) du. which : component, whether u is of omega, and the level p
+    >>> polynomials_of(2).basis(np.array([0.5]))
+    array([[0.5, 0.5]])
     """
-    (r, linear, level), (of, rest) = which, lines
-    a0, a1, ar, b0, b1, br = of[0], of[1], of[2], of[3], of[4], of[5]
-    c0, c1, cr, d0, d1, dr = rest[0], rest[1], rest[2], rest[3], rest[4], rest[5]
-    first = 6 if linear else 0
-    u0, u1, ur, v0, v1, vr = (
-        track[first],
-        track[first + 1],
-        track[first + 2],
-        track[3],
-        track[4],
-        track[5],
-    )
-    middle, rise, rests, size = room[3 * r], room[3 * r + 1], room[3 * r + 2], abs(level)
-    for c in range(span[0], span[1]):
-        w = u0[c] - level
-        middle[c] = a0[c] * w + b0[c] * v0[c] + (c0[c] + d0[c] * level)
-        rise[c] = (
-            a0[c] * u1[c] + a1[c] * w + b0[c] * v1[c] + b1[c] * v0[c] + (c1[c] + d1[c] * level)
-        )
-        rests[c] = (
-            0.25 * (abs(a1[c] * u1[c]) + abs(b1[c] * v1[c]))
-            + ar[c] * (abs(w) + 0.5 * abs(u1[c]) + ur[c])
-            + (abs(a0[c]) + 0.5 * abs(a1[c])) * ur[c]
-            + br[c] * (abs(v0[c]) + 0.5 * abs(v1[c]) + vr[c])
-            + (abs(b0[c]) + 0.5 * abs(b1[c])) * vr[c]
-            + cr[c]
-            + dr[c] * size
-        )
+    rule = gauss(stages)
+    return Lagrange(rule.nodes, rule.weights)
 
 
-@kernel
-def _join(paired: bool, most_of: float, span: tuple[int, int], room: Array) -> None:
-    """Fill what the size of a curve does not exceed."""
-    bounds = room[6]
-    if paired:
-        for c in range(span[0], span[1]):
-            x, y, over_x, over_y = room[0, c], room[3, c], 0.5 * room[1, c], 0.5 * room[4, c]
-            before = (x - over_x) ** 2 + (y - over_y) ** 2
-            after = (x + over_x) ** 2 + (y + over_y) ** 2
-            larger = after if after > before else before
-            bounds[c] = math.sqrt(larger) + most_of * (room[2, c] + room[5, c])
-    else:
-        for c in range(span[0], span[1]):
-            bounds[c] = abs(room[0, c]) + 0.5 * abs(room[1, c]) + most_of * room[2, c]
+def sparse_nodes(width: Array, stages: int) -> Index:
+    """Numbers of nodes that lie no more than some degrees apart, one or more of each cell; width :
+    of the cells [rad], shape (m,).
 
-
-@kernel
-def _top(paired: bool, values: Array, gauss: Array, least: float) -> tuple[float, float]:
-    """The largest size of a curve in a cell and where it is, from 0 to 1; by parabolas around every
-    node, or end, from which it could rise above what is found and a number.
-
-    values : at the nodes, two components, of which the second one may be 0, and their size
+    >>> sparse_nodes(np.array([0.01, 0.2]), 5)
+    array([2, 5, 7, 9])
     """
-    first, second, size = values[0], values[1], values[2]
-    nodes, barycentric = gauss[0], gauss[1]
-    s = len(nodes)
-    highest, place = -1.0, 0.0
-    begins, ends, falls, slopes = 0.0, 0.0, 0.0, 0.0
-    for side in range(2):
-        one = other = d_one = d_other = 0.0
-        for j in range(s):
-            one += gauss[2 + side, j] * first[j]
-            d_one += gauss[4 + side, j] * first[j]
-            if paired:
-                other += gauss[2 + side, j] * second[j]
-                d_other += gauss[4 + side, j] * second[j]
-        of_end = math.sqrt(one * one + other * other) if paired else abs(one)
-        slope = (one * d_one + other * d_other) / of_end if of_end > 0.0 else 0.0
-        if side == 0:
-            begins, slopes = of_end, slope
-        else:
-            ends, falls = of_end, -slope
-        if of_end > highest:
-            highest, place = of_end, float(side)
-    for j in range(s):
-        if size[j] > highest:
-            highest, place = size[j], nodes[j]
-    for j in range(-1, s + 1):
-        if j < 0 or j == s:
-            end, of_end, fall = (0.0, begins, slopes) if j < 0 else (1.0, ends, falls)
-            node = 0 if j < 0 else s - 1
-            gap = abs(end - nodes[node])
-            if of_end <= size[node] or fall <= 0.0:
-                continue
-            far = 0.5 * fall * gap * gap / (of_end + fall * gap - size[node])
-            if of_end + fall * far <= max(least, highest):
-                continue
-            a, of_a, x, b, of_b = (
-                nodes[node],
-                size[node],
-                end + (nodes[node] - end) * far / gap,
-                end,
-                of_end,
-            )
-            of_x = -1.0
-        else:
-            a, of_a = (nodes[j - 1], size[j - 1]) if j > 0 else (0.0, begins)
-            b, of_b = (nodes[j + 1], size[j + 1]) if j + 1 < s else (1.0, ends)
-            x, of_x = nodes[j], size[j]
-            if of_a > of_x or of_b > of_x:
-                continue
-            beyond = of_x + gauss[6, j] * (of_x - of_a) + gauss[7, j] * (of_x - of_b)
-            if beyond <= max(least, highest):
-                continue
-        if a > b:
-            a, of_a, b, of_b = b, of_b, a, of_a
-        for _ in range(_STEPS):
-            u = x
-            if of_x >= 0.0:
-                left, right = (x - a) * (of_x - of_b), (x - b) * (of_x - of_a)
-                both = left - right
-                move = 0.5 * ((x - b) * right - (x - a) * left) / both if both != 0.0 else 0.0
-                u = x + move
-                if abs(move) <= _CLOSE:  # by luck, perhaps, where a neighbour is far
-                    if b - x > 2.0 * _BESIDE:
-                        u = x + _BESIDE
-                    elif x - a > 2.0 * _BESIDE:
-                        u = x - _BESIDE
-                    else:
-                        break
-                elif not a < u < b:
-                    u = 0.5 * (x + (a if x - a > b - x else b))
-            total = one = other = 0.0
-            for i in range(s):
-                apart = u - nodes[i]
-                weight = barycentric[i] / (apart if apart != 0.0 else 1e-200)
-                total += weight
-                one += weight * first[i]
-                if paired:
-                    other += weight * second[i]
-            of_u = math.sqrt(one * one + other * other) / abs(total) if paired else abs(one / total)
-            if of_x < 0.0:
-                of_x = of_u
-            elif of_u > of_x:
-                a, of_a, b, of_b = (a, of_a, x, of_x) if u < x else (x, of_x, b, of_b)
-                x, of_x = u, of_u
-            elif u < x:
-                a, of_a = u, of_u
-            else:
-                b, of_b = u, of_u
-        if of_x > highest:
-            highest, place = of_x, x
-    return highest, place
+    counts = np.ceil(width / _APART).astype(np.intp)
+    chosen = np.zeros((int(counts.max()) + 1, stages), bool)
+    chosen[:2, stages // 2] = True
+    for count in range(2, len(chosen)):
+        chosen[count, np.linspace(0, stages - 1, count + 1).astype(np.intp)] = True
+    return np.flatnonzero(chosen[counts])
+
+
+def find_peaks(curves: Curves) -> Peaks:
+    """The largest sizes."""
+    shape = curves.shape
+    which = _candidates(curves)
+    found = Peaks(*np.full((4, *shape), np.nan))._replace(cell=np.zeros(shape, np.intp))
+    if len(which.cell) == 0:
+        return found
+    rows = curves.rows(which)
+    group = which.case * shape[1] + which.curve
+    starts = np.flatnonzero(np.append(True, np.diff(group) != 0))
+    high, near, place = _coarse_tops(rows, starts, group)
+    size, place = _top(rows[near], place)
+    order = np.lexsort((size, group[near]))
+    last = order[np.append(np.diff(group[near][order]) != 0, True)[: len(order)]]
+    at = which.case[near][last], which.curve[near][last]
+    tail = np.sqrt(((rows @ gauss(rows.shape[-1]).to_legendre[-1]) ** 2).sum(axis=1))
+    high[near] = size
+    beyond = np.maximum.reduceat(high + _TAILS * tail, starts)
+    found.size[at], found.place[at] = size[last], place[last]
+    found.cell[at] = which.cell[near][last]
+    number = np.searchsorted(group[starts], group[near][last])
+    found.missed[at] = beyond[number] - size[last]
+    return found
+
+
+def sizes_at(curves: Curves, peaks: Peaks) -> Array:
+    """The sizes where the peaks of others are, shape (k, r)."""
+    found = np.full(peaks.size.shape, np.nan)
+    case, curve = np.nonzero(np.isfinite(peaks.size))
+    if len(case):
+        rows = curves.rows(Which(case, curve, peaks.cell[case, curve]))
+        series = series_of(rows.swapaxes(0, 1))[:, 0]
+        found[case, curve] = _size(summed(series, peaks.place[case, curve]))
+    return found
+
+
+def series_of(rows: Array, derivatives: int = 0) -> Array:
+    """Chebyshev series of polynomials by their values at Gauss nodes, shape (..., s), and of so
+    many derivatives: shape (s, 1 + derivatives, ...), as `crankmbs.numerics.collocation.summed`
+    takes them."""
+    s = rows.shape[-1]
+    matrix = _to_series(s)[: 1 + derivatives].reshape(-1, s)
+    found = (rows.reshape(-1, s) @ matrix.T).T.reshape(1 + derivatives, s, *rows.shape[:-1])
+    return np.ascontiguousarray(found.swapaxes(0, 1))
+
+
+@cache
+def _to_series(stages: int) -> Array:
+    """Of the polynomial and two derivatives, shape (3, s, s)."""
+    matrices = [gauss(stages).to_series[0][:stages]]
+    for _ in range(2):
+        slopes = 2.0 * np.polynomial.chebyshev.chebder(matrices[-1])
+        matrices.append(np.zeros((stages, stages)))
+        matrices[-1][: stages - 1] = slopes[: stages - 1]
+    return np.array(matrices)
+
+
+def _candidates(curves: Curves) -> Which:
+    """The cells in which a curve may be larger than at any node, case after case."""
+    (k, r), n, found = curves.shape, len(curves.cells), []
+    many = max(1, _MANY // (r * n))
+    for first in range(0, k, many):
+        sizes = curves.sizes(slice(first, first + many)).reshape(-1, n)
+        every, top = np.arange(len(sizes)), np.argmax(sizes, axis=1)
+        best = sizes[every, top]
+        nothing = _ROUNDING * np.repeat(best[:: curves.alike], curves.alike)
+        apart = np.abs(sizes[:, 1:] - sizes[:, :-1])
+        sizes[:, 1:] += apart
+        sizes[:, :-1] += apart
+        sizes[:, [0, -1]] += apart[:, [0, -1]]
+        may = sizes >= (best + nothing)[:, None]
+        may[every, top] = np.isfinite(best)
+        number, node = np.divmod(np.flatnonzero(may), n)
+        found.append((first * r + number) * (n + 1) + curves.cells[node])
+    if curves.always is not None:
+        every = (np.arange(k)[:, None, None] * r + np.arange(r)[:, None]) * (n + 1)
+        found.append((every + curves.always[:, None]).ravel())
+    code = np.sort(np.concatenate(found))
+    code = code[np.append(True, np.diff(code) != 0)[: len(code)]]
+    case, of_case = np.divmod(code, r * (n + 1))
+    return Which(case, *np.divmod(of_case, n + 1))
+
+
+def _coarse_tops(rows: Array, starts: Index, group: Index) -> tuple[Array, Index, Array]:
+    """How high polynomials are at close places; which of them may be the highest of their group,
+    and where these are so."""
+    s = rows.shape[-1]
+    fine = np.linspace(0.0, 1.0, _FINE * s + 1)
+    heights = (rows.reshape(-1, s) @ polynomials_of(s).basis(fine).T).reshape(*rows.shape[:2], -1)
+    heights = _size(heights.swapaxes(0, 1))
+    at, every = np.argmax(heights, axis=1), np.arange(len(rows))
+    high = heights[every, at]
+    lower = heights[every, np.clip([at - 1, at + 1], 0, len(fine) - 1)].min(axis=0)
+    best = np.repeat(np.maximum.reduceat(high, starts), np.diff(starts, append=len(rows)))
+    near = np.flatnonzero(2.0 * high - lower >= best)
+    return high, near, fine[at[near]]
+
+
+def _top(rows: Array, x: Array) -> tuple[Array, Array]:
+    """The size of polynomial vectors where it is largest near places, and these; shape (c,)."""
+    series, step = series_of(rows.swapaxes(0, 1), 2), 1.0 / (_FINE * rows.shape[-1])
+    low, high = np.clip(x - step, 0.0, 1.0), np.clip(x + step, 0.0, 1.0)
+    for _ in range(_STEPS):
+        value, slope, bend = summed(series, x)
+        rise, steep = (value * slope).sum(axis=0), (slope**2 + value * bend).sum(axis=0)
+        move = np.divide(rise, steep, out=np.zeros_like(rise), where=steep < 0.0)
+        x = np.clip(x - move, low, high)
+    return _size(summed(series[:, 0], x)), x
+
+
+def _size(vectors: Array) -> Array:
+    """Of vectors, shape (components, c) -> (c,)."""
+    if len(vectors) == 1:
+        return np.asarray(np.abs(vectors[0]))
+    return np.asarray(np.sqrt((vectors**2).sum(axis=0)))

@@ -8,9 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crankmbs.batch.group import ROUNDING, Group
-from crankmbs.batch.machine import OWN
-from crankmbs.batch.solve import solved_together
+from crankmbs.batch.measures import ROUNDING
+from crankmbs.batch.solve import Group, solved_together
 from crankmbs.compare import LECTURES, QUANTITIES
 from crankmbs.measures import Estimate, efficiency
 from crankmbs.mechanics.peaks import negligible
@@ -48,26 +47,27 @@ def rows_of(scenes: Sequence[Scene | None]) -> list[Rows]:
 
 
 def _rows(group: Group) -> Rows:
-    machine, scene = group.machine, group.scene
-    time, _, _, fast, slow, rods, outside = group.answer.T[2:9]
-    late, _, _, of_fast, of_slow, of_rods, of_outside = group.error.T[2:9]
-    sense, period = machine.sense, scene.settled_period
-    mean, spread = sense * period / time, (fast - slow) * time / period
+    machine, scene = group.machine, group.machine.scene
+    of, error = group.numbers, group.errors
+    time, period, late = of["duration"], scene.settled_period, error["duration"]
+    mean = machine.sense * period / time
+    spread = (of["fast"] - of["slow"]) * time / period
+    of_spread = (error["fast"] + error["slow"]) * time / period + spread * late / time
     pairs = {
         "mean_speed": (mean, np.abs(mean) * late / time),
-        "fluctuation": (spread, (of_fast + of_slow) * time / period + spread * late / time),
+        "fluctuation": (spread, of_spread),
         "speed_gain": _gained(group),
-        "crank_torque": (rods, of_rods),
-        "external_torque": (outside, of_outside),
+        "crank_torque": (of["rods"], error["rods"]),
+        "external_torque": (of["outside"], error["outside"]),
     }
-    works, apart = _works(machine.answer.works, machine.check.works)
+    works, apart = _works(machine.answer.works, machine.check.works, machine.shares)
     gained = Estimate(float(works.sum()), float(apart.sum()))
     if scene.gas is not None:
         pairs["indicated_power"] = _per_time(gained, time, late)
         each = np.tile(works / machine.displaced, (len(time), 1))
         pairs["imep"] = each, np.tile(apart / machine.displaced, (len(time), 1))
     if scene.friction is not None:
-        lost, unsure = _works(machine.answer.rubbed, machine.check.rubbed)
+        lost, unsure = _works(machine.answer.rubbed, machine.check.rubbed, machine.shares)
         taken = Estimate(-float(lost.sum()), float(unsure.sum()))
         pairs["friction_power"] = _per_time(taken, time, late)
         left = efficiency(gained, taken) or Estimate(np.nan, np.nan)
@@ -75,7 +75,7 @@ def _rows(group: Group) -> Rows:
             np.full_like(time, left.value),
             np.full_like(time, left.error),
         )
-    columns = {"relative_error": group.relative, "energy_closure": group.closure}
+    columns = {"relative_error": of["relative"], "energy_closure": of["closure"]}
     columns |= _of_joints(group, pairs)
     columns |= {name: value for name, (value, _) in pairs.items()}
     columns |= {f"{name}_error": error for name, (_, error) in pairs.items()}
@@ -85,23 +85,31 @@ def _rows(group: Group) -> Rows:
 
 def _gained(group: Group) -> tuple[Array, Array]:
     """The speed gained over the period, and its error."""
-    begin, gained, _, most, _, fast = group.answer.T[:6]
-    if group.scene.settles:
-        return np.zeros_like(gained), group.closure * most / begin * fast
-    return gained, group.error[:, 1] + _ROUNDING * fast
+    of = group.numbers
+    if group.machine.scene.settles:
+        error = of["closure"] * of["greatest"] / of["energy"] * of["fast"]
+        return np.zeros_like(error), error
+    return of["gained"], group.errors["gained"] + _ROUNDING * of["fast"]
 
 
 def _messages(group: Group) -> tuple[str, ...]:
     """How each ends."""
-    if not group.scene.settles:
+    if not group.machine.scene.settles:
         return (Ending.COMPLETE.said(0.0)[1],) * len(group.which)
-    factors = 1.0 + group.answer[:, 1]
+    factors = (1.0 + group.numbers["growth"]) ** group.machine.shares
     return tuple(f"settled: a period leaves {factor:.4g} of a disturbance" for factor in factors)
 
 
-def _works(answer: Array, check: Array) -> tuple[Array, Array]:
-    """Works on the pistons [J], and by how much they may be off."""
-    return answer, np.abs(answer - check) + ROUNDING * np.abs(answer)
+def _works(answer: Array, check: Array, shares: int) -> tuple[Array, Array]:
+    """Works on the pistons [J] in a period, and by how much they may be off."""
+    found, other = (shares * _by_turns(works, shares) for works in (answer, check))
+    return found, np.abs(found - other) + ROUNDING * np.abs(found)
+
+
+def _by_turns(values: Array, shares: int) -> Array:
+    """The mean over the whole period of what cylinders have in a share of it, shape (...,
+    cylinders): what one has there another has in the next one."""
+    return values if shares == 1 else values.mean(axis=-1, keepdims=True) + 0.0 * values
 
 
 def _per_time(work: Estimate, time: Array, late: Array) -> tuple[Array, Array]:
@@ -112,33 +120,32 @@ def _per_time(work: Estimate, time: Array, late: Array) -> tuple[Array, Array]:
 
 def _of_joints(group: Group, pairs: dict[str, tuple[Array, Array]]) -> dict[str, Array]:
     """The angles of the peaks; peaks and means go into ``pairs``."""
-    machine, scene = group.machine, group.scene
-    chosen = tuple(dict.fromkeys(machine.alike))
-    table = slice(OWN, OWN + 4 * machine.joints)
-    value, error = (
-        part[:, table].reshape(len(part), machine.joints, 4) for part in (group.answer, group.error)
-    )
-    angle = np.mod(group.begin[:, None] + machine.sense * value[:, :, 1], scene.period)
-    angles = {"main_bearing_peak_angle": angle[:, 0]}
-    for what, column in (("peak", 0), ("mean", 2)):
-        pairs[f"main_bearing_{what}"] = value[:, 0, column], error[:, 0, column]
-    phases = np.array([scene.cylinders[k].phase for k in chosen])
-    every = [chosen.index(k) for k in machine.alike]
+    machine, of, error = group.machine, group.numbers, group.errors
+    scene = machine.scene
+    turned = machine.begin + machine.sense * of["angles"]
+    angles = {"main_bearing_peak_angle": np.mod(turned[:, 0], scene.period)}
+    for what in ("peak", "mean"):
+        pairs[f"main_bearing_{what}"] = of[f"{what}s"][:, 0], error[f"{what}s"][:, 0]
+    phases = np.array([cylinder.phase for cylinder in scene.cylinders])
     for number, joint in enumerate(_JOINTS):
-        own = 1 + number * len(chosen) + np.arange(len(chosen))
-        for what, column in (("peak", 0), ("mean", 2)):
-            of_value, of_error = value[:, own, column], error[:, own, column]
-            pairs[f"{joint}_{what}"] = of_value[:, every], of_error[:, every]
-        cycle = np.mod(angle[:, own] + phases, scene.period)
-        angles[f"{joint}_peak_angle"] = cycle[:, every]
+        own = slice(1 + number * len(phases), 1 + (number + 1) * len(phases))
+        peaks, best = of["peaks"][:, own], np.tile(np.arange(len(phases)), (len(turned), 1))
+        if machine.shares > 1:
+            best[:] = np.argmax(peaks, axis=1)[:, None]
+        values = peaks, error["peaks"][:, own], np.mod(turned[:, own] + phases, scene.period)
+        peak, apart, angles[f"{joint}_peak_angle"] = (
+            np.take_along_axis(each, best, axis=1) for each in values
+        )
+        pairs[f"{joint}_peak"] = peak, apart
+        mean, unsure = (_by_turns(each["means"][:, own], machine.shares) for each in (of, error))
+        pairs[f"{joint}_mean"] = mean, unsure
     return angles
 
 
 def _of_lectures(group: Group) -> dict[str, Array]:
     """Largest deviations over the peaks; of what is zero but for rounding no number."""
-    shape = len(group.answer), len(QUANTITIES), 1 + len(LECTURES), 2
-    first = OWN + 4 * group.machine.joints
-    value, error = (part[:, first:].reshape(shape)[..., 0] for part in (group.answer, group.error))
+    shape = len(group.which), len(QUANTITIES), 1 + len(LECTURES)
+    value, error = (of["lectures"].reshape(shape) for of in (group.numbers, group.errors))
     peak, deviation = value[:, :, 0], value[:, :, 1:]
     with np.errstate(divide="ignore", invalid="ignore"):
         share = deviation / peak[:, :, None]

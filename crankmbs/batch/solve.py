@@ -5,23 +5,45 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crankmbs.batch import runs, settled
-from crankmbs.batch.group import Cases, Group, merged
 from crankmbs.batch.machine import Machine, key_of, machine_of
+from crankmbs.batch.measures import Numbers, measure
+from crankmbs.batch.motion import Cases
+from crankmbs.batch.passes import cases_of, pairs_of
 from crankmbs.batch.serves import loads_of
 from crankmbs.design.rebalance import mean_speed_of
 from crankmbs.errors import CrankmbsError
+from crankmbs.numerics.arrays import Index
 from crankmbs.scene.scene import Scene
 
-__all__ = ["mean_speed_together", "solved_together"]
+__all__ = ["Group", "mean_speed_together", "solved_together"]
 
 _KEPT = 12  # machines
+_MANY = 500_000  # forces at nodes at once: 4 MB, and several times as much beside them
+
+
+class Group(NamedTuple):
+    """Scenes of one machine that are solved together: their numbers, shape (n,), and what
+    `crankmbs.batch.measures.measure` has of them."""
+
+    machine: Machine
+    which: Index
+    numbers: Numbers
+    errors: Numbers
+
+    def part(self, kept: NDArray[np.bool_]) -> Group:
+        """Some of the scenes."""
+        numbers, errors = (
+            {name: values[kept] for name, values in of.items()}
+            for of in (self.numbers, self.errors)
+        )
+        return Group(self.machine, self.which[kept], numbers, errors)
 
 
 def solved_together(scenes: Sequence[Scene | None]) -> Iterator[Group]:
@@ -32,17 +54,14 @@ def solved_together(scenes: Sequence[Scene | None]) -> Iterator[Group]:
     >>> [group.which.tolist() for group in solved_together([scene, None, scene])]
     [[0, 2]]
     """
-    alike: dict[Hashable, list[int]] = {}
-    loads = [None if scene is None else loads_of(scene) for scene in scenes]
-    for number, (scene, load) in enumerate(zip(scenes, loads, strict=True)):
-        if scene is not None and load is not None:
-            alike.setdefault(key_of(scene), []).append(number)
-    for key, numbers in alike.items():
+    alike: dict[_Alike, list[int]] = {}
+    for number, scene in enumerate(scenes):
+        if scene is not None and loads_of(scene) is not None:
+            alike.setdefault(_Alike(key_of(scene), scene), []).append(number)
+    for of, numbers in alike.items():
         own = [scene for scene in (scenes[k] for k in numbers) if scene is not None]
-        given = np.array([loads[k] for k in numbers], dtype=np.float64)
-        asked = np.array([scene.run.rtol for scene in own])
         with suppress(CrankmbsError):  # alone the scene says what it lacks
-            yield from _of_machine(np.array(numbers), Cases(key, own, given, asked))
+            yield from _of_machine(of, np.array(numbers), cases_of(own))
 
 
 def mean_speed_together(scene: Scene) -> float:
@@ -52,7 +71,9 @@ def mean_speed_together(scene: Scene) -> float:
     333.805
     """
     found = next(solved_together([scene]), None)
-    return scene.settled_period / float(found.answer[0, 2]) if found else mean_speed_of(scene)
+    if found is None:
+        return mean_speed_of(scene)
+    return scene.settled_period / float(found.numbers["duration"][0])
 
 
 @dataclass(frozen=True)
@@ -69,26 +90,39 @@ def _machine(alike: _Alike, finest: bool) -> Machine:
     return machine_of(alike.scene, finest=finest)
 
 
-def _of_machine(which: NDArray[np.intp], cases: Cases) -> list[Group]:
-    """The scenes of one machine, by the coarsest rules that do: where these err too much the first
-    one shows it; those that err too much by the finest are left."""
-    found: list[Group] = []
-    left, finest, sure = np.arange(len(which)), False, False
-    while len(left):
-        machine = _machine(_Alike(cases.key, cases.scenes[0]), finest)
-        if machine.folds:
-            break
-        tried, rest = (left, left[:0]) if sure else (left[:1], left[1:])
-        solved = settled.solved if cases.scenes[0].settles else runs.solved
-        group = solved(machine, tried, cases.part(tried))
-        good = group.relative <= cases.asked[tried]
-        found.append(group.part(good))
-        coarse = tried[group.relative > cases.asked[tried]]  # not where there is no number
-        sure, left = bool(good.any()), np.append(coarse, rest)
-        if len(coarse):
-            if machine.finest:
-                left = rest
-            finest, sure = True, False
-    machines = {id(group.machine): group.machine for group in found}.values()
-    every = [merged([group for group in found if group.machine is one]) for one in machines]
-    return [replace(group, which=which[group.which]) for group in every if len(group.which)]
+def _of_machine(alike: _Alike, which: Index, cases: Cases) -> Iterator[Group]:
+    """The scenes of one machine, by the coarsest rules that do; those that err too much by the
+    finest are left."""
+    left = np.arange(len(which))
+    for finest in (False, True):
+        machine = _machine(alike, finest)
+        groups = [] if machine.folds else _groups(machine, left, cases)
+        left = left[:0]
+        if groups:
+            numbers, errors = (
+                _joined([one.numbers for one in groups]),
+                _joined([one.errors for one in groups]),
+            )
+            left = np.concatenate([one.which for one in groups])
+            group = Group(machine, which[left], numbers, errors)
+            good = numbers["relative"] <= cases.rtol[left]
+            if good.any():
+                yield group.part(good)
+            left = left[~good]
+        if machine.finest or len(left) == 0:
+            return
+
+
+def _joined(parts: list[Numbers]) -> Numbers:
+    return {name: np.concatenate([one[name] for one in parts]) for name in parts[0]}
+
+
+def _groups(machine: Machine, which: Index, cases: Cases) -> list[Group]:
+    """Those of some cases that have a motion, some after the others."""
+    many, found = max(1, _MANY // machine.answer.forces[:, :, 0].size), []
+    for first in range(0, len(which), many):
+        some = which[first : first + many]
+        pairs = pairs_of(machine, some, cases.part(some))
+        if len(pairs.which):
+            found.append(Group(machine, pairs.which, *measure(machine, pairs)))
+    return found

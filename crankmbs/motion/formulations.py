@@ -13,6 +13,7 @@ from typing import NamedTuple
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion import kinetostatic
 from crankmbs.motion.assemble import Assembled, assemble
+from crankmbs.motion.free import settled
 from crankmbs.scene.drives import Oscillation, Ramp, SpeedFile
 from crankmbs.scene.scene import Scene
 
@@ -87,8 +88,6 @@ def _kinetostatic(train: CrankTrain, _rtol: float, _cost_cap: float) -> Assemble
 
 
 def _free(train: CrankTrain, rtol: float, cost_cap: float, *, by_angle: bool) -> Assembled:
-    from crankmbs.motion.free import settled  # numba is loaded only when it is used
-
     return settled.run(train, rtol, cost_cap, by_angle=by_angle)
 
 

@@ -1,5 +1,4 @@
-"""Numerical methods that know nothing of cranks: roots, Gauss collocation, periods of angles,
-compiled loops.
+"""Numerical methods that know nothing of cranks: roots, Gauss collocation, periods of angles.
 
 Nothing here imports anything of crankmbs; mechanics belongs elsewhere.
 """

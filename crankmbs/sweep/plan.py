@@ -26,7 +26,6 @@ from crankmbs.sweep.told import NotTold, digest_of
 __all__ = ["Plan", "check_possible", "plan_of"]
 
 _KEPT = ("measures", "series")
-_SHARING = ("crank.inertia", "start.", "torque.", "settled_speed")  # knobs that leave the machine
 _SCENE = TypeAdapter(Scene)
 
 
@@ -47,13 +46,6 @@ class Plan:
     def _together(self) -> bool:
         """Whether cases that share a machine are solved together."""
         return not self.series and loads_of(self.scene) is not None
-
-    @property
-    def compiled(self) -> bool:
-        """Whether most of the work is done in compiled loops, which threads share: all cases are
-        solved together, of one machine."""
-        sharing = (name.startswith(_SHARING) for name in self.cases.names)
-        return self._together and all(sharing)
 
     @property
     def blocks(self) -> int:

@@ -45,8 +45,7 @@ def sweep(
     out : folder for the store in Zarr's format, written block by block; an unfinished one of the
         same scene and cases is gone on with. None keeps nothing on disk
     executor : how many workers compute; 1 the calling process alone, None that for a hundred cases,
-        else one for each processor: threads where all cases are settled motions of one machine,
-        solved together in compiled loops, else processes. Or an Executor of concurrent.futures
+        else a process for each processor. Or an Executor of concurrent.futures
     keep : "measures", or "series": every sample too
     strict : refuse scenes that cannot be before anything runs; else such a case has status 2
 
@@ -95,7 +94,7 @@ def fill(
     report(plan.cases.count - sum(len(plan.rows(number)) for number in missing))
     if missing:
         job, count = plan.job(missing[0]), len(missing)
-        with workers_of(executor, job, count, compiled=plan.compiled) as workers:
+        with workers_of(executor, job, count) as workers:
             _Filling(store, workers, report).run(missing)
     store.finish()
 

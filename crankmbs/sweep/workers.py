@@ -15,7 +15,6 @@ from concurrent.futures import (
     Executor,
     Future,
     ProcessPoolExecutor,
-    ThreadPoolExecutor,
 )
 from contextlib import contextmanager
 from typing import Protocol
@@ -25,10 +24,10 @@ from crankmbs.sweep.block import Block, Job, solved
 
 __all__ = ["Workers", "check_executor", "workers_of"]
 
-_THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS", "NUMBA_NUM_THREADS")
+_THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS")
 _LARGEST = 512
 _COUNTING = 1.0  # s between two counts of a cluster's workers
-_FEW = 32  # blocks: they are done before processes have started
+_FEW = 12  # blocks: they are done before processes have started
 _GUARD = (
     "the workers could not start: each of them imports the script that sweeps, so put its call "
     'under if __name__ == "__main__":, or give executor=1'
@@ -163,14 +162,9 @@ def check_executor(executor: object) -> None:
 
 
 @contextmanager
-def workers_of(
-    executor: Executor | int | None, job: Job, blocks: int, *, compiled: bool = False
-) -> Iterator[Workers]:
+def workers_of(executor: Executor | int | None, job: Job, blocks: int) -> Iterator[Workers]:
     """What computes so many blocks such as this one: an executor, or so many workers; 1 is the
-    calling process alone, and None takes it for few blocks, else one for each processor.
-
-    compiled : whether most of the work leaves Python, so that threads compute, which start at once;
-        else processes do
+    calling process alone, and None takes it for few blocks, else a process for each processor.
 
     Raises
     ------
@@ -186,18 +180,10 @@ def workers_of(
         _check_ready(ready)
         yield _Given(executor)
         return
-    few = executor is None and blocks < _FEW and not compiled
+    few = executor is None and blocks < _FEW
     count = 1 if few else min(executor or os.cpu_count() or 1, blocks)
     if count <= 1:
         yield _Here()
-        return
-    if compiled:
-        threads = ThreadPoolExecutor(count)
-        try:
-            threads.submit(_ready).result()
-            yield _Given(threads)
-        finally:
-            threads.shutdown(cancel_futures=True)
         return
     _check_sendable(job)
     with _one_thread_each():
@@ -226,7 +212,7 @@ def _check_sendable(job: Job) -> None:
 
 
 def _check_ready(ready: Future[None]) -> None:
-    """Wait until a worker has loaded all, compiled loops too: the others find them cached."""
+    """Wait until a worker has loaded all."""
     try:
         ready.result()
     except BrokenExecutor:

@@ -34,7 +34,7 @@ class Scratch:
 
     def __init__(self, folder: Path) -> None:
         self.folder, self._number = folder, 0
-        unread = shutil.ignore_patterns("*.pyc")  # compiled kernels come along
+        unread = shutil.ignore_patterns("*.pyc")
         for part in (ROOT / name for name in _PARTS):
             if part.is_dir():
                 shutil.copytree(part, folder / part.name, ignore=unread)
@@ -45,7 +45,7 @@ class Scratch:
     def mutated(self, mutant: Mutant) -> Iterator[None]:
         """The copy with one mutant in it; afterwards the file is as it was, its time too.
 
-        No two mutants have one time: byte code and compiled kernels know their source by it.
+        No two mutants have one time: byte code knows its source by it.
         """
         path = self.folder / mutant.file
         before, text = path.stat(), path.read_text(encoding="utf-8")

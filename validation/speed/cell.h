@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-#define LANES 32 /* as `crankmbs.batch.lanes` has it */
+#define LANES 32 /* as `validation.speed.limit` has it */
 #define MOST 10 /* stages */
 
 #define EACH for (int l = 0; l < LANES; l++)

@@ -22,9 +22,12 @@ from crankmbs.work_precision.trace import Trace
 from validation.speed.job import Job, NotServed
 from validation.speed.reduced import parameters
 
-__all__ = ["dop853_contenders", "gauss_contenders", "library"]
+__all__ = ["LANES", "dop853_contenders", "gauss_contenders", "library"]
 
 Array = NDArray[np.float64]
+
+LANES = 32
+"""Cases beside one another, as in cell.h."""
 
 _SOURCE = Path(__file__).parent / "limit.c"
 _FLAGS = ("-O3", "-march=native", "-fno-math-errno", "-shared", "-fPIC")

@@ -1,0 +1,50 @@
+"""What turns the crank and loads the joints at crank angles, in parts that belong to omega^2, alpha
+and 1, at one sense of rotation."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from crankmbs.mechanics.fired import pushed
+from crankmbs.mechanics.friction import friction_forces
+from crankmbs.mechanics.newton_euler import UNITS, of_crank, of_cylinders
+from crankmbs.mechanics.train import CrankTrain
+from crankmbs.numerics.arrays import Array
+from crankmbs.numerics.periodic import single
+
+__all__ = ["Balances", "balances"]
+
+
+class Balances(NamedTuple):
+    """At n crank angles.
+
+    inertia : J without the crank's [kg m2], shape (n,)
+    crank : variables of the engine by name, shape (3, n)
+    cylinders : of the cylinders, shape (cylinders, 3, n), or (cylinders, 1, n) of what depends on
+        the angle alone; velocities per speed
+    friction : on the pistons, shape (cylinders, n) [N], in the sense of rotation
+    """
+
+    inertia: Array
+    crank: dict[str, Array]
+    cylinders: dict[str, Array]
+    friction: Array
+
+
+def balances(train: CrankTrain, theta: Array, sense: float) -> Balances:
+    """Those at crank angles of shape (n,) [rad]; friction that does not depend on the speed is in
+    what belongs to 1."""
+    found = of_cylinders(train, theta, UNITS)
+    crank, cylinders = of_crank(train.scene, theta, UNITS, found), found.variables
+    friction = np.zeros((len(train.scene.cylinders), len(theta)))
+    if train.scene.friction is not None:
+        slides = np.full_like(theta, sense)
+        friction = friction_forces(train, theta, np.zeros_like(theta), slides=slides).T
+        for name, more in pushed(train.scene, single(theta), friction).items():
+            if name in cylinders:
+                cylinders[name][:, 2] += more
+            else:
+                crank[name][2] += more[0]
+    return Balances(found.inertia.sum(axis=0)[0], crank, cylinders, friction)

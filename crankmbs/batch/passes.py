@@ -1,0 +1,101 @@
+"""Motions of a machine in two passes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crankmbs.batch.lectures import Cuts
+from crankmbs.batch.machine import Machine, Pass, ahead_of
+from crankmbs.batch.motion import Cases, Courses, over_periods, settled, to_times
+from crankmbs.batch.serves import loads_of
+from crankmbs.numerics.arrays import Array, Index
+from crankmbs.scene.scene import Scene
+
+__all__ = ["Pairs", "cases_of", "pairs_of"]
+
+_NONE = 1e-11  # 1 - factor: nothing but rounding
+_NUDGE = 4 * float(np.finfo(float).eps)  # what a period rounds, of the greatest energy
+_CLEAR = 0.05  # rad: an energy that the largest torque does not take within it is clear of rest
+
+
+class Pairs(NamedTuple):
+    """Motions over their last periods, k cases: their numbers, shape (k,), and what they have of
+    their own; tables and courses of answer and check."""
+
+    which: Index
+    cases: Cases
+    tables: tuple[Pass, Pass]
+    courses: tuple[Courses, Courses]
+
+
+def cases_of(scenes: Sequence[Scene]) -> Cases:
+    """What scenes that are solved together have of their own.
+
+    >>> cases_of([load_scene("propeller").with_(run__until="settled")]).c2
+    array([-9.5e-05])
+    """
+    return Cases(*np.array([_case_of(scene) for scene in scenes]).T)
+
+
+def _case_of(scene: Scene) -> tuple[float, ...]:
+    loads = loads_of(scene)
+    assert loads is not None
+    assert scene.start is not None
+    end, in_time = scene.end
+    if not scene.settles and not in_time:
+        end = round((end - ahead_of(scene)) / scene.period)
+    return (scene.crank.moment_of_inertia, *loads, scene.start.speed, end, scene.run.rtol)
+
+
+def pairs_of(machine: Machine, which: Index, cases: Cases) -> Pairs:
+    """The motions of cases; without those that have none, come near rest, or of which it is not
+    sure that the run comes to them."""
+    tables = machine.answer, machine.check
+    energy = 0.5 * (cases.mass + machine.at_start) * cases.speed**2
+    with np.errstate(all="ignore"):  # where the energy is used up there are no numbers
+        cuts, (answer, check) = _courses(machine, cases, energy)
+    if machine.scene.settles:
+        needed = _CLEAR * (_most(machine) + np.abs(cases.c0))
+        slowest = np.minimum(energy - answer.edges[:, 0], 0.0) + answer.least
+        sure = (answer.growth < -_NONE) & (answer.least > needed) & (slowest > needed)
+        sure &= check.least > 0.0
+    else:
+        least = np.minimum(answer.least, check.least)
+        sure = _keeps_clear(machine, cases, least)
+    if cuts is not None and sure.any():
+        tables = tables[0].cut(cuts[0].part(sure)), tables[1].cut(cuts[1].part(sure))
+    return Pairs(which[sure], cases.part(sure), tables, (answer.part(sure), check.part(sure)))
+
+
+def _courses(
+    machine: Machine, cases: Cases, energy: Array
+) -> tuple[tuple[Cuts, Cuts] | None, tuple[Courses, Courses]]:
+    """Of answer and check, and where periods are cut that end in time; from energies at the start
+    [J]."""
+    one, other, sense = machine.answer, machine.check, machine.sense
+    if machine.in_time:
+        cuts, answer = to_times(one, cases, sense, energy, 0.0)
+        ends, check = to_times(other, cases, sense, energy, _NUDGE, cuts.cell)
+        return (cuts, ends), (answer, check)
+    if machine.scene.settles:
+        return None, (settled(one, cases, sense, 0.0), settled(other, cases, sense, _NUDGE))
+    start = machine.first, energy
+    answer = over_periods(one, cases, sense, start, 0.0)
+    return None, (answer, over_periods(other, cases, sense, start, _NUDGE))
+
+
+def _keeps_clear(machine: Machine, cases: Cases, least: Array) -> NDArray[np.bool_]:
+    """Whether runs with those least energies [J] keep clear of rest."""
+    total = cases.mass + float(machine.answer.inertia.min())
+    slow = np.sqrt(2.0 * np.maximum(np.nan_to_num(least), 0.0) / total)
+    loads = np.abs(cases.c0) + np.abs(cases.c1) * slow
+    return np.asarray(least > _CLEAR * (_most(machine) + loads))
+
+
+def _most(machine: Machine) -> float:
+    """The largest torque without loads [N m]."""
+    return float(np.max(np.abs(machine.answer.torque)))
