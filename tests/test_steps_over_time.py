@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from crankmbs import Gravity, Piston, Rod, load_scene
+from crankmbs import Cylinder, Gas, Gravity, Layout, Piston, Rod, Table, load_scene
 from crankmbs.mechanics.friction import friction_torque, rubbing
 from crankmbs.mechanics.inertia import reduce
 from crankmbs.mechanics.train import crank_train
@@ -42,6 +42,23 @@ def test_the_pieces_are_the_arrays(name, sense, checks):
     exact = inertia, slope, torque, rubbing(train, angles).drag
     for values, one in zip(np.array(found).T, exact, strict=True):
         assert np.abs(values - one).max() <= 1e-12 * np.abs(one).max()
+
+
+@pytest.mark.parametrize("apart", [1e-8, 3e-7, 3e-6])
+def test_a_narrow_piece_between_two_jumps_knows_neither(apart):
+    """Two cylinders jump one shortly after the other."""
+    table = Table((0.0, 1.0, 4.0), (2e5, -1e5, 3e5))
+    gas = Gas(pressure=table, absolute=False, stroke=2, interpolation="step")
+    layout = Layout(cylinders=(Cylinder(), Cylinder(phase=apart)))
+    piston = replace(COASTING.piston, area=1e-3)
+    train = crank_train(replace(COASTING, gas=gas, layout=layout, piston=piston))
+    piece = Reduced(train).at(begun(train)).around(1.0 - 0.5 * apart, 1.0)
+    assert piece.high - piece.low == pytest.approx(apart, rel=1e-6)
+    places = np.array([0.1, 0.5, 0.8])
+    angles = piece.low + places * apart
+    _, _, torque = reduce(train, angles)
+    found = [piece(angle - piece.middle)[2] for angle in angles.tolist()]
+    assert np.abs(found - torque).max() <= 1e-9 * np.abs(torque).max()
 
 
 def test_knots_lie_around_the_angle_on_either_side():
