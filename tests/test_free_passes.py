@@ -17,7 +17,8 @@ from crankmbs import (
     load_scene,
     simulate,
 )
-from crankmbs.motion.free import passes, travel
+from crankmbs.motion.crank_angle.grid import Grid
+from crankmbs.motion.free import handover, passes
 
 COASTING, PROPELLER = load_scene("coasting"), load_scene("propeller")
 BOTH = pytest.mark.parametrize("formulation", ["crank_angle", "minimal"])
@@ -116,9 +117,13 @@ def test_the_tolerance_is_kept(formulation, rtol):
     assert 0.0 < result.error.estimated <= rtol
 
 
+def halved(grid):
+    return grid.split(np.full(len(grid.edges) - 1, 2))
+
+
 def test_the_last_pass_gives_an_answer_where_cells_could_still_be_split(monkeypatch):
     monkeypatch.setattr(passes, "_PASSES", 3)
-    monkeypatch.setattr(passes, "_parts", lambda grid, *_: np.full(len(grid.edges) - 1, 2))
+    monkeypatch.setattr(Grid, "refined", lambda grid, *_: halved(grid))
     result = simulate(COASTING, formulation="crank_angle")
     assert result.status == 0
     assert 0.0 < result.error.estimated < 1e-9
@@ -139,13 +144,13 @@ def test_tighter_costs_more(load):
 
 def test_a_swing_is_left_to_time(monkeypatch):
     """Eight hand-overs that did not last a period are enough: from then on it must turn one."""
-    pieces, advance = [], travel.crank_angle.advance
+    pieces, advance = [], handover.crank_angle.advance
 
     def counted(*args):
         pieces.append(args)
         return advance(*args)
 
-    monkeypatch.setattr(travel.crank_angle, "advance", counted)
+    monkeypatch.setattr(handover.crank_angle, "advance", counted)
     swing = replace(COASTING, start=at_rest(1.0), run=Run(until="20 s", every="0.1 s", rtol=1e-7))
     result = simulate(swing, formulation="crank_angle")
     assert result.status == 0

@@ -5,7 +5,7 @@ time across rest and reversal. This is where the one hands over to the other.
 from __future__ import annotations
 
 import math
-from collections.abc import Generator, Iterator
+from collections.abc import Generator
 from dataclasses import dataclass
 from typing import Any
 
@@ -67,13 +67,15 @@ class Handover:
         over_time, slow = not self.by_angle or state.omega == 0.0, False
         while True:
             begin = state
-            found: Iterator[Any] = crank_angle.advance(grid, state, plan, kinks)
-            if over_time:
-                effort = minimal.Effort(tolerance, parts, allowed)
-                found = minimal.advance(self.reduced, state, plan, effort, is_fast)
+            effort = minimal.Effort(tolerance, parts, allowed)
+            found: Any = (
+                minimal.advance(self.reduced, state, plan, effort, is_fast)
+                if over_time
+                else crank_angle.advance(grid, state, plan, kinks)
+            )
             while True:
                 try:
-                    piece: Window | Stretch = next(found)
+                    piece = next(found)
                 except StopIteration as stop:
                     ending: Ending | None = stop.value
                     break
