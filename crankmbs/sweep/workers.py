@@ -1,4 +1,4 @@
-"""Where blocks are computed: here, in threads or processes, or in an executor given."""
+"""Where blocks are computed: here, in processes, or in an executor given."""
 
 from __future__ import annotations
 
