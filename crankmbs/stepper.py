@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 __all__ = ["Snapshot", "Stepper", "StepperState"]
 
 _MOST_FUEL = 100.0  # as in a scene
-_SERVES = ("auto", "minimal", "kinetostatic")
+_SERVES = ("auto", "crank_angle", "minimal", "kinetostatic")
 
 
 class StepperState(NamedTuple):
@@ -66,12 +66,13 @@ class Stepper:
 
     Between two steps a model of the user's own takes the state and sets what follows: a torque that
     is held over the step, and the share of the combustion. `crankmbs.simulate` gives the same
-    motion within both errors. Of ``[run]`` only rtol counts: a step errs so little that a run of
-    some revolutions comes near it; nothing is refined afterwards, and the errors say what has come
-    of it. They are what two passes, carried side by side, have differed by at most.
+    motion within both errors. Of ``[run]`` rtol and formulation count: a step errs so little that a
+    run of some revolutions comes near it; nothing is refined afterwards, and the errors say what
+    has come of it. They are what two passes, carried side by side, have differed by at most.
 
     A free crank is carried as in a run, over the crank angle, and over time across rest and
-    reversal; a prescribed speed is followed (`kinetostatic`). The memory does not grow.
+    reversal, where the scene names `minimal` over time throughout; a prescribed speed is followed
+    (`kinetostatic`). The memory does not grow.
 
     Raises
     ------

@@ -54,6 +54,7 @@ class Free:
         functions = any(load.parts.function is not None for load in scene.torque)
         # as in a run: twice where rounding is left, or what functions do undeclared
         self._share = 2.0 if functions or scene.run.rtol <= _NEAR else 1.0
+        self._by_angle = scene.run.formulation != "minimal"  # which is time throughout
         self._local = max(_LOCAL * scene.run.rtol, FINEST_CELL)
         self._reduced = Reduced(train), Reduced(train.off, checks=True)
         self._coarsest = first_grid(train, scene.run.rtol)
@@ -75,14 +76,15 @@ class Free:
         begins = [commanded(state, torque, share) for state in standing.states]
         grid, edges = self._grid_of(standing.edges), standing.edges
         while True:
-            answer = self._carried(Handover(grid, self._reduced[0], self._local), begins[0], until)
+            hand = Handover(grid, self._reduced[0], self._local, self._by_angle)
+            answer = self._carried(hand, begins[0], until)
             refined = grid.refined(answer.worst, self._local)
             if refined is grid:
                 break
             grid, edges = refined, tuple(refined.edges.tolist())
             self._refined = edges, grid
         local = _BETTER * self._local
-        finer = Handover(grid.finer, self._reduced[1], local, usable=answer.spans)
+        finer = Handover(grid.finer, self._reduced[1], local, self._by_angle, answer.spans)
         better = self._carried(finer, begins[1], until)
         for state, ending in (answer[:2], better[:2]):
             if ending.value[0] < 0:
