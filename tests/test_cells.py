@@ -10,12 +10,13 @@ import pytest
 from crankmbs import Quadratic, Run, Viscous, load_scene, simulate
 from crankmbs.mechanics.torque import branch_of
 from crankmbs.mechanics.train import CrankTrain, crank_train
+from crankmbs.motion.cells import Acting, Cells
 from crankmbs.motion.crank_angle.errors import Errors
 from crankmbs.motion.crank_angle.grid import grid_of
 from crankmbs.motion.crank_angle.periods import period_of
-from crankmbs.motion.crank_angle.readout import Curves
 from crankmbs.motion.crank_angle.solvers import Begin, lasting, solve
 from crankmbs.numerics.collocation import carried, chain, gauss
+from crankmbs.numerics.lagrange import ends_and_nodes
 from crankmbs.scene.loads import Constant
 
 COASTING = grid_of(CrankTrain(load_scene("coasting"), None), gauss(3))
@@ -119,25 +120,23 @@ def test_cells_last_as_long_as_their_energy():
 
 @pytest.mark.parametrize("stages", range(1, 10))
 def test_a_cell_is_read_where_it_is_asked_for(stages):
-    """Of torque x^(s-1) and slowness 2 x^(s-1) in cells of width 0.5, backwards."""
-    rule, x = gauss(stages), np.linspace(0.0, 1.0, 11)
-    power = np.tile(rule.nodes ** (stages - 1), (2, 1))
-    grown = x**stages / stages
-    edges, energy, time = (
-        np.array([0.0, 0.5, 1.0]),
-        np.array([9.0, 3.0, 3.0 - 0.5 / stages]),
-        np.array([0.0, 5.0, 5.0 + 1.0 / stages]),
-    )
-    curves = Curves.of(rule, (edges, time, energy), (-0.5 * power, power))
-    t, kinetic = curves.inside(np.ones(11, np.intp), x)
-    np.testing.assert_allclose(t, 5.0 + grown, rtol=1e-15)
-    np.testing.assert_allclose(kinetic, 3.0 - 0.5 * grown, rtol=1e-15)
-    at_angles = curves.at_angles(0.5 + 0.5 * x)
-    np.testing.assert_allclose(at_angles.time[1:], t[1:], rtol=1e-15)
-    np.testing.assert_allclose(at_angles.energy[1:], kinetic[1:], rtol=1e-15)
-    at_times = curves.at_times(t)
-    assert at_times.cell.tolist() == [0] + 10 * [1]
-    np.testing.assert_allclose(at_times.energy[1:], kinetic[1:], rtol=1e-14)
+    """Of energies and times that grow as x^s in cells of width 0.5, backwards."""
+    places, x = ends_and_nodes(stages).places, np.linspace(0.0, 1.0, 11)
+    at, grown = np.tile(places, (2, 1)), x**stages / stages
+    time = np.array([[0.0], [5.0]]) + np.array([[5.0], [1.0]]) * at**stages
+    angle = np.array([[1.0], [0.5]]) - 0.5 * at
+    energy = np.array([[9.0], [3.0]]) - np.array([[6.0], [0.5 / stages]]) * at**stages
+    cells = Cells(time, angle, angle, Acting(-1.0), np.empty((2, 0)), energy)
+    basis, second = cells.basis(x), np.ones(11, np.intp)
+    np.testing.assert_allclose(cells.values(time, second, basis), 5.0 + x**stages, rtol=1e-15)
+    np.testing.assert_allclose(cells.values(energy, second, basis), 3.0 - 0.5 * grown, rtol=1e-15)
+    k, place = cells.located(0.5 - 0.5 * x, in_time=False)
+    assert k.tolist() == [0] + 10 * [1]
+    np.testing.assert_allclose(place[1:], x[1:], rtol=1e-15)
+    k, place = cells.located(5.0 + x**stages, in_time=True)
+    first = int(np.argmax(k))  # up to it the clock has not moved but for rounding
+    assert np.max(x[:first] ** stages, initial=0.0) < 1e-13
+    np.testing.assert_allclose(place[first:] ** stages, x[first:] ** stages, rtol=1e-14, atol=5e-15)
 
 
 @pytest.mark.parametrize("cycles", [1_000, 10_000, 100_000])

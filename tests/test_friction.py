@@ -12,10 +12,10 @@ from scipy.integrate import quad
 from crankmbs import InputError, load_scene, simulate
 from crankmbs.compare import budget
 from crankmbs.measures import measure
-from crankmbs.mechanics.friction import friction_forces, friction_torque, sign_changes
+from crankmbs.mechanics.friction import friction_forces, friction_torque
 from crankmbs.mechanics.geometry import close_loop, dead_centres
 from crankmbs.mechanics.reactions import reactions
-from crankmbs.mechanics.train import crank_train
+from crankmbs.mechanics.train import crank_train, sign_changes
 from crankmbs.scene.drives import Motion, Start
 from crankmbs.scene.fuel import Fuel
 from crankmbs.scene.gas import Gas

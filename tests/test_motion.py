@@ -61,9 +61,9 @@ def test_at_its_samples_it_is_the_samples(name, formulation):
     motion, data = result.passes.answer, result.data
     states = motion.at(data["time"].values, in_time=True)
     turned = float(np.max(np.abs(data["crank_angle"].values)))
-    np.testing.assert_allclose(states.angle, data["crank_angle"], rtol=0.0, atol=1e-12 * turned)
+    np.testing.assert_allclose(states.theta, data["crank_angle"], rtol=0.0, atol=1e-12 * turned)
     fastest = float(np.max(np.abs(data["crank_speed"].values)))
-    np.testing.assert_allclose(states.speed, data["crank_speed"], rtol=0.0, atol=1e-10 * fastest)
+    np.testing.assert_allclose(states.omega, data["crank_speed"], rtol=0.0, atol=1e-10 * fastest)
 
 
 @pytest.mark.parametrize("formulation", FREE)
@@ -74,19 +74,19 @@ def test_the_acceleration_is_the_rate_of_the_speed(name, formulation):
     rng, h = np.random.default_rng(1), 1e-6
     time = rng.uniform(motion.begin + h, motion.end - h, 200)
     before, here, after = (motion.at(time + d, in_time=True) for d in (-h, 0.0, h))
-    rate = (after.speed - before.speed) / (2.0 * h)
-    off = np.abs(rate - here.acceleration) / np.max(np.abs(here.acceleration))
+    rate = (after.omega - before.omega) / (2.0 * h)
+    off = np.abs(rate - here.alpha) / np.max(np.abs(here.alpha))
     assert np.median(off) < 1e-6
     assert np.mean(off < 1e-4) > 0.9
-    pace = (after.angle - before.angle) / (2.0 * h)
-    np.testing.assert_allclose(pace, here.speed, atol=1e-6 * np.max(np.abs(here.speed)))
+    pace = (after.theta - before.theta) / (2.0 * h)
+    np.testing.assert_allclose(pace, here.omega, atol=1e-6 * np.max(np.abs(here.omega)))
 
 
 def test_by_angle_and_by_time_it_is_one_motion():
     motion = simulate(scene("propeller")).passes.answer
     angle = np.linspace(0.3, motion.turned - 0.2, 57)
     by_angle = motion.at(angle, in_time=False)
-    np.testing.assert_allclose(motion.at(by_angle.time, in_time=True).angle, angle, rtol=1e-13)
+    np.testing.assert_allclose(motion.at(by_angle.time, in_time=True).theta, angle, rtol=1e-13)
     assert np.all(np.diff(by_angle.time) > 0.0)
 
 
@@ -96,7 +96,7 @@ def test_its_end_turns_through_an_angle(turned):
     last = motion.last(turned)
     assert last.turned == pytest.approx(turned, abs=1e-12)
     assert last.end == motion.end
-    assert motion.at(np.array([last.begin]), in_time=True).angle[0] == pytest.approx(
+    assert motion.at(np.array([last.begin]), in_time=True).theta[0] == pytest.approx(
         motion.turned - turned, abs=1e-11
     )
     assert motion.last(1e3) is None
@@ -105,7 +105,7 @@ def test_its_end_turns_through_an_angle(turned):
 @pytest.mark.parametrize("small", [0.0, 1e-9, 1e-3, 0.3, 10.0])
 def test_a_magnitude_that_comes_near_zero_is_integrated_all_the_same(small):
     nodes = nodes_of(simulate(load_scene("yi_diesel")).passes.answer)
-    angle = nodes.states.angle
+    angle = nodes.samples.theta
     parts = np.array([[np.cos(3.0 * angle + 0.1), np.full_like(angle, small)]])
     (found,) = nodes.magnitude(parts)
     begin, end = float(angle.min()), float(angle.max())
@@ -115,7 +115,7 @@ def test_a_magnitude_that_comes_near_zero_is_integrated_all_the_same(small):
         quad(lambda t: math.hypot(math.cos(3.0 * t + 0.1), small), a, b, epsabs=1e-12)[0]
         for a, b in pairwise(edges)
     )
-    speed = float(nodes.states.speed[0])
+    speed = float(nodes.samples.omega[0])
     assert found == pytest.approx(exact / speed, rel=1e-9)
 
 
@@ -182,8 +182,8 @@ def test_through_samples_alone_it_states_what_they_miss(name):
     result = simulate(scene(name))
     exact, passes = result.passes.answer, through_samples(result.data, result.scene)
     time = np.linspace(exact.begin, exact.end, 777)
-    true = exact.at(time, in_time=True).angle
-    answer, *others = (m.at(time, in_time=True).angle for m in (passes.answer, *passes.checks))
+    true = exact.at(time, in_time=True).theta
+    answer, *others = (m.at(time, in_time=True).theta for m in (passes.answer, *passes.checks))
     missed = np.max(np.abs(answer - true))
     stated = passes.share * max(np.max(np.abs(other - answer)) for other in others)
     assert 0.0 < missed < stated < 1e-3

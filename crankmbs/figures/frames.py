@@ -97,6 +97,6 @@ def frames_of(result: Result, rate: float, length: float | None = None) -> Frame
     slower = float(f"{(_LASTS if length is None else length) / window.duration:.2g}")
     count = max(2, round(window.duration * slower * rate))
     at = np.arange(count, dtype=np.float64) * (window.duration / count)
-    states = result.passes.answer.at(window.begin + at, in_time=True)
+    found = result.passes.answer.at(window.begin + at, in_time=True)
     mean = window.angle / window.duration
-    return Frames(at, states.angle, states.speed, mean, slower)
+    return Frames(at, found.theta, found.omega, mean, slower)

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from crankmbs.errors import InputError, shown
 from crankmbs.motion.motion import Motion, Passes
+from crankmbs.motion.states import variables_at
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 
@@ -62,7 +63,7 @@ def read_at(result: Result, passes: Passes, wanted: Array, *, in_time: bool) -> 
     import xarray as xr
 
     def read(motion: Motion) -> dict[str, Array]:
-        return motion.at(wanted, in_time=in_time).variables(motion.train)
+        return variables_at(motion.train, motion.at(wanted, in_time=in_time))
 
     values, others = read(passes.answer), [read(motion) for motion in passes.checks]
     rows = {}

@@ -9,18 +9,18 @@ least value. A largest value is sought on the polynomial through the nodes and e
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import cache
 from typing import NamedTuple
 
 import numpy as np
 
-from crankmbs.mechanics.friction import friction_knots
 from crankmbs.mechanics.torque import knots_over_angle
-from crankmbs.mechanics.train import CrankTrain, crank_angle_knots
+from crankmbs.mechanics.train import CrankTrain, crank_angle_knots, friction_knots
+from crankmbs.motion.base import Samples
 from crankmbs.motion.cells import Cells
 from crankmbs.motion.motion import Motion
-from crankmbs.motion.states import States, inner_states, states_in
+from crankmbs.motion.states import inner_samples, samples_in, variables_at
 from crankmbs.numerics.arrays import Array, Index
 from crankmbs.numerics.lagrange import Lagrange, ends_and_nodes
 from crankmbs.numerics.once import once
@@ -89,11 +89,11 @@ class Nodes:
             cells = stretch.cut_at(marks[wide], motion.train.period)
             self._blocks.append(_Block(cells, slice(first, first + cells.time.size)))
             first += cells.time.size
-        self.states = _states(self.train, self._blocks)
-        self.variables = self.states.variables(self.train)
+        self.samples = Samples.joined([inner_samples(b.cells, self.train) for b in self._blocks])
+        self.variables = variables_at(self.train, self.samples)
         weights = [(b.cells.spent * b.cells.weights).ravel() for b in self._blocks]
         self.duration = np.concatenate(weights)
-        self.turned = self.duration * self.states.speed
+        self.turned = self.duration * self.samples.omega
 
     def integral(self, values: Array) -> Array:
         """Over time, of values at the points, shape (p, ...)."""
@@ -118,24 +118,26 @@ class Nodes:
         at_node = np.argmax(values, axis=1)
         q = np.arange(len(values))
         best = values[q, at_node]
-        angle, time = self.states.angle[at_node], self.states.time[at_node]
+        angle, time = self.samples.theta[at_node], self.samples.time[at_node]
         block, cell, near, at_end = self._sought(values)
         hair = np.where(at_end, np.where(near < 0.5, near, near - 1.0), 0.0)
         places = near + (_HAIRS[:, None] - 1.0) * hair
-        states = self._at(block, cell, places)
-        there = rows(states.variables(self.train)).reshape(len(q), len(_TO_END), len(q))[q, :, q]
+        samples = self._at(block, cell, places)
+        there = rows(variables_at(self.train, samples)).reshape(len(q), len(_TO_END), len(q))[
+            q, :, q
+        ]
         # at the end of a cell the cubic through values a hair and more inside is continued to it
         top = there[:, 0]
         higher = np.where(at_end, np.max(there @ _TO_END, axis=1), top)
         more = higher > best
-        angle_there = states.angle[q]
-        turned = np.abs(angle_there - states.angle[q + len(q)])
+        angle_there = samples.theta[q]
+        turned = np.abs(angle_there - samples.theta[q + len(q)])
         fall, flat = np.abs(top - there[:, 1]), np.zeros(len(q))
         slope = np.divide(fall, turned, out=flat, where=turned > 0.0)
         return Tops(
             np.where(more, higher, best),
             np.where(more, angle_there, angle),
-            np.where(more, states.time[q], time),
+            np.where(more, samples.time[q], time),
             np.where(at_end, slope * np.abs(angle_there), 0.0),
         )
 
@@ -152,16 +154,16 @@ class Nodes:
             ends = np.where(more, at_end, ends)
         return block, cell, place, ends
 
-    def _at(self, block: Index, cell: Index, places: Array) -> States:
+    def _at(self, block: Index, cell: Index, places: Array) -> Samples:
         """The motion at several places each of q cells, shape (places, q), place after place."""
         parts, order, count = [], [], len(places)
         for number in np.unique(block):
             which = np.flatnonzero(block == number)
             k = np.tile(cell[which], count)
             x = places[:, which].ravel()
-            parts.append(states_in(self._blocks[number].cells, self.train, k, x))
+            parts.append(samples_in(self._blocks[number].cells, self.train, k, x))
             order += [which + len(block) * n for n in range(count)]
-        return States.joined(parts, np.argsort(np.concatenate(order)))
+        return Samples.joined(parts).select(np.argsort(np.concatenate(order)))
 
 
 @once
@@ -176,10 +178,6 @@ def _marks(train: CrankTrain, widest: float) -> tuple[Array, Array]:
     marks = np.concatenate(knots)
     even = np.arange(0.0, train.period, widest)
     return marks, np.concatenate([marks, even])
-
-
-def _states(train: CrankTrain, blocks: Sequence[_Block]) -> States:
-    return States.joined([inner_states(block.cells, train) for block in blocks])
 
 
 def _highest(cells: Cells, values: Array) -> tuple[Array, Index, Array, np.ndarray]:

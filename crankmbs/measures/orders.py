@@ -132,6 +132,6 @@ class Harmonics:
         of what they are summed from."""
         nodes = nodes_of(motion, self._widest)
         values, weight = quantity(nodes.variables), nodes.turned / motion.turned
-        waves = np.exp(-1j * np.outer(self.order, nodes.states.angle)) * weight
+        waves = np.exp(-1j * np.outer(self.order, nodes.samples.theta)) * weight
         size = float(np.max(weight @ np.abs(values)))
         return np.asarray(weight @ values), np.asarray(2.0 * waves @ values), size

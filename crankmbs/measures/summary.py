@@ -15,7 +15,7 @@ from crankmbs.measures.nodes import Nodes, nodes_of
 from crankmbs.measures.span import Span, measured_span, passes_over
 from crankmbs.mechanics.geometry import close_loop, dead_centres
 from crankmbs.motion.motion import Motion
-from crankmbs.motion.states import states_in
+from crankmbs.motion.states import samples_in
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 from crankmbs.scene.scene import Scene
@@ -222,7 +222,7 @@ def _fluctuation(extremes: Array, mean: Number) -> Number:
 
 def _speed_gain(motion: Motion) -> Number:
     first, last = motion.cells[0], motion.cells[-1]
-    begin = states_in(first, motion.train, np.zeros(1, np.intp), np.zeros(1)).speed
+    begin = samples_in(first, motion.train, np.zeros(1, np.intp), np.zeros(1)).omega
     end = last.speed[-1:, -1]
     return Number(end - begin, np.maximum(np.abs(end), np.abs(begin)))
 

@@ -22,13 +22,12 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.interpolate import PPoly
 
 from crankmbs.mechanics.geometry import dead_centres
 from crankmbs.mechanics.inertia import axes_of, closed_loops, fired_torque, gas_at
-from crankmbs.mechanics.knots import KNOT, apart
-from crankmbs.mechanics.pressure import PeriodicPressure, pressures_at
-from crankmbs.mechanics.train import CrankTrain, merged_knots
+from crankmbs.mechanics.knots import KNOT
+from crankmbs.mechanics.pressure import pressures_at
+from crankmbs.mechanics.train import CrankTrain
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.periodic import period_of
 from crankmbs.scene.parts import Friction
@@ -37,11 +36,9 @@ from crankmbs.scene.scene import Scene
 __all__ = [
     "Rubbing",
     "friction_forces",
-    "friction_knots",
     "friction_torque",
     "held_share",
     "rubbing",
-    "sign_changes",
 ]
 
 _NONE = Friction()
@@ -169,61 +166,6 @@ def held_share(
     most = -friction_torque(train, theta, 0.0, 1.0, shares or None)
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(torque == 0.0, 0.0, torque / np.abs(most))
-
-
-def friction_knots(train: CrankTrain) -> Array:
-    """Crank angles in [0, period) at which friction jumps or bends: dead centres, and, without
-    fuel, where a gas force changes its sign.
-
-    Returns
-    -------
-    shape (n,) [rad], increasing; empty without friction. With fuel the latter depend on the shares:
-    `sign_changes`
-
-    >>> friction_knots(crank_train(load_scene("coasting"))).size
-    0
-    """
-    scene = train.scene
-    if scene.friction is None:
-        return np.empty(0)
-    turns = 2.0 * math.pi * np.arange(round(train.period / (2.0 * math.pi)))
-    centres = dead_centres(scene.crank.radius, scene.rod.length, scene.piston.offset)
-    angles = [np.add.outer(turns, np.array(centres) - c.phase).ravel() for c in scene.cylinders]
-    if train.combustion is None:
-        angles.append(sign_changes(train))
-    return apart(np.mod(np.concatenate(angles), train.period))
-
-
-def sign_changes(train: CrankTrain, shares: Sequence[float] = ()) -> Array:
-    """Crank angles in [0, period) at which the gas force of a cylinder changes its sign with these
-    shares of the combustion, where rings feel it: the roots of its cubics.
-
-    Returns
-    -------
-    shape (n,) [rad], increasing
-
-    >>> sign_changes(crank_train(load_scene("coasting"))).size
-    0
-    """
-    friction = train.scene.friction
-    if friction is None or friction.ring_pressure == 0.0 or train.pressure is None:
-        return np.empty(0)
-    pressures = list(train.pressure)
-    if shares and train.combustion is not None:
-        pressures = [
-            PeriodicPressure(p.knots, p.coefficients + share * more.coefficients)
-            for p, more, share in zip(pressures, train.combustion, shares, strict=True)
-        ]
-    once = {each: _roots(each) for each in dict.fromkeys(pressures)}
-    return merged_knots(train, [once[each] for each in pressures])
-
-
-def _roots(pressure: PeriodicPressure) -> Array:
-    """Cycle angles [rad] of one period at which a pressure is 0 between two knots."""
-    found = PPoly(pressure.coefficients, pressure.knots).roots(
-        discontinuity=False, extrapolate=False
-    )
-    return np.unique(found[np.isfinite(found)])
 
 
 def _towards(scene: Scene, phi: Array, sense: float) -> Array:

@@ -8,8 +8,10 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from scipy.interpolate import PPoly
 
 from crankmbs.mechanics.firing import FuelLaw
+from crankmbs.mechanics.geometry import dead_centres
 from crankmbs.mechanics.knots import KNOT, apart
 from crankmbs.mechanics.pressure import PeriodicPressure, combustion_of, motored_of, pressures_of
 from crankmbs.mechanics.speed import speed_law
@@ -17,7 +19,14 @@ from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.once import once
 from crankmbs.scene.scene import Scene
 
-__all__ = ["CrankTrain", "crank_angle_knots", "crank_train", "merged_knots"]
+__all__ = [
+    "CrankTrain",
+    "crank_angle_knots",
+    "crank_train",
+    "friction_knots",
+    "merged_knots",
+    "sign_changes",
+]
 
 
 @dataclass(frozen=True)
@@ -118,3 +127,58 @@ def _repeated(knots: Array, own: float, period: float) -> Array:
     """Knots of one period of their own, in as many as make the whole one."""
     turns = np.arange(round(period / own))
     return np.asarray((own * turns[:, None] + knots).ravel())
+
+
+def friction_knots(train: CrankTrain) -> Array:
+    """Crank angles in [0, period) at which friction jumps or bends: dead centres, and, without
+    fuel, where a gas force changes its sign.
+
+    Returns
+    -------
+    shape (n,) [rad], increasing; empty without friction. With fuel the latter depend on the shares:
+    `sign_changes`
+
+    >>> friction_knots(crank_train(load_scene("coasting"))).size
+    0
+    """
+    scene = train.scene
+    if scene.friction is None:
+        return np.empty(0)
+    turns = 2.0 * math.pi * np.arange(round(train.period / (2.0 * math.pi)))
+    centres = dead_centres(scene.crank.radius, scene.rod.length, scene.piston.offset)
+    angles = [np.add.outer(turns, np.array(centres) - c.phase).ravel() for c in scene.cylinders]
+    if train.combustion is None:
+        angles.append(sign_changes(train))
+    return apart(np.mod(np.concatenate(angles), train.period))
+
+
+def sign_changes(train: CrankTrain, shares: Sequence[float] = ()) -> Array:
+    """Crank angles in [0, period) at which the gas force of a cylinder changes its sign with these
+    shares of the combustion, where rings feel it: the roots of its cubics.
+
+    Returns
+    -------
+    shape (n,) [rad], increasing
+
+    >>> sign_changes(crank_train(load_scene("coasting"))).size
+    0
+    """
+    friction = train.scene.friction
+    if friction is None or friction.ring_pressure == 0.0 or train.pressure is None:
+        return np.empty(0)
+    pressures = list(train.pressure)
+    if shares and train.combustion is not None:
+        pressures = [
+            PeriodicPressure(p.knots, p.coefficients + share * more.coefficients)
+            for p, more, share in zip(pressures, train.combustion, shares, strict=True)
+        ]
+    once = {each: _roots(each) for each in dict.fromkeys(pressures)}
+    return merged_knots(train, [once[each] for each in pressures])
+
+
+def _roots(pressure: PeriodicPressure) -> Array:
+    """Cycle angles [rad] of one period at which a pressure is 0 between two knots."""
+    found = PPoly(pressure.coefficients, pressure.knots).roots(
+        discontinuity=False, extrapolate=False
+    )
+    return np.unique(found[np.isfinite(found)])

@@ -12,11 +12,12 @@ import numpy as np
 
 from crankmbs.mechanics.inertia import reduce
 from crankmbs.mechanics.peaks import peak, relative_error
-from crankmbs.mechanics.reactions import Balances, Table, balances, peaks_of
+from crankmbs.mechanics.reactions import Table, peaks_of
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.variables import EVERY, SUMS
 from crankmbs.motion.base import Samples, Solution
 from crankmbs.motion.motion import Passes
+from crankmbs.motion.states import MOTION, balances_of, motion_rows, table_of
 from crankmbs.numerics.arrays import Array
 
 if TYPE_CHECKING:
@@ -26,7 +27,6 @@ __all__ = ["ANGLE_ROUNDING", "Assembled", "assemble", "dataset"]
 
 _ROUNDING = 64 * float(np.finfo(float).eps)  # of a variable's peak: what the formulas round
 _GIVEN = ("fuel", "friction_force")  # what reactions take from a formulation's own
-_MOTION = ("time", "crank_angle", "crank_speed", "crank_acceleration", "energy_residual")
 _FEW = 32  # samples: among more there is one where nothing cancels
 ANGLE_ROUNDING = 2 * float(np.finfo(float).eps)  # of the crank angle
 
@@ -80,7 +80,7 @@ def assemble(train: CrankTrain, solution: Solution) -> Assembled:
 
     Where the formulation states errors they are taken.
     """
-    table = _tabled(train, solution.samples)
+    table = table_of(train, solution.samples)
     peaks = table.largest(peaks_of(table.values))
     by_name = dict(zip(table.rows, peaks.tolist(), strict=True))
     errors = dict(solution.errors) or _errors(train, solution, table, by_name)
@@ -131,10 +131,10 @@ class _Passes(NamedTuple):
         In one go; of a few samples, where the differences may cancel in a variable by chance, in
         three: the angle, the speed, the acceleration, whose changes are added up.
         """
-        before, places, first = self.table.values, self.table.places, len(_MOTION)
+        before, places, first = self.table.values, self.table.places, len(MOTION)
         total = np.zeros(len(self.table.rows))
         for samples in self._chain():
-            found, apart = _balances(self.off, samples), np.zeros(len(before))
+            found, apart = balances_of(self.off, samples), np.zeros(len(before))
             balanced = slice(first, first + sum(found.rows.values()))
             apart[balanced] = found.apart(before[balanced])
             missed = 0.0
@@ -142,12 +142,12 @@ class _Passes(NamedTuple):
                 row = places["external_torque"].start
                 given = samples.own.get("external_torque", before[row])
                 missed = peak(found.row("external_torque") - given)
-            apart[:first] = peaks_of(before[:first] - _motion(samples))
+            apart[:first] = peaks_of(before[:first] - motion_rows(samples))
             for name, values in samples.own.items():
                 apart[places[name]] = peaks_of(before[places[name]] - values.T)
             total += self.table.largest(apart)
             if samples is not self.rounded:
-                before = _tabled(self.off, samples).values
+                before = table_of(self.off, samples).values
         return total, missed, found.period.angles
 
     def _chain(self) -> list[Samples]:
@@ -171,10 +171,10 @@ class _Passes(NamedTuple):
         given = {name: values for name, values in own.items() if name in _GIVEN}
         last = replace(self.rounded, own=given).select(np.array([-1]))
         end = replace(last, theta=last.theta + more)
-        found, first, before = _balances(self.off, end), len(_MOTION), self.table.values[:, -1:]
+        found, first, before = balances_of(self.off, end), len(MOTION), self.table.values[:, -1:]
         balanced = slice(first, first + sum(found.rows.values()))
         apart = np.zeros(len(before))
-        apart[:first] = peaks_of(before[:first] - _motion(end))
+        apart[:first] = peaks_of(before[:first] - motion_rows(end))
         apart[balanced] = found.apart(before[balanced])
         missed = 0.0
         if own:
@@ -221,33 +221,6 @@ def dataset(assembled: Assembled) -> xr.Dataset:
         {n: labelled(n) for n in EVERY if n in variables.keys() - coordinates},
         coords={**coordinates, "cylinder": number},
     )
-
-
-def _tabled(train: CrankTrain, samples: Samples) -> Table:
-    """Every variable at the samples: the motion, what follows from it, and in place of that, or
-    beside it, what the formulation computed by itself."""
-    found, own = _balances(train, samples), samples.own
-    more = {name: one.shape[1] for name, one in own.items() if name not in found.rows}
-    rows = dict.fromkeys(_MOTION, 1) | found.rows | more
-    # one piece of memory, so large that the system is not asked for every run's anew
-    table = Table(rows, np.empty((sum(rows.values()), len(samples.time))))
-    table.values[: len(_MOTION)] = _motion(samples)
-    found.fill(table.values[len(_MOTION) :][: sum(found.rows.values())])
-    places = table.places
-    for name, values in own.items():
-        table.values[places[name]] = values.T
-    return table
-
-
-def _balances(train: CrankTrain, samples: Samples) -> Balances:
-    given = (samples.own.get(name) for name in _GIVEN)
-    return balances(train, samples.theta, samples.omega, samples.alpha, *given)
-
-
-def _motion(samples: Samples) -> Array:
-    """The rows of `_MOTION`."""
-    of_time = samples.time, samples.theta, samples.omega, samples.alpha
-    return np.array([*of_time, samples.energy_residual])
 
 
 def _sizes(peaks: dict[str, float]) -> list[float]:

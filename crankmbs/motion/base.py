@@ -11,18 +11,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crankmbs.motion.account import Keep
+from crankmbs.motion.cells import Cells
 from crankmbs.motion.mode import Mode
-from crankmbs.motion.plan import Wanted
 from crankmbs.numerics.arrays import Array
 
 __all__ = [
     "NOWHERE",
     "Decay",
-    "Nodes",
-    "Points",
+    "Piece",
     "Samples",
     "Solution",
-    "Solved",
     "State",
     "Stretched",
 ]
@@ -131,29 +129,9 @@ class Stretched(Protocol):
         """The state where it ends."""
 
 
-class Points(NamedTuple):
-    """Points of a quadrature over the crank angle: time [s], crank angle [rad], speed [rad/s] and
-    weight [rad], shape (n, s) each."""
+class Piece(Stretched, Protocol):
+    """A stretch of a motion that can be read anywhere."""
 
-    time: Array
-    theta: Array
-    omega: Array
-    turned: Array
-
-
-class Nodes(NamedTuple):
-    """Cells or steps: edges : shape (n + 1,) [s]; speeds : at them [rad/s]; and points inside."""
-
-    edges: Array
-    speeds: Array
-    points: Points
-
-
-class Solved(Stretched, Protocol):
-    """A stretch of a motion that can be integrated over, and sampled anywhere."""
-
-    def nodes(self) -> Nodes:
-        """Its whole cells or steps."""
-
-    def sample(self, plan: Wanted) -> Samples:
-        """Its samples of a plan, or at chosen places."""
+    @property
+    def cells(self) -> Cells:
+        """Its cells or steps, from its begin to its end."""

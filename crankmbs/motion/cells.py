@@ -20,11 +20,23 @@ from crankmbs.numerics.arrays import Array, Index
 from crankmbs.numerics.function import Function
 from crankmbs.numerics.lagrange import Lagrange, ends_and_nodes
 
-__all__ = ["Acting", "Cells", "Loads"]
+__all__ = ["Acting", "Cells", "Loads", "cell_of"]
 
 _INSIDE = 2.0 * KNOT  # rad: so far from the end of a cell nothing counts as on a knot there
 _MOST = 0.25  # of a cell
-_ROWS = ("time", "angle", "speed", "shares", "energy", "acceleration", "outside")
+_SAME = 8 * float(np.finfo(float).eps)  # of the largest value: rounding
+_ROWS = ("time", "angle", "speed", "shares", "energy", "acceleration", "outside", "residual")
+
+
+def cell_of(ends: Array, values: Array) -> Index:
+    """In which of consecutive cells values lie, by the increasing ends of these; at an end, but for
+    rounding, in the one before it.
+
+    >>> cell_of(np.array([1.0, 2.0]), np.array([1.0, 1.5, 3.0]))
+    array([0, 1, 1])
+    """
+    hair = _SAME * max(abs(float(ends[0])), abs(float(ends[-1])))
+    return np.minimum(np.searchsorted(ends, values - hair), len(ends) - 1)
 
 
 class Loads(Protocol):
@@ -62,6 +74,7 @@ class Cells:
     shares : shape (m, cylinders), of the combustion; (m, 0) without fuel
     acceleration : shape (m, n) [rad/s2], where it is given and not what the torques make
     outside : shape (m, n) [N m], the torque of the loads where these are known at the nodes alone
+    residual : shape (m,) [J], kinetic energy gained up to the end of each less work done, if known
     """
 
     time: Array
@@ -72,6 +85,7 @@ class Cells:
     energy: Array | None = None
     acceleration: Array | None = None
     outside: Array | None = None
+    residual: Array | None = None
 
     @property
     def places(self) -> Array:
@@ -92,9 +106,21 @@ class Cells:
         """dt/dx at ends and nodes [s], shape (m, n)."""
         return np.asarray((self.time - self.time[:, :1]) @ self._polynomials.slopes.T)
 
+    def located(self, values: Array, *, in_time: bool) -> tuple[Index, Array]:
+        """The cells in which times [s], or else angles [rad], are passed, shape (p,), and where; at
+        the end of one rather than at the begin of the next."""
+        row, sense = (self.time, 1.0) if in_time else (self.angle, self.acting.sense)
+        k = cell_of(sense * row[:, -1], sense * values)
+        return k, self.place(k, values, in_time=in_time)
+
     def place(self, k: Index, values: Array, *, in_time: bool) -> Array:
         """Where in the cells k times [s], or else angles [rad], are passed, shape (p,)."""
-        return self._polynomials.inverse(self.time if in_time else self.angle, k, values)
+        row = self.time if in_time else self.angle
+        if in_time != (self.energy is None):
+            return self._polynomials.inverse(row, k, values)
+        begin, width = row[k, 0], row[k, -1] - row[k, 0]  # the variable that it was solved over
+        x = np.divide(values - begin, width, out=np.zeros_like(values), where=width != 0.0)
+        return np.asarray(np.clip(x, 0.0, 1.0))
 
     def part(self, k: Index, low: Array, high: Array) -> Cells:
         """Parts of cells, each from a place in it to another, as cells; shape (p,) each."""
@@ -114,6 +140,7 @@ class Cells:
             energy=None if self.energy is None else cut(self.energy),
             acceleration=None if self.acceleration is None else cut(self.acceleration),
             outside=None if self.outside is None else cut(self.outside),
+            residual=None if self.residual is None else self.residual[k],
         )
 
     def first(self, m: int) -> Cells:

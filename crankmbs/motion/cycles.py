@@ -11,21 +11,22 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
-from crankmbs.mechanics.geometry import close_loop
+from crankmbs.mechanics.inertia import closed_loops, inertia_alone
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.windows import acting
 from crankmbs.motion.account import Rows, beside
-from crankmbs.motion.base import Points, Samples, Solved
+from crankmbs.motion.base import Piece, Samples
+from crankmbs.motion.cells import Cells
 from crankmbs.motion.extremes import extremes
 from crankmbs.motion.gas_work import GasWork
-from crankmbs.motion.plan import Chosen
+from crankmbs.motion.states import balances_of, inner_samples, samples_at
 from crankmbs.numerics.arrays import Array
-from crankmbs.scene.parts import Friction
+from crankmbs.scene.torque import Torque
 
 __all__ = ["MOST_CYCLES", "Cycles", "cycles_of"]
 
@@ -34,7 +35,7 @@ MOST_CYCLES = 10_000
 
 _SAME = 1e-9  # of a period, and of a step: what is nearer to its end is at its end
 _NEAR = 1e-7  # rad: a decision so near the end of a cycle belongs to the next
-_POINTS = (8, 10)  # of Gauss in what is left of a step beside the end of a cycle, in either pass
+_POINTS = (8, 10)  # of Gauss in a panel of the work of the gas, in either pass
 
 
 class _Open(NamedTuple):
@@ -66,13 +67,9 @@ class _Done(NamedTuple):
 class Cycles:
     """The whole cycles of one pass over a motion, from its pieces as they come."""
 
-    def __init__(
-        self, train: CrankTrain, start: float, kinetic: Callable[[Samples], Array], *, finer: bool
-    ) -> None:
-        self._train, self._start, self._kinetic = train, start, kinetic
+    def __init__(self, train: CrankTrain, start: float, *, finer: bool) -> None:
+        self._train, self._start = train, start
         self._period = train.scene.period
-        nodes, weights = np.polynomial.legendre.leggauss(_POINTS[finer])
-        self._rule = 0.5 * (1.0 + nodes), 0.5 * weights
         self._open: _Open | None = None
         self._sense, self._reached = 0.0, start
         scene = train.scene
@@ -88,7 +85,7 @@ class Cycles:
         """How many cycles were passed that are not kept."""
         return self._passed - len(self.done)
 
-    def add(self, piece: Solved) -> None:
+    def add(self, piece: Piece) -> None:
         """One piece more of the motion."""
         begin, end = piece.begin, piece.end
         if begin.theta == end.theta:
@@ -98,17 +95,17 @@ class Cycles:
         self._go_on(begin.theta, sense)
         places = self._places(begin.theta, end.theta)
         marks = self._start + sense * self._period * np.array(places, dtype=np.float64)
+        cells = piece.cells.cut_at(np.array([self._start % self._period]), self._period)
         low, high = sorted((begin.theta, end.theta))
-        at = piece.sample(Chosen(np.clip(marks, low, high), in_time=False))
-        time = np.where(marks == begin.theta, begin.time, at.time)
-        works, speeds = self._summed(piece, time)
-        kinetic = self._kinetic(at)
+        at = samples_at(cells, self._train, np.clip(marks, low, high), in_time=False)
+        kinetic = 0.5 * inertia_alone(self._train.scene, at.theta) * at.omega**2
+        works, speeds = self._summed(cells, acting(self._train.scene.torque, begin.mode.loads), at)
         for k in range(len(places) + 1):
             self._works = self._works + works[k]
             self._speeds = np.append(self._speeds, speeds[k])
             if k < len(places):
                 before, after = _shares_beside(piece, float(marks[k]), sense)
-                here = _Open(places[k], float(time[k]), float(kinetic[k]), after)
+                here = _Open(places[k], float(at.time[k]), float(kinetic[k]), after)
                 self._close(here, before, float(at.omega[k]))
                 self._open, self._works = here, np.zeros_like(self._works)
                 self._speeds = at.omega[k : k + 1]
@@ -153,23 +150,38 @@ class Cycles:
             )
         )
 
-    def _summed(self, piece: Solved, marks: Array) -> tuple[Array, Array]:
-        """Between these times [s] and the ends of a piece: works [J], shape (n + 1, columns); least
-        and largest speed [rad/s], shape (n + 1, 2)."""
-        nodes = piece.nodes()
-        edges = _merged(nodes.edges, np.append(marks, piece.end.time))
-        panel = np.minimum(np.searchsorted(nodes.edges, edges[:-1]), len(nodes.points.time) - 1)
-        whole = (nodes.edges[panel] == edges[:-1]) & (nodes.edges[panel + 1] == edges[1:])
-        segment = np.searchsorted(marks, 0.5 * (edges[1:] + edges[:-1]))
-        of_whole = Points(*(values[panel[whole]] for values in nodes.points))
-        of_parts = self._between(piece, edges[:-1][~whole], edges[1:][~whole])
-        works = np.zeros((len(marks) + 1, len(self._works)))
-        for rows, points in ((whole, of_whole), (~whole, of_parts)):
-            np.add.at(works, segment[rows], self._works_of(piece, points))
-        time = np.concatenate([nodes.edges, of_whole.time.ravel(), of_parts.time.ravel()])
-        speed = np.concatenate([nodes.speeds, of_whole.omega.ravel(), of_parts.omega.ravel()])
-        order = np.argsort(time)
-        return works, extremes(piece, marks, time[order], speed[order])
+    def _summed(
+        self, cells: Cells, loads: Sequence[tuple[int, Torque]], marks: Samples
+    ) -> tuple[Array, Array]:
+        """Between marks, at which cells end, and the ends of all: works [J], shape (n + 1,
+        columns), of loads by number; least and largest speed [rad/s], shape (n + 1, 2)."""
+        points, sense = inner_samples(cells, self._train), cells.acting.sense
+        works = np.zeros((len(marks.time) + 1, len(self._works)))
+        middle = 0.5 * (cells.angle[:, 0] + cells.angle[:, -1])
+        segment = np.searchsorted(sense * marks.theta, sense * middle)
+        by_cell = self._works_of(points, loads, (cells.spent * cells.weights).ravel())
+        by_cell = by_cell.reshape(*cells.time.shape, -1).sum(axis=1)
+        np.add.at(works, segment, by_cell)
+        return works, extremes(cells, self._train, marks.time, points)
+
+    def _works_of(
+        self, points: Samples, loads: Sequence[tuple[int, Torque]], duration: Array
+    ) -> Array:
+        """Work [J] at points that stand for a duration [s], shape (n,): of every load, of the
+        drive, of the friction of every piston; shape (n, columns)."""
+        train, scene, omega = self._train, self._train.scene, points.omega
+        works, turned = np.zeros((len(omega), self._columns)), duration * omega
+        for number, load in loads:
+            works[:, number - 1] = load(points.time, points.theta, omega) * turned
+        if scene.motion is not None:
+            drive = points.own.get("external_torque")
+            if drive is None:
+                drive = balances_of(train, points).row("external_torque")
+            works[:, len(scene.torque)] = drive * turned
+        if scene.friction is not None:
+            velocity = -closed_loops(scene, points.theta).x_1.T * turned[:, None]
+            works[:, len(scene.torque) + 1 :] = points.own["friction_force"] * velocity
+        return works
 
     def rows(self, count: int) -> Rows:
         """The last cycles, as many as are asked for."""
@@ -203,63 +215,9 @@ class Cycles:
             found["friction_work"] = works[:, len(scene.torque) + 1 :]
         return Rows(found, {}, self.left_out + len(self.done) - count)
 
-    def _between(self, piece: Solved, begin: Array, end: Array) -> Points:
-        """Gauss points between times [s] of shape (n,)."""
-        places, weights = self._rule
-        width = (end - begin)[:, None]
-        time = begin[:, None] + width * places
-        found = piece.sample(Chosen(time.ravel(), in_time=True))
-        theta, omega = (values.reshape(time.shape) for values in (found.theta, found.omega))
-        return Points(time, theta, omega, width * weights * omega)
-
-    def _works_of(self, piece: Solved, points: Points) -> Array:
-        """Work [J] in each panel, shape (n, columns): of every load, of the drive, of the friction
-        of every piston."""
-        t, theta, omega, turned = points
-        scene = self._train.scene
-        works = np.zeros((len(t), self._columns))
-        for number, load in acting(scene.torque, piece.begin.mode.loads):
-            works[:, number - 1] = (load(t, theta, omega) * turned).sum(axis=1)
-        if scene.motion is not None:
-            drive = piece.sample(Chosen(t.ravel(), in_time=True)).own["external_torque"]
-            works[:, len(scene.torque)] = (drive.reshape(t.shape) * turned).sum(axis=1)
-        if scene.friction is not None:
-            works[:, len(scene.torque) + 1 :] = self._rubbed(piece, points, scene.friction)
-        return works
-
-    def _rubbed(self, piece: Solved, points: Points, friction: Friction) -> Array:
-        """Work of the friction of every piston [J], shape (n, cylinders)."""
-        t, theta, omega, turned = points
-        train, scene = self._train, self._train.scene
-        shape = scene.crank.radius, scene.rod.length, scene.piston.offset
-        modes = [piece.begin.mode, *(state.mode for state in piece.decisions)]
-        which = np.searchsorted([state.time for state in piece.decisions], t)
-        works = np.zeros((len(t), len(scene.cylinders)))
-        for k, cylinder in enumerate(scene.cylinders):
-            phi = theta + cylinder.phase
-            rise, pressure = close_loop(phi, *shape).x_1, np.zeros_like(phi)
-            if train.pressure is not None:
-                pressure = train.pressure[k](phi)
-            if train.combustion is not None and modes[0].shares:
-                share = np.array([mode.shares[k] for mode in modes])[which]
-                pressure = pressure + share * train.combustion[k](phi)
-            force = friction.ring_force + friction.ring_pressure * np.abs(
-                (scene.piston.gas_area or 0.0) * pressure
-            )
-            against = force * np.abs(rise * turned) + friction.viscous * rise**2 * omega * turned
-            works[:, k] = -against.sum(axis=1)
-        return works
-
-
-def _merged(edges: Array, cuts: Array) -> Array:
-    """Edges with cuts between them; a cut as near to an edge as rounding is none."""
-    k = np.clip(np.searchsorted(edges, cuts), 1, len(edges) - 1)
-    off = np.minimum(np.abs(cuts - edges[k - 1]), np.abs(cuts - edges[k]))
-    return np.union1d(edges, cuts[off > _SAME * (edges[k] - edges[k - 1])])
-
 
 def _shares_beside(
-    piece: Solved, theta: float, sense: float
+    piece: Piece, theta: float, sense: float
 ) -> tuple[tuple[float, ...], tuple[float, ...]]:
     """The shares of the combustion that act up to a crank angle [rad] and from there on."""
     before = after = piece.begin.mode.shares

@@ -3,43 +3,35 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
 from crankmbs.mechanics.knots import KNOT, apart, repeat
 from crankmbs.mechanics.speed import SpeedLaw
-from crankmbs.mechanics.train import CrankTrain, crank_angle_knots
-from crankmbs.motion.base import Nodes, Points, Samples, State
+from crankmbs.mechanics.train import CrankTrain, crank_angle_knots, friction_knots, sign_changes
+from crankmbs.motion.base import State
 from crankmbs.motion.cells import Acting, Cells
-from crankmbs.motion.ending import Ending
 from crankmbs.motion.mode import Mode, begun, decided
-from crankmbs.motion.observer import Observer
-from crankmbs.motion.plan import Wanted
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.lagrange import ends_and_nodes
 from crankmbs.scene.units import DEGREE
 
-__all__ = ["Driven", "Moving", "Way", "decisions", "driven", "driven_observer", "own_energy"]
-
-
-Moving = Callable[[Array, Array | None], Samples]
-"""Samples at times [s] and the shares of the combustion there, shape (n, cylinders), if any; they
-have "kinetic_energy" and "external_torque" of their own."""
+__all__ = ["Driven", "Way", "begun_at", "decisions", "driven"]
 
 _PANEL = 5.0 * DEGREE  # widest panel of a quadrature over the angle
 _TURNS = 100  # periods in a piece
 
 
 class Way(NamedTuple):
-    """A prescribed motion: its law, its samples, and into how many points of Gauss a panel of a
-    quadrature is divided, that ends at the knots of the pressure."""
+    """A prescribed motion: its law, and how many points of Gauss its cells have."""
 
     train: CrankTrain
     law: SpeedLaw
-    moving: Moving
     points: int
 
 
@@ -55,11 +47,13 @@ class Driven:
     end: State
     decisions: tuple[State, ...]
 
+    @cached_property
     def cells(self) -> Cells:
-        """Its panels as cells of a motion."""
+        """Panels of at most 5 degrees, in which all that acts is smooth."""
         law, points = self.way.law, self.way.points
-        edges, places = self.nodes().edges, ends_and_nodes(points).places
+        edges, places = self._edges, ends_and_nodes(points).places
         time = edges[:-1, None] + np.diff(edges)[:, None] * places
+        time[:, -1] = edges[1:]
         angle, speed, rate = law.at_time(time)
         rate[:, -1] = law.at_time(np.nextafter(time[:, -1], -math.inf))[2]  # before a corner
         sense = float(np.sign(self.end.theta - self.begin.theta))
@@ -68,43 +62,32 @@ class Driven:
         shares = np.array([mode.shares for mode in modes])[which]
         return Cells(time, angle, speed, Acting(sense), shares, acceleration=rate)
 
-    def nodes(self) -> Nodes:
-        """Panels of at most 5 degrees, and Gauss points in them."""
+    @property
+    def _edges(self) -> Array:
+        """Of the cells [s]."""
         begin, end = self.begin, self.end
         count = math.ceil(abs(end.theta - begin.theta) / _PANEL)
         low, high = sorted((begin.theta, end.theta))
         train, law = self.way.train, self.way.law
-        knots = repeat(crank_angle_knots(train), train.period, low, high)
-        decided = [state.theta for state in self.decisions]
-        angles = apart(np.concatenate([np.linspace(low, high, count + 1)[1:-1], knots, decided]))
+        knots = np.concatenate([crank_angle_knots(train), friction_knots(train)])
+        inside = [np.linspace(low, high, count + 1)[1:-1], repeat(knots, train.period, low, high)]
+        angles = apart(np.concatenate([*inside, *self._bends()]))
         corners = np.unique([begin.time, *law.corners(begin.time, end.time), end.time])
         at = np.sort(law.at_time(corners)[0])
         after = np.clip(np.searchsorted(at, angles), 1, len(at) - 1)
         away = np.minimum(angles - at[after - 1], at[after] - angles)
-        edges = np.unique([*corners, *self._times(angles[away > KNOT])])
-        width = np.diff(edges)[:, None]
-        places, weights = np.polynomial.legendre.leggauss(self.way.points)
-        time = edges[:-1, None] + 0.5 * width * (1.0 + places)
-        theta, omega, _ = law.at_time(time)
-        return Nodes(
-            edges, law.at_time(edges)[1], Points(time, theta, omega, 0.5 * width * weights * omega)
-        )
+        return np.unique([*corners, *law.time_at(angles[away > KNOT], begin.time, end.time)])
 
-    def sample(self, plan: Wanted) -> Samples:
-        """Its samples where they are wanted."""
-        if plan.in_time:
-            time = plan.between(self.begin.time, self.end.time)
-        else:
-            time = self._times(plan.between(self.begin.theta, self.end.theta))
-        modes = [self.begin.mode, *(state.mode for state in self.decisions)]
-        if not modes[0].shares:
-            return self.way.moving(time, None)
-        which = np.searchsorted([state.time for state in self.decisions], time)
-        return self.way.moving(time, np.array([mode.shares for mode in modes])[which])
-
-    def _times(self, angles: Array) -> Array:
-        """When it passes crank angles [rad]."""
-        return self.way.law.time_at(angles, self.begin.time, self.end.time)
+    def _bends(self) -> Iterator[Array]:
+        """Crank angles [rad] at which fuel is decided, and between them those at which a gas force
+        with the shares that act there changes its sign under rings."""
+        train = self.way.train
+        states = [self.begin, *self.decisions, self.end]
+        yield np.array([state.theta for state in self.decisions])
+        if train.combustion is not None:
+            for state, after in pairwise(states):
+                changes = sign_changes(train, state.mode.shares)
+                yield repeat(changes, train.period, *sorted((state.theta, after.theta)))
 
 
 def driven(way: Way, stretches: Iterable[tuple[float, float]]) -> Iterator[Driven]:
@@ -136,28 +119,9 @@ def _apart(law: SpeedLaw, first: State, last: State, most: float) -> Iterator[St
     yield last
 
 
-def driven_observer(
-    train: CrankTrain, pieces: Iterable[Driven], *, finer: bool, rests: bool
-) -> Observer:
-    """What is seen of a prescribed motion.
-
-    rests : whether the law comes to rest at the end of the pieces
-    """
-    observer = Observer(train, own_energy, finer=finer)
-    last = None
-    for piece in pieces:
-        if last is None:
-            observer.start(piece.begin)
-        observer.add(piece)
-        last = piece.end
-    assert last is not None
-    observer.close(Ending.LAW_RESTS if rests else Ending.COMPLETE, last)
-    return observer
-
-
-def own_energy(samples: Samples) -> Array:
-    """The kinetic energy [J] that samples have of their own."""
-    return samples.own["kinetic_energy"]
+def begun_at(way: Way) -> State:
+    """The state in which a prescribed motion begins."""
+    return _state(way.law, 0.0, begun(way.train), turns=False)
 
 
 def _state(law: SpeedLaw, time: float, mode: Mode, *, turns: bool) -> State:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from crankmbs.motion.base import Solved
-from crankmbs.motion.plan import Chosen
+from crankmbs.mechanics.train import CrankTrain
+from crankmbs.motion.base import Samples
+from crankmbs.motion.cells import Cells
+from crankmbs.motion.states import samples_at
 from crankmbs.numerics.arrays import Array
 
 __all__ = ["extremes"]
@@ -15,9 +17,10 @@ _ROUNDS = (
 )
 
 
-def extremes(piece: Solved, marks: Array, time: Array, speed: Array) -> Array:
-    """Least and largest speed [rad/s] between marks, shape (n + 1, 2): of the values at increasing
-    times, and where the acceleration vanishes beside those that might be it."""
+def extremes(cells: Cells, train: CrankTrain, marks: Array, points: Samples) -> Array:
+    """Least and largest speed [rad/s] between times [s], shape (n + 1, 2): of the values at points
+    in the cells, and where the acceleration vanishes beside those that might be it."""
+    time, speed = points.time, points.omega
     segment = np.searchsorted(marks, time)
     low, high = np.full((2, len(marks) + 1), np.nan)
     for into, least in ((low, np.fmin), (high, np.fmax)):
@@ -28,12 +31,12 @@ def extremes(piece: Solved, marks: Array, time: Array, speed: Array) -> Array:
     may = (speed[1:-1] - lift < low[of]) | (speed[1:-1] + lift > high[of])
     k = 1 + np.flatnonzero((before * after < 0.0) & may)
     if len(k):
-        a, b, c = (_moving(piece, time[at]) for at in (k - 1, k, k + 1))
+        a, b, c = (_moving(cells, train, time[at]) for at in (k - 1, k, k + 1))
         falls = b[1] * c[1] < 0.0
         a, c = (np.where(falls, one, other) for one, other in ((b, a), (c, b)))
         for _ in range(_ROUNDS):
             steep = np.where(c[1] != a[1], c[1] - a[1], np.inf)
-            b = _moving(piece, np.clip(a[0] - a[1] * (c[0] - a[0]) / steep, a[0], c[0]))
+            b = _moving(cells, train, np.clip(a[0] - a[1] * (c[0] - a[0]) / steep, a[0], c[0]))
             inside = np.searchsorted(marks, b[0])
             np.fmin.at(low, inside, b[2])
             np.fmax.at(high, inside, b[2])
@@ -42,10 +45,7 @@ def extremes(piece: Solved, marks: Array, time: Array, speed: Array) -> Array:
     return np.column_stack([low, high])
 
 
-def _moving(piece: Solved, time: Array) -> Array:
-    """Times [s] in any order, acceleration [rad/s2] and speed [rad/s] there, shape (3, n)."""
-    order = np.argsort(time)
-    found = piece.sample(Chosen(time[order], in_time=True))
-    rows = np.empty((3, len(time)))
-    rows[:, order] = time[order], found.alpha, found.omega
-    return rows
+def _moving(cells: Cells, train: CrankTrain, time: Array) -> Array:
+    """Times [s], acceleration [rad/s2] and speed [rad/s] there, shape (3, n)."""
+    found = samples_at(cells, train, time, in_time=True)
+    return np.array([time, found.alpha, found.omega])

@@ -14,6 +14,7 @@ from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion import kinetostatic
 from crankmbs.motion.assemble import Assembled, assemble
 from crankmbs.motion.free import settled
+from crankmbs.motion.observer import Followed, account_of
 from crankmbs.scene.drives import Oscillation, Ramp, SpeedFile
 from crankmbs.scene.scene import Scene
 
@@ -94,7 +95,10 @@ def _free(train: CrankTrain, rtol: float, cost_cap: float, *, by_angle: bool) ->
 def _multibody(train: CrankTrain, rtol: float, cost_cap: float) -> Assembled:
     from crankmbs.motion import multibody  # exudyn is imported only when it is used
 
-    return assemble(train, multibody.run(train, rtol, cost_cap))
+    solution, runs, ending = multibody.run(train, rtol, cost_cap)
+    followed = [Followed(train, begin, pieces, ending) for begin, pieces in runs]
+    keep = partial(account_of, followed, multibody.SAFETY)
+    return assemble(train, replace(solution, keep=keep))
 
 
 FORMULATIONS = (

@@ -11,27 +11,25 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crankmbs.mechanics.friction import friction_knots, sign_changes
 from crankmbs.mechanics.inertia import inertia_alone, reduce
-from crankmbs.mechanics.knots import repeat
-from crankmbs.mechanics.reactions import reactions
 from crankmbs.mechanics.speed import SpeedLaw, speed_law
-from crankmbs.mechanics.train import CrankTrain, crank_angle_knots
+from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion.account import Account
 from crankmbs.motion.base import Samples, Solution
-from crankmbs.motion.driven import Driven, Way, driven, driven_observer
+from crankmbs.motion.cells import Cells
+from crankmbs.motion.driven import Driven, Way, begun_at, driven
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.motion import Motion, Passes
-from crankmbs.motion.observer import account_of
+from crankmbs.motion.observer import Followed, account_of
 from crankmbs.motion.plan import Plan, plan_of
 from crankmbs.motion.prescribed import monotone_stretches
+from crankmbs.motion.states import inner_samples, table_of
 from crankmbs.numerics.arrays import Array
-from crankmbs.scene.units import DEGREE
 
 __all__ = ["passes", "run"]
 
 _POINTS = (6, 8)  # of Gauss in a panel, in either look at what happens on the way
-_PANEL = 5.0 * DEGREE  # widest panel of the work integral; Gauss with 4 points errs below 1e-12
+_TOGETHER = 2048  # cells whose work is summed at once
 
 
 def run(train: CrankTrain) -> Solution:
@@ -52,8 +50,7 @@ def run(train: CrankTrain) -> Solution:
     stretches = _kept(plan, law, stretches)
     time, theta = _sample(plan, law, stretches, reached)
     _, omega, alpha = law.at_time(time)
-    edges = _panel_edges(train, law, stretches, time, firings)
-    residual = _energy_residual(train, law, time, edges, firings)
+    residual = _energy_residual(driven(_way(train, law), stretches), train, time)
     own = {} if firings is None else {"fuel": firings.at(time)}
     samples = Samples(time, theta, omega, alpha, residual, own)
     ending = Ending.COMPLETE if reached else Ending.LAW_RESTS
@@ -81,26 +78,15 @@ def _account(
     train: CrankTrain, law: SpeedLaw, stretches: tuple[tuple[float, float], ...], *, rests: bool
 ) -> Account:
     """What happens on the way, seen twice: it errs by no more than quadrature and pressures do."""
-    seen = []
+    followed, ending = [], Ending.LAW_RESTS if rests else Ending.COMPLETE
     for one, finer in ((train, False), (train.off, True)):
-        pieces = driven(_way(one, law, finer=finer), stretches)
-        seen.append(driven_observer(one, pieces, finer=finer, rests=rests))
-    return account_of(seen, 1.0)
+        way = _way(one, law, finer=finer)
+        followed.append(Followed(one, begun_at(way), driven(way, stretches), ending))
+    return account_of(followed, 1.0)
 
 
 def _way(train: CrankTrain, law: SpeedLaw, *, finer: bool = False) -> Way:
-    return Way(train, law, partial(_moving, train, law), _POINTS[finer])
-
-
-def _moving(train: CrankTrain, law: SpeedLaw, time: Array, fuel: Array | None) -> Samples:
-    """The motion at times of shape (n,), with its energy and the torque that it needs."""
-    theta, omega, alpha = law.at_time(time)
-    inertia, slope, torque = reduce(train, theta, fuel)
-    own = {
-        "kinetic_energy": 0.5 * inertia * omega**2,
-        "external_torque": inertia * alpha + 0.5 * slope * omega**2 - torque,
-    }
-    return Samples(time, theta, omega, alpha, np.zeros_like(time), own)
+    return Way(train, law, _POINTS[finer])
 
 
 def _by(law: SpeedLaw, samples: Samples, by_angle: NDArray[np.bool_]) -> Samples:
@@ -176,66 +162,32 @@ def _sample(
     return time[begin_at:], theta[begin_at:]
 
 
-def _panel_edges(
-    train: CrankTrain,
-    law: SpeedLaw,
-    stretches: list[tuple[float, float]],
-    time: Array,
-    firings: _Firings | None,
-) -> Array:
-    """Times between which the power is smooth and short: samples, knots, corners, decisions on the
-    fuel, panels."""
-    knots = np.concatenate([crank_angle_knots(train), friction_knots(train)])
-    corners = law.corners(float(time[0]), float(time[-1]))
-    edges = [time, corners, np.empty(0) if firings is None else firings.times]
-    for begin, end in stretches:
-        a, b = (float(q) for q in law.at_time([begin, end])[0])
-        low, high = min(a, b), max(a, b)
-        count = math.ceil((high - low) / _PANEL)
-        inside = np.concatenate(
-            [repeat(knots, train.period, low, high), np.linspace(low, high, count + 1)[1:-1]]
-        )
-        if firings is not None:
-            inside = np.append(inside, _sign_changes(train, law, (begin, end), firings))
-        edges += [np.array([begin, end]), law.time_at(inside, begin, end)]
-    merged = np.unique(np.concatenate(edges))
-    return np.asarray(merged[(merged >= time[0]) & (merged <= time[-1])])
-
-
-def _sign_changes(
-    train: CrankTrain, law: SpeedLaw, stretch: tuple[float, float], firings: _Firings
-) -> Array:
-    """Crank angles [rad] in a stretch of time at which a gas force, with the shares that act there,
-    changes its sign under rings that feel it."""
-    begin, end = stretch
-    inside = firings.times[(firings.times > begin) & (firings.times < end)]
-    times = np.concatenate([[begin], inside, [end]])
-    angles, found = law.at_time(times)[0], [np.empty(0)]
-    for k, shares in enumerate(firings.at(0.5 * (times[:-1] + times[1:]))):
-        low, high = sorted(angles[k : k + 2].tolist())
-        found.append(repeat(sign_changes(train, tuple(shares.tolist())), train.period, low, high))
-    return np.concatenate(found)
-
-
-def _energy_residual(
-    train: CrankTrain, law: SpeedLaw, time: Array, edges: Array, firings: _Firings | None
-) -> Array:
+def _energy_residual(pieces: Iterable[Driven], train: CrankTrain, time: Array) -> Array:
     """Kinetic energy gained since the first sample minus the work of gas, gravity, friction and
-    drive.
+    drive, up to the ends of the cells in which the samples lie, shape (n,) [J]."""
+    ends, gains = [time[:1]], [np.zeros(1)]
+    for piece in pieces:
+        if piece.end.time <= time[0]:
+            continue
+        cells = piece.cells
+        cells = cells.since(int(np.searchsorted(cells.time[:, -1], time[0], side="right")))
+        for low in range(0, len(cells.time), _TOGETHER):
+            part = cells.first(low + _TOGETHER).since(low)
+            ends.append(part.time[:, -1])
+            gains.append(_gained(part, train))
+    total = np.cumsum(np.concatenate(gains))
+    return np.asarray(total[np.searchsorted(np.concatenate(ends), time)])
 
-    The work is the integral of power over time by Gauss quadrature between the edges.
-    """
-    nodes, weights = np.polynomial.legendre.leggauss(4)
-    half = 0.5 * np.diff(edges)[:, None]
-    t = edges[:-1, None] + half * (1.0 + nodes)
-    theta, omega, alpha = law.at_time(t.ravel())
-    fuel = None if firings is None else firings.at(t.ravel())
-    all_of = reactions(train, theta, omega, alpha, fuel)
-    along = all_of["gas_force"] + all_of.get("friction_force", 0.0)
-    gas = (along * all_of["piston_velocity"]).sum(axis=1)
-    weight = reduce(replace(train, pressure=None), theta).torque * omega
-    power = (all_of["external_torque"] * omega + gas + weight).reshape(t.shape)
-    work = np.concatenate([[0.0], np.cumsum((half * power) @ weights)])
-    theta, omega, _ = law.at_time(time)
-    kinetic = 0.5 * inertia_alone(train.scene, theta) * omega**2
-    return np.asarray(kinetic - kinetic[0] - work[np.searchsorted(edges, time)])
+
+def _gained(cells: Cells, train: CrankTrain) -> Array:
+    """Kinetic energy gained in each cell minus the work done in it, shape (m,) [J]."""
+    at = inner_samples(cells, train)
+    forces = table_of(train, at).variables
+    along = forces["gas_force"] + forces.get("friction_force", 0.0)
+    weight = reduce(replace(train, pressure=None), at.theta).torque
+    power = (forces["external_torque"] + weight) * at.omega
+    power += (along * forces["piston_velocity"]).sum(axis=1)
+    work = (power.reshape(cells.time.shape) * cells.spent) @ cells.weights
+    inertia = inertia_alone(train.scene, cells.angle[:, [0, -1]])
+    kinetic = 0.5 * inertia * cells.speed[:, [0, -1]] ** 2
+    return np.asarray(kinetic[:, 1] - kinetic[:, 0] - work)

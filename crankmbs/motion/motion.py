@@ -10,8 +10,9 @@ from typing import NamedTuple, Protocol, runtime_checkable
 import numpy as np
 
 from crankmbs.mechanics.train import CrankTrain
-from crankmbs.motion.cells import Cells
-from crankmbs.motion.states import States, states_in
+from crankmbs.motion.base import Samples
+from crankmbs.motion.cells import Cells, cell_of
+from crankmbs.motion.states import samples_at
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.once import once
 
@@ -23,6 +24,7 @@ _SAME_ANGLE = 1e-9  # rad: rounding of an angle must not lose a cycle
 class _Solved(Protocol):
     """A stretch of a motion that can give its cells."""
 
+    @property
     def cells(self) -> Cells:
         """All of them."""
 
@@ -44,7 +46,6 @@ class Motion:
     def __init__(self, train: CrankTrain, pieces: Sequence[_Solved | Cells]) -> None:
         self.train = train
         self._pieces = list(pieces)
-        self._solved: dict[int, Cells] = {}
 
     @cached_property
     def cells(self) -> tuple[Cells, ...]:
@@ -52,20 +53,14 @@ class Motion:
         return tuple(self._cells(k) for k in range(len(self._pieces)))
 
     def _cells(self, k: int) -> Cells:
-        """Of one stretch, made when they are first asked for."""
+        """Of one stretch."""
         piece = self._pieces[k]
-        if isinstance(piece, Cells):
-            return piece
-        if k not in self._solved:
-            self._solved[k] = piece.cells()
-        return self._solved[k]
+        return piece if isinstance(piece, Cells) else piece.cells
 
     def _ending(self, k: int, turned: float) -> Cells:
         """The cells of one stretch, as far as it turns through an angle [rad] up to its end."""
         piece = self._pieces[k]
-        if k in self._solved or not isinstance(piece, _Long):
-            return self._cells(k)
-        return piece.ending(turned)
+        return piece.ending(turned) if isinstance(piece, _Long) else self._cells(k)
 
     @property
     def begin(self) -> float:
@@ -89,29 +84,21 @@ class Motion:
         senses = {each.acting.sense for each in self.cells}
         return len(senses) == 1 and 0.0 not in senses
 
-    def at(self, values: Array, *, in_time: bool) -> States:
+    def at(self, values: Array, *, in_time: bool) -> Samples:
         """The motion at times [s], or else at crank angles [rad], shape (p,) in any order.
 
         At a time at which something jumps it is the motion before. Values beyond an end are taken
         at the end. By angles only where the crank turns one way.
         """
         sense = 1.0 if in_time else self.cells[0].acting.sense
-        rows = [each.time if in_time else each.angle for each in self.cells]
-        ends = sense * np.concatenate([row[:, -1] for row in rows])
-        cell = np.minimum(np.searchsorted(ends, sense * values), len(ends) - 1)
-        counts = np.cumsum([len(row) for row in rows])
-        piece = np.searchsorted(counts, cell, side="right")
-        parts, order = [], []
-        for number in np.unique(piece):
-            of_piece = np.flatnonzero(piece == number)
-            cells = self.cells[number]
-            k = cell[of_piece] - (counts[number] - len(rows[number]))
-            x = cells.place(k, values[of_piece], in_time=in_time)
-            states = states_in(cells, self.train, k, x)
-            exact = "time" if in_time else "angle"
-            parts.append(states._replace(**{exact: values[of_piece]}))
-            order.append(of_piece)
-        return States.joined(parts, np.argsort(np.concatenate(order)))
+        ends = [float((each.time if in_time else each.angle)[-1, -1]) for each in self.cells]
+        piece = cell_of(sense * np.array(ends), sense * values)
+        order = [np.flatnonzero(piece == number) for number in np.unique(piece)]
+        parts = [
+            samples_at(self.cells[piece[which[0]]], self.train, values[which], in_time=in_time)
+            for which in order
+        ]
+        return Samples.joined(parts).select(np.argsort(np.concatenate(order)))
 
     def after(self, time: float) -> Motion:
         """Its part from a time [s] on."""

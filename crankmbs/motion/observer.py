@@ -1,57 +1,43 @@
-"""Sees the pieces of a motion as they come, and keeps the account of it."""
+"""The account of a motion that can be followed again: its events and its whole cycles."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
 
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion.account import Account
-from crankmbs.motion.base import Samples, Solved, State
+from crankmbs.motion.base import Piece, State
 from crankmbs.motion.cycles import Cycles, cycles_of
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.events import Log, events_of
-from crankmbs.numerics.arrays import Array
 
-__all__ = ["Observer", "account_of"]
-
-
-class Observer:
-    """Of one pass over a motion.
-
-    kinetic : the kinetic energy [J] at samples
-    finer : whether it betters another pass, and is to be looked at in other places
-    """
-
-    def __init__(
-        self, train: CrankTrain, kinetic: Callable[[Samples], Array], *, finer: bool
-    ) -> None:
-        self._train, self._kinetic, self._finer = train, kinetic, finer
-        self.log = Log(train)
-
-    def start(self, state: State) -> None:
-        """The state in which the motion begins."""
-        self.cycles = Cycles(self._train, state.theta, self._kinetic, finer=self._finer)
-        if (
-            not self._train.scene.settles
-        ):  # a periodic motion has no start: what acts was decided before
-            self.log.start(state)
-
-    def add(self, piece: Solved) -> None:
-        """The next piece of the motion."""
-        self.log.add(piece)
-        self.cycles.add(piece)
-
-    def close(self, ending: Ending, last: State) -> None:
-        """How the motion ended, and where."""
-        self.log.close(ending, last)
+__all__ = ["Followed", "account_of"]
 
 
-def account_of(observers: Sequence[Observer], share: float) -> Account:
+class Followed(NamedTuple):
+    """A pass over a motion: the state in which it begins, its pieces as they come, its ending."""
+
+    train: CrankTrain
+    begin: State
+    pieces: Iterable[Piece]
+    ending: Ending
+
+
+def account_of(passes: Sequence[Followed], share: float) -> Account:
     """The account of a motion from several passes over it, the first of which is the answer.
 
     share : of the largest difference between them, that is stated as error
     """
-    return Account(
-        events_of([one.log for one in observers], share),
-        cycles_of([one.cycles for one in observers], share),
-    )
+    logs, cycles = [], []
+    for number, (train, begin, pieces, ending) in enumerate(passes):
+        logs.append(Log(train))
+        cycles.append(Cycles(train, begin.theta, finer=number > 0))
+        logs[-1].start(begin)
+        last = begin
+        for piece in pieces:
+            logs[-1].add(piece)
+            cycles[-1].add(piece)
+            last = piece.end
+        logs[-1].close(ending, last)
+    return Account(events_of(logs, share), cycles_of(cycles, share))

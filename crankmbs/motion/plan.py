@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -14,33 +13,11 @@ from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.units import DEGREE
 
-__all__ = ["Chosen", "Plan", "Wanted", "folds_of", "plan_of"]
+__all__ = ["Plan", "folds_of", "plan_of"]
 
 
 _LESS = 1.0 - 1e-6  # of a spacing: the samples that are kept beyond the last period reach so far
 _HAIR = 1e-6  # rad: so near a fold the forces still have all their digits but the last few
-
-
-class Wanted(Protocol):
-    """Where samples are wanted: angles, or times."""
-
-    @property
-    def in_time(self) -> bool:
-        """Whether at times [s], else at crank angles [rad]."""
-
-    def between(self, begin: float, end: float) -> Array:
-        """Those from one value to another, in the order in which they are passed."""
-
-
-class Chosen(NamedTuple):
-    """Samples at given values, in the order in which they are passed."""
-
-    values: Array
-    in_time: bool
-
-    def between(self, _begin: float, _end: float) -> Array:
-        """All of them: they lie where they are asked for."""
-        return self.values
 
 
 @dataclass(frozen=True)

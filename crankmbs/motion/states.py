@@ -1,119 +1,212 @@
-"""The state of a motion at places in its cells: what acceleration, torques and friction are there.
+"""The motion at places in cells, and every variable of a result there.
 
-They are algebra with the polynomials of a cell and what acts in it.
+Algebra with the polynomials of a cell and what acts in it: the one text by which samples, readings
+between them and measures are read from a solved motion.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from typing import Any, NamedTuple
+import math
+from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
 from crankmbs.mechanics.friction import friction_forces, friction_torque, held_share
-from crankmbs.mechanics.inertia import reduce
-from crankmbs.mechanics.reactions import reactions
-from crankmbs.mechanics.torque import over_angle
+from crankmbs.mechanics.inertia import fired_torque, reduce
+from crankmbs.mechanics.reactions import Balances, Table, balances
+from crankmbs.mechanics.torque import branch_at, branch_of, over_angle
 from crankmbs.mechanics.train import CrankTrain
+from crankmbs.motion.base import Samples, State
 from crankmbs.motion.cells import Cells
 from crankmbs.numerics.arrays import Array, Index
+from crankmbs.numerics.periodic import one_period
 
-__all__ = ["States", "inner_states", "states_in"]
+__all__ = [
+    "MOTION",
+    "balances_of",
+    "first_sample",
+    "inner_samples",
+    "motion_rows",
+    "samples_at",
+    "samples_in",
+    "table_of",
+    "variables_at",
+]
 
+MOTION = ("time", "crank_angle", "crank_speed", "crank_acceleration", "energy_residual")
+"""The variables of a result that are the motion's own."""
 
-class States(NamedTuple):
-    """The motion at points, shape (p,) each [s, rad, rad/s, rad/s2, N m].
-
-    external_torque : None where it is what the acceleration takes
-    fuel : shares of the combustion, friction : on every piston [N], shape (p, cylinders); or None
-    """
-
-    time: Array
-    angle: Array
-    speed: Array
-    acceleration: Array
-    external_torque: Array | None
-    fuel: Array | None
-    friction: Array | None
-
-    @staticmethod
-    def joined(parts: Sequence[States], order: Index | slice = slice(None)) -> States:
-        """States one after the other, then in an order."""
-        rows: list[Any] = [
-            None if row[0] is None else np.concatenate(row)[order]
-            for row in zip(*parts, strict=True)
-        ]
-        return States(*rows)
-
-    def variables(self, train: CrankTrain) -> dict[str, Array]:
-        """Every variable of a result by name but the energy residual, shape (p,) or
-        (p, cylinders)."""
-        motion = self.angle, self.speed, self.acceleration
-        values = reactions(train, *motion, self.fuel, self.friction)
-        values |= {"time": self.time, "crank_angle": self.angle}
-        values |= {"crank_speed": self.speed, "crank_acceleration": self.acceleration}
-        if self.external_torque is not None:
-            values["external_torque"] = self.external_torque
-        if self.fuel is not None:
-            values["fuel"] = self.fuel
-        return values
+_GIVEN = ("fuel", "friction_force")  # what reactions take from samples
 
 
-def states_in(cells: Cells, train: CrankTrain, k: Index, x: Array) -> States:
+def samples_at(cells: Cells, train: CrankTrain, values: Array, *, in_time: bool) -> Samples:
+    """The motion at times [s], or else at crank angles [rad], shape (p,) in any order; where cells
+    meet it is that before, beyond an end that at the end."""
+    k, x = cells.located(values, in_time=in_time)
+    basis = cells.basis(x)
+    known = {"time" if in_time else "angle": values}
+    return _samples(cells, train, k, lambda row: cells.values(row, k, basis), known)
+
+
+def samples_in(cells: Cells, train: CrankTrain, k: Index, x: Array) -> Samples:
     """The motion at places x in the cells k, shape (p,) each."""
     basis = cells.basis(x)
-    return _states(cells, train, k, lambda row: cells.values(row, k, basis))
+    return _samples(cells, train, k, lambda row: cells.values(row, k, basis), {})
 
 
-def inner_states(cells: Cells, train: CrankTrain) -> States:
+def inner_samples(cells: Cells, train: CrankTrain) -> Samples:
     """The motion at the nodes of all cells, and a hair inside their ends, cell after cell."""
     k = np.repeat(np.arange(len(cells.time)), cells.time.shape[1])
-    return _states(cells, train, k, cells.inner_reader())
+    return _samples(cells, train, k, cells.inner_reader(), {})
 
 
-def _states(cells: Cells, train: CrankTrain, k: Index, read: Callable[[Array], Array]) -> States:
-    """The motion at points in the cells k, shape (p,), at which rows are read."""
-    time, angle = read(cells.time), read(cells.angle)
-    shares = cells.shares[k] if cells.shares.shape[1] else None
-    reduction, sense = reduce(train, angle, shares), cells.acting.sense
+def _samples(
+    cells: Cells,
+    train: CrankTrain,
+    k: Index,
+    read: Callable[[Array], Array],
+    known: dict[str, Array],
+) -> Samples:
+    """The motion at points in the cells k, shape (p,), at which rows are read, but for those that
+    are known there."""
+    time, angle = (
+        known[name] if name in known else read(row)
+        for name, row in (("time", cells.time), ("angle", cells.angle))
+    )
+    sense = cells.acting.sense
+    own = {"fuel": cells.shares[k]} if cells.shares.shape[1] else {}
+    inertia, slope, torque = _reduced(train, angle, own.get("fuel"))
     if cells.energy is None:
         speed = read(cells.speed)
     else:
-        energy = np.maximum(read(cells.energy), 0.0)
-        speed = sense * np.sqrt(2.0 * energy / reduction.inertia)
-    slides = np.full_like(speed, sense)
-    outside, rate = None, None
-    if cells.outside is not None:
-        outside = read(cells.outside)
-    elif cells.acting.loads is not None:
-        outside = _outside(cells, train, time, angle, speed)
+        speed = sense * np.sqrt(2.0 * np.maximum(read(cells.energy), 0.0) / inertia)
+    slides, rate = np.full_like(speed, sense), None
+    outside = _outside(cells, train, read, (time, angle, speed))
     if outside is not None:
-        if cells.acting.holds and train.scene.friction is not None:
-            slides = _holding(cells, train, angle, reduction.torque + outside)
-        rubbed = friction_torque(train, angle, speed, slides, shares)
-        rest = reduction.rest(speed) + rubbed
+        rubs = train.scene.friction is not None
+        if cells.acting.holds and rubs:
+            slides = _holding(cells, train, torque + outside)
+        if rubs:
+            torque = torque + friction_torque(train, angle, speed, slides, own.get("fuel"))
+        rest = torque - 0.5 * slope * speed**2
         outside = -rest if cells.acting.holds else outside
-        rate = (rest + outside) / reduction.inertia
+        rate, own["external_torque"] = (rest + outside) / inertia, outside
     if cells.acceleration is not None:
         rate = read(cells.acceleration)
     assert rate is not None
-    friction = None
     if train.scene.friction is not None:
-        friction = friction_forces(train, angle, speed, shares, slides)
-    return States(time, angle, speed, rate, outside, shares, friction)
+        own["friction_force"] = friction_forces(train, angle, speed, own.get("fuel"), slides)
+    residual = np.zeros_like(time) if cells.residual is None else cells.residual[k]
+    return Samples(time, angle, speed, rate, residual, own)
 
 
-def _holding(cells: Cells, train: CrankTrain, angle: Array, torque: Array) -> Array:
-    """The share of its friction that a crank at rest needs to be held, with its sign."""
-    shares = tuple(cells.shares[0].tolist())
-    return np.clip(held_share(train, float(angle[0]), torque, shares), -1.0, 1.0)
+def _reduced(train: CrankTrain, angle: Array, shares: Array | None) -> tuple[Array, Array, Array]:
+    """J, dJ/dtheta and the torque of gas and weights, shape (p,), once for angles that come
+    again."""
+    once, which = one_period(angle, train.repeats)
+    inertia, slope, torque = (part[which] for part in reduce(train, once))
+    if shares is not None:
+        torque = torque + (fired_torque(train, once)[which] * shares).sum(axis=1)
+    return inertia, slope, torque
 
 
-def _outside(cells: Cells, train: CrankTrain, time: Array, angle: Array, speed: Array) -> Array:
-    """Torque of all loads that act [N m]."""
-    loads, of_angle = cells.acting.loads, over_angle(train.scene, cells.acting.phases)
-    assert loads is not None
-    outside = loads(time, speed) + (0.0 if of_angle is None else of_angle(angle))
+def _outside(
+    cells: Cells,
+    train: CrankTrain,
+    read: Callable[[Array], Array],
+    motion: tuple[Array, Array, Array],
+) -> Array | None:
+    """Torque of all loads that act [N m] at times, angles and speeds; None where it is what the
+    acceleration takes."""
+    if cells.outside is not None:
+        return read(cells.outside)
+    loads = cells.acting.loads
+    if loads is None:
+        return None
+    time, angle, speed = motion
+    outside, of_angle = loads(time, speed), over_angle(train.scene, cells.acting.phases)
+    if of_angle is not None:
+        outside = outside + of_angle(angle)
     for function in loads.functions:
         outside = outside + function(time, angle, speed)
-    return np.asarray(outside)
+    return outside
+
+
+def _holding(cells: Cells, train: CrankTrain, torque: Array) -> Array:
+    """The share of its friction that a crank at rest needs to be held, with its sign."""
+    shares = tuple(cells.shares[0].tolist())
+    return np.clip(held_share(train, float(cells.angle[0, 0]), torque, shares), -1.0, 1.0)
+
+
+def table_of(train: CrankTrain, samples: Samples) -> Table:
+    """Every variable at the samples: the motion, what follows from it, and in place of that, or
+    beside it, what the samples have of their own."""
+    found, own = balances_of(train, samples), samples.own
+    more = {name: one.shape[1] for name, one in own.items() if name not in found.rows}
+    rows = dict.fromkeys(MOTION, 1) | found.rows | more
+    # one piece of memory, so large that the system is not asked for every run's anew
+    table = Table(rows, np.empty((sum(rows.values()), len(samples.time))))
+    table.values[: len(MOTION)] = motion_rows(samples)
+    found.fill(table.values[len(MOTION) :][: sum(found.rows.values())])
+    places = table.places
+    for name, values in own.items():
+        table.values[places[name]] = values.T
+    return table
+
+
+def variables_at(train: CrankTrain, samples: Samples) -> dict[str, Array]:
+    """Every variable by name but the energy residual, shape (p,) or (p, cylinders)."""
+    found = table_of(train, samples).variables
+    del found["energy_residual"]
+    return found
+
+
+def balances_of(train: CrankTrain, samples: Samples) -> Balances:
+    """What follows from the motion at samples, not yet put together."""
+    given = (samples.own.get(name) for name in _GIVEN)
+    return balances(train, samples.theta, samples.omega, samples.alpha, *given)
+
+
+def motion_rows(samples: Samples) -> Array:
+    """The rows of `MOTION`."""
+    of_time = samples.time, samples.theta, samples.omega, samples.alpha
+    return np.array([*of_time, samples.energy_residual])
+
+
+def first_sample(train: CrankTrain, state: State, of_angle: float) -> Samples:
+    """The sample at a state. A crank at rest has the acceleration with which it sets out, and the
+    friction that resists it; where friction holds it, none, and the friction that it takes.
+
+    of_angle [N m] : what the loads give over the crank angle
+    """
+    shares, (time, theta, omega, *_) = state.mode.shares, state
+    reduction = reduce(train, theta, shares)
+    of_angle += state.mode.held
+    rest = float(reduction.rest(omega)) + of_angle
+    torques, phases = train.scene.torque, state.mode.loads
+    rub = partial(friction_torque, train, theta, omega, shares=shares or None)
+    sliding = math.copysign(1.0, omega) if omega else 0.0
+    rubbed = float(rub(sliding))
+    branch = branch_at(torques, state[:3], rest + rubbed, phases)
+    held = branch is None and omega == 0.0
+    branch = branch or branch_of(torques, time, omega, rising=True, phases=phases)
+    outside = float(branch(time, omega))
+    outside += sum(f.number(time, theta, omega) for f in branch.functions)
+    outside = -rest if held else outside
+    own = {"fuel": np.array([shares])} if shares else {}
+    if train.scene.friction is not None:
+        if omega == 0.0:
+            share = float(held_share(train, theta, rest + outside, shares))
+            sliding = min(max(share, -1.0), 1.0)
+            rubbed = -(rest + outside) if abs(share) <= 1.0 else float(rub(sliding))
+        motion = np.array([theta]), np.array([omega]), own.get("fuel")
+        own["friction_force"] = friction_forces(train, *motion, np.array([sliding]))
+    return Samples(
+        time=np.array([time]),
+        theta=np.array([theta]),
+        omega=np.array([omega]),
+        alpha=np.array([(rest + outside + rubbed) / float(reduction.inertia)]),
+        energy_residual=np.array([state.residual]),
+        own={"external_torque": np.array([outside + of_angle]), **own},
+    )

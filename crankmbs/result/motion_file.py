@@ -13,7 +13,7 @@ from crankmbs.mechanics.train import CrankTrain, crank_train
 from crankmbs.mechanics.windows import Phase
 from crankmbs.motion.cells import Acting, Cells
 from crankmbs.motion.motion import Motion, Passes
-from crankmbs.motion.states import states_in
+from crankmbs.motion.states import samples_in
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 
@@ -63,8 +63,8 @@ def _rows(motion: Motion) -> dict[str, Array]:
         outside = cells.outside
         if functions and cells.acting.loads is not None:
             places = np.tile(cells.places, m)
-            states = states_in(cells, motion.train, np.repeat(np.arange(m), n), places)
-            outside = states.external_torque
+            found = samples_in(cells, motion.train, np.repeat(np.arange(m), n), places)
+            outside = found.own["external_torque"]
         unknown = np.full(m * n, np.nan)
         for name in _OF_NODES[:-1]:
             row: Array | None = getattr(cells, name)

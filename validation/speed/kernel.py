@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -11,9 +12,10 @@ import numpy as np
 from crankmbs.mechanics.inertia import inertia_alone
 from crankmbs.mechanics.torque import branch_of
 from crankmbs.mechanics.train import crank_train
+from crankmbs.motion.base import State
 from crankmbs.motion.crank_angle.grid import Grid, grid_of
-from crankmbs.motion.crank_angle.readout import Curves
 from crankmbs.motion.crank_angle.solvers import Begin, solve
+from crankmbs.motion.crank_angle.window import Window
 from crankmbs.numerics.collocation import gauss
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.units import DEGREE
@@ -59,32 +61,33 @@ def kernels_of(scene: Scene, reference: Reference) -> tuple[Contender, ...]:
 
 
 def _grid(scene: Scene, widest: float) -> Grid:
-    return grid_of(crank_train(scene), gauss(_STAGES), widest * DEGREE)
+    """Cells that nothing checks."""
+    return replace(grid_of(crank_train(scene), gauss(_STAGES), widest * DEGREE), checks=True)
 
 
 def _loop(scene: Scene, grid: Grid, reference: Reference) -> Callable[[], Answer]:
-    """The chain of cells, and the state at the end read from the last one."""
+    """The chain of cells, and the state at its end."""
     assert scene.start is not None
     theta, omega = scene.start.angle, scene.start.speed
     sense = math.copysign(1.0, omega)
     branch = branch_of(scene.torque, 0.0, omega, rising=True)
     until, until_time = scene.end
-    far = float(reference.trace.end().theta[0]) + sense * float(np.max(np.diff(grid.edges)))
+    bound = float(reference.trace.end().theta[0])
+    # of an end in time the last cell goes beyond it
+    far = bound + until_time * sense * float(np.max(np.diff(grid.edges)))
     count = int(abs(far - theta) / float(grid.edges[-1]) * len(grid.edges)) + 2
     strip = grid.strip(theta, sense, count, far)
     energy = 0.5 * float(inertia_alone(scene, theta)) * omega**2
-    begin = Begin(sense, energy, 0.0, until if until_time else math.inf, theta)
-    given = np.array([until])
+    t_end = until if until_time else math.inf
+    begin, state = Begin(sense, energy, 0.0, t_end, theta), State(0.0, theta, omega, 0.0)
 
     def run() -> Answer:
         cells = solve(grid, strip, branch, begin)
-        edges = strip.turned[: len(cells.edges)], cells.time, cells.edges
-        pace = strip.pace[: len(cells.torque)]
-        along = sense * pace * cells.torque, pace * cells.slowness
-        curves = Curves.of(grid.rule, edges, along)
-        k, x, t, kinetic = curves.at_times(given) if until_time else curves.at_angles(given)
-        at = theta + sense * (strip.turned[k] + x * strip.width[k])
-        speed = sense * math.sqrt(2.0 * float(kinetic[0]) / float(inertia_alone(scene, at[0])))
-        return Answer(Trace(t, at, np.array([speed])), cells.torque.size)
+        m = len(cells.torque)
+        edges = strip.turned[: m + 1]
+        window = Window(grid, strip.first(m), branch, sense, state, edges, *cells, (m - 1, 1.0))
+        time, at, speed, *_ = window.cut(t_end, bound).end
+        trace = Trace(np.array([time]), np.array([at]), np.array([speed]))
+        return Answer(trace, cells.torque.size)
 
     return run

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from crankmbs.motion.states import samples_in
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.roots import first_above
 
@@ -19,8 +20,7 @@ __all__ = ["crossing"]
 def crossing(window: Window, limit: float, *, above: bool) -> tuple[int, float] | None:
     """Cell and place in it, 0 to 1, where the speed first passes a limit [rad/s]; None where it
     does not."""
-    at_edges = window.speeds_at(np.arange(1, len(window.edges)))
-    omega = np.column_stack([window.sense / window.slowness, at_edges])
+    omega = np.column_stack([window.sense / window.slowness, window.speeds[1:]])
     positions = np.concatenate([[0.0], window.grid.rule.nodes, [1.0]])
     side = 1.0 if above else -1.0
     beyond = side * (np.append(window.begin.omega, omega) - limit)
@@ -31,7 +31,7 @@ def crossing(window: Window, limit: float, *, above: bool) -> tuple[int, float] 
             break
 
         def speed(x: Array, k: int = k) -> tuple[Array, Array]:
-            there = window.inside(k, x)
+            there = samples_in(window.whole, window.grid.train, np.full(1, k), x)
             slope = window.strip.width[k] * there.alpha / np.abs(there.omega)
             return side * (there.omega - limit), side * slope
 

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crankmbs.mechanics.friction import rubbing
-from crankmbs.mechanics.inertia import fired_torque, reduce
+from crankmbs.mechanics.inertia import fired_torque, inertia_alone, reduce
 from crankmbs.mechanics.torque import over_angle
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.windows import Phases
@@ -48,6 +48,7 @@ class Strip:
     rubbed : shape (m, s, cylinders) [N m], with fuel, of the gas without combustion the torque
         that presses rings; no cylinders where none are pressed
     drag : shape (m, s) [N m s/rad], of viscous friction; (m, 0) without
+    ends : shape (m, 2) [kg m2], J where each begins and ends
     """
 
     cell: NDArray[np.intp]
@@ -59,6 +60,7 @@ class Strip:
     combustion: Array
     rubbed: Array
     drag: Array
+    ends: Array
 
     @property
     def drags(self) -> bool:
@@ -91,7 +93,7 @@ class Strip:
 
     @property
     def _tables(self) -> tuple[Array, ...]:
-        return self.inertia, self.torque, self.combustion, self.rubbed, self.drag
+        return self.inertia, self.torque, self.combustion, self.rubbed, self.drag, self.ends
 
     def part(self, low: int, high: int) -> Strip:
         """The cells from one number to another; edges are still counted from the beginning."""
@@ -110,7 +112,8 @@ class Strip:
 
 class _Tables(NamedTuple):
     """At the nodes of every cell: J, torque over the angle without friction, what the combustion of
-    each cylinder adds; friction against either sense of rotation; rubbed and drag of `Strip`."""
+    each cylinder adds; friction against either sense of rotation; rubbed and drag of `Strip`; J at
+    both ends."""
 
     inertia: Array
     torque: Array
@@ -118,6 +121,7 @@ class _Tables(NamedTuple):
     friction: Array
     rubbed: Array
     drag: Array
+    ends: Array
 
 
 @dataclass(frozen=True)
@@ -320,7 +324,9 @@ class Grid:
         theta = start[:, None] + width[:, None] * self.rule.nodes
         found = reduce(self.train, theta)
         torque = np.asarray(found.torque + self.outside(theta))
-        return _Tables(found.inertia, torque, fired_torque(self.train, theta), *self._rub(theta))
+        combustion, rubbed = fired_torque(self.train, theta), self._rub(theta)
+        ends = inertia_alone(self.train.scene, np.column_stack([start, start + width]))
+        return _Tables(found.inertia, torque, combustion, *rubbed, ends)
 
     def _rub(self, theta: Array) -> tuple[Array, Array, Array]:
         """What of `_Tables` comes from friction, at angles of shape (m, s)."""

@@ -153,9 +153,8 @@ def _near_rows(window: Window, course: Course, least: Array) -> list[_Points]:
     most = np.append(0.0, np.cumsum(np.abs(bends)[:: int(window.sense)]))
     k = k[_may_miss(window, k, (most[after] - most[before])[k] * width[k] / least[k])]
     if len(k):
-        ends, at = np.unique(np.concatenate([k, k + 1]), return_inverse=True)
-        begin, end = np.split(window.speeds_at(ends)[at], 2)
-        omega = np.column_stack([begin, window.sense / window.slowness[k], end])
+        inside = window.sense / window.slowness[k]
+        omega = np.column_stack([window.speeds[k], inside, window.speeds[k + 1]])
         found.append(_Points(x, omega, course.speeds, bends, k, width[k], least[k]))
     return found
 

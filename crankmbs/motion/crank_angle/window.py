@@ -9,20 +9,16 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from crankmbs.mechanics.friction import friction_forces, friction_torque
-from crankmbs.mechanics.inertia import fired_torque, reduce
 from crankmbs.mechanics.torque import Branch, Course
-from crankmbs.motion.base import NOWHERE, Nodes, Points, Samples, State
+from crankmbs.motion.base import NOWHERE, State
 from crankmbs.motion.cells import Acting, Cells
 from crankmbs.motion.crank_angle.crossing import crossing
 from crankmbs.motion.crank_angle.errors import Errors, errors_of
 from crankmbs.motion.crank_angle.grid import Grid, Strip
-from crankmbs.motion.crank_angle.readout import Curves
 from crankmbs.motion.mode import Mode, decided
-from crankmbs.motion.plan import Wanted
-from crankmbs.numerics.arrays import Array, Index
+from crankmbs.motion.states import samples_in
+from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.collocation import chain
-from crankmbs.numerics.periodic import one_period
 
 __all__ = ["Window"]
 
@@ -55,71 +51,62 @@ class Window:
     skipped: int = 0
     modes: tuple[tuple[int, Mode], ...] = ()
 
+    @cached_property
+    def whole(self) -> Cells:
+        """Its cells, the last one beyond where it ends."""
+        return self._cells(0, len(self.torque))
+
+    @cached_property
     def cells(self) -> Cells:
         """Its cells, the last one up to where it ends."""
-        return self._cells(0)
+        return self._ended(self.whole)
 
     def ending(self, turned: float) -> Cells:
         """Its cells from one on that begins so far before its end [rad], or farther."""
         k, x = self.stop
         begin = float(self.edges[k]) + x * float(self.strip.width[k]) - turned
-        return self._cells(max(int(np.searchsorted(self.edges, begin - _SAME)) - 1, 0))
+        first = max(int(np.searchsorted(self.edges, begin - _SAME)) - 1, 0)
+        return self._ended(self._cells(first, k + 1))
 
-    def _cells(self, first: int) -> Cells:
-        """The cells from the first one on."""
-        (k, x), rule, sense = self.stop, self.grid.rule, self.sense
-        some, edges = slice(first, k + 1), np.arange(first, k + 2)
-        strip, width = self.strip.part(first, k + 1), self.strip.width[some, None]
-        angle, energy, time, speed = np.empty((4, len(width), len(rule.nodes) + 2))
+    def _ended(self, cells: Cells) -> Cells:
+        """The last cells up to where the window ends, with their energy residuals."""
+        x, last = self.stop[1], len(cells.time) - 1
+        residual = self.begin.residual - self.missed[-len(cells.time) :]
+        cells = replace(cells, residual=residual)
+        if x < 1.0:
+            part = cells.part(np.array([last]), np.zeros(1), np.array([x]))
+            cells = cells.first(last).joined(part)
+        cells.time[-1, -1], cells.angle[-1, -1] = self.end.time, self.end.theta
+        return cells
+
+    def _cells(self, low: int, high: int) -> Cells:
+        """The cells from one number to another."""
+        rule, sense, some, edges = (
+            self.grid.rule,
+            self.sense,
+            slice(low, high),
+            slice(low, high + 1),
+        )
+        strip = self.strip.part(low, high)
+        width, shape = strip.width[:, None], (high - low, len(rule.nodes) + 2)
+        angle, energy, time, speed = np.empty((4, *shape))
         angle[:, 1:-1] = strip.angles(self.begin.theta, sense, rule)
         gained, spent = self.torque[some] @ rule.matrix.T, self.slowness[some] @ rule.matrix.T
         energy[:, 1:-1] = self.energy[some, None] + sense * width * gained
         time[:, 1:-1] = self.time[some, None] + width * spent
         speed[:, 1:-1] = sense / self.slowness[some]
         turned = self.begin.theta + sense * self.edges[edges]
-        ends = turned, self.energy[edges], self.time[edges], self.speeds_at(edges)
+        ends = turned, self.energy[edges], self.time[edges], self.speeds[edges]
         for inside, at in zip((angle, energy, time, speed), ends, strict=True):
             inside[:, 0], inside[:, -1] = at[:-1], at[1:]
         acting = Acting(sense, phases=self.begin.mode.loads, loads=self.branch)
-        cells = Cells(time, angle, speed, acting, self.shares[some], energy)
-        if x < 1.0:
-            last = cells.part(np.array([k - first]), np.zeros(1), np.array([x]))
-            cells = cells.first(k - first).joined(last)
-        cells.time[-1, -1], cells.angle[-1, -1] = self.end.time, self.end.theta
-        return cells
-
-    def nodes(self) -> Nodes:
-        """The whole cells, and the nodes of the collocation."""
-        m, rule = self.stop[0] + (self.stop[1] == 1.0), self.grid.rule
-        strip = self.strip.first(m)
-        width, slowness = strip.width[:, None], self.slowness[:m]
-        spent = np.einsum("kj,ij->ki", slowness, rule.matrix)  # BLAS would wake a second thread
-        time = self.time[:m, None] + width * spent
-        theta = strip.angles(self.begin.theta, self.sense, rule)
-        turned = self.sense * width * rule.weights
-        speeds = self.speeds_at(np.arange(m + 1))
-        return Nodes(self.time[: m + 1], speeds, Points(time, theta, self.sense / slowness, turned))
-
-    def sample(self, plan: Wanted) -> Samples:
-        """The samples of the plan after the beginning, up to the end and with it."""
-        if plan.in_time:
-            times = plan.between(self.begin.time, self.end.time)
-            k, x, t, energy = self._curves.at_times(times)
-            return self._samples(k, self._theta(k, x), t, energy)
-        theta = plan.between(self.begin.theta, self.end.theta)
-        u = self.sense * (theta - self.begin.theta)
-        k, _, t, energy = self._curves.at_angles(u)
-        return self._samples(k, theta, t, energy)
-
-    def last(self) -> Samples:
-        """The one sample at the end."""
-        return self._last
+        return Cells(time, angle, speed, acting, self.shares[some], energy)
 
     @cached_property
-    def _last(self) -> Samples:
-        k, x = self.stop
-        at, omega = self.inside(k, np.array([x]), self.landed), self.landed.omega
-        return at if math.isnan(omega) else replace(at, omega=np.array([omega]))
+    def speeds(self) -> Array:
+        """Speed [rad/s] at the edges, shape (m + 1,)."""
+        inertia = np.append(self.strip.ends[:, 0], self.strip.ends[-1, 1])
+        return np.asarray(self.sense * np.sqrt(2.0 * self.energy / inertia))
 
     @property
     def steps(self) -> int:
@@ -129,7 +116,7 @@ class Window:
     @property
     def size(self) -> int:
         """About how many numbers it holds."""
-        return 10 * self.torque.size + self.strip.combustion.size
+        return 16 * self.torque.size + self.strip.combustion.size
 
     @property
     def evaluations(self) -> int:
@@ -138,13 +125,19 @@ class Window:
 
     @cached_property
     def end(self) -> State:
-        """The state where the window ends."""
-        at = self.last()
-        rows = (at.time, at.theta, at.omega, at.energy_residual)
-        time, theta, omega, residual = (float(q[0]) for q in rows)
+        """The state where the window ends; what is known exactly as it is."""
+        (k, x), train = self.stop, self.grid.train
+        theta = self.begin.theta + self.sense * float(self.edges[k] + x * self.strip.width[k])
+        time, omega = float(self.time[k + 1]), float(self.speeds[k + 1])
+        if x < 1.0:
+            cell = self._cells(k, k + 1)
+            at = samples_in(cell, train, np.zeros(1, np.intp), np.array([x]))
+            time, omega = float(at.time[0]), float(at.omega[0])
+        pairs = zip(self.landed[:3], (time, theta, omega), strict=True)
+        time, theta, omega = (here if math.isnan(known) else known for known, here in pairs)
         last = self.modes[-1][1] if self.modes else self.begin.mode
-        mode = decided(self.grid.train, last, time, theta, omega)
-        return State(time, theta, omega, residual, mode)
+        mode = decided(train, last, time, theta, omega)
+        return State(time, theta, omega, self.begin.residual - float(self.missed[k + 1]), mode)
 
     @property
     def decisions(self) -> tuple[State, ...]:
@@ -152,7 +145,7 @@ class Window:
         if len(self.modes) < 2:
             return ()
         k = np.array([cell for cell, _ in self.modes[1:]])
-        speeds, times = self.speeds_at(k).tolist(), self.time[k].tolist()
+        speeds, times = self.speeds[k].tolist(), self.time[k].tolist()
         before = (mode.high if self.sense > 0.0 else mode.low for _, mode in self.modes)
         after = (mode for _, mode in self.modes[1:])
         found = zip(times, before, speeds, after, strict=False)
@@ -178,8 +171,9 @@ class Window:
         at_bound = math.isfinite(bound) and abs(whole - bound) <= 1e-12 * max(1.0, abs(bound))
         stops = [(self.stop, nowhere._replace(theta=bound) if at_bound else nowhere)]
         if self.time[-1] >= t_end:
-            k, x, *_ = self._curves.at_times(np.array([t_end]))
-            stops.append(((int(k[0]), float(x[0])), nowhere._replace(time=t_end)))
+            k = int(np.searchsorted(self.time[1:], t_end))
+            x = self._cells(k, k + 1).place(np.zeros(1, np.intp), np.array([t_end]), in_time=True)
+            stops.append(((k, float(x[0])), nowhere._replace(time=t_end)))
         for limit, above in ((self.branch.omega_low, False), (self.branch.omega_high, True)):
             if math.isfinite(limit) and limit * self.sense > 0.0:
                 stop = crossing(self, limit, above=above)
@@ -196,8 +190,7 @@ class Window:
             return self.begin
         mode = next((mode for cell, mode in self.modes[::-1] if cell <= k), self.begin.mode)
         theta = self.begin.theta + self.sense * float(self.edges[k])
-        speed = float(self.speeds_at(np.array([k]))[0])
-        return State(float(self.time[k]), theta, speed, math.nan, mode)
+        return State(float(self.time[k]), theta, float(self.speeds[k]), math.nan, mode)
 
     def ended_by(self, last: Window) -> Window:
         """With cells that were solved from where its last one begins, in place of that."""
@@ -272,62 +265,3 @@ class Window:
             torque=torque,
             slowness=self.slowness - faster,
         )
-
-    def speeds_at(self, k: Index) -> Array:
-        """Speed [rad/s] at these edges."""
-        theta = self.begin.theta + self.sense * self.edges[k]
-        inertia = reduce(self.grid.train, theta).inertia
-        return np.asarray(self.sense * np.sqrt(2.0 * self.energy[k] / inertia))
-
-    def inside(self, k: int, x: Array, landed: State = NOWHERE) -> Samples:
-        """The samples at places x in a cell, 0 to 1; what is known exactly as it is."""
-        cell = np.full(len(x), k)
-        t, energy = self._curves.inside(cell, x)
-        theta = _exact(landed.theta, self._theta(cell, x))
-        return self._samples(cell, theta, _exact(landed.time, t), energy)
-
-    def _theta(self, k: Index, x: Array) -> Array:
-        turned = self.edges[k] + x * self.strip.width[k]
-        return np.asarray(self.begin.theta + self.sense * turned)
-
-    @cached_property
-    def _curves(self) -> Curves:
-        """What is read between the nodes."""
-        pace = self.strip.pace
-        along = self.sense * pace * self.torque, pace * self.slowness
-        return Curves.of(self.grid.rule, (self.edges, self.time, self.energy), along)
-
-    def _samples(self, k: Index, theta: Array, t: Array, energy: Array) -> Samples:
-        """Samples in the cells k."""
-        once, which = one_period(theta, self.grid.train.repeats)
-        inertia, slope, torque = reduce(self.grid.train, once)
-        over_angle: Array | None = None
-        if self.grid.over_angle is not None:
-            over_angle = self.grid.over_angle(once)
-            torque = torque + over_angle
-        own = {}
-        if self.modes:
-            own = {"fuel": self.shares[k]}
-            more = fired_torque(self.grid.train, once)[which] * own["fuel"]
-            inertia, slope, torque = inertia[which], slope[which], torque[which] + more.sum(axis=1)
-            over_angle = None if over_angle is None else over_angle[which]
-            which = np.arange(len(theta))
-        inertia, slope, torque = (part[which] for part in (inertia, slope, torque))
-        omega = self.sense * np.sqrt(2.0 * np.maximum(energy, 0.0) / inertia)
-        outside = self.branch(t, omega)
-        for function in self.branch.functions:
-            outside = outside + function(t, theta, omega)
-        if self.grid.train.scene.friction is not None:
-            given = own.get("fuel")
-            torque = torque + friction_torque(self.grid.train, theta, omega, self.sense, given)
-            slides = np.full_like(omega, self.sense)
-            forces = friction_forces(self.grid.train, theta, omega, given, slides)
-            own["friction_force"] = forces
-        alpha = (torque + outside - 0.5 * slope * omega**2) / inertia
-        residual = self.begin.residual - self.missed[k]
-        outside = outside if over_angle is None else outside + over_angle[which]
-        return Samples(t, theta, omega, alpha, residual, {"external_torque": outside, **own})
-
-
-def _exact(landed: float, computed: Array) -> Array:
-    return computed if math.isnan(landed) else np.array([landed])

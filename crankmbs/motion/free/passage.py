@@ -5,17 +5,20 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Callable, Generator
+from dataclasses import replace
 from typing import Protocol
 
 import numpy as np
 
-from crankmbs.motion.base import Samples, Solved, State
-from crankmbs.motion.cells import Cells
+from crankmbs.mechanics.train import CrankTrain
+from crankmbs.motion import base
+from crankmbs.motion.base import Samples, State
 from crankmbs.motion.crank_angle.window import Window
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.events import Log
 from crankmbs.motion.minimal.stretch import Stretch
-from crankmbs.motion.plan import Chosen, Plan
+from crankmbs.motion.plan import Plan
+from crankmbs.motion.states import samples_at, samples_in
 
 __all__ = ["Passage", "Piece", "Watch"]
 
@@ -25,15 +28,12 @@ _KEPT_AT_LEAST = 8.0 * math.pi  # rad: the end of a run that is always kept, two
 _SAMPLE = 200  # evaluations as costly as a sample of a swing
 
 
-class Piece(Solved, Protocol):
+class Piece(base.Piece, Protocol):
     """A solved stretch of a free motion."""
 
     @property
     def size(self) -> int:
         """About how many numbers it holds."""
-
-    def cells(self) -> Cells:
-        """Its cells or steps as cells of a motion."""
 
     @property
     def steps(self) -> int:
@@ -42,9 +42,6 @@ class Piece(Solved, Protocol):
     @property
     def evaluations(self) -> int:
         """Evaluations of the equation of motion that it took."""
-
-    def last(self) -> Samples:
-        """The one sample at the end."""
 
 
 Watch = Callable[[Piece], None]
@@ -62,16 +59,16 @@ class Passage:
 
     def __init__(
         self,
+        train: CrankTrain,
         plan: Plan,
         first: Samples,
-        log: Log,
         *,
         can_swing: bool,
         allowed: int,
         watch: Watch | None = None,
     ) -> None:
-        self._watch, self.dropped, self._held = watch, False, 0
-        self._plan, self._can_swing, self._left, self.log = plan, can_swing, allowed, log
+        self._train, self._watch, self.dropped, self._held = train, watch, False, 0
+        self._plan, self._can_swing, self._left, self.log = plan, can_swing, allowed, Log(train)
         self._farthest, self._since = 0.0, 0  # reach [rad], and reversals that reached no farther
         self._over_time: bool | None = None
         self.fast, self.slow = list[tuple[float, float]](), list[float]()
@@ -132,8 +129,8 @@ class Passage:
         if math.isinf(self._plan.last):
             if self.pieces and self._plan.in_time:
                 self._blocks[-1] = self._begun_by(piece, self._blocks[-1])
-            self._blocks.append(piece.sample(self._plan))
-            self._count += len(self._blocks[-1].time)
+            self._blocks += (found := self._sampled(piece))
+            self._count += sum(len(block.time) for block in found)
             self._plan.room.check(self._count)
         self.pieces.append(piece)
         self._held += piece.size
@@ -152,10 +149,26 @@ class Passage:
         """Samples up to the time at which a piece begins: one there has its values, as a load that
         sets in, ends or jumps does so between the two."""
         at = before.time[-1:]
-        if len(at) == 0 or abs(at[0] - piece.begin.time) > self._plan.hair:
+        if abs(at[0] - piece.begin.time) > self._plan.hair:
             return before
-        after = piece.sample(Chosen(at, in_time=True))
+        after = samples_at(piece.cells, self._train, at, in_time=True)
         return Samples.joined([before.select(slice(-1)), after])
+
+    def _sampled(self, piece: Piece) -> list[Samples]:
+        """The samples of the plan in a piece, if any: after its begin, up to its end."""
+        plan, (begin, end) = self._plan, (piece.begin, piece.end)
+        between = (begin.time, end.time) if plan.in_time else (begin.theta, end.theta)
+        values = plan.between(*between)
+        if len(values) == 0:
+            return []
+        return [samples_at(piece.cells, self._train, values, in_time=plan.in_time)]
+
+    def _last(self) -> Samples:
+        """The one sample at the end."""
+        cells, end = self.pieces[-1].cells, self.pieces[-1].end
+        found = samples_in(cells, self._train, np.array([len(cells.time) - 1]), np.ones(1))
+        time, theta, omega = np.array(end[:3])[:, None]
+        return replace(found, time=time, theta=theta, omega=omega)
 
     def _swings(self) -> bool:
         """Whether an end in angle is not coming nearer, reversal by reversal."""
@@ -167,8 +180,8 @@ class Passage:
             return self._blocks[0]
         blocks = self._blocks
         if math.isfinite(self._plan.last):
-            blocks = blocks + [piece.sample(self._plan) for piece in self.pieces]
-        joined = Samples.joined([*blocks, self.pieces[-1].last()])
+            blocks = [*blocks, *(found for piece in self.pieces for found in self._sampled(piece))]
+        joined = Samples.joined([*blocks, self._last()])
         kept = np.ones(len(joined.time), dtype=np.bool_)
         values = joined.time if self._plan.in_time else joined.theta
         if len(values) > 1:

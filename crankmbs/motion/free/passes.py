@@ -10,12 +10,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from crankmbs.mechanics.inertia import inertia_alone
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.variables import VARIABLES
 from crankmbs.motion.account import Account
 from crankmbs.motion.assemble import Assembled, assemble
-from crankmbs.motion.base import Samples, Solution, State
+from crankmbs.motion.base import Solution, State
 from crankmbs.motion.crank_angle.grid import FINEST_CELL, Grid, grid_of
 from crankmbs.motion.cycles import MOST_CYCLES, Cycles, cycles_of
 from crankmbs.motion.ending import Ending
@@ -32,7 +31,6 @@ from crankmbs.motion.free.travel import (
 from crankmbs.motion.motion import Motion, Passes
 from crankmbs.motion.plan import plan_of
 from crankmbs.motion.remarks import left_open
-from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.collocation import gauss
 from crankmbs.numerics.once import once
 from crankmbs.scene.scene import Scene
@@ -149,17 +147,12 @@ def _account(passes: tuple[_Made, ...], way: Way, share: float, *, by_angle: boo
     once more."""
     cycles, trail = [], passes[0].made.trail
     for k, (grid, local, made) in enumerate(passes):
-        scene = grid.train.scene
-
-        def kinetic(at: Samples, scene: Scene = scene) -> Array:
-            return np.asarray(0.5 * inertia_alone(scene, at.theta) * at.omega**2)
-
-        cycles.append(Cycles(grid.train, made.trail.state.theta, kinetic, finer=k > 0))
+        cycles.append(Cycles(grid.train, made.trail.state.theta, finer=k > 0))
         if not (math.isfinite(way.plan.last) or made.path.dropped):
             for piece in made.path.pieces:
                 cycles[-1].add(piece)
             continue
-        plan = replace(way.plan, last=(MOST_CYCLES + 1) * scene.period)
+        plan = replace(way.plan, last=(MOST_CYCLES + 1) * grid.train.scene.period)
         again = Way(partial(_given, made.trail.state), plan, way.allowed, cycles[-1].add)
         travel(grid, again, local, by_angle=by_angle, first=None if k == 0 else trail)
     events = events_of([one.made.path.log for one in passes], share)

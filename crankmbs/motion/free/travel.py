@@ -14,13 +14,12 @@ from crankmbs.motion.base import Samples, State
 from crankmbs.motion.crank_angle.grid import Grid
 from crankmbs.motion.crank_angle.window import Window
 from crankmbs.motion.ending import Ending
-from crankmbs.motion.events import Log
-from crankmbs.motion.first import first_sample
 from crankmbs.motion.free.handover import Handover, Spans
 from crankmbs.motion.free.passage import Passage, Watch
 from crankmbs.motion.minimal.reduced import Reduced
 from crankmbs.motion.mode import begun
 from crankmbs.motion.plan import Plan
+from crankmbs.motion.states import first_sample
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 
@@ -84,10 +83,9 @@ def travel(
     same = first is not None and first.begin.omega[0] == state.omega
     of_angle = float(grid.at(state.mode.loads).outside(np.asarray(state.theta)))
     begin = first.begin if first and same else first_sample(grid.train, state, of_angle)
-    log = Log(grid.train)
+    path = Passage(grid.train, plan, begin, can_swing=steady, allowed=way.allowed, watch=way.watch)
     if not scene.settles:  # a periodic motion has no start: what acts was decided before
-        log.start(state)
-    path = Passage(plan, begin, log, can_swing=steady, allowed=way.allowed, watch=way.watch)
+        path.log.start(state)
     if first:  # it begins a rounding ahead: so the difference knows what the motion makes of one
         ahead = math.copysign(ANGLE_ROUNDING * state.theta, state.omega or float(begin.alpha[0]))
         state = state._replace(theta=state.theta + ahead)
@@ -98,7 +96,7 @@ def travel(
     ending = path.follow(hand.pieces(state, plan, way.allowed), note)
     if ending is Ending.COMPLETE and plan.folds_at((path.state or state).theta):
         ending = Ending.FOLD
-    log.close(ending, path.state or begun_in)
+    path.log.close(ending, path.state or begun_in)
     trail = Trail(begun_in, begin, tuple(path.fast))
     return Pass(trail, path.samples(), ending, path, worst, path.slow if by_angle else [])
 

@@ -14,11 +14,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from crankmbs.mechanics.friction import friction_knots, friction_torque, rubbing, sign_changes
+from crankmbs.mechanics.friction import friction_torque, rubbing
 from crankmbs.mechanics.inertia import fired_torque, reduce
 from crankmbs.mechanics.knots import KNOT, apart
 from crankmbs.mechanics.torque import knots_over_angle, over_angle
-from crankmbs.mechanics.train import CrankTrain, crank_angle_knots
+from crankmbs.mechanics.train import CrankTrain, crank_angle_knots, friction_knots, sign_changes
 from crankmbs.mechanics.windows import Phases
 from crankmbs.motion.mode import Mode
 from crankmbs.numerics.arrays import Array, Index

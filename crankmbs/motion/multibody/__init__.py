@@ -25,26 +25,32 @@ change little.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from crankmbs.mechanics.peaks import peak, relative_error
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion.base import Samples, Solution
+from crankmbs.motion.ending import Ending
 from crankmbs.motion.multibody.beside import errors_beside_jumps
-from crankmbs.motion.multibody.error import Convergence
+from crankmbs.motion.multibody.error import SAFETY, Convergence
 from crankmbs.motion.multibody.halvings import Halvings
 from crankmbs.motion.multibody.problem import order_over_angle
 from crankmbs.motion.multibody.samples import Sampled, aligned_variables
-from crankmbs.motion.multibody.seen import account_of_runs
+from crankmbs.motion.multibody.seen import Run, pieces_of_runs
 from crankmbs.numerics.arrays import Array
 
-__all__ = ["run"]
+__all__ = ["SAFETY", "run"]
 
 _WORSE = 2.0  # a halving that makes the error so much larger only adds rounding
 _MOTION = ("time", "crank_angle", "crank_speed", "crank_acceleration", "energy_residual")
 
 
-def run(train: CrankTrain, rtol: float, cost_cap: float) -> Solution:
+def run(train: CrankTrain, rtol: float, cost_cap: float) -> tuple[Solution, Sequence[Run], Ending]:
     """Run the multibody model; halve its step until ``rtol`` is met or ``cost_cap`` [s] is near.
+
+    Returns
+    -------
+    the solution, the pieces of its two finest runs, how they end
 
     Raises
     ------
@@ -76,15 +82,14 @@ def run(train: CrankTrain, rtol: float, cost_cap: float) -> Solution:
             answer = {name: values[:1] for name, values in answer.items()}
         elif worst > rtol:
             message += runs.shortfall(rtol, worst, before / latest)
-        account = account_of_runs(train, runs)
+        followed, ending = pieces_of_runs(train, runs), runs.ending
     finally:
         runs.close()
     own = {name: value for name, value in answer.items() if name not in _MOTION}
     time, theta, omega, alpha, residual = (answer[name] for name in _MOTION)
     samples = Samples(time, theta, omega, alpha, residual, own)
-    return Solution(
-        samples, status, message, runs.iterations, runs.steps, errors=errors, keep=lambda: account
-    )
+    solution = Solution(samples, status, message, runs.iterations, runs.steps, errors=errors)
+    return solution, followed, ending
 
 
 def _worst(answer: dict[str, Array], errors: dict[str, float]) -> float:

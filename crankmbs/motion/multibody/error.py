@@ -11,9 +11,9 @@ from crankmbs.mechanics.peaks import negligible, peak
 from crankmbs.mechanics.variables import EVERY, SUMS
 from crankmbs.numerics.arrays import Array
 
-__all__ = ["Convergence"]
+__all__ = ["SAFETY", "Convergence"]
 
-_SAFETY = 1.5  # times what is estimated: an order is never quite the nominal one
+SAFETY = 1.5  # times what is estimated: an order is never quite the nominal one
 _UNPROVEN = 5.0  # instead, where two runs say nothing about an order
 _SHARE = 1.0 / 8.0  # of what is usual beside it: what changes less does so by chance
 _BENT = 1.0 / 32.0  # of D, what bends within the steps leave in a first correction
@@ -67,10 +67,10 @@ class Convergence:
                 size, change = peak(value), self._changes[name][-1]
                 error = _UNPROVEN * max(change, _SHARE * usual * size) if change else 0.0
                 if len(runs) > 2:
-                    error = _SAFETY * self._uncorrected(name)
+                    error = SAFETY * self._uncorrected(name)
                     if self._is_clean(name):
                         answer[name] = value + (value - runs[-2][name]) / 3.0
-                        error = _SAFETY * self._corrected(name, usual)
+                        error = SAFETY * self._corrected(name, usual)
                 errors[name] = error + _ROUNDING * size
         _silence(answer)
         del answer["ahead"]
@@ -144,7 +144,7 @@ def _largest(sizes: Sequence[float], shrinks: float, most: float, stalled: float
     if stalled * last > before or stalled * before > earlier:
         return 2.0 * max(last, before)
     shrunk = earlier / before if before > 0.0 and math.isfinite(earlier) else 0.0
-    return max(last, before / min(max(shrinks, shrunk), most) / _SAFETY)
+    return max(last, before / min(max(shrinks, shrunk), most) / SAFETY)
 
 
 def _silence(answer: dict[str, Array]) -> None:

@@ -2,32 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
 
 from crankmbs.mechanics.train import CrankTrain
-from crankmbs.motion.account import Account
-from crankmbs.motion.base import Nodes, Points, Samples, State
-from crankmbs.motion.driven import Way, driven, driven_observer, own_energy
-from crankmbs.motion.ending import Ending
+from crankmbs.motion.base import Piece, State
+from crankmbs.motion.cells import Acting, Cells
+from crankmbs.motion.driven import Way, begun_at, driven
 from crankmbs.motion.multibody.halvings import Halvings
 from crankmbs.motion.multibody.problem import Problem
-from crankmbs.motion.multibody.samples import monotone, reached, times_of
+from crankmbs.motion.multibody.samples import monotone, reached
 from crankmbs.motion.multibody.step_table import StepTable
 from crankmbs.motion.multibody.stepped import Stepped
-from crankmbs.motion.observer import Observer, account_of
-from crankmbs.motion.plan import Wanted
 from crankmbs.motion.prescribed import monotone_stretches
-from crankmbs.numerics.arrays import Array
+from crankmbs.numerics.lagrange import ends_and_nodes
 
-__all__ = ["account_of_runs"]
+__all__ = ["Run", "pieces_of_runs"]
 
-_SAFETY = 1.5  # as in `crankmbs.motion.multibody.error`
 _POINTS = 8  # of Gauss in 5 degrees
-_GAUSS = np.polynomial.legendre.leggauss(3)  # in a step, whose error is of order 2
+_STAGES = 3  # of Gauss in a step, whose error is of order 2
+_MOTION = ("crank_angle", "crank_speed", "crank_acceleration", "external_torque")
+
+
+Run = tuple[State, Sequence[Piece]]
+"""The state in which a run begins, and its pieces."""
 
 
 @dataclass(frozen=True)
@@ -39,79 +40,59 @@ class _Landed:
     end: State
     decisions: tuple[State, ...] = ()
 
-    def nodes(self) -> Nodes:
-        """The steps, and Gauss points in them."""
+    @property
+    def cells(self) -> Cells:
+        """The steps as cells of a motion."""
         inside = self.table.times
         inside = inside[(inside > self.begin.time) & (inside < self.end.time)]
         edges = np.concatenate([[self.begin.time], inside, [self.end.time]])
-        width = np.diff(edges)[:, None]
-        time = edges[:-1, None] + 0.5 * width * (1.0 + _GAUSS[0])
-        found = self.table.with_rate("crank_angle", "crank_speed", time.ravel())
-        theta, omega = (values.reshape(time.shape) for values in found)
-        speeds = self.table.one_at("crank_speed", edges)
-        return Nodes(edges, speeds, Points(time, theta, omega, 0.5 * width * _GAUSS[1] * omega))
-
-    def sample(self, plan: Wanted) -> Samples:
-        """Its samples where they are wanted."""
-        between = self.begin.time, self.end.time
-        if plan.in_time:
-            time = plan.between(*between)
-        else:
-            time = times_of(self.table, plan.between(self.begin.theta, self.end.theta), *between)
-        return _samples(self.table, time)
+        time = edges[:-1, None] + np.diff(edges)[:, None] * ends_and_nodes(_STAGES).places
+        time[:, -1] = edges[1:]
+        found = self.table.at(time.ravel())
+        rows = {name: found[name].reshape(time.shape) for name in _MOTION}
+        sense = float(np.sign(self.end.theta - self.begin.theta))
+        angle, speed, rate, outside = rows.values()
+        angle[0, 0], angle[-1, -1] = self.begin.theta, self.end.theta
+        shares = np.tile(self.begin.mode.shares, (len(time), 1))
+        return Cells(time, angle, speed, Acting(sense), shares, None, rate, outside)
 
 
-def _samples(table: StepTable, time: Array) -> Samples:
-    found = table.at(time)
-    return Samples(
-        time=time,
-        theta=found["crank_angle"],
-        omega=found["crank_speed"],
-        alpha=found["crank_acceleration"],
-        energy_residual=found["energy_residual"],
-        own={name: found[name] for name in ("kinetic_energy", "external_torque")},
-    )
+@dataclass(frozen=True)
+class _Given:
+    """A stretch of a prescribed motion with what the run needs to follow it."""
+
+    begin: State
+    end: State
+    decisions: tuple[State, ...]
+    cells: Cells
 
 
-def account_of_runs(train: CrankTrain, runs: Halvings) -> Account:
-    """The account of the finest run; its error is what the last halving changed, half as large
-    again. Where the speed is prescribed its law says when something happens."""
-    paths = runs.paths[:-3:-1]
-    seen = [_observed(train, path, runs, finer=k > 0) for k, path in enumerate(paths)]
-    return account_of(seen, _SAFETY)
-
-
-def _observed(train: CrankTrain, path: Stepped, runs: Halvings, *, finer: bool) -> Observer:
+def pieces_of_runs(train: CrankTrain, runs: Halvings) -> list[Run]:
+    """Of the finest run and the one before it, the begin and the pieces. Where the speed is
+    prescribed its law says when something happens."""
     if runs.problem.law is not None:
-        return _driven(train, path, runs.problem, finer=finer, ending=runs.ending)
-    observer, last = Observer(train, own_energy, finer=finer), path.landings[0]
-    observer.start(last)
-    for piece in _pieces(path) if runs.moves else ():
-        observer.add(piece)
-        last = piece.end
-    observer.close(runs.ending, last)
-    return observer
+        way = Way(train, runs.problem.law, _POINTS)
+        paths = runs.paths[:-3:-1]
+        return [(begun_at(way), list(_given(way, path, runs.problem))) for path in paths]
+    return [
+        (path.landings[0], list(_pieces(path)) if runs.moves else []) for path in runs.paths[:-3:-1]
+    ]
 
 
-def _driven(
-    train: CrankTrain, path: Stepped, problem: Problem, *, finer: bool, ending: Ending
-) -> Observer:
-    """Of a run with a prescribed speed: its law, and what the run needs to follow it."""
-    law = problem.law
-    assert law is not None
-    stretches, _ = monotone_stretches(problem.plan, law)
+def _given(way: Way, path: Stepped, problem: Problem) -> Iterator[_Given]:
+    """The stretches of a prescribed speed, with what the run needs to follow it."""
+    stretches, _ = monotone_stretches(problem.plan, way.law)
     until = min(problem.end, reached(path)[0])
     passed = [(begin, min(end, until)) for begin, end in stretches if begin < until]
     tables = [table for table in path.tables if table.until > table.after]
     ends = np.array([table.until for table in tables[:-1]])
-
-    def moving(time: Array, _shares: Array | None) -> Samples:
-        which = np.searchsorted(ends, time)
-        parts = [_samples(table, time[which == k]) for k, table in enumerate(tables)]
-        return Samples.joined([part for part in parts if len(part.time)] or parts[:1])
-
-    pieces = driven(Way(train, law, moving, _POINTS), passed)
-    return driven_observer(train, pieces, finer=finer, rests=ending is Ending.LAW_RESTS)
+    for piece in driven(way, passed):
+        time = piece.cells.time.ravel()
+        which, outside = np.searchsorted(ends, time), np.empty_like(time)
+        for k, table in enumerate(tables):
+            outside[which == k] = table.at(time[which == k])["external_torque"]
+        cells = replace(piece.cells, outside=outside.reshape(piece.cells.time.shape))
+        yield _Given(piece.begin, piece.end, piece.decisions, cells)
 
 
 def _pieces(path: Stepped) -> Iterator[_Landed]:

@@ -15,13 +15,13 @@ from crankmbs.motion.base import Samples, Solution, State
 from crankmbs.motion.crank_angle.grid import FINEST_CELL, Grid
 from crankmbs.motion.crank_angle.window import Window
 from crankmbs.motion.ending import Ending
-from crankmbs.motion.first import first_sample
 from crankmbs.motion.free.handover import Handover, Spans
 from crankmbs.motion.free.passes import first_grid
 from crankmbs.motion.minimal.entering import enter
 from crankmbs.motion.minimal.reduced import Reduced
 from crankmbs.motion.mode import begun
 from crankmbs.motion.plan import Plan, folds_of
+from crankmbs.motion.states import first_sample
 from crankmbs.motion.stepwise.standing import AT_REST, Moving, Standing, commanded, said
 from crankmbs.numerics.arrays import Array
 
