@@ -17,6 +17,7 @@ __all__ = ["Plan", "folds_of", "plan_of"]
 
 
 _LESS = 1.0 - 1e-6  # of a spacing: the samples that are kept beyond the last period reach so far
+_ROUNDING = 8 * float(np.finfo(float).eps)  # of a value, as in `crankmbs.motion.cells.cell_of`
 _HAIR = 1e-6  # rad: so near a fold the forces still have all their digits but the last few
 
 
@@ -58,7 +59,8 @@ class Plan:
         return self.until if self.until_time else math.inf
 
     def between(self, begin: float, end: float) -> Array:
-        """Grid values in (begin, end], in the order in which they are passed; angles or times.
+        """Grid values in (begin, end], but for rounding, in the order in which they are passed;
+        angles or times.
 
         Raises
         ------
@@ -69,7 +71,8 @@ class Plan:
         a, b = sorted(((begin - origin) / self.every, (end - origin) / self.every))
         self.room.check(b - a)
         grid = origin + self.every * np.arange(math.floor(a) - 1, math.ceil(b) + 2)
-        inside = grid[(sign * grid > sign * begin) & (sign * grid <= sign * end)]
+        first, last = (sign * bound + _ROUNDING * abs(bound) for bound in (begin, end))
+        inside = grid[(sign * grid > first) & (sign * grid <= last)]
         return np.asarray(inside if sign > 0 else inside[::-1])
 
     def is_end(self, value: float, end: float) -> bool:
