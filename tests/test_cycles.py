@@ -100,6 +100,16 @@ def test_a_drive_gives_what_is_missing(name):
         assert left < 1e-12 * largest
 
 
+@pytest.mark.parametrize("name", ["yi_diesel", "compressor"])
+def test_a_drive_gives_what_friction_takes(name):
+    friction = Friction(ring_force=30.0, ring_pressure=0.02, viscous=5.0)
+    scene = replace(load_scene(name), friction=friction)
+    cycles = simulate(until(scene, 2.5, "cycle")).cycles
+    assert np.all(cycles["friction_work"].values < -1.0)
+    left, largest = unbalanced(cycles)
+    assert left < 1e-12 * largest
+
+
 def test_a_drive_fires_by_its_shares():
     motion = Motion(speed=FOUR.start.speed, angle=0.7)
     cycles = simulate(fuelled(FUELS["misfire"], 3.2, start=None, torque=(), motion=motion)).cycles

@@ -312,3 +312,23 @@ def test_cells_solved_at_once_are_those_from_decision_to_decision(name, loads, s
         np.testing.assert_allclose(row, beside, rtol=1e-12, atol=1e-10)
     torques = once.strip.torque[:m], each.strip.torque[:m]
     np.testing.assert_allclose(*torques, rtol=1e-12, atol=1e-10)
+
+
+@pytest.mark.parametrize("formulation", ["crank_angle", "minimal"])
+def test_a_sample_at_a_decision_is_before_it(formulation):
+    """Backwards from 180 degrees its crank angle and the edge of a cell round differently."""
+    scene = fuelled(Fuel(scatter=0.2, seed=3), cycles=6.0)
+    start = replace(FOUR.start, angle=pi, speed=-200.0)
+    result = simulate(replace(scene, start=start), formulation=formulation)
+    events = result.events
+    decided = events["kind"].values == "fuel"
+    angles, cylinders = events["crank_angle"].values[decided], events["cylinder"].values[decided]
+    fuel, at = result.data["fuel"].values, result.data["crank_angle"].values
+    before, after = [], []
+    for angle, cylinder in zip(angles[4:-4], cylinders[4:-4] - 1, strict=True):
+        k = int(np.argmin(np.abs(at - angle)))
+        assert at[k] == pytest.approx(angle, abs=1e-9)
+        assert fuel[k, cylinder] == fuel[k - 1, cylinder]
+        before.append(fuel[k, cylinder])
+        after.append(fuel[k + 1, cylinder])
+    assert np.count_nonzero(np.array(before) != after) > 12

@@ -48,15 +48,18 @@ class Period(NamedTuple):
 
     def run(self, energy: float, time: float, most: float, t_end: float, spare: int) -> Skipped:
         """As many periods as end ``spare`` periods before ``t_end``, ``most`` at most."""
-        block = max(8 * spare, _TOGETHER // len(self.gain))
-        growth, rise = np.full((2, block), [[self.growth], [self.rise]])
+        block = max(8, _TOGETHER // len(self.gain))
         done, total, clock = 0, 0.0, np.longdouble(time)  # alike in every pass, rounding is unseen
         while done < most:
+            growth, rise = np.full((2, block), [[self.growth], [self.rise]])
             with np.errstate(all="ignore"):
                 energies = carried(growth, rise, energy)
                 roots = np.sqrt(energies[:-1, None] * self.gain + self.shift)
                 spent = clock + np.cumsum((1.0 / roots) @ self.weight, dtype=np.longdouble)
             ended = int(np.searchsorted(~(spent <= t_end), True))
+            if ended == block <= spare:
+                block *= 2  # too few to know which are spare
+                continue
             count = int(min(ended - spare, most - done))
             if count <= 0:
                 break
