@@ -14,7 +14,7 @@ import crankmbs
 from crankmbs.cli import app
 from crankmbs.compare import WORDS
 from crankmbs.mechanics.variables import EVERY
-from crankmbs.scene.read import shipped_scenes
+from crankmbs.scene.shipped import shipped_scenes
 
 sys.path.insert(0, str(DOCS / "_ext"))
 import docstrings

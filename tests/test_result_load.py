@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from crankmbs import OutputError, Result, Run, load_scene, simulate
-from crankmbs.scene.read import models_folder
+from crankmbs.scene.shipped import models_folder
 
 SCENE = load_scene("yi_diesel_free")  # with tables, loads and several cylinders
 RESULT = simulate(dataclasses.replace(SCENE, run=Run(until="30 deg")))
