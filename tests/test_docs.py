@@ -22,6 +22,8 @@ import docstrings
 import keys
 import names
 
+pytestmark = pytest.mark.slow
+
 PAGES = {str(page): (DOCS / page).read_text(encoding="utf-8") for page in pages()}
 
 

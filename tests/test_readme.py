@@ -9,6 +9,8 @@ from typer.main import get_command
 from crankmbs.cli import app
 from crankmbs.scene.shipped import shipped_scenes
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 SCREEN = README.partition("## Changelog")[0]
