@@ -89,7 +89,8 @@ def _product(text: str) -> tuple[float, tuple[int, ...]] | None:
     text = _RAISED.sub(lambda raised: f"^{raised[1].translate(_SUPERSCRIPT)}", text)
     if len(text) > _LONGEST:
         return None
-    size, powers, at = 1.0, (0, 0, 0), 0
+    size, at = 1.0, 0
+    powers: tuple[int, ...] = (0, 0, 0)
     while at < len(text):
         match = _FACTORS.match(text, at)
         one = match and _single(match[2])
