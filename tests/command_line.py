@@ -6,7 +6,7 @@ from pathlib import Path
 from typer.testing import CliRunner
 
 from crankmbs.cli import app
-from crankmbs.scene.read import models_folder
+from crankmbs.scene.shipped import models_folder
 
 PRESSURE = models_folder() / "pressure" / "made_up_diesel.csv"
 SCENE = f"""

@@ -1,12 +1,22 @@
-"""Fixtures of several test files."""
+"""Fixtures of several test files, and which tests of slow files run by default."""
 
 import pytest
 from browser import started
+from guards import quick_guards
 from page_engine import engine
 from scene_texts import GAS
 
 from crankmbs.errors import SceneError
 from crankmbs.scene.read import parse_scene
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items):
+    """What kills a mutant runs by default."""
+    guards = quick_guards()
+    for item in items:
+        if item.nodeid in guards:
+            item.add_marker("always")
 
 
 @pytest.fixture

@@ -21,6 +21,8 @@ from crankmbs.figures.mechanism import Drawing, slices
 from crankmbs.figures.outline import mechanism
 from crankmbs.figures.style import panels
 
+pytestmark = pytest.mark.slow
+
 SWINGING = dataclasses.replace(
     load_scene("compressor"),
     motion=Motion(speed=Oscillation(mean=150.0, amplitude=60.0, order=1.0)),

@@ -19,6 +19,8 @@ from crankmbs.sweep.columns import columns_of
 from crankmbs.sweep.scenes import scene_of
 from validation.random_settled import random_settled
 
+pytestmark = pytest.mark.slow
+
 SEEDS = range(2000, 2024)
 LEFT = {2000, 2001, 2002, 2005, 2007, 2009, 2018, 2019, 2021}  # with tables over the speed
 COARSE = {2010, 2014}  # more than its tolerance, by the finest rules

@@ -6,6 +6,8 @@ import pytest
 from crankmbs.batch import means, peaks
 from crankmbs.numerics.collocation import gauss
 
+pytestmark = pytest.mark.slow
+
 WIDTHS = np.array([0.05, 0.3, 0.05, 0.02, 0.03, 0.05, 0.01, 0.2])
 
 

@@ -22,6 +22,8 @@ from crankmbs.sweep.columns import columns_of
 from crankmbs.sweep.scenes import scene_of
 from validation.random_settled import random_settled
 
+pytestmark = pytest.mark.slow
+
 SEEDS = range(3000, 3016)
 ALONE: set[int] = set()
 

@@ -6,6 +6,8 @@ from crankmbs import load_scene, simulate
 from validation.oracles import end_states
 from validation.oracles.arithmetic import distance
 
+pytestmark = pytest.mark.slow
+
 COMPUTED = {  # by another integration, to rounding
     "crank_angle": "14.1278922178",
     "crank_speed": "20.5374828514",

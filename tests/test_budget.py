@@ -20,7 +20,7 @@ from crankmbs.compare import (
 from crankmbs.errors import InputError
 from crankmbs.lecture import datum_shift
 from crankmbs.mechanics.geometry import close_loop
-from crankmbs.scene.read import shipped_scenes
+from crankmbs.scene.shipped import shipped_scenes
 
 ROUNDING = 1e-12  # of the peak
 S1 = list(LECTURES)[-1]

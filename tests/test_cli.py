@@ -14,7 +14,7 @@ import crankmbs.cli.run
 import crankmbs.figures
 import crankmbs.result.record
 from crankmbs import Result, simulate
-from crankmbs.scene.read import models_folder
+from crankmbs.scene.shipped import models_folder
 
 COMES_TO_REST = SCENE.replace('"3000 rpm"', '{ from = "900 rpm", to = "0 rpm", over = "0.1 s" }')
 DRAWN = ["speed", "piston_motion", "gas_and_side_force", "main_bearing", "crank_pin", "piston_pin"]

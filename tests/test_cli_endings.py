@@ -10,6 +10,8 @@ from command_line import crankmbs_, names, refused
 
 import crankmbs.cli.run
 
+pytestmark = pytest.mark.slow
+
 FULL = Path("/dev/full")
 NEEDS_FULL = pytest.mark.skipif(not FULL.exists(), reason="this system has no /dev/full")
 COMMAND = "import sys; from crankmbs.cli import main; sys.argv[0] = 'crankmbs'; main()"

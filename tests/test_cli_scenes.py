@@ -8,7 +8,7 @@ import pytest
 from command_line import SCENE, crankmbs_, names, refused
 
 import crankmbs.cli.run
-from crankmbs.scene.read import models_folder
+from crankmbs.scene.shipped import models_folder
 
 
 @pytest.fixture(autouse=True)

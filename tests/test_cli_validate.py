@@ -16,6 +16,8 @@ from crankmbs.cli import app
 from crankmbs.compare import CAUSES, CLOSED_FORM, LECTURES, QUANTITIES
 from crankmbs.figures import budget_figure, comparison_figure
 
+pytestmark = pytest.mark.slow
+
 WITHOUT_FRICTION = [name for name in CAUSES if name != "friction"]
 FOLDING = """
 [crank]

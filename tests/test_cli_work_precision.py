@@ -8,6 +8,8 @@ from crankmbs.cli import app
 from crankmbs.work_precision import END, MOTION, formulations, rounds
 from validation.speed.__main__ import main as beside_others
 
+pytestmark = pytest.mark.slow
+
 REACTIONS = ("main bearing", "crank pin", "piston pin", "side force")
 
 SCENE = """

@@ -13,6 +13,8 @@ from crankmbs.scene.read import load_scene
 from crankmbs.scene.run import Run
 from crankmbs.simulate import simulate
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module", params=["deg", "ms"])
 def result(request: pytest.FixtureRequest) -> Result:

@@ -14,12 +14,15 @@ import crankmbs
 from crankmbs.cli import app
 from crankmbs.compare import WORDS
 from crankmbs.mechanics.variables import EVERY
-from crankmbs.scene.read import shipped_scenes
+from crankmbs.scene.shipped import shipped_scenes
+from crankmbs.scene.unit_table import PREFIXES, UNITS
 
 sys.path.insert(0, str(DOCS / "_ext"))
 import docstrings
 import keys
 import names
+
+pytestmark = pytest.mark.slow
 
 PAGES = {str(page): (DOCS / page).read_text(encoding="utf-8") for page in pages()}
 
@@ -90,6 +93,13 @@ def test_every_command_variable_and_public_name_has_its_place():
     assert re.findall(r"^\| `(\w+)`", names.variables_page(), re.MULTILINE) == list(EVERY)
     shown = set(re.findall(r"^\.\. auto\w+:: crankmbs\.(\w+)$", names.python_page(), re.MULTILINE))
     assert shown == set(crankmbs.__all__)
+
+
+def test_the_manual_names_every_unit_and_prefix():
+    text = PAGES["reference/scene.md"]
+    said = text[text.index("- **Units.**") : text.index("- **Cylinders.**")]
+    symbols = set(re.findall(r"`([^`]+)`", said))
+    assert symbols >= {*UNITS, *PREFIXES} - {"\N{GREEK SMALL LETTER MU}"}
 
 
 OWN = PAGES["howto/own_formula.md"]

@@ -11,6 +11,8 @@ import pytest
 import crankmbs
 from crankmbs.mechanics.train import crank_train
 
+pytestmark = pytest.mark.slow
+
 # what a reader has at hand: the package's public names, and those an example would import first
 AT_HAND = {name: getattr(crankmbs, name) for name in crankmbs.__all__}
 AT_HAND |= {"crankmbs": crankmbs, "crank_train": crank_train, "np": np}

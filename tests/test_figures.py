@@ -35,6 +35,8 @@ from crankmbs.figures import (
     torque_figure,
 )
 
+pytestmark = pytest.mark.slow
+
 FIRED = load_scene("propeller")
 FOUR = Layout(firing_order=(1, 3, 4, 2))
 FIGURES = [
@@ -215,6 +217,7 @@ def test_unusual_runs_are_drawn_without_a_warning(draw, speed, until, parts):
     draw(view).draw_without_rendering()
 
 
+@pytest.mark.always
 def test_figures_are_saved_as_png_and_no_global_state_is_touched(tmp_path, one):
     before = dict(mpl.rcParams)
     files = save_figures(one.result, tmp_path / "new")

@@ -9,6 +9,8 @@ import pytest
 from crankmbs import Cylinder, Layout, Motion, Ramp, Run, load_scene, simulate
 from crankmbs.figures import last_view, speed_figure, torque_figure
 
+pytestmark = pytest.mark.slow
+
 
 def driven(speed=300.0, *, until="2 cycles", **parts):
     run, motion = Run(until=until), Motion(speed=speed)

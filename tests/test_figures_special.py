@@ -18,6 +18,8 @@ from crankmbs.figures import (
     torque_figure,
 )
 
+pytestmark = pytest.mark.slow
+
 BARE = dataclasses.replace(load_scene("coasting"), gravity=None, torque=())
 STRIPS = [speed_figure, piston_motion_figure, forces_figure, torque_figure]
 POLAR = [main_bearing_figure, crank_pin_figure, piston_pin_figure]

@@ -16,11 +16,21 @@ from crankmbs import OutputError, Result, Run, load_scene, simulate
 from crankmbs.result import record
 from crankmbs.storage.files import together, write_in_one_move
 
+pytestmark = pytest.mark.slow
+
 SHORT = dataclasses.replace(load_scene("coasting"), run=Run(until="30 deg"))
-FIRST = simulate(SHORT)
-SECOND = simulate(dataclasses.replace(SHORT, run=Run(until="60 deg")))
 ELSE = "choose another folder"
 HARD_LIMITS = pytest.mark.skipif(sys.platform == "win32", reason="no limits of a process there")
+
+
+@pytest.fixture(scope="module")
+def first():
+    return simulate(SHORT)
+
+
+@pytest.fixture(scope="module")
+def second():
+    return simulate(dataclasses.replace(SHORT, run=Run(until="60 deg")))
 
 
 def write(*files):
@@ -38,9 +48,9 @@ def assert_one_run(folder, result):
 
 
 @pytest.mark.parametrize("step", ["write_saved", "write_csv"])
-def test_two_runs_into_one_folder_do_not_mix(step, tmp_path, monkeypatch):
+def test_two_runs_into_one_folder_do_not_mix(step, first, second, tmp_path, monkeypatch):
     """The second comes while the first one writes."""
-    plain, order = getattr(record, step), [SECOND]
+    plain, order = getattr(record, step), [second]
 
     def interrupted(*given):
         plain(*given)
@@ -48,12 +58,12 @@ def test_two_runs_into_one_folder_do_not_mix(step, tmp_path, monkeypatch):
             order.pop().save(tmp_path)
 
     monkeypatch.setattr(record, step, interrupted)
-    FIRST.save(tmp_path)
-    assert_one_run(tmp_path, FIRST)
+    first.save(tmp_path)
+    assert_one_run(tmp_path, first)
     assert names(tmp_path) == {"result.nc", "motion.csv"}
 
 
-def test_files_are_moved_while_no_other_run_moves_its_own(tmp_path, monkeypatch):
+def test_files_are_moved_while_no_other_run_moves_its_own(first, second, tmp_path, monkeypatch):
     plain = Path.replace
     others: list[threading.Thread] = []
     moved = []
@@ -63,35 +73,35 @@ def test_files_are_moved_while_no_other_run_moves_its_own(tmp_path, monkeypatch)
         if threading.current_thread() is threading.main_thread():
             moved.append(target)
         if len(moved) == 2 and threading.current_thread() is threading.main_thread():
-            assert_one_run(tmp_path, FIRST)  # the other one waits until this is done
+            assert_one_run(tmp_path, first)  # the other one waits until this is done
         if not others:
-            others.append(threading.Thread(target=SECOND.save, args=(tmp_path,)))
+            others.append(threading.Thread(target=second.save, args=(tmp_path,)))
             others[0].start()
             others[0].join(1.0)  # it would be done by then
 
     monkeypatch.setattr(Path, "replace", late)
-    FIRST.save(tmp_path)
+    first.save(tmp_path)
     others[0].join()
     assert len(moved) == 2
-    assert_one_run(tmp_path, SECOND)
+    assert_one_run(tmp_path, second)
     assert names(tmp_path) == {"result.nc", "motion.csv"}
 
 
-def test_what_fails_leaves_the_files_of_the_run_before(tmp_path, monkeypatch):
-    FIRST.save(tmp_path)
+def test_what_fails_leaves_the_files_of_the_run_before(first, second, tmp_path, monkeypatch):
+    first.save(tmp_path)
     full = OSError(28, "No space left on device")
     monkeypatch.setattr(record, "write_csv", lambda *_: (_ for _ in ()).throw(full))
     with pytest.raises(OutputError) as caught:
-        SECOND.save(tmp_path)
+        second.save(tmp_path)
     assert str(caught.value) == f"{tmp_path}: cannot be written (No space left on device); {ELSE}"
-    assert_one_run(tmp_path, FIRST)
+    assert_one_run(tmp_path, first)
     assert names(tmp_path) == {"result.nc", "motion.csv"}
 
 
-def test_a_folder_in_the_way_is_found_before_anything_is_moved(tmp_path):
+def test_a_folder_in_the_way_is_found_before_anything_is_moved(first, tmp_path):
     (tmp_path / "result.nc").mkdir()
     with pytest.raises(OutputError, match=r"cannot be written \(result\.nc is a folder there\)"):
-        FIRST.save(tmp_path)
+        first.save(tmp_path)
     assert names(tmp_path) == {"result.nc"}
 
 

@@ -9,7 +9,8 @@ from crankmbs import Gravity
 from crankmbs.mechanics.geometry import close_loop
 from crankmbs.mechanics.inertia import fired_torque, gravity_vector, reduce, rod_centre
 from crankmbs.mechanics.train import CrankTrain, crank_angle_knots, crank_train
-from crankmbs.scene.read import load_scene, shipped_scenes
+from crankmbs.scene.read import load_scene
+from crankmbs.scene.shipped import shipped_scenes
 from validation.adapter import reference_variables
 from validation.oracles.arithmetic import multiprecision
 from validation.random_scenes import random_scene

@@ -16,6 +16,8 @@ from crankmbs import load_scene, simulate
 from crankmbs.scene.run import SETTLED
 from validation.adapter import reference_variables
 
+pytestmark = pytest.mark.slow
+
 _DATA = re.compile(r'<data id="(\w+)" value="([^"]+)"(?: data-error="([^"]+)")?>')
 
 

@@ -8,6 +8,8 @@ from playwright.sync_api import Error
 
 from crankmbs.lessons import LESSONS
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.mark.parametrize("name", LESSONS)
 def test_what_a_lesson_shows_is_true(page, name):

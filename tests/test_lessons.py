@@ -18,6 +18,8 @@ from crankmbs.lessons import LESSONS, write_lesson, write_lessons
 from crankmbs.lessons.markup import formula, prose
 from crankmbs.lessons.pieces import Formula, Number
 
+pytestmark = pytest.mark.slow
+
 MATHML = "{http://www.w3.org/1998/Math/MathML}"
 HOSTILE = "</script><script>alert(1)</script><img src=x onerror=alert(2)> $x$"
 
@@ -139,6 +141,7 @@ def test_a_scene_that_a_lesson_cannot_be_about_is_refused_in_a_sentence(
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.always
 def test_commands_write_a_page_and_list_them_all(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     result = CliRunner().invoke(app, ["lesson", "displacement", "-o", "pages"])

@@ -17,6 +17,8 @@ from crankmbs.lessons import LESSONS, write_lesson
 from crankmbs.lessons.shaking import reciprocating
 from crankmbs.scene.parts import Layout
 
+pytestmark = pytest.mark.slow
+
 PASSES = "() => [...document.querySelectorAll('figure')].every((f) => f.dataset.passes === '2')"
 PHONE, LAPTOP, LARGE = (390, 844), (1366, 641), (1920, 1080)
 

@@ -24,6 +24,8 @@ from crankmbs.measures import Estimate, JointForce, measure
 from crankmbs.scene.parts import Gravity
 from validation.adapter import reference_variables
 
+pytestmark = pytest.mark.slow
+
 FREE = load_scene("yi_diesel_free")
 DIESEL = load_scene("propeller")
 STEADY = Motion(speed=300.0)

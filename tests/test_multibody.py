@@ -18,6 +18,8 @@ from crankmbs.scene.scene import Scene
 from crankmbs.simulate import simulate
 from validation.adapter import at_jumps, reference_motion, reference_variables
 
+pytestmark = pytest.mark.slow
+
 COASTING = load_scene("coasting")
 END_STATES = {
     "coasting": (49.22808714458433140007, 94.47401803965801494427),

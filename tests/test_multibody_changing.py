@@ -11,6 +11,8 @@ from validation.checks.changing import compared
 from validation.oracles.changes import Line, Pull
 from validation.random_changes import function_with
 
+pytestmark = pytest.mark.slow
+
 TWIN = load_scene("v_twin")
 SHORT = Run(until=Extent(value=0.012, unit="s"), every=Extent(value=0.001, unit="s"), rtol=1e-5)
 ROWS = (0.0, 3.0, 5.5, 6.2, 6.8, 8.0, 10.0)

@@ -16,6 +16,8 @@ from crankmbs.motion.multibody.problem import problem_of
 from crankmbs.scene.read import load_scene
 from crankmbs.scene.run import Run
 
+pytestmark = pytest.mark.slow
+
 X = np.linspace(0.0, 3.0, 50)
 EXACT = np.sin(X)
 SMOOTH = 3  # the least order of what is erratic; 2 with bends, 1 with jumps within the steps

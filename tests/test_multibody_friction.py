@@ -12,6 +12,8 @@ from crankmbs.scene.parts import Friction
 from crankmbs.scene.run import Run
 from crankmbs.scene.tables import Table
 
+pytestmark = pytest.mark.slow
+
 ALL = Friction(ring_force=40.0, ring_pressure=0.02, viscous=30.0)
 DRY = Friction(ring_force=40.0, viscous=30.0)
 

@@ -17,6 +17,8 @@ from crankmbs.scene.scene import Scene
 from crankmbs.scene.tables import Table
 from crankmbs.simulate import simulate
 
+pytestmark = pytest.mark.slow
+
 COASTING = load_scene("coasting")
 
 

@@ -23,6 +23,8 @@ from crankmbs.scene.tables import Table
 from crankmbs.scene.torque import Torque
 from crankmbs.simulate import simulate
 
+pytestmark = pytest.mark.slow
+
 COASTING = load_scene("coasting")
 RPM = math.pi / 30.0
 

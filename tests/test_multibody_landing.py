@@ -25,6 +25,8 @@ from crankmbs.scene.tables import Table
 from crankmbs.scene.torque import Torque
 from crankmbs.simulate import simulate
 
+pytestmark = pytest.mark.slow
+
 COASTING = replace(
     load_scene("coasting"),
     run=Run(until=Extent(value=0.05, unit="s"), every=Extent(value=0.05, unit="rad")),

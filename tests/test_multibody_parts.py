@@ -28,6 +28,8 @@ from crankmbs.scene.read import load_scene
 from crankmbs.scene.run import Run
 from crankmbs.scene.tables import Table
 
+pytestmark = pytest.mark.slow
+
 COASTING = load_scene("coasting")
 V_TWIN = load_scene("v_twin")
 STEP, STEPS = 1e-4, 400

@@ -12,6 +12,8 @@ from validation.mutants.plan import ROOT, Guards, load_mutants
 from validation.mutants.results import PAGE, Row, commit, read_rows, score, write_rows
 from validation.mutants.scratch import Scratch
 
+pytestmark = pytest.mark.slow
+
 MUTANTS = load_mutants()
 NAMED = {mutant.name: mutant for mutant in MUTANTS}
 GREEN = Guards(claims=("s1_table_3",))

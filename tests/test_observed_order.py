@@ -5,6 +5,8 @@ import pytest
 
 from validation.checks.multibody_order import order_of
 
+pytestmark = pytest.mark.slow
+
 
 def errors(*slopes, first=1e-3):
     found = [first]

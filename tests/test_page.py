@@ -22,6 +22,8 @@ from crankmbs.page.knobs import knobs_of
 from crankmbs.page.refusals import early_end
 from crankmbs.scene.run import Extent
 
+pytestmark = pytest.mark.slow
+
 SHIPPED = {name: load_scene(name) for name in shipped_scenes()}
 SHOWN = [name for name, one in SHIPPED.items() if not refusals(one) and not early_end(one)]
 
@@ -105,6 +107,7 @@ def test_the_offset_leaves_the_engine_running(page):
     assert np.all(data["crank_speed [rad/s]"] > 250.0)
 
 
+@pytest.mark.always
 def test_a_load_that_settles_nothing_is_said_to_drift(page):
     page.type("load", "0")
     data = page.data()

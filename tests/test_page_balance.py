@@ -11,6 +11,8 @@ from crankmbs.page import exported
 from crankmbs.scene.drives import Start
 from crankmbs.scene.loads import Constant, Quadratic, Viscous
 
+pytestmark = pytest.mark.slow
+
 
 def taking(torque):
     return Constant(torque=torque), Viscous(coefficient=0.02), Quadratic(coefficient=1e-5)

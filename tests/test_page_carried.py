@@ -14,6 +14,8 @@ from crankmbs.mechanics.train import crank_train
 from crankmbs.page import exported
 from crankmbs.scene.fuel import Fuel
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.mark.parametrize(
     "change", [{"length": 0.75}, {"offset": 0.011}, {"offset": -0.007, "radius": 0.9}], ids=str

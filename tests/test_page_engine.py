@@ -17,6 +17,8 @@ from crankmbs.page import exported, refusals
 from crankmbs.page.export import encoded
 from crankmbs.scene.parts import Gravity, Layout
 
+pytestmark = pytest.mark.slow
+
 FREE = ("coasting", "propeller", "v_twin", "yi_diesel_free")
 DRIVEN = ("compressor", "grega_lecture", "yi_diesel")
 

@@ -29,6 +29,8 @@ from crankmbs.page.knobs import choices_of, knobs_of
 from crankmbs.scene.gas import Polytrope
 from crankmbs.scene.run import Extent
 
+pytestmark = pytest.mark.slow
+
 DRIVEN = [name for name in shipped_scenes() if load_scene(name).motion is not None]
 
 

@@ -16,6 +16,8 @@ from crankmbs.page import exported
 from crankmbs.scene.run import Extent
 from validation.random_page import random_page
 
+pytestmark = pytest.mark.slow
+
 DRIVEN = [name for name in shipped_scenes() if load_scene(name).motion is not None]
 RANDOM = [seed for seed in range(2000, 2200) if random_page(seed).motion is not None]
 HEAVIER = {"friction": 0.02}  # kg m2, the scene has none

@@ -10,6 +10,8 @@ from page_visit import opened
 
 from crankmbs import flywheel, load_scene
 
+pytestmark = pytest.mark.slow
+
 SCENE = load_scene("propeller")
 LAPTOP, PHONE, LARGE = (1366, 641), (390, 844), (1920, 1080)
 

@@ -17,6 +17,8 @@ from crankmbs.scene.parts import Friction
 from crankmbs.scene.run import Extent
 from crankmbs.scene.tables import Table
 
+pytestmark = pytest.mark.slow
+
 RUBBING = Friction(ring_force=30.0, ring_pressure=0.03, viscous=20.0)
 RINGS = replace(RUBBING, viscous=0.0)
 RUBBED = {

@@ -8,6 +8,8 @@ from page_engine import engine
 
 from crankmbs.page import joined
 
+pytestmark = pytest.mark.slow
+
 _LINE = """([script, x, y]) => eval(script).lineOf(
   { x, y: y.map((each) => each ?? NaN) }, { right: (v) => 3 * v + 7, up: (v) => 200 - 2 * v })"""
 ANGLES = np.linspace(0.0, 180.0, 361)

@@ -16,6 +16,8 @@ from crankmbs.page import joined
 from crankmbs.page.export import encoded, rules
 from crankmbs.page.script import FOLDER
 
+pytestmark = pytest.mark.slow
+
 _VISIBLE = 2e-9  # relative: twice what the engine may differ by from Python
 # in a worker, as a mutant may never come to an end
 _TAKE = """([script, rules]) => {

@@ -14,6 +14,8 @@ from crankmbs.scene.run import Extent
 from crankmbs.scene.units import DEGREE
 from validation.random_page import random_page
 
+pytestmark = pytest.mark.slow
+
 SEEDS = range(2000, 2200)
 HELD = {2037, 2041, 2065, 2097, 2113, 2156, 2184}  # friction brings these cranks to rest
 MEASURED = sorted({*SEEDS[1::10]} - HELD)

@@ -9,6 +9,8 @@ from playwright.sync_api import Error
 from crankmbs import InputError, load_scene
 from crankmbs.page.script import FOLDER
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def read(tmp_path_factory):

@@ -193,7 +193,7 @@ HEAD = "crank_angle_deg,pressure_bar_1,pressure_bar_2\n"
         (
             '"1 mm"',
             "",
-            'gas.pressure: "1 mm" is no pressure here: use a unit such as in "1 bar"',
+            'gas.pressure: "1 mm" is no pressure here: use Pa, kPa, MPa, bar or psi',
         ),
         (
             '"a.csv"\ncycles = "sequence"',

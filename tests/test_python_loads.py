@@ -199,6 +199,15 @@ def test_a_function_that_fails_is_a_result_with_a_sentence(function, said, formu
     assert float(result.data["time"][-1]) > 0.0
 
 
+@pytest.mark.parametrize("formulation", FREE)
+def test_a_load_that_is_undefined_from_a_time_on_ends_the_run(formulation):
+    load = Load(lambda t, theta, omega: math.nan if t > 0.1 else -1.0)
+    result = simulate(replace(load_scene("coasting"), torque=(load,)), formulation=formulation)
+    assert result.status == -1
+    assert "gives nan at t = 0.1 s" in result.message
+    assert float(result.data["time"][-1]) == pytest.approx(0.1, rel=1e-12)
+
+
 def test_a_saved_result_keeps_the_name(tmp_path):
     result = simulate(wheel(Load(fails_late, kink_times=(1.0,), until=0.01), until="10 deg"))
     result.save(tmp_path / "out")

@@ -15,6 +15,8 @@ from validation import judge_scene, many
 from validation.__main__ import main
 from validation.random_scenes import random_scene
 
+pytestmark = pytest.mark.slow
+
 EXACT = stored()
 
 

@@ -6,6 +6,8 @@ from crankmbs import simulate
 from validation.checks.settled import stated_ratio
 from validation.random_settled import random_settled
 
+pytestmark = pytest.mark.slow
+
 SEEDS = range(1000, 1040)
 OVERRUN: set[int] = set()  # the held end of a table takes less than the crank gets
 

@@ -7,7 +7,9 @@ import pytest
 from typer.main import get_command
 
 from crankmbs.cli import app
-from crankmbs.scene.read import shipped_scenes
+from crankmbs.scene.shipped import shipped_scenes
+
+pytestmark = pytest.mark.slow
 
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")

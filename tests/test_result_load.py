@@ -9,16 +9,20 @@ import numpy as np
 import pytest
 
 from crankmbs import OutputError, Result, Run, load_scene, simulate
-from crankmbs.scene.read import models_folder
+from crankmbs.scene.shipped import models_folder
 
 SCENE = load_scene("yi_diesel_free")  # with tables, loads and several cylinders
-RESULT = simulate(dataclasses.replace(SCENE, run=Run(until="30 deg")))
 TABLE = str(models_folder() / "pressure" / "yi_diesel.csv")
 
 
 @pytest.fixture(scope="module")
-def saved(tmp_path_factory):
-    return RESULT.save(tmp_path_factory.mktemp("saved")) / "result.nc"
+def result():
+    return simulate(dataclasses.replace(SCENE, run=Run(until="30 deg")))
+
+
+@pytest.fixture(scope="module")
+def saved(result, tmp_path_factory):
+    return result.save(tmp_path_factory.mktemp("saved")) / "result.nc"
 
 
 @pytest.fixture
@@ -34,10 +38,10 @@ def refused(file):
     assert str(caught.value) == said
 
 
-def test_a_saved_result_is_read_to_the_last_bit(saved):
+def test_a_saved_result_is_read_to_the_last_bit(result, saved):
     loaded = Result.load(saved)
-    assert loaded.data.identical(RESULT.data)
-    assert dataclasses.replace(loaded, data=RESULT.data) == RESULT
+    assert loaded.data.identical(result.data)
+    assert dataclasses.replace(loaded, data=result.data) == result
 
 
 def at(about, *keys):
@@ -186,10 +190,10 @@ def test_a_truncated_file(file, saved, share):
 
 
 @pytest.mark.parametrize("status", [-1, 0, 1])
-def test_an_infinite_error_is_kept(status, tmp_path):
-    error = dataclasses.replace(RESULT.error, estimated=np.inf)
-    result = dataclasses.replace(RESULT, error=error, status=status)
-    loaded = Result.load(result.save(tmp_path))
+def test_an_infinite_error_is_kept(status, result, tmp_path):
+    error = dataclasses.replace(result.error, estimated=np.inf)
+    unsure = dataclasses.replace(result, error=error, status=status)
+    loaded = Result.load(unsure.save(tmp_path))
     assert (loaded.error, loaded.status) == (error, status)
 
 

@@ -86,7 +86,7 @@ KEYS = (
         (
             '"46 mm"',
             '"46 kg"',
-            'crank.radius: "46 kg" is no length here: use a unit such as in "46 mm"',
+            'crank.radius: "46 kg" is no length here: use m, cm, mm or in',
         ),
         ('"46 mm"', '"1e308 km"', 'crank.radius: must be finite; "1e308 km" came'),
         (

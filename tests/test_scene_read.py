@@ -8,8 +8,9 @@ import pytest
 from scene_texts import DRIVEN, FREE, GAS, INDICATED, edited
 
 from crankmbs.errors import SceneError
-from crankmbs.scene.read import load_scene, parse_scene, scene_path, shipped_scenes
+from crankmbs.scene.read import load_scene, parse_scene, scene_path
 from crankmbs.scene.run import Extent
+from crankmbs.scene.shipped import shipped_scenes
 
 
 def test_a_scene_is_read_in_si_units(read):

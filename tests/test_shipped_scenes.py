@@ -7,7 +7,8 @@ import pytest
 from gas_work import gas_work
 
 from crankmbs.mechanics.pressure import pressures_of
-from crankmbs.scene.read import load_scene, models_folder, shipped_scenes
+from crankmbs.scene.read import load_scene
+from crankmbs.scene.shipped import models_folder, shipped_scenes
 from validation import indicated
 
 NAMES = [

@@ -27,6 +27,8 @@ from crankmbs.work_precision.trace import Trace, differences
 from validation.speed import limit
 from validation.speed.peers import _guarded, peers_of
 
+pytestmark = pytest.mark.slow
+
 FIRED = load_scene("propeller")
 LOPSIDED = dataclasses.replace(
     FIRED,

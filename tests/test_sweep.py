@@ -19,6 +19,8 @@ from crankmbs import (
 )
 from crankmbs.mechanics.carried import carried_over
 
+pytestmark = pytest.mark.slow
+
 SCENE = load_scene("propeller").with_(run__until="settled")
 ENGINE = load_scene("yi_diesel")
 GRID = {"crank.inertia": "0.2..0.4 kg m^2:3", "rod.length": [0.15, 0.16]}
@@ -29,6 +31,7 @@ def grid():
     return sweep(SCENE, GRID, executor=1)
 
 
+@pytest.mark.always
 def test_a_case_has_the_measures_of_its_scene_alone():
     found = sweep(ENGINE, {"rod.length": [0.15, 0.16]}, executor=1).isel({"rod.length": 0})
     result = simulate(carried_over(ENGINE.with_(rod__length=0.15), ENGINE))

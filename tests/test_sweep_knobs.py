@@ -12,6 +12,8 @@ from crankmbs.sweep.cases import cases_of
 from crankmbs.sweep.knobs import interval_of, knob_of
 from crankmbs.sweep.scenes import scene_of
 
+pytestmark = pytest.mark.slow
+
 SCENE = load_scene("propeller").with_(run__until="settled")
 ENGINE = load_scene("yi_diesel")
 GRID = {"crank.inertia": "0.2..0.4 kg m^2:3", "rod.length": [0.15, 0.16]}

@@ -23,6 +23,8 @@ from crankmbs.sweep.columns import columns_of
 from crankmbs.sweep.reading import reading_of
 from crankmbs.sweep.solve import Asked
 
+pytestmark = pytest.mark.slow
+
 SCENE = load_scene("propeller").with_(run__until="settled")
 SMOOTH = load_scene("yi_diesel").with_(run__until="1 cycles", gas=None, gravity=None)
 

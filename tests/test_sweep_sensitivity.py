@@ -11,6 +11,8 @@ from crankmbs import InputError, load_scene, sobol_indices
 from crankmbs.sweep import workers
 from crankmbs.sweep.block import Block
 
+pytestmark = pytest.mark.slow
+
 SCENE = load_scene("propeller").with_(run__until="settled")
 SMOOTH = load_scene("yi_diesel").with_(run__until="1 cycles", gas=None, gravity=None)
 # a side force in proportion to the piston's mass and the square of the speed

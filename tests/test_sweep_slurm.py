@@ -9,6 +9,8 @@ import pytest
 
 from crankmbs import load_sweep
 
+pytestmark = pytest.mark.slow
+
 pytest.importorskip("dask_jobqueue", reason="of the extra cluster")
 
 PAGE = Path(__file__).parent.parent / "docs" / "howto" / "sweep.md"

@@ -18,6 +18,8 @@ from crankmbs.sweep.chunks import Chunks
 from crankmbs.sweep.plan import plan_of
 from crankmbs.sweep.summary import summary
 
+pytestmark = pytest.mark.slow
+
 SCENE = load_scene("propeller").with_(run__until="settled")
 RANGES = {"crank.inertia": "0.05..0.5 kg m^2", "rod.length": "0.14..0.2 m:log"}
 

@@ -15,6 +15,8 @@ from crankmbs.sweep.plan import plan_of
 from crankmbs.sweep.run import fill
 from crankmbs.sweep.told import NotTold, digest_of
 
+pytestmark = pytest.mark.slow
+
 MODULE = """
 import math
 from functools import cached_property, partial

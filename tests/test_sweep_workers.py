@@ -24,6 +24,8 @@ from crankmbs.sweep.plan import plan_of
 from crankmbs.sweep.run import fill
 from crankmbs.sweep.workers import workers_of
 
+pytestmark = pytest.mark.slow
+
 SCENE = load_scene("yi_diesel").with_(run__until="1 cycles")
 GRID = {"rod.length": "0.15..0.2 m:12"}
 COASTING = load_scene("coasting").with_(run__until="0.01 s")

@@ -1,12 +1,15 @@
 """Quantity strings: what is read, and what is refused and how."""
 
 import math
+import re
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy import constants
 
 from crankmbs.errors import InputError, shown
+from crankmbs.scene.unit_table import PREFIXES, UNITS, factor
 from crankmbs.scene.units import EXAMPLES, extent, quantity
 
 
@@ -19,6 +22,20 @@ from crankmbs.scene.units import EXAMPLES, extent, quantity
         ("-1.2972 mm", "length", -1.2972e-3),
         ("1. m", "length", 1.0),
         ("5 µm", "length", 5e-6),
+        ("5 \N{GREEK SMALL LETTER MU}m", "length", 5e-6),
+        ("2 dam", "length", 20.0),
+        ("3 daN m", "torque", 30.0),
+        ("3 pm", "length", 3e-12),
+        ("20 Nm", "torque", 20.0),
+        ("2 kNm", "torque", 2000.0),
+        ("2 N\N{DOT OPERATOR}m", "torque", 2.0),
+        ("9.81 m s⁻²", "acceleration", 9.81),
+        ("2 m/s / s", "acceleration", 2.0),
+        ("2 m/s s", "length", 2.0),  # from the left
+        ("2 lb in^2", "inertia", 2.0 * 0.45359237 * 0.0254**2),
+        ("3 N m/rpm", "viscous coefficient", 90.0 / math.pi),
+        ("2 PS", "power", 2.0 * 75.0 * 9.80665),
+        ("2 min", "time", 120.0),
         ("2 in", "length", 0.0508),
         ("5.8422e-3 kg m^2", "inertia", 5.8422e-3),
         ("5.8422e-3 kg*m**2", "inertia", 5.8422e-3),
@@ -73,12 +90,20 @@ NOT_A_QUANTITY = 'is not a quantity: write one number and one unit, such as "46 
         ("\N{MINUS SIGN}5 mm", f'{NOT_A_QUANTITY}; the minus sign is the plain "-"'),
         ("\N{EN DASH}5 mm", f'{NOT_A_QUANTITY}; the minus sign is the plain "-"'),
         ("46 m m", "is no length here"),
-        ("46 mm^2", 'is no length here: use a unit such as in "46 mm"'),
+        ("46 mm^2", "is no length here: use m, cm, mm or in"),
+        ("46 ft in", "is no length here"),
+        ("46 pt", "is no length here"),  # pico only of what has prefixes
+        ("46 kkm", "is no length here"),
+        ("46 Km", "is no length here"),
+        ("46 m/", "is no length here"),
+        ("46 /m", "is no length here"),
         ("46 mm 3", "is no length here"),
         ("46 mm + 3 mm", "is no length here"),
         ("46 m^9^9^9", "is no length here"),
         ("46 m**9**9**9", "is no length here"),
         ("46 km²²²²²²²²²", "is no length here"),
+        ("46 m^10", "is no length here"),
+        ("46 ²", "is no length here"),
         ("46 furlongs_per", "is no length here"),
         ("46 nan m", "is no length here"),
         ("46 lambda", "is no length here"),
@@ -179,3 +204,63 @@ def test_shown_as_a_scene_file_writes_it(value, expected):
 @pytest.mark.parametrize("value", ["x" * 1000, list(range(1000)), {"k" * 1000: 1}, 10**100])
 def test_shown_is_cut(value):
     assert len(shown(value)) <= 60
+
+
+SCIPY = {
+    "g": constants.gram,
+    "bar": constants.bar,
+    "t": 1e3 * constants.kilo * constants.gram,
+    "min": constants.minute,
+    "h": constants.hour,
+    "kp": constants.kgf,
+    "kgf": constants.kgf,
+    "at": constants.kgf / constants.centi**2,
+    "atm": constants.atm,
+    "Torr": constants.torr,
+    "PS": 75.0 * constants.kgf,
+    "deg": constants.degree,
+    "rev": 360.0 * constants.degree,
+    "rpm": 360.0 * constants.degree / constants.minute,
+    "in": constants.inch,
+    "inch": constants.inch,
+    "ft": constants.foot,
+    "oz": constants.oz,
+    "lb": constants.pound,
+    "slug": constants.slug,
+    "lbf": constants.lbf,
+    "psi": constants.psi,
+    "hp": constants.hp,
+}
+OF = {
+    **dict.fromkeys(["g", "t", "oz", "lb", "slug"], "kg"),
+    **dict.fromkeys(["N", "kp", "kgf", "lbf"], "kg m/s^2"),
+    **dict.fromkeys(["Pa", "bar", "at", "atm", "Torr", "psi"], "kg/m s^-2"),
+    **dict.fromkeys(["J", "Nm"], "kg m^2 s^-2"),
+    **dict.fromkeys(["W", "PS", "hp"], "kg m^2/s^3"),
+    **dict.fromkeys(["min", "h"], "s"),
+    **dict.fromkeys(["in", "inch", "ft"], "m"),
+    **dict.fromkeys(["deg", "rev"], "rad"),
+    "rpm": "s^-1",
+}
+
+
+@pytest.mark.parametrize("unit", UNITS)
+def test_a_unit_is_what_scipy_has(unit):
+    assert factor(unit, OF[unit]) == pytest.approx(SCIPY.get(unit, 1.0), rel=1e-15)
+
+
+@pytest.mark.parametrize("prefix", PREFIXES)
+def test_a_prefix_is_what_scipy_has(prefix):
+    names = {"P": "peta", "T": "tera", "G": "giga", "M": "mega", "k": "kilo", "h": "hecto"}
+    names |= {"da": "deka", "d": "deci", "c": "centi", "m": "milli", "n": "nano", "p": "pico"}
+    assert PREFIXES[prefix] == getattr(constants, names.get(prefix, "micro"))
+    assert factor(f"{prefix}s", "s") == PREFIXES[prefix]
+
+
+@pytest.mark.parametrize("dimension", sorted(set(EXAMPLES) - {"extent"}))
+def test_the_units_that_a_refusal_names_are_read(dimension):
+    with pytest.raises(InputError) as caught:
+        quantity("1 furlong", dimension)
+    _, _, units = str(caught.value).partition(": use ")
+    for unit in re.split(", | or ", units):
+        assert quantity(f"1 {unit}", dimension) > 0.0

@@ -9,6 +9,8 @@ from crankmbs import simulate
 from validation.case import load_cases
 from validation.checks import hard
 
+pytestmark = pytest.mark.slow
+
 CASE = {case.name: case for case in load_cases()}["hard_one_rpm"]
 
 

@@ -7,6 +7,8 @@ import pytest
 from validation.case import Mutant, load_cases
 from validation.judge import judge
 
+pytestmark = pytest.mark.slow
+
 CASES = load_cases()
 
 

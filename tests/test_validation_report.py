@@ -13,6 +13,8 @@ from validation.case import Mutant, load_cases
 from validation.judge import Outcome, Verdict
 from validation.report import write_report
 
+pytestmark = pytest.mark.slow
+
 CASES = {case.name: case for case in load_cases()}
 
 

@@ -22,6 +22,8 @@ from crankmbs.work_precision.reference import reference_of
 from crankmbs.work_precision.rounds import Row, play
 from crankmbs.work_precision.trace import Trace, differences
 
+pytestmark = pytest.mark.slow
+
 KNOWN = Path(__file__).parent.parent / "validation" / "reference" / "end_states.csv"
 SHORT = dataclasses.replace(load_scene("coasting"), run=Run(until="50 ms", every="5 deg"))
 REACTIONS = ("main bearing", "crank pin", "piston pin", "side force")

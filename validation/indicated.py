@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from crankmbs.scene.read import models_folder
+from crankmbs.scene.shipped import models_folder
 
 __all__ = ["CYCLES", "SEED", "text"]
 

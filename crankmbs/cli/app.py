@@ -1,9 +1,11 @@
-"""The commands and their options."""
+"""The commands and their options.
+
+What a command needs is imported when it runs, so that ``--help`` is there at once.
+"""
 
 from __future__ import annotations
 
 import sys
-from importlib import metadata
 from io import TextIOWrapper
 from pathlib import Path
 from typing import Annotated, Any
@@ -11,26 +13,15 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperGroup
 
-from crankmbs.choose import choose
-from crankmbs.cli.animate import animate_scene
-from crankmbs.cli.balance import balance_scene
 from crankmbs.cli.ending import ending
-from crankmbs.cli.export import export_scene
-from crankmbs.cli.flywheel import size_flywheel
-from crankmbs.cli.lesson import list_lessons, make_lesson
-from crankmbs.cli.new import new_scene
 from crankmbs.cli.options import CostCap, NoFigures, Out, Rtol, SceneName, Until
-from crankmbs.cli.page import demonstrate, write_page
 from crankmbs.cli.plot import plot
 from crankmbs.cli.pressure import pressure
-from crankmbs.cli.run import Wanted, run_scene
 from crankmbs.cli.sensitivity import sensitivity
 from crankmbs.cli.solve import solve
 from crankmbs.cli.sweep import sweep
 from crankmbs.cli.validate import validate
-from crankmbs.cli.work_precision import measure_scene
-from crankmbs.report.machine import describe
-from crankmbs.scene.read import load_scene, scene_path, shipped_scenes
+from crankmbs.scene.shipped import shipped_scenes
 
 __all__ = ["app", "main"]
 
@@ -58,6 +49,8 @@ app = typer.Typer(
 
 def _version(wanted: bool) -> None:
     if wanted:
+        from importlib import metadata
+
         typer.echo(metadata.version("crankmbs"))
         raise typer.Exit
 
@@ -99,6 +92,8 @@ def run(
     cost_cap: CostCap = 10.0,
 ) -> None:
     """Run a scene: print its measures, write data and figures."""
+    from crankmbs.cli.run import Wanted, run_scene
+
     options = {"formulation": formulation, "rtol": rtol, "until": until, "every": every}
     given = {name: value for name, value in options.items() if value is not None}
     wanted = Wanted(not no_figures, confirm, orders, tuple(at or ()))
@@ -121,6 +116,8 @@ def balance(
     no_figures: NoFigures = False,
 ) -> None:
     """Find counterweights; show what is left of first and second order, before and after."""
+    from crankmbs.cli.balance import balance_scene
+
     if not balance_scene(scene, share, out=out, figures=not no_figures, cost_cap=cost_cap):
         raise typer.Exit(3)
 
@@ -133,6 +130,8 @@ def flywheel(
     ] = "1 %",
 ) -> None:
     """Find the crank inertia that gives a fluctuation of speed on the settled cycle."""
+    from crankmbs.cli.flywheel import size_flywheel
+
     if not size_flywheel(scene, fluctuation):
         raise typer.Exit(3)
 
@@ -143,6 +142,8 @@ def work_precision(
     out: Out = None,
 ) -> None:
     """Measure speed against error of every formulation that serves the scene."""
+    from crankmbs.cli.work_precision import measure_scene
+
     if not measure_scene(scene, out=out):
         raise typer.Exit(3)
 
@@ -155,6 +156,8 @@ def demo(
     ] = False,
 ) -> None:
     """Open a page that shows the mechanism moving, and what each knob changes."""
+    from crankmbs.cli.page import demonstrate
+
     demonstrate(scene, browser=not no_browser)
 
 
@@ -166,6 +169,8 @@ def page(
     ] = None,
 ) -> None:
     """Write the page as one file: no server, no network."""
+    from crankmbs.cli.page import write_page
+
     write_page(scene, out=out)
 
 
@@ -176,6 +181,10 @@ for command in (pressure, sweep, plot, solve, sensitivity):
 @app.command()
 def check(scene: SceneName) -> None:
     """Read a scene and say how it would be run; run nothing."""
+    from crankmbs.choose import choose
+    from crankmbs.report.machine import describe
+    from crankmbs.scene.read import load_scene, scene_path
+
     path = scene_path(scene)
     loaded = load_scene(path)
     typer.echo(describe(str(path), loaded, choose(loaded, loaded.run.formulation)))
@@ -184,10 +193,13 @@ def check(scene: SceneName) -> None:
 @app.command()
 def scenes() -> None:
     """List the shipped scenes."""
+    import tomllib
+
     shipped = shipped_scenes()
     width = max(map(len, shipped), default=0)
     for name, path in shipped.items():
-        typer.echo(f"{name:<{width}}  {load_scene(path).title}")
+        title = tomllib.loads(path.read_text(encoding="utf-8"))["title"]
+        typer.echo(f"{name:<{width}}  {title}")
 
 
 @app.command()
@@ -195,6 +207,8 @@ def new(
     name: Annotated[str, typer.Argument(metavar="NAME", help="Name or path of the new scene.")],
 ) -> None:
     """Write a commented scene to start from."""
+    from crankmbs.cli.new import new_scene
+
     new_scene(name)
 
 
@@ -208,6 +222,8 @@ def export(
     ] = None,
 ) -> None:
     """Write a scene as TOML, its result for MATLAB, or its bodies as a script for exudyn."""
+    from crankmbs.cli.export import export_scene
+
     if not export_scene(scene, to, out=out):
         raise typer.Exit(3)
 
@@ -227,7 +243,8 @@ def animate(
     ] = None,
 ) -> None:
     """Film the mechanism and its speed over the last cycle, for slides."""
-    from crankmbs.figures.animation import Filming  # matplotlib only here
+    from crankmbs.cli.animate import animate_scene
+    from crankmbs.figures.animation import Filming
 
     if not animate_scene(scene, out, Filming(length, width, cylinder, forces)):
         raise typer.Exit(3)
@@ -250,10 +267,17 @@ def lesson(
     ] = None,
 ) -> None:
     """Write a lesson: figures that compute while you drag them, formulas, and questions."""
+    from crankmbs.cli.lesson import make_lesson
+
     make_lesson(name, out, scene)
 
 
-app.command("lessons", help="List the lessons.")(list_lessons)
+@app.command()
+def lessons() -> None:
+    """List the lessons."""
+    from crankmbs.cli.lesson import list_lessons
+
+    list_lessons()
 
 
 def main() -> None:

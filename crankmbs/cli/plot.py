@@ -10,7 +10,6 @@ import typer
 from crankmbs.cli.folder import writable, wrote
 from crankmbs.errors import InputError
 from crankmbs.storage.files import together
-from crankmbs.sweep.store import load_sweep
 
 __all__ = ["plot"]
 
@@ -32,6 +31,8 @@ def plot(
     ] = None,
 ) -> None:
     """Draw measures of a sweep over what was varied: curves, contours or small multiples."""
+    from crankmbs.sweep.store import load_sweep
+
     data, shown = load_sweep(sweep), show or ["fluctuation"]
     out = Path("results", sweep.stem) if out is None else out
     file = out.name if out.suffix == ".png" else None

@@ -5,17 +5,17 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from crankmbs.cli.folder import writable
 from crankmbs.cli.progress import progress
 from crankmbs.errors import InputError
-from crankmbs.indicated import Indicated, read_pressure
-from crankmbs.indicated.write import gas_lines
-from crankmbs.scene.read import load_scene, scene_path
 from crankmbs.storage.files import together
+
+if TYPE_CHECKING:
+    from crankmbs.indicated import Indicated
 
 __all__ = ["pressure"]
 
@@ -95,6 +95,10 @@ def _measured(
     ------
     CrankmbsError : what cannot be read, or is left open, in words of the command line
     """
+    from crankmbs.indicated import read_pressure
+    from crankmbs.indicated.write import gas_lines
+    from crankmbs.scene.read import load_scene, scene_path
+
     target = Path("results", file.stem, "pressure.csv") if out is None else out
     if target.resolve() == file.resolve():
         raise InputError(f"-o: {target} is the file that is read; choose another name")

@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from crankmbs.cli.text import table
-from crankmbs.compare.confirm import Difference
 from crankmbs.digits import digits, error_digits
 from crankmbs.measures import Measures
 from crankmbs.measures.plausible import warnings
 from crankmbs.report.rows import FORCE_HEADINGS, degrees_within, force_rows, measure_rows
 from crankmbs.result import Result
 from crankmbs.scene.units import RPM
+
+if TYPE_CHECKING:
+    from crankmbs.compare.confirm import Difference
 
 __all__ = ["comparison", "report"]
 

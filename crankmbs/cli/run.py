@@ -6,17 +6,14 @@ import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import typer
 
 from crankmbs.choose import choose
 from crankmbs.cli.folder import writable, wrote
-from crankmbs.cli.orders import orders_report, reading_report, save_orders
 from crankmbs.cli.progress import progress
 from crankmbs.cli.report import comparison, report
-from crankmbs.compare import at_angle
-from crankmbs.compare.confirm import Difference, differences, followed
 from crankmbs.errors import InputError
 from crankmbs.measures import EngineOrders, engine_orders, measure
 from crankmbs.result import Result
@@ -25,6 +22,9 @@ from crankmbs.scene.scene import Scene
 from crankmbs.scene.units import quantity
 from crankmbs.simulate import simulate
 from crankmbs.storage.files import together
+
+if TYPE_CHECKING:
+    from crankmbs.compare.confirm import Difference
 
 __all__ = ["Wanted", "override", "run_scene"]
 
@@ -82,15 +82,22 @@ def run_scene(
     said = [report(path.stem, result, measure(result))]
     complete, made = result.status == 0, _Made(result)
     if wanted.confirm:
+        from crankmbs.compare.confirm import differences, followed
+
         check = _simulate(followed(result), cost_cap, formulation="multibody")
         made.differences = differences(result, check)
         complete = complete and check.status == 0
         said.append(comparison(result, check, made.differences))
     if wanted.orders:
+        from crankmbs.cli.orders import orders_report
+
         made.orders = engine_orders(result)
         said.append(orders_report(made.orders))
-    found = (at_angle(result, angle) for angle in angles)
-    said += [reading_report(one, scene.period) for one in found]
+    if angles:
+        from crankmbs.cli.orders import reading_report
+        from crankmbs.compare import at_angle
+
+        said += [reading_report(at_angle(result, angle), scene.period) for angle in angles]
     written = _save(made, folder, figures=wanted.figures)
     typer.echo("\n".join([*said, "", wrote(folder, written)]))  # a screen may fail: files first
     return complete
@@ -113,6 +120,8 @@ def _save(made: _Made, folder: Path, *, figures: bool) -> list[str]:
         tables = ("events.csv", "cycles.csv")
         written += [name for name in tables if (part / name).exists()]
         if made.orders is not None:
+            from crankmbs.cli.orders import save_orders
+
             written.append(save_orders(made.orders, part).name)
         if figures:
             with progress("figures"):

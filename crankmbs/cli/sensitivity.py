@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -12,10 +12,10 @@ from crankmbs.cli.sweep import varied
 from crankmbs.cli.text import cells, table, with_unit
 from crankmbs.digits import digits
 from crankmbs.errors import InputError
-from crankmbs.scene.read import load_scene, scene_path
-from crankmbs.scene.scene import Scene
-from crankmbs.sweep.indices import SobolIndices, sobol_indices
-from crankmbs.sweep.sensitivity import sensitivity as sensitivity_of
+
+if TYPE_CHECKING:
+    from crankmbs.scene.scene import Scene
+    from crankmbs.sweep.indices import SobolIndices
 
 __all__ = ["sensitivity"]
 
@@ -39,6 +39,9 @@ def sensitivity(
     workers: Annotated[int | None, typer.Option(help="Processes, for indices.")] = None,
 ) -> None:
     """Show derivatives of measures at a scene, or what share of their spread is whose."""
+    from crankmbs.scene.read import load_scene, scene_path
+    from crankmbs.sweep.indices import sobol_indices
+
     ranges = [one for one in vary if "=" in one]
     if ranges and len(ranges) < len(vary):
         raise InputError(
@@ -61,6 +64,8 @@ def sensitivity(
 
 
 def _derivatives(scene: Scene, names: list[str], measures: list[str]) -> str:
+    from crankmbs.sweep.sensitivity import sensitivity as sensitivity_of
+
     rows = []
     for words in measures:
         for name in names:

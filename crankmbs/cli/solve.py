@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -11,11 +11,11 @@ from crankmbs.cli.sweep import varied
 from crankmbs.cli.text import cells, table, with_unit
 from crankmbs.digits import digits
 from crankmbs.errors import InputError
-from crankmbs.scene.read import load_scene, scene_path
-from crankmbs.sweep.minimize import Minimum, minimize
-from crankmbs.sweep.reading import Reading
-from crankmbs.sweep.solve import Solved
-from crankmbs.sweep.solve import solve as solved
+
+if TYPE_CHECKING:
+    from crankmbs.sweep.minimize import Minimum
+    from crankmbs.sweep.reading import Reading
+    from crankmbs.sweep.solve import Solved
 
 __all__ = ["solve"]
 
@@ -40,6 +40,10 @@ def solve(
     ] = None,
 ) -> None:
     """Find the value with which a measure is what is wanted, or values with which it is least."""
+    from crankmbs.scene.read import load_scene, scene_path
+    from crankmbs.sweep.minimize import minimize
+    from crankmbs.sweep.solve import solve as solved
+
     if (wanted is None) == (least is None) or (subject_to and least is None):
         raise InputError(
             'give --for "fluctuation = 1 %" or --minimize "peak crank pin force", the latter '

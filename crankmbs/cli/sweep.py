@@ -8,20 +8,17 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from crankmbs.cli.text import table
 from crankmbs.digits import digits, error_digits
 from crankmbs.errors import InputError, shown
-from crankmbs.scene.read import load_scene, scene_path
-from crankmbs.sweep.cluster import cluster_executor
-from crankmbs.sweep.plan import Plan, check_possible, plan_of
-from crankmbs.sweep.run import fill
-from crankmbs.sweep.sample import Sample
-from crankmbs.sweep.store import unfinished
-from crankmbs.sweep.summary import Summary, summary
+
+if TYPE_CHECKING:
+    from crankmbs.sweep.plan import Plan
+    from crankmbs.sweep.summary import Summary
 
 __all__ = ["sweep", "varied"]
 
@@ -70,6 +67,12 @@ def sweep(
     ] = None,
 ) -> None:
     """Run a scene with some of its numbers varied; keep the measures of each case."""
+    from crankmbs.scene.read import load_scene, scene_path
+    from crankmbs.sweep.cluster import cluster_executor
+    from crankmbs.sweep.plan import check_possible, plan_of
+    from crankmbs.sweep.run import fill
+    from crankmbs.sweep.summary import summary
+
     path = scene_path(scene)
     wanted = _wanted(vary or [], cases, (sample, n, seed))
     with _as_options():
@@ -129,10 +132,14 @@ def _wanted(
         return lambda: ranges or cases
     if cases is not None:
         raise InputError("--sample spreads cases over ranges of --vary; a file has its own")
+    from crankmbs.sweep.sample import Sample
+
     return lambda: Sample(ranges, n, method, seed)
 
 
 def _check_free(out: Path, resume: bool) -> None:
+    from crankmbs.sweep.store import unfinished
+
     if resume and not out.exists():
         raise InputError(f"--resume: there is no {out} to go on with; leave it out")
     if not resume and unfinished(out):

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from crankmbs.digits import digits, error_digits
-from crankmbs.measures import Estimate
+
+if TYPE_CHECKING:
+    from crankmbs.measures import Estimate
 
 __all__ = ["cells", "table", "with_unit"]
 

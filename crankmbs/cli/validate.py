@@ -4,31 +4,17 @@ error budget."""
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from crankmbs.cli.folder import writable, wrote
-from crankmbs.cli.formulas import named_formulas
 from crankmbs.cli.options import CostCap, NoFigures, Out, Rtol, SceneName, Until
 from crankmbs.cli.progress import progress
-from crankmbs.cli.run import override
-from crankmbs.cli.validate_report import validation_report
-from crankmbs.compare import (
-    Budget,
-    Comparison,
-    budget,
-    check_cylinder,
-    checked_chain,
-    compare,
-    save_budget,
-    save_budget_peaks,
-    save_comparison,
-    save_numbers,
-)
-from crankmbs.scene.read import load_scene, scene_path
-from crankmbs.simulate import simulate
 from crankmbs.storage.files import together
+
+if TYPE_CHECKING:
+    from crankmbs.compare import Budget, Comparison
 
 __all__ = ["validate"]
 
@@ -57,6 +43,13 @@ def validate(
     no_figures: NoFigures = False,
 ) -> None:
     """Compare a run with closed form, lectures and your formulas; split errors into causes."""
+    from crankmbs.cli.formulas import named_formulas
+    from crankmbs.cli.run import override
+    from crankmbs.cli.validate_report import validation_report
+    from crankmbs.compare import budget, check_cylinder, checked_chain, compare
+    from crankmbs.scene.read import load_scene, scene_path
+    from crankmbs.simulate import simulate
+
     path = scene_path(scene)
     given = {"rtol": rtol, "until": until}
     options = {name: value for name, value in given.items() if value is not None}
@@ -79,6 +72,8 @@ def validate(
 
 def _written(comparison: Comparison, split: Budget, folder: Path, *, figures: bool) -> list[Path]:
     """The files, before anything is printed: a screen may fail."""
+    from crankmbs.compare import save_budget, save_budget_peaks, save_comparison, save_numbers
+
     with together(folder) as part:
         written = [save(split, part) for save in (save_budget, save_budget_peaks)]
         written.append(save_comparison(comparison, part))

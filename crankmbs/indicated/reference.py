@@ -4,8 +4,8 @@ A transducer of charge gives changes of pressure. Its zero comes from the inlet,
 bottom dead centre the cylinder has the pressure of the manifold, or from the compression, which is
 nearly a polytrope: p + c = C V^-n is linear in c and C for a given n. Both are described by
 A. L. Randolph, Methods of Processing Cylinder-Pressure Transducer Signals to Maximize Data Accuracy
-(SAE 900170), and by M. F. J. Brunt and C. R. Pond, Evaluation of Techniques for Absolute Cylinder
-Pressure Correction (SAE 970036).
+(SAE 900170, 1990), and by M. F. J. Brunt and C. R. Pond, Evaluation of Techniques for Absolute
+Cylinder Pressure Correction (SAE 970036, 1997).
 """
 
 from __future__ import annotations

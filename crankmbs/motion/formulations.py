@@ -1,6 +1,7 @@
 """The formulations, smallest first: which scenes each serves, and how it runs one.
 
-A new formulation is a file in this room that gives samples of the motion, and one record here.
+A new formulation is a file in this room that gives samples of the motion, and one record here; what
+computes is imported when it runs.
 """
 
 from __future__ import annotations
@@ -8,19 +9,16 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
-from crankmbs.mechanics.train import CrankTrain
-from crankmbs.motion import kinetostatic
-from crankmbs.motion.assemble import Assembled, assemble
-from crankmbs.motion.free import settled
-from crankmbs.motion.observer import Followed, account_of
 from crankmbs.scene.drives import Oscillation, Ramp, SpeedFile
 from crankmbs.scene.scene import Scene
 
-__all__ = ["FORMULATIONS", "Formulation", "serving"]
+if TYPE_CHECKING:
+    from crankmbs.mechanics.train import CrankTrain
+    from crankmbs.motion.assemble import Assembled
 
-Solve = Callable[[CrankTrain, float, float], Assembled]
+__all__ = ["FORMULATIONS", "Formulation", "serving"]
 
 
 class Formulation(NamedTuple):
@@ -35,7 +33,7 @@ class Formulation(NamedTuple):
 
     name: str
     refuses: Callable[[Scene], str]
-    run: Solve
+    run: Callable[[CrankTrain, float, float], Assembled]
     least_rtol: float = 0.0
     integrates: bool = True
     dense: bool = True
@@ -84,16 +82,23 @@ def _may_be_held(scene: Scene) -> bool:
 
 
 def _kinetostatic(train: CrankTrain, _rtol: float, _cost_cap: float) -> Assembled:
+    from crankmbs.motion import kinetostatic
+    from crankmbs.motion.assemble import assemble
+
     assembled = assemble(train, kinetostatic.run(train))
     return replace(assembled, motion=partial(kinetostatic.passes, train))
 
 
 def _free(train: CrankTrain, rtol: float, cost_cap: float, *, by_angle: bool) -> Assembled:
+    from crankmbs.motion.free import settled
+
     return settled.run(train, rtol, cost_cap, by_angle=by_angle)
 
 
 def _multibody(train: CrankTrain, rtol: float, cost_cap: float) -> Assembled:
-    from crankmbs.motion import multibody  # exudyn is imported only when it is used
+    from crankmbs.motion import multibody
+    from crankmbs.motion.assemble import assemble
+    from crankmbs.motion.observer import Followed, account_of
 
     solution, runs, ending = multibody.run(train, rtol, cost_cap)
     followed = [Followed(train, begin, pieces, ending) for begin, pieces in runs]

@@ -1,4 +1,4 @@
-"""TOML files to scenes, and the names of the scenes that ship with the package."""
+"""TOML files to scenes."""
 
 from __future__ import annotations
 
@@ -12,20 +12,9 @@ from pydantic import TypeAdapter, ValidationError
 from crankmbs.errors import InputError, SceneError, shown
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.sentences import did_you_mean, sentence
+from crankmbs.scene.shipped import shipped_scenes
 
-__all__ = ["load_scene", "models_folder", "parse_scene", "scene_path", "shipped_scenes"]
-
-
-def models_folder() -> Path:
-    """The folder of the shipped scenes: in the installed package, or beside it in a checkout."""
-    package = Path(__file__).parent.parent
-    installed = package / "_models"
-    return installed if installed.is_dir() else package.parent / "models"
-
-
-def shipped_scenes() -> dict[str, Path]:
-    """Names of the shipped scenes and their files, sorted."""
-    return {path.stem: path for path in sorted(models_folder().glob("*.toml"))}
+__all__ = ["load_scene", "parse_scene", "scene_path"]
 
 
 def scene_path(name: str | Path) -> Path:

@@ -12,6 +12,8 @@ from typing import Annotated
 
 from pydantic import Strict
 
+import crankmbs.scene.loads
+import crankmbs.scene.python_load  # noqa: F401  (both make their kinds of load known)
 from crankmbs.errors import InputError, shown
 from crankmbs.scene.change import changed
 from crankmbs.scene.cycles import cycles_in

@@ -1,17 +1,16 @@
-"""Quantity strings to SI floats: the only file that knows pint.
+"""Quantity strings to SI floats.
 
-A quantity is one number and one unit. The number is split off here, and only the unit is given
-to pint, which would otherwise evaluate expressions. Angles and angular speeds take a short list
-of units, because pint counts radians as pure numbers and people mean different things by Hz.
+A quantity is one number and one unit. Angles and angular speeds take a short list of units: a
+radian is a pure number, so that 1/min would be one, and people mean different things by Hz.
 """
 
 from __future__ import annotations
 
 import math
 import re
-from functools import cache
 
 from crankmbs.errors import InputError, shown
+from crankmbs.scene.unit_table import factor
 
 __all__ = ["BAR", "DEGREE", "EXAMPLES", "RPM", "check_size", "extent", "quantity", "unit_of"]
 
@@ -22,34 +21,29 @@ RPM = math.pi / 30.0  # rad/s
 _NUMBER_AND_UNIT = re.compile(
     r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)(\s.*|[^\W\d_].*)"
 )
-_FACTOR = r"[^\W\d_]+(?:\s*(?:\*\*|\^)\s*-?[1-9])?"  # one exponent: pint would raise 9^9^9
-_UNIT = re.compile(rf"{_FACTOR}(?:(?:\s*[*/·]\s*|\s+){_FACTOR})*")
-_LONGEST_UNIT = 40  # letters: a longer one is an expression
 
-_SI = {
-    "acceleration": "m/s^2",
-    "area": "m^2",
-    "force": "N",
-    "inertia": "kg m^2",
-    "integral gain": "1/rad",
-    "length": "m",
-    "mass": "kg",
-    "power": "W",
-    "pressure": "Pa",
-    "proportional gain": "s/rad",
-    "quadratic coefficient": "N m s^2",
-    "time": "s",
-    "torque": "N m",
-    "viscous coefficient": "N m s",
-    "viscous friction": "N s/m",
+_USUAL = {  # the SI unit first
+    "acceleration": ("m/s^2", "ft/s^2"),
+    "area": ("m^2", "cm^2", "mm^2", "in^2"),
+    "force": ("N", "kN", "kgf", "lbf"),
+    "inertia": ("kg m^2", "kg cm^2", "lb in^2"),
+    "length": ("m", "cm", "mm", "in"),
+    "mass": ("kg", "g", "t", "lb"),
+    "power": ("W", "kW", "PS", "hp"),
+    "pressure": ("Pa", "kPa", "MPa", "bar", "psi"),
+    "quadratic coefficient": ("N m s^2", "N m/rpm^2"),
+    "time": ("s", "ms", "min"),
+    "torque": ("N m", "kN m", "lbf ft"),
+    "viscous coefficient": ("N m s", "N m/rpm"),
+    "viscous friction": ("N s/m", "lbf s/in"),
 }
-_ANGLE = {"rad": 1.0, "deg": DEGREE, "rev": 2.0 * math.pi}
-_SMALLEST, _LARGEST = 1e-50, 1e15  # in SI units: products of several neither vanish nor overflow
-_ANGULAR_SPEED = {"rpm": RPM, "rad/s": 1.0, "deg/s": DEGREE}
-_GAINS = {
+_LISTED = {  # no others are taken
+    "angle": {"rad": 1.0, "deg": DEGREE, "rev": 2.0 * math.pi},
+    "angular speed": {"rpm": RPM, "rad/s": 1.0, "deg/s": DEGREE},
     "proportional gain": {"s/rad": 1.0, "s/deg": 1.0 / DEGREE, "1/rpm": 1.0 / RPM},
     "integral gain": {"1/rad": 1.0, "1/deg": 1.0 / DEGREE, "1/rev": 0.5 / math.pi},
 }
+_SMALLEST, _LARGEST = 1e-50, 1e15  # in SI units: products of several neither vanish nor overflow
 _CYCLE = {"cycle", "cycles"}
 
 EXAMPLES = {
@@ -90,17 +84,13 @@ def quantity(text: str, dimension: str) -> float:
     0.046
     """
     number, unit = _split(text, dimension)
-    if dimension == "angle":
-        factor = _ANGLE.get(unit)
-    elif dimension == "angular speed":
-        factor = _ANGULAR_SPEED.get(unit)
-    elif dimension in _GAINS:
-        factor = _GAINS[dimension].get(unit)
-    else:
-        factor = _factor(unit, _SI[dimension])
-    if factor is None:
-        raise InputError(f"{shown(text)} is no {dimension} here: use {_units_for(dimension)}")
-    return number * factor
+    listed = _LISTED.get(dimension)
+    size = listed.get(unit) if listed else factor(unit, unit_of(dimension))
+    if size is None:
+        *most, last = listed or _USUAL[dimension]
+        way_out = f"{', '.join(most)} or {last}"
+        raise InputError(f"{shown(text)} is no {dimension} here: use {way_out}")
+    return number * size
 
 
 def extent(text: str) -> tuple[float, str]:
@@ -112,12 +102,12 @@ def extent(text: str) -> tuple[float, str]:
     number, unit = _split(text, "extent")
     if unit in _CYCLE:
         return number, "cycle"
-    if unit in _ANGLE:
-        return number * _ANGLE[unit], "rad"
-    factor = _factor(unit, "s")
-    if factor is None:
+    if unit in _LISTED["angle"]:
+        return number * _LISTED["angle"][unit], "rad"
+    size = factor(unit, "s")
+    if size is None:
         raise InputError(f"{shown(text)} is no angle or time: use cycles, rev, deg, rad or s")
-    return number * factor, "s"
+    return number * size, "s"
 
 
 def unit_of(dimension: str) -> str:
@@ -126,7 +116,9 @@ def unit_of(dimension: str) -> str:
     >>> unit_of("angular speed")
     'rad/s'
     """
-    return {"angle": "rad", "angular speed": "rad/s"}.get(dimension) or _SI[dimension]
+    if dimension == "angular speed":
+        return "rad/s"
+    return next(iter(_LISTED.get(dimension) or _USUAL[dimension]))
 
 
 def check_size(value: float, dimension: str, came: object) -> None:
@@ -165,26 +157,3 @@ def _hint(text: str) -> str:
     if re.search("[\N{MINUS SIGN}\N{EN DASH}\N{EM DASH}]", text):
         return '; the minus sign is the plain "-"'
     return ""
-
-
-def _units_for(dimension: str) -> str:
-    lists = {"angle": _ANGLE, "angular speed": _ANGULAR_SPEED, **_GAINS}
-    listed = lists.get(dimension)
-    if listed is None:
-        return f"a unit such as in {EXAMPLES[dimension]}"
-    *most, last = listed
-    return f"{', '.join(most)} or {last}"
-
-
-@cache
-def _factor(unit: str, si: str) -> float | None:
-    """Factor to the SI unit, or None when ``unit`` is no unit of that dimension."""
-    if len(unit) > _LONGEST_UNIT or not _UNIT.fullmatch(unit):
-        return None
-    import pint  # a sixth of a second: only when a scene is read from text
-
-    registry = pint.application_registry
-    try:
-        return float(registry.Quantity(1.0, unit).to(si).magnitude)
-    except (pint.PintError, AttributeError, ValueError, TypeError, ArithmeticError):
-        return None

@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy import stats
 
 from crankmbs.errors import InputError, shown
 from crankmbs.measures import Estimate
@@ -135,6 +134,8 @@ def _check_drawn(n: int, seed: int) -> None:
 
 def _design(knobs: tuple[Interval, ...], n: int, seed: int) -> tuple[Knob, ...]:
     """The knobs at the points for which SciPy asks: n of its A, n of B, then of those mixed."""
+    from scipy import stats
+
     asked: list[Array] = []
     uniform: Any = stats.uniform()
 
@@ -168,6 +169,8 @@ def _found(plan: Plan, data: xr.Dataset, reading: Reading, n: int, seed: int) ->
 
 def _indices(values: Array, n: int, rows: Index) -> Array:
     """First-order and total indices from some rows of the design, shape (2, knobs)."""
+    from scipy import stats
+
     mixed = values[2 * n :].reshape(n, -1).T[:, None]
     parts: Any = {
         "f_A": values[None, rows],

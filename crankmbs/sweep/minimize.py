@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 from scipy.optimize import Bounds, NonlinearConstraint
 from scipy.optimize import minimize as polished
-from scipy.stats import qmc
 
 from crankmbs.errors import InputError, shown
 from crankmbs.measures import Estimate
@@ -116,6 +115,8 @@ class _Descent:
         self._known: dict[tuple[float, ...], tuple[Estimate, ...]] = {}
 
     def found(self) -> Minimum:
+        from scipy.stats import qmc
+
         count = len(self._knobs)
         points = qmc.Sobol(count, rng=1).random_base2(math.ceil(math.log2(_POINTS * count)))
         values = np.array([self._least(point) for point in points])

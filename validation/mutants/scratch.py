@@ -18,7 +18,20 @@ __all__ = ["Red", "Scratch"]
 
 _PARTS = ("crankmbs", "models", "tests", "validation", "pyproject.toml", "README.md")
 _SECONDS = 10_000_000_000  # ns: times of byte code are in whole seconds
-_PYTEST = ("-p", "xdist.plugin", "-x", "-q", "--tb=no", "-rfE", "-n", "0", "-p", "no:cacheprovider")
+_PYTEST = (
+    "-p",
+    "xdist.plugin",
+    "-p",
+    "no:cacheprovider",
+    "-x",
+    "-q",
+    "--tb=no",
+    "-rfE",
+    "-n",
+    "0",
+    "-m",
+    "",
+)
 
 
 class Red(NamedTuple):
