@@ -5,12 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.stats import qmc
 
 from crankmbs.errors import InputError, shown
 from crankmbs.numerics.arrays import Array
+
+if TYPE_CHECKING:
+    from scipy.stats import qmc
 
 __all__ = ["Sample"]
 
@@ -64,9 +67,13 @@ class Sample:
 
     @cached_property
     def _sequence(self) -> qmc.Sobol:
+        from scipy.stats import qmc  # a fifth of a second, for samples alone
+
         return qmc.Sobol(len(self.vary), rng=self.seed)
 
     @cached_property
     def _hypercube(self) -> Array:
         """All points: the strata of each knob are one permutation."""
+        from scipy.stats import qmc
+
         return np.asarray(qmc.LatinHypercube(len(self.vary), rng=self.seed).random(self.n))
