@@ -1,9 +1,13 @@
 """A sweep is resumed with functions in Python only where they are the same ones."""
 
 import importlib.util
+import os
+import subprocess
 import sys
 import threading
 from dataclasses import replace
+from functools import cached_property, lru_cache, wraps
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -20,6 +24,7 @@ import math
 from functools import cached_property, partial
 
 SHARE = {share}
+KINDS = {{"start", "stop", "idle"}}
 
 class Brake:
     size = 1e-3
@@ -42,7 +47,8 @@ def half(x):
     return {factor} * x
 
 def load(t, theta, omega):
-    return -half(omega) + SHARE * math.sin(theta)
+    sign = 1.0 if "start" in KINDS and "idle" not in {{"run", "stop", "start"}} else -1.0
+    return -half(omega) + sign * SHARE * math.sin(theta)
 
 def made(size):
     def inner(t, theta, omega, scale=SHARE):
@@ -57,6 +63,7 @@ closed = made({factor})
 whole = partial(Brake(0.5).force)
 """
 PLAIN = {"share": "0.0", "factor": "1e-3", "comment": "# halves"}
+ROOT = Path(__file__).parent.parent
 SCENE = load_scene("coasting").with_(run__until="0.01 s")
 VARY = {"start.speed": [50.0 + k for k in range(8)]}
 
@@ -99,6 +106,36 @@ def test_globals_and_defaults_are_looked_at(module, name):
     assert fingerprint(getattr(module(share="0.1"), name)) != first
 
 
+def test_what_wraps_a_function_is_identified_by_it():
+    def made(size):
+        class Part:
+            @cached_property
+            def cached(self):
+                return size
+
+            @property
+            def computed(self):
+                return size
+
+            @staticmethod
+            def still(x):
+                return size * x
+
+        def plain(x):
+            return size * x
+
+        @wraps(plain)
+        def wrapped(x):
+            return plain(x) + size
+
+        return [Part(), Part.still, lru_cache(plain), wrapped, Part.cached, Part.computed]
+
+    one, same, other = made(1.0), made(1.0), made(2.0)
+    assert [*map(fingerprint, one)] == [*map(fingerprint, same)]
+    assert all(fingerprint(a) != fingerprint(b) for a, b in zip(one, other, strict=True))
+    assert all(map(fingerprint, one))
+
+
 def test_state_and_arrays_are_looked_at(module):
     found = module()
     assert fingerprint(found.Brake(0.5)) == fingerprint(found.brake)
@@ -114,6 +151,25 @@ def test_a_compiled_function_is_identified_by_its_source(module):
     found = module()
     assert fingerprint(njit(found.half)) == fingerprint(njit(found.half))
     assert fingerprint(njit(found.half)) != fingerprint(njit(found.load))
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_another_process_finds_the_same_fingerprint(module, name, tmp_path):
+    """With another order of sets and strings, and from the bytecode that Python has stored."""
+    first = fingerprint(getattr(module(), name))
+    (tmp_path / "mine.py").write_text(MODULE.format(**PLAIN))
+    program = (
+        "import mine; from crankmbs.sweep.fingerprint import fingerprint; "
+        f"print(fingerprint(mine.{name}))"
+    )
+    found = set()
+    for seed in ("1", "2"):
+        words = {**os.environ, "PYTHONHASHSEED": seed, "PYTHONPATH": f"{tmp_path}:{ROOT}"}
+        done = subprocess.run(
+            [sys.executable, "-c", program], capture_output=True, text=True, check=True, env=words
+        )
+        found.add(done.stdout.strip())
+    assert found == {first}
 
 
 def test_what_belongs_to_a_process_has_no_fingerprint():
