@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from command_line import crankmbs_, refused
+from command_line import crankmbs_, names, refused
 from deadly import braking, deadly
 
 from crankmbs import InputError, Load, OutputError, load_scene, load_sweep, sweep
@@ -126,6 +126,19 @@ def test_a_killed_sweep_is_resumed_from_its_last_block_to_the_same_bytes(whole, 
     assert crankmbs_(*PLAIN, "-o", str(out), "--resume").exit_code == 0
     assert files(out) == whole
     assert all(file.stat().st_mtime_ns == at for file, at in kept.items())
+
+
+def test_a_start_that_is_killed_leaves_no_hidden_folder(whole, tmp_path):
+    out = tmp_path / "sweep.zarr"
+    command = [sys.executable, "-c", COMMAND, *PLAIN, "-o", str(out)]
+    with subprocess.Popen(command) as running:
+        while not out.exists():
+            assert running.poll() is None
+            time.sleep(0.001)
+        running.kill()
+    assert names(tmp_path) == {"sweep.zarr"}
+    assert crankmbs_(*PLAIN, "-o", str(out), "--resume").exit_code == 0
+    assert files(out) == whole
 
 
 def test_an_interrupted_sweep_says_how_to_resume(whole, tmp_path):
