@@ -88,8 +88,16 @@ def test_a_scene_that_cannot_be_is_a_row():
     assert np.isnan(found["mean_speed"].values[1])
 
 
+def test_a_rod_as_long_as_the_crank_is_a_row_without_a_warning():
+    found = sweep(SCENE, {"rod_ratio": "0..1:3"}, executor=1)
+    assert found["status"].values.tolist() == [2, 0, 2]
+    zero, _, one = found["message"].values.tolist()
+    assert zero == "rod_ratio: must be above 0 and at most 1; 0 came"
+    assert one.startswith("rod.length: a rod as long as the crank lets the piston rest for half")
+
+
 def test_strict_says_how_many_cannot_be_and_why(tmp_path):
-    said = r"^2 of 4 scenes cannot be; the first at rod.length = 0.01: rod.length must be at least"
+    said = "^2 of 4 scenes cannot be built; the first at rod.length = 0.01: rod.length must be at "
     with pytest.raises(InputError, match=said):
         sweep(ENGINE, {"rod.length": [0.15, 0.01, 0.16, 0.02]}, strict=True, out=tmp_path / "s")
     assert not list(tmp_path.iterdir())
@@ -134,7 +142,14 @@ def test_a_store_opens_in_xarray_too(tmp_path):
     sweep(ENGINE, {"rod.length": [0.15, 0.16]}, out=tmp_path / "s.zarr", executor=1)
     with xr.open_zarr(tmp_path / "s.zarr") as plain:
         np.testing.assert_allclose(plain["rod.length"], [0.15, 0.16])
-        assert plain["fluctuation"].dims == ("case",)
+        measures = plain["measures"]
+        assert measures.dims == ("rod.length", "measure")
+        loaded = load_sweep(tmp_path / "s.zarr")
+        for name in ("fluctuation", "fluctuation_error", "crank_pin_peak", "lecture_deviation"):
+            array = "_".join((*loaded[name].dims[1:], "measures"))
+            stored = plain[array].sel({array.removesuffix("s"): name})
+            np.testing.assert_array_equal(stored, loaded[name])
+        assert plain["message"].values.tolist() == loaded["message"].values.tolist()
 
 
 def test_what_is_no_sweep_is_refused(tmp_path):

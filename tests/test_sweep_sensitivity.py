@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from command_line import crankmbs_, refused
 from scipy import stats
+from swept import block_of
 
 from crankmbs import InputError, load_scene, sobol_indices
 from crankmbs.sweep import workers
-from crankmbs.sweep.block import Block
 
 pytestmark = pytest.mark.slow
 
@@ -35,8 +35,8 @@ def ishigamis(monkeypatch):
 
     def solved(job):
         values = np.array([given[:3] for given in job.values])
-        rows = {"mean_speed": ishigami(*values.T), "mean_speed_error": np.full(len(values), 1e-9)}
-        return Block(rows, np.zeros(len(values), np.int8), ("",) * len(values))
+        errors = np.full(len(values), 1e-9)
+        return block_of(job, mean_speed=ishigami(*values.T), mean_speed_error=errors)
 
     monkeypatch.setattr(workers, "solved", solved)
 
@@ -87,8 +87,8 @@ def test_a_product_of_two_has_the_indices_of_its_closed_form():
 def test_the_error_of_the_measure_is_in_that_of_the_index(monkeypatch):
     def solved(job):
         values = np.array([given[0] for given in job.values])
-        rows = {"mean_speed": values, "mean_speed_error": np.full(len(values), 1e-2)}
-        return Block(rows, np.zeros(len(values), np.int8), ("",) * len(values))
+        errors = np.full(len(values), 1e-2)
+        return block_of(job, mean_speed=values, mean_speed_error=errors)
 
     monkeypatch.setattr(workers, "solved", solved)
     (found,) = sobol_indices(SCENE, CUBE, "mean speed", n=64, executor=1)

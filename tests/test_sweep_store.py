@@ -1,40 +1,43 @@
-"""The store of a sweep is written as Zarr would, and read as it is asked for; of many cases nothing
-is held at once."""
+"""The store of a sweep has each case in its place, and is read column by column; of many cases
+nothing is held at once."""
 
+import resource
+import shutil
 import tracemalloc
+from contextlib import ExitStack, contextmanager, suppress
 
 import numpy as np
 import pytest
-import zarr
+import xarray as xr
 from scipy.stats import qmc
+from swept import block_of
 
-from crankmbs import Sample, load_scene, load_sweep, sweep
+from crankmbs import OutputError, Sample, load_scene, load_sweep, sweep
 from crankmbs.figures import sweep_figure
-from crankmbs.sweep import summary as summaries
 from crankmbs.sweep import workers
-from crankmbs.sweep.block import Block, block_size
+from crankmbs.sweep.block import block_size
 from crankmbs.sweep.cases import cases_of
-from crankmbs.sweep.chunks import Chunks
 from crankmbs.sweep.plan import plan_of
+from crankmbs.sweep.run import fill
 from crankmbs.sweep.summary import summary
 
 pytestmark = pytest.mark.slow
 
 SCENE = load_scene("propeller").with_(run__until="settled")
+ENGINE = load_scene("yi_diesel")
 RANGES = {"crank.inertia": "0.05..0.5 kg m^2", "rod.length": "0.14..0.2 m:log"}
 
 
 def numbered(job):
-    """A block whose mean speed is the crank's inertia, and whose imep is NaN."""
+    """A block whose mean speed is the crank's inertia."""
     inertia = np.array([values[0] for values in job.values])
-    shape = (len(inertia), 1)
-    rows = {
-        "mean_speed": inertia,
-        "imep": np.full(shape, np.nan),
-        "side_force_peak": inertia[:, None],
-    }
-    rows |= {"mean_speed_error": 1e-9 * inertia, "side_force_peak_error": np.zeros(shape)}
-    return Block(rows, np.zeros(len(inertia), np.int8), ("reached its end",) * len(inertia))
+    return block_of(
+        job,
+        mean_speed=inertia,
+        mean_speed_error=1e-9 * inertia,
+        side_force_peak=inertia[:, None],
+        side_force_peak_error=np.zeros((len(inertia), 1)),
+    )
 
 
 @pytest.fixture
@@ -71,50 +74,104 @@ def test_of_many_cases_no_list_is_held():
     assert most(2**22) < most(2**18) + 20_000
 
 
+@pytest.mark.parametrize(
+    "counts", [(1,), (60,), (3, 7), (7, 3), (2, 1000), (5, 1, 90), (2, 3, 4, 5), (4000, 3)]
+)
+@pytest.mark.parametrize("keep", ["measures", "series"])
+def test_blocks_are_successive_cases_and_parts_of_the_grid(counts, keep):
+    names = ("piston.mass", "rod.mass", "crank.inertia", "rod.inertia")
+    values = [np.linspace(0.5, 0.6, n).tolist() for n in counts]
+    plan = plan_of(ENGINE, dict(zip(names, values, strict=False)), keep)
+    numbers = np.arange(plan.cases.count).reshape(counts)
+    blocks = [numbers[plan.region(k)].ravel() for k in range(plan.blocks)]
+    assert [list(plan.rows(k)) for k in range(plan.blocks)] == [one.tolist() for one in blocks]
+    assert sorted(np.concatenate(blocks).tolist()) == numbers.ravel().tolist()
+    most = max(map(len, blocks))
+    assert plan.blocks <= max(2 * 128, 3 * plan.cases.count / most)
+
+
 def test_blocks_are_few_files_of_a_bounded_size():
     assert [block_size(n, series=False) for n in (1, 1280, 10**9)] == [4, 10, 2048]
     assert block_size(10**9, series=True) == 256
 
 
-# ------------------------------------------------------------------------------------------ bytes
-
-
-@pytest.mark.parametrize(
-    ("dtype", "nothing", "values"),
-    [
-        ("f8", np.nan, np.linspace(0.0, 1.0, 30).reshape(10, 3)),
-        ("f8", np.nan, np.full((10, 3), np.nan)),
-        ("i1", -128, np.arange(10)),
-        (str, "", np.array([f"über {k}" for k in range(10)], dtype=object)),
-    ],
-)
-def test_a_chunk_has_the_bytes_of_zarr(tmp_path, dtype, nothing, values):
-    group = zarr.open_group(str(tmp_path / "s"), mode="w", zarr_format=2)
-    sizes = {"shape": values.shape, "chunks": (4, *values.shape[1:])}
-    ours, theirs = (
-        group.create_array(name, dtype=dtype, fill_value=nothing, **sizes) for name in ("a", "b")
-    )
-    chunks = Chunks(tmp_path / "s" / "a", ours)
-    for number in (0, 2):  # the last is not whole
-        chunks.write(number, values[4 * number : 4 * number + 4])
-        theirs[4 * number : 4 * number + 4] = values[4 * number : 4 * number + 4]
-    found = [
-        {file.name: file.read_bytes() for file in (tmp_path / "s" / name).iterdir()}
-        for name in ("a", "b")
-    ]
-    assert found[0] == found[1]
-
-
 # ---------------------------------------------------------------------------------------- reading
 
 
-def test_a_column_is_read_when_it_is_asked_for(stub, tmp_path):
+def test_a_column_is_read_when_it_is_used(stub, tmp_path):
     sweep(SCENE, Sample(RANGES, 64), out=tmp_path / "s", executor=1)
     data = load_sweep(tmp_path / "s")
-    for file in (tmp_path / "s" / "side_force_peak").glob("[0-9]*"):
+    for file in (tmp_path / "s" / "cylinder_measures").glob("[0-9]*"):
         file.unlink()
     assert np.isnan(data["side_force_peak"].values).all()
     np.testing.assert_array_equal(data["mean_speed"], data["crank.inertia"])
+
+
+@contextmanager
+def full_device():
+    """No file can grow meanwhile, as on a full device."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (0, hard))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+
+
+def test_a_full_device_leaves_no_store(tmp_path):
+    with full_device(), pytest.raises(OutputError, match="s: cannot be written"):
+        sweep(SCENE, {"crank.inertia": [0.2, 0.3]}, out=tmp_path / "s", executor=1)
+    assert not list(tmp_path.iterdir())
+
+
+def filled_up(plan, path, blocks):
+    """Fill a store on a device that is full after so many blocks."""
+    with ExitStack() as stack:
+
+        def report(count, left=[blocks]):  # noqa: B006
+            left[0] -= count > 0
+            if left[0] == 0:
+                stack.enter_context(full_device())
+
+        fill(plan, path, 1, report)
+
+
+def test_a_device_that_becomes_full_leaves_finished_blocks_or_nothing(stub, tmp_path):
+    plan = plan_of(SCENE, {"crank.inertia": "0.1..0.5 kg m^2:100"}, "measures")
+    assert plan.blocks == 4
+    for blocks in (0, 2):
+        with pytest.raises(OutputError, match="s: cannot be written"):
+            filled_up(plan, tmp_path / "s", blocks)
+        assert (tmp_path / "s").exists() == (blocks > 0)
+    with pytest.raises(OutputError, match="s: 2 of 4 blocks are finished"):
+        load_sweep(tmp_path / "s")
+    fill(plan, tmp_path / "s", 1, lambda _: None)
+    np.testing.assert_allclose(load_sweep(tmp_path / "s")["mean_speed"], np.linspace(0.1, 0.5, 100))
+
+
+def test_a_store_that_was_not_laid_out_to_its_end_is_laid_out_anew(stub, tmp_path):
+    """As after a kill: whatever is missing of a store without a finished block."""
+    plan = plan_of(SCENE, {"crank.inertia": [0.2, 0.3], "rod.length": "0.15..0.2 m:3"}, "measures")
+    fill(plan, tmp_path / "whole", 1, lambda _: None)
+    whole = load_sweep(tmp_path / "whole").load()
+    for gone in (".zattrs", "status", "measures", "measure/0", "*"):
+        with suppress(KeyboardInterrupt):
+            fill(plan, tmp_path / "s", 1, interrupted)
+        assert not (tmp_path / "s").exists()
+        shutil.copytree(tmp_path / "whole", tmp_path / "s")
+        for left in (tmp_path / "s").glob("[!.]*" if gone in ("*", ".zattrs") else gone):
+            shutil.rmtree(left) if left.is_dir() else left.unlink()
+        for left in (".zmetadata", gone if gone == ".zattrs" else "none"):
+            (tmp_path / "s" / left).unlink(missing_ok=True)
+        for left in (tmp_path / "s").glob("status/[0-9]*"):
+            left.unlink()
+        fill(plan, tmp_path / "s", 1, lambda _: None)
+        xr.testing.assert_identical(load_sweep(tmp_path / "s"), whole)
+        shutil.rmtree(tmp_path / "s")
+
+
+def interrupted(count):
+    raise KeyboardInterrupt
 
 
 def test_what_is_kept_nowhere_is_in_memory(stub):
@@ -144,8 +201,7 @@ def test_a_part_of_a_grid_is_that_part_of_the_whole(stub, tmp_path, at):
     np.testing.assert_allclose(whole["side_force_peak"][..., 0], expected)
 
 
-def test_a_summary_reads_part_after_part(stub, tmp_path, monkeypatch):
-    monkeypatch.setattr(summaries, "_CHUNKS", 1)
+def test_a_summary_reads_block_after_block(stub, tmp_path):
     sweep(SCENE, Sample(RANGES, 64), out=tmp_path / "s", executor=1)
     found, data = summary(tmp_path / "s"), load_sweep(tmp_path / "s")
     assert found.ended == {0: (64, "reached its end")}

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from command_line import crankmbs_, refused
+from command_line import crankmbs_, names, refused
 from deadly import braking, deadly
 
 from crankmbs import InputError, Load, OutputError, load_scene, load_sweep, sweep
@@ -22,7 +22,7 @@ from crankmbs.sweep import workers
 from crankmbs.sweep.cluster import cluster_executor
 from crankmbs.sweep.plan import plan_of
 from crankmbs.sweep.run import fill
-from crankmbs.sweep.workers import workers_of
+from crankmbs.sweep.workers import Workers
 
 pytestmark = pytest.mark.slow
 
@@ -99,12 +99,12 @@ def begun(out, how):
     many were there."""
     command = [sys.executable, "-c", COMMAND, *PLAIN, "-o", str(out)]
     with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as running:
-        while len([*out.glob("done/[0-9]*")]) < 2:
+        while len([*out.glob("status/[0-9]*")]) < 2:
             assert running.poll() is None
             time.sleep(0.01)
         running.send_signal(how)
         _, said = running.communicate()
-    return running.returncode, said, len([*out.glob("done/[0-9]*")])
+    return running.returncode, said, len([*out.glob("status/[0-9]*")])
 
 
 @pytest.fixture(scope="module")
@@ -114,25 +114,40 @@ def whole(tmp_path_factory):
     return files(folder)
 
 
-def test_a_killed_sweep_goes_on_from_its_last_block_to_the_same_bytes(whole, tmp_path):
+def test_a_killed_sweep_is_resumed_from_its_last_block_to_the_same_bytes(whole, tmp_path):
     out = tmp_path / "sweep.zarr"
     status, _, done = begun(out, signal.SIGKILL)
     assert status == -signal.SIGKILL
-    with pytest.raises(OutputError, match=f"{done} of 15 blocks are there; crankmbs sweep with"):
+    with pytest.raises(
+        OutputError, match=f"{done} of 15 blocks are finished; crankmbs sweep --resume"
+    ):
         load_sweep(out)
-    (out / f"fluctuation/0.{'0' * 32}.partial").write_bytes(b"half")
-    kept = {file: file.stat().st_mtime_ns for file in out.glob("done/[0-9]*")}
+    (out / f"measures/0.{'0' * 32}.partial").write_bytes(b"half")
+    kept = {file: file.stat().st_mtime_ns for file in out.glob("status/[0-9]*")}
     assert "is there already; give --resume" in refused(*PLAIN, "-o", str(out))
     assert crankmbs_(*PLAIN, "-o", str(out), "--resume").exit_code == 0
     assert files(out) == whole
     assert all(file.stat().st_mtime_ns == at for file, at in kept.items())
 
 
-def test_an_interrupted_sweep_says_how_to_go_on(whole, tmp_path):
+def test_a_start_that_is_killed_leaves_no_hidden_folder(whole, tmp_path):
+    out = tmp_path / "sweep.zarr"
+    command = [sys.executable, "-c", COMMAND, *PLAIN, "-o", str(out)]
+    with subprocess.Popen(command) as running:
+        while not out.exists():
+            assert running.poll() is None
+            time.sleep(0.001)
+        running.kill()
+    assert names(tmp_path) == {"sweep.zarr"}
+    assert crankmbs_(*PLAIN, "-o", str(out), "--resume").exit_code == 0
+    assert files(out) == whole
+
+
+def test_an_interrupted_sweep_says_how_to_resume(whole, tmp_path):
     out = tmp_path / "sweep.zarr"
     status, said, _ = begun(out, signal.SIGINT)
     assert status == 130
-    assert said == f"{out} keeps what is finished; --resume goes on\ninterrupted\n"
+    assert said == f"{out} has all finished blocks; --resume computes the others\ninterrupted\n"
     assert crankmbs_(*PLAIN, "-o", str(out), "--resume").exit_code == 0
     assert files(out) == whole
 
@@ -152,7 +167,8 @@ def test_workers_that_are_interrupted_while_they_start_are_silent(tmp_path):
         running.send_signal(signal.SIGINT)
         _, said = running.communicate()
     assert running.returncode == 130
-    assert said == f"{out} keeps what is finished; --resume goes on\ninterrupted\n"
+    assert said == "interrupted\n"
+    assert not list(tmp_path.iterdir())
 
 
 def is_loading(process):
@@ -172,7 +188,7 @@ def test_processes_end_with_the_one_that_writes(tmp_path):
     words = ["sweep", "yi_diesel", "--workers", "2", "--vary", "rod.length=0.15..0.2 m:4000"]
     command = [sys.executable, "-c", COMMAND, *words, "-o", str(tmp_path / "s")]
     with subprocess.Popen(command) as running:
-        while not [*tmp_path.glob("s/done/[0-9]*")]:
+        while not [*tmp_path.glob("s/status/[0-9]*")]:
             assert running.poll() is None
             time.sleep(0.05)
         children = children_of(running.pid)
@@ -190,18 +206,18 @@ def test_processes_end_with_the_one_that_writes(tmp_path):
     [
         (SCENE.with_(piston__mass=2.0), GRID, "measures", "of another scene"),
         (SCENE, {"rod.length": "0.15..0.2 m:13"}, "measures", "of other cases"),
-        (SCENE, {"rod.length": [0.1]}, "series", "of other cases and that keeps other things"),
+        (SCENE, {"rod.length": [0.1]}, "series", "of other cases and that stores other things"),
         (SCENE, GRID, "measures", "this sweep is complete; give another folder"),
     ],
 )
-def test_another_sweep_is_not_gone_on_with(alone, scene, vary, keep, said):
+def test_another_sweep_is_not_resumed(alone, scene, vary, keep, said):
     before = files(alone)
     with pytest.raises(InputError, match=said):
         sweep(scene, vary, out=alone, keep=keep, executor=1)
     assert files(alone) == before
 
 
-def test_a_sweep_by_another_version_is_not_gone_on_with(tmp_path, monkeypatch):
+def test_a_sweep_by_another_version_is_not_resumed(tmp_path, monkeypatch):
     out = tmp_path / "s"
     with pytest.raises(RuntimeError, match="enough"):
         fill(plan_of(SCENE, GRID, "measures"), out, 1, enough)
@@ -288,7 +304,7 @@ def test_a_script_without_a_guard_is_told_of_it(tmp_path):
     assert 'put its call under if __name__ == "__main__":' in last
 
 
-def test_a_broken_executor_that_is_given_keeps_what_is_finished(tmp_path):
+def test_an_executor_that_was_shut_down_is_refused(tmp_path):
     threads = ThreadPoolExecutor(1)
     threads.shutdown()
     with pytest.raises(InputError, match="executor: it takes no work"):
@@ -316,11 +332,8 @@ def test_a_cluster_writes_the_bytes_of_one(scheduler, alone, tmp_path):
 
 def test_all_workers_of_a_cluster_are_kept_busy(scheduler):
     """However many processors the machine has that asks."""
-    with (
-        cluster_executor(scheduler) as executor,
-        workers_of(executor, plan_of(SCENE, GRID, "measures").job(0), 3) as there,
-    ):
-        assert there.at_once == 4 * 2
+    with cluster_executor(scheduler) as executor:
+        assert Workers(executor).at_once == 4 * 2
 
 
 def test_the_command_takes_a_cluster(scheduler, whole, tmp_path):
@@ -338,7 +351,7 @@ def test_an_unreachable_scheduler_is_one_sentence(tmp_path):
     assert "both say where" in refused(*PLAIN, "-o", "s", "--cluster", "tcp://127.0.0.1:1")
 
 
-def test_few_blocks_are_computed_where_they_are_asked_for():
-    job = plan_of(SCENE, GRID, "measures").job(0)
-    with workers_of(None, job, 3) as here:
-        assert here.at_once == 1
+def test_few_blocks_are_computed_where_they_are_asked_for(monkeypatch):
+    monkeypatch.setattr(workers, "_processes", None)
+    job = plan_of(SCENE, GRID, "measures").job
+    assert [number for number, _ in workers.computed(job, [2, 0], None)] == [2, 0]

@@ -26,7 +26,7 @@ _ENDED = {
     0: "reached their end",
     1: "ended before it",
     -1: "broke off",
-    2: "are of scenes that cannot be",
+    2: "cannot be built",
     -2: "ended their worker",
 }
 _OPTIONS = {"method": "--sample", "n": "--n", "seed": "--seed", "keep": "--keep"}
@@ -53,11 +53,10 @@ def sweep(
     ] = None,
     keep: Annotated[str, typer.Option(help="measures, or series: every sample too.")] = "measures",
     strict: Annotated[
-        bool, typer.Option("--strict", help="Refuse scenes that cannot be before anything runs.")
+        bool,
+        typer.Option("--strict", help="Run nothing if any scene cannot be built."),
     ] = False,
-    resume: Annotated[
-        bool, typer.Option("--resume", help="Go on with what was interrupted.")
-    ] = False,
+    resume: Annotated[bool, typer.Option("--resume", help="Resume what was interrupted.")] = False,
     workers: Annotated[
         int | None, typer.Option(help="How many compute; default one for each processor.")
     ] = None,
@@ -66,7 +65,7 @@ def sweep(
         typer.Option(metavar="ADDRESS", help='A Dask scheduler, such as "tcp://host:8786".'),
     ] = None,
 ) -> None:
-    """Run a scene with some of its numbers varied; keep the measures of each case."""
+    """Run a scene with some of its numbers varied, and store the measures of each case."""
     from crankmbs.scene.read import load_scene, scene_path
     from crankmbs.sweep.cluster import cluster_executor
     from crankmbs.sweep.plan import check_possible, plan_of
@@ -88,7 +87,7 @@ def sweep(
         there = stack.enter_context(cluster_executor(cluster)) if cluster else workers
         report = stack.enter_context(_progress(plan.cases.count))
         stack.enter_context(_as_options())
-        stack.enter_context(_kept(out))
+        stack.enter_context(_resumable(out))
         fill(plan, out, there, report)
     title = f"{path.stem}: {plan.scene.title}" if plan.scene.title else path.stem
     typer.echo(f"{title}\n\n{_report(plan, summary(out))}\n\nwrote {out}")
@@ -141,10 +140,10 @@ def _check_free(out: Path, resume: bool) -> None:
     from crankmbs.sweep.store import unfinished
 
     if resume and not out.exists():
-        raise InputError(f"--resume: there is no {out} to go on with; leave it out")
+        raise InputError(f"--resume: there is no {out} to resume; leave it out")
     if not resume and unfinished(out):
         raise InputError(
-            f"{out}: is there already; give --resume to go on with a sweep that was interrupted, "
+            f"{out}: is there already; give --resume for a sweep that was interrupted, "
             "or another folder with -o"
         )
 
@@ -161,12 +160,14 @@ def _as_options() -> Iterator[None]:
 
 
 @contextmanager
-def _kept(out: Path) -> Iterator[None]:
-    """Say after an interrupt how to go on."""
+def _resumable(out: Path) -> Iterator[None]:
+    """Say after an interrupt how to resume."""
     try:
         yield
     except KeyboardInterrupt:
-        typer.echo(f"{shlex.quote(str(out))} keeps what is finished; --resume goes on", err=True)
+        if unfinished(out):
+            name = shlex.quote(str(out))
+            typer.echo(f"{name} has all finished blocks; --resume computes the others", err=True)
         raise
 
 

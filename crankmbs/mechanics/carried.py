@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from crankmbs.errors import InputError
 from crankmbs.mechanics.cycle_rows import Tables, behind
 from crankmbs.mechanics.geometry import close_loop, dead_centres, top_position
 from crankmbs.numerics.arrays import Array
@@ -43,12 +44,21 @@ def carried_over(scene: Scene, before: Scene) -> Scene:
     ----------
     scene : with the gas of the scene before
 
+    Raises
+    ------
+    InputError : a rod as long as the crank, with which the piston rests for half a turn
+
     >>> carried_over(*2 * [load_scene("v_twin")]) == load_scene("v_twin")
     True
     """
     gas, ways = scene.gas, (_shape(before), _shape(scene))
     if gas is None or gas.indicator is not None or ways[0] == ways[1]:
         return scene
+    if any(radius == length and offset == 0.0 for radius, length, offset in ways):
+        raise InputError(
+            "rod.length: a rod as long as the crank lets the piston rest for half a turn, where a "
+            "table of pressures cannot follow it; give a longer rod"
+        )
     moved: dict[str, Any] = {
         name: _moved(before, gas, given, ways)
         for name in ("pressure", "motored")

@@ -26,7 +26,7 @@ from crankmbs.scene.schema import part
 from crankmbs.scene.torque import AnyTorque
 from crankmbs.scene.whole import check_whole
 
-__all__ = ["Scene"]
+__all__ = ["Scene", "check_scene"]
 
 
 @part
@@ -141,3 +141,14 @@ class Scene:
         from crankmbs.report.html import scene_html
 
         return scene_html(self)
+
+
+def check_scene(scene: object) -> None:
+    """Refuse what is no scene.
+
+    Raises
+    ------
+    InputError : begins with the argument, ``scene``
+    """
+    if not isinstance(scene, Scene):
+        raise InputError(f"scene must be a Scene, such as load_scene reads; {shown(scene)} came")

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from math import ceil
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +14,7 @@ from numpy.typing import NDArray
 from crankmbs.batch.rows import Rows, rows_of
 from crankmbs.errors import CrankmbsError
 from crankmbs.numerics.arrays import Array
+from crankmbs.result import Result
 from crankmbs.scene.scene import Scene
 from crankmbs.simulate import simulate
 from crankmbs.sweep.columns import Row, columns_of, dims_of, row_of, samples_of
@@ -20,7 +24,9 @@ __all__ = ["BROKEN", "IMPOSSIBLE", "Block", "Job", "block_size", "broken", "join
 
 Ended = tuple[Row, int, str]  # of one case: its columns, status and sentence
 
+T = TypeVar("T")
 IMPOSSIBLE, BROKEN = 2, -2  # status of a case whose scene is refused; that ended its worker
+_FAILED = -1
 _FEWEST, _BLOCKS = 4, 128
 _SOME, _WIDE, _TOGETHER = 32, 512, 16  # the same of cases that are solved together
 _MOST, _MOST_SERIES = 2048, 256  # a block is a file of each column: few files, some 40 MB of series
@@ -75,7 +81,7 @@ def solved(job: Job) -> Block:
     >>> print(solved(job).status)
     [0 2]
     """
-    cases = [_scene_of(job, values) for values in job.values]
+    cases = [_attempt(partial(scene_of, job.scene, job.names, values)) for values in job.values]
     scenes = [case if isinstance(case, Scene) else None for case in cases]
     together = [] if job.series else rows_of(scenes)
     found = {int(k) for rows in together for k in rows.which}
@@ -96,35 +102,27 @@ def joined(parts: list[Block]) -> Block:
     return Block(rows, status, tuple(text for one in parts for text in one.message))
 
 
-def _scene_of(job: Job, values: tuple[object, ...]) -> Scene | Ended:
+def _attempt(make: Callable[[], T]) -> T | Ended:
+    """What is made, or how the case ended that did not get so far."""
     try:
-        return scene_of(job.scene, job.names, values)
+        return make()
     except CrankmbsError as error:
         return {}, IMPOSSIBLE, str(error)
-    except Exception as error:  # of a limit nobody knew: the other cases go on
-        return {}, -1, _broke_off(error)
+    except Exception as error:  # of a limit nobody knew: the other cases are computed
+        return {}, _FAILED, f"broke off: {type(error).__name__}: {error}"
 
 
 def _one(case: Scene | Ended, samples: int | None) -> Ended:
     if not isinstance(case, Scene):
         return case
-    try:
-        result = simulate(case)
-    except CrankmbsError as error:
-        return {}, IMPOSSIBLE, str(error)
-    except Exception as error:
-        return {}, -1, _broke_off(error)
-    try:
-        return row_of(result, samples), result.status, result.message
-    except CrankmbsError as error:
-        return {}, IMPOSSIBLE, str(error)
-    except Exception as error:  # as where a load failed before there was a sample
-        ended = result.status != 0
-        return {}, result.status or -1, result.message if ended else _broke_off(error)
-
-
-def _broke_off(error: Exception) -> str:
-    return f"broke off: {type(error).__name__}: {error}"
+    result = _attempt(partial(simulate, case))
+    if not isinstance(result, Result):
+        return result
+    row = _attempt(partial(row_of, result, samples))
+    if isinstance(row, dict):
+        return row, result.status, result.message
+    failed = row[1] == _FAILED and result.status  # as where a load failed before a sample
+    return ({}, result.status, result.message) if failed else row
 
 
 def _block(job: Job, ended: dict[int, Ended], together: list[Rows]) -> Block:

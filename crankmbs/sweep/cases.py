@@ -15,29 +15,32 @@ import numpy as np
 from crankmbs.errors import InputError, shown
 from crankmbs.scene.content import content_of
 from crankmbs.scene.scene import Scene
+from crankmbs.sweep.fingerprint import fingerprint
 from crankmbs.sweep.knobs import Interval, Knob, interval_of, knob_of
 from crankmbs.sweep.sample import Sample
-from crankmbs.sweep.told import NotTold, digest_of
 
 __all__ = ["Cases", "Grid", "Listed", "Spread", "cases_of"]
 
 _MOST = 10_000_000
-_TELLING = 64  # points
+_FIRST = 64  # points of a sample in its fingerprint
 _HEADING = re.compile(r"(.*?)\s*(?:\[(.*)\])?")
 
 
 class Cases(ABC):
-    """What is set to what in each case, told block by block: of many cases no list is held.
+    """What is set to what in each case, block by block: of many cases no list is held.
 
     names, units : of the knobs
-    shape : of a grid, the last knob the fastest; None for a sample or a list
+    dims, shape : over the knobs of a grid, the last of them the fastest, else over "case"
     count : how many cases there are
     """
 
-    names: tuple[str, ...]
-    units: tuple[str, ...]
-    shape: tuple[int, ...] | None
-    count: int
+    def __init__(self, knobs: Sequence[Knob | Interval], shape: tuple[int, ...]) -> None:
+        self.names = tuple(knob.name for knob in knobs)
+        self.units = tuple(knob.units for knob in knobs)
+        for name in sorted({name for name in self.names if self.names.count(name) > 1}):
+            raise InputError(f"{name}: is varied twice; give it once")
+        self.dims: tuple[str, ...] = ("case",)
+        self.shape, self.count = shape, prod(shape)
 
     @abstractmethod
     def at(self, rows: range) -> tuple[Knob, ...]:
@@ -45,30 +48,30 @@ class Cases(ABC):
 
     @property
     @abstractmethod
-    def _told(self) -> object:
+    def _identity(self) -> object:
         """What all values follow from."""
+
+    @property
+    def levels(self) -> tuple[Knob, ...]:
+        """The knobs at all of their values: of a grid its levels, else case by case."""
+        return self.at(range(self.count))
 
     def values(self, rows: range) -> tuple[tuple[object, ...], ...]:
         """The values of all knobs in some successive cases, case by case."""
         return tuple(zip(*(knob.values.tolist() for knob in self.at(rows)), strict=True))
 
     @cached_property
-    def digest(self) -> str:
-        """What tells these cases from all others; empty where they hold what nothing tells."""
-        try:
-            return digest_of([type(self).__name__, self.names, self.shape, self._told])
-        except NotTold:
-            return ""
+    def fingerprint(self) -> str:
+        """What differs from that of all other cases; empty where nothing identifies a value."""
+        return fingerprint([type(self).__name__, self.names, self.shape, self._identity])
 
 
 class Grid(Cases):
     """All combinations of the values of some knobs."""
 
     def __init__(self, knobs: tuple[Knob, ...]) -> None:
-        self._knobs = knobs
-        self.names, self.units = _named(knobs)
-        self.shape = tuple(len(knob.values) for knob in knobs)
-        self.count = prod(self.shape)
+        super().__init__(knobs, tuple(len(knob.values) for knob in knobs))
+        self._knobs, self.dims = knobs, self.names
         if self.count > _MOST:
             raise InputError(
                 f"vary: these ranges have {self.count} combinations; at most {_MOST} go"
@@ -76,44 +79,41 @@ class Grid(Cases):
 
     def at(self, rows: range) -> tuple[Knob, ...]:
         """Taken from the levels by place."""
-        assert self.shape is not None
         places = np.unravel_index(np.arange(rows.start, rows.stop), self.shape)
         return tuple(knob.at(k) for knob, k in zip(self._knobs, places, strict=True))
 
     @property
-    def _told(self) -> object:
+    def levels(self) -> tuple[Knob, ...]:
+        """Each knob over itself alone."""
+        return self._knobs
+
+    @property
+    def _identity(self) -> object:
         return [knob.values.tolist() for knob in self._knobs]
 
 
 class Listed(Cases):
     """Knobs with their values case by case."""
 
-    shape = None
-
     def __init__(self, knobs: tuple[Knob, ...]) -> None:
+        super().__init__(knobs, (len(knobs[0].values),))
         self._knobs = knobs
-        self.names, self.units = _named(knobs)
-        self.count = len(knobs[0].values)
 
     def at(self, rows: range) -> tuple[Knob, ...]:
         """Cut from the lists."""
         return tuple(knob.at(slice(rows.start, rows.stop)) for knob in self._knobs)
 
     @property
-    def _told(self) -> object:
-        of_objects = [knob.values.tolist() for knob in self._knobs if knob.values.dtype == object]
-        return [[knob.values for knob in self._knobs if knob.values.dtype != object], of_objects]
+    def _identity(self) -> object:
+        return [knob.values.tolist() for knob in self._knobs]
 
 
 class Spread(Cases):
     """Points of a sample, in ranges."""
 
-    shape = None
-
     def __init__(self, ranges: tuple[Interval, ...], sample: Sample) -> None:
+        super().__init__(ranges, (sample.n,))
         self._ranges, self._sample = ranges, sample
-        self.names, self.units = _named(ranges)
-        self.count = sample.n
 
     def at(self, rows: range) -> tuple[Knob, ...]:
         """Drawn anew."""
@@ -122,18 +122,9 @@ class Spread(Cases):
         return tuple(one.taken(one.at(column)) for one, column in pairs)
 
     @property
-    def _told(self) -> object:
+    def _identity(self) -> object:
         """The first points too: another version of SciPy may draw others."""
-        first = self._sample.points(range(min(self.count, _TELLING)))
-        return [tuple(self._ranges), self._sample, first]
-
-
-def _named(knobs: Sequence[Knob | Interval]) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Names and units of knobs, each given once."""
-    names = tuple(knob.name for knob in knobs)
-    for name in sorted({name for name in names if names.count(name) > 1}):
-        raise InputError(f"{name}: is varied twice; give it once")
-    return names, tuple(knob.units for knob in knobs)
+        return [self._ranges, self._sample, self._sample.points(range(min(self.count, _FIRST)))]
 
 
 def cases_of(scene: Scene, vary: object) -> Cases:
@@ -149,7 +140,9 @@ def cases_of(scene: Scene, vary: object) -> Cases:
     3
     """
     if isinstance(vary, Sample):
-        return _sampled(scene, vary)
+        if not vary.vary:
+            raise InputError("vary: a sample needs at least one range; none came")
+        return Spread(tuple(interval_of(scene, *item) for item in vary.vary.items()), vary)
     if isinstance(vary, str | Path):
         return _listed(scene, Path(vary))
     if not isinstance(vary, Mapping) or not vary:
@@ -158,12 +151,6 @@ def cases_of(scene: Scene, vary: object) -> Cases:
             f"Sample or a file of cases; {shown(vary)} came"
         )
     return Grid(tuple(knob_of(scene, name, given) for name, given in vary.items()))
-
-
-def _sampled(scene: Scene, sample: Sample) -> Cases:
-    if not sample.vary:
-        raise InputError("vary: a sample needs at least one range; none came")
-    return Spread(tuple(interval_of(scene, *item) for item in sample.vary.items()), sample)
 
 
 def _listed(scene: Scene, file: Path) -> Cases:

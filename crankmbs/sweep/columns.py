@@ -1,5 +1,5 @@
-"""What is kept of each case by name, with its error: measures, the errors of the lectures'
-formulas, and where they are wanted its samples."""
+"""The columns of a sweep, each with its error: measures, the errors of the lectures' formulas, and
+where they are wanted the samples."""
 
 from __future__ import annotations
 

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import math
-import tempfile
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,14 +13,14 @@ import numpy as np
 from crankmbs.errors import InputError, shown
 from crankmbs.measures import Estimate
 from crankmbs.numerics.arrays import Array, Index
-from crankmbs.scene.scene import Scene
+from crankmbs.scene.scene import Scene, check_scene
 from crankmbs.sweep.cases import Listed
 from crankmbs.sweep.columns import columns_of
 from crankmbs.sweep.knobs import Interval, Knob, interval_of
 from crankmbs.sweep.plan import Plan
 from crankmbs.sweep.reading import Reading, reading_of
-from crankmbs.sweep.run import fill
-from crankmbs.sweep.store import load_sweep
+from crankmbs.sweep.run import run_in_memory
+from crankmbs.sweep.sample import Sample
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -32,7 +30,6 @@ __all__ = ["SobolIndices", "sobol_indices"]
 _RESAMPLES = 400
 _CONFIDENCE = 1.96  # standard errors: 95 % of a normal distribution
 _OWN = 8.0  # of the measure's error over its standard deviation: more it does to no index
-_MOST = 2**20
 
 
 @dataclass(frozen=True)
@@ -99,37 +96,25 @@ def sobol_indices(
     >>> print(found.total[0].value > 0.5 > 0.01 > found.total[1].value)
     True
     """
-    if not isinstance(scene, Scene):
-        raise InputError(f"scene must be a Scene, such as load_scene reads; {shown(scene)} came")
+    check_scene(scene)
     if not isinstance(vary, Mapping) or len(vary) < 2:
         raise InputError(
             "vary must be two names or more and their ranges, as one alone has all of the "
             f'variance: {{"crank.inertia": "0.05..0.5 kg m^2", ...}}; {shown(vary)} came'
         )
-    _check_drawn(n, seed)
-    columns = columns_of(scene, series=False)
-    words = [measures] if isinstance(measures, str) else list(measures)
-    readings = [reading_of(one, columns) for one in words]
-    knobs = tuple(interval_of(scene, *item) for item in vary.items())
-    plan = Plan(scene, Listed(_design(knobs, n, seed)), series=False)
-    with tempfile.TemporaryDirectory() as scratch:
-        path = Path(scratch, "sweep.zarr")
-        fill(plan, path, executor, lambda _: None)
-        data = load_sweep(path)
-        return tuple(_found(plan, data, one, n, seed) for one in readings)
-
-
-def _check_drawn(n: int, seed: int) -> None:
-    for name, value, least, most in (("n", n, 2, _MOST), ("seed", seed, 0, 10_000_000)):
-        if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
-            raise InputError(
-                f"{name} must be a whole number from {least} to {most}; {shown(value)} came"
-            )
+    Sample(vary, n, seed=seed)  # refuses no numbers
     if n & (n - 1):
         raise InputError(
             f"n must be a power of two, or Sobol's points are not balanced; {n} came, "
             f"{2 ** n.bit_length()} is the next"
         )
+    columns = columns_of(scene, series=False)
+    words = [measures] if isinstance(measures, str) else list(measures)
+    readings = [reading_of(one, columns) for one in words]
+    knobs = tuple(interval_of(scene, *item) for item in vary.items())
+    plan = Plan(scene, Listed(_design(knobs, n, seed)), series=False)
+    data = run_in_memory(plan, executor)
+    return tuple(_found(plan, data, one, n, seed) for one in readings)
 
 
 def _design(knobs: tuple[Interval, ...], n: int, seed: int) -> tuple[Knob, ...]:

@@ -94,6 +94,11 @@ class _Kind(NamedTuple):
     dimension: str | None
     whole: bool
 
+    @property
+    def unit(self) -> str:
+        """Of its numbers; empty where they have none."""
+        return unit_of(self.dimension) if self.dimension else ""
+
 
 def knob_of(scene: Scene, name: str, given: object, most: int = _MOST) -> Knob:
     """A knob from a text such as "0.05..0.5 kg m^2:40", or from a sequence of values.
@@ -117,8 +122,7 @@ def knob_of(scene: Scene, name: str, given: object, most: int = _MOST) -> Knob:
         raise InputError(f"{name}: must be a text or a sequence of values; {shown(given)} came")
     if not 1 <= len(items) <= most:
         raise InputError(f"{name}: must have from 1 to {most} values; {len(items)} came")
-    unit = unit_of(kind.dimension) if kind.dimension else ""
-    return _knob(kind.name, unit, [_value(scene, kind, item) for item in items])
+    return _knob(kind.name, kind.unit, [_value(scene, kind, item) for item in items])
 
 
 def interval_of(scene: Scene, name: str, given: object) -> Interval:
@@ -159,8 +163,7 @@ def number_at(scene: Scene, name: str) -> tuple[Knob, float]:
         value = None if kind.name in DERIVED else _at(scene, kind.name)
     if kind.whole or isinstance(value, bool) or not isinstance(value, float):
         raise InputError(f"{name}: must be a number that a little can be added to; it is no such")
-    unit = unit_of(kind.dimension) if kind.dimension else ""
-    return Knob(kind.name, unit, np.empty(0)), value
+    return Knob(kind.name, kind.unit, np.empty(0)), value
 
 
 def _kind(scene: Scene, name: str) -> _Kind:
@@ -183,8 +186,7 @@ def _interval(kind: _Kind, match: re.Match[str], log: bool) -> Interval:
     if low == high or (log and not low * high > 0.0):
         rule = "of one sign, not 0, for steps by a factor" if log else "apart"
         raise InputError(f"{kind.name}: both bounds must be {rule}; {shown(match[0].strip())} came")
-    unit = unit_of(kind.dimension) if kind.dimension else ""
-    return Interval(kind.name, unit, low, high, log, kind.whole)
+    return Interval(kind.name, kind.unit, low, high, log, kind.whole)
 
 
 def _spaced(kind: _Kind, given: str) -> Knob:

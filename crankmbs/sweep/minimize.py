@@ -11,10 +11,10 @@ import numpy as np
 from scipy.optimize import Bounds, NonlinearConstraint
 from scipy.optimize import minimize as polished
 
-from crankmbs.errors import InputError, shown
+from crankmbs.errors import InputError
 from crankmbs.measures import Estimate
 from crankmbs.numerics.arrays import Array
-from crankmbs.scene.scene import Scene
+from crankmbs.scene.scene import Scene, check_scene
 from crankmbs.sweep.columns import columns_of
 from crankmbs.sweep.knobs import Interval, interval_of
 from crankmbs.sweep.reading import Reading, reading_of
@@ -89,8 +89,7 @@ def minimize(
     >>> print(abs(found.values["piston.offset"]) < 1e-5)
     True
     """
-    if not isinstance(scene, Scene):
-        raise InputError(f"scene must be a Scene, such as load_scene reads; {shown(scene)} came")
+    check_scene(scene)
     drawn = Sample(vary, n=1)  # refuses no ranges
     knobs = tuple(interval_of(scene, *item) for item in drawn.vary.items())
     if not knobs or any(knob.whole for knob in knobs):
@@ -115,10 +114,10 @@ class _Descent:
         self._known: dict[tuple[float, ...], tuple[Estimate, ...]] = {}
 
     def found(self) -> Minimum:
-        from scipy.stats import qmc
 
         count = len(self._knobs)
-        points = qmc.Sobol(count, rng=1).random_base2(math.ceil(math.log2(_POINTS * count)))
+        drawn = 2 ** math.ceil(math.log2(_POINTS * count))
+        points = Sample(dict.fromkeys(self._asked.names, ""), drawn).points(range(drawn))
         values = np.array([self._least(point) for point in points])
         missed = np.array([self._missed(point).max(initial=0.0) for point in points])
         runs = np.isfinite(values)

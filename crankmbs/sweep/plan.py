@@ -9,19 +9,20 @@ from dataclasses import dataclass
 from functools import cached_property
 from importlib import metadata
 from itertools import chain
-from math import prod
+from math import ceil, prod
 
+import numpy as np
 from pydantic import TypeAdapter
 
 from crankmbs.batch.serves import loads_of
 from crankmbs.errors import CrankmbsError, InputError, shown
 from crankmbs.scene.python_load import Load
-from crankmbs.scene.scene import Scene
+from crankmbs.scene.scene import Scene, check_scene
 from crankmbs.sweep.block import Job, block_size
 from crankmbs.sweep.cases import Cases, cases_of
 from crankmbs.sweep.columns import columns_of, dims_of
+from crankmbs.sweep.fingerprint import fingerprint
 from crankmbs.sweep.scenes import scene_of
-from crankmbs.sweep.told import NotTold, digest_of
 
 __all__ = ["Plan", "check_possible", "plan_of"]
 
@@ -38,23 +39,38 @@ class Plan:
     series: bool
 
     @cached_property
-    def size(self) -> int:
-        """Cases in a block."""
-        return block_size(self.cases.count, series=self.series, together=self._together)
-
-    @property
-    def _together(self) -> bool:
-        """Whether cases that share a machine are solved together."""
-        return not self.series and loads_of(self.scene) is not None
+    def chunks(self) -> tuple[int, ...]:
+        """Cases in a block along each dimension: they follow one another, the last the fastest."""
+        together = not self.series and loads_of(self.scene) is not None
+        size = block_size(self.cases.count, series=self.series, together=together)
+        found: list[int] = []
+        for length in reversed(self.cases.shape):
+            found.insert(0, ceil(length / ceil(length / size)))
+            size = max(size // length, 1)
+        return tuple(found)
 
     @property
     def blocks(self) -> int:
         """How many blocks there are."""
-        return -(-self.cases.count // self.size)
+        return prod(self._grid)
+
+    def region(self, number: int) -> tuple[slice, ...]:
+        """Where the cases of a block lie; blocks are counted from 0."""
+        places = zip(
+            np.unravel_index(number, self._grid), self.chunks, self.cases.shape, strict=True
+        )
+        return tuple(slice(int(k) * n, min((int(k) + 1) * n, most)) for k, n, most in places)
 
     def rows(self, number: int) -> range:
-        """The cases of a block, which is counted from 0."""
-        return range(number * self.size, min((number + 1) * self.size, self.cases.count))
+        """The cases of a block, all of them counted from 0."""
+        region = self.region(number)
+        first = int(np.ravel_multi_index([places.start for places in region], self.cases.shape))
+        return range(first, first + prod(places.stop - places.start for places in region))
+
+    @property
+    def _grid(self) -> tuple[int, ...]:
+        """Blocks along each dimension."""
+        return tuple(ceil(n / k) for n, k in zip(self.cases.shape, self.chunks, strict=True))
 
     def job(self, number: int) -> Job:
         """A block as a worker takes it."""
@@ -69,24 +85,17 @@ class Plan:
 
     @cached_property
     def identity(self) -> dict[str, str]:
-        """What two sweeps that are one agree in; what is empty agrees with nothing."""
+        """What an unfinished sweep must have in common with this one to be resumed; what is empty,
+        which nothing identifies, agrees with nothing."""
+        functions = [one.function for one in self.scene.torque if isinstance(one, Load)]
         scene = json.dumps(_SCENE.dump_python(self.scene, mode="json"), sort_keys=True)
         return {
             "version": metadata.version("crankmbs"),
             "scene": hashlib.sha256(scene.encode()).hexdigest(),
-            "functions": self._functions,
-            "cases": self.cases.digest,
+            "functions": fingerprint(functions),
+            "cases": self.cases.fingerprint,
             "keep": _KEPT[self.series],
         }
-
-    @property
-    def _functions(self) -> str:
-        """What tells the functions of the loads, which a file has by name only, from others; empty
-        where nothing does."""
-        try:
-            return digest_of([one.function for one in self.scene.torque if isinstance(one, Load)])
-        except NotTold:
-            return ""
 
 
 def plan_of(scene: Scene, vary: object, keep: str) -> Plan:
@@ -99,8 +108,7 @@ def plan_of(scene: Scene, vary: object, keep: str) -> Plan:
     >>> plan_of(load_scene("propeller"), {"rod.length": "0.14..0.2 m:3"}, "measures").blocks
     1
     """
-    if not isinstance(scene, Scene):
-        raise InputError(f"scene must be a Scene, such as load_scene reads; {shown(scene)} came")
+    check_scene(scene)
     if keep not in _KEPT:
         raise InputError(f'keep must be "measures" or "series"; {shown(keep)} came')
     plan = Plan(scene, cases_of(scene, vary), keep == "series")
@@ -109,7 +117,7 @@ def plan_of(scene: Scene, vary: object, keep: str) -> Plan:
 
 
 def check_possible(plan: Plan) -> None:
-    """Refuse a sweep with scenes that cannot be.
+    """Refuse a sweep with scenes that cannot be built.
 
     Raises
     ------
@@ -125,8 +133,9 @@ def check_possible(plan: Plan) -> None:
             first = values if not reasons else first
             reasons[str(error)] += 1
     if reasons:
-        (said, _), where = next(iter(reasons.items())), zip(plan.cases.names, first, strict=True)
+        said, where = next(iter(reasons)), zip(plan.cases.names, first, strict=True)
         at = ", ".join(f"{name} = {shown(value)}" for name, value in where)
         raise InputError(
-            f"{reasons.total()} of {plan.cases.count} scenes cannot be; the first at {at}: {said}"
+            f"{reasons.total()} of {plan.cases.count} scenes cannot be built; the first at {at}: "
+            f"{said}"
         )

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crankmbs.errors import InputError, shown
+from crankmbs.errors import InputError
 from crankmbs.measures import Estimate
-from crankmbs.scene.scene import Scene
+from crankmbs.scene.scene import Scene, check_scene
 from crankmbs.sweep.columns import columns_of
 from crankmbs.sweep.knobs import number_at
 from crankmbs.sweep.reading import Reading, reading_of
@@ -61,8 +61,7 @@ def sensitivity(scene: Scene, name: str, measure: str) -> Sensitivity:
     >>> print(f"{sensitivity(scene, 'crank.inertia', 'fluctuation').elasticity:.3f}")
     -0.993
     """
-    if not isinstance(scene, Scene):
-        raise InputError(f"scene must be a Scene, such as load_scene reads; {shown(scene)} came")
+    check_scene(scene)
     knob, value = number_at(scene, name)
     if value == 0.0:
         raise InputError(f"{name}: is 0 in this scene, and steps are a share of it; give it a size")

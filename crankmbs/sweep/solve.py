@@ -12,7 +12,7 @@ from scipy.optimize import brentq, minimize_scalar
 from crankmbs.errors import InputError, shown
 from crankmbs.measures import Estimate
 from crankmbs.numerics.arrays import Array
-from crankmbs.scene.scene import Scene
+from crankmbs.scene.scene import Scene, check_scene
 from crankmbs.sweep.block import Job, solved
 from crankmbs.sweep.columns import columns_of
 from crankmbs.sweep.knobs import Interval, interval_of
@@ -127,8 +127,7 @@ def solve(scene: Scene, vary: dict[str, str], wanted: str) -> Solved:
     >>> print(f"{found.roots[0].value.value:.4f} {found.units}")
     0.2994 kg m^2
     """
-    if not isinstance(scene, Scene):
-        raise InputError(f"scene must be a Scene, such as load_scene reads; {shown(scene)} came")
+    check_scene(scene)
     if not isinstance(vary, dict) or len(vary) != 1:
         raise InputError(
             'vary must be one name and its range, such as {"crank.inertia": "0.05..0.5 kg m^2"}; '

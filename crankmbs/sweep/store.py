@@ -1,24 +1,24 @@
-"""The store of a sweep: a folder in Zarr's format, written block by block, with a mark at its end.
+"""The store of a sweep: a folder in Zarr's format, written block by block.
 
-Cases lie one after the other along ``case``, a block is a chunk of every column. The mark of a
-block is written behind its columns, the summary of all metadata behind the last block: a store with
-it is complete.
+The measures that have the same dimensions are one array, over what is varied and the measure; a
+block is a chunk of every array. The status of its cases is written last, and the summary of all
+metadata behind the last block: a store that has it is complete.
 """
 
 from __future__ import annotations
 
 import shutil
-import tempfile
-from dataclasses import dataclass
-from functools import cached_property
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from crankmbs.errors import InputError, OutputError
+from crankmbs.numerics.arrays import Array
 from crankmbs.sweep.block import Block
-from crankmbs.sweep.chunks import Chunks
 from crankmbs.sweep.columns import columns_of, dims_of
 from crankmbs.sweep.plan import Plan
 
@@ -26,55 +26,47 @@ if TYPE_CHECKING:
     import xarray as xr
     import zarr
 
-__all__ = ["Store", "columns_in", "load_sweep", "opened", "unfinished"]
+__all__ = ["Store", "load_sweep", "opened", "read_group", "unfinished"]
 
-_MARK = ".zmetadata"
-_DIMS = "_ARRAY_DIMENSIONS"  # by which xarray knows them
+_COMPLETE = ".zmetadata"
+_LABELS = ("units", "long_name")
 _NOT_RUN = -128
 _STATUS = (
-    "0 reached its end, 1 ended before it, -1 broke off, 2 a scene that cannot be, -2 ended its "
-    "worker"
+    "0 reached its end, 1 ended before it, -1 broke off, 2 a scene that cannot be built, -2 ended "
+    "its worker"
 )
-_WORDS = {
+_OTHER = {
     "version": "by another version of crankmbs",
     "scene": "of another scene",
     "functions": "with functions in Python that are others, or cannot be told from others",
     "cases": "of other cases",
-    "keep": "that keeps other things",
+    "keep": "that stores other things",
 }
 
 
-@dataclass(frozen=True)
 class Store:
-    """The store of a plan, open for writing.
+    """A store open for writing; done : whether each block is finished."""
 
-    done : numbers of the blocks that are there
-    """
-
-    path: Path
-    plan: Plan
-    group: zarr.Group
-    done: frozenset[int]
-
-    @cached_property
-    def _columns(self) -> dict[str, Chunks]:
-        return {name: Chunks(self.path / name, one) for name, one in self.group.arrays()}
+    def __init__(self, path: Path, plan: Plan, group: zarr.Group) -> None:
+        self._path, self._plan = path, plan
+        self._arrays: dict[str, Any] = dict(group.arrays())
+        self.done = _finished(group).ravel()
 
     def write(self, number: int, block: Block) -> None:
-        """Write a block, its mark last.
+        """Write a block, its status last.
 
         Raises
         ------
         OutputError : the device is full, or the folder cannot be written
         """
-        known = {knob.name: knob.labels for knob in self.plan.cases.at(self.plan.rows(number))}
-        ended = {"status": block.status, "message": np.array(block.message, dtype=object)}
-        try:
-            for name, values in (known | block.rows | ended).items():
-                self._columns[name].write(number, values)
-            self._columns["done"].write(number, np.ones(1))
-        except OSError as error:
-            raise _unwritable(self.path, error) from None
+        values: dict[str, Array] = {"message": np.array(block.message, dtype=object)}
+        for name, columns in _measures(self._plan).items():
+            values[name] = np.stack([block.rows[column] for column in columns], axis=1)
+        region = self._plan.region(number)
+        box = tuple(places.stop - places.start for places in region)
+        with _writing(self._path):
+            for name, of_cases in (values | {"status": block.status}).items():
+                self._arrays[name][region] = of_cases.reshape(*box, *of_cases.shape[1:])
 
     def finish(self) -> None:
         """Mark the store as complete.
@@ -85,49 +77,61 @@ class Store:
         """
         import zarr
 
-        try:
-            zarr.consolidate_metadata(str(self.path), zarr_format=2)
-        except OSError as error:
-            raise _unwritable(self.path, error) from None
+        with _writing(self._path):
+            zarr.consolidate_metadata(str(self._path), zarr_format=2)
 
 
-def opened(path: Path, plan: Plan) -> Store:
-    """The store of a plan, made where there is none; one that is there is gone on with.
+@contextmanager
+def opened(path: Path, plan: Plan) -> Iterator[Store]:
+    """The store of a plan for writing: a new one, or an unfinished one that is resumed. A store
+    that has no finished block is removed where what is done with it raises.
 
     Raises
     ------
     InputError : a store of another scene, of other cases or by another version; a complete one
     OutputError : it cannot be written, or is no such store
     """
-    if not path.exists():
-        _make(path, plan)
-        return Store(path, plan, _group(path, "r+"), frozenset())
-    group, ours = _group(path, "r+"), plan.identity
-    identity: Any = group.attrs.get("identity", {})
-    other = [said for name, said in _WORDS.items() if identity.get(name) != (ours[name] or None)]
-    if other:
-        raise InputError(f"{path}: holds a sweep {' and '.join(other)}; give another folder")
-    if (path / _MARK).exists():
-        raise InputError(f"{path}: this sweep is complete; give another folder to compute it anew")
-    for left in path.rglob("*.partial"):  # of a write that was killed
-        left.unlink()
-    done = np.flatnonzero(np.asarray(_array(group, "done")[:])).tolist()
-    return Store(path, plan, group, frozenset(done))
+    import zarr
+
+    new = not any(path.glob("[!.]*")) and not (path / ".zattrs").exists()
+    if not new:
+        _check_resumable(path, plan)
+    try:
+        with _writing(path):
+            group = zarr.open_group(str(path), mode="a", zarr_format=2)
+            if not _finished(group).any():
+                _lay_out(group, plan)
+            for half in path.rglob("*.partial"):  # of a write that was killed
+                half.unlink()
+        yield Store(path, plan, group)
+    except BaseException:
+        if not any(path.glob("status/[0-9]*")):
+            shutil.rmtree(path, ignore_errors=True)
+        raise
 
 
 def unfinished(path: Path) -> bool:
-    """Whether there is the beginning of a sweep, which can be gone on with."""
-    return path.is_dir() and not (path / _MARK).exists()
+    """Whether there is the beginning of a sweep, which can be resumed."""
+    return (path / ".zattrs").exists() and not (path / _COMPLETE).exists()
 
 
-def columns_in(path: Path) -> dict[str, zarr.Array[Any]]:
-    """The columns of a store by name, none of them in memory; sorted.
+def read_group(path: Path) -> zarr.Group:
+    """The group of a store, to read.
 
     Raises
     ------
     OutputError : no sweep
     """
-    return dict(sorted(_group(path, "r").arrays()))
+    import zarr
+
+    if not path.exists():
+        raise OutputError(f"{path}: no such sweep; crankmbs sweep writes one")
+    try:
+        group = zarr.open_group(str(path), mode="r", zarr_format=2)
+        group.attrs["identity"]
+    except (OSError, LookupError, TypeError, ValueError):
+        raise OutputError(f"{path}: no sweep of crankmbs; give the folder of one") from None
+    return group
 
 
 def load_sweep(path: str | Path) -> xr.Dataset:
@@ -135,10 +139,10 @@ def load_sweep(path: str | Path) -> xr.Dataset:
 
     Returns
     -------
-    Dataset : read from the folder as it is asked for; of a grid over its knobs, such as
+    Dataset : each column is read from the folder when it is used; of a grid over its knobs, such as
         ``crank.inertia``; of a sample or a list of cases over ``case``, with the knobs as
         coordinates. ``name_error`` is the error of ``name``, in its unit; ``status`` and
-        ``message`` say how each case ended, where NaN stands for what it has not
+        ``message`` say how each case ended, and NaN stands for what a case has not
 
     Raises
     ------
@@ -150,111 +154,95 @@ def load_sweep(path: str | Path) -> xr.Dataset:
     """
     import xarray as xr
 
-    from crankmbs.sweep.laid import SweepStore
-
     folder = Path(path)
-    group = _group(folder, "r")
-    if not (folder / _MARK).exists():
-        done, blocks = np.asarray(_array(group, "done")[:]).sum(), _array(group, "done").shape[0]
+    done = _finished(read_group(folder))
+    if not (folder / _COMPLETE).exists():
         raise OutputError(
-            f"{folder}: {done} of {blocks} blocks are there; crankmbs sweep with --resume goes on"
+            f"{folder}: {done.sum()} of {done.size} blocks are finished; crankmbs sweep --resume "
+            "computes the others"
         )
-    return xr.open_dataset(folder, engine=SweepStore, decode_cf=False)
+    data = xr.open_dataset(folder, engine="zarr", decode_cf=False)
+    for each in data.variables.values():
+        each.attrs.pop("_FillValue", None)
+    data = data.set_coords(data.attrs.pop("coordinates").split())
+    found = {name: data[name] for name in ("message", "status")}
+    for name in map(str, set(data).difference(found)):
+        array, over = data[name], name.removesuffix("s")
+        for k, column in enumerate(data[over].values):
+            found[column] = array.isel({over: k}, drop=True)
+            found[column].attrs = {label: array.attrs[label][k] for label in _LABELS}
+    return xr.Dataset(dict(sorted(found.items())), attrs=data.attrs)
 
 
-def _make(path: Path, plan: Plan) -> None:
-    """Make the store, with all that is known before a case is run, in one move."""
-    import zarr
-
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        part = Path(tempfile.mkdtemp(dir=path.parent, prefix=f".{path.name}-"))
-    except OSError as error:
-        raise _unwritable(path, error) from None
-    try:
-        _fill(zarr.open_group(str(part), mode="w", zarr_format=2), plan)
-        part.chmod(0o755)
-        part.rename(path)
-    except OSError as error:
-        raise _unwritable(path, error) from None
-    finally:
-        shutil.rmtree(part, ignore_errors=True)
+def _check_resumable(path: Path, plan: Plan) -> None:
+    ours = plan.identity
+    theirs: Any = read_group(path).attrs["identity"]
+    other = [said for name, said in _OTHER.items() if theirs.get(name) != (ours[name] or None)]
+    if other:
+        raise InputError(f"{path}: holds a sweep {' and '.join(other)}; give another folder")
+    if (path / _COMPLETE).exists():
+        raise InputError(f"{path}: this sweep is complete; give another folder to compute it anew")
 
 
-def _fill(group: zarr.Group, plan: Plan) -> None:
-    count, size = plan.cases.count, plan.size
-    group.attrs.put(
-        {
-            "title": plan.scene.title,
-            "identity": {**plan.identity},
-            "knobs": list(plan.cases.names),
-            "grid": None if plan.cases.shape is None else list(plan.cases.shape),
-        }
-    )
-    dims = dims_of(plan.scene, series=plan.series)
-    for name, at in dims.items():
-        kind: Any = str if isinstance(at[0], str) else "i4"
-        about: Any = {_DIMS: [name]}
-        made = group.create_array(
-            name, shape=(len(at),), chunks=(len(at),), dtype=kind, attributes=about
-        )
-        made[:] = np.array(at, dtype=object if kind is str else kind)
-    for name, (kind, nothing, own, labels) in _columns_of(plan).items():
-        sizes = tuple(len(dims[dim]) for dim in own)
-        about = {_DIMS: ["case", *own], **labels}
-        shape, chunks = (count, *sizes), (size, *sizes)
-        group.create_array(
-            name, shape=shape, chunks=chunks, dtype=kind, fill_value=nothing, attributes=about
-        )
-    about = {_DIMS: ["block"]}
-    group.create_array(
-        "done", shape=(plan.blocks,), chunks=(1,), dtype="i1", fill_value=0, attributes=about
-    )
+def _finished(group: zarr.Group) -> NDArray[np.bool_]:
+    """Whether each block is there, by the status of its first case."""
+    if "status" not in group:  # which is laid out last
+        return np.zeros(0, dtype=bool)
+    status: Any = group["status"]
+    return np.asarray(status[:][tuple(slice(None, None, n) for n in status.chunks)] != _NOT_RUN)
 
 
-class _Kind(NamedTuple):
-    """What a column holds, and where nothing is; its dimensions beyond the case, and its labels."""
-
-    dtype: Any
-    nothing: object
-    dims: tuple[str, ...]
-    about: dict[str, str]
-
-
-def _columns_of(plan: Plan) -> dict[str, _Kind]:
-    """All that is written of a case."""
-    found = {
-        "status": _Kind("i1", _NOT_RUN, (), {"long_name": _STATUS}),
-        "message": _Kind(str, "", (), {}),
-    }
-    for knob in plan.cases.at(range(1)):
-        about = {"units": knob.units} if knob.units else {}
-        kind, nothing = ("f8", np.nan) if knob.numbers else (str, "")
-        found[knob.name] = _Kind(kind, nothing, (), about)
+def _measures(plan: Plan) -> dict[str, list[str]]:
+    """The arrays of measures by name, and the columns in each."""
+    found: dict[str, list[str]] = {}
     for name, column in columns_of(plan.scene, series=plan.series).items():
-        about = {"units": column.units, "long_name": column.long_name}
-        found[name] = _Kind("f8", np.nan, column.dims, about)
+        found.setdefault("_".join((*column.dims, "measures")), []).append(name)
     return found
 
 
-def _group(path: Path, mode: Any) -> zarr.Group:
-    import zarr
+def _lay_out(group: zarr.Group, plan: Plan) -> None:
+    """Say what the store is of, then make all arrays, the status last; coordinates are known before
+    a case is run."""
+    about: Any = {"title": plan.scene.title, "identity": plan.identity}
+    group.attrs.put(about | {"coordinates": " ".join(plan.cases.names)})
+    cases, columns, arrays = plan.cases, columns_of(plan.scene, series=plan.series), _measures(plan)
+    dims = dims_of(plan.scene, series=plan.series)
+    dims |= {name.removesuffix("s"): tuple(names) for name, names in arrays.items()}
 
-    if not path.exists():
-        raise OutputError(f"{path}: no such sweep; crankmbs sweep writes one")
+    def add(name: str, over: Sequence[str], about: dict[str, Any], **array: Any) -> None:
+        about = {"_ARRAY_DIMENSIONS": list(over), **about}  # by which xarray knows them
+        group.create_array(name, attributes=about, overwrite=True, **array)
+
+    def add_empty(
+        name: str, dtype: Any, nothing: object, over: Sequence[str], about: dict[str, Any]
+    ) -> None:
+        sizes = tuple(len(dims[dim]) for dim in over)
+        shape, chunks = (*cases.shape, *sizes), (*plan.chunks, *sizes)
+        over = (*cases.dims, *over)
+        add(name, over, about, shape=shape, chunks=chunks, dtype=dtype, fill_value=nothing)
+
+    for name, at in dims.items():
+        add(name, [name], {}, data=_storable(np.array(at)), fill_value=None)
+    for knob in cases.levels:
+        over = [knob.name] if knob.name in cases.dims else cases.dims
+        add(knob.name, over, {"units": knob.units}, data=_storable(knob.labels), fill_value=None)
+    for name, names in arrays.items():
+        labels = {label: [getattr(columns[one], label) for one in names] for label in _LABELS}
+        over = name.removesuffix("s"), *columns[names[0]].dims
+        add_empty(name, "f8", np.nan, over, labels)
+    add_empty("message", str, "", (), {})
+    add_empty("status", "i1", _NOT_RUN, (), {"long_name": _STATUS})
+
+
+def _storable(labels: Array) -> Array:
+    return labels.astype(np.dtypes.StringDType()) if labels.dtype.kind in "OU" else labels
+
+
+@contextmanager
+def _writing(path: Path) -> Iterator[None]:
     try:
-        group = zarr.open_group(str(path), mode=mode, zarr_format=2)
-        _array(group, "done")
-    except (OSError, LookupError, TypeError, ValueError):
-        raise OutputError(f"{path}: no sweep of crankmbs; give the folder of one") from None
-    return group
-
-
-def _array(group: zarr.Group, name: str) -> Any:
-    return group[name]
-
-
-def _unwritable(path: Path, error: OSError) -> OutputError:
-    return OutputError(
-        f"{path}: cannot be written ({error.strerror or error}); choose another folder"
-    )
+        yield
+    except OSError as error:
+        raise OutputError(
+            f"{path}: cannot be written ({error.strerror or error}); choose another folder"
+        ) from None

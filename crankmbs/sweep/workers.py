@@ -2,147 +2,36 @@
 
 from __future__ import annotations
 
-import math
 import multiprocessing
 import os
 import pickle
 import signal
 import threading
-import time
-from collections.abc import Iterator
+from collections.abc import Callable, Generator, Iterator
 from concurrent.futures import (
+    FIRST_COMPLETED,
     BrokenExecutor,
     Executor,
     Future,
     ProcessPoolExecutor,
+    wait,
 )
 from contextlib import contextmanager
-from typing import Protocol
+from itertools import islice
 
 from crankmbs.errors import InputError, OutputError, shown
-from crankmbs.sweep.block import Block, Job, solved
+from crankmbs.sweep.block import Block, Job, broken, joined, solved
 
-__all__ = ["Workers", "check_executor", "workers_of"]
+__all__ = ["Workers", "check_executor", "computed"]
 
 _THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS")
 _LARGEST = 512
-_COUNTING = 1.0  # s between two counts of a cluster's workers
 _FEW = 12  # blocks: they are done before processes have started
 _GUARD = (
     "the workers could not start: each of them imports the script that sweeps, so put its call "
     'under if __name__ == "__main__":, or give executor=1'
 )
-
-
-class Workers(Protocol):
-    """What computes blocks.
-
-    tries : how often a case may end its worker; once where that means that it did so several times
-    """
-
-    tries: int
-
-    @property
-    def at_once(self) -> int:
-        """How many blocks may be under way."""
-
-    def submit(self, job: Job) -> Future[Block]:
-        """Have a block computed."""
-
-    def renew(self) -> None:
-        """Make workers anew after one has ended."""
-
-    def lost(self, error: BaseException) -> bool:
-        """Whether an error says that a worker ended."""
-
-
-class _Here:
-    """In the calling process, one block after the other."""
-
-    at_once, tries = 1, 1
-
-    def submit(self, job: Job) -> Future[Block]:
-        future: Future[Block] = Future()
-        future.set_result(solved(job))
-        return future
-
-    def renew(self) -> None:
-        """Nothing: there is no worker that could end."""
-
-    def lost(self, error: BaseException) -> bool:
-        return False
-
-
-class _Processes:
-    """Processes of this machine, started anew, each with one thread."""
-
-    tries = 2
-
-    def __init__(self, count: int) -> None:
-        self.at_once = 2 * count  # one waits while one is computed
-        self._count = count
-        self._pool = self._new()
-
-    def submit(self, job: Job) -> Future[Block]:
-        with _deaf():
-            return self._pool.submit(solved, job)
-
-    def renew(self) -> None:
-        self.close()
-        self._pool = self._new()
-
-    def lost(self, error: BaseException) -> bool:
-        return isinstance(error, BrokenExecutor)
-
-    def ready(self) -> Future[None]:
-        """When the first of them has loaded everything."""
-        with _deaf():
-            return self._pool.submit(_ready)
-
-    def close(self) -> None:
-        """End them, after the blocks under way."""
-        self._pool.shutdown(wait=True, cancel_futures=True)
-
-    def _new(self) -> ProcessPoolExecutor:
-        context = multiprocessing.get_context("spawn")
-        return ProcessPoolExecutor(self._count, context, initializer=_begin)
-
-
-class _Given:
-    """An executor that is given; Dask's tries again by itself, and its workers come and go."""
-
-    tries = 1
-
-    def __init__(self, executor: Executor) -> None:
-        self._executor = executor
-        self._client = getattr(executor, "_client", None)
-        self._counted, self._count = -math.inf, 0
-
-    @property
-    def at_once(self) -> int:
-        """Of a cluster more wait than of a pool: each block comes over a network."""
-        if self._client is None:
-            return 2 * (getattr(self._executor, "_max_workers", None) or os.cpu_count() or 1)
-        if time.monotonic() > self._counted + _COUNTING:
-            self._count = sum(self._client.nthreads().values())
-            self._counted = time.monotonic()
-        return 4 * max(self._count, 1)
-
-    def submit(self, job: Job) -> Future[Block]:
-        return self._executor.submit(solved, job)
-
-    def renew(self) -> None:
-        """Nothing where the executor starts workers itself; a broken one is the end."""
-        try:
-            self._executor.submit(_ready).result()
-        except Exception as error:
-            raise OutputError(
-                f"executor: it is broken ({type(error).__name__}); what is finished is kept, go on "
-                "with a new one"
-            ) from None
-
-    def lost(self, error: BaseException) -> bool:
-        return isinstance(error, BrokenExecutor) or type(error).__name__ == "KilledWorker"
+_ENDED = "the worker that computed this case ended, again and again"
 
 
 def check_executor(executor: object) -> None:
@@ -161,38 +50,130 @@ def check_executor(executor: object) -> None:
         )
 
 
-@contextmanager
-def workers_of(executor: Executor | int | None, job: Job, blocks: int) -> Iterator[Workers]:
-    """What computes so many blocks such as this one: an executor, or so many workers; 1 is the
-    calling process alone, and None takes it for few blocks, else a process for each processor.
+def computed(
+    job: Callable[[int], Job], numbers: list[int], executor: Executor | int | None
+) -> Generator[tuple[int, Block]]:
+    """The blocks with these numbers as they are finished: by an executor, or by so many workers; 1
+    is the calling process alone, and None takes it for few blocks, else a process for each
+    processor.
 
     Raises
     ------
     InputError : workers that cannot start, or a scene that cannot be sent to them
+    OutputError : an executor that was given broke
     """
-    if isinstance(executor, Executor):
-        if isinstance(executor, ProcessPoolExecutor):
-            _check_sendable(job)
-        try:
-            ready = executor.submit(_ready)
-        except RuntimeError as error:
-            raise InputError(f"executor: it takes no work: {error}; give a new one") from None
-        _check_ready(ready)
-        yield _Given(executor)
+    count = 1 if executor is None and len(numbers) < _FEW else executor or os.cpu_count() or 1
+    if not isinstance(count, Executor):
+        count = min(count, len(numbers))
+    if count == 1:
+        for number in numbers:
+            yield number, solved(job(number))
         return
-    few = executor is None and blocks < _FEW
-    count = 1 if few else min(executor or os.cpu_count() or 1, blocks)
-    if count <= 1:
-        yield _Here()
-        return
-    _check_sendable(job)
-    with _one_thread_each():
-        pool = _Processes(count)
+    if not isinstance(count, Executor) or isinstance(count, ProcessPoolExecutor):
+        _check_sendable(job(numbers[0]))
+    workers = Workers(count)
+    try:
+        yield from workers.computed(job, numbers)
+    finally:
+        workers.close()
+
+
+class Workers:
+    """Processes of this machine, or an executor that is given, and what replaces those that end."""
+
+    def __init__(self, of: Executor | int) -> None:
+        self._of = of
+        self._executor = _processes(of) if isinstance(of, int) else of
+        if isinstance(of, Executor):
+            try:
+                _check_ready(of.submit(_ready))
+            except RuntimeError as error:
+                raise InputError(f"executor: it takes no work: {error}; give a new one") from None
+
+    @property
+    def at_once(self) -> int:
+        """How many blocks may be under way; of a cluster more wait, each comes over a network."""
+        client = getattr(self._executor, "_client", None)
+        if client is not None:
+            return 4 * max(sum(map(int, client.nthreads().values())), 1)
+        return 2 * int(getattr(self._executor, "_max_workers", None) or os.cpu_count() or 1)
+
+    def computed(
+        self, job: Callable[[int], Job], numbers: list[int]
+    ) -> Iterator[tuple[int, Block]]:
+        """The blocks as they are finished. Those under way when a worker ended are computed when
+        nothing else is, one by one, and where it ends again case by case."""
+        ahead, lost = iter(numbers), list[int]()
+        pending: dict[Future[Block], int] = {}
+        while True:
+            room = 0 if lost else max(self.at_once - len(pending), 0)
+            for number in islice(ahead, room):
+                pending[self._submit(job(number))] = number
+            if pending:
+                for future in wait(pending, return_when=FIRST_COMPLETED).done:
+                    number, block = pending.pop(future), _result(future)
+                    if block is None:
+                        lost.append(number)
+                    else:
+                        yield number, block
+            elif lost:
+                self._renew()
+                for number in lost:
+                    yield number, self._alone(job(number))
+                lost = []
+            else:
+                return
+
+    def close(self) -> None:
+        """End the processes, after the blocks under way."""
+        if self._executor is not self._of:
+            self._executor.shutdown(cancel_futures=True)
+
+    def _submit(self, job: Job) -> Future[Block]:
         try:
-            _check_ready(pool.ready())
-            yield pool
-        finally:
-            pool.close()
+            return self._executor.submit(solved, job)
+        except BrokenExecutor as error:
+            future: Future[Block] = Future()
+            future.set_exception(error)
+            return future
+
+    def _alone(self, job: Job) -> Block:
+        """A block computed when nothing else is; where its worker ends, case by case."""
+        block = self._attempt(job)
+        if block is None:
+            cases = [job.only(k) for k in range(len(job.values))]
+            block = joined([self._attempt(one) or broken(one, _ENDED) for one in cases])
+        return block
+
+    def _attempt(self, job: Job) -> Block | None:
+        block = _result(self._submit(job))
+        if block is None:
+            self._renew()
+        return block
+
+    def _renew(self) -> None:
+        """Start processes anew; a cluster does so by itself."""
+        if isinstance(self._of, int):
+            self.close()
+            self._executor = _processes(self._of)
+            return
+        try:
+            self._of.submit(int)
+        except BrokenExecutor as error:
+            raise OutputError(
+                f"executor: it is broken ({type(error).__name__}); finished blocks are stored, "
+                "resume with a new one"
+            ) from None
+
+
+def _result(future: Future[Block]) -> Block | None:
+    """A block; None where its worker ended."""
+    try:
+        return future.result()
+    except Exception as error:
+        if isinstance(error, BrokenExecutor) or type(error).__name__ == "KilledWorker":  # Dask's
+            return None
+        raise
 
 
 def _check_sendable(job: Job) -> None:
@@ -229,39 +210,36 @@ def _ready() -> None:
     solved(Job(scene, ("rod.length",), ((scene.rod.length,),), False))
 
 
+def _processes(count: int) -> ProcessPoolExecutor:
+    """Processes that have been started, each with one thread."""
+    context = multiprocessing.get_context("spawn")
+    pool = ProcessPoolExecutor(count, context, initializer=_begin)
+    try:
+        with _starting():
+            ready = [pool.submit(_ready) for _ in range(count)]
+        _check_ready(ready[0])
+    except BaseException:
+        pool.shutdown(cancel_futures=True)
+        raise
+    return pool
+
+
 @contextmanager
-def _one_thread_each() -> Iterator[None]:
-    """Processes that are started meanwhile compute with one thread each."""
-    before = {name: os.environ.get(name) for name in _THREADS}
+def _starting() -> Iterator[None]:
+    """Processes that are started meanwhile compute with one thread each, and an interrupt does not
+    reach them while they load, when `_begin` has not been called yet."""
+    before = os.environ.copy()
     os.environ.update(dict.fromkeys(_THREADS, "1"))
+    mask = None
+    if hasattr(signal, "pthread_sigmask"):  # Windows has none
+        mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})  # processes inherit it
     try:
         yield
     finally:
-        for name, value in before.items():
-            if value is None:
-                del os.environ[name]
-            else:
-                os.environ[name] = value
-
-
-@contextmanager
-def _deaf() -> Iterator[None]:
-    """Processes that are started meanwhile do not hear an interrupt while they load, when `_begin`
-    has not been called yet; this one hears it when they have been told what to load."""
-    here = threading.current_thread() is threading.main_thread()
-    if not here or not hasattr(signal, "pthread_sigmask"):  # Windows has none
-        yield
-        return
-    heard: list[int] = []
-    handler = signal.signal(signal.SIGINT, lambda number, _: heard.append(number))
-    mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})  # processes inherit it
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
-        signal.signal(signal.SIGINT, handler)
-        if heard:
-            signal.raise_signal(signal.SIGINT)
+        os.environ.clear()
+        os.environ.update(before)
+        if mask is not None:
+            signal.pthread_sigmask(signal.SIG_SETMASK, mask)
 
 
 def _begin() -> None:

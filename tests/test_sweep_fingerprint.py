@@ -1,9 +1,13 @@
-"""A sweep goes on with functions in Python only where they are the same ones."""
+"""A sweep is resumed with functions in Python only where they are the same ones."""
 
 import importlib.util
+import os
+import subprocess
 import sys
 import threading
 from dataclasses import replace
+from functools import cached_property, lru_cache, wraps
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,9 +15,9 @@ from numba import njit
 from scipy.interpolate import CubicSpline
 
 from crankmbs import InputError, Load, load_scene, sweep
+from crankmbs.sweep.fingerprint import fingerprint
 from crankmbs.sweep.plan import plan_of
 from crankmbs.sweep.run import fill
-from crankmbs.sweep.told import NotTold, digest_of
 
 pytestmark = pytest.mark.slow
 
@@ -22,6 +26,7 @@ import math
 from functools import cached_property, partial
 
 SHARE = {share}
+KINDS = {{"start", "stop", "idle"}}
 
 class Brake:
     size = 1e-3
@@ -44,7 +49,8 @@ def half(x):
     return {factor} * x
 
 def load(t, theta, omega):
-    return -half(omega) + SHARE * math.sin(theta)
+    sign = 1.0 if "start" in KINDS and "idle" not in {{"run", "stop", "start"}} else -1.0
+    return -half(omega) + sign * SHARE * math.sin(theta)
 
 def made(size):
     def inner(t, theta, omega, scale=SHARE):
@@ -59,6 +65,7 @@ closed = made({factor})
 whole = partial(Brake(0.5).force)
 """
 PLAIN = {"share": "0.0", "factor": "1e-3", "comment": "# halves"}
+ROOT = Path(__file__).parent.parent
 SCENE = load_scene("coasting").with_(run__until="0.01 s")
 VARY = {"start.speed": [50.0 + k for k in range(8)]}
 
@@ -85,43 +92,91 @@ NAMES = ["load", "later", "closed", "brake", "whole"]
 
 @pytest.mark.parametrize("name", NAMES)
 def test_a_function_read_again_is_the_same(module, name):
-    first = digest_of(getattr(module(), name))
-    assert digest_of(getattr(module(comment="# after a word"), name)) == first
+    first = fingerprint(getattr(module(), name))
+    assert fingerprint(getattr(module(comment="# after a word"), name)) == first
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_a_function_with_another_number_anywhere_is_another(module, name):
-    first = digest_of(getattr(module(), name))
-    assert digest_of(getattr(module(factor="2e-3"), name)) != first
+    first = fingerprint(getattr(module(), name))
+    assert fingerprint(getattr(module(factor="2e-3"), name)) != first
 
 
 @pytest.mark.parametrize("name", ["load", "closed", "later"])
 def test_globals_and_defaults_are_looked_at(module, name):
-    first = digest_of(getattr(module(), name))
-    assert digest_of(getattr(module(share="0.1"), name)) != first
+    first = fingerprint(getattr(module(), name))
+    assert fingerprint(getattr(module(share="0.1"), name)) != first
+
+
+def test_what_wraps_a_function_is_identified_by_it():
+    def made(size):
+        class Part:
+            @cached_property
+            def cached(self):
+                return size
+
+            @property
+            def computed(self):
+                return size
+
+            @staticmethod
+            def still(x):
+                return size * x
+
+        def plain(x):
+            return size * x
+
+        @wraps(plain)
+        def wrapped(x):
+            return plain(x) + size
+
+        return [Part(), Part.still, lru_cache(plain), wrapped, Part.cached, Part.computed]
+
+    one, same, other = made(1.0), made(1.0), made(2.0)
+    assert [*map(fingerprint, one)] == [*map(fingerprint, same)]
+    assert all(fingerprint(a) != fingerprint(b) for a, b in zip(one, other, strict=True))
+    assert all(map(fingerprint, one))
 
 
 def test_state_and_arrays_are_looked_at(module):
     found = module()
-    assert digest_of(found.Brake(0.5)) == digest_of(found.brake)
-    assert digest_of(found.Brake(0.6)) != digest_of(found.brake)
-    assert digest_of(np.arange(3)) != digest_of(np.arange(3.0))
-    assert digest_of({1, 2, 3}) == digest_of({3, 2, 1})
+    assert fingerprint(found.Brake(0.5)) == fingerprint(found.brake)
+    assert fingerprint(found.Brake(0.6)) != fingerprint(found.brake)
+    assert fingerprint(np.arange(3)) != fingerprint(np.arange(3.0))
+    assert fingerprint({1, 2, 3}) == fingerprint({3, 2, 1})
     x = np.linspace(0.0, 1.0, 5)
-    assert digest_of(CubicSpline(x, x)) == digest_of(CubicSpline(x, x))
-    assert digest_of(CubicSpline(x, x)) != digest_of(CubicSpline(x, x**2))
+    assert fingerprint(CubicSpline(x, x)) == fingerprint(CubicSpline(x, x))
+    assert fingerprint(CubicSpline(x, x)) != fingerprint(CubicSpline(x, x**2))
 
 
-def test_a_compiled_function_is_told_by_its_source(module):
+def test_a_compiled_function_is_identified_by_its_source(module):
     found = module()
-    assert digest_of(njit(found.half)) == digest_of(njit(found.half))
-    assert digest_of(njit(found.half)) != digest_of(njit(found.load))
+    assert fingerprint(njit(found.half)) == fingerprint(njit(found.half))
+    assert fingerprint(njit(found.half)) != fingerprint(njit(found.load))
 
 
-def test_what_belongs_to_a_process_is_not_told():
+@pytest.mark.parametrize("name", NAMES)
+def test_another_process_finds_the_same_fingerprint(module, name, tmp_path):
+    """With another order of sets and strings, and from the bytecode that Python has stored."""
+    first = fingerprint(getattr(module(), name))
+    (tmp_path / "mine.py").write_text(MODULE.format(**PLAIN))
+    program = (
+        "import mine; from crankmbs.sweep.fingerprint import fingerprint; "
+        f"print(fingerprint(mine.{name}))"
+    )
+    found = set()
+    for seed in ("1", "2"):
+        words = {**os.environ, "PYTHONHASHSEED": seed, "PYTHONPATH": f"{tmp_path}:{ROOT}"}
+        done = subprocess.run(
+            [sys.executable, "-c", program], capture_output=True, text=True, check=True, env=words
+        )
+        found.add(done.stdout.strip())
+    assert found == {first}
+
+
+def test_what_belongs_to_a_process_has_no_fingerprint():
     lock = threading.Lock()
-    with pytest.raises(NotTold, match="a lock"):
-        digest_of(lambda t: (t, lock))
+    assert fingerprint(lambda t: (t, lock)) == ""
 
 
 # ----------------------------------------------------------------------------------------- resume
@@ -139,14 +194,14 @@ def broken_off(out, function, vary=None):
         fill(plan_of(scene, vary or VARY, "measures"), out, 1, enough)
 
 
-def test_a_sweep_goes_on_with_the_same_function(module, tmp_path):
+def test_a_sweep_is_resumed_with_the_same_function(module, tmp_path):
     out = tmp_path / "sweep.zarr"
     broken_off(out, module().load)
     again = replace(SCENE, torque=(Load(module(comment="# as it was").load),))
     assert (sweep(again, VARY, out=out, executor=1)["status"] == 0).all()
 
 
-def test_a_sweep_does_not_go_on_with_a_changed_function(module, tmp_path):
+def test_a_sweep_is_not_resumed_with_a_changed_function(module, tmp_path):
     out = tmp_path / "sweep.zarr"
     broken_off(out, module().load)
     changed = replace(SCENE, torque=(Load(module(factor="2e-3").load),))
@@ -168,7 +223,7 @@ def test_a_sweep_of_changed_functions_is_one_of_other_cases(module, tmp_path):
     assert found["torque.1"].values.tolist() == ["load", "inner"] * 3
 
 
-def test_functions_that_nothing_tells_run_but_are_not_gone_on_with(tmp_path):
+def test_functions_that_nothing_identifies_run_but_are_not_resumed(tmp_path):
     lock = threading.Lock()
 
     def held(t, theta, omega):
