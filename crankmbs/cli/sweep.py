@@ -165,6 +165,8 @@ def _resumable(out: Path) -> Iterator[None]:
     try:
         yield
     except KeyboardInterrupt:
+        from crankmbs.sweep.store import unfinished
+
         if unfinished(out):
             name = shlex.quote(str(out))
             typer.echo(f"{name} has all finished blocks; --resume computes the others", err=True)
