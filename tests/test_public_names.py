@@ -14,6 +14,7 @@ import pytest
 
 import crankmbs
 
+ROOMS = {"figures", "lecture"}
 HEAVY = {"exudyn", "h5py", "matplotlib", "pandas", "pydantic", "scipy", "xarray", "zarr"}
 ALSO_MODULES = ["choose", "compare", "export", "simulate", "sweep"]
 
@@ -26,19 +27,15 @@ def loaded_by(code):
 
 
 def test_all_is_sorted_and_what_type_checkers_see():
-    assert list(crankmbs.__all__) == sorted(crankmbs.__all__)
-    text = Path(crankmbs.__file__).read_text(encoding="utf-8")
-    seen = {
-        name.name: node.module.removeprefix("crankmbs.")
-        for node in ast.walk(ast.parse(text))
-        if isinstance(node, ast.ImportFrom) and node.module and node.module.startswith("crankmbs.")
-        for name in node.names
-    }
-    assert seen == crankmbs._MODULE_OF
-    assert set(seen) == set(crankmbs.__all__)
+    stub = ast.parse(Path(crankmbs.__file__).with_suffix(".pyi").read_text(encoding="utf-8"))
+    seen = [
+        name.name for node in stub.body if isinstance(node, ast.ImportFrom) for name in node.names
+    ]
+    assert isinstance(stub.body[-1], ast.Assign)
+    assert sorted(seen) == crankmbs.__all__ == ast.literal_eval(stub.body[-1].value)
 
 
-@pytest.mark.parametrize("name", crankmbs.__all__)
+@pytest.mark.parametrize("name", sorted({*crankmbs.__all__} - ROOMS))
 def test_a_public_name_has_a_docstring_of_its_own(name):
     assert not isinstance(getattr(crankmbs, name), types.ModuleType)
     assert inspect.getdoc(getattr(crankmbs, name))
@@ -64,9 +61,9 @@ def test_a_public_function_is_pickled_by_its_name():
 
 def test_a_room_is_an_attribute_and_what_is_not_there_is_none():
     assert crankmbs.lecture.sin_beta is importlib.import_module("crankmbs.lecture").sin_beta
-    assert {*crankmbs.__all__, "figures", "lecture"} <= set(dir(crankmbs))
-    for name in ("nothing", "_models", "scene.read", "../scene", ""):
-        with pytest.raises(AttributeError, match=r"^module 'crankmbs' has no attribute"):
+    assert ROOMS <= set(crankmbs.__all__) == set(dir(crankmbs))
+    for name in ("nothing", "scene.read", "../scene", ""):
+        with pytest.raises(AttributeError, match="crankmbs"):
             getattr(crankmbs, name)
 
 

@@ -92,7 +92,7 @@ def test_a_sample_fills_its_ranges_evenly(method):
     assert np.histogram(np.log10(crank.values), 8, (-2, 0))[0].tolist() == [8] * 8
     again = cases_of(SCENE, Sample(vary, 64, method, seed=3))
     assert again.fingerprint == cases_of(SCENE, Sample(vary, 64, method, seed=3)).fingerprint
-    assert again.digest != cases_of(SCENE, Sample(vary, 64, method, seed=4)).digest
+    assert again.fingerprint != cases_of(SCENE, Sample(vary, 64, method, seed=4)).fingerprint
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,142 @@
+"""The public names and where each lives: what type checkers read, and `crankmbs` itself when a name
+is first used."""
+
+from . import figures, lecture
+from .choose import Choice, choose
+from .compare import AtAngle, Budget, Comparison, Reading, at_angle, budget, compare
+from .design import Balance, Flywheel, balance, flywheel, freed
+from .errors import (
+    CrankmbsError,
+    FormulationError,
+    InputError,
+    OutputError,
+    SceneError,
+    UndecidedError,
+)
+from .export import export
+from .indicated import CylinderPressure, Indicated, read_pressure
+from .lecture.accumulated_torque import accumulated_torque
+from .measures import (
+    EngineOrders,
+    Estimate,
+    JointForce,
+    Measures,
+    Orders,
+    engine_orders,
+    orders,
+)
+from .motion.base import Decay
+from .result import Cost, Error, Result
+from .scene.drives import Motion, Oscillation, Ramp, SpeedFile, Start
+from .scene.fuel import Fuel, Governor, Misfire
+from .scene.gas import Gas, Indicator, Polytrope
+from .scene.loads import AngleTable, Constant, Quadratic, SpeedTable, TimeTable, Viscous
+from .scene.parts import Crank, Cylinder, Gravity, Layout, Piston, Rod
+from .scene.python_load import Load
+from .scene.read import load_scene
+from .scene.run import Extent, Run
+from .scene.scene import Scene
+from .scene.shipped import shipped_scenes
+from .scene.tables import CylinderTable, Table
+from .simulate import simulate
+from .stepper import Snapshot, Stepper, StepperState
+from .sweep import (
+    Minimum,
+    Sample,
+    Sensitivity,
+    SobolIndices,
+    Solved,
+    load_sweep,
+    minimize,
+    sensitivity,
+    sobol_indices,
+    solve,
+    sweep,
+)
+
+__all__ = [
+    "AngleTable",
+    "AtAngle",
+    "Balance",
+    "Budget",
+    "Choice",
+    "Comparison",
+    "Constant",
+    "Cost",
+    "Crank",
+    "CrankmbsError",
+    "Cylinder",
+    "CylinderPressure",
+    "CylinderTable",
+    "Decay",
+    "EngineOrders",
+    "Error",
+    "Estimate",
+    "Extent",
+    "Flywheel",
+    "FormulationError",
+    "Fuel",
+    "Gas",
+    "Governor",
+    "Gravity",
+    "Indicated",
+    "Indicator",
+    "InputError",
+    "JointForce",
+    "Layout",
+    "Load",
+    "Measures",
+    "Minimum",
+    "Misfire",
+    "Motion",
+    "Orders",
+    "Oscillation",
+    "OutputError",
+    "Piston",
+    "Polytrope",
+    "Quadratic",
+    "Ramp",
+    "Reading",
+    "Result",
+    "Rod",
+    "Run",
+    "Sample",
+    "Scene",
+    "SceneError",
+    "Sensitivity",
+    "Snapshot",
+    "SobolIndices",
+    "Solved",
+    "SpeedFile",
+    "SpeedTable",
+    "Start",
+    "Stepper",
+    "StepperState",
+    "Table",
+    "TimeTable",
+    "UndecidedError",
+    "Viscous",
+    "accumulated_torque",
+    "at_angle",
+    "balance",
+    "budget",
+    "choose",
+    "compare",
+    "engine_orders",
+    "export",
+    "figures",
+    "flywheel",
+    "freed",
+    "lecture",
+    "load_scene",
+    "load_sweep",
+    "minimize",
+    "orders",
+    "read_pressure",
+    "sensitivity",
+    "shipped_scenes",
+    "simulate",
+    "sobol_indices",
+    "solve",
+    "sweep",
+]
