@@ -12,7 +12,7 @@ import numpy as np
 from crankmbs.batch.balances import balances
 from crankmbs.batch.lectures import Deviations
 from crankmbs.batch.peaks import sparse_nodes
-from crankmbs.mechanics.geometry import close_loop, dead_centres
+from crankmbs.mechanics.geometry import close_loop
 from crankmbs.mechanics.inertia import inertia_alone
 from crankmbs.mechanics.train import CrankTrain, crank_train
 from crankmbs.motion.crank_angle.grid import grid_of
@@ -67,7 +67,7 @@ class Machine:
         beginning a motion starts; at_start : J there, without the crank's [kg m2]
     shares : in how many equal shares of the period all comes again with another cylinder; the
         tables are those of one
-    displaced : of one cylinder [m3]; folds : whether a rod nearly folds onto the crank
+    folds : whether a rod nearly folds onto the crank
     """
 
     scene: Scene
@@ -79,7 +79,6 @@ class Machine:
     first: int
     at_start: float
     shares: int
-    displaced: float
     folds: bool
 
     @property
@@ -127,7 +126,6 @@ def machine_of(scene: Scene, *, finest: bool = False) -> Machine:
     edges = _edges(train, begin, sense, parts, starts)
     edges = edges[: (len(edges) - 1) // shares + 1]
     shape = scene.crank.radius, scene.rod.length, scene.piston.offset
-    top, bottom = close_loop(dead_centres(*shape), *shape).x
     narrow = float(np.mean(np.diff(edges))) < _NARROW and not finest
     answer, check = (
         _tabulated(one, begin, sense, gauss(stages), np.diff(edges), shares)
@@ -135,10 +133,9 @@ def machine_of(scene: Scene, *, finest: bool = False) -> Machine:
     )
     angles = np.linspace(0.0, 2.0 * math.pi, 361)
     folds = bool(np.min(close_loop(angles, *shape).cos_beta) < _FOLDED)
-    displaced = (scene.piston.gas_area or 0.0) * float(top - bottom)
     first = int(np.argmin(np.abs(edges[:-1] - starts)))
     at_start = float(inertia_alone(scene, start)) - scene.crank.moment_of_inertia
-    about = not narrow, begin, first, at_start, shares, displaced, folds
+    about = not narrow, begin, first, at_start, shares, folds
     return Machine(scene, sense, answer, check, *about)
 
 

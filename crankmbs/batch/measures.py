@@ -12,8 +12,8 @@ from crankmbs.batch.machine import Machine, Pass
 from crankmbs.batch.motion import Cases, Cuts
 from crankmbs.batch.passes import Pairs, Solved
 from crankmbs.batch.peaks import Curves, Peaks, Which, find_peaks, sizes_at, sparse_nodes
-from crankmbs.measures import Estimate, efficiency
-from crankmbs.measures.estimate import ROUNDING
+from crankmbs.measures.estimate import ROUNDING, Number
+from crankmbs.measures.summary import powers
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.lagrange import at_nodes
 from crankmbs.numerics.magnitudes import impulses
@@ -157,18 +157,16 @@ def _gained(solved: Solved, sense: float, mass: Array) -> Array:
 
 def _powers(machine: Machine, tables: Pass, time: Array) -> Numbers:
     """Of gas and friction on the pistons, over periods of these durations [s]."""
-    scene, numbers = machine.scene, {}
-    works, rubbed = (
-        machine.shares * by_turns(each, machine.shares) for each in (tables.works, tables.rubbed)
+    of_gas, rubbed = (
+        Number(machine.shares * by_turns(works, machine.shares), 0.0 * works)
+        for works in (tables.works, tables.rubbed)
     )
-    gained, taken = Estimate(float(works.sum()), 0.0), Estimate(-float(rubbed.sum()), 0.0)
-    if scene.gas is not None:
-        numbers["indicated_power"] = gained.value / time
-        numbers["imep"] = np.tile(works / machine.displaced, (len(time), 1))
-    if scene.friction is not None:
-        numbers["friction_power"] = taken.value / time
-        share = efficiency(gained, taken)
-        numbers["mechanical_efficiency"] = np.full_like(time, share.value if share else np.nan)
+    found = powers(machine.scene, of_gas, rubbed, 1.0, time)
+    numbers = {name: number.value + 0.0 * time for name, number in found.items() if name != "imep"}
+    if "imep" in found:
+        numbers["imep"] = np.tile(found["imep"].value, (len(time), 1))
+    if machine.scene.friction is not None:
+        numbers.setdefault("mechanical_efficiency", np.full_like(time, np.nan))
     return numbers
 
 
