@@ -3,8 +3,9 @@ over time, of magnitudes too, and largest values.
 
 Cells end where pressures, loads over the angle or friction bend or jump, so that all is smooth in
 them. Integrals are those of the Gauss rule the motion was solved with. A magnitude bends where it
-comes near zero: there its parts are, as polynomials, integrated in panels that narrow towards its
-least value. A largest value is sought on the polynomial through the nodes and evaluated there.
+comes near zero: there its parts are, as polynomials, integrated piece by piece
+(`crankmbs.numerics.magnitudes`). A largest value is sought on the polynomial through the nodes and
+evaluated there.
 """
 
 from __future__ import annotations
@@ -188,7 +189,7 @@ def _highest(cells: Cells, values: Array) -> tuple[Array, Index, Array, np.ndarr
     polynomials, inner = ends_and_nodes(len(cells.places) - 2), cells.inner()
     highest, lowest = _extremes(values)
     # a polynomial goes hardly farther beyond its values than they lie apart
-    which, k = np.nonzero(2.0 * highest - lowest >= highest.max(axis=1, keepdims=True))
+    which, k = np.nonzero(~(2.0 * highest - lowest < highest.max(axis=1, keepdims=True)))
     floor = lowest.min(axis=1)  # a magnitude is as high above it as a value
     rows = (values[which, k] - floor[which, None]).T[:, None]
     best = tops(polynomials, rows.copy(), np.searchsorted(which, np.arange(len(values))))

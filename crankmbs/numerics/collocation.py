@@ -183,9 +183,8 @@ def carried(
 
     surplus : shape (..., m), of the rises, so little that they cannot hold it
 
-    >>> edges = carried(np.zeros(1000), np.full(1000, 0.1), 0.0)
-    >>> float(edges[-1]) == math.fsum([0.1] * 1000)
-    True
+    >>> float(carried(np.zeros(1000), np.full(1000, 0.1), 0.0)[-1])
+    100.0
     """
     edges = chain(growth, rise, start)
     missed = np.diff(edges, axis=-1) - (growth * edges[..., :-1] + rise) + surplus

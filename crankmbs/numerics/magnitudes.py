@@ -1,8 +1,8 @@
 """Magnitudes of vectors of polynomials: where a magnitude is least its integral is split, and where
 it is largest is its peak.
 
-Polynomials are given by their values at the nodes of a Gauss rule in the unit interval, or at other
-places, first axis; each is a number of its own, last axis: nothing depends on the others.
+Polynomials are given by their values at places in the unit interval, first axis; each is a number
+of its own, last axis: nothing depends on the others, not by rounding either.
 """
 
 from __future__ import annotations
@@ -19,8 +19,7 @@ from crankmbs.numerics.lagrange import Lagrange
 
 __all__ = ["Tops", "impulses", "magnitudes", "size_of", "tops"]
 
-_BENT = 1.2  # of what a vector changes by across a piece: where it is less it has a bend, or nearly
-_NEAR = 2.0  # the same of a cell at three places: where it is less inside it may be
+_BENT = 1.2  # of what a vector changes by across a piece: where it is less it may have a bend
 _DEEPEST = 18  # halvings of a cell
 _SIGNS, _HEIGHTS = 4, 2  # places a node at which signs are seen, and where the largest may be
 _STEPS = 4  # of Newton's method from there
@@ -84,15 +83,11 @@ def impulses(polynomials: Lagrange, forces: Array, sizes: Array, density: Array)
 
     forces, sizes : at the places, shape (k, r, 2, m, n) and (k, r, m, n); density : (k, m, n)
     """
-    middle_one = sizes.shape[-1] // 2
     over = density * polynomials.weights
     total = np.einsum("krms,kms->kr", sizes, over)
-    least = np.minimum(np.minimum(sizes[..., 0], sizes[..., middle_one]), sizes[..., -1])
-    apart = np.zeros_like(least)
-    for component in (0, 1):
-        begin, middle, end = (forces[:, :, component, :, at] for at in (0, middle_one, -1))
-        apart += (end - begin) ** 2 + (begin - 2.0 * middle + end) ** 2
-    case, row, cell = np.nonzero(least**2 < _NEAR**2 * apart)
+    least = np.minimum(sizes[..., 0], sizes[..., -1])
+    apart = ((forces[..., -1] - forces[..., 0]) ** 2).sum(axis=2)
+    case, row, cell = np.nonzero(least**2 < _BENT**2 * apart)
     if len(cell):
         rows = np.concatenate([forces[case, row, :, cell], density[case, cell][:, None]], axis=1)
         by_rule = (sizes[case, row, cell] * over[case, cell]).sum(axis=1)
@@ -105,9 +100,10 @@ def magnitudes(polynomials: Lagrange, rows: Array) -> Array:
 
     rows : two components and the density at the places, shape (n, 3, p)
 
-    >>> nodes = at_nodes(8).places
-    >>> rows = np.stack([nodes - 0.25, 0.0 * nodes, np.ones(8)], axis=1)[..., None]
-    >>> round(float(magnitudes(at_nodes(8), rows)[0]), 12)
+    >>> z, weights = np.polynomial.legendre.leggauss(8)
+    >>> line = Lagrange(0.5 + 0.5 * z, 0.5 * weights)
+    >>> rows = np.stack([line.places - 0.25, 0.0 * z, np.ones(8)], axis=1)[..., None]
+    >>> round(float(magnitudes(line, rows)[0]), 12)
     0.3125
     """
     total, single = np.empty(rows.shape[-1]), ~rows[:, 1].any(axis=0)
