@@ -101,7 +101,7 @@ def _motion_alone(scene: Scene) -> None:
         return
     own = _seconds(lambda: settled(tables, cases, sense, 0.0))
     least = _seconds(solve)
-    apart = np.max(np.abs(settled(tables, cases, sense, 0.0).edges[:, 0] / answer - 1.0))
+    apart = np.max(np.abs(settled(tables, cases, sense, 0.0).begin / answer - 1.0))
     print(
         f"  its periodic motion {1e6 * own / len(by):.1f} us, in C {1e6 * least / len(by):.1f} us: "
         f"{least / own:.2f} of the limit's speed; energies {apart:.0e} apart"

@@ -84,7 +84,7 @@ def _over_limit(scene: Scene, periods: int, alike: bool, seconds: Seconds) -> No
     cases = Cases(inertias, none, none, squares, speeds, ends, none)
     own = seconds(lambda: to_times(tables, cases, machine.sense, starts, 0.0))
     _, found = to_times(tables, cases, machine.sense, starts, 0.0)
-    apart = np.max(np.abs(found.edges[:, -1] / answer[:, 0] - 1.0))
+    apart = np.max(np.abs(found.ends[:, -1] / answer[:, 0] - 1.0))
     each, what = 1e6 / (len(by) * periods), "starts" if alike else "inertia and load"
     print(
         f"  {periods} cycles, {what} differ: {own * each:.2f} us a cycle, in C "

@@ -5,13 +5,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Hashable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from crankmbs.batch.balances import balances
-from crankmbs.batch.lectures import Cuts, Deviations, basis_at
-from crankmbs.mechanics.geometry import close_loop, dead_centres
+from crankmbs.batch.lectures import Deviations
+from crankmbs.batch.peaks import sparse_nodes
+from crankmbs.mechanics.geometry import close_loop
 from crankmbs.mechanics.inertia import inertia_alone
 from crankmbs.mechanics.train import CrankTrain, crank_train
 from crankmbs.motion.crank_angle.grid import grid_of
@@ -41,13 +42,11 @@ class Pass:
     forces : of the joints, the main bearing, crank pins, piston pins and side forces, which have no
         second component, shape (joints, 2, 3, m, s)
     works, rubbed : of the gas and of the friction on each piston there, shape (cylinders,) [J]
-    cuts : where the periods of k cases begin and end, where these are cut: all but works have an
-        axis (k,) in front
     """
 
     rule: Rule
     width: Array
-    at_begin: float | Array
+    at_begin: float
     inertia: Array
     slope: Array
     torque: Array
@@ -56,49 +55,6 @@ class Pass:
     lectures: Deviations
     works: Array
     rubbed: Array
-    cuts: Cuts | None = None
-
-    @property
-    def places(self) -> tuple[Array, Array]:
-        """Angles turned [rad] to where cells begin, and their widths, shape (1 or k, cells)."""
-        if self.cuts is None:
-            return (np.cumsum(self.width) - self.width)[np.newaxis], self.width[np.newaxis]
-        each, whole = np.arange(len(self.width)), self.width.copy()
-        whole[each, self.cuts.cell] += whole[:, -1]
-        starts = np.cumsum(whole, axis=1) - whole
-        starts[:, -1] = starts[each, self.cuts.cell] + self.width[each, self.cuts.cell]
-        return starts, self.width
-
-    def cut(self, cuts: Cuts) -> Pass:
-        """The tables over periods that begin and end in cells, of k cases: shape (k, ...)."""
-        (cell, place), k, nodes = cuts, len(cuts.cell), self.rule.nodes
-        ahead = basis_at(self.rule, place[:, None] * nodes)
-        behind = basis_at(self.rule, place[:, None] + (1.0 - place[:, None]) * nodes)
-
-        def cut_table(table: Array) -> Array:
-            room = np.concatenate([table, table[..., :1, :]], axis=-2)
-            every = np.repeat(room[np.newaxis], k, axis=0)
-            own = np.moveaxis(table[..., cell, :], -2, 0)
-            flat, shape = own.reshape(k, -1, len(nodes)), own.shape
-            every[np.arange(k), ..., cell, :] = np.matmul(flat, ahead.swapaxes(1, 2)).reshape(shape)
-            every[..., -1, :] = np.matmul(flat, behind.swapaxes(1, 2)).reshape(shape)
-            return every
-
-        width = np.tile(np.append(self.width, 0.0), (k, 1))
-        width[:, -1] = (1.0 - place) * self.width[cell]
-        width[np.arange(k), cell] *= place
-        at_begin = (basis_at(self.rule, place[:, None])[:, 0] * self.inertia[cell]).sum(axis=1)
-        return replace(
-            self,
-            width=width,
-            at_begin=at_begin,
-            inertia=cut_table(self.inertia),
-            slope=cut_table(self.slope),
-            torque=cut_table(self.torque),
-            rods=cut_table(self.rods),
-            forces=cut_table(self.forces),
-            cuts=cuts,
-        )
 
 
 @dataclass(frozen=True)
@@ -111,7 +67,7 @@ class Machine:
         beginning a motion starts; at_start : J there, without the crank's [kg m2]
     shares : in how many equal shares of the period all comes again with another cylinder; the
         tables are those of one
-    displaced : of one cylinder [m3]; folds : whether a rod nearly folds onto the crank
+    folds : whether a rod nearly folds onto the crank
     """
 
     scene: Scene
@@ -123,7 +79,6 @@ class Machine:
     first: int
     at_start: float
     shares: int
-    displaced: float
     folds: bool
 
     @property
@@ -171,7 +126,6 @@ def machine_of(scene: Scene, *, finest: bool = False) -> Machine:
     edges = _edges(train, begin, sense, parts, starts)
     edges = edges[: (len(edges) - 1) // shares + 1]
     shape = scene.crank.radius, scene.rod.length, scene.piston.offset
-    top, bottom = close_loop(dead_centres(*shape), *shape).x
     narrow = float(np.mean(np.diff(edges))) < _NARROW and not finest
     answer, check = (
         _tabulated(one, begin, sense, gauss(stages), np.diff(edges), shares)
@@ -179,10 +133,9 @@ def machine_of(scene: Scene, *, finest: bool = False) -> Machine:
     )
     angles = np.linspace(0.0, 2.0 * math.pi, 361)
     folds = bool(np.min(close_loop(angles, *shape).cos_beta) < _FOLDED)
-    displaced = (scene.piston.gas_area or 0.0) * float(top - bottom)
     first = int(np.argmin(np.abs(edges[:-1] - starts)))
     at_start = float(inertia_alone(scene, start)) - scene.crank.moment_of_inertia
-    about = not narrow, begin, first, at_start, shares, displaced, folds
+    about = not narrow, begin, first, at_start, shares, folds
     return Machine(scene, sense, answer, check, *about)
 
 
@@ -220,6 +173,7 @@ def _tabulated(
     train: CrankTrain, begin: float, sense: float, rule: Rule, width: Array, shares: int
 ) -> Pass:
     """The tables at the nodes of a rule in every cell."""
+    whole = np.tile(width, shares)
     turned = np.cumsum(width)[:, None] + width[:, None] * (rule.nodes - 1.0)
     theta = (begin + sense * turned).ravel()
     found = balances(train, theta, sense)
@@ -240,7 +194,7 @@ def _tabulated(
         torque.reshape(turned.shape),
         rods.reshape(3, *turned.shape),
         forces.reshape(-1, 2, 3, *turned.shape),
-        Deviations(train, begin, sense, rule, np.tile(width, shares)),
+        Deviations(train, begin, sense, rule, whole, sparse_nodes(whole, len(rule.nodes))),
         (cylinders["gas_force"][:, 0] * path).sum(axis=1),
         (found.friction * path).sum(axis=1),
     )

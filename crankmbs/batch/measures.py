@@ -7,17 +7,18 @@ from typing import NamedTuple
 
 import numpy as np
 
+from crankmbs.batch.lectures import CURVES, EACH, LINEAR
 from crankmbs.batch.machine import Machine, Pass
-from crankmbs.batch.means import impulses
-from crankmbs.batch.motion import Cases, Courses
-from crankmbs.batch.passes import Pairs
+from crankmbs.batch.motion import Cases, Cuts
+from crankmbs.batch.passes import Pairs, Solved
 from crankmbs.batch.peaks import Curves, Peaks, Which, find_peaks, sizes_at, sparse_nodes
+from crankmbs.measures.estimate import ROUNDING, Number
+from crankmbs.measures.summary import powers
 from crankmbs.numerics.arrays import Array
+from crankmbs.numerics.lagrange import at_nodes
+from crankmbs.numerics.magnitudes import impulses
 
-__all__ = ["ROUNDING", "Numbers", "measure"]
-
-ROUNDING = 64 * float(np.finfo(float).eps)
-"""Of a value."""
+__all__ = ["Numbers", "by_turns", "measure"]
 
 Numbers = dict[str, Array]
 """By name, of k cases, shape (k, ...)."""
@@ -25,7 +26,7 @@ Numbers = dict[str, Array]
 
 class _Motions(NamedTuple):
     """At the nodes: omega^2, alpha, omega and 1 / |omega|, shape (k, m, s); the torque of the
-    loads."""
+    loads. With cuts the cells are whole, with one more."""
 
     square: Array
     alpha: Array
@@ -42,139 +43,239 @@ def measure(machine: Machine, pairs: Pairs) -> tuple[Numbers, Numbers]:
     Returns
     -------
     those of `_numbers`; angles, turned from where the tables begin to the peaks of joints [rad];
-    energy where the period begins [J]; gained, the speed [rad/s]; growth of a disturbance, less 1;
     closure, the largest difference of the energies of both passes over the greatest energy;
     relative, the largest error of the speed and of the peaks of joints, relative
     """
-    passes, peaks = [], None
-    for tables, courses in zip(pairs.tables, pairs.courses, strict=True):
-        numbers, peaks = _numbers(machine, tables, pairs.cases, courses.energy, peaks)
-        passes.append(numbers | _over_period(machine, tables, pairs.cases, courses))
-    assert peaks is not None
-    answer, check = passes
+    one, other = pairs.passes
+    answer, peaks = _numbers(machine, one, pairs.cases, None)
+    check, _ = _numbers(machine, other, pairs.cases, peaks)
+    rounded = {"speed_gain": answer["fast"], "fluctuation": answer["fast"] / answer["mean_speed"]}
     errors = {
-        name: np.abs(value - check[name]) + ROUNDING * np.abs(value)
+        name: np.abs(value - check[name]) + ROUNDING * np.abs(rounded.get(name, value))
         for name, value in answer.items()
     }
     missed = peaks["vectors"].missed
     errors["fast"] += missed[:, -2]
     errors["slow"] += missed[:, -1]
+    errors["fluctuation"] += missed[:, -2:].sum(axis=1) / np.abs(answer["mean_speed"])
     errors["peaks"] += missed[:, :-2]
     errors["lectures"] += peaks["lectures"].missed
-    ends, others = (courses.edges[:, 1:] for courses in pairs.courses)
-    answer["closure"] = np.abs(ends - others).max(axis=1) / answer["greatest"] + ROUNDING
+    apart = np.abs(one.courses.ends - other.courses.ends).max(axis=1)
+    answer["closure"] = apart / answer["greatest"] + ROUNDING
     shown = ("duration", "fast", "slow", "peaks")
     with np.errstate(invalid="ignore"):  # a joint without a force
-        apart = [np.nan_to_num(errors[name] / np.abs(answer[name])).T for name in shown]
-    answer["relative"] = np.vstack(apart).max(axis=0)
-    (starts, width), of = pairs.tables[0].places, peaks["vectors"]
-    case, cell = np.minimum(np.arange(len(of.cell)), len(width) - 1)[:, None], of.cell[:, :-2]
-    answer["angles"] = starts[case, cell] + of.place[:, :-2] * width[case, cell]
+        parts = [np.nan_to_num(errors[name] / np.abs(answer[name])).T for name in shown]
+    answer["relative"] = np.vstack(parts).max(axis=0)
+    of, (begin, width) = peaks["vectors"], _places(one)
+    case = np.minimum(np.arange(len(of.cell)), len(width) - 1)[:, None]
+    answer["angles"] = (begin[case, of.cell] + of.place * width[case, of.cell])[:, :-2]
     return answer, errors
 
 
-def _over_period(machine: Machine, tables: Pass, cases: Cases, courses: Courses) -> Numbers:
-    """What a period does to the energy, by either pass."""
-    begin, end = courses.edges[:, 0], courses.edges[:, -1]
-    total = cases.mass + tables.at_begin
-    gained = machine.sense * (np.sqrt(2.0 * end / total) - np.sqrt(2.0 * begin / total))
-    return {"energy": begin, "gained": gained, "growth": courses.growth}
+def _places(solved: Solved) -> tuple[Array, Array]:
+    """Angles turned [rad] to where cells begin, and their widths, shape (1 or k, cells)."""
+    width, cuts = solved.tables.width, solved.cuts
+    begin = np.cumsum(width) - width
+    if cuts is None:
+        return begin[None], width[None]
+    cell, place = cuts
+    begin, width = (
+        np.column_stack([np.tile(row, (len(cell), 1)), row[cell]]) for row in (begin, width)
+    )
+    before = place * width[:, -1]
+    begin[:, -1] += before
+    width[:, -1] -= before
+    width[np.arange(len(cell)), cell] = before
+    return begin, width
 
 
 def _numbers(
-    machine: Machine,
-    tables: Pass,
-    cases: Cases,
-    energy: Array,
-    known: dict[str, Peaks] | None,
+    machine: Machine, solved: Solved, cases: Cases, known: dict[str, Peaks] | None
 ) -> tuple[Numbers, dict[str, Peaks]]:
-    """The numbers of a pass over k cases, and where its peaks are.
-
-    energy : shape (k, m, s) [J]; known : the peaks of another pass, which are looked at where they
-    are, and not sought
+    """The numbers of a pass over k cases, and where its peaks are; known : the peaks of another
+    pass, which are looked at where they are, and not sought.
 
     Returns
     -------
-    duration [s] of a period; greatest energy [J]; highest and lowest speed [rad/s], without sense;
-    mean torque of all rods and from outside [N m]; of every joint's force the peak and the mean
-    over time, shape (k, joints) [N]; the largest size of every quantity of the lectures and of what
-    it is more than each of them says, shape (k, curves)
+    duration [s] of a period; greatest energy, and that where the period begins [J]; growth of a
+    disturbance, less 1; highest and lowest speed [rad/s], without sense; of every joint's force the
+    peak and the mean over time, shape (k, joints) [N]; the largest size of every quantity of the
+    lectures and of what it is more than each of them says, shape (k, curves); and what
+    `crankmbs.measures.Measures` has by these names
     """
-    of = _motions(tables, machine.sense, cases, energy)
-    width, turned = tables.width[..., None], float(machine.answer.width.sum())
-    share = width * tables.rule.weights
-    time = (share * of.slow).sum(axis=(1, 2))
-    on_square, on_alpha, on_one = np.moveaxis(tables.rods, -3, 0)
-    rods = on_square * of.square + on_alpha * of.alpha + on_one
+    (tables, courses, cuts), of = solved, _motions(solved, machine.sense, cases)
+    width, turned = _places(solved)[1][..., None], float(machine.answer.width.sum())
+    share, rods = width * tables.rule.weights, _combined(tables.rods, of, cuts)
+    slow, load = of.slow, of.load
     fastest = np.abs(of.omega).max(axis=(1, 2))
-    vectors = _vectors(tables, of, 2.0 * fastest)
+    vectors = _vectors(tables, of, 2.0 * fastest, cuts)
+    if cuts is not None:
+        slow, load, rods, vectors = (_cut(each, cuts) for each in (slow, load, rods, vectors))
+    time = (share * slow).sum(axis=(1, 2))
+    mean = machine.sense * turned / time
     sizes = np.sqrt(np.einsum("krcms,krcms->krms", vectors, vectors))
     curves = {
-        "vectors": _curves(tables, vectors, sizes),
-        "lectures": _of_lectures(machine, tables, of, machine.sense * turned / time),
+        "vectors": _curves(tables, vectors, sizes, cuts),
+        "lectures": _of_lectures(tables, of, mean, cuts),
     }
     peaks = known or {name: find_peaks(each) for name, each in curves.items()}
     if known is None:
         largest, lectures = peaks["vectors"].size, peaks["lectures"].size
     else:
         largest, lectures = (sizes_at(each, known[name]) for name, each in curves.items())
-    pairs = sizes.shape[1] - len(tables.works) - 2  # all joints but side forces
-    return {
+    fast, slowest = largest[:, -2], 2.0 * fastest - largest[:, -1]
+    polynomials = at_nodes(sizes.shape[-1])
+    means = impulses(polynomials, vectors[:, :-2], sizes[:, :-2], width * slow) / time[:, None]
+    numbers = {
         "duration": machine.shares * time,
-        "greatest": energy.max(axis=(1, 2)),
-        "fast": largest[:, -2],
-        "slow": 2.0 * fastest - largest[:, -1],
-        "rods": (share * rods).sum(axis=(1, 2)) / turned,
-        "outside": (share * of.load).sum(axis=(1, 2)) / turned,
+        "greatest": courses.energy.max(axis=(1, 2)),
+        "energy": courses.begin,
+        "growth": courses.growth,
+        "fast": fast,
+        "slow": slowest,
         "peaks": largest[:, :-2],
-        "means": impulses(vectors[:, :-2], sizes[:, :-2], width * of.slow, pairs) / time[:, None],
+        "means": means,
         "lectures": lectures,
-    }, peaks
+        "mean_speed": mean,
+        "fluctuation": (fast - slowest) / np.abs(mean),
+        "speed_gain": _gained(solved, machine.sense, cases.mass),
+        "crank_torque": (share * rods).sum(axis=(1, 2)) / turned,
+        "external_torque": (share * load).sum(axis=(1, 2)) / turned,
+    }
+    return numbers | _powers(machine, tables, numbers["duration"]), peaks
 
 
-def _of_lectures(machine: Machine, tables: Pass, of: _Motions, mean: Array) -> Curves:
-    """Over the whole period; mean : speed, shape (k,)."""
-    square, alpha, omega = (
-        np.tile(each, (1, machine.shares, 1)) for each in (of.square, of.alpha, of.omega)
+def _gained(solved: Solved, sense: float, mass: Array) -> Array:
+    """The speed gained over the period [rad/s]."""
+    (tables, courses, cuts), inertia = solved, solved.tables.at_begin + mass
+    if cuts is not None:
+        rows, place = tables.inertia[cuts.cell].T, cuts.place
+        inertia = at_nodes(len(rows)).part(rows, place, place)[0] + mass
+    begin, end = (np.sqrt(2.0 * each / inertia) for each in (courses.begin, courses.ends[:, -1]))
+    return np.asarray(sense * (end - begin))
+
+
+def _powers(machine: Machine, tables: Pass, time: Array) -> Numbers:
+    """Of gas and friction on the pistons, over periods of these durations [s]."""
+    of_gas, rubbed = (
+        Number(machine.shares * by_turns(works, machine.shares), 0.0 * works)
+        for works in (tables.works, tables.rubbed)
     )
-    return tables.lectures.curves(square, alpha, omega, mean, tables.cuts)
+    found = powers(machine.scene, of_gas, rubbed, 1.0, time)
+    numbers = {name: number.value + 0.0 * time for name, number in found.items() if name != "imep"}
+    if "imep" in found:
+        numbers["imep"] = np.tile(found["imep"].value, (len(time), 1))
+    if machine.scene.friction is not None:
+        numbers.setdefault("mechanical_efficiency", np.full_like(time, np.nan))
+    return numbers
 
 
-def _curves(tables: Pass, vectors: Array, sizes: Array) -> Curves:
-    """Of vectors at all nodes, shape (k, r, components, m, s), and their sizes."""
-    k, r, m, s = sizes.shape
-    nodes = np.arange(m * s) if tables.cuts else sparse_nodes(tables.width, s)
-
-    def some_sizes(some: slice) -> Array:
-        return np.asarray(sizes[some].reshape(-1, r, m * s)[..., nodes])
-
-    def rows(which: Which) -> Array:
-        return np.asarray(vectors[which.case, which.curve, :, which.cell])
-
-    return Curves((k, r), 1, some_sizes, nodes // s, rows)
+def by_turns(values: Array, shares: int) -> Array:
+    """The mean over the whole period of what cylinders have in a share of it, shape (...,
+    cylinders): what one has there another has in the next one."""
+    return values if shares == 1 else values.mean(axis=-1, keepdims=True) + 0.0 * values
 
 
-def _motions(tables: Pass, sense: float, cases: Cases, energy: Array) -> _Motions:
-    mass, c0, c1, c2 = (each[:, None, None] for each in cases[:4])
-    total = tables.inertia + mass
+def _motions(solved: Solved, sense: float, cases: Cases) -> _Motions:
+    (tables, courses, cuts), (mass, c0, c1, c2) = solved, (x[:, None, None] for x in cases[:4])
+    energy, rows = courses.energy, [tables.inertia, tables.slope, tables.torque]
+    if cuts is not None:
+        whole = np.tile(np.arange(len(tables.width)), (len(energy), 1))
+        rows = [row[np.column_stack([whole, cuts.cell])] for row in rows]
+    inertia, slope, torque = rows
+    total = inertia + mass
     square = 2.0 * energy / total
     speed = np.sqrt(square)
     omega = sense * speed
     load = c0 + c1 * omega + c2 * square
-    alpha = (tables.torque + load - 0.5 * tables.slope * square) / total
+    alpha = (torque + load - 0.5 * slope * square) / total
     return _Motions(square, alpha, omega, 1.0 / speed, load)
 
 
-def _vectors(tables: Pass, of: _Motions, level: Array) -> Array:
+def _combined(table: Array, of: _Motions, cuts: Cuts | None) -> Array:
+    """What a table, shape (..., 3, m, s), makes of omega^2, alpha and 1, shape (k, ..., m, s)."""
+    lead, (k, _, s), m = table.shape[:-3], of.square.shape, table.shape[-2]
+    square, alpha = (each.reshape(k, *np.ones_like(lead), -1, s) for each in of[:2])
+    values = np.empty((k, *lead, square.shape[-2], s))
+
+    def fill(at: slice, parts: Array) -> None:
+        some = values[..., at, :]
+        np.multiply(parts[0], square[..., at, :], out=some)
+        some += parts[1] * alpha[..., at, :]
+        some += parts[2]
+
+    fill(slice(m), np.moveaxis(table, -3, 0))
+    if cuts is not None:
+        fill(slice(m, None), np.moveaxis(table[..., cuts.cell, :], (-3, -2), (0, 1))[..., None, :])
+    return values
+
+
+def _vectors(tables: Pass, of: _Motions, level: Array, cuts: Cuts | None) -> Array:
     """The forces of the joints at the nodes, the speed, and what it is less than a level of shape
     (k,): shape (k, joints + 2, 2, m, s)."""
-    on_square, on_alpha, on_one = np.moveaxis(tables.forces, -3, 0)
-    k, m, s = of.square.shape
-    vectors = np.zeros((k, on_one.shape[-4] + 2, 2, m, s))
-    forces = vectors[:, :-2]
-    np.multiply(on_square, of.square[:, None, None], out=forces)
-    forces += on_alpha * of.alpha[:, None, None]
-    forces += on_one
-    vectors[:, -2, 0] = np.abs(of.omega)
-    vectors[:, -1, 0] = level[:, None, None] - vectors[:, -2, 0]
-    return vectors
+    speeds = np.zeros((len(level), 2, 2, *of.omega.shape[1:]))
+    speeds[:, 0, 0] = np.abs(of.omega)
+    speeds[:, 1, 0] = level[:, None, None] - speeds[:, 0, 0]
+    return np.concatenate([_combined(tables.forces, of, cuts), speeds], axis=1)
+
+
+def _cut(values: Array, cuts: Cuts) -> Array:
+    """Values at the nodes of whole cells, shape (k, ..., m + 1, s), in those of which parts count
+    at the nodes of these."""
+    each, (cell, place), last = np.arange(len(values)), cuts, values.shape[-2] - 1
+    polynomials = at_nodes(values.shape[-1])
+    for at, low, high in ((cell, 0.0, place), (last, place, 1.0)):
+        values[each, ..., at, :] = polynomials.part(values[each, ..., at, :].T, low, high).T
+    return values
+
+
+def _curves(tables: Pass, vectors: Array, sizes: Array, cuts: Cuts | None) -> Curves:
+    """Of vectors at all nodes, shape (k, r, components, m, s), and their sizes."""
+    k, r, m, s = sizes.shape
+    nodes = np.arange(m * s) if cuts else sparse_nodes(tables.width, s)
+
+    def some_sizes(some: slice) -> Array:
+        seen = sizes[some].reshape(-1, r, m * s)[..., nodes]
+        return np.ascontiguousarray(np.moveaxis(seen, 2, 0))
+
+    def rows(which: Which) -> Array:
+        return vectors[which.case, which.curve, :, which.cell].T.copy()
+
+    return Curves((k, r), 1, some_sizes, nodes // s, rows)
+
+
+def _of_lectures(tables: Pass, of: _Motions, mean: Array, cuts: Cuts | None) -> Curves:
+    """Of the lectures over the whole period: A (u - p) + B alpha + C + D p; mean : speed, shape
+    (k,)."""
+    (k, m, s), lectures, mean = of.omega.shape, tables.lectures, mean[:, None, None]
+    powers = np.empty((k, m, 2, 4, s))  # of what goes with the square of the speed, or with it
+    for line, (u, p) in enumerate(((of.square, mean**2), (of.omega, mean))):
+        each = np.broadcast_arrays(u - p, of.alpha, np.ones(1), p)
+        powers[:, :, line] = np.stack(each, axis=2)
+    cells, nodes = np.divmod(lectures.sparse, s)
+
+    def sizes(some: slice) -> Array:
+        seen, table = powers[some, cells % m, :, :, nodes], lectures.at_sparse
+        values = seen[:, :, 0] @ table
+        values[..., LINEAR] = seen[:, :, 1] @ table[..., LINEAR]
+        if cuts is not None:  # of other nodes
+            values[cells[:, None] == cuts.cell[some]] = 0.0
+        return np.asarray(np.abs(values, out=values))
+
+    def rows(which: Which) -> Array:
+        case, curve, cell = which
+        line = ((curve >= LINEAR.start) & (curve < LINEAR.stop)).astype(np.intp)
+        own = cell if cuts is None else np.where(cell == m - 1, cuts.cell[case], cell)
+        table, power = lectures.at(own, curve), powers[case, cell % m, line]
+        found = np.einsum("cps,cps->cs", table, power).T[:, None].copy()
+        if cuts is not None:
+            low = np.where(cell == m - 1, cuts.place[case], 0.0)
+            high = np.where(cell == cuts.cell[case], cuts.place[case], 1.0)
+            part = high - low < 1.0
+            found[..., part] = at_nodes(s).part(found[..., part], low[part], high[part])
+        return np.asarray(found)
+
+    always = None
+    if cuts is not None:
+        always = np.stack([cuts.cell, np.full_like(cuts.cell, m - 1)], axis=1)
+    return Curves((k, CURVES), EACH, sizes, cells, rows, always)

@@ -8,28 +8,39 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crankmbs.batch.lectures import Cuts
 from crankmbs.batch.machine import Machine, Pass, ahead_of
-from crankmbs.batch.motion import Cases, Courses, over_periods, settled, to_times
+from crankmbs.batch.motion import Cases, Courses, Cuts, over_periods, settled, to_times
 from crankmbs.batch.serves import loads_of
 from crankmbs.numerics.arrays import Array, Index
 from crankmbs.scene.scene import Scene
 
-__all__ = ["Pairs", "cases_of", "pairs_of"]
+__all__ = ["Pairs", "Solved", "cases_of", "pairs_of"]
 
 _NONE = 1e-11  # 1 - factor: nothing but rounding
 _NUDGE = 4 * float(np.finfo(float).eps)  # what a period rounds, of the greatest energy
 _CLEAR = 0.05  # rad: an energy that the largest torque does not take within it is clear of rest
 
 
+class Solved(NamedTuple):
+    """The motions of a pass; cuts : of periods that end in time."""
+
+    tables: Pass
+    courses: Courses
+    cuts: Cuts | None = None
+
+    def part(self, which: NDArray[np.bool_]) -> Solved:
+        """Some of them."""
+        cuts = None if self.cuts is None else self.cuts.part(which)
+        return Solved(self.tables, self.courses.part(which), cuts)
+
+
 class Pairs(NamedTuple):
     """Motions over their last periods, k cases: their numbers, shape (k,), and what they have of
-    their own; tables and courses of answer and check."""
+    their own; answer and check."""
 
     which: Index
     cases: Cases
-    tables: tuple[Pass, Pass]
-    courses: tuple[Courses, Courses]
+    passes: tuple[Solved, Solved]
 
 
 def cases_of(scenes: Sequence[Scene]) -> Cases:
@@ -54,38 +65,35 @@ def _case_of(scene: Scene) -> tuple[float, ...]:
 def pairs_of(machine: Machine, which: Index, cases: Cases) -> Pairs:
     """The motions of cases; without those that have none, come near rest, or of which it is not
     sure that the run comes to them."""
-    tables = machine.answer, machine.check
     energy = 0.5 * (cases.mass + machine.at_start) * cases.speed**2
     with np.errstate(all="ignore"):  # where the energy is used up there are no numbers
-        cuts, (answer, check) = _courses(machine, cases, energy)
+        passes = _passes(machine, cases, energy)
+    answer, check = (one.courses for one in passes)
+    least = np.minimum(answer.least, check.least)
     if machine.scene.settles:
         needed = _CLEAR * (_most(machine) + np.abs(cases.c0))
-        slowest = np.minimum(energy - answer.edges[:, 0], 0.0) + answer.least
+        slowest = np.minimum(energy - answer.begin, 0.0) + answer.least
         sure = (answer.growth < -_NONE) & (answer.least > needed) & (slowest > needed)
         sure &= check.least > 0.0
     else:
-        least = np.minimum(answer.least, check.least)
         sure = _keeps_clear(machine, cases, least)
-    if cuts is not None and sure.any():
-        tables = tables[0].cut(cuts[0].part(sure)), tables[1].cut(cuts[1].part(sure))
-    return Pairs(which[sure], cases.part(sure), tables, (answer.part(sure), check.part(sure)))
+    return Pairs(which[sure], cases.part(sure), (passes[0].part(sure), passes[1].part(sure)))
 
 
-def _courses(
-    machine: Machine, cases: Cases, energy: Array
-) -> tuple[tuple[Cuts, Cuts] | None, tuple[Courses, Courses]]:
-    """Of answer and check, and where periods are cut that end in time; from energies at the start
-    [J]."""
+def _passes(machine: Machine, cases: Cases, energy: Array) -> tuple[Solved, Solved]:
+    """Answer and check, from energies at the start [J]."""
     one, other, sense = machine.answer, machine.check, machine.sense
     if machine.in_time:
         cuts, answer = to_times(one, cases, sense, energy, 0.0)
         ends, check = to_times(other, cases, sense, energy, _NUDGE, cuts.cell)
-        return (cuts, ends), (answer, check)
+        return Solved(one, answer, cuts), Solved(other, check, ends)
     if machine.scene.settles:
-        return None, (settled(one, cases, sense, 0.0), settled(other, cases, sense, _NUDGE))
-    start = machine.first, energy
-    answer = over_periods(one, cases, sense, start, 0.0)
-    return None, (answer, over_periods(other, cases, sense, start, _NUDGE))
+        answer, check = settled(one, cases, sense, 0.0), settled(other, cases, sense, _NUDGE)
+    else:
+        start = machine.first, energy
+        answer = over_periods(one, cases, sense, start, 0.0)
+        check = over_periods(other, cases, sense, start, _NUDGE)
+    return Solved(one, answer), Solved(other, check)
 
 
 def _keeps_clear(machine: Machine, cases: Cases, least: Array) -> NDArray[np.bool_]:

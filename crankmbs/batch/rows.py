@@ -8,10 +8,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from crankmbs.batch.measures import ROUNDING
+from crankmbs.batch.measures import by_turns
 from crankmbs.batch.solve import Group, solved_together
 from crankmbs.compare import LECTURES, QUANTITIES
-from crankmbs.measures import Estimate, efficiency
 from crankmbs.mechanics.peaks import negligible
 from crankmbs.motion.ending import Ending
 from crankmbs.numerics.arrays import Array
@@ -19,7 +18,17 @@ from crankmbs.scene.scene import Scene
 
 __all__ = ["Rows", "rows_of"]
 
-_ROUNDING = 8 * float(np.finfo(float).eps)  # of either of two speeds
+_MEASURES = (
+    "mean_speed",
+    "fluctuation",
+    "speed_gain",
+    "crank_torque",
+    "external_torque",
+    "indicated_power",
+    "imep",
+    "friction_power",
+    "mechanical_efficiency",
+)
 _JOINTS = ("crank_pin", "piston_pin", "side_force")
 
 
@@ -47,49 +56,14 @@ def rows_of(scenes: Sequence[Scene | None]) -> list[Rows]:
 
 
 def _rows(group: Group) -> Rows:
-    machine, scene = group.machine, group.machine.scene
     of, error = group.numbers, group.errors
-    time, period, late = of["duration"], scene.settled_period, error["duration"]
-    mean = machine.sense * period / time
-    spread = (of["fast"] - of["slow"]) * time / period
-    of_spread = (error["fast"] + error["slow"]) * time / period + spread * late / time
-    pairs = {
-        "mean_speed": (mean, np.abs(mean) * late / time),
-        "fluctuation": (spread, of_spread),
-        "speed_gain": _gained(group),
-        "crank_torque": (of["rods"], error["rods"]),
-        "external_torque": (of["outside"], error["outside"]),
-    }
-    works, apart = _works(machine.answer.works, machine.check.works, machine.shares)
-    gained = Estimate(float(works.sum()), float(apart.sum()))
-    if scene.gas is not None:
-        pairs["indicated_power"] = _per_time(gained, time, late)
-        each = np.tile(works / machine.displaced, (len(time), 1))
-        pairs["imep"] = each, np.tile(apart / machine.displaced, (len(time), 1))
-    if scene.friction is not None:
-        lost, unsure = _works(machine.answer.rubbed, machine.check.rubbed, machine.shares)
-        taken = Estimate(-float(lost.sum()), float(unsure.sum()))
-        pairs["friction_power"] = _per_time(taken, time, late)
-        left = efficiency(gained, taken) or Estimate(np.nan, np.nan)
-        pairs["mechanical_efficiency"] = (
-            np.full_like(time, left.value),
-            np.full_like(time, left.error),
-        )
     columns = {"relative_error": of["relative"], "energy_closure": of["closure"]}
+    pairs = {name: (of[name], error[name]) for name in _MEASURES if name in of}
     columns |= _of_joints(group, pairs)
     columns |= {name: value for name, (value, _) in pairs.items()}
     columns |= {f"{name}_error": error for name, (_, error) in pairs.items()}
     columns |= _of_lectures(group)
     return Rows(group.which, columns, _messages(group))
-
-
-def _gained(group: Group) -> tuple[Array, Array]:
-    """The speed gained over the period, and its error."""
-    of = group.numbers
-    if group.machine.scene.settles:
-        error = of["closure"] * of["greatest"] / of["energy"] * of["fast"]
-        return np.zeros_like(error), error
-    return of["gained"], group.errors["gained"] + _ROUNDING * of["fast"]
 
 
 def _messages(group: Group) -> tuple[str, ...]:
@@ -98,24 +72,6 @@ def _messages(group: Group) -> tuple[str, ...]:
         return (Ending.COMPLETE.said(0.0)[1],) * len(group.which)
     factors = (1.0 + group.numbers["growth"]) ** group.machine.shares
     return tuple(f"settled: a period leaves {factor:.4g} of a disturbance" for factor in factors)
-
-
-def _works(answer: Array, check: Array, shares: int) -> tuple[Array, Array]:
-    """Works on the pistons [J] in a period, and by how much they may be off."""
-    found, other = (shares * _by_turns(works, shares) for works in (answer, check))
-    return found, np.abs(found - other) + ROUNDING * np.abs(found)
-
-
-def _by_turns(values: Array, shares: int) -> Array:
-    """The mean over the whole period of what cylinders have in a share of it, shape (...,
-    cylinders): what one has there another has in the next one."""
-    return values if shares == 1 else values.mean(axis=-1, keepdims=True) + 0.0 * values
-
-
-def _per_time(work: Estimate, time: Array, late: Array) -> tuple[Array, Array]:
-    """The power of a work done in a period, and by how much it may be off."""
-    power = work.value / time
-    return power, work.error / time + np.abs(power) * late / time
 
 
 def _of_joints(group: Group, pairs: dict[str, tuple[Array, Array]]) -> dict[str, Array]:
@@ -137,7 +93,7 @@ def _of_joints(group: Group, pairs: dict[str, tuple[Array, Array]]) -> dict[str,
             np.take_along_axis(each, best, axis=1) for each in values
         )
         pairs[f"{joint}_peak"] = peak, apart
-        mean, unsure = (_by_turns(each["means"][:, own], machine.shares) for each in (of, error))
+        mean, unsure = (by_turns(each["means"][:, own], machine.shares) for each in (of, error))
         pairs[f"{joint}_mean"] = mean, unsure
     return angles
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from crankmbs.mechanics.torque import branch_of
+from crankmbs.numerics.once import once
 from crankmbs.scene.scene import Scene
 
 __all__ = ["Loads", "loads_of"]
@@ -16,6 +17,7 @@ _SAME = 1e-9  # rad: periods as long are the same
 _FASTER = 2.0  # times as fast as at the start: few runs are on average
 
 
+@once
 def loads_of(scene: Scene) -> Loads | None:
     """The loads of a scene whose motion is found together with others; None of another.
 

@@ -29,9 +29,9 @@ class Number(NamedTuple):
     value: Array
     size: Array
 
-    def over(self, divisor: float) -> Number:
-        """Divided by a number."""
-        return Number(self.value / divisor, self.size / abs(divisor))
+    def over(self, divisor: float | Array) -> Number:
+        """Divided by a number, or by many."""
+        return Number(self.value / divisor, self.size / np.abs(divisor))
 
     @property
     def summed(self) -> Number:

@@ -3,14 +3,14 @@ over time, of magnitudes too, and largest values.
 
 Cells end where pressures, loads over the angle or friction bend or jump, so that all is smooth in
 them. Integrals are those of the Gauss rule the motion was solved with. A magnitude bends where it
-comes near zero: there its parts are, as polynomials, integrated in panels that narrow towards its
-least value. A largest value is sought on the polynomial through the nodes and evaluated there.
+comes near zero: there its parts are, as polynomials, integrated piece by piece
+(`crankmbs.numerics.magnitudes`). A largest value is sought on the polynomial through the nodes and
+evaluated there.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -23,20 +23,16 @@ from crankmbs.motion.motion import Motion
 from crankmbs.motion.states import inner_samples, samples_in, variables_at
 from crankmbs.numerics.arrays import Array, Index
 from crankmbs.numerics.lagrange import Lagrange, ends_and_nodes
+from crankmbs.numerics.magnitudes import impulses, tops
 from crankmbs.numerics.once import once
 from crankmbs.scene.units import DEGREE
 
 __all__ = ["Nodes", "Tops", "nodes_of"]
 
 _WIDEST = 6.0 * DEGREE  # of a cell: in a wider one, of steps over time, forces are no polynomials
-_FINE = 6  # places a node at which polynomials are looked at
-_NEAR = 2.0  # a magnitude that comes nearer to zero than this part of what it changes by bends
-_PANELS = 20  # halvings of a cell towards the least value of a magnitude, on either side
-_POINTS = 6  # of Gauss in each of them
 _ANGLE = 1.0 / 16.0  # of ROUNDING: four units of rounding of an angle
 _HAIRS = np.arange(1.0, 5.0)  # places from the end of a cell at which a cubic is known there
 _TO_END = Lagrange(_HAIRS, np.empty(0)).basis(np.linspace(0.0, 1.0, 65)).T
-_REFINED = 3  # steps of a parabola towards the top of a polynomial
 
 Rows = Callable[[dict[str, Array]], Array]
 
@@ -104,10 +100,15 @@ class Nodes:
 
         parts : shape (q, c, p), their c components at the points
         """
-        total = np.sqrt((parts**2).sum(axis=1)) @ self.duration
+        total = np.zeros(len(parts))
         for block in self._blocks:
-            total += _bent(block, block.of(parts))
-        return np.asarray(total)
+            at, spent = block.of(parts).copy(), block.cells.spent
+            polynomials, hair = ends_and_nodes(spent.shape[1] - 2), block.cells.inner()[:, 0]
+            for end, inwards in ((0, hair), (-1, -hair)):  # from a hair inside to the very ends
+                at[..., end] -= inwards * (at @ polynomials.slopes[end])
+            sizes = np.sqrt((at**2).sum(axis=1))
+            total += impulses(polynomials, at[None], sizes[None], spent[None])[0]
+        return total
 
     def tops(self, rows: Rows) -> Tops:
         """The largest values of q quantities over the motion.
@@ -183,96 +184,19 @@ def _marks(train: CrankTrain, widest: float) -> tuple[Array, Array]:
 def _highest(cells: Cells, values: Array) -> tuple[Array, Index, Array, np.ndarray]:
     """The top of polynomials through values, shape (q, m, n): value, cell and place, and whether
     that is a hair from the end of the cell."""
-    n = len(cells.places)
-    polynomials, inner = ends_and_nodes(n - 2), cells.inner()
-    fine = np.linspace(0.0, 1.0, _FINE * n + 1)
+    polynomials, inner = ends_and_nodes(len(cells.places) - 2), cells.inner()
     highest, lowest = _extremes(values)
     # a polynomial goes hardly farther beyond its values than they lie apart
-    which, k = np.nonzero(2.0 * highest - lowest >= highest.max(axis=1, keepdims=True))
-    heights = values[which, k] @ polynomials.basis(fine).T
-    order = np.lexsort((-heights.max(axis=1), which))
-    first = order[np.searchsorted(which[order], np.arange(len(values)))]
-    cell, at = k[first], np.argmax(heights[first], axis=1)
-    x, step = fine[at], np.full(len(values), fine[1])
-    rows = values[np.arange(len(values)), cell]
-
-    def height(x: Array) -> Array:
-        return np.asarray(np.einsum("qn,qn->q", polynomials.basis(x), rows))
-
-    for _ in range(_REFINED):
-        x = np.clip(x, step, 1.0 - step)
-        low, middle, high = height(x - step), height(x), height(x + step)
-        bend = low - 2.0 * middle + high
-        with np.errstate(divide="ignore", invalid="ignore"):
-            ahead = np.where(bend < 0.0, 0.5 * (low - high) / bend, np.sign(high - low))
-        x, step = x + step * np.clip(ahead, -1.0, 1.0), 0.1 * step
-    hair = inner[cell, 0]
+    which, k = np.nonzero(~(2.0 * highest - lowest < highest.max(axis=1, keepdims=True)))
+    floor = lowest.min(axis=1)  # a magnitude is as high above it as a value
+    rows = (values[which, k] - floor[which, None]).T[:, None]
+    best = tops(polynomials, rows.copy(), np.searchsorted(which, np.arange(len(values))))
+    cell, x, hair = k[best.which], best.place, inner[k[best.which], 0]
     at_end = (x <= hair) | (x >= 1.0 - hair)
-    x = np.clip(x, hair, 1.0 - hair)
-    return height(x), cell, x, at_end
+    return best.size + floor, cell, np.clip(x, hair, 1.0 - hair), at_end
 
 
 def _extremes(values: Array) -> tuple[Array, Array]:
     """Largest and least along the last axis: ten times faster than along an axis of few."""
     first = np.moveaxis(values, -1, 0).copy()
     return first.max(axis=0), first.min(axis=0)
-
-
-def _bent(block: _Block, parts: Array) -> Array:
-    """What the rule of the cells misses of the magnitudes, shape (q,), of parts at their nodes,
-    shape (q, c, m, n), in those cells where they come near zero."""
-    cells = block.cells
-    n = len(cells.places)
-    polynomials = ends_and_nodes(n - 2)
-    fine = np.linspace(0.0, 1.0, _FINE * n + 1)
-    (most, least), (high, low) = _extremes((parts**2).sum(axis=1)), _extremes(parts)
-    near = least < _NEAR**2 * ((high - low) ** 2).sum(axis=1)
-    which, k = np.nonzero(near & (most > 0.0))
-    missed = np.zeros(len(parts))
-    if len(k) == 0:
-        return missed
-    rows = parts[which, :, k]  # (f, c, n)
-    slopes, hair = rows @ polynomials.slopes.T, cells.inner()[k, :1]
-    rows[..., 0] -= hair * slopes[..., 0]  # from a hair inside to the very ends
-    rows[..., -1] += hair * slopes[..., -1]
-    sizes = ((rows @ polynomials.basis(fine).T) ** 2).sum(axis=1)
-    x = _least(rows, fine[np.argmin(sizes, axis=1)], fine[1], n)
-    rows = np.concatenate([rows, cells.spent[k][:, None]], axis=1)
-    exact, (graded, weights) = 0.0, _graded(n)
-    for far in (0.0, 1.0):  # the part of the cell on either side of it, as a cell of its own
-        places = x[:, None] + (far - x)[:, None] * polynomials.places
-        basis = polynomials.basis(places.ravel()).reshape(*places.shape, n)
-        at = np.matmul(rows, basis.transpose(0, 2, 1)) @ graded.T
-        size = np.sqrt((at[:, :-1] ** 2).sum(axis=1))
-        exact = exact + np.abs(far - x) * ((size * at[:, -1]) @ weights)
-    by_rule = (np.sqrt((rows[:, :-1] ** 2).sum(axis=1)) * rows[:, -1]) @ cells.weights
-    np.add.at(missed, which, exact - by_rule)
-    return missed
-
-
-def _least(rows: Array, x: Array, step: float, n: int) -> Array:
-    """Where polynomial vectors, shape (f, c, n), are least, near places x, shape (f,)."""
-    polynomials = ends_and_nodes(n - 2)
-    slopes = rows @ polynomials.slopes.T
-    bends = slopes @ polynomials.slopes.T
-    low, high = np.clip(x - step, 0.0, 1.0), np.clip(x + step, 0.0, 1.0)
-    for _ in range(_REFINED + 3):
-        basis = polynomials.basis(x)
-        at, rise, bend = (np.einsum("fcn,fn->fc", r, basis) for r in (rows, slopes, bends))
-        slope = (at * rise).sum(axis=1)
-        steep = (rise**2 + at * bend).sum(axis=1)
-        moved = np.divide(slope, steep, out=np.zeros_like(slope), where=steep > 0.0)
-        x = np.clip(x - moved, low, high)
-    return x
-
-
-@cache
-def _graded(n: int) -> tuple[Array, Array]:
-    """Points of Gauss in panels of the unit interval that halve towards its begin: from values at
-    n places to those at the points, shape (points, n), and their weights."""
-    nodes, weights = np.polynomial.legendre.leggauss(_POINTS)
-    nodes, weights = 0.5 * (1.0 + nodes), 0.5 * weights
-    ends = np.concatenate([[0.0], 0.5 ** np.arange(_PANELS, -1, -1)])
-    points = ends[:-1, None] + np.diff(ends)[:, None] * nodes
-    shares = np.diff(ends)[:, None] * weights
-    return ends_and_nodes(n - 2).basis(points.ravel()), shares.ravel()

@@ -20,7 +20,15 @@ from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 from crankmbs.scene.scene import Scene
 
-__all__ = ["Measures", "efficiency", "fluctuation", "largest", "mean_speed", "measure"]
+__all__ = [
+    "Measures",
+    "efficiency",
+    "fluctuation",
+    "largest",
+    "mean_speed",
+    "measure",
+    "powers",
+]
 
 
 @dataclass(frozen=True)
@@ -173,8 +181,7 @@ def _numbers(scene: Scene, window: Span, motion: Motion) -> Numbers:
 
 def _powers(scene: Scene, window: Span, nodes: Nodes, late: float) -> Numbers:
     """Of gas and friction on the pistons; late : units of rounding of the duration."""
-    duration = nodes.motion.end - nodes.motion.begin
-    numbers, velocity = {}, nodes.variables["piston_velocity"]
+    velocity = nodes.variables["piston_velocity"]
     of_gas, rubbed = (
         Number(nodes.integral(power), late * nodes.integral(np.abs(power)))
         for power in (
@@ -182,11 +189,21 @@ def _powers(scene: Scene, window: Span, nodes: Nodes, late: float) -> Numbers:
             for name in ("gas_force", "friction_force")
         )
     )
-    area = scene.piston.gas_area
+    whole = window.kind in ("last cycle", "settled period")
+    cycles = abs(window.angle) / scene.period if whole else 0.0
+    return powers(scene, of_gas, rubbed, cycles, nodes.motion.end - nodes.motion.begin)
+
+
+def powers(
+    scene: Scene, of_gas: Number, rubbed: Number, cycles: float, duration: float | Array
+) -> Numbers:
+    """Powers, mean effective pressures and efficiency by the works of gas and friction on the
+    pistons, shape (cylinders,) [J], over so many cycles, 0 where they are not whole ones, in a
+    duration [s]."""
+    numbers, area = {}, scene.piston.gas_area
     if scene.gas is not None and area is not None:
         numbers["indicated_power"] = of_gas.summed.over(duration)
-        if window.kind in ("last cycle", "settled period"):
-            cycles = abs(window.angle) / scene.period
+        if cycles:
             shape = scene.crank.radius, scene.rod.length, scene.piston.offset
             top, bottom = close_loop(dead_centres(*shape), *shape).x
             numbers["imep"] = of_gas.over(cycles * area * float(top - bottom))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from functools import cache, cached_property
 from typing import NamedTuple
@@ -15,7 +14,6 @@ from crankmbs.numerics.arrays import Array
 __all__ = ["Maps", "Rule", "carried", "chain", "gauss", "summed"]
 
 _SWEEPS = 0.1  # of |h rate|: where no cell has more, sweeps solve it sooner than elimination
-_TOGETHER = 16  # cases: so many together are chained sooner cell by cell than each by itself
 _EPS = float(np.finfo(float).eps)
 
 
@@ -27,6 +25,13 @@ class Maps(NamedTuple):
     shift: Array
     growth: Array
     rise: Array
+
+    def composed(self) -> Maps:
+        """Of the energy at the begin of the first cell: at the nodes of all, and at their edges,
+        shape (..., m + 1)."""
+        grown, risen = (carried(self.growth, each, 0.0) for each in (self.growth, self.rise))
+        gain = self.gain * (1.0 + grown[..., :-1, None])
+        return Maps(gain, self.gain * risen[..., :-1, None] + self.shift, grown, risen)
 
 
 @dataclass(frozen=True)
@@ -58,6 +63,16 @@ class Rule:
             chebyshev[: len(of_legendre), j] = of_legendre
         return chebyshev[:, :s] @ self.to_legendre, chebyshev @ integral @ self.to_legendre
 
+    @cached_property
+    def _reach(self) -> Array:
+        """How large |u' rate| may be so that 0, 1, ... sweeps leave no more than rounding."""
+        reach, power = [0.0], self.matrix
+        while reach[-1] < _SWEEPS:
+            norm = float(np.abs(power).sum(axis=1).max())
+            reach.append((_EPS / norm) ** (1.0 / len(reach)))
+            power = power @ self.matrix
+        return np.array(reach[1:])
+
     def integrals(self, x: Array) -> Array:
         """Integrals of the s Lagrange polynomials from 0 to x: shape (n,) -> (n, s)."""
         return _legendre_integrals(x, len(self.nodes)) @ self.to_legendre
@@ -69,7 +84,7 @@ class Rule:
 
             y_i = E + sum over j of A_ij u'_j (push_j + rate_j y_j)
 
-        is solved by sweeps where |u' rate| is small throughout, else by elimination.
+        is solved by sweeps where |u' rate| is small throughout a case, else by elimination.
 
         turned : u', shape (..., m, s), or (..., m, 1) where a cell is passed evenly [rad]
         push, rate : shape (..., m, s) [N m, 1/rad], at the nodes
@@ -80,20 +95,21 @@ class Rule:
         '1.648721'
         """
         push, rate = turned * push, turned * rate
-        stiff = float(np.max(np.abs(rate), initial=0.0))
-        gain: Array = np.ones_like(push)
-        shift: Array = push @ self.matrix.T
-        if stiff > _SWEEPS or not math.isfinite(stiff):
-            system = np.eye(len(self.weights)) - self.matrix * rate[..., None, :]
-            both = np.linalg.solve(system, np.stack([gain, shift], axis=-1))
-            gain, shift = np.asarray(both[..., 0]), np.asarray(both[..., 1], np.float64)
-        elif stiff > 0.0:
-            first = shift
-            for _ in range(math.ceil(math.log(_EPS) / math.log(stiff))):
-                gain, shift = (
-                    1.0 + (rate * gain) @ self.matrix.T,
-                    first + (rate * shift) @ self.matrix.T,
-                )
+        gain, first = np.ones_like(push), push @ self.matrix.T
+        shift = first.copy()
+        stiff = np.abs(rate).max(axis=(-2, -1), initial=0.0)
+        steep = ~(stiff <= _SWEEPS)
+        if steep.any():
+            system = np.eye(len(self.weights)) - self.matrix * rate[steep][..., None, :]
+            both = np.linalg.solve(system, np.stack([gain[steep], first[steep]], axis=-1))
+            gain[steep], shift[steep] = both[..., 0], both[..., 1]
+        sweeps = np.where(steep, 0, np.searchsorted(self._reach, stiff))
+        for done in range(sweeps.max(initial=0)):
+            left = sweeps > done  # of each case as many as it needs, whatever the others do
+            some = ... if left.all() else left
+            more = rate[some] * gain[some], rate[some] * shift[some]
+            gain[some] = 1.0 + more[0] @ self.matrix.T
+            shift[some] = first[some] + more[1] @ self.matrix.T
         growth = (rate * gain) @ self.weights
         return Maps(gain, shift, growth, (push + rate * shift) @ self.weights)
 
@@ -130,23 +146,17 @@ def chain(growth: Array, rise: Array, start: float | Array) -> Array:
     array([1., 2., 7.])
     """
     rise = np.asarray(rise, dtype=np.float64)
-    cells, cases = rise.shape[-1], rise.shape[:-1]
-    edges = np.empty((*cases, cells + 1))
+    edges = np.empty((*rise.shape[:-1], rise.shape[-1] + 1))
     edges[..., 0], edges[..., 1:] = start, rise
     factors = 1.0 + np.broadcast_to(growth, rise.shape)
-    count = math.prod(cases)
-    if count > _TOGETHER:
-        along = np.moveaxis(edges, -1, 0)
-        for k, factor in enumerate(np.moveaxis(factors, -1, 0)):
-            along[k + 1] += factor * along[k]
+    if rise.ndim > 1:
+        whole = np.cumprod(factors, axis=-1)
+        begin = np.asarray(start)[..., None]
+        edges[..., 1:] = whole * (begin + np.cumsum(rise / whole, axis=-1))
         return edges
-    band = np.zeros((2, cells + 1), order="F")
-    # a triangle of two diagonals, of which the first is 1
-    pairs = zip(edges.reshape(count, cells + 1), factors.reshape(count, cells), strict=True)
-    for case, factor in pairs:
-        np.negative(factor, out=band[1, :-1])
-        case[:] = dtbsv(1, band, case, lower=1, diag=1)
-    return edges
+    band = np.zeros((2, len(edges)), order="F")  # a triangle of two diagonals, of which one is 1
+    np.negative(factors, out=band[1, :-1])
+    return np.asarray(dtbsv(1, band, edges, lower=1, diag=1))
 
 
 def summed(series: Array, x: Array) -> Array:
@@ -173,9 +183,8 @@ def carried(
 
     surplus : shape (..., m), of the rises, so little that they cannot hold it
 
-    >>> edges = carried(np.zeros(1000), np.full(1000, 0.1), 0.0)
-    >>> float(edges[-1]) == math.fsum([0.1] * 1000)
-    True
+    >>> float(carried(np.zeros(1000), np.full(1000, 0.1), 0.0)[-1])
+    100.0
     """
     edges = chain(growth, rise, start)
     missed = np.diff(edges, axis=-1) - (growth * edges[..., :-1] + rise) + surplus

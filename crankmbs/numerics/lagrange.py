@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from functools import cache
+from functools import cache, cached_property
 
 import numpy as np
 
 from crankmbs.numerics.arrays import Array, Index
-from crankmbs.numerics.collocation import gauss
+from crankmbs.numerics.collocation import gauss, summed
 from crankmbs.numerics.roots import invert_monotone
 
-__all__ = ["Lagrange", "ends_and_nodes"]
+__all__ = ["Lagrange", "at_nodes", "ends_and_nodes"]
 
 
 class Lagrange:
@@ -41,6 +41,29 @@ class Lagrange:
         """
         return np.asarray(self._chebyshev(x) @ self._series)
 
+    def series(self, values: Array, derivatives: int = 0) -> Array:
+        """Chebyshev series on the unit interval of polynomials through values, shape (n, ...), and
+        of so many derivatives, up to two: shape (n, 1 + derivatives, ...), as
+        `crankmbs.numerics.collocation.summed` takes them."""
+        return np.asarray(
+            np.einsum("dkn,n...->dk...", self._to_series[:, : 1 + derivatives], values)
+        )
+
+    def part(self, values: Array, low: Array | float, high: Array | float) -> Array:
+        """Values at the places of parts of the unit interval from low to high, shape (p,), as
+        cells of their own: shape (n, ..., p) -> (n, ..., p)."""
+        places = self.places.reshape(-1, *np.ones(values.ndim - 1, np.intp))
+        return summed(self.series(values)[:, 0], low + (high - low) * places)
+
+    @cached_property
+    def _to_series(self) -> Array:
+        """Of the polynomial and two derivatives, shape (n, 3, n)."""
+        last = np.polynomial.chebyshev.chebvander(2.0 * self.places - 1.0, len(self.places) - 1)
+        matrices = [np.linalg.inv(last)]
+        for _ in range(2):
+            matrices.append(matrices[-1] @ self.slopes)
+        return np.stack(matrices, axis=1)
+
     def _chebyshev(self, x: Array) -> Array:
         first, last = self.places[0], self.places[-1]
         z = (2.0 * x - (first + last)) / (last - first)
@@ -61,6 +84,17 @@ class Lagrange:
             return np.einsum("pn,pn->p", basis, some), np.einsum("pn,pn->p", basis, slopes)
 
         return invert_monotone(at, values - rows[k, 0], np.zeros(len(k)), np.ones(len(k)))
+
+
+@cache
+def at_nodes(stages: int) -> Lagrange:
+    """Through the nodes of a Gauss rule.
+
+    >>> at_nodes(2).basis(np.array([0.5]))
+    array([[0.5, 0.5]])
+    """
+    rule = gauss(stages)
+    return Lagrange(rule.nodes, rule.weights)
 
 
 @cache

@@ -17,7 +17,7 @@ from crankmbs.mechanics.torque import Branch
 from crankmbs.motion.crank_angle.grid import Grid, Strip
 from crankmbs.motion.crank_angle.solvers import surplus
 from crankmbs.numerics.arrays import Array
-from crankmbs.numerics.collocation import carried, chain
+from crankmbs.numerics.collocation import carried
 
 __all__ = ["Period", "Skipped", "period_of"]
 
@@ -65,6 +65,8 @@ class Period(NamedTuple):
                 break
             total += float(np.sum(energies[:count]))
             energy, clock, done = float(energies[count]), spent[count - 1], done + count
+            if ended < block:
+                break
         return Skipped(done, energy, total / max(done, 1), float(clock))
 
 
@@ -73,9 +75,7 @@ def period_of(grid: Grid, strip: Strip, branch: Branch, sense: float) -> Period:
     rule, inertia = grid.rule, strip.inertia
     push, rate = strip.torque + branch.c0, 2.0 * branch.c2 / inertia
     maps = rule.maps(sense * strip.pace, push, rate)
-    grown, risen = chain(maps.growth, np.stack([maps.growth, maps.rise]), np.zeros(2))
-    gain = maps.gain * (1.0 + grown[:-1, None])
-    shift = maps.gain * risen[:-1, None] + maps.shift
+    gain, shift, grown, _ = maps.composed()
     weight = np.sqrt(0.5 * inertia) * strip.pace * rule.weights
     with np.errstate(divide="ignore", invalid="ignore"):
         left = (1.0 + grown[-1]) / (1.0 + grown[1:])  # what the rest of the period makes of it
