@@ -11,7 +11,7 @@ import numpy as np
 from crankmbs.mechanics.geometry import close_loop, top_position
 from crankmbs.mechanics.peaks import peak
 from crankmbs.mechanics.speed import SpeedLaw
-from crankmbs.mechanics.variables import EVERY
+from crankmbs.mechanics.variables import EVERY, SUMS
 from crankmbs.mechanics.windows import Phase
 from crankmbs.motion.account import Account
 from crankmbs.motion.base import Samples, Solution, State
@@ -21,9 +21,9 @@ from crankmbs.motion.plan import Plan
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.cycle import NEAR
 
-__all__ = ["Answers", "Course", "residual", "rounding", "sample", "solution"]
+__all__ = ["Answers", "Course", "rounding", "sample", "solution"]
 
-_ROUNDING = 1e-11
+_ROUNDING = 1e-12
 
 _MOTION = ("time", "crank_angle", "crank_speed", "crank_acceleration", "energy_residual")
 _GAUSS = np.polynomial.legendre.leggauss(4)
@@ -77,19 +77,17 @@ def sample(plan: Plan, course: Course, end: float | None) -> tuple[Array, Array]
     return time[first:], theta[first:]
 
 
-def residual(values: dict[str, Array], begin: dict[str, Array], work: Array) -> Array:
-    """Kinetic energy gained since the begin less all work [J]; takes "fallen" out."""
-    gained = values["kinetic_energy"] - begin["kinetic_energy"]
-    return np.asarray(gained - (values.pop("fallen") - begin["fallen"]) - work)
-
-
 def rounding(values: dict[str, Array]) -> dict[str, float]:
-    """What is left of every variable where nothing else errs: 1e-11 of the largest of its unit."""
+    """What is left of every variable where nothing else errs: 1e-12 of its peak; of sums that may
+    cancel of the largest of their unit, of the energy residual 1e-14 of the kinetic energy."""
+    peaks = {name: peak(each) for name, each in values.items()}
     largest: dict[str, float] = {}
-    for name, each in values.items():
+    for name, size in peaks.items():
         unit = EVERY[name].units
-        largest[unit] = max(largest.get(unit, 0.0), peak(each))
-    return {name: _ROUNDING * largest[EVERY[name].units] for name in values}
+        largest[unit] = max(largest.get(unit, 0.0), size)
+    sizes = {n: largest[EVERY[n].units] if n in SUMS else size for n, size in peaks.items()}
+    least = {name: _ROUNDING * size for name, size in sizes.items()}
+    return least | {"energy_residual": 0.01 * least["kinetic_energy"]}
 
 
 def solution(
@@ -125,15 +123,30 @@ class Answers:
         shares = self._shares(time, theta)
         gas = self._forces.gas(theta, shares)
         friction = self._forces.friction(theta, omega, gas, _senses(theta, omega))
-        if alpha is not None:
+        torque = None
+        if alpha is None:
+            torque = self._forces.torque(time, theta, omega, self._acts(time))
+        values = self.under((gas, friction), torque, theta, omega, alpha)
+        return values | {"time": time} | ({} if shares is None else {"fuel": shares})
+
+    def under(
+        self,
+        pushes: tuple[Array, Array],
+        torque: Array | None,
+        theta: Array,
+        omega: Array,
+        alpha: Array | None,
+    ) -> dict[str, Array]:
+        """The same under given forces of gas and friction [N] and torque [N m]."""
+        gas, friction = pushes
+        if torque is None:
+            assert alpha is not None
             found = self._model.driven(theta, omega, alpha, gas + friction)
         else:
-            torque = self._forces.torque(time, theta, omega, self._acts(time))
             found = self._model.states(theta, omega, gas + friction, torque)
-        values = {"time": time, "crank_angle": theta, "crank_speed": omega}
-        values |= self._of_bodies(found, omega) | self._of_joints(found)
+        values = {"crank_angle": theta, "crank_speed": omega}
+        values |= self._of_bodies(found) | self._of_joints(found)
         values |= {"gas_force": gas, "gas_pressure": gas / (self._scene.piston.gas_area or 1.0)}
-        values |= {} if shares is None else {"fuel": shares}
         return values | ({} if self._scene.friction is None else {"friction_force": friction})
 
     def work(self, course: Course, edges: Array, law: SpeedLaw | None = None) -> Array:
@@ -169,10 +182,11 @@ class Answers:
             return None
         k = np.searchsorted(self._edges, time, side="right")
         angles = np.array([state.theta for state in self._states])
-        k = np.where((k > 0) & (np.abs(theta - angles[k]) < NEAR), k - 1, k)
+        for _ in range(2):  # where something else is cut at the same angle, too
+            k = np.where((k > 0) & (np.abs(theta - angles[k]) < NEAR), k - 1, k)
         return np.array([state.mode.shares for state in self._states])[k]
 
-    def _of_bodies(self, found: Consistent, omega: Array) -> dict[str, Array]:
+    def _of_bodies(self, found: Consistent) -> dict[str, Array]:
         """Motion of all bodies, energy, and what they do to the frame by the balance of momentum:
 
             force = sum m (g - a)

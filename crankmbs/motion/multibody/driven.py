@@ -12,7 +12,7 @@ from crankmbs.motion.account import Account
 from crankmbs.motion.base import Samples, Solution
 from crankmbs.motion.driven import Way, driven, driven_observer
 from crankmbs.motion.ending import Ending
-from crankmbs.motion.multibody.answer import Answers, residual, rounding, sample, solution
+from crankmbs.motion.multibody.answer import Answers, rounding, sample, solution
 from crankmbs.motion.multibody.forces import Forces
 from crankmbs.motion.multibody.model import Model
 from crankmbs.motion.observer import account_of
@@ -62,7 +62,8 @@ def run(train: CrankTrain) -> Solution:
         begin = _values(answers, law, np.zeros(1), np.array([plan.start]))
         edges = np.unique(np.concatenate([time, *(piece.nodes().edges for piece in pieces)]))
         work = answers.work(course, edges, law)[np.searchsorted(edges, time)]
-        values["energy_residual"] = residual(values, begin, work)
+        gained = values["kinetic_energy"] - begin["kinetic_energy"]
+        values["energy_residual"] = gained - (values.pop("fallen") - begin["fallen"]) - work
         errors = _errors(answers, law, values, by_angle=not plan.in_time)
         account = _account(train, answers, law, stretches, rests=not reached)
     finally:
@@ -90,7 +91,8 @@ def _errors(
         else:
             theta = law.off.at_time(time)[0]
         found = _values(answers, law.off, time, theta)
-        off = {name: peak(found.get(name, each) - each) for name, each in values.items()}
+        off |= {name: peak(found[name] - each) for name, each in values.items() if name in found}
+    off["energy_residual"] = peak(values["energy_residual"])
     return {name: off[name] + least for name, least in rounding(values).items()}
 
 

@@ -26,7 +26,7 @@ __all__ = ["Limits", "Path", "acceleration", "integrate"]
 _BESIDE = 1e-10  # of a speed: so near it is on it
 _ON = 1e-11  # rad
 _SAME = 1e-12  # relative: times nearer than this are one
-_ENTRY = 10  # steps that the begin of a stretch counts as
+_ENTRY = 50  # steps that the begin of a stretch counts as
 _MOST_SPEEDS = 100  # cuts at speeds in a run; beyond, the loads are run over as they are
 
 
@@ -119,10 +119,10 @@ def integrate(
     return Path(rows, tuple(states), ending, whole, steps, iterations)
 
 
-def acceleration(model: Model, forces: Forces, state: State) -> float:
-    """Crank acceleration [rad/s2] with which a crank leaves a state; 0 where it is held."""
+def acceleration(model: Model, forces: Forces, state: State) -> float | None:
+    """Crank acceleration [rad/s2] with which a crank leaves a state; None where it is held."""
     entered = _enter(model, forces, state, 0.0)
-    return 0.0 if entered is None else float(entered[1].acceleration[0, 2])
+    return None if entered is None else float(entered[1].acceleration[0, 2])
 
 
 def _enter(

@@ -31,9 +31,10 @@ _ALPHA_M = (2.0 * _SPECTRAL_RADIUS - 1.0) / (_SPECTRAL_RADIUS + 1.0)
 _ALPHA_F = _SPECTRAL_RADIUS / (_SPECTRAL_RADIUS + 1.0)
 _GAMMA = 0.5 + _ALPHA_F - _ALPHA_M
 _BETA = 0.25 * (_GAMMA + 0.5) ** 2
-# relative, of Newton's method: where forces are small beside what they cancel the first may lie
-# below what some processors round; 1e-8 leaves errors that no halving shows, and passes near folds
-_TOLERANCES = (1e-10, 1e-9)
+# of Newton's method, relative, and absolute as a share of the largest joint force at the start:
+# where forces are small beside what they cancel the first may lie below what is rounded; a relative
+# 1e-8 leaves errors that no halving shows, and passes near folds
+_TOLERANCES = ((1e-10, 1e-16), (1e-9, 1e-11))
 _BLOCK = 1000  # states that are solved for together
 
 
@@ -131,7 +132,7 @@ class Model:
         self.scene, self.mechanism = scene, mechanism_of(scene)
         self.torque: Callable[[float, float, float], float] = lambda time, theta, omega: 0.0
         self.pushes: Sequence[Callable[[float, float], float]] = ()
-        self._begin = 0.0
+        self._begin = self._largest = 0.0
         pushed = scene.gas is not None or scene.friction is not None
         self._container, self._system = build(
             self.mechanism, self._push if pushed else None, self._torque
@@ -161,8 +162,9 @@ class Model:
         push = [each(theta, speed) for each, speed in zip(self.pushes, speeds, strict=True)]
         return self.states(at, faster, np.array([push]), torque)
 
-    def _quiet_start(self, state: tuple[float, float, float], step: float) -> tuple[Array, ...]:
-        """Position, velocity and acceleration from which the multipliers do not ring.
+    def _quiet_start(self, state: tuple[float, float, float], step: float) -> tuple[Any, ...]:
+        """The crank's acceleration, and position, velocity and acceleration from which the
+        multipliers do not ring.
 
         With the jerk j the method's own smooth solution has, to the order of h^2, the velocity
         v - (1/12 + (alpha_f - alpha_m)^2 / 4) h^2 j and the algorithmic acceleration
@@ -171,6 +173,7 @@ class Model:
         """
         time, theta, omega = state
         here = self.start(*state)
+        self._largest = max(self._largest, float(np.abs(here.hinges).max()))
         alpha = float(here.acceleration[0, 2])
         sides = [
             self.start(time + t, theta + (omega + 0.5 * alpha * t) * t, omega + alpha * t)
@@ -181,7 +184,7 @@ class Model:
         position = here.position[0] + step**2 * (0.5 - _GAMMA + _BETA) * late
         shifted = step**2 * (1.0 / 12.0 + 0.25 * (_ALPHA_F - _ALPHA_M) ** 2) * jerk
         velocity = here.velocity[0] - shifted - step * (1.0 - _GAMMA) * late
-        return position, velocity, here.acceleration[0] + _ALPHA_M * step * jerk
+        return alpha, position, velocity, here.acceleration[0] + _ALPHA_M * step * jerk
 
     def run(
         self,
@@ -213,19 +216,19 @@ class Model:
             if any(abs(self._q.item(at) - bank) > 0.5 * np.pi for at, bank in rods):
                 return False
             row = begin + step * len(rows), self._q.item(2), self._v.item(2), self._a.item(2)
-            rows.append(row if rows else first)
+            rows.append(row if rows else (*state, alpha))
             outside = len(rows) > 1 and not inside(*row[:3])
             return not outside
 
         begin = self._begin = state[0]
-        start = self._quiet_start(state, step)
-        first = (*state, float(self.start(*state).acceleration[0, 2]))
+        alpha, *start = self._quiet_start(state, step)
         self._system.SetPreStepUserFunction(note)
         settings = _settings(step, most, stiff=stiff)
         iterations, solved = 0, False
-        for tolerance in _TOLERANCES:
+        newton = settings.timeIntegration.newton
+        for newton.relativeTolerance, share in _TOLERANCES:
             rows.clear()
-            settings.timeIntegration.newton.relativeTolerance = tolerance
+            newton.absoluteTolerance = max(share * self._largest, 1e-12)
             data.SetODE2Coordinates(start[0], initial)
             data.SetODE2Coordinates_t(start[1], initial)
             data.SetODE2Coordinates_tt(start[2], initial)
@@ -378,7 +381,6 @@ def _settings(step: float, most: int = 1, *, stiff: bool = False) -> Any:
     integration.generalizedAlpha.resetAccelerations = False
     integration.newton.useModifiedNewton = True
     integration.newton.modifiedNewtonJacUpdatePerStep = True  # a third less time than full Newton
-    integration.newton.absoluteTolerance = 1e-12
     integration.computeLoadsJacobian = 2 if stiff else 0
     settings.solution.file.write = False
     settings.linearSolver.solverType = exu.LinearSolverType.EXUdense

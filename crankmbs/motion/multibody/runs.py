@@ -153,15 +153,17 @@ class Runs:
         """Whether the steps suffice for one more."""
         return self.steps + 2 * self.paths[-1].steps <= self._limits.steps
 
-    def motions(self) -> tuple[Motion, Motion]:
+    def motions(self) -> tuple[Motion, Motion | None]:
         """The answer, and a motion as far off as it may be.
 
         With f, f', f'' the last three runs, coarse to fine, the answer is f'' + (f'' - f')/3 where
         that differs from f' + (f' - f)/3 by at most a third of f'' - f', and loads jump nowhere
         within a step; the check is off by half of what these two differ by. Else the answer is f'',
-        and the check is off by half as much again as f'' - f'.
+        and the check is off by half as much again as f'' - f'. Of one run there is no check.
         """
         *coarser, fine = self.paths[-3:]
+        if not coarser:
+            return Motion((fine,), (1.0,)), None
         if len(coarser) == 2 and fine.whole and self._is_clean():
             c = _CLEAN
             answer = Motion((coarser[1], fine), (-1.0 / 3.0, 4.0 / 3.0))
@@ -193,8 +195,10 @@ class Runs:
         speed, end = abs(self.start.omega), self._limits.time
         moves = True
         if speed == 0.0:
-            alpha = abs(acceleration(self.model, self.forces, self.start))
-            moves = alpha > _STUCK or not all(load.is_steady for load in self._train.scene.torque)
+            leaves = acceleration(self.model, self.forces, self.start)
+            alpha = abs(leaves or 0.0)
+            steady = all(load.is_steady for load in self._train.scene.torque)
+            moves = leaves is None or alpha > _STUCK or not steady
             speed = min(math.sqrt(4.0 * math.pi * alpha), alpha * end)
         turn = 2.0 * math.pi / speed if speed > 0.0 else math.inf
         longest = 1.0 if math.isinf(end) else end - self.start.time
