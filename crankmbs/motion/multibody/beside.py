@@ -1,0 +1,98 @@
+"""The model beside a motion that another formulation found: from one state on, and at states."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from crankmbs.mechanics.firing import Firing
+from crankmbs.mechanics.train import CrankTrain
+from crankmbs.mechanics.windows import Phases
+from crankmbs.motion.base import State
+from crankmbs.motion.mode import Mode
+from crankmbs.motion.multibody.answer import Answers
+from crankmbs.motion.multibody.forces import Forces
+from crankmbs.motion.multibody.free import follow
+from crankmbs.motion.multibody.model import Model
+from crankmbs.numerics.arrays import Array
+
+__all__ = ["Shares", "consistent", "integrated"]
+
+_NEAR = 1e-8  # rad
+
+
+class Shares(NamedTuple):
+    """Shares of the combustion as they are known: in place of a law of decisions.
+
+    angles : shape (n,) [rad], increasing, at which they change; rows : before the first and after
+        each, shape (n + 1, cylinders)
+    """
+
+    angles: Array
+    rows: Array
+
+    def next(self, firing: Firing) -> tuple[float, float]:
+        """Crank angles [rad], backwards and forwards, at which they change next."""
+        ends = np.concatenate([[-np.inf], self.angles, [np.inf]])
+        k = int(np.searchsorted(self.angles, firing.theta + _NEAR * np.sign(firing.integral)))
+        return float(ends[k]), float(ends[k + 1])
+
+    def decided(self, firing: Firing, time: float, theta: float, omega: float) -> Firing:
+        """What holds from a crank angle on, in the sense in which it is passed."""
+        return self.at(time, theta, omega)
+
+    def at(self, time: float, theta: float, omega: float) -> Firing:
+        """What holds at a state; its ``integral`` is the sense of rotation."""
+        sense = float(np.sign(omega))
+        k = int(np.searchsorted(self.angles, theta + _NEAR * sense))
+        return Firing(tuple(self.rows[k].tolist()), time, theta, sense, None, False, theta, theta)
+
+
+def integrated(
+    train: CrankTrain,
+    state: tuple[float, float, float],
+    phases: Phases,
+    shares: Shares | None,
+    times: Array,
+    rtol: float,
+    steps: int,
+) -> tuple[dict[str, Array], dict[str, float]]:
+    """Every variable of a free crank at later times [s], shape (m,), integrated from a time [s],
+    crank angle [rad] and speed [rad/s]; and the error of each.
+
+    phases : of the loads' windows; shares : of the combustion; rtol, steps : asked, and allowed
+
+    Raises
+    ------
+    FormulationError : exudyn cannot take a single step from there
+    """
+    mode = Mode(phases)
+    if shares is not None:
+        train, firing = replace(train, law=shares), shares.at(*state)
+        mode = Mode(phases, *shares.next(firing), firing)
+    return follow(train, State(*state, 0.0, mode), times, rtol, steps)
+
+
+def consistent(
+    train: CrankTrain, motion: dict[str, Array], *, driven: bool
+) -> dict[str, Array]:
+    """Accelerations, multipliers and all that follows from them at states of a motion.
+
+    motion : at states of shape (m,), "crank_angle", "crank_speed"; of a driven crank its
+        "crank_acceleration", else "external_torque"; "fuel" and, for a crank at rest,
+        "friction_force" where there are
+    """
+    theta, omega = motion["crank_angle"], motion["crank_speed"]
+    model, forces = Model(train.scene), Forces(train)
+    try:
+        gas = forces.gas(theta, motion.get("fuel"))
+        friction = forces.friction(theta, omega, gas, np.sign(omega))
+        if "friction_force" in motion:
+            friction = np.where(omega[:, None] == 0.0, motion["friction_force"], friction)
+        torque = None if driven else motion["external_torque"]
+        alpha = motion["crank_acceleration"] if driven else None
+        return Answers(model, forces, ()).under((gas, friction), torque, theta, omega, alpha)
+    finally:
+        model.close()
