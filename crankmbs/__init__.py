@@ -9,6 +9,7 @@ import types
 
 from crankmbs.choose import Choice, choose
 from crankmbs.compare import AtAngle, Budget, Comparison, Reading, at_angle, budget, compare
+from crankmbs.compare.confirm import Confirmation, confirm
 from crankmbs.design import Balance, Flywheel, balance, flywheel, freed
 from crankmbs.errors import (
     CrankmbsError,
@@ -126,6 +127,7 @@ __all__ = [
     "budget",
     "choose",
     "compare",
+    "confirm",
     "engine_orders",
     "export",
     "flywheel",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+
 import numpy as np
 
 from crankmbs.cli.text import table
@@ -38,7 +39,13 @@ def report(name: str, result: Result, measures: Measures) -> str:
 def comparison(result: Result, found: Confirmation) -> str:
     """What exudyn's rigid bodies say of a run: the answer, and the differences behind it."""
     several = result.data.sizes["cylinder"] > 1
-    headings = ["over the last cycle", "largest", "at crank angle [deg]", "error run", "error exudyn"]
+    headings = [
+        "over the last cycle",
+        "largest",
+        "at crank angle [deg]",
+        "error run",
+        "error exudyn",
+    ]
     lines = []
     for row in found.period:
         largest, sample, column = row.largest

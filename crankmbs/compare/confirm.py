@@ -149,7 +149,9 @@ def confirm(result: Result) -> Confirmation:
     True
     """
     if result.formulation == "multibody":
-        raise InputError("a run of multibody is not confirmed by itself; choose another formulation")
+        raise InputError(
+            "a run of multibody is not confirmed by itself; choose another formulation"
+        )
     train, missing = crank_train(result.scene), []
     period: tuple[Difference, ...] = ()
     window = math.nan, math.nan
@@ -195,7 +197,7 @@ def _last_period(
         begin += _LATE * (end - begin)
     times = begin + (end - begin) * (np.arange(_PLACES) + 0.5) / _PLACES
     states = part.at(times, in_time=True)
-    ours = states.variables(train)
+    ours = states.variables(part.train)
     if result.scene.motion is not None:
         theirs = beside.consistent(train, ours, driven=True) | {"time": times}
         errors = dict.fromkeys(theirs, 0.0)

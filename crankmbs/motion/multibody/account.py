@@ -80,6 +80,8 @@ def _pieces(motion: Motion, answers: Answers, states: tuple[State, ...]) -> Iter
     for begin, end in pairwise(states):
         inside = turns[(turns > begin.time) & (turns < end.time)]
         angles = motion.at(inside)[0].tolist() if len(inside) else []
-        turned = [State(t, a, 0.0, 0.0, begin.mode) for t, a in zip(inside.tolist(), angles, strict=True)]
+        turned = [
+            State(t, a, 0.0, 0.0, begin.mode) for t, a in zip(inside.tolist(), angles, strict=True)
+        ]
         for first, last in pairwise([begin, *turned, end]):
             yield _Piece(motion, answers, first, last)

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from typing import Protocol
 
 import numpy as np
 
-from crankmbs.mechanics.geometry import close_loop, top_position
+from crankmbs.mechanics.geometry import top_position
 from crankmbs.mechanics.peaks import peak
 from crankmbs.mechanics.speed import SpeedLaw
 from crankmbs.mechanics.variables import EVERY, SUMS
@@ -69,7 +68,9 @@ def sample(plan: Plan, course: Course, end: float | None) -> tuple[Array, Array]
     time, theta = np.concatenate(times), np.concatenate(angles)
     final = float(course.at(np.array([until]))[0][0]) if end is None else end
     near = np.abs(time - until) if plan.in_time else np.abs(theta - final)
-    last = (time >= until * (1.0 - 1e-12)) | (near <= plan.hair) & (np.arange(len(time)) == len(time) - 1)
+    last = (time >= until * (1.0 - 1e-12)) | (near <= plan.hair) & (
+        np.arange(len(time)) == len(time) - 1
+    )
     last[0] = False
     time, theta = np.append(time[~last], until), np.append(theta[~last], final)
     far = np.flatnonzero(np.abs(theta - final) > plan.last * (1.0 + 1e-12))
@@ -115,7 +116,9 @@ class Answers:
         self._edges = np.array([state.time for state in states[1:-1]])
         self._banks = np.array([cylinder.bank for cylinder in self._scene.cylinders])
 
-    def at(self, time: Array, theta: Array, omega: Array, alpha: Array | None = None) -> dict[str, Array]:
+    def at(
+        self, time: Array, theta: Array, omega: Array, alpha: Array | None = None
+    ) -> dict[str, Array]:
         """All variables but the energy residual, shape (m,) or (m, n).
 
         alpha [rad/s2] : of a prescribed motion
@@ -189,8 +192,8 @@ class Answers:
     def _of_bodies(self, found: Consistent) -> dict[str, Array]:
         """Motion of all bodies, energy, and what they do to the frame by the balance of momentum:
 
-            force = sum m (g - a)
-            moment = torque + sum r x m (g - a) - sum I rate of spin
+        force = sum m (g - a)
+        moment = torque + sum r x m (g - a) - sum I rate of spin
         """
         scene, bodies = self._scene, self._model.mechanism.bodies
         n = len(self._banks)

@@ -8,17 +8,18 @@ from typing import NamedTuple
 import numpy as np
 
 from crankmbs.mechanics.firing import Firing
+from crankmbs.mechanics.speed import speed_law
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.windows import Phases
 from crankmbs.motion.base import State
 from crankmbs.motion.mode import Mode
 from crankmbs.motion.multibody.answer import Answers
-from crankmbs.motion.multibody.forces import Forces
+from crankmbs.motion.multibody.forces import EVERYWHERE, Bounds, Forces
 from crankmbs.motion.multibody.free import follow
 from crankmbs.motion.multibody.model import Model
 from crankmbs.numerics.arrays import Array
 
-__all__ = ["Shares", "consistent", "integrated"]
+__all__ = ["Shares", "consistent", "initial", "integrated"]
 
 _NEAR = 1e-8  # rad
 
@@ -75,9 +76,7 @@ def integrated(
     return follow(train, State(*state, 0.0, mode), times, rtol, steps)
 
 
-def consistent(
-    train: CrankTrain, motion: dict[str, Array], *, driven: bool
-) -> dict[str, Array]:
+def consistent(train: CrankTrain, motion: dict[str, Array], *, driven: bool) -> dict[str, Array]:
     """Accelerations, multipliers and all that follows from them at states of a motion.
 
     motion : at states of shape (m,), "crank_angle", "crank_speed"; of a driven crank its
@@ -96,3 +95,25 @@ def consistent(
         return Answers(model, forces, ()).under((gas, friction), torque, theta, omega, alpha)
     finally:
         model.close()
+
+
+def initial(train: CrankTrain, step: float) -> tuple[Array, Array, Array]:
+    """Coordinates at the start of a scene, their velocities and accelerations, from which a run
+    with steps of this length [s] does not ring; of a prescribed speed a constant one."""
+    scene, model, forces = train.scene, Model(train.scene), Forces(train)
+    law = None if scene.motion is None else speed_law(scene.motion)
+    if law is not None:
+        theta, omega, _ = (float(each) for each in law.at_time(0.0))
+    else:
+        assert scene.start is not None
+        theta, omega = scene.start.angle, scene.start.speed
+    bounds = Bounds(EVERYWHERE, EVERYWHERE, EVERYWHERE)
+    model.torque, model.pushes = (
+        forces.load(bounds, Mode()),
+        forces.pushes(bounds, Mode(), theta, 1.0),
+    )
+    try:
+        _, *found = model.quiet_start((0.0, theta, omega), step, driven=law is not None)
+    finally:
+        model.close()
+    return tuple(found)

@@ -230,8 +230,11 @@ def _around(stops: Sequence[float], x: float, sense: float) -> Range:
 def _straight(function: Scalar, low: float, high: float) -> Scalar:
     """A function of the angle [rad] between two ends, and straight on beyond."""
     high -= 2.0 * KNOT
-    ends = {x: (function(x), (function(x + d) - function(x)) / d)
-            for x, d in ((low, _SLOPE), (high, -_SLOPE)) if math.isfinite(x)}
+    ends = {
+        x: (function(x), (function(x + d) - function(x)) / d)
+        for x, d in ((low, _SLOPE), (high, -_SLOPE))
+        if math.isfinite(x)
+    }
 
     def value(theta: float) -> float:
         if low <= theta <= high:

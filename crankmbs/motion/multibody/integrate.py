@@ -175,7 +175,10 @@ def _cut(rows: Array, bounds: Bounds) -> tuple[Array, float]:
     angle = _coefficients(theta, theta1, h * omega, h * omega1)
     speed = _coefficients(omega, omega1, h * alpha, h * alpha1)
     met = [(min((bounds.times[1] - t) / h, 1.0), 0, bounds.times[1], 0.0)]
-    for column, cubic, value, ends in ((1, angle, theta1, bounds.angles), (2, speed, omega1, bounds.speeds)):
+    for column, cubic, value, ends in (
+        (1, angle, theta1, bounds.angles),
+        (2, speed, omega1, bounds.speeds),
+    ):
         for bound, sign in zip(ends, (-1.0, 1.0), strict=True):
             if sign * (value - bound) > 0.0:
                 met.append((_root(cubic, bound), column, bound, sign))

@@ -21,14 +21,14 @@ from crankmbs.motion.multibody.mechanism import Mechanism, closed, mechanism_of
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 
-__all__ = ["Consistent", "Model", "build"]
+__all__ = ["SPECTRAL_RADIUS", "Consistent", "Model", "build", "settings_of"]
 
 exu: Any = exudyn  # its stubs are narrower than what it takes
 eii: Any = itemInterface
 
-_SPECTRAL_RADIUS = 0.9  # cleanly of order 2, so that extrapolation pays; 0.6 is not
-_ALPHA_M = (2.0 * _SPECTRAL_RADIUS - 1.0) / (_SPECTRAL_RADIUS + 1.0)
-_ALPHA_F = _SPECTRAL_RADIUS / (_SPECTRAL_RADIUS + 1.0)
+SPECTRAL_RADIUS = 0.9  # cleanly of order 2, so that extrapolation pays; 0.6 is not
+_ALPHA_M = (2.0 * SPECTRAL_RADIUS - 1.0) / (SPECTRAL_RADIUS + 1.0)
+_ALPHA_F = SPECTRAL_RADIUS / (SPECTRAL_RADIUS + 1.0)
 _GAMMA = 0.5 + _ALPHA_F - _ALPHA_M
 _BETA = 0.25 * (_GAMMA + 0.5) ** 2
 # of Newton's method, relative, and absolute as a share of the largest joint force at the start:
@@ -95,11 +95,8 @@ def build(
         )
     marker = system.AddMarker(eii.MarkerNodeCoordinate(nodeNumber=nodes["crank"], coordinate=2))
     system.AddLoad(
-        eii.LoadCoordinate(
-            markerNumber=marker, loadUserFunction=lambda _, time, load: torque(time)
-        )
+        eii.LoadCoordinate(markerNumber=marker, loadUserFunction=lambda _, time, load: torque(time))
     )
-    system.Assemble()
     return container, system
 
 
@@ -137,6 +134,7 @@ class Model:
         self._container, self._system = build(
             self.mechanism, self._push if pushed else None, self._torque
         )
+        self._system.Assemble()
         data = self._system.systemData
         self._q, self._v, self._a = (  # exudyn's own memory: always the current state
             data.GetODE2Coordinates(copy=False),
@@ -150,19 +148,23 @@ class Model:
         """Let go of what exudyn holds: it and this model refer to each other."""
         self._system.Reset()
 
-    def start(self, time: float, theta: float, omega: float) -> Consistent:
-        """The system in one state, under the forces that it was given."""
+    def start(self, time: float, theta: float, omega: float, *, driven: bool = False) -> Consistent:
+        """The system in one state, free or at constant speed, under the forces that it was given."""
         at, faster = np.array([theta]), np.array([omega])
-        none = np.zeros((1, len(self.scene.cylinders)))
+        push = np.zeros((1, len(self.scene.cylinders)))
         torque = np.array([self.torque(time, theta, omega)])
-        moving = self.states(at, faster, none, torque)
-        if not self.pushes:
-            return moving
-        speeds = self._sliding(moving.velocity[0]).tolist()
-        push = [each(theta, speed) for each, speed in zip(self.pushes, speeds, strict=True)]
-        return self.states(at, faster, np.array([push]), torque)
+        if self.pushes:
+            moving = self.states(at, faster, push, torque).velocity[0]
+            speeds = (moving[3:].reshape(-1, 5)[:, 3:] * self._towards).sum(axis=1).tolist()
+            pairs = zip(self.pushes, speeds, strict=True)
+            push = np.array([[each(theta, speed) for each, speed in pairs]])
+        if driven:
+            return self.driven(at, faster, np.zeros(1), push)
+        return self.states(at, faster, push, torque)
 
-    def _quiet_start(self, state: tuple[float, float, float], step: float) -> tuple[Any, ...]:
+    def quiet_start(
+        self, state: tuple[float, float, float], step: float, *, driven: bool = False
+    ) -> tuple[Any, ...]:
         """The crank's acceleration, and position, velocity and acceleration from which the
         multipliers do not ring.
 
@@ -170,13 +172,17 @@ class Model:
         v - (1/12 + (alpha_f - alpha_m)^2 / 4) h^2 j and the algorithmic acceleration
         a + (alpha_m - alpha_f) h j. exudyn takes one acceleration for both; shifts of position and
         velocity make up for that in the first step.
+
+        driven : at constant speed
         """
         time, theta, omega = state
-        here = self.start(*state)
+        here = self.start(*state, driven=driven)
         self._largest = max(self._largest, float(np.abs(here.hinges).max()))
         alpha = float(here.acceleration[0, 2])
         sides = [
-            self.start(time + t, theta + (omega + 0.5 * alpha * t) * t, omega + alpha * t)
+            self.start(
+                time + t, theta + (omega + 0.5 * alpha * t) * t, omega + alpha * t, driven=driven
+            )
             for t in (-0.5 * step, 0.5 * step)
         ]
         jerk = (sides[1].acceleration[0] - sides[0].acceleration[0]) / step
@@ -221,9 +227,9 @@ class Model:
             return not outside
 
         begin = self._begin = state[0]
-        alpha, *start = self._quiet_start(state, step)
+        alpha, *start = self.quiet_start(state, step)
         self._system.SetPreStepUserFunction(note)
-        settings = _settings(step, most, stiff=stiff)
+        settings = settings_of(step, most, stiff=stiff)
         iterations, solved = 0, False
         newton = settings.timeIntegration.newton
         for newton.relativeTolerance, share in _TOLERANCES:
@@ -280,7 +286,7 @@ class Model:
     ) -> Consistent:
         """With the tangent u of J u = 0, u_theta = 1, the free crank accelerates by
 
-            alpha = u (f - M w) / (u M u),    q'' = u alpha + w,    J w = -J' q',  w_theta = 0
+        alpha = u (f - M w) / (u M u),    q'' = u alpha + w,    J w = -J' q',  w_theta = 0
         """
         q, ahead = closed(self.scene, theta), np.zeros(len(theta))
         jacobian, _, open_by = self._constraints(q)
@@ -308,9 +314,13 @@ class Model:
     def _read(self) -> None:
         """Read mass, constraints and forces from exudyn: in each angle the constraints are a sine
         and a cosine, in all else linear."""
-        solver, system, data = exu.MainSolverImplicitSecondOrder(), self._system, self._system.systemData
+        solver, system, data = (
+            exu.MainSolverImplicitSecondOrder(),
+            self._system,
+            self._system.systemData,
+        )
         with _quiet():
-            solver.InitializeSolver(system, _settings(1.0))
+            solver.InitializeSolver(system, settings_of(1.0))
         count = len(self._q)
         rows = slice(count, count + len(self.mechanism.guides) + 2 * len(self.mechanism.hinges))
         names = [body.inertia for body in self.mechanism.bodies]
@@ -354,10 +364,6 @@ class Model:
         bend = upright[:, turns] * cos - flat[:, turns] * sin
         return jacobian, bend, self._offset + q @ straight.T - bend.sum(axis=2)
 
-    def _sliding(self, velocity: Array) -> Array:
-        """The pistons' velocities towards the crank [m/s]."""
-        return np.asarray((velocity[3:].reshape(-1, 5)[:, 3:] * self._towards).sum(axis=1))
-
     def _torque(self, time: float) -> float:
         return self.torque(self._begin + time, self._q.item(2), self._v.item(2))
 
@@ -369,14 +375,16 @@ class Model:
         return force * x, force * y
 
 
-def _settings(step: float, most: int = 1, *, stiff: bool = False) -> Any:
+def settings_of(step: float, most: int = 1, *, stiff: bool = False) -> Any:
+    """The generalized-alpha method, index 3, at equal steps [s]: halving them divides the error by
+    four."""
     settings = exu.SimulationSettings()
     integration = settings.timeIntegration
     integration.numberOfSteps = most
     integration.endTime = most * step
     integration.adaptiveStep = False  # it may succeed with nonsense near a singular position
     integration.verboseMode = 0
-    integration.generalizedAlpha.spectralRadius = _SPECTRAL_RADIUS
+    integration.generalizedAlpha.spectralRadius = SPECTRAL_RADIUS
     integration.generalizedAlpha.computeInitialAccelerations = False
     integration.generalizedAlpha.resetAccelerations = False
     integration.newton.useModifiedNewton = True

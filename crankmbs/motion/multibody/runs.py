@@ -182,9 +182,7 @@ class Runs:
         return bool(np.all(apart <= np.abs(change).max(axis=1)))
 
     def _run(self, limits: Limits) -> Path:
-        return integrate(
-            self._train, self.model, self.start, limits, self._step, stiff=self._stiff
-        )
+        return integrate(self._train, self.model, self.start, limits, self._step, stiff=self._stiff)
 
     def _coarsest(self) -> tuple[float, bool]:
         """A step [s] to begin with, and whether the crank will move at all.
