@@ -66,6 +66,7 @@ __all__ = [
     "Budget",
     "Choice",
     "Comparison",
+    "Confirmation",
     "Constant",
     "Cost",
     "Crank",

@@ -196,8 +196,8 @@ def test_confirm_answers_in_a_sentence_and_draws_the_difference():
     result = crankmbs_("run", "engine.toml", "--confirm")
     assert result.exit_code == 0
     (agree, stated) = re.findall(
-        r"^exudyn's rigid bodies agree to (\S+) of the peak in motion and every joint force over the "
-        r"last cycle, with a stated error of (\S+)$",
+        r"^exudyn's rigid bodies agree to (\S+) of the peak in motion and every joint force over "
+        r"the last cycle, with a stated error of (\S+)$",
         result.stdout,
         re.MULTILINE,
     )[0]

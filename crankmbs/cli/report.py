@@ -59,8 +59,8 @@ def comparison(result: Result, found: Confirmation) -> str:
             "",
             found.sentence,
             *([] if not lines else ["", table(headings, lines), ""]),
-            f"at {len(found.states[0].size)} states of the run accelerations and joint forces agree "
-            f"to {found.at_states:.0e} of the peak",
+            f"at {len(found.states[0].size)} states of the run accelerations and joint forces "
+            f"agree to {found.at_states:.0e} of the peak",
             "that nothing builds up over the whole run, --formulation minimal confirms",
             *found.missing,
         ]

@@ -206,7 +206,7 @@ def _last_period(
         state = begin, float(start.angle[0]), float(start.speed[0])
         shares = None if states.fuel is None else _shares(train, states.angle, states.fuel)
         phases, steps = part.cells[0].acting.phases, _STEPS // len(result.scene.cylinders)
-        theirs, errors = beside.integrated(train, state, phases, shares, times, _RTOL, steps)
+        theirs, errors = beside.integrated(train, state, (phases, shares), times, _RTOL, steps)
     turned = abs(part.turned)
     rows = {"crank angle": ("crank_angle",), **_MOTION, **_FORCES}
     return _rows(rows, ours, theirs, _stated_by(result), errors, turned), (begin, end)

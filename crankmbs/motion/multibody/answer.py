@@ -190,7 +190,7 @@ class Answers:
         return np.array([state.mode.shares for state in self._states])[k]
 
     def _of_bodies(self, found: Consistent) -> dict[str, Array]:
-        """Motion of all bodies, energy, and what they do to the frame by the balance of momentum:
+        """Motion of all bodies, energy, and what they do to the frame by the balance of momentum.
 
         force = sum m (g - a)
         moment = torque + sum r x m (g - a) - sum I rate of spin

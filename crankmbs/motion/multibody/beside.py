@@ -54,8 +54,7 @@ class Shares(NamedTuple):
 def integrated(
     train: CrankTrain,
     state: tuple[float, float, float],
-    phases: Phases,
-    shares: Shares | None,
+    acting: tuple[Phases, Shares | None],
     times: Array,
     rtol: float,
     steps: int,
@@ -63,12 +62,14 @@ def integrated(
     """Every variable of a free crank at later times [s], shape (m,), integrated from a time [s],
     crank angle [rad] and speed [rad/s]; and the error of each.
 
-    phases : of the loads' windows; shares : of the combustion; rtol, steps : asked, and allowed
+    acting : phases of the loads' windows, and shares of the combustion; rtol
+        asked for; steps : allowed
 
     Raises
     ------
     FormulationError : exudyn cannot take a single step from there
     """
+    phases, shares = acting
     mode = Mode(phases)
     if shares is not None:
         train, firing = replace(train, law=shares), shares.at(*state)

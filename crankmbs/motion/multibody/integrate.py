@@ -92,8 +92,7 @@ def integrate(
         if entered is None or idle > 1:
             ending = Ending.HELD
             break
-        bounds, begin = entered
-        bounds = _within(bounds, limits)
+        bounds = _within(entered[0], limits)
         left = limits.steps - steps
         if left <= 0:
             ending = Ending.CALLED_OFF

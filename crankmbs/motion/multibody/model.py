@@ -69,7 +69,7 @@ def build(
             system.AddMarker(
                 eii.MarkerBodyPosition(bodyNumber=bodies[name], localPosition=[*point, 0.0])
             )
-            for name, point in zip(hinge.bodies, hinge.points)
+            for name, point in zip(hinge.bodies, hinge.points, strict=True)
         ]
         system.AddObject(eii.RevoluteJoint2D(markerNumbers=markers))
     for number, guide in enumerate(mechanism.guides):
@@ -201,7 +201,7 @@ class Model:
         *,
         stiff: bool,
     ) -> tuple[Array, Ending, int]:
-        """Integrate from a time [s], angle [rad] and speed [rad/s] by the generalized-alpha method.
+        """Integrate from a time [s], angle [rad], speed [rad/s] by the generalized-alpha method.
 
         most : steps; inside(time, crank angle, speed) : asked after every step; where False the run
             ends. stiff : whether Newton's method shall know how the loads change; 2.7 times as slow
@@ -284,7 +284,7 @@ class Model:
     def _block(
         self, theta: Array, omega: Array, push: Array, torque: Array | None, alpha: Array | None
     ) -> Consistent:
-        """With the tangent u of J u = 0, u_theta = 1, the free crank accelerates by
+        """The states of one block, by the tangent u of J u = 0, u_theta = 1.
 
         alpha = u (f - M w) / (u M u),    q'' = u alpha + w,    J w = -J' q',  w_theta = 0
         """

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
@@ -69,7 +70,7 @@ class Motion:
         turns = invert_monotone(value, np.zeros(len(k)), low, high) if len(k) else k
         rests = grid[1:-1][omega[1:-1] == 0.0]
         ends = np.unique([grid[0], *turns, *rests, grid[-1]]).tolist()
-        return list(zip(ends[:-1], ends[1:], strict=True))
+        return list(pairwise(ends))
 
     def times(self, theta: Array, begin: float, end: float) -> Array:
         """When it passes angles [rad] in a stretch [s]."""
