@@ -1,8 +1,8 @@
 """The mechanism of a scene in plain data: bodies, hinges and guides, as a textbook lists them.
 
 Planar, in the engine's frame: X along the reference cylinder, Y is X turned by +90 degrees. The
-order of bodies is that of the coordinates: x, y of the centre of mass [m] and the angle [rad], which
-point masses lack. That of hinges, then guides, is that of the multipliers.
+order of bodies is that of the coordinates: x, y of the centre of mass [m] and the angle [rad], but
+for point masses. That of hinges, then guides, is that of the multipliers.
 """
 
 from __future__ import annotations

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
+from functools import partial
 from typing import Any, NamedTuple
 
 import exudyn
@@ -149,7 +150,7 @@ class Model:
         self._system.Reset()
 
     def start(self, time: float, theta: float, omega: float, *, driven: bool = False) -> Consistent:
-        """The system in one state, free or at constant speed, under the forces that it was given."""
+        """The system in a state, free or at constant speed, under the forces that it was given."""
         at, faster = np.array([theta]), np.array([omega])
         push = np.zeros((1, len(self.scene.cylinders)))
         torque = np.array([self.torque(time, theta, omega)])
@@ -253,40 +254,20 @@ class Model:
 
         push : shape (m, n) [N], on each piston towards the crank; torque : shape (m,) [N m]
         """
-        return self._solved(theta, omega, push, torque=torque)
+        return _in_blocks(partial(self._block, free=True), theta, omega, push, torque)
 
     def driven(self, theta: Array, omega: Array, alpha: Array, push: Array) -> Consistent:
         """The same at given accelerations [rad/s2]; the torque is what they take."""
-        return self._solved(theta, omega, push, alpha=alpha)
-
-    def _solved(
-        self,
-        theta: Array,
-        omega: Array,
-        push: Array,
-        *,
-        torque: Array | None = None,
-        alpha: Array | None = None,
-    ) -> Consistent:
-        blocks = [slice(k, k + _BLOCK) for k in range(0, max(len(theta), 1), _BLOCK)]
-        parts = [
-            self._block(
-                theta[b],
-                omega[b],
-                push[b],
-                None if torque is None else torque[b],
-                None if alpha is None else alpha[b],
-            )
-            for b in blocks
-        ]
-        return Consistent(*map(np.concatenate, zip(*parts, strict=True)))
+        return _in_blocks(partial(self._block, free=False), theta, omega, push, alpha)
 
     def _block(
-        self, theta: Array, omega: Array, push: Array, torque: Array | None, alpha: Array | None
+        self, theta: Array, omega: Array, push: Array, given: Array, *, free: bool
     ) -> Consistent:
         """The states of one block, by the tangent u of J u = 0, u_theta = 1.
 
         alpha = u (f - M w) / (u M u),    q'' = u alpha + w,    J w = -J' q',  w_theta = 0
+
+        given : the torque on a free crank, or the acceleration of a driven one
         """
         q, ahead = closed(self.scene, theta), np.zeros(len(theta))
         jacobian, _, open_by = self._constraints(q)
@@ -299,17 +280,16 @@ class Model:
         turning = np.einsum("mcb,mb->mc", bend, v[:, self._turns] ** 2)
         w = -np.linalg.solve(jacobian, np.column_stack([turning, ahead])[..., None])[..., 0]
         force = self._weight + push @ self._pushed
-        if alpha is None:
-            assert torque is not None
-            force[:, 2] += torque
+        alpha = given
+        if free:
+            force[:, 2] += given
             alpha = ((force - w * self._mass) * u).sum(axis=1) / (u**2 @ self._mass)
         a = u * alpha[:, None] + w
         rest = (force - a * self._mass)[..., None]
         joints = -np.linalg.solve(np.swapaxes(jacobian, 1, 2), rest)[..., 0]
         count = 2 * len(self.mechanism.hinges)
         hinges = joints[:, :count].reshape(len(theta), count // 2, 2)
-        given = joints[:, -1] if torque is None else torque
-        return Consistent(q, v, a, hinges, joints[:, count:-1], given)
+        return Consistent(q, v, a, hinges, joints[:, count:-1], given if free else joints[:, -1])
 
     def _read(self) -> None:
         """Read mass, constraints and forces from exudyn: in each angle the constraints are a sine
@@ -373,6 +353,13 @@ class Model:
         speed = x * self._v.item(at) + y * self._v.item(at + 1)
         force = self.pushes[k](self._q.item(2), speed)
         return force * x, force * y
+
+
+def _in_blocks(solve: Callable[..., Consistent], *rows: Array) -> Consistent:
+    """Solve for states so many at a time, which bounds the memory."""
+    starts = range(0, max(len(rows[0]), 1), _BLOCK)
+    parts = [solve(*(row[k : k + _BLOCK] for row in rows)) for k in starts]
+    return Consistent(*map(np.concatenate, zip(*parts, strict=True)))
 
 
 def settings_of(step: float, most: int = 1, *, stiff: bool = False) -> Any:
