@@ -91,7 +91,7 @@ def exudyn_script(scene: Scene, stem: str) -> str:
 def _text(train: CrankTrain, stem: str, end: float, steps: int) -> str:
     """All of a script but its head."""
     parameters = _parameters(train, stem, end, steps)
-    sources = [Body, Hinge, Guide, Mechanism, build, settings_of]
+    sources: list[Any] = [Body, Hinge, Guide, Mechanism, build, settings_of]
     quoted = [inspect.getsource(each) for each in sources]
     quoted[-1] = quoted[-1].replace("settings_of", "settings", 1)
     main = 'if __name__ == "__main__":\n    main()\n'

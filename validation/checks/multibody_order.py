@@ -106,7 +106,7 @@ def _errors(ours: Scene, theirs: Scene, count: int) -> _Errors:
     late = [(own["time"] - motion.time) * motion.omega / turned for own in runs]
     missed = [{name: own[name] - exact[name] for name in _BEARING} for own in runs]
     return _Errors(
-        steps,
+        np.asarray(steps, dtype=np.float64),
         {
             "motion": np.array([float(np.max(np.abs(values))) for values in late]),
             "main bearing": np.array([_length(force) / peak for force in missed]),

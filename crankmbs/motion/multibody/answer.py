@@ -35,7 +35,9 @@ class Course(Protocol):
     stretches : (begin, end) [s] in each of which it turns one way
     """
 
-    stretches: Sequence[tuple[float, float]]
+    @property
+    def stretches(self) -> list[tuple[float, float]]:
+        """Begins and ends [s] of what turns one way."""
 
     def at(self, time: Array) -> tuple[Array, Array]:
         """Crank angle [rad] and speed [rad/s]."""
@@ -51,28 +53,25 @@ def sample(plan: Plan, course: Course, end: float | None) -> tuple[Array, Array]
     """
     until = course.stretches[-1][1]
     if end is not None:  # which the motion reaches a hair earlier or later than its finest run
-        theta, omega = (float(q[0]) for q in course.at(np.array([until])))
-        until += (end - theta) / omega if omega else 0.0
+        at_end, speed = (float(q[0]) for q in course.at(np.array([until])))
+        until += (end - at_end) / speed if speed else 0.0
     times, angles = [np.zeros(1)], [np.array([plan.start])]
     for begin, stop in [*course.stretches[:-1], (course.stretches[-1][0], until)]:
         if plan.in_time:
-            t = plan.between(begin, stop)
-            theta = course.at(t)[0]
+            times.append(plan.between(begin, stop))
+            angles.append(course.at(times[-1])[0])
         else:
-            first, last = course.at(np.array([begin, stop]))[0].tolist()
-            theta = plan.between(first, last)
-            theta = theta[np.abs(theta - first) > plan.hair]
-            t = course.times(theta, begin, stop)
-        times.append(t)
-        angles.append(theta)
+            at_begin, at_stop = course.at(np.array([begin, stop]))[0].tolist()
+            passed = plan.between(at_begin, at_stop)
+            angles.append(passed[np.abs(passed - at_begin) > plan.hair])
+            times.append(course.times(angles[-1], begin, stop))
     time, theta = np.concatenate(times), np.concatenate(angles)
     final = float(course.at(np.array([until]))[0][0]) if end is None else end
     near = np.abs(time - until) if plan.in_time else np.abs(theta - final)
-    last = (time >= until * (1.0 - 1e-12)) | (near <= plan.hair) & (
-        np.arange(len(time)) == len(time) - 1
-    )
-    last[0] = False
-    time, theta = np.append(time[~last], until), np.append(theta[~last], final)
+    near[:-1] = np.inf
+    others = (time < until * (1.0 - 1e-12)) & (near > plan.hair)
+    others[0] = True
+    time, theta = np.append(time[others], until), np.append(theta[others], final)
     far = np.flatnonzero(np.abs(theta - final) > plan.last * (1.0 + 1e-12))
     first = int(far[-1]) + 1 if len(far) else 0
     return time[first:], theta[first:]
@@ -100,7 +99,8 @@ def solution(
 ) -> Solution:
     """What a run returns; cost : evaluations and steps."""
     own = {name: each for name, each in values.items() if name not in _MOTION}
-    samples = Samples(*(values[name] for name in _MOTION), own)
+    time, theta, omega, alpha, residual = (values[name] for name in _MOTION)
+    samples = Samples(time, theta, omega, alpha, residual, own)
     return Solution(samples, *said, *cost, errors=errors, keep=lambda: account)
 
 

@@ -30,7 +30,11 @@ class _Course:
     """A law as a course."""
 
     def __init__(self, law: SpeedLaw, stretches: list[tuple[float, float]]) -> None:
-        self._law, self.stretches = law, stretches
+        self._law, self._stretches = law, stretches
+
+    @property
+    def stretches(self) -> list[tuple[float, float]]:
+        return self._stretches
 
     def at(self, time: Array) -> tuple[Array, Array]:
         theta, omega, _ = self._law.at_time(time)

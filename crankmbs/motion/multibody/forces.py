@@ -138,8 +138,8 @@ class Forces:
         senses : signs in which the crank angle, and its speed, leave the state
         """
         torques = self.train.scene.torque
-        times, speeds = phase_ends(torques, mode.loads)
-        times, speeds = set(times) | set(self.times), set(speeds)
+        ends = phase_ends(torques, mode.loads)
+        times, speeds = {*ends[0], *self.times}, set(ends[1])
         for _, load in acting(torques, mode.loads) if self._stops else ():
             parts = load.parts
             speeds |= set(parts.over_speed.bends if parts.over_speed else ())
@@ -175,11 +175,11 @@ class Forces:
         [rad] and of the piston's velocity [m/s]."""
         friction = self.train.scene.friction
         slides = self.slides(np.array([theta]), np.array([sense]))[0].tolist()
-        found = []
+        found: list[Callable[[float, float], float]] = []
         for k, phase in enumerate(self._phases.tolist()):
             gas = _straight(self._gas_by_number(k, phase, mode.shares), *bounds.angles)
             if friction is None:
-                found.append(lambda theta, speed, gas=gas: gas(theta))
+                found.append(_alone(gas))
             else:
                 rubs = friction.ring_force, friction.ring_pressure, friction.viscous
                 found.append(_rubbed(gas, slides[k], *rubs))
@@ -259,6 +259,14 @@ def _between(part: Piecewise, begin: float, end: float) -> Scalar:
     return value
 
 
+def _alone(gas: Scalar) -> Callable[[float, float], float]:
+    return lambda theta, _speed: gas(theta)
+
+
+def _alone(gas: Scalar) -> Callable[[float, float], float]:
+    return lambda theta, _speed: gas(theta)
+
+
 def _rubbed(
     gas: Scalar, slides: float, ring: float, pressed: float, viscous: float
 ) -> Callable[[float, float], float]:
@@ -284,4 +292,4 @@ def _of_load(load: Cycle, period: float) -> Array:
     knots = load.knots[:-1]
     rises = np.abs(load(knots) - load(knots - 3.0 * KNOT)) > 1e-6 * load.largest
     turns = load.period * np.arange(round(period / load.period))
-    return np.mod(np.add.outer(turns, knots[rises]).ravel(), period)
+    return np.asarray(np.mod(np.add.outer(turns, knots[rises]).ravel(), period))

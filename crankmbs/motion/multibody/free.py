@@ -134,7 +134,9 @@ def _of_plan(runs: Runs, plan: Plan, most: int | None) -> tuple[Values, dict[str
     errors["energy_residual"] = peak(values["energy_residual"])
     if runs.ending is not Ending.COMPLETE:  # each run ends elsewhere
         other = runs.paths[-2:][0].states[-1]
-        for name, x, y in zip(("time", "crank_angle", "crank_speed"), last, other, strict=False):
+        for name, x, y in zip(
+            ("time", "crank_angle", "crank_speed"), last[:3], other[:3], strict=True
+        ):
             errors[name] = max(errors[name], 1.5 * abs(x - y))
     del errors["fallen"]
     return values, {name: errors[name] + least for name, least in rounding(values).items()}

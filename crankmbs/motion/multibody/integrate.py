@@ -8,18 +8,20 @@ last two steps meets it, with consistent positions, velocities and accelerations
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from typing import NamedTuple
+from collections.abc import Callable, Sequence
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion.base import State
 from crankmbs.motion.ending import Ending
-from crankmbs.motion.mode import decided
+from crankmbs.motion.mode import Mode, decided
 from crankmbs.motion.multibody.forces import Bounds, Forces
 from crankmbs.motion.multibody.model import Consistent, Model
 from crankmbs.numerics.arrays import Array
+
+T = TypeVar("T", float, Array)
 
 __all__ = ["Limits", "Path", "acceleration", "integrate"]
 
@@ -62,9 +64,9 @@ class Path(NamedTuple):
         k = np.where(t[k + 1] > t[k], k, np.maximum(k - 1, 0))
         h = t[k + 1] - t[k]
         x = (time - t[k]) / h
-        return tuple(
-            _cubic(x, y[k], y[k + 1], h * slope[k], h * slope[k + 1])
-            for y, slope in ((theta, omega), (omega, alpha))
+        return (
+            _cubic(x, theta[k], theta[k + 1], h * omega[k], h * omega[k + 1]),
+            _cubic(x, omega[k], omega[k + 1], h * alpha[k], h * alpha[k + 1]),
         )
 
 
@@ -102,16 +104,16 @@ def integrate(
         steps, iterations = steps + len(rows) + _ENTRY, iterations + cost
         if ending is not Ending.COMPLETE:
             parts.append(rows)
-            states.append(State(*rows[-1, :3].tolist(), 0.0, state.mode))
+            states.append(_state(rows, state.mode))
             break
         rows, sense = _cut(rows, bounds)
         cuts += sense != 0.0
-        last = rows[-1, :3].tolist()
-        idle = 0 if last[0] > state.time else idle + 1
+        met = _state(rows, state.mode)
+        idle = 0 if met.time > state.time else idle + 1
         if idle == 0:
             parts.append(rows)
-            states.append(State(*last, 0.0, state.mode))
-        state = State(*last, 0.0, decided(train, state.mode, *last))
+            states.append(met)
+        state = met._replace(mode=decided(train, state.mode, *met[:3]))
         states[-1] = state
     rows = np.concatenate(parts) if parts else np.array([[*start[:3], 0.0]])
     whole = cuts <= _MOST_SPEEDS and forces.smooth
@@ -151,12 +153,17 @@ def _enter(
     return None if refused == 2 else (bounds, begin)
 
 
+def _state(rows: Array, mode: Mode) -> State:
+    time, theta, omega, _ = rows[-1].tolist()
+    return State(time, theta, omega, 0.0, mode)
+
+
 def _within(bounds: Bounds, limits: Limits) -> Bounds:
     angles = max(bounds.angles[0], limits.angles[0]), min(bounds.angles[1], limits.angles[1])
     return Bounds((bounds.times[0], min(bounds.times[1], limits.time)), angles, bounds.speeds)
 
 
-def _inside(bounds: Bounds):
+def _inside(bounds: Bounds) -> Callable[[float, float, float], bool]:
     (_, end), (low, high), (slow, fast) = bounds
     low, high = low - _ON, high + _ON
     slow, fast = slow - _BESIDE * abs(slow), fast + _BESIDE * abs(fast)
@@ -195,7 +202,7 @@ def _root(cubic: Sequence[float], value: float) -> float:
     return float(real.max(initial=0.0))
 
 
-def _coefficients(y: float, y1: float, slope: float, slope1: float) -> tuple[float, ...]:
+def _coefficients(y: T, y1: T, slope: T, slope1: T) -> tuple[T, T, T, T]:
     """Of the cubic in a step, from 0 to 1, by descending power."""
     rise = y1 - y
     return slope + slope1 - 2.0 * rise, 3.0 * rise - 2.0 * slope - slope1, slope, y

@@ -317,7 +317,7 @@ class Model:
             return solver.GetSystemJacobian()[rows, :count], solver.GetSystemResidual()[rows]
 
         def forces(number: int) -> Array:
-            self.pushes = [lambda _, __, f=float(k == number): f for k in range(cylinders)]
+            self.pushes = [_constant(float(k == number)) for k in range(cylinders)]
             solver.ComputeODE2RHS(system)
             return np.array(solver.GetSystemResidual()[:count])
 
@@ -353,6 +353,14 @@ class Model:
         speed = x * self._v.item(at) + y * self._v.item(at + 1)
         force = self.pushes[k](self._q.item(2), speed)
         return force * x, force * y
+
+
+def _constant(value: float) -> Callable[[float, float], float]:
+    return lambda _theta, _speed: value
+
+
+def _constant(value: float) -> Callable[[float, float], float]:
+    return lambda _theta, _speed: value
 
 
 def _in_blocks(solve: Callable[..., Consistent], *rows: Array) -> Consistent:

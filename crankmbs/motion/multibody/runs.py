@@ -48,7 +48,7 @@ class Motion:
     def at(self, time: Array) -> tuple[Array, Array]:
         """Crank angle [rad] and speed [rad/s] at times."""
         parts = [np.array(path.at(time)) for path in self.paths]
-        theta, omega = sum(w * part for w, part in zip(self.weights, parts, strict=True))
+        theta, omega = np.tensordot(self.weights, parts, 1)
         return theta, omega
 
     @cached_property
