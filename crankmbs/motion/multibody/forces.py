@@ -263,10 +263,6 @@ def _alone(gas: Scalar) -> Callable[[float, float], float]:
     return lambda theta, _speed: gas(theta)
 
 
-def _alone(gas: Scalar) -> Callable[[float, float], float]:
-    return lambda theta, _speed: gas(theta)
-
-
 def _rubbed(
     gas: Scalar, slides: float, ring: float, pressed: float, viscous: float
 ) -> Callable[[float, float], float]:

@@ -359,10 +359,6 @@ def _constant(value: float) -> Callable[[float, float], float]:
     return lambda _theta, _speed: value
 
 
-def _constant(value: float) -> Callable[[float, float], float]:
-    return lambda _theta, _speed: value
-
-
 def _in_blocks(solve: Callable[..., Consistent], *rows: Array) -> Consistent:
     """Solve for states so many at a time, which bounds the memory."""
     starts = range(0, max(len(rows[0]), 1), _BLOCK)
