@@ -228,7 +228,8 @@ def test_random_tables_against_the_oracle(seed, formulation):
 
 def test_multibody_states_which_side_of_a_jump_a_sample_may_be_on():
     rows = ((0.0, 120.0, 120.0, 300.0, 300.0), (8.0, 8.0, -4.0, 2.0, 8.0))
-    scene = wheel(AngleTable(file=table(*rows)))
+    loaded = {"start__angle": 0.0, "torque": (AngleTable(file=table(*rows)),)}
+    scene = load_scene("coasting").with_(**loaded)
     passed = simulate(replace(scene, run=Run(until="120 deg", every="10 deg")))
     time = float(passed.data.time.values[-1])
     for end, low, high in ((time, 11.9, 12.1), (0.99 * time, 0.0, 1e-2)):

@@ -18,7 +18,6 @@ from crankmbs.motion.plan import Wanted
 
 __all__ = ["account_of_runs"]
 
-_SAFETY = 1.5
 _GAUSS = np.polynomial.legendre.leggauss(3)  # in a step, whose error is of order 2
 
 
@@ -57,10 +56,9 @@ class _Piece:
 
 
 def account_of_runs(runs: Runs) -> Account:
-    """The account of the finest run; its error is what the last halving changed, half as large
-    again."""
+    """The account of the finest run; its error is what it differs by from the two before."""
     train, seen = runs.forces.train, []
-    for finer, path in enumerate(runs.paths[:-3:-1] or [None]):
+    for finer, path in enumerate(runs.paths[:-4:-1] or [None]):
         observer = Observer(train, own_energy, finer=not finer)
         observer.start(runs.start)
         last = runs.start
@@ -71,7 +69,7 @@ def account_of_runs(runs: Runs) -> Account:
                 last = piece.end
         observer.close(runs.ending, last)
         seen.append(observer)
-    return account_of(seen, _SAFETY)
+    return account_of(seen, 1.0)
 
 
 def _pieces(motion: Motion, answers: Answers, states: tuple[State, ...]) -> Iterator[_Piece]:

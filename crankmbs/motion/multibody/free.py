@@ -154,11 +154,12 @@ def _shared(
     answer, check = runs.motions()
     if check is None:
         return values, dict.fromkeys(values, math.inf)
+    coarser = Answers(runs.model, runs.forces, runs.paths[-2].states)  # with decisions of its own
     errors = dict.fromkeys(values, 0.0)
     for side in (1.0, -1.0) if runs.forces.jumps else (1.0,):
         before, changes = values, dict.fromkeys(values, 0.0)
         for shifted in _shifts(answer, check, (time, theta, omega), by_angle, side):
-            after = answers.at(*shifted)
+            after = coarser.at(*shifted)
             changes = {name: changes[name] + peak(after[name] - before[name]) for name in values}
             before = after
         errors = {name: max(errors[name], changes[name]) for name in values}

@@ -29,6 +29,7 @@ _BESIDE = 1e-10  # of a speed: so near it is on it
 _ON = 1e-11  # rad
 _SAME = 1e-12  # relative: times nearer than this are one
 _ENTRY = 50  # steps that the begin of a stretch counts as
+_STILL = 1e-9  # rad/s2: of an acceleration that is rounding
 _MOST_SPEEDS = 100  # cuts at speeds in a run; beyond, the loads are run over as they are
 
 
@@ -149,7 +150,7 @@ def _enter(
         leaves = sense * float(begin.acceleration[0, 2])
         if leaves > 0.0 or (omega and omega not in bounds.speeds):
             return bounds, begin
-        refused += leaves < 0.0
+        refused += leaves < -_STILL
     return None if refused == 2 else (bounds, begin)
 
 

@@ -28,8 +28,6 @@ _STEPS_PER_TURN = 125  # of the coarsest run, at the speed at the start
 _STEPS = 125  # of it, at least
 _RETRIES = 4  # with a quarter of the step each time, where exudyn fails at the coarsest
 _UNTOUCHED = 0.98  # of the time to where it fails: before it goes wrong
-_CLEAN = 0.5  # of what two extrapolations differ by: a step more leaves a quarter or less
-_ERRATIC = 1.5  # of what the last halving changed, where its order is not seen
 _STUCK = 1e-9  # rad/s2
 _HELD = "a jump of the loads drives the speed back from both sides"
 _NO_STEP = "exudyn's Newton iteration does not converge"
@@ -159,19 +157,17 @@ class Runs:
 
         With f, f', f'' the last three runs, coarse to fine, the answer is f'' + (f'' - f')/3 where
         that differs from f' + (f' - f)/3 by at most a third of f'' - f', and loads jump nowhere
-        within a step; the check is off by half of what these two differ by. Else the answer is f'',
-        and the check is off by half as much again as f'' - f'. Of one run there is no check.
+        within a step; the check is what it differs from. Else the answer is f'', and the check is
+        off by half of f - f'', which is no less by chance than at order 1. Of one run there is no
+        check.
         """
         *coarser, fine = self.paths[-3:]
         if not coarser:
             return Motion((fine,), (1.0,)), None
         if len(coarser) == 2 and fine.whole and self._is_clean():
-            c = _CLEAN
-            answer = Motion((coarser[1], fine), (-1.0 / 3.0, 4.0 / 3.0))
-            weights = -c / 3.0, (5.0 * c - 1.0) / 3.0, 4.0 * (1.0 - c) / 3.0
-            return answer, Motion((*coarser, fine), weights)
-        c = _ERRATIC
-        return Motion((fine,), (1.0,)), Motion((coarser[-1], fine), (c, 1.0 - c))
+            third = (-1.0 / 3.0, 4.0 / 3.0)
+            return Motion((coarser[1], fine), third), Motion(tuple(coarser), third)
+        return Motion((fine,), (1.0,)), Motion((coarser[0], fine), (0.5, 0.5))
 
     def _is_clean(self) -> bool:
         coarse, middle, fine = self.paths[-3:]
