@@ -230,9 +230,9 @@ def test_multibody_states_which_side_of_a_jump_a_sample_may_be_on():
     rows = ((0.0, 120.0, 120.0, 300.0, 300.0), (8.0, 8.0, -4.0, 2.0, 8.0))
     loaded = {"start__angle": 0.0, "torque": (AngleTable(file=table(*rows)),)}
     scene = load_scene("coasting").with_(**loaded)
-    passed = simulate(replace(scene, run=Run(until="120 deg", every="10 deg")))
+    passed = simulate(replace(scene, run=Run(until="1920 deg", every="10 deg")))
     time = float(passed.data.time.values[-1])
-    for end, low, high in ((time, 11.9, 12.1), (0.99 * time, 0.0, 1e-2)):
+    for end, low, high in ((time, 11.9, 12.1), (0.99 * time, 0.0, 0.1)):
         run = Run(until=f"{end!r} s", every=f"{0.3 * end!r} s")
-        found = simulate(replace(scene, run=run), formulation="multibody")
+        found = simulate(replace(scene, run=run), formulation="multibody", cost_cap=0.7)
         assert low <= found.data.external_torque.attrs["error_estimate"] <= high

@@ -78,8 +78,8 @@ def sample(plan: Plan, course: Course, end: float | None) -> tuple[Array, Array]
 
 
 def rounding(values: dict[str, Array]) -> dict[str, float]:
-    """What is left of every variable where nothing else errs: 1e-12 of its peak; of sums that may
-    cancel of the largest of their unit, of the energy residual 1e-14 of the kinetic energy."""
+    """What is left of every variable where nothing else errs: 1e-12 of its peak, and 1e-14
+    of the largest of its unit; of sums that may cancel 1e-12 of that, of the energy residual 1e-14 of the kinetic energy."""
     peaks = {name: peak(each) for name, each in values.items()}
     largest: dict[str, float] = {}
     for name, size in peaks.items():
@@ -87,6 +87,8 @@ def rounding(values: dict[str, Array]) -> dict[str, float]:
         largest[unit] = max(largest.get(unit, 0.0), size)
     sizes = {n: largest[EVERY[n].units] if n in SUMS else size for n, size in peaks.items()}
     least = {name: _ROUNDING * size for name, size in sizes.items()}
+    for name, size in peaks.items():
+        least[name] += 0.01 * _ROUNDING * largest[EVERY[name].units] if size else 0.0
     return least | {"energy_residual": 0.01 * least["kinetic_energy"]}
 
 
