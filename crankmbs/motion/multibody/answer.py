@@ -78,8 +78,9 @@ def sample(plan: Plan, course: Course, end: float | None) -> tuple[Array, Array]
 
 
 def rounding(values: dict[str, Array]) -> dict[str, float]:
-    """What is left of every variable where nothing else errs: 1e-12 of its peak, and 1e-14
-    of the largest of its unit; of sums that may cancel 1e-12 of that, of the energy residual 1e-14 of the kinetic energy."""
+    """What is left of every variable where nothing else errs: 1e-12 of its peak and 1e-14 of the
+    largest of its unit; of sums that may cancel 1e-12 of that, of the energy residual 1e-14 of the
+    kinetic energy."""
     peaks = {name: peak(each) for name, each in values.items()}
     largest: dict[str, float] = {}
     for name, size in peaks.items():
