@@ -100,9 +100,8 @@ def _multibody(train: CrankTrain, rtol: float, cost_cap: float) -> Assembled:
     from crankmbs.motion.assemble import assemble
     from crankmbs.motion.observer import Followed, account_of
 
-    solution, runs, ending = multibody.run(train, rtol, cost_cap)
-    followed = [Followed(train, begin, pieces, ending) for begin, pieces in runs]
-    keep = partial(account_of, followed, multibody.SAFETY)
+    solution, runs = multibody.run(train, rtol, cost_cap)
+    keep = partial(account_of, [Followed(train, *each) for each in runs], 1.0)
     return assemble(train, replace(solution, keep=keep))
 
 
