@@ -34,11 +34,11 @@ Run = tuple[State, list[Stretch], Ending]
 
 
 def runs_of(runs: Runs) -> list[Run]:
-    """The finest run and the two before it."""
+    """The finest run and the one before it."""
     found, begin = list[Run](), runs.start
     if not (runs.moves and runs.paths):
         return [(begin, [], runs.ending)]
-    for path in runs.paths[:-4:-1]:
+    for path in runs.paths[:-3:-1]:
         answers = Answers(runs.model, runs.forces, path.states)
         stretches = list(_stretches(Motion((path,), (1.0,)), answers, path.states))
         found.append((begin, stretches, runs.ending))
