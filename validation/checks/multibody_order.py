@@ -91,7 +91,7 @@ def _errors(ours: Scene, theirs: Scene, count: int) -> _Errors:
     start = State(0.0, ours.start.angle, ours.start.speed, 0.0, begun(train))
     limits = Limits(float(time[-1]), EVERYWHERE, _MOST)
     steps = 2.0 * math.pi / abs(ours.start.speed) / _STEPS_PER_TURN / 2.0 ** np.arange(count)
-    answers = Answers(model, Forces(train), ())
+    answers = Answers(model, Forces(train), (start,))
     try:
         paths = [integrate(train, model, start, limits, float(step)) for step in steps]
         angles = motion.theta.astype(np.float64)
