@@ -92,7 +92,7 @@ def test_every_command_variable_and_public_name_has_its_place():
     assert commands == set(get_command(app).commands)
     assert re.findall(r"^\| `(\w+)`", names.variables_page(), re.MULTILINE) == list(EVERY)
     shown = set(re.findall(r"^\.\. auto\w+:: crankmbs\.(\w+)$", names.python_page(), re.MULTILINE))
-    assert shown == set(crankmbs.__all__)
+    assert shown == set(crankmbs.__all__) - {"figures", "lecture"}
 
 
 def test_the_manual_names_every_unit_and_prefix():

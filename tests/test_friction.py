@@ -199,7 +199,7 @@ def test_what_cannot_be_is_refused():
         Friction(ring_force=-1.0)
     with pytest.raises(InputError, match="ring_pressure"):
         Friction(ring_pressure=2.0)
-    with pytest.raises(InputError, match='here: use N s/m'):
+    with pytest.raises(InputError, match="here: use N s/m"):
         Friction(viscous="30 N")
 
 

@@ -119,8 +119,12 @@ def test_runs_without_the_measure_are_counted_and_placed():
     [
         ({MASS: "1..2 kg"}, {}, "vary must be two names or more and their ranges"),
         ({MASS: "1..2 kg", "rod.length": "1..2 m:4"}, {}, "rod.length: must be two bounds"),
-        (CUBE, {"n": 100}, "n must be a power of two, or Sobol's points are not balanced; 100"),
-        (CUBE, {"n": 1}, "n must be a whole number from 2"),
+        (
+            CUBE,
+            {"n": 100},
+            "from 2 on, or Sobol's points are not balanced; 100",
+        ),
+        (CUBE, {"n": 1}, "n must be a power of two from 2 on"),
         (CUBE, {"seed": -1}, "seed must be a whole number from 0"),
         (CUBE, {"measures": "fluctation"}, 'did you mean "fluctuation"?'),
     ],

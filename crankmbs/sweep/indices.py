@@ -103,9 +103,9 @@ def sobol_indices(
             f'variance: {{"crank.inertia": "0.05..0.5 kg m^2", ...}}; {shown(vary)} came'
         )
     Sample(vary, n, seed=seed)  # refuses no numbers
-    if n & (n - 1):
+    if n < 2 or n & (n - 1):
         raise InputError(
-            f"n must be a power of two, or Sobol's points are not balanced; {n} came, "
+            f"n must be a power of two from 2 on, or Sobol's points are not balanced; {n} came, "
             f"{2 ** n.bit_length()} is the next"
         )
     columns = columns_of(scene, series=False)

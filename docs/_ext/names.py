@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import inspect
 from collections import defaultdict
+from types import ModuleType
 from typing import Any
 
 import typer
@@ -71,8 +72,11 @@ def variables_page() -> str:
 def python_page() -> str:
     """Every public name by what it is for, as reStructuredText for autodoc in Markdown."""
     by_room: dict[str, list[str]] = defaultdict(list)
-    for name in crankmbs.__all__:
-        room = getattr(crankmbs, name).__module__.split(".")[1]
+    things = {name: getattr(crankmbs, name) for name in crankmbs.__all__}
+    for name, thing in things.items():
+        if isinstance(thing, ModuleType):
+            continue
+        room = thing.__module__.split(".")[1]
         by_room[_ROOMS.get(room, room.capitalize())].append(f"crankmbs.{name}")
     for module in ("crankmbs.lecture", "crankmbs.figures"):
         title = "Lecture formulas" if module.endswith("lecture") else "Figures"
