@@ -35,8 +35,8 @@ KINDS = "constant, viscous, quadratic, time_table, speed_table, angle_table"
         (
             '"9.5e-5 N m s^2"',
             '"1 N m s"',
-            'torque[1].coefficient: "1 N m s" is no quadratic coefficient here: use a unit such '
-            'as in "7.8e-4 N m s^2"',
+            'torque[1].coefficient: "1 N m s" is no quadratic coefficient here: use N m s^2 or '
+            "N m/rpm^2",
         ),
         ('"0.75 s"', "0.75", f"run.until: {EXTENT}; 0.75 came"),
         ('"0.75 s"', "true", f"run.until: {EXTENT}; true came"),
