@@ -4,6 +4,8 @@ import { torqueOf, torqueOverAngle } from "./loads.js";
 import { integralTo } from "./rule.js";
 import { givenAt, reduceAt } from "./tables.js";
 
+const SAME = 8 * Number.EPSILON; // of a crank angle: rounding, as in crankmbs.motion.cells
+
 /** Solved cells, each from `from` over `width` [rad, signed] on one branch of the loads; torque and
  * slowness at its nodes stand in their arrays from number `first` on. */
 export class Path {
@@ -18,11 +20,11 @@ export class Path {
     this.starts.push(cell.sense * cell.from);
   }
 
-  /** The cell in which a crank angle lies; one on an edge is in that before it. */
+  /** The cell of a crank angle; one on an edge, but for rounding, is in that before it. */
   cellAt(theta) {
     const { sense } = this.cells[0];
     let k = countUpTo(this.starts, sense * theta) - 1;
-    if (k > 0 && this.starts[k] === sense * theta) k--;
+    if (k > 0 && sense * theta - this.starts[k] <= SAME * Math.abs(theta)) k--;
     return this.cells[Math.max(k, 0)];
   }
 
