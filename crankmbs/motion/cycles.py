@@ -33,7 +33,7 @@ __all__ = ["MOST_CYCLES", "Cycles", "cycles_of"]
 MOST_CYCLES = 10_000
 """Of more cycles the last ones are kept."""
 
-_SAME = 1e-9  # of a period, and of a step: what is nearer to its end is at its end
+_SAME = 1e-9  # of a period: what is nearer to its end is at its end
 _NEAR = 1e-7  # rad: a decision so near the end of a cycle belongs to the next
 _POINTS = (8, 10)  # of Gauss in a panel of the work of the gas, in either pass
 

@@ -81,12 +81,8 @@ class Window:
 
     def _cells(self, low: int, high: int) -> Cells:
         """The cells from one number to another."""
-        rule, sense, some, edges = (
-            self.grid.rule,
-            self.sense,
-            slice(low, high),
-            slice(low, high + 1),
-        )
+        rule, sense = self.grid.rule, self.sense
+        some, edges = slice(low, high), slice(low, high + 1)
         strip = self.strip.part(low, high)
         width, shape = strip.width[:, None], (high - low, len(rule.nodes) + 2)
         angle, energy, time, speed = np.empty((4, *shape))
