@@ -4,6 +4,7 @@ is first used."""
 from . import figures, lecture
 from .choose import Choice, choose
 from .compare import AtAngle, Budget, Comparison, Reading, at_angle, budget, compare
+from .compare.confirm import Confirmation, confirm
 from .design import Balance, Flywheel, balance, flywheel, freed
 from .errors import (
     CrankmbsError,
@@ -61,6 +62,7 @@ __all__ = [
     "Budget",
     "Choice",
     "Comparison",
+    "Confirmation",
     "Constant",
     "Cost",
     "Crank",
@@ -122,6 +124,7 @@ __all__ = [
     "budget",
     "choose",
     "compare",
+    "confirm",
     "engine_orders",
     "export",
     "figures",

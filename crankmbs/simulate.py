@@ -32,8 +32,8 @@ def simulate(
     formulation : None takes the scene's; "auto" the smallest exact one
     rtol : relative global error asked for, 1e-13 to 1e-2; None takes the scene's, for
         "multibody" at least 1e-5
-    cost_cap : wall time [s] at which "multibody" stops refining; a motion followed over time is
-        given up after 2,000,000 evaluations for each of these seconds
+    cost_cap [s] : each second stands for 20,000 steps of one cylinder that "multibody" takes, and
+        for 2,000,000 evaluations after which a motion followed over time is given up
 
     Returns
     -------

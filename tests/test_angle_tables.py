@@ -23,8 +23,6 @@ from crankmbs import (
 )
 from crankmbs.mechanics.torque import over_angle
 from crankmbs.mechanics.train import crank_train
-from crankmbs.motion.multibody.beside import errors_beside_jumps
-from crankmbs.motion.multibody.problem import problem_of
 from crankmbs.scene.read import parse_scene
 from crankmbs.scene.units import DEGREE
 from crankmbs.scene.write import scene_files
@@ -230,11 +228,11 @@ def test_random_tables_against_the_oracle(seed, formulation):
 
 def test_multibody_states_which_side_of_a_jump_a_sample_may_be_on():
     rows = ((0.0, 120.0, 120.0, 300.0, 300.0), (8.0, 8.0, -4.0, 2.0, 8.0))
-    scene = wheel(AngleTable(file=table(*rows)))
-    scene = replace(scene, run=Run(until="1 s", every="0.1 s"))
-    answer = {"crank_angle": np.array([1.0, 120.0 * DEGREE - 1e-5])}
-    problem = problem_of(crank_train(scene))
-    errors = errors_beside_jumps(problem, answer, {"crank_angle": 1e-5, "external_torque": 1e-6})
-    assert errors["external_torque"] == pytest.approx(12.0, rel=1e-3)
-    errors = errors_beside_jumps(problem, answer, {"crank_angle": 4e-6, "external_torque": 1e-6})
-    assert errors["external_torque"] < 1e-3
+    loaded = {"start__angle": 0.0, "torque": (AngleTable(file=table(*rows)),)}
+    scene = load_scene("coasting").with_(**loaded)
+    passed = simulate(replace(scene, run=Run(until="1920 deg", every="10 deg")))
+    time = float(passed.data.time.values[-1])
+    for end, low, high in ((time, 11.9, 12.1), (0.99 * time, 0.0, 0.1)):
+        run = Run(until=f"{end!r} s", every=f"{0.3 * end!r} s")
+        found = simulate(replace(scene, run=run), formulation="multibody", cost_cap=0.7)
+        assert low <= found.data.external_torque.attrs["error_estimate"] <= high

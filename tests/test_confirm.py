@@ -1,4 +1,4 @@
-"""Two runs are compared at the samples that both have."""
+"""A run is held against exudyn's rigid bodies; two runs are compared at the samples of both."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from crankmbs.compare.confirm import differences
+from crankmbs.compare.confirm import confirm, differences
+from crankmbs.errors import InputError
 from crankmbs.result import Result
 from crankmbs.scene.read import load_scene
 from crankmbs.scene.run import Run
@@ -57,3 +58,58 @@ def test_runs_that_reverse_elsewhere_are_compared_up_to_there() -> None:
     n = result.data.sizes["time"]
     without = result.data.isel(time=np.delete(np.arange(n), 30))
     assert samples(result, replace(result, data=without)) == {30}
+
+
+@pytest.mark.parametrize(
+    ("name", "change"),
+    [
+        ("coasting", {}),
+        ("propeller", {"run__until": "settled"}),
+        ("v_twin", {"run__until": "2 cycles", "run__every": "7 deg"}),
+        ("misfire", {"run__until": "3 cycles"}),
+        ("friction", {}),
+        ("turning_moment", {}),
+    ],
+)
+def test_exudyn_agrees_over_the_last_cycle_and_at_states_of_the_run(
+    name: str, change: dict[str, str]
+) -> None:
+    found = confirm(simulate(load_scene(name).with_(**change)))
+    assert found.holds
+    assert found.difference <= found.error <= 1e-5
+    assert found.at_states <= 1e-9
+    assert found.missing == ()
+    assert found.sentence.startswith("exudyn's rigid bodies agree to ")
+
+
+@pytest.mark.parametrize("name", ["run_up", "run_down"])
+def test_a_crank_that_friction_holds_is_confirmed_too(name: str) -> None:
+    found = confirm(simulate(load_scene(name)))
+    assert found.holds
+    assert found.at_states <= 1e-9
+    assert "while it holds the crank at rest" in found.missing[0]
+
+
+@pytest.mark.parametrize(
+    ("change", "least"),
+    [
+        ({"piston__mass": 1.001}, 1e-5),
+        ({"rod__length": 1.0001}, 1e-6),
+        ({"crank__inertia": 1.001}, 1e-6),
+        ({"gravity__acceleration": 1.01}, 1e-6),
+    ],
+)
+def test_a_shifted_parameter_is_seen(change: dict[str, float], least: float) -> None:
+    result = simulate(load_scene("coasting"))
+    (key, factor) = next(iter(change.items()))
+    part, name = key.split("__")
+    value = getattr(getattr(result.scene, part), name)
+    found = confirm(replace(result, scene=result.scene.with_(**{key: factor * value})))
+    assert not found.holds
+    assert max(found.difference, found.at_states) > least
+
+
+def test_a_run_of_multibody_is_not_confirmed_by_itself() -> None:
+    scene = load_scene("coasting").with_(run__until="0.01 s")
+    with pytest.raises(InputError, match="not confirmed by itself"):
+        confirm(simulate(scene, formulation="multibody"))

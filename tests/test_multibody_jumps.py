@@ -93,7 +93,7 @@ def test_a_swing_about_a_jump_ends_at_the_cost_cap() -> None:
     result = simulate(scene, formulation="multibody", cost_cap=1.0)
     assert result.status == -1
     assert "above the cost cap of 1 s" in result.message
-    assert result.cost.wall_time < 5.0
+    assert result.cost.steps <= 20_000
 
 
 BACKWARDS = {

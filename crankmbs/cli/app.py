@@ -80,7 +80,7 @@ def run(
     no_figures: NoFigures = False,
     confirm: Annotated[
         bool,
-        typer.Option("--confirm", help="Run the multibody model too and show the difference."),
+        typer.Option("--confirm", help="Let exudyn's rigid bodies run the last cycle too."),
     ] = False,
     orders: Annotated[
         bool, typer.Option("--orders", help="Show the orders of torque and frame force.")

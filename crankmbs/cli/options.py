@@ -15,7 +15,7 @@ SceneName = Annotated[
 ]
 
 CostCap = Annotated[
-    float, typer.Option(help="Seconds at which multibody stops refining, minimal gives up.")
+    float, typer.Option(help="Seconds, as steps, after which multibody and minimal give up.")
 ]
 
 Rtol = Annotated[float | None, typer.Option(help="Relative global error asked for.")]

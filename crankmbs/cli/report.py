@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,7 +16,7 @@ from crankmbs.result import Result
 from crankmbs.scene.units import RPM
 
 if TYPE_CHECKING:
-    from crankmbs.compare.confirm import Difference
+    from crankmbs.compare.confirm import Confirmation
 
 __all__ = ["comparison", "report"]
 
@@ -40,42 +39,33 @@ def report(name: str, result: Result, measures: Measures) -> str:
     return "\n".join(parts)
 
 
-def comparison(result: Result, check: Result, rows: Sequence[Difference]) -> str:
-    """The largest differences between a run and its check, beside what both say of their error."""
+def comparison(result: Result, found: Confirmation) -> str:
+    """What exudyn's rigid bodies say of a run: the answer, and the differences behind it."""
     several = result.data.sizes["cylinder"] > 1
     headings = [
-        "difference",
+        "over the last cycle",
         "largest",
         "at crank angle [deg]",
-        f"error {result.formulation}",
-        f"error {check.formulation}",
-        "share",
+        "error run",
+        "error exudyn",
     ]
     lines = []
-    for row in rows:
+    for row in found.period:
         largest, sample, column = row.largest
         cylinder = f" {column + 1}" if several and row.size.shape[1] > 1 else ""
         where = degrees_within(float(row.crank_angle[sample]), result.scene.period)
-        errors = [error_digits(error) for error in row.errors]
-        share = f"{row.share:.2g}"
-        size = error_digits(largest)
-        lines.append([f"{row.quantity}{cylinder} [{row.units}]", size, where, *errors, share])
-    worst = max(rows, key=lambda row: row.share)
-    verdict = (
-        "every difference lies within the sum of both stated errors"
-        if worst.share <= 1.0
-        else f"{worst.quantity} differs by {worst.share:.2g} times the sum of both stated errors"
-    )
+        numbers = [error_digits(size) for size in (largest, *row.errors)]
+        name = f"{row.quantity}{cylinder} [{row.units}]"
+        lines.append([name, numbers[0], where, *numbers[1:]])
     return "\n".join(
         [
             "",
-            f"check by {check.formulation}: {check.message}",
-            _error_line(check),
-            _cost_line(check),
-            "",
-            table(headings, lines),
-            "share: the largest difference over the sum of both stated errors",
-            verdict,
+            found.sentence,
+            *([] if not lines else ["", table(headings, lines), ""]),
+            f"at {len(found.states[0].size)} states of the run accelerations and joint forces "
+            f"agree to {found.at_states:.0e} of the peak",
+            "that nothing builds up over the whole run, --formulation minimal confirms",
+            *found.missing,
         ]
     )
 

@@ -24,7 +24,7 @@ from crankmbs.simulate import simulate
 from crankmbs.storage.files import together
 
 if TYPE_CHECKING:
-    from crankmbs.compare.confirm import Difference
+    from crankmbs.compare.confirm import Confirmation
 
 __all__ = ["Wanted", "override", "run_scene"]
 
@@ -33,7 +33,7 @@ __all__ = ["Wanted", "override", "run_scene"]
 class Wanted:
     """What a run shall show beside its measures.
 
-    confirm : run the multibody model too, print and draw the difference
+    confirm : let exudyn integrate the last period too, print and draw the difference
     orders : print, write and draw the orders of torque and frame force
     at : crank angles with their unit, at which every quantity is printed
     """
@@ -78,16 +78,15 @@ def run_scene(
         )
     folder = writable(Path("results", path.stem) if out is None else out)
 
-    result = _simulate(scene, cost_cap, rtol=options.get("rtol"))
+    result = _simulate(scene, cost_cap, options.get("rtol"))
     said = [report(path.stem, result, measure(result))]
     complete, made = result.status == 0, _Made(result)
     if wanted.confirm:
-        from crankmbs.compare.confirm import differences, followed
+        from crankmbs.compare.confirm import confirm
 
-        check = _simulate(followed(result), cost_cap, formulation="multibody")
-        made.differences = differences(result, check)
-        complete = complete and check.status == 0
-        said.append(comparison(result, check, made.differences))
+        with progress("exudyn"):
+            made.confirmation = confirm(result)
+        said.append(comparison(result, made.confirmation))
     if wanted.orders:
         from crankmbs.cli.orders import orders_report
 
@@ -108,7 +107,7 @@ class _Made:
     """What a run gave, to be written."""
 
     result: Result
-    differences: tuple[Difference, ...] | None = None
+    confirmation: Confirmation | None = None
     orders: EngineOrders | None = None
 
 
@@ -135,8 +134,9 @@ def _draw(made: _Made, folder: Path) -> list[str]:
     files = figures.save_figures(made.result, folder)
     if made.orders is not None:
         files.append(figures.save_orders_figure(made.result, made.orders, folder))
-    if made.differences is not None:
-        files.append(figures.save_differences(made.result, made.differences, folder))
+    if made.confirmation is not None and made.confirmation.period:
+        found = made.confirmation.period
+        files.append(figures.save_differences(made.result, found, folder))
     return [file.name for file in files]
 
 
@@ -161,8 +161,6 @@ def override(scene: Scene, options: Mapping[str, Any]) -> Scene:
         raise InputError(f"{given}: {error}") from None
 
 
-def _simulate(
-    scene: Scene, cost_cap: float, *, formulation: str | None = None, rtol: float | None = None
-) -> Result:
-    with progress(formulation or "running"):
-        return simulate(scene, formulation=formulation, rtol=rtol, cost_cap=cost_cap)
+def _simulate(scene: Scene, cost_cap: float, rtol: float | None) -> Result:
+    with progress("running"):
+        return simulate(scene, rtol=rtol, cost_cap=cost_cap)

@@ -1,23 +1,38 @@
-"""Two runs of one scene, sample by sample: their difference beside both stated errors."""
+"""A run beside exudyn's rigid bodies, and two runs of one scene sample by sample: how far they
+differ, and what both state of their error."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from crankmbs.errors import InputError
+from crankmbs.errors import FormulationError, InputError
+from crankmbs.mechanics.knots import repeat
+from crankmbs.mechanics.train import CrankTrain, crank_train
+from crankmbs.mechanics.variables import EVERY
+from crankmbs.motion.cells import Cells
+from crankmbs.motion.motion import Motion
 from crankmbs.motion.plan import Plan, plan_of
+from crankmbs.motion.states import variables_at
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
-from crankmbs.scene.drives import Start
-from crankmbs.scene.run import Extent
-from crankmbs.scene.scene import Scene
 
-__all__ = ["Difference", "differences", "followed"]
+if TYPE_CHECKING:
+    from crankmbs.motion.multibody.beside import Shares
+
+__all__ = ["Confirmation", "Difference", "confirm", "differences"]
 
 
+_RTOL = 5e-6  # of the last period
+_STEPS = 200_000  # of one cylinder, for it
+_PLACES = 360  # at which it is compared: between samples, beside jumps at whole degrees
+_STATES = 60  # of the whole run
+_LATE = 1e-3  # of a stretch that begins at rest: where friction lets go, rounding decides
+_NOTHING = 1e-9  # of the largest of the same unit: what is smaller is compared with that
 _SAME = 1e-6  # of the sample spacing: so near each other two samples are one
 _MOTION = {
     "crank speed": ("crank_speed",),
@@ -68,19 +83,202 @@ class Difference:
         return largest / allowed
 
 
-def followed(result: Result) -> Scene:
-    """The scene of a run that shows the same motion: a settled one as the run of one period from
-    its first sample, which formulations follow that solve for none.
+@dataclass(frozen=True)
+class Confirmation:
+    """What exudyn's rigid bodies say of a run.
 
-    >>> followed(simulate(load_scene("coasting"))).run.until.unit
-    's'
+    period : differences over the last period, which exudyn integrates from the motion's state at
+        its begin; of a prescribed speed its equations alone. Empty where nothing moves
+    states : differences of its accelerations and joint forces at states all over the run, under the
+        run's own load torque
+    window [s] : begin and end of that period
+    missing : what could not be compared, in sentences
     """
-    scene = result.scene
-    if not scene.settles or result.status != 0:
-        return scene
-    angle, speed = (float(result.data[name].values[0]) for name in ("crank_angle", "crank_speed"))
-    run = replace(scene.run, until=Extent(value=scene.settled_period, unit="rad"))
-    return replace(scene, start=Start(angle=angle, speed=speed), run=run)
+
+    period: tuple[Difference, ...]
+    states: tuple[Difference, ...]
+    window: tuple[float, float]
+    missing: tuple[str, ...] = ()
+
+    @property
+    def difference(self) -> float:
+        """The largest difference over the last period, relative to the peak of its quantity."""
+        return max((row.largest[0] / row.peak for row in self.period), default=math.nan)
+
+    @property
+    def error(self) -> float:
+        """The largest error that both together state over it, relative to the peak."""
+        return max((sum(row.errors) / row.peak for row in self.period), default=math.nan)
+
+    @property
+    def at_states(self) -> float:
+        """The largest difference at the states, relative to the peak."""
+        return max((row.largest[0] / row.peak for row in self.states), default=math.nan)
+
+    @property
+    def holds(self) -> bool:
+        """Whether the difference lies within the error that both state."""
+        return not self.difference > self.error
+
+    @property
+    def sentence(self) -> str:
+        """The answer."""
+        if not self.period:
+            return (
+                f"exudyn's rigid bodies agree to {self.at_states:.0e} of the peak in acceleration "
+                f"and every joint force at states of the run; nothing was integrated"
+            )
+        return (
+            f"exudyn's rigid bodies {'agree' if self.holds else 'differ'} "
+            f"{'to' if self.holds else 'by'} {self.difference:.0e} of the peak in motion and every "
+            f"joint force over the last cycle, with a stated error of {self.error:.0e}"
+        )
+
+
+def confirm(result: Result) -> Confirmation:
+    """Hold a run against the rigid multibody model, integrated in time by exudyn.
+
+    The last period, as far as the crank moves in it, is integrated from the motion's state at its
+    begin; and at 60 samples all over the run accelerations and joint forces are solved for. That
+    nothing builds up over a whole run is for the formulation "minimal" to confirm.
+
+    Raises
+    ------
+    InputError : the run is one of multibody itself
+
+    >>> confirm(simulate(load_scene("coasting"))).difference < 1e-5
+    True
+    """
+    if result.formulation == "multibody":
+        raise InputError(
+            "a run of multibody is not confirmed by itself; choose another formulation"
+        )
+    train, missing = crank_train(result.scene), []
+    period: tuple[Difference, ...] = ()
+    window = math.nan, math.nan
+    part = _moving(result)
+    if part is None:
+        missing.append("nothing moves at the end of the run: only states of rest were compared")
+    else:
+        try:
+            period, window = _last_period(result, train, part)
+        except FormulationError as error:
+            missing.append(f"the last cycle could not be integrated: {error}")
+    if result.scene.friction is not None and np.any(result.sampled("crank_speed") == 0.0):
+        missing.append(
+            "what friction gives while it holds the crank at rest is the run's: a rigid body at "
+            "rest does not determine it"
+        )
+    return Confirmation(period, _at_states(result, train), window, tuple(missing))
+
+
+def _moving(result: Result) -> Motion | None:
+    """The end of the motion, of a period at most, in which the crank neither rests nor is held."""
+    motion = result.passes.answer
+    part = motion.last(result.scene.period) or motion
+    pieces = list(part.cells)
+    while pieces and _rests(pieces[-1]):
+        pieces.pop()
+    first = next((k for k in reversed(range(len(pieces))) if _rests(pieces[k])), -1)
+    return Motion(part.train, pieces[first + 1 :]) if pieces else None
+
+
+def _rests(cells: Cells) -> bool:
+    acting = cells.acting
+    return acting.holds or acting.sense == 0.0 or float(cells.time[-1, -1]) == cells.time[0, 0]
+
+
+def _last_period(
+    result: Result, train: CrankTrain, part: Motion
+) -> tuple[tuple[Difference, ...], tuple[float, float]]:
+    from crankmbs.motion.multibody import beside  # exudyn is imported only when it is used
+
+    begin, end = part.begin, part.end
+    if part.at(np.array([begin]), in_time=True).omega[0] == 0.0:
+        begin += _LATE * (end - begin)
+    times = begin + (end - begin) * (np.arange(_PLACES) + 0.5) / _PLACES
+    states = part.at(times, in_time=True)
+    ours, fuel = variables_at(part.train, states), states.own.get("fuel")
+    if result.scene.motion is not None:
+        theirs = beside.consistent(train, ours, driven=True) | {"time": times}
+        errors = dict.fromkeys(theirs, 0.0)
+    else:
+        start = part.at(np.array([begin]), in_time=True)
+        state = begin, float(start.theta[0]), float(start.omega[0])
+        shares = None if fuel is None else _shares(train, states.theta, fuel)
+        phases, steps = part.cells[0].acting.phases, _STEPS // len(result.scene.cylinders)
+        theirs, errors = beside.integrated(train, state, (phases, shares), times, _RTOL, steps)
+    turned = abs(part.turned)
+    rows = {"crank angle": ("crank_angle",), **_MOTION, **_FORCES}
+    return _rows(rows, ours, theirs, _stated_by(result), errors, turned), (begin, end)
+
+
+def _shares(train: CrankTrain, theta: Array, fuel: Array) -> Shares:
+    """The shares of the combustion over the crank angle, as they were at times close together."""
+    from crankmbs.motion.multibody.beside import Shares
+
+    assert train.law is not None
+    order = np.argsort(theta)
+    angles = repeat(np.array(train.law.angles), train.scene.period, theta.min(), theta.max())
+    angles = np.sort(angles)
+    after = np.searchsorted(theta[order], np.append(theta.min(), angles))
+    return Shares(angles, fuel[order][after])
+
+
+def _at_states(result: Result, train: CrankTrain) -> tuple[Difference, ...]:
+    from crankmbs.motion.multibody import beside
+
+    count = result.data.sizes["time"]
+    chosen = np.unique(np.linspace(0, count - 1, _STATES).astype(int))
+    names = [str(name) for name in result.data.variables if name != "cylinder"]
+    ours = {name: result.sampled(name)[chosen] for name in names}
+    theirs = beside.consistent(train, ours, driven=result.scene.motion is not None)
+    rows = {name: _MOTION[name] for name in ("crank acceleration", "piston acceleration")} | _FORCES
+    none = dict.fromkeys(theirs, 0.0)
+    return _rows(rows, ours, theirs, _stated_by(result), none, math.inf)
+
+
+def _rows(
+    rows: Mapping[str, tuple[str, ...]],
+    ours: Mapping[str, Array],
+    theirs: Mapping[str, Array],
+    stated: Mapping[str, float],
+    errors: Mapping[str, float],
+    turned: float,
+) -> tuple[Difference, ...]:
+    """Differences of quantities; of the crank angle relative to the angle turned through, of what
+    is nothing beside others of its unit relative to those."""
+    peaks = {
+        title: float(np.max(np.sqrt(sum(ours[name] ** 2 for name in names))))
+        for title, names in rows.items()
+    } | {"crank angle": turned}
+    units = {title: EVERY[names[0]].units for title, names in rows.items()}
+    found = []
+    for title, names in rows.items():
+        most = max(size for other, size in peaks.items() if units.get(other) == units[title])
+        size = np.sqrt(sum((ours[name] - theirs[name]) ** 2 for name in names))
+        found.append(
+            Difference(
+                quantity=title,
+                units=units[title],
+                crank_angle=ours["crank_angle"],
+                size=size.reshape(len(size), -1),
+                peak=peaks[title] if peaks[title] > _NOTHING * most else most or 1.0,
+                errors=(
+                    math.hypot(*(stated[name] for name in names)),
+                    math.hypot(*(errors[name] for name in names)),
+                ),
+                formulations=("the run", "exudyn"),
+            )
+        )
+    return tuple(found)
+
+
+def _stated_by(result: Result) -> dict[str, float]:
+    return {
+        str(name): float(variable.attrs.get("error_estimate", 0.0))
+        for name, variable in result.data.variables.items()
+    }
 
 
 def differences(result: Result, check: Result) -> tuple[Difference, ...]:

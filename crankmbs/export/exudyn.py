@@ -2,23 +2,44 @@
 
 from __future__ import annotations
 
+import inspect
 import math
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from crankmbs.errors import InputError
 from crankmbs.mechanics.train import CrankTrain, crank_train
-from crankmbs.motion.multibody.single import Single, single_run
+from crankmbs.motion.multibody.beside import initial
+from crankmbs.motion.multibody.forces import Forces
+from crankmbs.motion.multibody.mechanism import Body, Guide, Hinge, Mechanism, mechanism_of
+from crankmbs.motion.multibody.model import build, settings_of
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.cycle import NEAR
 from crankmbs.scene.loads import Constant, Quadratic, Viscous
 from crankmbs.scene.scene import Scene
+from crankmbs.simulate import simulate
 
 __all__ = ["exudyn_script"]
 
 _BODY = Path(__file__).with_name("exudyn_body.txt")
+_IMPORTS = """from __future__ import annotations
+
+import math
+from bisect import bisect_right
+from typing import Any, Callable, NamedTuple
+
+import exudyn as exu
+import exudyn.itemInterface as eii
+import numpy as np
+
+SPECTRAL_RADIUS = 0.9
+"""
+_STEPS_PER_TURN = 1000  # of the fastest speed
+_ORDERLY = 3.0  # of order 2 differences fall by 4 at a halving; where they fall less it is rounding
+_SAFE = 1.5  # the largest difference of the rows is not quite that of the motion
 _STATED = {  # variable -> its words in the head of the script; a prescribed motion errs in forces
     "crank_angle": "crank angle [rad]",
     "crank_speed": "crank speed [rad/s]",
@@ -33,13 +54,14 @@ _STATED = {  # variable -> its words in the head of the script; a prescribed mot
 def exudyn_script(scene: Scene, stem: str) -> str:
     """A script that builds the bodies, joints and loads of a scene and runs them in exudyn.
 
-    It gives the run of `crankmbs.motion.multibody` at its step, not extrapolated; how far that is
-    from the motion it says in its head. Run, it writes STEM.csv.
+    Mechanism, system and settings are those of `crankmbs.motion.multibody`, quoted. It runs at 1000
+    steps a turn, not extrapolated; how far that is from the motion it says in its head. Run, it
+    writes STEM.csv.
 
     Raises
     ------
     InputError : fuel, friction, loads with windows, tables or functions, a speed that changes, a
-        settled motion, forces that jump; says which
+        settled motion, forces that jump, a crank that nothing moves; says which
 
     >>> "def run():" in exudyn_script(load_scene("torque_driven"), "mine")
     True
@@ -48,14 +70,62 @@ def exudyn_script(scene: Scene, stem: str) -> str:
     if refused:
         raise InputError(f"a script for exudyn cannot express {refused}")
     train = crank_train(scene)
-    try:
-        found = single_run(train)
-    except InputError as error:
-        raise InputError(f"a script for exudyn cannot express this scene: {error}") from None
-    head = _head(scene, found)
-    parameters = _parameters(scene, found, stem)
+    if Forces(train).jumps:
+        raise InputError(
+            "a script for exudyn cannot express this scene: its multibody run is cut where forces "
+            "or loads jump, and begins anew there"
+        )
+    result = simulate(scene)
+    if result.status != 0:
+        raise InputError(
+            f"a script for exudyn cannot express this scene: {result.message}; give a "
+            "run that reaches its end"
+        )
+    end = float(result.sampled("time")[-1])
+    fastest = float(np.max(np.abs(result.sampled("crank_speed"))))
+    steps = 4 * math.ceil(end * fastest / (2.0 * math.pi) * _STEPS_PER_TURN / 4.0)
+    texts = [_text(train, stem, end, steps // part) for part in (4, 2, 1)]
+    return _head(scene, end / steps, _errors(*map(_run, texts))) + texts[-1]
+
+
+def _text(train: CrankTrain, stem: str, end: float, steps: int) -> str:
+    """All of a script but its head."""
+    parameters = _parameters(train, stem, end, steps)
+    sources: list[Any] = [Body, Hinge, Guide, Mechanism, build, settings_of]
+    quoted = [inspect.getsource(each) for each in sources]
+    quoted[-1] = quoted[-1].replace("settings_of", "settings", 1)
     main = 'if __name__ == "__main__":\n    main()\n'
-    return "\n".join([head, parameters, _BODY.read_text(encoding="utf-8"), *_gas(train), main])
+    return "\n\n".join(
+        [_IMPORTS, *quoted, parameters, *_gas(train), _BODY.read_text(encoding="utf-8"), main]
+    )
+
+
+def _run(text: str) -> dict[str, Array]:
+    """The columns that a script gives."""
+    names: dict[str, Any] = {"__name__": "script"}
+    exec(compile(text, "script", "exec"), names)  # what was written here, nothing of others
+    found: dict[str, Array] = names["run"]()
+    return found
+
+
+def _errors(
+    coarsest: dict[str, Array], coarse: dict[str, Array], fine: dict[str, Array]
+) -> dict[str, float]:
+    """By variable the largest error of the finest run: where order 2 is seen a third of what the
+    nearer run differs by, else all of it; of the bearing under several cylinders at least that of
+    their crank pins, as their differences may cancel where their errors do not."""
+    errors: dict[str, float] = {}
+    for heading, values in fine.items():
+        change = float(np.max(np.abs(values[1::2] - coarse[heading])))
+        before = float(np.max(np.abs(coarse[heading][1::2] - coarsest[heading])))
+        error = _SAFE * change / (3.0 if before > _ORDERLY * change else 1.0)
+        name = heading.split(" [")[0].split(" ")[0]
+        errors[name] = max(errors.get(name, 0.0), error)
+    if any(heading.startswith("side_force 2") for heading in fine):
+        pins = max(errors["crank_pin_force_x"], errors["crank_pin_force_y"])
+        for name in ("main_bearing_force_x", "main_bearing_force_y"):
+            errors[name] = max(errors[name], pins)
+    return errors
 
 
 def _refused(scene: Scene) -> str:
@@ -80,7 +150,7 @@ def _refused(scene: Scene) -> str:
     return ""
 
 
-def _head(scene: Scene, found: Single) -> str:
+def _head(scene: Scene, step: float, errors: dict[str, float]) -> str:
     stated = _STATED if scene.motion is None else dict(list(_STATED.items())[2:])
     title = " ".join(scene.title.split()) or "a scene"
     lines = [
@@ -90,42 +160,20 @@ def _head(scene: Scene, found: Single) -> str:
         "# Planar: X along the cylinder from the crank axis to the head, Y is X turned by +90",
         "# degrees. Units are SI. It needs numpy and exudyn.",
         "#",
-        f"# At this step ({found.step:.6g} s) it differs from the motion by at most about",
-        *(f"#     {found.errors[name]:<10.1e} {words}" for name, words in stated.items()),
+        f"# At this step ({step:.6g} s) it differs from the motion by at most about",
+        *(f"#     {errors[name]:<10.1e} {words}" for name, words in stated.items()),
         "",
-        "import math",
-        "from bisect import bisect_right",
-        "",
-        "import exudyn as exu",
-        "import exudyn.itemInterface as eii",
-        "import numpy as np",
     ]
     return "\n".join(lines)
 
 
-def _parameters(scene: Scene, found: Single, stem: str) -> str:
-    crank, rod, g = scene.crank, scene.rod, scene.gravity
-    pull = (0.0, 0.0)
-    if g is not None:
-        direction = g.acceleration * np.exp(1j * g.angle)
-        pull = (float(direction.real), float(direction.imag))
+def _parameters(train: CrankTrain, stem: str, end: float, steps: int) -> str:
+    scene, step = train.scene, end / steps
     begin = scene.start or scene.motion
     assert begin is not None
     speed = None if scene.motion is None else scene.motion.speed
     values: list[tuple[str, object, str]] = [
-        ("CRANK_RADIUS", crank.radius, "m"),
-        ("CRANK_INERTIA", crank.moment_of_inertia, "kg m^2, about its axis, flywheel included"),
-        ("CRANK_MASS", crank.mass, "kg"),
-        ("CRANK_CENTER", crank.center_of_mass, "m, centre of mass along the reference line"),
-        ("ROD_LENGTH", rod.length, "m"),
-        ("ROD_MASS", rod.mass, "kg"),
-        ("ROD_CENTER", rod.center_of_mass, "m, centre of mass from the crank pin"),
-        ("ROD_INERTIA", rod.moment_of_inertia, "kg m^2, about the centre of mass"),
-        ("PISTON_MASS", scene.piston.mass, "kg"),
-        ("PISTON_OFFSET", scene.piston.offset, "m, of the cylinder axis in +Y"),
         ("PHASES", [c.phase for c in scene.cylinders], "rad, cycle angles at crank angle 0"),
-        ("BANKS", [c.bank for c in scene.cylinders], "rad, of the cylinders from the engine's X"),
-        ("GRAVITY", pull, "m/s^2"),
         ("TORQUE_CONSTANT", _sum(scene, Constant, "torque"), "N m, on the free crank"),
         ("TORQUE_VISCOUS", 0.0 - _sum(scene, Viscous, "coefficient"), "N m s"),
         ("TORQUE_QUADRATIC", 0.0 - _sum(scene, Quadratic, "coefficient"), "N m s^2"),
@@ -133,28 +181,27 @@ def _parameters(scene: Scene, found: Single, stem: str) -> str:
         ("START_ANGLE", begin.angle, "rad"),
         ("OUTPUT", f"{stem}.csv", ""),
         ("NEAR", NEAR, "rad: angles nearer than this are one"),
-        ("", "", ""),
-        (
-            "",
-            "",
-            "The step, and where the run-up begins that ends at the scene's start: values for",
-        ),
-        ("", "", "this step and these parameters from which the joint forces do not ring."),
-        ("STEP", found.step, "s"),
-        ("RUN_UP", found.run_up, "steps before the start"),
-        ("STEPS", found.steps, "in all"),
+        ("STEP", step, "s"),
+        ("STEPS", steps, ""),
     ]
-    if speed is not None:
-        values.append(("RUN_UP_ANGLES", list(found.angles), "rad"))
     lines = [_line(*value) for value in values]
-    arrays = {
-        "REFERENCE": found.reference,
-        "START_POSITION": found.start.position,
-        "START_VELOCITY": found.start.velocity,
-        "START_ACCELERATION": found.start.acceleration,
-    }
-    about = "# x, y [m], angle [rad] of the crank, then of each rod and x, y of its piston:"
-    return "\n".join(["", *lines, about, *(_array(*each) for each in arrays.items())])
+    arrays = dict(zip(("POSITION", "VELOCITY", "ACCELERATION"), initial(train, step), strict=True))
+    return "\n".join(
+        [
+            f"MECHANISM = {_mechanism(mechanism_of(scene))}",
+            *lines,
+            "# x, y [m], angle [rad] of the crank, then of each rod and x, y of its piston: values",
+            "# for this step from which the joint forces do not ring.",
+            *(_array(f"START_{name}", each) for name, each in arrays.items()),
+        ]
+    )
+
+
+def _mechanism(found: Mechanism) -> str:
+    rows = ["Mechanism(", f"    gravity={found.gravity!r},"]
+    for name, parts in list(found._asdict().items())[1:]:
+        rows += [f"    {name}=(", *(f"        {part!r}," for part in parts), "    ),"]
+    return "\n".join([*rows, ")"])
 
 
 def _line(name: str, value: object, about: str) -> str:

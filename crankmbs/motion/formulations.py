@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 
 __all__ = ["FORMULATIONS", "Formulation", "serving"]
 
+_HALVED = 1.5  # of what the last halving of multibody's steps changed: at order 1 it is the error
+
 
 class Formulation(NamedTuple):
     """One way to solve a scene.
@@ -100,9 +102,8 @@ def _multibody(train: CrankTrain, rtol: float, cost_cap: float) -> Assembled:
     from crankmbs.motion.assemble import assemble
     from crankmbs.motion.observer import Followed, account_of
 
-    solution, runs, ending = multibody.run(train, rtol, cost_cap)
-    followed = [Followed(train, begin, pieces, ending) for begin, pieces in runs]
-    keep = partial(account_of, followed, multibody.SAFETY)
+    solution, runs = multibody.run(train, rtol, cost_cap)
+    keep = partial(account_of, [Followed(train, *each) for each in runs], _HALVED)
     return assemble(train, replace(solution, keep=keep))
 
 

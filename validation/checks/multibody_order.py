@@ -14,9 +14,13 @@ from matplotlib.figure import Figure
 
 from crankmbs.figures.style import STYLE, line_of
 from crankmbs.mechanics.train import crank_train
-from crankmbs.motion.multibody.problem import problem_of
-from crankmbs.motion.multibody.samples import Sampled, aligned_variables
-from crankmbs.motion.multibody.stepped import coarsest_step, model_of, solve
+from crankmbs.motion.base import State
+from crankmbs.motion.mode import begun
+from crankmbs.motion.multibody.answer import Answers
+from crankmbs.motion.multibody.forces import EVERYWHERE, Forces
+from crankmbs.motion.multibody.integrate import Limits, integrate
+from crankmbs.motion.multibody.model import Model
+from crankmbs.motion.multibody.runs import Motion
 from crankmbs.scene.scene import Scene
 from validation.adapter import reference_motion, reference_variables
 from validation.case import Case
@@ -28,6 +32,8 @@ from validation.runs import run
 __all__ = ["observed_order", "order_of"]
 
 _ORDER = 2.0  # of generalized alpha
+_STEPS_PER_TURN = 125  # of the coarsest run, as the formulation takes
+_MOST = 10_000_000  # steps
 _AGREE = 0.2  # so near must the last two local slopes be to be an order
 _FLOOR = 1e-12  # errors below it are rounding
 _BEARING = ("main_bearing_force_x", "main_bearing_force_y")
@@ -80,19 +86,27 @@ def _errors(ours: Scene, theirs: Scene, count: int) -> _Errors:
     reference = run(theirs, "crank_angle")  # only its samples' crank angles are used
     motion = reference_motion(reference, theirs)
     exact = reference_variables(theirs, motion.theta, motion.omega, motion.alpha)
-    problem = problem_of(crank_train(ours))
-    model = model_of(problem)
+    train, model, time = crank_train(ours), Model(ours), motion.time.astype(np.float64)
+    assert ours.start is not None
+    start = State(0.0, ours.start.angle, ours.start.speed, 0.0, begun(train))
+    limits = Limits(float(time[-1]), EVERYWHERE, _MOST)
+    steps = 2.0 * math.pi / abs(ours.start.speed) / _STEPS_PER_TURN / 2.0 ** np.arange(count)
+    answers = Answers(model, Forces(train), (start,))
     try:
-        step, _ = coarsest_step(problem, model)
-        paths = [solve(problem, model, step, halvings, None) for halvings in range(count)]
-        runs = aligned_variables(problem, [Sampled(problem, path) for path in paths])
+        paths = [integrate(train, model, start, limits, float(step)) for step in steps]
+        angles = motion.theta.astype(np.float64)
+        runs = [
+            answers.at(passed, angles, path.at(passed)[1])
+            for path in paths
+            for passed in [Motion((path,), (1.0,)).times(angles, 0.0, float(path.rows[-1, 0]))]
+        ]
     finally:
         model.close()
     turned, peak = float(np.ptp(motion.theta)), _length(exact)
     late = [(own["time"] - motion.time) * motion.omega / turned for own in runs]
     missed = [{name: own[name] - exact[name] for name in _BEARING} for own in runs]
     return _Errors(
-        np.array([path.tables[0].step for path in paths]),
+        np.asarray(steps, dtype=np.float64),
         {
             "motion": np.array([float(np.max(np.abs(values))) for values in late]),
             "main bearing": np.array([_length(force) / peak for force in missed]),

@@ -1,53 +1,121 @@
-"""Samples so near a jump over the angle that their stated angle leaves its side open."""
+"""The model beside a motion that another formulation found: from one state on, and at states."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from crankmbs.motion.multibody.held import held_by
-from crankmbs.motion.multibody.problem import Problem
+from crankmbs.mechanics.firing import Firing
+from crankmbs.mechanics.speed import speed_law
+from crankmbs.mechanics.train import CrankTrain
+from crankmbs.mechanics.windows import Phases
+from crankmbs.motion.base import State
+from crankmbs.motion.mode import Mode
+from crankmbs.motion.multibody.answer import Answers
+from crankmbs.motion.multibody.forces import EVERYWHERE, Bounds, Forces
+from crankmbs.motion.multibody.free import follow
+from crankmbs.motion.multibody.model import Model
 from crankmbs.numerics.arrays import Array
 
-__all__ = ["errors_beside_jumps"]
+__all__ = ["Shares", "consistent", "initial", "integrated"]
+
+_NEAR = 1e-8  # rad
 
 
-def errors_beside_jumps(
-    problem: Problem, answer: Mapping[str, Array], errors: Mapping[str, float]
-) -> dict[str, float]:
-    """The errors, of gas, joint forces and loads no less than a jump within reach changes.
+class Shares(NamedTuple):
+    """Shares of the combustion as they are known: in place of a law of decisions.
 
-    Two runs on the same wrong side of a jump agree. Within reach is twice the stated error of the
-    crank angle. Samples in angle are exact but for the last of a run that ends at a time.
+    angles : shape (n,) [rad], increasing, at which they change; rows : before the first and after
+        each, shape (n + 1, cylinders)
     """
-    errors, plan = dict(errors), problem.plan
-    reach = 2.0 * errors["crank_angle"]
-    if not (plan.in_time or plan.until_time) or not np.isfinite(reach):
-        return errors
-    theta = answer["crank_angle"][slice(None) if plan.in_time else slice(-1, None)]
-    for side in (-reach, reach):
-        for name, change in (
-            _of_gas(problem, theta, side) | _of_loads(problem, theta, side)
-        ).items():
-            errors[name] = max(errors[name], float(np.max(np.abs(change))))
-    return errors
+
+    angles: Array
+    rows: Array
+
+    def next(self, firing: Firing) -> tuple[float, float]:
+        """Crank angles [rad], backwards and forwards, at which they change next."""
+        ends = np.concatenate([[-np.inf], self.angles, [np.inf]])
+        k = int(np.searchsorted(self.angles, firing.theta + _NEAR * np.sign(firing.integral)))
+        return float(ends[k]), float(ends[k + 1])
+
+    def decided(self, firing: Firing, time: float, theta: float, omega: float) -> Firing:
+        """What holds from a crank angle on, in the sense in which it is passed."""
+        return self.at(time, theta, omega)
+
+    def at(self, time: float, theta: float, omega: float) -> Firing:
+        """What holds at a state; its ``integral`` is the sense of rotation."""
+        sense = float(np.sign(omega))
+        k = int(np.searchsorted(self.angles, theta + _NEAR * sense))
+        return Firing(tuple(self.rows[k].tolist()), time, theta, sense, None, False, theta, theta)
 
 
-def _of_gas(problem: Problem, theta: Array, side: float) -> dict[str, Array]:
-    """By how much gas and joint forces change to one side, where the gas jumps."""
-    if not problem.gas.jumps:
-        return {}
-    fired = [problem.gas.law.most] * len(problem.gas.phases) if problem.gas.law else []
-    change = problem.gas.force(theta + side, fired) - problem.gas.force(theta, fired)
-    pressure = change / (problem.scene.piston.gas_area or 1.0)
-    own = {"gas_force": change, "gas_pressure": pressure}
-    return held_by(problem.scene, change, theta) | own
+def integrated(
+    train: CrankTrain,
+    state: tuple[float, float, float],
+    acting: tuple[Phases, Shares | None],
+    times: Array,
+    rtol: float,
+    steps: int,
+) -> tuple[dict[str, Array], dict[str, float]]:
+    """Every variable of a free crank at later times [s], shape (m,), integrated from a time [s],
+    crank angle [rad] and speed [rad/s]; and the error of each.
+
+    acting : phases of the loads' windows, and shares of the combustion; rtol
+        asked for; steps : allowed
+
+    Raises
+    ------
+    FormulationError : exudyn cannot take a single step from there
+    """
+    phases, shares = acting
+    mode = Mode(phases)
+    if shares is not None:
+        law: Any = shares  # it is asked for no more
+        train, firing = replace(train, law=law), shares.at(*state)
+        mode = Mode(phases, *shares.next(firing), firing)
+    return follow(train, State(*state, 0.0, mode), times, rtol, steps)
 
 
-def _of_loads(problem: Problem, theta: Array, side: float) -> dict[str, Array]:
-    """By how much the loads over the angle that jump change to one side."""
-    parts = (load.parts.over_angle for load in problem.scene.torque)
-    jumping = [part for part in parts if part is not None and part.order == 1]
-    changes = [part(theta + side) - part(theta) for part in jumping]
-    return {"external_torque": np.sum(np.abs(changes), axis=0)} if changes else {}
+def consistent(train: CrankTrain, motion: dict[str, Array], *, driven: bool) -> dict[str, Array]:
+    """Accelerations, multipliers and all that follows from them at states of a motion.
+
+    motion : at states of shape (m,), "crank_angle", "crank_speed"; of a driven crank its
+        "crank_acceleration", else "external_torque"; "fuel" and, for a crank at rest,
+        "friction_force" where there are
+    """
+    theta, omega = motion["crank_angle"], motion["crank_speed"]
+    model, forces = Model(train.scene), Forces(train)
+    try:
+        gas = forces.gas(theta, motion.get("fuel"))
+        friction = forces.friction(theta, omega, gas, np.sign(omega))
+        if "friction_force" in motion:
+            friction = np.where(omega[:, None] == 0.0, motion["friction_force"], friction)
+        torque = None if driven else motion["external_torque"]
+        alpha = motion["crank_acceleration"] if driven else None
+        return Answers(model, forces, ()).under((gas, friction), torque, theta, omega, alpha)
+    finally:
+        model.close()
+
+
+def initial(train: CrankTrain, step: float) -> tuple[Array, Array, Array]:
+    """Coordinates at the start of a scene, their velocities and accelerations, from which a run
+    with steps of this length [s] does not ring; of a prescribed speed a constant one."""
+    scene, model, forces = train.scene, Model(train.scene), Forces(train)
+    law = None if scene.motion is None else speed_law(scene.motion)
+    if law is not None:
+        theta, omega, _ = (float(each) for each in law.at_time(0.0))
+    else:
+        assert scene.start is not None
+        theta, omega = scene.start.angle, scene.start.speed
+    bounds = Bounds(EVERYWHERE, EVERYWHERE, EVERYWHERE)
+    model.torque, model.pushes = (
+        forces.load(bounds, Mode()),
+        forces.pushes(bounds, Mode(), theta, 1.0),
+    )
+    try:
+        _, *found = model.quiet_start((0.0, theta, omega), step, driven=law is not None)
+    finally:
+        model.close()
+    return tuple(found)

@@ -1,240 +1,378 @@
-"""The system of a scene in exudyn, to be run from any start, and what a run of it recorded."""
+"""The mechanism of a scene as a system of exudyn, line by line, and its equations of motion.
+
+Absolute coordinates q and multipliers of the joints, with exudyn's mass matrix M, constraints C,
+their Jacobian J and generalized forces f:
+
+    M q'' + J^T lambda = f,    C(q) = 0
+"""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
+from functools import partial
 from typing import Any, NamedTuple
 
+import exudyn
 import numpy as np
+from exudyn import itemInterface
 
-from crankmbs.motion.multibody.loads import Load
-from crankmbs.motion.multibody.parts import Assembly, exu
-from crankmbs.motion.multibody.start import SPECTRAL_RADIUS, Start
+from crankmbs.motion.ending import Ending
+from crankmbs.motion.multibody.mechanism import Mechanism, closed, mechanism_of
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 
-__all__ = ["Model", "Record"]
+__all__ = ["SPECTRAL_RADIUS", "Consistent", "Model", "build", "settings_of"]
 
-_SHIFT = 2e-4  # m or rad
-_WEIGHTS = (1.0 / 3.0, -2.0, 8.0 / 3.0)  # of h, h/2 and h/4: without terms in h and h^2
-_FAR = 1e9  # rad: no run turns farther
-# relative, of Newton's method: where forces are small beside what they cancel the first may lie
-# below what some processors round; 1e-8 leaves errors that no halving shows, and passes near folds
-_TOLERANCES = (1e-10, 1e-9)
+exu: Any = exudyn  # its stubs are narrower than what it takes
+eii: Any = itemInterface
+
+SPECTRAL_RADIUS = 0.9  # cleanly of order 2, so that extrapolation pays; 0.6 is not
+_ALPHA_M = (2.0 * SPECTRAL_RADIUS - 1.0) / (SPECTRAL_RADIUS + 1.0)
+_ALPHA_F = SPECTRAL_RADIUS / (SPECTRAL_RADIUS + 1.0)
+_GAMMA = 0.5 + _ALPHA_F - _ALPHA_M
+_BETA = 0.25 * (_GAMMA + 0.5) ** 2
+# of Newton's method, relative, and absolute as a share of the largest joint force at the start:
+# where forces are small beside what they cancel the first may lie below what is rounded; a relative
+# 1e-8 leaves errors that no halving shows, and passes near folds
+_TOLERANCES = ((1e-10, 1e-16), (1e-9, 1e-11))
+_BLOCK = 1000  # states that are solved for together
 
 
-class Record(NamedTuple):
-    """What exudyn knows at the steps of a run: m steps, n cylinders, global axes.
+def build(
+    mechanism: Mechanism,
+    push: Callable[[int, float], tuple[float, float]] | None,
+    torque: Callable[[float], float],
+) -> tuple[Any, Any]:
+    """exudyn's container and system of a mechanism.
 
-    time : shape (m,) [s]
-    position, velocity, acceleration : shape (m, 3 + 5 n), coordinates as in `Start`
-    bearing : shape (m, 2); crank_pin, piston_pin : shape (m, n, 2); side : shape (m, n) [N]
-    drive : shape (m,) [N m], the torque that keeps a prescribed speed
-    complete : whether the solver went through
-    iterations : of Newton's method
+    push : force [N] on a piston, x and y, by its number and the solver's time [s]; None: none is
+        pushed. torque [N m] : on the crank, by the time
+    """
+    container = exu.SystemContainer()
+    system = container.AddSystem()
+    bodies = {"ground": system.AddObject(eii.ObjectGround())}
+    fixed = system.AddNode(eii.NodePointGround())
+    nodes = {}
+    for body in mechanism.bodies:
+        if body.inertia is None:
+            node = system.AddNode(eii.NodePoint2D())
+            item = eii.ObjectMassPoint2D(nodeNumber=node, mass=body.mass)
+        else:
+            node = system.AddNode(eii.NodeRigidBody2D())
+            item = eii.ObjectRigidBody2D(nodeNumber=node, mass=body.mass, inertia=body.inertia)
+        nodes[body.name], bodies[body.name] = node, system.AddObject(item)
+        marker = system.AddMarker(eii.MarkerBodyMass(bodyNumber=bodies[body.name]))
+        weight = [*mechanism.gravity, 0.0]
+        system.AddLoad(eii.Gravity(markerNumber=marker, loadVector=weight))
+    for hinge in mechanism.hinges:
+        markers = [
+            system.AddMarker(
+                eii.MarkerBodyPosition(bodyNumber=bodies[name], localPosition=[*point, 0.0])
+            )
+            for name, point in zip(hinge.bodies, hinge.points, strict=True)
+        ]
+        system.AddObject(eii.RevoluteJoint2D(markerNumbers=markers))
+    for number, guide in enumerate(mechanism.guides):
+        markers = [
+            system.AddMarker(eii.MarkerNodeCoordinates(nodeNumber=node))
+            for node in (fixed, nodes[guide.body])
+        ]
+        system.AddObject(
+            eii.CoordinateVectorConstraint(
+                markerNumbers=markers,
+                scalingMarker1=np.array([guide.normal]),
+                offset=[guide.offset],
+            )
+        )
+        if push is None:
+            continue
+        marker = system.AddMarker(eii.MarkerBodyPosition(bodyNumber=bodies[guide.body]))
+        system.AddLoad(
+            eii.LoadForceVector(
+                markerNumber=marker,
+                loadVectorUserFunction=lambda _, time, load, k=number: [*push(k, time), 0.0],
+            )
+        )
+    marker = system.AddMarker(eii.MarkerNodeCoordinate(nodeNumber=nodes["crank"], coordinate=2))
+    system.AddLoad(
+        eii.LoadCoordinate(markerNumber=marker, loadUserFunction=lambda _, time, load: torque(time))
+    )
+    return container, system
+
+
+class Consistent(NamedTuple):
+    """The system in motion at m states, q coordinates, j hinges, n cylinders.
+
+    position, velocity, acceleration : shape (m, q), in the order of `Mechanism.bodies`
+    hinges : shape (m, j, 2), force on the second body of each [N]; walls : shape (m, n), force on
+        the pistons along the normals of the guides [N]
+    torque : shape (m,), from outside on the crank [N m]
     """
 
-    time: Array
     position: Array
     velocity: Array
     acceleration: Array
-    bearing: Array
-    crank_pin: Array
-    piston_pin: Array
-    side: Array
-    drive: Array
-    complete: bool
-    iterations: int
-
-    def rows(self) -> dict[str, Array]:
-        """What was recorded step by step, by name."""
-        return dict(zip(self._fields[:-2], self[:-2], strict=True))
+    hinges: Array
+    walls: Array
+    torque: Array
 
 
 class Model:
-    """The system of a scene. Set its loads, then run it.
+    """A scene in exudyn. Set its forces, then run it from a state, or solve for states.
 
-    gas : per cylinder the force [N] of gas and rings over the crank angle [rad]; empty without both
-    torque : torque [N m] on a free crank over time [s], crank angle [rad] and speed [rad/s]
-    angle : crank angle [rad] of a prescribed motion over the number of the step
-    stiff : whether Newton's method shall know how the loads change; 2.7 times as slow
-    begun : where the last `run` started, and its step [s]
+    torque [N m] : on a free crank, of time [s], crank angle [rad] and speed [rad/s]
+    pushes [N] : on each piston towards the crank, of crank angle and of the piston's velocity in
+        that direction [m/s]
     """
 
-    def __init__(self, scene: Scene, reference: Start, *, gas: bool, free: bool) -> None:
-        self.gas: Sequence[Callable[[float], float]] = ()
-        self.torque: Load = lambda time, theta, omega: 0.0
-        self.angle: Callable[[int], float] = lambda step: 0.0
-        self.stiff = False
-        self.begun: tuple[Start, float] | None = None
-        self._settings = _settings()
-        self._container = exu.SystemContainer()
-        self._system = self._container.AddSystem()
-        self._reference = reference.position
-        self._zero = float(reference.position[2])
-        self._begin, self._step = 0.0, 1.0  # solver time counts from the first step
-        assembly = Assembly(self._system, scene, reference.position)
-        self._sensors = assembly.sensors
-        if not free:
-            assembly.drive(lambda time: self.angle(round(time / self._step)) - self._zero)
-        elif scene.torque:
-            assembly.load(
-                lambda time: self.torque(
-                    self._begin + time, self._zero + self._q.item(2), self._v.item(2)
-                )
-            )
-        for k in range(len(scene.cylinders) if gas else 0):
-            assembly.push(k, self._gas_force(k))
-        if scene.friction is not None and scene.friction.viscous > 0.0:
-            for k, cylinder in enumerate(scene.cylinders):
-                assembly.push(k, self._viscous_force(k, cylinder.bank, scene.friction.viscous))
+    def __init__(self, scene: Scene) -> None:
+        self.scene, self.mechanism = scene, mechanism_of(scene)
+        self.torque: Callable[[float, float, float], float] = lambda time, theta, omega: 0.0
+        self.pushes: Sequence[Callable[[float, float], float]] = ()
+        self._begin = self._largest = 0.0
+        pushed = scene.gas is not None or scene.friction is not None
+        self._container, self._system = build(
+            self.mechanism, self._push if pushed else None, self._torque
+        )
         self._system.Assemble()
         data = self._system.systemData
-        self._q, self._v = (  # exudyn's own memory: always the current state
+        self._q, self._v, self._a = (  # exudyn's own memory: always the current state
             data.GetODE2Coordinates(copy=False),
             data.GetODE2Coordinates_t(copy=False),
+            data.GetODE2Coordinates_tt(copy=False),
         )
+        self._towards = [(-guide.normal[1], guide.normal[0]) for guide in self.mechanism.guides]
+        self._read()
 
     def close(self) -> None:
         """Let go of what exudyn holds: it and this model refer to each other."""
         self._system.Reset()
 
+    def start(self, time: float, theta: float, omega: float, *, driven: bool = False) -> Consistent:
+        """The system in a state, free or at constant speed, under the forces that it was given."""
+        at, faster = np.array([theta]), np.array([omega])
+        push = np.zeros((1, len(self.scene.cylinders)))
+        torque = np.array([self.torque(time, theta, omega)])
+        if self.pushes:
+            moving = self.states(at, faster, push, torque).velocity[0]
+            speeds = (moving[3:].reshape(-1, 5)[:, 3:] * self._towards).sum(axis=1).tolist()
+            pairs = zip(self.pushes, speeds, strict=True)
+            push = np.array([[each(theta, speed) for each, speed in pairs]])
+        if driven:
+            return self.driven(at, faster, np.zeros(1), push)
+        return self.states(at, faster, push, torque)
+
+    def quiet_start(
+        self, state: tuple[float, float, float], step: float, *, driven: bool = False
+    ) -> tuple[Any, ...]:
+        """The crank's acceleration, and position, velocity and acceleration from which the
+        multipliers do not ring.
+
+        With the jerk j the method's own smooth solution has, to the order of h^2, the velocity
+        v - (1/12 + (alpha_f - alpha_m)^2 / 4) h^2 j and the algorithmic acceleration
+        a + (alpha_m - alpha_f) h j. exudyn takes one acceleration for both; shifts of position and
+        velocity make up for that in the first step.
+
+        driven : at constant speed
+        """
+        time, theta, omega = state
+        here = self.start(*state, driven=driven)
+        self._largest = max(self._largest, float(np.abs(here.hinges).max()))
+        alpha = float(here.acceleration[0, 2])
+        sides = [
+            self.start(
+                time + t, theta + (omega + 0.5 * alpha * t) * t, omega + alpha * t, driven=driven
+            )
+            for t in (-0.5 * step, 0.5 * step)
+        ]
+        jerk = (sides[1].acceleration[0] - sides[0].acceleration[0]) / step
+        late = _ALPHA_F * step * jerk
+        position = here.position[0] + step**2 * (0.5 - _GAMMA + _BETA) * late
+        shifted = step**2 * (1.0 / 12.0 + 0.25 * (_ALPHA_F - _ALPHA_M) ** 2) * jerk
+        velocity = here.velocity[0] - shifted - step * (1.0 - _GAMMA) * late
+        return alpha, position, velocity, here.acceleration[0] + _ALPHA_M * step * jerk
+
     def run(
         self,
-        start: Start,
-        begin: float,
+        state: tuple[float, float, float],
         step: float,
-        steps: int,
-        proceed: Callable[[float, float], bool] | None = None,
-        lead: int = 0,
-    ) -> Record:
-        """Solve from ``start`` at time ``begin`` [s].
+        most: int,
+        inside: Callable[[float, float, float], bool],
+        *,
+        stiff: bool,
+    ) -> tuple[Array, Ending, int]:
+        """Integrate from a time [s], angle [rad], speed [rad/s] by the generalized-alpha method.
 
-        proceed(crank angle, speed) : asked before every step but the first ``lead``; False ends it.
-            None leaves out two of some thirty microseconds a step
-        """
-        self.begun = start, step
-        self._set(start, begin, step)
-        self._system.SetPreStepUserFunction(0)
-        if proceed is not None:
-            asked = (lead - 0.5) * step
-
-            def ask(_: object, time: float) -> bool:
-                return time < asked or proceed(self._zero + self._q.item(2), self._v.item(2))
-
-            self._system.SetPreStepUserFunction(ask)
-        return self._solve(self._over(step, steps))
-
-    def crank(self, start: Start, begin: float, step: float, steps: int) -> tuple[Array, Array]:
-        """The crank alone, from ``start`` at time ``begin`` [s].
+        most : steps; inside(time, crank angle, speed) : asked after every step; where False the run
+            ends. stiff : whether Newton's method shall know how the loads change; 2.7 times as slow
 
         Returns
         -------
-        its angle [rad], speed [rad/s] and acceleration [rad/s2], shape (m, 3), m = steps + 1 unless
-        the solver fails; the last position of all bodies, as in `Start`
+        rows of time [s], crank angle [rad], speed [rad/s] and acceleration [rad/s2], shape (m, 4);
+        COMPLETE where ``inside`` ended it, CALLED_OFF after all steps, DIVERGED where exudyn failed
+        or a rod turned over; Newton's iterations
         """
-        self._set(start, begin, step)
-        self._system.SetPreStepUserFunction(0)
-        self._integrate(self._over(step, steps))
-        rows = [self._stored(name, 1)[0] for name in ("position", "velocity", "acceleration")]
-        seen = np.stack([values[:, 2] for values in rows], axis=1)
-        seen[:, 0] += self._zero
-        return seen, self._q + self._reference
-
-    def consistent(self, start: Start, time: float) -> Record:
-        """One row: accelerations and forces of a free start, without a step; to ten digits.
-
-        exudyn differentiates the constraints by a difference to one side. Rows f with a shift of
-        d, d/2, d/4 have errors of order d and d^2, which f(d)/3 - 2 f(d/2) + 8 f(d/4)/3 has not.
-        """
-        self._set(start, time, 1e-9)
-        self._system.SetPreStepUserFunction(0)
-        rows = [self._solve(_initial(_SHIFT * part)) for part in (1.0, 0.5, 0.25)]
-        exact: dict[str, Any] = {
-            name: sum(weight * row.rows()[name] for weight, row in zip(_WEIGHTS, rows, strict=True))
-            for name in ("acceleration", "bearing", "crank_pin", "piston_pin", "side", "drive")
-        }
-        return rows[-1]._replace(**exact, complete=all(row.complete for row in rows))
-
-    def _gas_force(self, k: int) -> Callable[[], float]:
-        return lambda: self.gas[k](self._zero + self._q.item(2))
-
-    def _viscous_force(self, k: int, bank: float, viscous: float) -> Callable[[], float]:
-        """Against the piston's own velocity, towards the crank [N]."""
-        x, along, across = 6 + 5 * k, viscous * math.cos(bank), viscous * math.sin(bank)
-        return lambda: along * self._v.item(x) + across * self._v.item(x + 1)
-
-    def _set(self, start: Start, begin: float, step: float) -> None:
-        self._begin, self._step = begin, step
+        rows: list[tuple[float, float, float, float]] = []
         data, initial = self._system.systemData, exu.ConfigurationType.Initial
-        data.SetODE2Coordinates(start.position - self._reference, initial)
-        data.SetODE2Coordinates_t(start.velocity, initial)
-        data.SetODE2Coordinates_tt(start.acceleration, initial)
+        rods = [(5 + 5 * k, c.bank) for k, c in enumerate(self.scene.cylinders)]
+        outside = False
 
-    def _over(self, step: float, steps: int) -> Any:
-        """Settings for so many steps."""
-        _span(self._settings, step, steps)
-        return self._settings
+        def note(_: object, _time: float) -> bool:  # before each step, and not after the last
+            nonlocal outside
+            if any(abs(self._q.item(at) - bank) > 0.5 * np.pi for at, bank in rods):
+                return False
+            row = begin + step * len(rows), self._q.item(2), self._v.item(2), self._a.item(2)
+            rows.append(row if rows else (*state, alpha))
+            outside = len(rows) > 1 and not inside(*row[:3])
+            return not outside
 
-    def _integrate(self, settings: Any) -> bool:
-        """Whether the solver goes through, if need be with a tolerance above what is rounded."""
-        settings.timeIntegration.computeLoadsJacobian = 2 if self.stiff else 0
-        with _quiet():
-            for tolerance in _TOLERANCES:
-                settings.timeIntegration.newton.relativeTolerance = tolerance
-                with suppress(RuntimeError, ValueError):  # Newton fails, or a matrix is singular
-                    if self._system.SolveDynamic(settings):
-                        return True
-        return False
+        begin = self._begin = state[0]
+        alpha, *start = self.quiet_start(state, step)
+        self._system.SetPreStepUserFunction(note)
+        settings = settings_of(step, most, stiff=stiff)
+        iterations, solved = 0, False
+        newton = settings.timeIntegration.newton
+        for newton.relativeTolerance, share in _TOLERANCES:
+            rows.clear()
+            newton.absoluteTolerance = max(share * self._largest, 1e-12)
+            data.SetODE2Coordinates(start[0], initial)
+            data.SetODE2Coordinates_t(start[1], initial)
+            data.SetODE2Coordinates_tt(start[2], initial)
+            with _quiet(), suppress(RuntimeError, ValueError):  # Newton fails, a matrix is singular
+                solved = self._system.SolveDynamic(settings)
+            iterations += int(self._system.sys["dynamicSolver"].it.newtonStepsCount)
+            if outside or solved:
+                break
+        ending = Ending.COMPLETE if outside else Ending.DIVERGED
+        if not outside and len(rows) == most:
+            ending = Ending.CALLED_OFF
+        return np.array(rows), ending, iterations
 
-    def _solve(self, settings: Any) -> Record:
-        complete = self._integrate(settings)
-        bodies = {name: self._stored(name) for name in ("position", "velocity", "acceleration")}
-        joints = {name: self._stored(name) for name in ("bearing", "crank_pin", "piston_pin")}
-        m = len(bodies["position"][0])
-        position, velocity, acceleration = (np.hstack(parts) for parts in bodies.values())
-        bearing, crank_pin, piston_pin = (-np.stack(p, axis=1)[..., :2] for p in joints.values())
-        return Record(
-            time=self._begin + self._step * np.arange(m, dtype=np.float64),
-            position=position + self._reference,
-            velocity=velocity,
-            acceleration=acceleration,
-            bearing=bearing[:, 0],
-            crank_pin=crank_pin,
-            piston_pin=piston_pin,
-            side=-np.hstack(self._stored("side")),
-            drive=-self._stored("drive")[0][:, 0] if "drive" in self._sensors else np.zeros(m),
-            complete=complete,
-            iterations=int(self._system.sys["dynamicSolver"].it.newtonStepsCount),
+    def states(self, theta: Array, omega: Array, push: Array, torque: Array) -> Consistent:
+        """The system at crank angles [rad] and speeds [rad/s] of shape (m,), under given forces.
+
+        push : shape (m, n) [N], on each piston towards the crank; torque : shape (m,) [N m]
+        """
+        return _in_blocks(partial(self._block, free=True), theta, omega, push, torque)
+
+    def driven(self, theta: Array, omega: Array, alpha: Array, push: Array) -> Consistent:
+        """The same at given accelerations [rad/s2]; the torque is what they take."""
+        return _in_blocks(partial(self._block, free=False), theta, omega, push, alpha)
+
+    def _block(
+        self, theta: Array, omega: Array, push: Array, given: Array, *, free: bool
+    ) -> Consistent:
+        """The states of one block, by the tangent u of J u = 0, u_theta = 1.
+
+        alpha = u (f - M w) / (u M u),    q'' = u alpha + w,    J w = -J' q',  w_theta = 0
+
+        given : the torque on a free crank, or the acceleration of a driven one
+        """
+        q, ahead = closed(self.scene, theta), np.zeros(len(theta))
+        jacobian, _, open_by = self._constraints(q)
+        q = q - np.linalg.solve(jacobian, np.column_stack([open_by, ahead])[..., None])[..., 0]
+        jacobian, bend, _ = self._constraints(q)
+        unit = np.zeros_like(q)
+        unit[:, -1] = 1.0
+        u = np.linalg.solve(jacobian, unit[..., None])[..., 0]
+        v = u * omega[:, None]
+        turning = np.einsum("mcb,mb->mc", bend, v[:, self._turns] ** 2)
+        w = -np.linalg.solve(jacobian, np.column_stack([turning, ahead])[..., None])[..., 0]
+        force = self._weight + push @ self._pushed
+        alpha = given
+        if free:
+            force[:, 2] += given
+            alpha = ((force - w * self._mass) * u).sum(axis=1) / (u**2 @ self._mass)
+        a = u * alpha[:, None] + w
+        rest = (force - a * self._mass)[..., None]
+        joints = -np.linalg.solve(np.swapaxes(jacobian, 1, 2), rest)[..., 0]
+        count = 2 * len(self.mechanism.hinges)
+        hinges = joints[:, :count].reshape(len(theta), count // 2, 2)
+        return Consistent(q, v, a, hinges, joints[:, count:-1], given if free else joints[:, -1])
+
+    def _read(self) -> None:
+        """Read mass, constraints and forces from exudyn: in each angle the constraints are a sine
+        and a cosine, in all else linear."""
+        solver, system, data = (
+            exu.MainSolverImplicitSecondOrder(),
+            self._system,
+            self._system.systemData,
         )
+        with _quiet():
+            solver.InitializeSolver(system, settings_of(1.0))
+        count = len(self._q)
+        rows = slice(count, count + len(self.mechanism.guides) + 2 * len(self.mechanism.hinges))
+        names = [body.inertia for body in self.mechanism.bodies]
+        ends = np.cumsum([2 if inertia is None else 3 for inertia in names])
+        turns = np.array([end - 1 for end, i in zip(ends, names, strict=True) if i is not None])
 
-    def _stored(self, name: str, most: int | None = None) -> list[Array]:
-        """Per sensor (of the first ones) the recorded values, shape (m, its components)."""
-        return [self._system.GetSensorStoredData(s)[:, 1:] for s in self._sensors[name][:most]]
+        def at(angle: float) -> tuple[Array, Array]:
+            position = np.zeros(count)
+            position[turns] = angle
+            data.SetODE2Coordinates(position)
+            solver.SetSystemJacobian(np.zeros((rows.stop, rows.stop)))
+            solver.ComputeJacobianAE(system)
+            solver.ComputeAlgebraicEquations(system)
+            return solver.GetSystemJacobian()[rows, :count], solver.GetSystemResidual()[rows]
+
+        def forces(number: int) -> Array:
+            self.pushes = [_constant(float(k == number)) for k in range(cylinders)]
+            solver.ComputeODE2RHS(system)
+            return np.array(solver.GetSystemResidual()[:count])
+
+        self._turns, cylinders = turns, len(self.scene.cylinders)
+        (self._flat, offset), (self._upright, _) = at(0.0), at(0.5 * np.pi)
+        self._offset = offset + self._upright[:, turns].sum(axis=1)
+        self._weight = forces(-1)
+        self._pushed = np.array([forces(k) - self._weight for k in range(cylinders)])
+        self.pushes = ()
+        solver.ComputeMassMatrix(system)
+        self._mass = np.diag(solver.GetSystemMassMatrix()).copy()
+
+    def _constraints(self, q: Array) -> tuple[Array, Array, Array]:
+        """The Jacobian with a row for the crank angle, shape (m, q, q); the second derivatives in
+        the angles, shape (m, q - 1, turning bodies); and by how much the joints are open."""
+        turns, flat, upright = self._turns, self._flat, self._upright
+        cos, sin = np.cos(q[:, None, turns]), np.sin(q[:, None, turns])
+        straight = flat.copy()
+        straight[:, turns] = 0.0
+        jacobian = np.zeros((len(q), q.shape[1], q.shape[1]))
+        jacobian[:, :-1] = straight
+        jacobian[:, :-1, turns] = flat[:, turns] * cos + upright[:, turns] * sin
+        jacobian[:, -1, 2] = 1.0
+        bend = upright[:, turns] * cos - flat[:, turns] * sin
+        return jacobian, bend, self._offset + q @ straight.T - bend.sum(axis=2)
+
+    def _torque(self, time: float) -> float:
+        return self.torque(self._begin + time, self._q.item(2), self._v.item(2))
+
+    def _push(self, k: int, _time: float) -> tuple[float, float]:
+        x, y = self._towards[k]
+        at = 6 + 5 * k
+        speed = x * self._v.item(at) + y * self._v.item(at + 1)
+        force = self.pushes[k](self._q.item(2), speed)
+        return force * x, force * y
 
 
-def _initial(shift: float) -> Any:
-    """Settings for the initial accelerations alone, with a shift [m] or [rad] to differentiate."""
-    settings = _settings()
-    _span(settings, 1e-9, 1)
-    settings.timeIntegration.generalizedAlpha.computeInitialAccelerations = True
-    difference = settings.timeIntegration.newton.numericalDifferentiation
-    difference.relativeEpsilon = shift / _FAR  # of this or of the coordinate, if that is larger
-    difference.minimumCoordinateSize = _FAR
-    return settings
+def _constant(value: float) -> Callable[[float, float], float]:
+    return lambda _theta, _speed: value
 
 
-def _span(settings: Any, step: float, steps: int) -> None:
-    settings.timeIntegration.endTime = steps * step
-    settings.timeIntegration.numberOfSteps = steps
-    settings.solution.sensors.writePeriod = 0.5 * step  # every step, whatever the rounding
+def _in_blocks(solve: Callable[..., Consistent], *rows: Array) -> Consistent:
+    """Solve for states so many at a time, which bounds the memory."""
+    starts = range(0, max(len(rows[0]), 1), _BLOCK)
+    parts = [solve(*(row[k : k + _BLOCK] for row in rows)) for k in starts]
+    return Consistent(*map(np.concatenate, zip(*parts, strict=True)))
 
 
-def _settings() -> Any:
+def settings_of(step: float, most: int = 1, *, stiff: bool = False) -> Any:
+    """The generalized-alpha method, index 3, at equal steps [s]: halving them divides the error by
+    four."""
     settings = exu.SimulationSettings()
     integration = settings.timeIntegration
+    integration.numberOfSteps = most
+    integration.endTime = most * step
     integration.adaptiveStep = False  # it may succeed with nonsense near a singular position
     integration.verboseMode = 0
     integration.generalizedAlpha.spectralRadius = SPECTRAL_RADIUS
@@ -242,7 +380,7 @@ def _settings() -> Any:
     integration.generalizedAlpha.resetAccelerations = False
     integration.newton.useModifiedNewton = True
     integration.newton.modifiedNewtonJacUpdatePerStep = True  # a third less time than full Newton
-    integration.newton.absoluteTolerance = 1e-12
+    integration.computeLoadsJacobian = 2 if stiff else 0
     settings.solution.file.write = False
     settings.linearSolver.solverType = exu.LinearSolverType.EXUdense
     return settings
