@@ -77,18 +77,18 @@ def sample(plan: Plan, course: Course, end: float | None) -> tuple[Array, Array]
 
 
 def rounding(values: dict[str, Array]) -> dict[str, float]:
-    """What is left of every variable where nothing else errs: 1e-12 of its peak and 1e-14 of the
-    largest of its unit; of sums that may cancel 1e-12 of that, of the energy residual 1e-14 of the
-    kinetic energy."""
+    """What is left of every variable where nothing else errs: 1e-12 of its peak, and of the largest
+    of its unit 1e-14, of sums that may cancel 1e-13; of the energy residual 1e-14 of the kinetic
+    energy."""
     peaks = {name: peak(each) for name, each in values.items()}
     largest: dict[str, float] = {}
     for name, size in peaks.items():
         unit = EVERY[name].units
         largest[unit] = max(largest.get(unit, 0.0), size)
-    sizes = {n: largest[EVERY[n].units] if n in SUMS else size for n, size in peaks.items()}
-    least = {name: _ROUNDING * size for name, size in sizes.items()}
+    least = {}
     for name, size in peaks.items():
-        least[name] += 0.01 * _ROUNDING * largest[EVERY[name].units] if size else 0.0
+        beside = 0.1 if name in SUMS else 0.01 if size else 0.0
+        least[name] = _ROUNDING * (size + beside * largest[EVERY[name].units])
     return least | {"energy_residual": 0.01 * least["kinetic_energy"]}
 
 

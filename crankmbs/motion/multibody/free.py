@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from functools import partial
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +31,8 @@ _PER_SECOND = 20_000  # steps of one cylinder that a second of the cost cap stan
 _FEW = 200  # samples at which a run is judged before it is at all of them
 _SINGLE = 32  # samples: among more there is one where nothing cancels
 _SLOW = 1e-6  # of the fastest speed
+_ROUNDED = "finer steps err as much by rounding, which grows in this motion"
+_NO_FINER = "at a finer step exudyn's Newton iteration does not converge"
 
 Values = dict[str, Array]
 
@@ -51,11 +54,11 @@ def run(train: CrankTrain, rtol: float, cost_cap: float) -> tuple[Solution, list
     limits = Limits(plan.time_bound, plan.angle_bounds, math.ceil(cost_cap * rate))
     try:
         runs = Runs(train, model, start, limits)
-        values, errors, note = _refined(runs, rtol, partial(_of_plan, runs, plan))
+        values, errors, why = _refined(runs, rtol, partial(_of_plan, runs, plan))
         status, message = _ended(runs, plan, cost_cap)
         worst = _worst(values, errors)
         if runs.moves and worst > rtol:
-            message += note or _shortfall(worst, rtol, runs.steps / rate, cost_cap)
+            message += _shortfall(worst, rtol, why, runs.steps / rate, cost_cap)
         followed = runs_of(runs)
     finally:
         model.close()
@@ -93,16 +96,18 @@ def _refined(
 
     answer : of so many samples, or of all
     """
-    finer, note = runs.first(), ""
+    finer, why = runs.first(), ""
     while True:
         values, errors = answer(_FEW)
+        if finer and runs.rounded:
+            why, finer = _ROUNDED, False
         enough = not finer or not runs.affords_another
         if enough or not _worst(values, errors) > rtol:
             values, errors = answer(None)
             if enough or not _worst(values, errors) > rtol:
-                return values, errors, note
+                return values, errors, why
         finer = runs.halve()
-        note = "" if finer else "; at a finer step exudyn's Newton iteration does not converge"
+        why = "" if finer else _NO_FINER
 
 
 def _of_plan(runs: Runs, plan: Plan, most: int | None) -> tuple[Values, dict[str, float]]:
@@ -145,25 +150,28 @@ def _of_plan(runs: Runs, plan: Plan, most: int | None) -> tuple[Values, dict[str
 def _shared(
     runs: Runs, time: Array, theta: Array, omega: Array, by_angle: NDArray[np.bool_]
 ) -> tuple[Values, dict[str, float]]:
-    """The variables at samples, and what they change by in the motion that checks the answer.
+    """The variables at samples, and what they change by in the motions that check the answer.
 
-    Where forces jump, so does what lies beside: that motion is then taken on both sides.
+    Where forces jump, so does what lies beside: these motions are then taken on both sides. A speed
+    that the loads hold is what it is in each of them.
     """
     answers = Answers(runs.model, runs.forces, runs.states)
     values = answers.at(time, theta, omega)
-    answer, check = runs.motions()
-    if check is None:
+    answer, checks = runs.motions()
+    if not checks:
         return values, dict.fromkeys(values, math.inf)
     coarser = Answers(runs.model, runs.forces, runs.paths[-2].states)  # with decisions of its own
     errors = dict.fromkeys(values, 0.0)
-    for side in (1.0, -1.0) if runs.forces.jumps else (1.0,):
+    for check, side in product(checks, (1.0, -1.0) if runs.forces.jumps else (1.0,)):
         before, changes = values, dict.fromkeys(values, 0.0)
-        for shifted in _shifts(answer, check, (time, theta, omega), by_angle, side):
-            after = coarser.at(*shifted)
+        for then, angle, speed in _shifts(answer, check, (time, theta, omega), by_angle, side):
+            if runs.ending is Ending.HELD:
+                speed[-1] = omega[-1]
+            after = coarser.at(then, angle, speed)
             changes = {name: changes[name] + peak(after[name] - before[name]) for name in values}
             before = after
         errors = {name: max(errors[name], changes[name]) for name in values}
-    errors["crank_angle"] = peak(check.at(time)[0] - theta)
+    errors["crank_angle"] = max(peak(check.at(time)[0] - theta) for check in checks)
     return values, errors
 
 
@@ -218,12 +226,11 @@ def _ended(runs: Runs, plan: Plan, cap: float) -> tuple[int, str]:
     return ending.said(theta, omega, time=time, whole=whole, cap=cap)
 
 
-def _shortfall(worst: float, rtol: float, spent: float, cap: float) -> str:
+def _shortfall(worst: float, rtol: float, why: str, spent: float, cost_cap: float) -> str:
     """What to say where ``rtol`` is not met."""
     if math.isinf(worst):
         return "; its error is unknown"
-    cost = float(f"{spent * math.sqrt(worst / rtol):.2g}")
-    return (
-        f"; relative error {worst:.1e} reached, {rtol:.0e} asked for: that would take about "
-        f"{cost:g} s, above the cost cap of {cap:g} s"
-    )
+    halvings = math.ceil(math.log(worst / rtol, 4.0))
+    cost = float(f"{spent * 2.0**halvings:.2g}")
+    why = why or f"that would take about {cost:g} s, above the cost cap of {cost_cap:g} s"
+    return f"; relative error {worst:.1e} reached, {rtol:.0e} asked for: {why}"

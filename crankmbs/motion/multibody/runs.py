@@ -13,6 +13,7 @@ from itertools import pairwise
 import numpy as np
 
 from crankmbs.errors import FormulationError
+from crankmbs.mechanics.peaks import peak
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion.base import State
 from crankmbs.motion.ending import Ending
@@ -26,9 +27,12 @@ __all__ = ["Motion", "Runs"]
 
 _STEPS_PER_TURN = 125  # of the coarsest run, at the speed at the start
 _STEPS = 125  # of it, at least
-_RETRIES = 4  # with a quarter of the step each time, where exudyn fails at the coarsest
+_RETRIES = 4  # with a quarter of the step each time, where exudyn fails
 _UNTOUCHED = 0.98  # of the time to where it fails: before it goes wrong
+_EPS = float(np.finfo(float).eps)
 _STUCK = 1e-9  # rad/s2
+_EXTRAPOLATED = (-1.0 / 3.0, 4.0 / 3.0)  # weights of two runs, h and h/2, whose error is of h^2
+_SHAKEN = 1e-12  # of the crank angle: how far off a run begins that shows what rounding grows to
 _HELD = "a jump of the loads drives the speed back from both sides"
 _NO_STEP = "exudyn's Newton iteration does not converge"
 
@@ -115,11 +119,7 @@ class Runs:
         if not self.moves:
             return False
         seventh = self._limits._replace(steps=self._limits.steps // 7)
-        for _ in range(_RETRIES):
-            path = self._run(seventh)
-            if path.ending is not Ending.DIVERGED:
-                break
-            self._stiff, self._step = True, 0.25 * self._step
+        path = self._coarse(seventh)
         self.ending = path.ending
         if len(path.states) == 1 and (path.ending is not Ending.HELD or self.start.omega):
             why = _HELD if path.ending is Ending.HELD else _NO_STEP
@@ -129,14 +129,32 @@ class Runs:
         self.moves = len(path.states) > 1
         time = path.states[-1].time
         if path.ending is Ending.DIVERGED:
-            time *= _UNTOUCHED
-            self._limits = self._limits._replace(time=time)
-            path = self._run(seventh)
+            self._limits = self._limits._replace(time=_UNTOUCHED * time)
+            path = self._run(seventh._replace(time=_UNTOUCHED * time))
         elif path.ending is Ending.CALLED_OFF:
             self._limits = self._limits._replace(time=time)
             path = self._run(self._limits)
-        self.paths = [path]
-        return self.moves and self.halve() and self.halve()
+        self.paths, there = [path], self.start.theta
+        if not self.moves:
+            return False
+        off = math.copysign(_SHAKEN * (1.0 + abs(there)), path.states[-1].theta - there)
+        self._shaken = self._run(self._limits, self.start._replace(theta=there + off))
+        return self.halve() and self.halve()
+
+    def _coarse(self, limits: Limits) -> Path:
+        """A run at the coarsest step at which exudyn comes as far as at a quarter of it."""
+        path = self._run(limits)
+        for _ in range(_RETRIES):
+            if path.ending is not Ending.DIVERGED:
+                break
+            before = path, self._stiff, self._step
+            self._stiff, self._step = True, 0.25 * self._step
+            path = self._run(limits)
+            further = _UNTOUCHED * path.states[-1].time > before[0].states[-1].time
+            if path.ending is Ending.DIVERGED and not further:
+                path, self._stiff, self._step = before
+                break
+        return path
 
     def halve(self) -> bool:
         """One more run, at half the step; False where exudyn fails there."""
@@ -152,22 +170,35 @@ class Runs:
         """Whether the steps suffice for one more."""
         return self.steps + 2 * self.paths[-1].steps <= self._limits.steps
 
-    def motions(self) -> tuple[Motion, Motion | None]:
-        """The answer, and a motion as far off as it may be.
+    @property
+    def rounded(self) -> bool:
+        """Whether rounding has grown beyond what the steps err by."""
+        answer, checks = self.motions()
+        grid = self.paths[0].rows[:, 0]
+        steps, rounding = (peak(each.at(grid)[0] - answer.at(grid)[0]) for each in checks)
+        return rounding > steps
 
-        With f, f', f'' the last three runs, coarse to fine, the answer is f'' + (f'' - f')/3 where
-        that differs from f' + (f' - f)/3 by at most a third of f'' - f', and loads jump nowhere
-        within a step; the check is what it differs from. Else the answer is f'', and the check is
-        off by half of f - f'', which is no less by chance than at order 1. Of one run there is no
-        check.
+    def motions(self) -> tuple[Motion, tuple[Motion, ...]]:
+        """The answer, and motions as far off as it may be.
+
+        With f, f', f'' the last three runs, coarse to fine, the answer is E'' = f'' + (f'' - f')/3
+        where that differs from E' = f' + (f' - f)/3 by at most a third of f'' - f', and loads jump
+        nowhere within a step; it is checked by E'. Else the answer is f'', and the check is off by
+        half of f - f'', which is no less by chance than at order 1. The other check is off by what
+        the rounding of all steps grows to, as they do at random. Of one run there is none.
         """
         *coarser, fine = self.paths[-3:]
         if not coarser:
-            return Motion((fine,), (1.0,)), None
+            return Motion((fine,), (1.0,)), ()
+        answer, check = Motion((fine,), (1.0,)), Motion((coarser[0], fine), (0.5, 0.5))
         if len(coarser) == 2 and fine.whole and self._is_clean():
-            third = (-1.0 / 3.0, 4.0 / 3.0)
-            return Motion((coarser[1], fine), third), Motion(tuple(coarser), third)
-        return Motion((fine,), (1.0,)), Motion((coarser[0], fine), (0.5, 0.5))
+            answer = Motion((coarser[1], fine), _EXTRAPOLATED)
+            check = Motion(tuple(coarser), _EXTRAPOLATED)
+        rounded = math.sqrt(fine.steps) * _EPS / _SHAKEN
+        also = Motion(
+            (self._shaken, self.paths[0], *answer.paths), (rounded, -rounded, *answer.weights)
+        )
+        return answer, (check, also)
 
     def _is_clean(self) -> bool:
         coarse, middle, fine = self.paths[-3:]
@@ -178,8 +209,9 @@ class Runs:
         apart = np.abs(before - 4.0 * change).max(axis=1)
         return bool(np.all(apart <= np.abs(change).max(axis=1)))
 
-    def _run(self, limits: Limits) -> Path:
-        return integrate(self._train, self.model, self.start, limits, self._step, stiff=self._stiff)
+    def _run(self, limits: Limits, start: State | None = None) -> Path:
+        begin, stiff = start or self.start, self._stiff
+        return integrate(self._train, self.model, begin, limits, self._step, stiff=stiff)
 
     def _coarsest(self) -> tuple[float, bool]:
         """A step [s] to begin with, and whether the crank will move at all.
