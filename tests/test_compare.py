@@ -123,8 +123,8 @@ def test_a_shifted_parameter_turns_the_multibody_comparison_red(multibody, part,
 
 def test_multibody_meets_the_closed_form_in_every_quantity(multibody):
     found = shares(compare(multibody), CLOSED_FORM)
-    assert max(found.values()) < 1e-6  # its own estimate is 4e-8
-    assert max(found.values()) > 1e-13  # it has its own coordinates and multipliers
+    assert max(found.values()) < 1e-12  # exudyn's equations, solved at each sample
+    assert max(found.values()) > 0.0  # with coordinates and multipliers of their own
 
 
 @pytest.mark.parametrize("formulation", ["crank_angle", "minimal"])
