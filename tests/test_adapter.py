@@ -85,6 +85,7 @@ def test_every_field_reaches_the_machine() -> None:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "tolerance"), [("coasting", 1e-14), ("propeller", 5e-12)])
 def test_stored_end_states(name: str, tolerance: float) -> None:
     """The scene's floats instead of exact decimals, and the crank-angle run: radians, rad/s."""
@@ -113,6 +114,7 @@ def test_only_an_end_at_an_angle_is_compared_at_an_equal_angle() -> None:
     assert np.abs(ahead[1:-1]).min() > 1e3 * abs(ahead[-1])
 
 
+@pytest.mark.slow
 def test_samples_where_it_turns_are_compared_at_equal_times() -> None:
     """It swings, and where it turns back is the only angle that is sampled."""
     result = simulate(random_scene(4960), formulation="minimal")

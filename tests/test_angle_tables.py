@@ -98,6 +98,7 @@ def test_formulations_agree(interpolation):
     np.testing.assert_allclose(a["crank_acceleration"], b["crank_acceleration"], atol=1e-5)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rows", [LONG, ((0.0, 120.0, 300.0), (9.0, -6.0, 4.0))])
 def test_multibody_confirms(rows):
     load = AngleTable(file=table(*rows))
@@ -217,6 +218,7 @@ def test_it_is_read_and_written(tmp_path):
     assert again.torque[0].interpolation == "cubic"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("formulation", FREE)
 @pytest.mark.parametrize("seed", range(4))
 def test_random_tables_against_the_oracle(seed, formulation):

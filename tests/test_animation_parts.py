@@ -147,6 +147,7 @@ def test_bearings_are_drawn_only_where_all_cylinders_are():
         assert [each.cylinder for each in forces] == [k for cut in cuts for k in cut]
 
 
+@pytest.mark.slow
 def test_a_film_with_forces_shows_their_colours(tmp_path):
     filming = Filming(length=0.5, forces="piston")
     file = save_animation(simulate(RUBBING), tmp_path / "rub.gif", filming)

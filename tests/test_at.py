@@ -25,6 +25,7 @@ def by_name(found, cylinder=None):
     return {r.quantity: r for r in found.readings if r.cylinder == cylinder}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("formulation", ["crank_angle", "minimal"])
 def test_it_is_the_sample_that_lies_there(formulation):
     """At an angle that the samples have, to their errors."""

@@ -105,6 +105,7 @@ def test_a_crank_that_has_the_counterweight_is_what_is_left(speed):
     np.testing.assert_allclose(found.after, again, rtol=0, atol=1e-12 * np.abs(again).max())
 
 
+@pytest.mark.slow
 def test_of_a_free_crank_errors_are_stated():
     scene = load_scene("v_twin")
     found = balance(scene, 0.5)

@@ -139,6 +139,7 @@ def test_a_cell_is_read_where_it_is_asked_for(stages):
     np.testing.assert_allclose(place[first:] ** stages, x[first:] ** stages, rtol=1e-14, atol=5e-15)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("cycles", [1_000, 10_000, 100_000])
 def test_the_time_of_a_long_free_run_errs_by_no_more_than_it_states(cycles):
     """Under weights alone every cycle takes as long as the first."""

@@ -29,6 +29,7 @@ def folder(tmp_path, monkeypatch):
     return tmp_path
 
 
+@pytest.mark.slow
 def test_run_writes_into_results_by_name_and_reports():
     result = crankmbs_("run", "engine.toml")
     assert result.exit_code == 0, result.output
@@ -73,6 +74,7 @@ def test_no_figures_draws_none_and_out_says_where():
     assert not Path("results").exists()
 
 
+@pytest.mark.slow
 def test_figures_of_another_run_are_not_taken_for_those_of_this():
     crankmbs_("run", "engine.toml", "--out", "both")
     Path("both/notes.txt").write_text("mine")
@@ -175,6 +177,7 @@ def test_a_run_that_is_refused_leaves_no_folder_but_those_that_were_there():
     assert names("there") == set()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("where", ["simulate", "write_saved", "write_csv", "torque_figure"])
 def test_an_interrupt_exits_with_130_and_leaves_no_file_of_the_run(where, monkeypatch):
     def interrupt(*_, **__):
@@ -192,6 +195,7 @@ def test_an_interrupt_exits_with_130_and_leaves_no_file_of_the_run(where, monkey
     assert Path("results").exists() == (where != "simulate")
 
 
+@pytest.mark.slow
 def test_confirm_answers_in_a_sentence_and_draws_the_difference():
     result = crankmbs_("run", "engine.toml", "--confirm")
     assert result.exit_code == 0
@@ -221,6 +225,7 @@ def test_confirm_says_when_the_stated_errors_do_not_cover_the_difference(monkeyp
     assert names("results/engine") == {"result.nc", "motion.csv", "cycles.csv"}
 
 
+@pytest.mark.slow
 def test_a_small_run_loads_neither_matplotlib_nor_exudyn():
     code = (
         "import sys; from crankmbs.cli import app;"

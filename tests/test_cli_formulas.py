@@ -64,6 +64,7 @@ def lines_of(file):
         return list(csv.DictReader(stream))
 
 
+@pytest.mark.slow
 def test_a_formula_stands_in_every_table_and_file(mine, tmp_path, monkeypatch):
     monkeypatch.setattr(drawing, "FAMILIES", {"motion": ("piston acceleration",)})
     formulas = [

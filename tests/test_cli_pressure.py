@@ -18,6 +18,7 @@ def export(tmp_path, monkeypatch):
     return tmp_path
 
 
+@pytest.mark.slow
 def test_it_writes_table_and_figures_and_says_what_was_done(export):
     result = crankmbs_("pressure", "export.csv", "-o", "out/table.csv")
     assert result.exit_code == 0, result.output

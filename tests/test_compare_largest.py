@@ -48,6 +48,7 @@ def test_alone_they_agree_with_those_found_together(seed, until):
     assert_agree(random_settled(seed).with_(run__until=until, run__every="none", run__rtol=1e-5))
 
 
+@pytest.mark.slow
 def test_they_are_those_of_a_comparison_between_its_samples():
     result = simulate(DIESEL.with_(run__every="0.02 deg"))
     rows = {(row.reference, row.quantity): row for row in compare(result).rows}

@@ -73,6 +73,7 @@ SCENES = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("formulation", FREE)
 @pytest.mark.parametrize("name", SCENES)
 def test_the_energy_of_each_cycle_closes(name, formulation):
@@ -153,6 +154,7 @@ def test_a_cycle_in_which_it_turns_back_is_none(formulation):
     assert (cycles["mean_speed"].values > 0.0).tolist() == [True] + 5 * [False]
 
 
+@pytest.mark.slow
 def test_the_oracle_has_the_same_cycle():
     """Its time, speeds every twelve degrees, the load's work by Simpson's rule, the shares."""
     scene = fuelled(FUELS["all at once"], cycles=1.1, gas=THIN_GAS)
@@ -190,6 +192,7 @@ def test_the_indicated_work_is_the_area_of_the_diagram():
     np.testing.assert_allclose(found["imep"].values, work / (piston.gas_area * stroke), rtol=1e-5)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("formulation", FREE)
 @pytest.mark.parametrize("rtol", [1e-4, 1e-7])
 def test_errors_are_honest(rtol, formulation):
@@ -217,6 +220,7 @@ def test_multibody_has_the_same_cycles():
     assert left < 1e-4 * largest
 
 
+@pytest.mark.slow
 def test_settled_under_a_governor_the_mean_is_its_speed():
     cycles = simulate(fuelled(Fuel(governor=GOVERNOR), cycles=150.0)).cycles
     assert cycles.sizes["cycle"] == 150
@@ -265,6 +269,7 @@ def test_a_run_of_no_whole_cycle_has_none(tmp_path):
     assert not (tmp_path / "cycles.csv").exists()
 
 
+@pytest.mark.slow
 def test_a_file_whose_cycles_cannot_be_is_refused(tmp_path):
     file = simulate(SCENES["fuel and loads"]).save(tmp_path) / "result.nc"
     with h5py.File(file, "a") as raw:

@@ -105,6 +105,7 @@ def test_multibody_has_the_same_loads_and_reversals():
     assert kinds(theirs) == ["reversal"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("formulation", ["minimal", "multibody"])
 @pytest.mark.parametrize("name", ["governor", "all at once"])
 def test_the_formulations_decide_alike(name, formulation):
@@ -176,6 +177,7 @@ def test_existing_scenes_have_none():
         assert simulate(load_scene(name)).events.sizes["event"] == 0
 
 
+@pytest.mark.slow
 def test_saved_and_loaded_they_are_the_same(tmp_path):
     result = simulate(STARTER)
     result.save(tmp_path)
@@ -190,6 +192,7 @@ def test_saved_and_loaded_they_are_the_same(tmp_path):
     assert Result.load(tmp_path / "twice").events.identical(result.events)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("column", "value"), [("event_kind", 9.0), ("event_number", 3.0), ("event_number", 1.5)]
 )

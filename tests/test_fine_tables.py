@@ -44,6 +44,7 @@ def engine(rows, interpolation, rtol):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("interpolation", ["cubic", "pchip", "linear", "step"])
 @pytest.mark.parametrize("rtol", [1e-3, 1e-8])
 def test_what_it_states_holds(interpolation, rtol):

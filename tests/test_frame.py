@@ -164,6 +164,7 @@ def test_pistons_on_massless_rods_rock_as_their_acceleration_says(formulation, u
         assert np.abs(ours).max() > 0.1 * size
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("formulation", ["crank_angle", "minimal"])
 @pytest.mark.parametrize("every", ["1 deg", "0.21 ms"])
 def test_stated_errors_hold(formulation, every):

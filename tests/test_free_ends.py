@@ -19,6 +19,7 @@ def stated(result, name):
     return float(result.data[name].attrs["error_estimate"])
 
 
+@pytest.mark.slow
 def test_too_many_evaluations_stop_the_run_with_the_samples_of_both_passes():
     whole = simulate(COASTING, formulation="minimal")
     result = simulate(COASTING, formulation="minimal", cost_cap=2000 / PER_SECOND)
@@ -32,6 +33,7 @@ def test_too_many_evaluations_stop_the_run_with_the_samples_of_both_passes():
     assert f"stopped at {last:.6g} degrees" in result.message
 
 
+@pytest.mark.slow
 def test_a_second_pass_that_takes_too_much_says_so():
     whole = simulate(COASTING, formulation="minimal")
     cap = whole.cost.evaluations // 2 / PER_SECOND
@@ -74,6 +76,7 @@ def test_a_swing_under_a_load_over_time_goes_on_as_long_as_the_cost_cap_allows()
     assert 2000 < result.data.sizes["time"] < 9000
 
 
+@pytest.mark.slow
 def test_a_stop_says_what_was_reached():
     start = Start(angle=1.0, speed=0.0)
     scene = dataclasses.replace(COASTING, start=start, run=Run(until="3 rev", rtol=1e-13))

@@ -62,6 +62,7 @@ def test_physical_ends(name, formulation):
     assert all(np.isfinite(values).all() for values in result.data.variables.values())
 
 
+@pytest.mark.slow
 @BOTH
 @pytest.mark.parametrize("every", ["10 deg", "1 deg", "none"])
 def test_a_swing_that_turns_on_its_samples(formulation, every):
@@ -99,6 +100,7 @@ def test_minimal_carries_across_rest_and_both_agree(name):
         assert np.abs(a.values - b.values).max() <= 2.0 * stated
 
 
+@pytest.mark.slow
 @BOTH
 def test_a_tolerance_out_of_reach_is_said(formulation):
     beside = scene(PROPELLER, gravity=None, torque=(), start=at_rest(2 * np.pi + 1e-9))
@@ -129,6 +131,7 @@ def test_the_last_pass_gives_an_answer_where_cells_could_still_be_split(monkeypa
     assert 0.0 < result.error.estimated < 1e-9
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rtol", [1e-9, 1e-12])
 @pytest.mark.parametrize("name", ["torque_driven", "coasting"])
 def test_time_as_the_variable_reaches_a_tight_tolerance(name, rtol):
@@ -142,6 +145,7 @@ def test_tighter_costs_more(load):
     assert costs == sorted(costs)
 
 
+@pytest.mark.slow
 def test_a_swing_is_left_to_time(monkeypatch):
     """Eight hand-overs that did not last a period are enough: from then on it must turn one."""
     pieces, advance = [], handover.crank_angle.advance

@@ -129,6 +129,7 @@ def test_viscous_friction_takes_what_it_does_in_that_motion():
     assert abs(load.torque / even.external_torque.values[:-1].mean() - 1.0) > 0.01
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["compressor", "yi_diesel"])
 def test_the_oracle_comes_back_to_its_speed_at_that_time(name):
     scene = freed(load_scene(name))
@@ -146,6 +147,7 @@ def test_a_heavier_rod_needs_no_other_load_but_another_start():
     assert abs(other.start.speed / one.start.speed - 1.0) > 0.01
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("viscous", [0.0, 300.0])
 def test_it_swings_as_wide_as_it_can_until_it_is_refused(viscous):
     """Lighter and lighter: what is given has the mean speed and repeats itself."""

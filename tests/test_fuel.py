@@ -95,6 +95,7 @@ def exact(scene, angles):
     return firings.governed_motion(machine, motored, start, angles, law, part(fuel))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "start"), [("governor", -9.0), ("all at once", 0.0)])
 def test_the_oracle_has_the_same_shares_and_motion(name, start):
     begin = replace(FOUR.start, angle=start)
@@ -110,6 +111,7 @@ def test_the_oracle_has_the_same_shares_and_motion(name, start):
     assert np.ptp(shares) > 0.01
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("formulation", ["minimal", "multibody"])
 @pytest.mark.parametrize("name", ["governor", "all at once"])
 def test_the_formulations_agree(name, formulation):
@@ -150,6 +152,7 @@ def test_a_prescribed_speed_fires_by_the_same_rule():
     assert residual < 1e-9 * driven["kinetic_energy"].values.max()
 
 
+@pytest.mark.slow
 def test_backwards_it_fires_too():
     scene = fuelled(FUELS["scatter"], cycles=3.0)
     scene = replace(scene, start=replace(FOUR.start, speed=-300.0), torque=())
@@ -227,6 +230,7 @@ def test_a_polytrope_continues_the_file():
     assert len(motored.knots) < 1.3 * len(fired.knots)
 
 
+@pytest.mark.slow
 def test_written_read_and_saved_it_is_the_same(tmp_path):
     scene = fuelled(replace(FUELS["all at once"], after=0.01, from_speed=300.0), cycles=1.0)
     for file, text in scene_files(scene, "mine").items():
@@ -314,6 +318,7 @@ def test_cells_solved_at_once_are_those_from_decision_to_decision(name, loads, s
     np.testing.assert_allclose(*torques, rtol=1e-12, atol=1e-10)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("formulation", ["crank_angle", "minimal"])
 def test_a_sample_at_a_decision_is_before_it(formulation):
     """Backwards from 180 degrees its crank angle and the edge of a cell round differently."""

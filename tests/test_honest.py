@@ -41,6 +41,7 @@ def exact(name):
     return reference_at_angles(scene, plan.between(plan.start - 1e-9, plan.start + plan.until))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("formulation", ["crank_angle", "minimal"])
 @pytest.mark.parametrize("rtol", [1e-6, 1e-10])
 @pytest.mark.parametrize("name", RUNS)

@@ -26,6 +26,7 @@ def torque_from_outside(scene, omega, alpha):
     return found["external_torque"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(12))
 def test_every_term_of_the_equation_of_motion(seed):
     """T = J alpha + J_1 omega^2 / 2 - torque, term by term: at rest, then with one rate alone."""

@@ -75,6 +75,7 @@ def test_what_little_kinks_miss_is_added(rows):
     assert abs(added) <= 0.05 * abs(missing)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rtol", [1e-5, 1e-8, 1e-11])
 @pytest.mark.parametrize(("rows", "noise"), [(60, 0.0), (200, 5.0)])
 def test_minimal_that_stops_at_every_row_confirms_it(rows, noise, rtol):

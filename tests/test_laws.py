@@ -55,6 +55,7 @@ def test_energy_closes(seed, formulation):
     assert peak(data["energy_residual"]) < 1e-8 * peak(data["kinetic_energy"])
 
 
+@pytest.mark.slow
 @few
 @given(SEEDS, st.sampled_from(["crank_angle", "minimal"]))
 def test_inverse_after_forward_is_the_identity(seed, formulation):
@@ -205,6 +206,7 @@ def test_a_long_rod_gives_the_harmonic_slider(ratio):
     assert peak(found["piston_acceleration"] - harmonic) >= 100.0 * r * ratio * 0.9
 
 
+@pytest.mark.slow
 @few
 @given(SEEDS, st.sampled_from(["crank_angle", "minimal"]))
 def test_time_reversal(seed, formulation):

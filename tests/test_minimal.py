@@ -82,6 +82,7 @@ HARD = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", HARD)
 def test_the_error_is_honest(name):
     result = simulate(HARD[name], formulation="minimal")

@@ -55,6 +55,7 @@ def test_the_inverse_of_a_monotone_polynomial():
     np.testing.assert_allclose(through.inverse(rows, k, values), [0.5, 0.5, 1.0, 0.0], atol=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("formulation", FREE)
 @pytest.mark.parametrize("name", SCENES)
 def test_at_its_samples_it_is_the_samples(name, formulation):
@@ -67,6 +68,7 @@ def test_at_its_samples_it_is_the_samples(name, formulation):
     np.testing.assert_allclose(states.omega, data["crank_speed"], rtol=0.0, atol=1e-10 * fastest)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("formulation", FREE)
 @pytest.mark.parametrize("name", ["propeller", "run_up", "run_down"])
 def test_the_acceleration_is_the_rate_of_the_speed(name, formulation):
@@ -151,6 +153,7 @@ def test_a_largest_value_at_a_knot_is_that_of_its_own_side(side):
     assert tops.angle[0] == pytest.approx(knot, abs=1e-8)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["misfire", "run_down", "v_twin"])
 def test_saved_and_loaded_it_is_the_same_motion(name, tmp_path):
     result = simulate(scene(name))
@@ -170,6 +173,7 @@ def test_saved_and_loaded_it_is_the_same_motion(name, tmp_path):
     assert again.measures() == result.measures()
 
 
+@pytest.mark.slow
 def test_a_result_of_an_earlier_version_is_refused(tmp_path):
     file = simulate(scene("propeller")).save(tmp_path) / "result.nc"
     data = read_netcdf(file, {})
@@ -191,6 +195,7 @@ def test_through_samples_alone_it_states_what_they_miss(name):
     assert 0.0 < missed < stated < 1e-3
 
 
+@pytest.mark.slow
 def test_by_angle_a_motion_that_turns_back_is_refused():
     result = simulate(load_scene("run_down"))
     assert not result.passes.answer.turns_one_way

@@ -168,6 +168,7 @@ def test_a_plot_that_there_is_not_is_refused(short, arguments, said):
         short.plot(*arguments)
 
 
+@pytest.mark.slow
 def test_nothing_that_draws_is_loaded_before_it_is_asked_for():
     code = (
         "import sys, crankmbs; crankmbs.simulate(crankmbs.load_scene('yi_diesel'));"

@@ -32,6 +32,7 @@ def test_pi_has_all_its_digits() -> None:
     assert distance(LONG.pi, "3.14159265358979323846") < 2e-19
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "tolerance"),
     [
@@ -87,6 +88,7 @@ def test_coasting_meets_the_energy_quadrature() -> None:
     assert distance(1 / slowness(last), end_states.stored()["coasting"][1]) < 1e-17
 
 
+@pytest.mark.slow
 def test_propeller_meets_the_collocation() -> None:
     """Independent Gauss collocation over theta, whose table has its knots rounded to double."""
     table = replace(PROPELLER.pressure, angles=tuple(map(float, PROPELLER.pressure.angles)))
@@ -95,6 +97,7 @@ def test_propeller_meets_the_collocation() -> None:
     assert distance(motion.omega[-1], "311.8789454353481041818") < 1e-12
 
 
+@pytest.mark.slow
 def test_torque_driven_meets_another_integration() -> None:
     """At the digits to which that one goes; exudyn's own file prints others (test_printed)."""
     motion = free_motion(TORQUE_DRIVEN, 0, 0, times=[1, 3])
@@ -167,6 +170,7 @@ def test_motion_runs_back_through_knots_and_reversals(kind: str) -> None:
     assert distance(back.omega[-1], -20) < 2e-15
 
 
+@pytest.mark.slow
 def test_two_orders_agree_on_a_loaded_run() -> None:
     loads = Loads(-3.0, 0.02, 1e-3, (LoadTable((0, 0.1, 0.1, 1), (0, 5, -5, 2)),))
     machine = replace(V_TWIN, loads=loads)

@@ -60,6 +60,7 @@ def integrated(scene, order):
     return total
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("order", [1, 2, 3, 4, 6])
 @pytest.mark.parametrize("scene", [BANKED, load_scene("yi_diesel_free")], ids=["banked", "four"])
 def test_closed_forms_are_those_of_a_quadrature(scene, order):
@@ -99,6 +100,7 @@ def test_two_strokes_have_whole_orders():
     assert np.abs(wave - row.closed).max() < 1e-10 * np.abs(row.closed).max()
 
 
+@pytest.mark.slow
 def test_errors_of_a_free_crank_cover_coarser_samples():
     """The same motion sampled and solved ten times as finely."""
     scene = replace(BANKED, run=Run(until="2 cycles", every="1 deg", rtol=1e-6))

@@ -45,6 +45,7 @@ def test_a_hundred_thousand_turns_keep_their_energy() -> None:
     assert result.cost.steps > 1e7
 
 
+@pytest.mark.slow
 def test_a_brake_stops_the_crank_after_many_turns_at_the_same_place() -> None:
     scene = dataclasses.replace(load_scene("coasting"), torque=(Constant(torque=-0.3),))
     every, only_last = (

@@ -80,6 +80,7 @@ def test_a_sequence_runs_one_cycle_after_the_other_then_again():
     np.testing.assert_allclose(peaks, shares * RISE[37], rtol=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("formulation", ["crank_angle", "minimal"])
 @pytest.mark.parametrize("name", BY_CYLINDER)
 def test_the_errors_are_stated_honestly(name, formulation):

@@ -47,6 +47,7 @@ def test_a_star_imports_what_is_public():
     assert names.keys() - {"__builtins__"} == set(crankmbs.__all__)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ALSO_MODULES)
 def test_a_function_is_never_hidden_by_its_module(name):
     code = f"import crankmbs.{name}, crankmbs, types; print(type(crankmbs.{name}).__name__, 'is')"
@@ -78,6 +79,7 @@ def test_a_load_is_known_by_its_kind_whatever_was_imported_first():
         loaded_by(f"import crankmbs.{module}, crankmbs.scene.read as r; r.load_scene('propeller')")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("command", "not_loaded"),
     [

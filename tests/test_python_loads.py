@@ -58,6 +58,7 @@ def test_a_function_of_the_angle_does_its_integral(formulation):
     np.testing.assert_allclose(at, 20.0 * np.sin(3.0 * theta) + 5.0, atol=1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tolerance", [1e-6, 1e-10])
 def test_a_knot_is_met_as_soon_whatever_the_time(tolerance):
     """Halves of a step that rounding leaves short of a knot by one more, of 1e-18 s, put the angle
@@ -74,6 +75,7 @@ def test_a_knot_is_met_as_soon_whatever_the_time(tolerance):
     assert np.ptp(elapsed) < 1e-14
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("formulation", FREE)
 def test_functions_of_time_and_speed(formulation):
     """J omega' = 4 cos(t) - 0.3 omega, in closed form."""
@@ -109,6 +111,7 @@ UNDECLARED = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("formulation", FREE)
 @pytest.mark.parametrize("name", UNDECLARED)
 def test_undeclared_kinks_are_in_the_stated_error(name, formulation):
@@ -180,6 +183,7 @@ def is_nan(t, theta, omega):
     return math.nan if theta > 1.0 else 1.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("formulation", [*FREE, "multibody"])
 @pytest.mark.parametrize(
     ("function", "said"),
@@ -208,6 +212,7 @@ def test_a_load_that_is_undefined_from_a_time_on_ends_the_run(formulation):
     assert float(result.data["time"][-1]) == pytest.approx(0.1, rel=1e-12)
 
 
+@pytest.mark.slow
 def test_a_saved_result_keeps_the_name(tmp_path):
     result = simulate(wheel(Load(fails_late, kink_times=(1.0,), until=0.01), until="10 deg"))
     result.save(tmp_path / "out")

@@ -46,6 +46,7 @@ def settled(scene: Scene, **options: object) -> Result:
     return simulate(replace(scene, run=Run(until="settled", every="10 deg")), **options)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("loads", BRAKED)
 @pytest.mark.parametrize("formulation", ["crank_angle", "minimal"])
 def test_it_is_the_last_cycle_of_a_run_that_has_settled(loads: str, formulation: str) -> None:
@@ -73,6 +74,7 @@ def test_it_is_the_last_cycle_of_a_run_that_has_settled(loads: str, formulation:
     assert abs(gain.value) <= gain.error
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("loads", BRAKED)
 def test_both_formulations_agree_within_what_they_state(loads: str) -> None:
     scene = replace(DIESEL, torque=BRAKED[loads])
@@ -96,6 +98,7 @@ def test_the_factor_is_what_a_run_loses_in_a_cycle() -> None:
     assert left[1:] / left[:-1] == pytest.approx(np.full(3, found.decay.factor), rel=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("speed", "limit"), [(60.0, 100.0), (190.0, 100.0), (210.0, 300.0)])
 @pytest.mark.parametrize("formulation", ["crank_angle", "minimal"])
 def test_of_several_it_is_the_one_that_the_start_comes_to(
@@ -108,6 +111,7 @@ def test_of_several_it_is_the_one_that_the_start_comes_to(
     assert measure(found).mean_speed.value == pytest.approx(limit, rel=0.02)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("start", [300.0, -20.0, 0.0])
 def test_backwards_and_from_rest(start: float) -> None:
     scene = replace(
@@ -147,6 +151,7 @@ ENDS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ENDS)
 def test_what_does_not_settle_says_why(name: str) -> None:
     scene, sentence = ENDS[name]

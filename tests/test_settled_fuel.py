@@ -42,6 +42,7 @@ def settled(fuel, **changes):
     return replace(fuelled(fuel, **changes), run=Run(until="settled", every="10 deg"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("angle", [0.0, 1.0])
 @pytest.mark.parametrize("name", FUELS)
 def test_it_is_the_end_of_a_run_that_has_settled(name, angle):
@@ -73,6 +74,7 @@ def test_unclipped_the_mean_is_exactly_the_governors_speed(name, loads):
     assert 0.0 < result.data["fuel"].values.max() < GOVERNOR.max
 
 
+@pytest.mark.slow
 def test_both_formulations_agree_within_what_they_state():
     one, other = (
         simulate(settled(FUELS["governor"]), formulation=name)
@@ -125,6 +127,7 @@ LOST = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", LOST)
 def test_what_does_not_settle_says_why(name):
     fuel, loads, sentence = LOST[name]
@@ -147,6 +150,7 @@ def test_what_happens_once_or_at_random_is_refused(fuel, why):
         settled(fuel)
 
 
+@pytest.mark.slow
 def test_it_is_kept(tmp_path):
     found = simulate(settled(FUELS["governor"]))
     again = Result.load(found.save(tmp_path))
@@ -172,6 +176,7 @@ def test_orders_are_over_the_whole_period():
     assert "orders over the settled period" in orders_report(engine)
 
 
+@pytest.mark.slow
 def test_the_cycles_of_a_settled_period_are_drawn(tmp_path):
     save_figures(simulate(settled(FUELS["every 2"])), tmp_path)
     assert (tmp_path / "cycles.png").exists()

@@ -129,6 +129,7 @@ def test_orders_of_a_measured_speed():
     assert found.mean == pytest.approx(150.0, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_a_saved_run_comes_back(tmp_path):
     result = simulate(driven(measured()))
     result.save(tmp_path)

@@ -75,6 +75,7 @@ def wheel(*torque, speed=0.0, **others):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("kind", "seed"), [(kind, seed) for kind, seeds in SEEDS.items() for seed in seeds]
 )
@@ -287,6 +288,7 @@ def test_a_snapshot_is_of_its_scene():
         Stepper(COASTING).restore(3)
 
 
+@pytest.mark.slow
 def test_nothing_grows_with_the_number_of_steps():
     """What a stepper holds is of one size, once the tracer has seen it all made anew."""
     stepper = Stepper(replace(fuelled(), torque=(Viscous(coefficient=0.01),)))

@@ -173,6 +173,7 @@ def test_a_huge_string_is_refused_at_once_and_cut():
     assert len(str(caught.value)) < 200
 
 
+@pytest.mark.slow
 @given(st.text(max_size=30), st.sampled_from(sorted(EXAMPLES)))
 def test_any_text_is_a_number_or_an_input_error(text, dimension):
     read = extent if dimension == "extent" else lambda given: (quantity(given, dimension),)

@@ -128,6 +128,7 @@ def test_at_rest_with_no_load_that_may_set_in_is_status_1(formulation, starts):
     assert "at rest" in result.message
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("formulation", FREE)
 def test_whole_periods_are_skipped_only_between_changes(formulation):
     scene = wheel(Constant(torque=5.0, after=30.2), Constant(torque=-2.5), speed=200.0, until=60.0)

@@ -162,7 +162,7 @@ def _with_drag(scene: Scene, guess: Scene) -> tuple[Scene, bool]:
     energy = 0.5 * float(inertia_alone(guess, guess.start.angle)) * guess.start.speed**2
     whole = Extent(value=period, unit="rad")
     run = replace(scene.run, until=whole, every=whole, formulation="crank_angle")
-    given = guess.torque[-1](0.0, 0.0, 0.0)
+    given, rests = guess.torque[-1](0.0, 0.0, 0.0), [1.0, 1.0]  # as wrong as can be
 
     def trial(found: Array) -> Scene:
         return _from(scene, given + found[0] * energy / period, math.exp(found[1]) * energy)
@@ -170,11 +170,13 @@ def _with_drag(scene: Scene, guess: Scene) -> tuple[Scene, bool]:
     def off(found: Array) -> list[float]:
         result = simulate(replace(trial(found), run=run), rtol=_RTOL)
         if result.status != 0:
-            return [1.0, 1.0]  # it comes to rest: as wrong as can be
+            return rests
         kinetic, time = (result.data[name].values for name in ("kinetic_energy", "time"))
         return [kinetic[-1] / kinetic[0] - 1.0, time[-1] * mean / period - 1.0]
 
-    solved = root(off, [0.0, 0.0], tol=_CLOSE)
+    if off(begin := np.zeros(2)) == rests:
+        return guess, True
+    solved = root(off, begin, tol=_CLOSE)
     return trial(solved.x), not np.abs(solved.fun).max() <= _CLOSE
 
 
