@@ -57,6 +57,25 @@ def test_agrees_with_the_reduced_model_within_the_stated_error(scene: Scene) -> 
     assert_within_stated(result, exact)
 
 
+def test_what_rounding_grows_to_is_stated() -> None:
+    """Off a dead centre a crank multiplies what rounding it starts with by 6e7."""
+    scene = load_scene("propeller")
+    start, run = Start(angle=2.0 * np.pi + 1e-9, speed=0.0), brief(0.06)
+    scene = replace(scene, start=start, torque=(), gravity=replace(scene.gravity, acceleration=0.0))
+    result = multibody(replace(scene, run=run))
+    assert "finer steps err as much by rounding, which grows in this motion" in result.message
+    assert_within_stated(result, simulate(replace(scene, run=run), rtol=1e-11))
+    assert 1e-6 < result.data["crank_angle"].attrs["error_estimate"] < 1e-4
+
+
+def test_where_it_folds_is_where_finer_steps_fail_too() -> None:
+    result = multibody(short_rod(0.0))
+    assert result.status == -1
+    assert "exudyn's Newton iteration does not converge" in result.message
+    assert result.data["crank_angle"].values[-1] > np.radians(86.0)
+    assert result.data["crank_angle"].attrs["error_estimate"] < 1e-4
+
+
 def test_a_crank_that_nothing_moves_says_so() -> None:
     result = multibody(replace(COASTING, start=Start(angle=0.0, speed=0.0), run=brief(1.0, "rad")))
     assert (result.status, result.data.sizes["time"]) == (1, 1)

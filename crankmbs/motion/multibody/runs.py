@@ -89,7 +89,10 @@ class Runs:
 
     moves : False where the crank stays at rest
     ending : of the runs, once the first is made
+    shaken : the coarsest run again, from a start that is hardly off
     """
+
+    shaken: Path
 
     def __init__(self, train: CrankTrain, model: Model, start: State, limits: Limits) -> None:
         self._train, self.model, self.start = train, model, start
@@ -138,7 +141,7 @@ class Runs:
         if not self.moves:
             return False
         off = math.copysign(_SHAKEN * (1.0 + abs(there)), path.states[-1].theta - there)
-        self._shaken = self._run(self._limits, self.start._replace(theta=there + off))
+        self.shaken = self._run(self._limits, self.start._replace(theta=there + off))
         return self.halve() and self.halve()
 
     def _coarse(self, limits: Limits) -> Path:
@@ -196,7 +199,7 @@ class Runs:
             check = Motion(tuple(coarser), _EXTRAPOLATED)
         rounded = math.sqrt(fine.steps) * _EPS / _SHAKEN
         also = Motion(
-            (self._shaken, self.paths[0], *answer.paths), (rounded, -rounded, *answer.weights)
+            (self.shaken, self.paths[0], *answer.paths), (rounded, -rounded, *answer.weights)
         )
         return answer, (check, also)
 
