@@ -13,7 +13,6 @@ from crankmbs.batch.balances import balances
 from crankmbs.batch.lectures import Deviations
 from crankmbs.batch.peaks import sparse_nodes
 from crankmbs.mechanics.geometry import close_loop
-from crankmbs.mechanics.inertia import inertia_alone
 from crankmbs.mechanics.train import CrankTrain, crank_train
 from crankmbs.motion.crank_angle.grid import grid_of
 from crankmbs.numerics.arrays import Array
@@ -134,7 +133,7 @@ def machine_of(scene: Scene, *, finest: bool = False) -> Machine:
     angles = np.linspace(0.0, 2.0 * math.pi, 361)
     folds = bool(np.min(close_loop(angles, *shape).cos_beta) < _FOLDED)
     first = int(np.argmin(np.abs(edges[:-1] - starts)))
-    at_start = float(inertia_alone(scene, start)) - scene.crank.moment_of_inertia
+    at_start = _without_crank(train, start, sense)
     about = not narrow, begin, first, at_start, shares, folds
     return Machine(scene, sense, answer, check, *about)
 
@@ -188,7 +187,7 @@ def _tabulated(
     return Pass(
         rule,
         width,
-        float(inertia_alone(train.scene, begin)) - train.scene.crank.moment_of_inertia,
+        _without_crank(train, begin, sense),
         found.inertia.reshape(turned.shape),
         slope.reshape(turned.shape),
         torque.reshape(turned.shape),
@@ -198,3 +197,8 @@ def _tabulated(
         (cylinders["gas_force"][:, 0] * path).sum(axis=1),
         (found.friction * path).sum(axis=1),
     )
+
+
+def _without_crank(train: CrankTrain, theta: float, sense: float) -> float:
+    """J at a crank angle [rad] without the crank's [kg m2]; the same whichever crank it has."""
+    return float(balances(train, np.array([theta]), sense).inertia[0])

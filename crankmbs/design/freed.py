@@ -39,6 +39,7 @@ _LEAST = 1e-9  # of the greatest energy: no less is ever left over
 _SLOW = math.pi / 360.0  # rad: where the energy would be gone within this angle, the crank rests
 _RTOL = 1e-13  # of the runs that tell what viscous friction takes
 _CLOSE = 1e-12  # relative: so near gain and duration must come
+_LATE, _ROUGH = 4.0, 1e-3  # of its duration and rtol: a first guess not through by then will rest
 
 
 def freed(scene: Scene) -> Scene:
@@ -162,7 +163,7 @@ def _with_drag(scene: Scene, guess: Scene) -> tuple[Scene, bool]:
     energy = 0.5 * float(inertia_alone(guess, guess.start.angle)) * guess.start.speed**2
     whole = Extent(value=period, unit="rad")
     run = replace(scene.run, until=whole, every=whole, formulation="crank_angle")
-    given, rests = guess.torque[-1](0.0, 0.0, 0.0), [1.0, 1.0]  # as wrong as can be
+    given = guess.torque[-1](0.0, 0.0, 0.0)
 
     def trial(found: Array) -> Scene:
         return _from(scene, given + found[0] * energy / period, math.exp(found[1]) * energy)
@@ -170,13 +171,15 @@ def _with_drag(scene: Scene, guess: Scene) -> tuple[Scene, bool]:
     def off(found: Array) -> list[float]:
         result = simulate(replace(trial(found), run=run), rtol=_RTOL)
         if result.status != 0:
-            return rests
+            return [1.0, 1.0]  # it comes to rest: as wrong as can be
         kinetic, time = (result.data[name].values for name in ("kinetic_energy", "time"))
         return [kinetic[-1] / kinetic[0] - 1.0, time[-1] * mean / period - 1.0]
 
-    if off(begin := np.zeros(2)) == rests:
-        return guess, True
-    solved = root(off, begin, tol=_CLOSE)
+    late = Extent(value=_LATE * period / mean, unit="s")
+    soon = simulate(replace(guess, run=replace(run, until=late, every=late)), rtol=_ROUGH)
+    if abs(soon.data.crank_angle.values[-1] - guess.start.angle) < period:
+        return guess, True  # before it swings there for long
+    solved = root(off, [0.0, 0.0], tol=_CLOSE)
     return trial(solved.x), not np.abs(solved.fun).max() <= _CLOSE
 
 
