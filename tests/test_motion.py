@@ -12,7 +12,6 @@ from crankmbs import InputError, Result, Viscous, load_scene, simulate
 from crankmbs.errors import OutputError
 from crankmbs.measures.nodes import nodes_of
 from crankmbs.motion.free import passage
-from crankmbs.motion.sampled import through_samples
 from crankmbs.numerics.lagrange import ends_and_nodes
 from crankmbs.storage.netcdf import read_netcdf, write_netcdf
 
@@ -181,18 +180,6 @@ def test_a_result_of_an_earlier_version_is_refused(tmp_path):
     write_netcdf(data.assign_attrs(crankmbs=about), file)
     with pytest.raises(OutputError, match=r"earlier version.*run its scene again: crankmbs run"):
         Result.load(tmp_path)
-
-
-@pytest.mark.parametrize("name", ["propeller", "run_down"])
-def test_through_samples_alone_it_states_what_they_miss(name):
-    result = simulate(scene(name))
-    exact, passes = result.passes.answer, through_samples(result.data, result.scene)
-    time = np.linspace(exact.begin, exact.end, 777)
-    true = exact.at(time, in_time=True).theta
-    answer, *others = (m.at(time, in_time=True).theta for m in (passes.answer, *passes.checks))
-    missed = np.max(np.abs(answer - true))
-    stated = passes.share * max(np.max(np.abs(other - answer)) for other in others)
-    assert 0.0 < missed < stated < 1e-3
 
 
 @pytest.mark.slow

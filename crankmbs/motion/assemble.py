@@ -36,7 +36,7 @@ class Assembled:
     """A solution, every variable of the result at its samples, its largest absolute value there,
     and an estimate of its error.
 
-    motion : makes the passes of the motion as they were solved; None where samples are all there is
+    motion : makes the passes of the motion as they were solved; of a toy may be None
     """
 
     solution: Solution

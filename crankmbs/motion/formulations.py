@@ -1,7 +1,7 @@
 """The formulations, smallest first: which scenes each serves, and how it runs one.
 
-A new formulation is a file in this room that gives samples of the motion, and one record here; what
-computes is imported when it runs.
+A new formulation is a file in this room that gives samples of the motion and its cells, and one
+record here; what computes is imported when it runs.
 """
 
 from __future__ import annotations
@@ -16,7 +16,11 @@ from crankmbs.scene.scene import Scene
 
 if TYPE_CHECKING:
     from crankmbs.mechanics.train import CrankTrain
+    from crankmbs.motion.account import Account
     from crankmbs.motion.assemble import Assembled
+    from crankmbs.motion.base import Samples, Solution
+    from crankmbs.motion.motion import Passes
+    from crankmbs.motion.multibody.account import Kept
 
 __all__ = ["FORMULATIONS", "Formulation", "serving"]
 
@@ -85,9 +89,17 @@ def _may_be_held(scene: Scene) -> bool:
 
 def _kinetostatic(train: CrankTrain, _rtol: float, _cost_cap: float) -> Assembled:
     from crankmbs.motion import kinetostatic
+
+    return _of_law(train, kinetostatic.run(train))
+
+
+def _of_law(train: CrankTrain, solution: Solution) -> Assembled:
+    """Samples of a prescribed motion, with all of it."""
+    from crankmbs.motion import kinetostatic
     from crankmbs.motion.assemble import assemble
 
-    assembled = assemble(train, kinetostatic.run(train))
+    keep = partial(kinetostatic.account, train)
+    assembled = assemble(train, replace(solution, keep=keep))
     return replace(assembled, motion=partial(kinetostatic.passes, train))
 
 
@@ -98,13 +110,34 @@ def _free(train: CrankTrain, rtol: float, cost_cap: float, *, by_angle: bool) ->
 
 
 def _multibody(train: CrankTrain, rtol: float, cost_cap: float) -> Assembled:
-    from crankmbs.motion import multibody
     from crankmbs.motion.assemble import assemble
+    from crankmbs.motion.multibody import driven, free
+
+    if train.scene.motion is not None:
+        return _of_law(train, driven.run(train))
+    solution, kept = free.run(train, rtol, cost_cap)
+    assembled = assemble(train, replace(solution, keep=partial(_account_of, kept)))
+    return replace(assembled, motion=partial(_passes_of, kept, solution.samples))
+
+
+def _account_of(kept: Kept) -> Account:
+    """What happened on the way of runs of multibody."""
     from crankmbs.motion.observer import Followed, account_of
 
-    solution, runs = multibody.run(train, rtol, cost_cap)
-    keep = partial(account_of, [Followed(train, *each) for each in runs], _HALVED)
-    return assemble(train, replace(solution, keep=keep))
+    of = partial(Followed, kept.train, kept.start, ending=kept.ending)
+    return account_of([of(each) for each in kept.stretches or [[]]], _HALVED)
+
+
+def _passes_of(kept: Kept, samples: Samples) -> Passes:
+    """The motion of these runs."""
+    from crankmbs.motion.motion import Motion, Passes
+
+    if not kept.passes:
+        alone = Motion.of_one(kept.train, samples)
+        return Passes(alone, (alone,))
+    trains = kept.train, kept.train.off, kept.train, kept.train
+    answer, *checks = (Motion(one, each) for one, each in zip(trains, kept.stretches, strict=False))
+    return Passes(answer, tuple(checks), _HALVED)
 
 
 FORMULATIONS = (

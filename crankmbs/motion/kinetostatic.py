@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import replace
-from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -26,7 +25,7 @@ from crankmbs.motion.prescribed import monotone_stretches
 from crankmbs.motion.states import inner_samples, table_of
 from crankmbs.numerics.arrays import Array
 
-__all__ = ["passes", "run"]
+__all__ = ["account", "passes", "run"]
 
 _POINTS = (6, 8)  # of Gauss in a panel, in either look at what happens on the way
 _TOGETHER = 2048  # cells whose work is summed at once
@@ -46,7 +45,6 @@ def run(train: CrankTrain) -> Solution:
     law = speed_law(scene.motion)
     stretches, reached = monotone_stretches(plan, law)
     firings = None if train.law is None else _firings(driven(_way(train, law), stretches))
-    keep = partial(_account, train, law, tuple(stretches), rests=not reached)
     stretches = _kept(plan, law, stretches)
     time, theta = _sample(plan, law, stretches, reached)
     _, omega, alpha = law.at_time(time)
@@ -59,7 +57,7 @@ def run(train: CrankTrain) -> Solution:
     by_angle = np.full(len(time), not plan.in_time)
     by_angle[-1] = reached and not plan.until_time
     better = None if law.off is law else _by(law.off, samples, by_angle)
-    return Solution(samples, *ending.said(float(theta[-1])), len(time), 0, better, keep=keep)
+    return Solution(samples, *ending.said(float(theta[-1])), len(time), 0, better)
 
 
 def passes(train: CrankTrain) -> Passes:
@@ -74,11 +72,12 @@ def passes(train: CrankTrain) -> Passes:
     return Passes(answer, (check,))
 
 
-def _account(
-    train: CrankTrain, law: SpeedLaw, stretches: tuple[tuple[float, float], ...], *, rests: bool
-) -> Account:
+def account(train: CrankTrain) -> Account:
     """What happens on the way, seen twice: it errs by no more than quadrature and pressures do."""
-    followed, ending = [], Ending.LAW_RESTS if rests else Ending.COMPLETE
+    assert train.scene.motion is not None
+    law = speed_law(train.scene.motion)
+    stretches, reached = monotone_stretches(plan_of(train.scene), law)
+    followed, ending = [], Ending.COMPLETE if reached else Ending.LAW_RESTS
     for one, finer in ((train, False), (train.off, True)):
         way = _way(one, law, finer=finer)
         followed.append(Followed(one, begun_at(way), driven(way, stretches), ending))

@@ -11,7 +11,7 @@ import numpy as np
 
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion.base import Samples
-from crankmbs.motion.cells import Cells, cell_of
+from crankmbs.motion.cells import Acting, Cells, cell_of
 from crankmbs.motion.states import samples_at
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.once import once
@@ -46,6 +46,14 @@ class Motion:
     def __init__(self, train: CrankTrain, pieces: Sequence[_Solved | Cells]) -> None:
         self.train = train
         self._pieces = list(pieces)
+
+    @classmethod
+    def of_one(cls, train: CrankTrain, samples: Samples) -> Motion:
+        """That of a run that ends where it begins: the first of its samples."""
+        rows = (samples.time, samples.theta, samples.omega, samples.alpha)
+        time, angle, speed, rate = (np.full((1, 3), row[0]) for row in rows)
+        shares = samples.own.get("fuel", np.empty((1, 0)))[:1]
+        return cls(train, [Cells(time, angle, speed, Acting(0.0), shares, acceleration=rate)])
 
     @cached_property
     def cells(self) -> tuple[Cells, ...]:

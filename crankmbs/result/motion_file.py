@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 __all__ = ["DIMS", "passes_in", "with_passes"]
 
-_MOST = 3  # passes
+_MOST = 4  # passes
 _OF_NODES = ("time", "angle", "speed", "energy", "acceleration", "outside")
 _OF_CELLS = ("stretch", "nodes", "sense", "holds", "phases", "shares")
 _WIDE = {"phases": "load", "shares": "cylinder"}

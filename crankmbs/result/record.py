@@ -17,7 +17,6 @@ from crankmbs.motion.account import Account, Keep
 from crankmbs.motion.base import Decay
 from crankmbs.motion.labels import cycles_dataset, events_dataset
 from crankmbs.motion.motion import Passes
-from crankmbs.motion.sampled import through_samples
 from crankmbs.numerics.arrays import Array
 from crankmbs.result.about import Cost, Error, read_saved, write_saved
 from crankmbs.result.columns import data_frame, write_csv
@@ -159,9 +158,15 @@ class Result:
 
     @cached_property
     def passes(self) -> Passes:
-        """The motion as it was solved, and the motions that check it; from the samples where a
-        formulation gives no more."""
-        return through_samples(self.data, self.scene) if self.motion is None else self.motion()
+        """The motion as it was solved, and the motions that check it.
+
+        Raises
+        ------
+        InputError : the formulation keeps no motion
+        """
+        if self.motion is None:
+            raise InputError("nothing was kept of the motion of this result; run the scene again")
+        return self.motion()
 
     def measures(self) -> Measures:
         """What the run amounts to over its last cycle: means, peaks, power, each with its error.

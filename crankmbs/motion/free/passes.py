@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
@@ -122,16 +121,15 @@ def run(
         # what is left is rounding, in both passes alike, and their difference too small an estimate
         best = _doubled(best)
         share *= 2.0
-    motion: Callable[[], Passes] | None = None
-    if all(one.made.path.pieces for one in followed):  # none where the crank never moves
-        first, *others = (Motion(one.grid.train, [*one.made.path.pieces]) for one in followed)
-        motion = partial(Passes, first, tuple(others), share)
+    first, *others = (Motion(one.grid.train, [*one.made.path.pieces]) for one in followed)
+    if not all(one.made.path.pieces for one in followed):  # the crank never moves
+        first, *others = [Motion.of_one(train, best.solution.samples)] * len(followed)
     keep = partial(_account, followed, way, share, by_angle=by_angle)
     solution = replace(best.solution, keep=keep)
     if best.relative_error > rtol and solution.status >= 0:
         text = f"asked for {rtol:.0e}, reached {best.relative_error:.0e}"
         solution = replace(solution, message=f"{solution.message}; {text}")
-    return replace(best, solution=solution, motion=motion)
+    return replace(best, solution=solution, motion=partial(Passes, first, tuple(others), share))
 
 
 class _Made(NamedTuple):

@@ -1,23 +1,29 @@
-"""The stretches of runs, from which their accounts are made."""
+"""The runs as passes of one motion: cells of a few steps each, from which all else is read."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
+from crankmbs.mechanics.train import CrankTrain
+from crankmbs.mechanics.windows import Phase
 from crankmbs.motion.base import State
 from crankmbs.motion.cells import Acting, Cells
 from crankmbs.motion.ending import Ending
-from crankmbs.motion.multibody.answer import Answers
-from crankmbs.motion.multibody.runs import Motion, Runs
+from crankmbs.motion.multibody.forces import Forces
+from crankmbs.motion.multibody.runs import Motion
+from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.lagrange import ends_and_nodes
 
-__all__ = ["Run", "Stretch", "runs_of"]
+__all__ = ["Kept", "Stretch"]
 
-_STAGES = 3  # of Gauss in a step, whose error is of order 2
+_STEPS = 4  # in a cell
+_STAGES = 4  # of Gauss in it: polynomials of degree 5, where those of the steps are of degree 3
 
 
 class Stretch(NamedTuple):
@@ -29,47 +35,56 @@ class Stretch(NamedTuple):
     cells: Cells
 
 
-Run = tuple[State, list[Stretch], Ending]
-"""How a run begins, its stretches, how it ends."""
+@dataclass(frozen=True, eq=False)
+class Kept:
+    """What is kept of the runs of a scene.
+
+    passes : motions, the answer first, each with the states where its stretches begin, and the last
+        one ends; none where the crank stays at rest
+    bound : crank angle [rad] at which the run ends, where it ends at one
+    """
+
+    train: CrankTrain
+    start: State
+    passes: tuple[tuple[Motion, tuple[State, ...]], ...]
+    bound: float | None
+    ending: Ending
+
+    @cached_property
+    def stretches(self) -> list[list[Stretch]]:
+        """Those of each pass, cut where the crank turns back."""
+        forces = Forces(self.train)
+        return [list(self._of(forces, *each)) for each in self.passes]
+
+    def _of(self, forces: Forces, motion: Motion, states: tuple[State, ...]) -> Iterator[Stretch]:
+        until = motion.until(states[-1].time, self.bound)
+        states = (*states[:-1], states[-1]._replace(time=until))
+        turns = np.array([end for _, end in motion.stretches[:-1]])
+        for begin, end in pairwise(states):
+            inside = turns[(turns > begin.time) & (turns < end.time)]
+            angles = motion.at(inside)[0].tolist() if len(inside) else []
+            turned = [
+                State(t, a, 0.0, 0.0, begin.mode)
+                for t, a in zip(inside.tolist(), angles, strict=True)
+            ]
+            for first, last in pairwise([begin, *turned, end]):
+                grid = motion.grid[::_STEPS]
+                inner = grid[(grid > first.time) & (grid < last.time)]
+                edges = np.concatenate([[first.time], inner, [last.time]])
+                yield Stretch(first, last, (), _cells(forces, first, edges, motion.at))
 
 
-def runs_of(runs: Runs) -> list[Run]:
-    """The finest run and the one before it."""
-    found, begin = list[Run](), runs.start
-    if not (runs.moves and runs.paths):
-        return [(begin, [], runs.ending)]
-    for path in runs.paths[:-3:-1]:
-        answers = Answers(runs.model, runs.forces, path.states)
-        stretches = list(_stretches(Motion((path,), (1.0,)), answers, path.states))
-        found.append((begin, stretches, runs.ending))
-    return found
-
-
-def _stretches(motion: Motion, answers: Answers, states: tuple[State, ...]) -> Iterator[Stretch]:
-    """The stretches of a run, each cut where the crank turns back."""
-    turns = np.array([end for _, end in motion.stretches[:-1]])
-    for begin, end in pairwise(states):
-        inside = turns[(turns > begin.time) & (turns < end.time)]
-        angles = motion.at(inside)[0].tolist() if len(inside) else []
-        turned = [
-            State(t, a, 0.0, 0.0, begin.mode) for t, a in zip(inside.tolist(), angles, strict=True)
-        ]
-        for first, last in pairwise([begin, *turned, end]):
-            yield Stretch(first, last, (), _cells(motion, answers, first, last))
-
-
-def _cells(motion: Motion, answers: Answers, begin: State, end: State) -> Cells:
-    """The steps between two states as cells of a motion."""
-    grid = motion.grid
-    inside = grid[(grid > begin.time) & (grid < end.time)]
-    edges = np.concatenate([[begin.time], inside, [end.time]])
+def _cells(
+    forces: Forces, begin: State, edges: Array, at: Callable[[Array], tuple[Array, Array]]
+) -> Cells:
+    """The cells between times [s], under the torque of the loads that act from a state on."""
     time = edges[:-1, None] + np.diff(edges)[:, None] * ends_and_nodes(_STAGES).places
     time[:, -1] = edges[1:]
-    at = motion.at(time.ravel())
-    found = answers.at(time.ravel(), *at)
-    rows = *at, found["crank_acceleration"], found["external_torque"]
-    angle, speed, rate, outside = (row.reshape(time.shape) for row in rows)
-    angle[0, 0], angle[-1, -1] = begin.theta, end.theta
-    acting = Acting(float(np.sign(end.theta - begin.theta)))
+    angle, speed = at(time.ravel())
+    loads = [phase is Phase.ACTING for phase in begin.mode.loads]
+    acts = np.tile(loads or [True] * len(forces.train.scene.torque), (time.size, 1))
+    outside = forces.torque(time.ravel(), angle, speed, acts).reshape(time.shape)
+    acting = Acting(float(np.sign(angle[-1] - angle[0])), phases=begin.mode.loads)
     shares = np.tile(begin.mode.shares, (len(time), 1))
-    return Cells(time, angle, speed, acting, shares, None, rate, outside)
+    angle, speed = angle.reshape(time.shape), speed.reshape(time.shape)
+    return Cells(time, angle, speed, acting, shares, outside=outside)

@@ -45,15 +45,11 @@ class Course(Protocol):
         """When it passes angles [rad] in a stretch [s]."""
 
 
-def sample(plan: Plan, course: Course, end: float | None) -> tuple[Array, Array]:
-    """Times [s] and crank angles [rad] of the samples of a plan.
+def sample(plan: Plan, course: Course, until: float, end: float | None) -> tuple[Array, Array]:
+    """Times [s] and crank angles [rad] of the samples of a plan, the last one at a time.
 
-    end [rad] : angle at which the motion ends, where that is known
+    end [rad] : angle there, where that is known
     """
-    until = course.stretches[-1][1]
-    if end is not None:  # which the motion reaches a hair earlier or later than its finest run
-        at_end, speed = (float(q[0]) for q in course.at(np.array([until])))
-        until += (end - at_end) / speed if speed else 0.0
     times, angles = [np.zeros(1)], [np.array([plan.start])]
     for begin, stop in [*course.stretches[:-1], (course.stretches[-1][0], until)]:
         if plan.in_time:

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from dataclasses import replace
 
 import numpy as np
 
@@ -12,9 +10,8 @@ from crankmbs.mechanics.peaks import peak
 from crankmbs.mechanics.speed import SpeedLaw, speed_law
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion.base import Solution
-from crankmbs.motion.driven import Way, begun_at, driven
+from crankmbs.motion.driven import Way, driven
 from crankmbs.motion.ending import Ending
-from crankmbs.motion.multibody.account import Run, Stretch
 from crankmbs.motion.multibody.answer import Answers, rounding, sample, solution
 from crankmbs.motion.multibody.forces import Forces
 from crankmbs.motion.multibody.model import Model
@@ -24,7 +21,7 @@ from crankmbs.numerics.arrays import Array
 
 __all__ = ["run"]
 
-_POINTS = (6, 8)  # of Gauss in 5 degrees, in either look at what happens on the way
+_POINTS = 6  # of Gauss in 5 degrees, in which decisions on the fuel are looked for
 
 
 class _Course:
@@ -45,7 +42,7 @@ class _Course:
         return self._law.time_at(theta, begin, end)
 
 
-def run(train: CrankTrain) -> tuple[Solution, list[Run]]:
+def run(train: CrankTrain) -> Solution:
     """Sample the prescribed motion; nothing is integrated.
 
     Raises
@@ -58,12 +55,12 @@ def run(train: CrankTrain) -> tuple[Solution, list[Run]]:
     stretches, reached = monotone_stretches(plan, law)
     course = _Course(law, stretches)
     try:
-        pieces = list(driven(way := Way(train, law, _POINTS[0]), stretches))
+        pieces = list(driven(Way(train, law, _POINTS), stretches))
         states = [state for piece in pieces for state in (piece.begin, *piece.decisions)]
         answers = Answers(model, Forces(train), [*states, pieces[-1].end])
         bounded = reached and not plan.until_time
         bound = plan.angle_bounds[pieces[-1].end.theta > plan.start]
-        time, theta = sample(plan, course, bound if bounded else None)
+        time, theta = sample(plan, course, stretches[-1][1], bound if bounded else None)
         values = _values(answers, law, time, theta)
         begin = _values(answers, law, np.zeros(1), np.array([plan.start]))
         edges = np.unique(
@@ -73,14 +70,11 @@ def run(train: CrankTrain) -> tuple[Solution, list[Run]]:
         gained = values["kinetic_energy"] - begin["kinetic_energy"]
         values["energy_residual"] = gained - (values.pop("fallen") - begin["fallen"]) - work
         errors = _errors(answers, law, values, by_angle=not plan.in_time)
-        followed = list(_followed(train, answers, law, stretches))
     finally:
         model.close()
     ending = Ending.COMPLETE if reached else Ending.LAW_RESTS
     ending = Ending.FOLD if plan.folds_at(float(theta[-1])) else ending
-    answer = solution(values, errors, ending.said(float(theta[-1])), (len(time), 0))
-    rests = Ending.COMPLETE if reached else Ending.LAW_RESTS
-    return answer, [(begun_at(way), each, rests) for each in followed]
+    return solution(values, errors, ending.said(float(theta[-1])), (len(time), 0))
 
 
 def _values(answers: Answers, law: SpeedLaw, time: Array, theta: Array) -> dict[str, Array]:
@@ -103,18 +97,3 @@ def _errors(
         off |= {name: peak(found[name] - each) for name, each in values.items() if name in found}
     off["energy_residual"] = peak(values["energy_residual"])
     return {name: off[name] + least for name, least in rounding(values).items()}
-
-
-def _followed(
-    train: CrankTrain, answers: Answers, law: SpeedLaw, stretches: list[tuple[float, float]]
-) -> Iterator[list[Stretch]]:
-    """The stretches, with the torque that they take, in either look."""
-    for points in _POINTS:
-        found = []
-        for piece in driven(Way(train, law, points), stretches):
-            cells = piece.cells
-            time = cells.time.ravel()
-            outside = answers.at(time, *law.at_time(time))["external_torque"]
-            cells = replace(cells, outside=outside.reshape(cells.time.shape))
-            found.append(Stretch(piece.begin, piece.end, piece.decisions, cells))
-        yield found

@@ -16,7 +16,7 @@ from crankmbs.mechanics.variables import EVERY
 from crankmbs.motion.base import Solution, State
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.mode import begun
-from crankmbs.motion.multibody.account import Run, runs_of
+from crankmbs.motion.multibody.account import Kept
 from crankmbs.motion.multibody.answer import Answers, rounding, sample, solution
 from crankmbs.motion.multibody.forces import EVERYWHERE
 from crankmbs.motion.multibody.integrate import Limits
@@ -37,7 +37,7 @@ _NO_FINER = "at a finer step exudyn's Newton iteration does not converge"
 Values = dict[str, Array]
 
 
-def run(train: CrankTrain, rtol: float, cost_cap: float) -> tuple[Solution, list[Run]]:
+def run(train: CrankTrain, rtol: float, cost_cap: float) -> tuple[Solution, Kept]:
     """Run from the start of the scene to its end, refined until ``rtol`` is met.
 
     cost_cap [s] : each second of it stands for 20,000 steps of one cylinder
@@ -59,11 +59,10 @@ def run(train: CrankTrain, rtol: float, cost_cap: float) -> tuple[Solution, list
         worst = _worst(values, errors)
         if runs.moves and worst > rtol:
             message += _shortfall(worst, rtol, why, runs.steps / rate, cost_cap)
-        followed = runs_of(runs)
     finally:
         model.close()
     cost = sum(path.iterations for path in runs.paths), runs.steps
-    return solution(values, errors, (status, message), cost), followed
+    return solution(values, errors, (status, message), cost), _kept(runs, plan)
 
 
 def follow(
@@ -119,9 +118,8 @@ def _of_plan(runs: Runs, plan: Plan, most: int | None) -> tuple[Values, dict[str
         begin["energy_residual"] = np.zeros(1)
         return begin, rounding(begin)
     answer, _ = runs.motions()
-    last = runs.states[-1]
-    bounded = runs.ending is Ending.COMPLETE and last.theta in plan.angle_bounds
-    time, theta = sample(plan, answer, last.theta if bounded else None)
+    last, bound = runs.states[-1], _bound(runs, plan)
+    time, theta = sample(plan, answer, answer.until(last.time, bound), bound)
     if most is not None and len(time) > most:
         chosen = np.unique(np.linspace(0, len(time) - 1, most).astype(int))
         time, theta = time[chosen], theta[chosen]
@@ -130,7 +128,7 @@ def _of_plan(runs: Runs, plan: Plan, most: int | None) -> tuple[Values, dict[str
     if runs.ending is not Ending.COMPLETE:
         omega[-1] = last.omega
     by_angle = np.full(len(time), not plan.in_time)
-    by_angle[-1] = bounded
+    by_angle[-1] = bound is not None
     values, errors = _shared(runs, time, theta, omega, by_angle)
     edges = np.union1d(answer.grid[answer.grid < time[-1]], time)
     work = answers.work(answer, edges)[np.searchsorted(edges, time)]
@@ -145,6 +143,23 @@ def _of_plan(runs: Runs, plan: Plan, most: int | None) -> tuple[Values, dict[str
             errors[name] = max(errors[name], 1.5 * abs(x - y))
     del errors["fallen"]
     return values, {name: errors[name] + least for name, least in rounding(values).items()}
+
+
+def _bound(runs: Runs, plan: Plan) -> float | None:
+    """The crank angle [rad] at which the runs end, where they end at one."""
+    theta = runs.states[-1].theta
+    return theta if runs.ending is Ending.COMPLETE and theta in plan.angle_bounds else None
+
+
+def _kept(runs: Runs, plan: Plan) -> Kept:
+    """What is kept of the runs; the states of a check are those of the run before."""
+    passes = []
+    if runs.moves and runs.paths:
+        answer, checks = runs.motions()
+        before = runs.paths[-2:][0].states
+        passes = [(answer, runs.states), *((check, before) for check in checks[:-1])]
+        passes += [(check, runs.states) for check in checks[-1:]]
+    return Kept(runs.forces.train, runs.start, tuple(passes), _bound(runs, plan), runs.ending)
 
 
 def _shared(

@@ -74,6 +74,12 @@ class Motion:
         ends = np.unique([grid[0], *turns, *rests, grid[-1]]).tolist()
         return list(pairwise(ends))
 
+    def until(self, time: float, bound: float | None) -> float:
+        """Where it ends: at a crank angle [rad] that it reaches a hair before or after a time [s],
+        or else at that time."""
+        angle, speed = (float(each[0]) for each in self.at(np.array([time])))
+        return time if bound is None or not speed else time + (bound - angle) / speed
+
     def times(self, theta: Array, begin: float, end: float) -> Array:
         """When it passes angles [rad] in a stretch [s]."""
         inside = self.grid[(self.grid > begin) & (self.grid < end)]
@@ -178,30 +184,30 @@ class Runs:
         """Whether rounding has grown beyond what the steps err by."""
         answer, checks = self.motions()
         grid = self.paths[0].rows[:, 0]
-        steps, rounding = (peak(each.at(grid)[0] - answer.at(grid)[0]) for each in checks)
-        return rounding > steps
+        *steps, rounding = (peak(each.at(grid)[0] - answer.at(grid)[0]) for each in checks)
+        return rounding > max(steps)
 
     def motions(self) -> tuple[Motion, tuple[Motion, ...]]:
         """The answer, and motions as far off as it may be.
 
         With f, f', f'' the last three runs, coarse to fine, the answer is E'' = f'' + (f'' - f')/3
         where that differs from E' = f' + (f' - f)/3 by at most a third of f'' - f', and loads jump
-        nowhere within a step; it is checked by E'. Else the answer is f'', and the check is off by
-        half of f - f'', which is no less by chance than at order 1. The other check is off by what
-        the rounding of all steps grows to, as they do at random. Of one run there is none.
+        nowhere within a step; it is checked by E'. Else the answer is f'', and the checks are off
+        by half of f - f'' and by f' - f'': at order 1 the first is no less by chance where f' is
+        between, and the second where it is not. The last check is off by what the rounding of all
+        steps grows to, as they do at random. Of one run there is none.
         """
         *coarser, fine = self.paths[-3:]
         if not coarser:
             return Motion((fine,), (1.0,)), ()
-        answer, check = Motion((fine,), (1.0,)), Motion((coarser[0], fine), (0.5, 0.5))
+        answer = Motion((fine,), (1.0,))
+        checks = [Motion((coarser[0], fine), (0.5, 0.5)), Motion((coarser[-1],), (1.0,))]
         if len(coarser) == 2 and fine.whole and self._is_clean():
             answer = Motion((coarser[1], fine), _EXTRAPOLATED)
-            check = Motion(tuple(coarser), _EXTRAPOLATED)
+            checks = [Motion(tuple(coarser), _EXTRAPOLATED)]
         rounded = math.sqrt(fine.steps) * _EPS / _SHAKEN
-        also = Motion(
-            (self.shaken, self.paths[0], *answer.paths), (rounded, -rounded, *answer.weights)
-        )
-        return answer, (check, also)
+        also = (self.shaken, self.paths[0], *answer.paths), (rounded, -rounded, *answer.weights)
+        return answer, (*checks, Motion(*also))
 
     def _is_clean(self) -> bool:
         coarse, middle, fine = self.paths[-3:]
