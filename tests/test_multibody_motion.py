@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import pickle
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from crankmbs.result import Result
+from crankmbs.scene.loads import TimeTable
 from crankmbs.scene.read import load_scene
 from crankmbs.scene.scene import Scene
+from crankmbs.scene.tables import Table
 from crankmbs.simulate import simulate
 
 pytestmark = pytest.mark.slow
@@ -34,11 +37,11 @@ def test_between_samples_it_errs_by_no_more_than_it_states(name: str) -> None:
     time = np.linspace(exact.begin, exact.end, 2345)[1:-1]
     answer, *checks = (each.at(time, in_time=True) for each in (passes.answer, *passes.checks))
     true = exact.at(time, in_time=True)
-    for name in ("theta", "omega"):
-        found = getattr(answer, name)
-        stated = passes.share * max(np.abs(getattr(each, name) - found).max() for each in checks)
+    for row in ("theta", "omega"):
+        found = getattr(answer, row)
+        stated = passes.share * max(np.abs(getattr(each, row) - found).max() for each in checks)
         rounding = 1e-12 * np.abs(found).max()
-        assert np.abs(found - getattr(true, name)).max() < stated + rounding
+        assert np.abs(found - getattr(true, row)).max() < stated + rounding
         assert stated < 1e-5 * np.abs(found).max()
 
 
@@ -53,9 +56,20 @@ def test_its_measures_and_cycles_are_those_of_the_exact_run(name: str) -> None:
         assert found.error < 1e-5 * abs(result.measures().mean_speed.value)
     assert result.cycles.sizes == exact.cycles.sizes
     for column in ("time", "duration", "mean_speed", "kinetic_energy_gained"):
-        found, true = result.cycles[column], exact.cycles[column]
-        allowed = found.attrs["error_estimate"] + true.attrs["error_estimate"]
-        np.testing.assert_allclose(found.values, true.values, rtol=0.0, atol=allowed)
+        ours, theirs = result.cycles[column], exact.cycles[column]
+        allowed = ours.attrs["error_estimate"] + theirs.attrs["error_estimate"]
+        np.testing.assert_allclose(ours.values, theirs.values, rtol=0.0, atol=allowed)
+
+
+@pytest.mark.parametrize("jump", [0.0123, 0.03])
+def test_beside_a_jump_of_a_load_its_torque_is_that_of_its_side(jump: float) -> None:
+    rows = Table((0.0, jump, jump, 0.1), (5.0, 8.0, -30.0, -10.0))
+    coasting = load_scene("coasting").with_(run__until="0.05 s", run__every="0.005 s")
+    loaded = replace(coasting, torque=(TimeTable(file=rows),))
+    exact, result = (simulate(loaded, formulation=each) for each in (None, "multibody"))
+    time = jump + np.array([-1e-3, -2e-5, -1e-7, 1e-7, 2e-5, 1e-3])
+    found, true = (each.interp(time=time)["external_torque"].values for each in (result, exact))
+    np.testing.assert_allclose(found, true, rtol=1e-6)
 
 
 @pytest.mark.parametrize("name", ["misfire", "compressor"])

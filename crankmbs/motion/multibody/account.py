@@ -23,6 +23,7 @@ from crankmbs.numerics.lagrange import ends_and_nodes
 __all__ = ["Kept", "Stretch"]
 
 _STEPS = 4  # in a cell
+_HAIR = 1e-9  # of a stretch: so far from its ends, at which loads jump
 _STAGES = 4  # of Gauss in it: polynomials of degree 5, where those of the steps are of degree 3
 
 
@@ -83,7 +84,9 @@ def _cells(
     angle, speed = at(time.ravel())
     loads = [phase is Phase.ACTING for phase in begin.mode.loads]
     acts = np.tile(loads or [True] * len(forces.train.scene.torque), (time.size, 1))
-    outside = forces.torque(time.ravel(), angle, speed, acts).reshape(time.shape)
+    hair = _HAIR * (edges[-1] - edges[0])
+    inside = np.clip(time.ravel(), edges[0] + hair, edges[-1] - hair)
+    outside = forces.torque(inside, *at(inside), acts).reshape(time.shape)
     acting = Acting(float(np.sign(angle[-1] - angle[0])), phases=begin.mode.loads)
     shares = np.tile(begin.mode.shares, (len(time), 1))
     angle, speed = angle.reshape(time.shape), speed.reshape(time.shape)
