@@ -79,6 +79,7 @@ def test_energy_is_the_area_under_the_table(formulation, speed, rows, period):
     assert np.max(np.abs(result.data["energy_residual"])) < 1e-10 * np.max(omega**2)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("formulation", FREE)
 def test_it_is_an_external_torque(formulation):
     load = AngleTable(file=table(*LONG))
@@ -228,6 +229,7 @@ def test_random_tables_against_the_oracle(seed, formulation):
     assert stated_ratio(result, scene)[0] <= 1.0
 
 
+@pytest.mark.slow
 def test_multibody_states_which_side_of_a_jump_a_sample_may_be_on():
     rows = ((0.0, 120.0, 120.0, 300.0, 300.0), (8.0, 8.0, -4.0, 2.0, 8.0))
     loaded = {"start__angle": 0.0, "torque": (AngleTable(file=table(*rows)),)}

@@ -107,6 +107,7 @@ def test_what_cannot_be_looked_up_is_refused():
             at_angle(result, angle)
 
 
+@pytest.mark.slow
 def test_on_the_command_line(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     options = ("--no-figures", "--orders", "--at", "60 deg", "--at", "1 rad")

@@ -51,6 +51,7 @@ def swinging():
     return dataclasses.replace(result, data=off)
 
 
+@pytest.mark.slow
 @settings(max_examples=25, deadline=None)
 @given(order=st.permutations(list(CAUSES)), count=st.integers(1, len(CAUSES)))
 def test_every_order_adds_up_to_formula_minus_run(swinging, order, count):

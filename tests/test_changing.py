@@ -34,6 +34,7 @@ def test_the_oracle_tells_another_rod(factor):
     assert (worst <= 2.0) == (factor == 1.0)
 
 
+@pytest.mark.slow
 def test_on_a_way_back_of_many_turns_nothing_is_decided_again():
     """Fuel is cut, the crank turns on, swings back in its compression, and comes to rest."""
     scene = load_scene("run_down")

@@ -54,6 +54,7 @@ def test_run_writes_into_results_by_name_and_reports():
     assert result.stdout.isascii()
 
 
+@pytest.mark.slow
 def test_report_carries_the_numbers_of_the_result():
     out = crankmbs_("run", "engine.toml", "--no-figures").stdout
     data = Result.load("results/engine").data
@@ -98,6 +99,7 @@ def test_every_none_keeps_the_last_cycle_only():
     assert Result.load("results/engine").data.sizes["time"] == 721
 
 
+@pytest.mark.slow
 def test_a_run_cut_short_writes_its_results_and_exits_with_3():
     Path("stops.toml").write_text(COMES_TO_REST)
     result = crankmbs_("run", "stops.toml", "--no-figures")

@@ -248,6 +248,7 @@ def test_of_more_cycles_the_last_are_kept(monkeypatch, every):
         np.testing.assert_allclose(one.values, all_of[name].values[-5:], rtol=1e-11, atol=1e-9)
 
 
+@pytest.mark.slow
 def test_saved_and_loaded_they_are_the_same(tmp_path):
     result = simulate(SCENES["fuel and loads"])
     result.save(tmp_path)

@@ -116,6 +116,7 @@ def test_the_formulations_decide_alike(name, formulation):
     assert theirs["share"].error_estimate < 1e-4
 
 
+@pytest.mark.slow
 def test_the_oracle_decides_alike():
     """Just beyond each decision the oracle has the share that the event says."""
     scene = fuelled(FUELS["all at once"], cycles=0.8, gas=THIN_GAS)

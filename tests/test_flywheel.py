@@ -122,6 +122,7 @@ EVEN = 3200.0 * np.pi / 30.0
 SWINGS = Oscillation(mean="3200 rpm", amplitude=5.0, order=2)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("scene", "mean"),
     [

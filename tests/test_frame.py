@@ -186,6 +186,7 @@ def test_an_engine_whose_forces_cancel_is_not_refined_for_them():
     assert Assembled(solution, None, peaks, errors).relative_error == 1e-2
 
 
+@pytest.mark.slow
 def test_saved_and_read_with_its_places(tmp_path):
     for scene in (BANKED, in_line((1, 3, 2), spacing=0.1), in_line((1, 3, 2))):
         assert variables_of(scene).keys() == set(simulate(scene).data.variables) - {"cylinder"}

@@ -57,6 +57,7 @@ def shipped(name):
     return replace(scene, crank=crank)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", DRIVEN)
 def test_a_period_gains_nothing_and_has_the_mean_speed(name):
     scene = shipped(name)

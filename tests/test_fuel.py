@@ -135,6 +135,7 @@ def test_a_share_of_one_is_the_fired_pressure():
         )
 
 
+@pytest.mark.slow
 def test_settled_and_unclipped_the_mean_speed_is_the_governors():
     scene = fuelled(FUELS["governor"], cycles=150.0)
     result = simulate(replace(scene, run=replace(scene.run, every=None)))

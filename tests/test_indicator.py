@@ -268,6 +268,7 @@ def test_a_driven_engine_states_what_the_pieces_miss_of_the_polytropes(seed):
     assert missed.max() <= 2.0 * stated <= 1e-8 * exact.max()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(6))
 def test_a_free_engine_states_what_the_pieces_miss_of_the_polytropes(seed):
     """The same engine under the polytropes themselves, but for a ten-thousandth of what the pieces

@@ -33,6 +33,7 @@ def test_a_load_that_never_set_in():
     assert text.endswith("torque[2]: from_speed, 9000 rpm, was not met, and the load never set in")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("gains", "hunts"), [({"kp": 1.0, "max": 5.0}, True), ({}, False), ({"max": 0.5}, False)]
 )

@@ -89,6 +89,7 @@ def test_multibody_takes_it_alike(clutch, tmp_path):
     assert np.max(apart) <= allowed < 1e-3
 
 
+@pytest.mark.slow
 def test_it_is_written_and_saved_with_its_class(clutch, tmp_path):
     scene = toy(tmp_path)
     text = scene_files(scene, "again")["again.toml"]

@@ -136,6 +136,7 @@ def test_a_trial_step_far_too_long_is_no_number(state):
     assert not np.isfinite(slopes).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("changes", "begins"),
     [
@@ -161,6 +162,7 @@ def test_physical_ends(changes, begins):
     assert np.isfinite(result.data["main_bearing_force_x"]).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("formulation", ["crank_angle", "minimal"])
 def test_a_pressure_step_just_before_a_reversal_counts(formulation):
     """Two thousandths of a radian behind it the crank turns back, within the same long step."""

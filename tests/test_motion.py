@@ -192,6 +192,7 @@ def test_by_angle_a_motion_that_turns_back_is_refused():
     assert unchecked.measures().mean_speed.error == math.inf
 
 
+@pytest.mark.slow
 def test_of_a_long_run_with_few_samples_the_end_is_kept(monkeypatch):
     """Its events and cycles all the same, by following it once more."""
     monkeypatch.setattr(passage, "_MOST_HELD", 20_000)

@@ -133,6 +133,7 @@ def test_a_dataframe_has_a_column_for_each_cylinder():
         )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["speed", "motion", "forces", "polar", "torque", "orders"])
 def test_a_plot_is_a_figure_that_a_notebook_shows(short, kind):
     figure = short.plot(kind)
@@ -178,6 +179,7 @@ def test_nothing_that_draws_is_loaded_before_it_is_asked_for():
     subprocess.run([sys.executable, "-c", code], check=True)
 
 
+@pytest.mark.slow
 def test_the_floors_above_a_result_are_imported_by_its_methods_alone():
     code = (
         "import sys, types; package = types.ModuleType('crankmbs'); "

@@ -54,12 +54,14 @@ def test_end_states_are_reproduced(name: str, tolerance: float) -> None:
     assert distance(motion.omega[-1], omega) < tolerance * float(omega)
 
 
+@pytest.mark.slow
 def test_coasting_meets_the_digits_of_another_quadrature() -> None:
     motion = end(COASTING, "0.3", 100, "0.5")
     assert distance(motion.theta[-1], "49.22808714458433140007") < 1e-16
     assert distance(motion.omega[-1], "94.47401803965801494427") < 2e-16
 
 
+@pytest.mark.slow
 def test_coasting_meets_the_energy_quadrature() -> None:
     """The stored angle is reached at 0.5 s by t = int dtheta / omega, omega from the energy.
 
@@ -133,6 +135,7 @@ def test_engine_1a_meets_another_integration() -> None:
     assert distance(omega, "11.640327828374") <= 1e-11
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "change",
     [

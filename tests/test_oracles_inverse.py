@@ -79,6 +79,7 @@ def position(angle: Array, rate: Array, machine: Machine) -> Reactions:
     return newton_euler(machine, angle, rate, rate * 0, WIDE)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("state", range(3))
 def test_power_balance(state: int) -> None:
     """The power of torque, gas and gravity is the rate of the kinetic energy."""
@@ -95,6 +96,7 @@ def test_power_balance(state: int) -> None:
     assert distance(power, stored) < 1e-12 * abs(float(stored))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("state", range(3))
 @pytest.mark.parametrize("cylinder", range(2))
 def test_pin_forces_accelerate_rod_and_piston(state: int, cylinder: int) -> None:

@@ -116,6 +116,7 @@ def test_the_mean_effective_pressure_is_that_of_each_cylinder():
     assert others == pytest.approx([one, strong], rel=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", BY_CYLINDER)
 def test_written_read_and_saved_it_is_the_same(tmp_path, name):
     scene = with_gas(**BY_CYLINDER[name])

@@ -31,6 +31,7 @@ def last_digit(text: str) -> float:
     return 10.0 ** (int(power or 0) - len(digits.partition(".")[2]))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("key", IN_FULL, ids=str)
 def test_computed_here_is_what_the_oracle_computes(key):
     row = ROWS[key]

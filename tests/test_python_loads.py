@@ -87,6 +87,7 @@ def test_functions_of_time_and_speed(formulation):
     np.testing.assert_allclose(data["crank_speed"], exact, rtol=1e-8)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("formulation", FREE)
 def test_it_is_the_load_that_it_imitates(formulation):
     (load,) = PROPELLER.torque

@@ -45,6 +45,7 @@ def test_every_variable_of_random_machines(seed):
     assert max(worst.values()) < 1e-12, worst
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["yi_diesel", "compressor", "v_twin", "coasting", "torque_driven"])
 def test_every_variable_of_shipped_machines(name):
     scene, state = load_scene(name), motion(1)
@@ -89,6 +90,7 @@ def test_arrays_of_any_kind_are_taken_and_left():
     assert reduce(train, still.reshape(1, 7)).torque.shape == (1, 7)
 
 
+@pytest.mark.slow
 def test_angles_that_come_back():
     """Every force from its parts of omega^2, alpha and 1 at one angle of the period."""
     scene = load_scene("v_twin")

@@ -19,6 +19,7 @@ HANGING = replace(
 )
 
 
+@pytest.mark.slow
 @BOTH
 @pytest.mark.parametrize("seed", [1009, 1625, 2334])
 def test_a_motion_that_creeps_or_swings_to_rest(seed, formulation):

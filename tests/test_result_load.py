@@ -189,6 +189,7 @@ def test_a_truncated_file(file, saved, share):
     refused(file)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("status", [-1, 0, 1])
 def test_an_infinite_error_is_kept(status, result, tmp_path):
     error = dataclasses.replace(result.error, estimated=np.inf)

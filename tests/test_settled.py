@@ -191,6 +191,7 @@ def test_what_happens_once_is_refused() -> None:
         settled(DIESEL, formulation="multibody")
 
 
+@pytest.mark.slow
 def test_it_is_kept_and_written(tmp_path) -> None:
     found = settled(DIESEL)
     assert Result.load(found.save(tmp_path)).decay == found.decay

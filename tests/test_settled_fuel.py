@@ -88,6 +88,7 @@ def test_both_formulations_agree_within_what_they_state():
     assert apart <= one.decay.error + other.decay.error
 
 
+@pytest.mark.slow
 def test_the_factor_is_what_a_run_loses_in_a_cycle():
     found = simulate(settled(FUELS["governor"]))
     run = Run(until="50 cycles", every="720 deg", rtol=1e-12)

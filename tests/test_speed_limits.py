@@ -54,6 +54,7 @@ def test_where_it_is_passed_slowly_the_place_is_found_again(turned):
     assert worst_ratio(result) <= 2.0
 
 
+@pytest.mark.slow
 @BOTH
 def test_a_jump_that_holds_the_speed_a_moment_after_it_was_passed(formulation):
     """Through the jump to where the loads still slow down, and back to it, where it holds."""

@@ -209,6 +209,7 @@ def test_a_reader_is_told():
 JUMPS = TimeTable(file=Table([0.0, 0.2, 0.2, 1.0], [0.0, 0.0, 4.0, 4.0]))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("formulation", [*FREE, "multibody"])
 def test_a_sample_at_a_jump_in_time_has_the_value_after_it(formulation):
     """Also where rounding puts the sample beside it: 3 * 0.1 lies above 0.3."""
