@@ -39,7 +39,7 @@ def difference_figure(result: Result, differences: tuple[Difference, ...]) -> Fi
         ax.set_ylim(low, high)
     for ax in axes[len(differences) :]:
         ax.set_visible(False)
-    for ax in axes[-_COLUMNS:]:
+    for ax in axes[: len(differences)][-_COLUMNS:]:
         ax.set_xlabel("crank angle [rev]")
     figure.supylabel("difference / peak of the quantity [1]")
     legend(figure, max(axes, key=lambda ax: len(ax.lines)))
@@ -55,7 +55,8 @@ def _draw(ax: Axes, row: Difference, sizes: Array, groups: list[list[int]]) -> N
         label = whose(group) if several else "difference"
         ax.semilogy(turned, sizes[:, group[0]], **line_of(group[0]), linewidth=1.2, label=label)
     for error, name, dashes in zip(row.errors, row.formulations, (":", "--"), strict=True):
-        ax.axhline(error / peak, color="black", linestyle=dashes, label=f"error {name}")
+        ax.axhline(error / peak, color="black", linestyle=dashes, label=f"stated by {name}")
+    ax.locator_params(axis="x", nbins=5)
     ax.set_title(row.quantity, loc="left")
 
 
