@@ -40,12 +40,18 @@ def choose(scene: Scene, formulation: str = "auto") -> Choice:
             f"choose auto, {', '.join(serves[:-1])} or {serves[-1]}"
             f"{did_you_mean(formulation, serves)}"
         )
-    return Choice(formulation, (f"asked for; auto would choose {serves[0]}",))
+    cost = _named(formulation).cost(scene)
+    asked = f"asked for; auto would choose {serves[0]}"
+    return Choice(formulation, (asked, cost) if cost else (asked,))
 
 
 def chosen(choice: Choice) -> formulations.Formulation:
     """The formulation of a choice."""
-    return next(one for one in formulations.FORMULATIONS if one.name == choice.formulation)
+    return _named(choice.formulation)
+
+
+def _named(name: str) -> formulations.Formulation:
+    return next(one for one in formulations.FORMULATIONS if one.name == name)
 
 
 def _reasons(scene: Scene) -> tuple[str, ...]:

@@ -33,7 +33,7 @@ def simulate(
     rtol : relative global error asked for, 1e-13 to 1e-2; None takes the scene's, for
         "multibody" at least 1e-5
     cost_cap [s] : each second stands for 20,000 steps of one cylinder that "multibody" takes, and
-        for 2,000,000 evaluations after which a motion followed over time is given up
+        for 50,000 evaluations after which a motion followed over time is given up
 
     Returns
     -------

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from crankmbs import FormulationError, Motion, Run, Start, load_scene, simulate
+from crankmbs import FormulationError, Layout, Motion, Run, Start, load_scene, simulate
 from crankmbs.choose import choose
 from crankmbs.motion import formulations, kinetostatic
 from crankmbs.motion.assemble import assemble
@@ -31,8 +31,28 @@ def test_auto_chooses_the_smallest_and_says_why(scene, formulation, reason):
 
 @pytest.mark.parametrize("formulation", ["crank_angle", "minimal", "multibody"])
 def test_asked_for(formulation):
-    reason = "asked for; auto would choose crank_angle"
-    assert choose(FREE, formulation) == (formulation, (reason,))
+    chosen, (reason, *cost) = choose(FREE, formulation)
+    assert (chosen, reason) == (formulation, "asked for; auto would choose crank_angle")
+    assert bool(cost) == (formulation == "multibody")
+
+
+@pytest.mark.parametrize(
+    ("changes", "cost"),
+    [
+        ({"run__until": "10 rev"}, ["exudyn takes 10,000 steps or more, some 0.5 s"]),
+        ({"run__until": "5 ms"}, ["exudyn takes 1,000 steps or more, some 0.05 s"]),
+    ],
+)
+def test_what_exudyn_takes_is_said_beforehand(changes, cost):
+    assert list(choose(FREE.with_(**changes), "multibody").reasons[1:]) == cost
+    three = replace(FREE.with_(run__until="10 rev"), layout=Layout(firing_order=(1, 3, 2)))
+    assert choose(three, "multibody").reasons[1].endswith("10,000 steps or more, some 1.5 s")
+
+
+def test_how_far_a_crank_from_rest_turns_is_not_known_beforehand():
+    scene = load_scene("torque_driven")
+    assert "how many turns shows on the way" in choose(scene, "multibody").reasons[1]
+    assert choose(load_scene("yi_diesel"), "multibody").reasons[1:] == ()
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -100,6 +101,13 @@ def test_a_run_too_long_for_the_cost_cap_stops_and_says_what_it_would_cost() -> 
     assert "the whole run would take about" in result.message
     assert "above the cost cap of 0.5 s" in result.message
     assert 1.0 < result.data["crank_angle"].values[-1] < 1e5
+
+
+@pytest.mark.parametrize("cost_cap", [1e300, math.inf])
+def test_a_cost_cap_of_more_steps_than_exudyn_counts_is_none(cost_cap: float) -> None:
+    result = multibody(replace(COASTING, run=brief(6.0, "rad")), cost_cap=cost_cap)
+    assert result.status == 0
+    assert result.error.estimated <= 1e-5
 
 
 def test_a_fold_is_never_run_over_in_silence() -> None:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from crankmbs.choose import choose
+from crankmbs.choose import choose, chosen
 from crankmbs.cli.folder import writable, wrote
 from crankmbs.cli.progress import progress
 from crankmbs.cli.report import comparison, report
@@ -78,7 +78,8 @@ def run_scene(
         )
     folder = writable(Path("results", path.stem) if out is None else out)
 
-    result = _simulate(scene, cost_cap, options.get("rtol"))
+    with progress(chosen(choice).cost(scene) or "running"):
+        result = simulate(scene, rtol=options.get("rtol"), cost_cap=cost_cap)
     said = [report(path.stem, result, measure(result))]
     complete, made = result.status == 0, _Made(result)
     if wanted.confirm:
@@ -159,8 +160,3 @@ def override(scene: Scene, options: Mapping[str, Any]) -> Scene:
     except InputError as error:
         given = " ".join(f"--{name} {options[name]}" for name in _LENGTH if name in options)
         raise InputError(f"{given}: {error}") from None
-
-
-def _simulate(scene: Scene, cost_cap: float, rtol: float | None) -> Result:
-    with progress("running"):
-        return simulate(scene, rtol=rtol, cost_cap=cost_cap)

@@ -35,6 +35,7 @@ class Formulation(NamedTuple):
     least_rtol : what it is content with unless more is asked for
     integrates : whether rtol changes anything
     dense : whether its steps are wider than samples, so that a run for its end alone costs less
+    cost : scene -> a sentence on what a run takes, where that is much; else empty
     """
 
     name: str
@@ -43,6 +44,7 @@ class Formulation(NamedTuple):
     least_rtol: float = 0.0
     integrates: bool = True
     dense: bool = True
+    cost: Callable[[Scene], str] = lambda _: ""
 
 
 def serving(scene: Scene) -> tuple[Formulation, ...]:
@@ -120,6 +122,12 @@ def _multibody(train: CrankTrain, rtol: float, cost_cap: float) -> Assembled:
     return replace(assembled, motion=partial(_passes_of, kept, solution.samples))
 
 
+def _cost_of_multibody(scene: Scene) -> str:
+    from crankmbs.motion.multibody.cost import sentence
+
+    return sentence(scene)
+
+
 def _account_of(kept: Kept) -> Account:
     """What happened on the way of runs of multibody."""
     from crankmbs.motion.observer import Followed, account_of
@@ -145,5 +153,12 @@ FORMULATIONS = (
     Formulation("crank_angle", _if_prescribed, partial(_free, by_angle=True)),
     Formulation("minimal", _if_prescribed, partial(_free, by_angle=False)),
     # second order: more than 1e-5 costs minutes, and is to be asked for
-    Formulation("multibody", _if_settled_or_held, _multibody, least_rtol=1e-5, dense=False),
+    Formulation(
+        "multibody",
+        _if_settled_or_held,
+        _multibody,
+        least_rtol=1e-5,
+        dense=False,
+        cost=_cost_of_multibody,
+    ),
 )

@@ -18,6 +18,7 @@ from crankmbs.motion.ending import Ending
 from crankmbs.motion.mode import begun
 from crankmbs.motion.multibody.account import Kept
 from crankmbs.motion.multibody.answer import Answers, rounding, sample, solution
+from crankmbs.motion.multibody.cost import STEPS_A_SECOND
 from crankmbs.motion.multibody.forces import EVERYWHERE
 from crankmbs.motion.multibody.integrate import Limits
 from crankmbs.motion.multibody.model import Model
@@ -27,7 +28,7 @@ from crankmbs.numerics.arrays import Array
 
 __all__ = ["follow", "run"]
 
-_PER_SECOND = 20_000  # steps of one cylinder that a second of the cost cap stands for
+_MOST = 2**31 - 1  # steps that exudyn counts
 _FEW = 200  # samples at which a run is judged before it is at all of them
 _SINGLE = 32  # samples: among more there is one where nothing cancels
 _SLOW = 1e-6  # of the fastest speed
@@ -40,7 +41,7 @@ Values = dict[str, Array]
 def run(train: CrankTrain, rtol: float, cost_cap: float) -> tuple[Solution, Kept]:
     """Run from the start of the scene to its end, refined until ``rtol`` is met.
 
-    cost_cap [s] : each second of it stands for 20,000 steps of one cylinder
+    cost_cap [s] : in `STEPS_A_SECOND`
 
     Raises
     ------
@@ -50,8 +51,9 @@ def run(train: CrankTrain, rtol: float, cost_cap: float) -> tuple[Solution, Kept
     assert scene.start is not None
     start = State(0.0, scene.start.angle, scene.start.speed, 0.0, begun(train))
     plan, model = plan_of(scene), Model(scene)
-    rate = _PER_SECOND / len(scene.cylinders)
-    limits = Limits(plan.time_bound, plan.angle_bounds, math.ceil(cost_cap * rate))
+    rate = STEPS_A_SECOND / len(scene.cylinders)
+    steps = math.ceil(min(cost_cap * rate, _MOST))
+    limits = Limits(plan.time_bound, plan.angle_bounds, steps)
     try:
         runs = Runs(train, model, start, limits)
         values, errors, why = _refined(runs, rtol, partial(_of_plan, runs, plan))

@@ -17,6 +17,7 @@ from crankmbs.mechanics.peaks import peak
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion.base import State
 from crankmbs.motion.ending import Ending
+from crankmbs.motion.multibody.cost import STEPS_A_TURN
 from crankmbs.motion.multibody.forces import Forces
 from crankmbs.motion.multibody.integrate import Limits, Path, acceleration, integrate
 from crankmbs.motion.multibody.model import Model
@@ -25,8 +26,6 @@ from crankmbs.numerics.roots import invert_monotone
 
 __all__ = ["Motion", "Runs"]
 
-_STEPS_PER_TURN = 125  # of the coarsest run, at the speed at the start
-_STEPS = 125  # of it, at least
 _RETRIES = 4  # with a quarter of the step each time, where exudyn fails
 _UNTOUCHED = 0.98  # of the time to where it fails: before it goes wrong
 _EPS = float(np.finfo(float).eps)
@@ -238,4 +237,4 @@ class Runs:
             speed = min(math.sqrt(4.0 * math.pi * alpha), alpha * end)
         turn = 2.0 * math.pi / speed if speed > 0.0 else math.inf
         longest = 1.0 if math.isinf(end) else end - self.start.time
-        return min(turn / _STEPS_PER_TURN, longest / _STEPS), moves
+        return min(turn, longest) / STEPS_A_TURN, moves
