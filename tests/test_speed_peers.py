@@ -129,8 +129,6 @@ def test_a_compiler_that_fails_is_named(lopsided, monkeypatch):
     ("changes", "why"),
     [
         ({"start": None, "torque": (), "motion": Motion(speed="900 rpm")}, "a prescribed speed"),
-        ({"layout": Layout(firing_order=(1, 2))}, "one cylinder of phase 0 and bank 0"),
-        ({"layout": Layout(cylinders=(Cylinder(bank="30 deg"),))}, "one cylinder of phase 0"),
         ({"torque": (TimeTable(file=Table([0.0, 1.0], [1.0, 1.0])),)}, "not a time table"),
     ],
 )
@@ -141,6 +139,24 @@ def test_a_scene_that_the_peers_cannot_serve_is_said_once(changes, why):
     assert len(notes) == 1
     assert notes[0].startswith("no peers: ")
     assert why in notes[0]
+
+
+@pytest.mark.parametrize(
+    "layout",
+    [
+        Layout(firing_order=(1, 3, 2)),
+        Layout(cylinders=(Cylinder(bank="30 deg"), Cylinder(phase="300 deg", bank="-30 deg"))),
+    ],
+)
+def test_of_several_cylinders_and_of_a_bank_the_exudyn_script_serves_a_machine(layout):
+    scene = dataclasses.replace(LOPSIDED, layout=layout)
+    reference = reference_of(scene)
+    contenders, notes = peers_of(scene, reference)
+    assert [one.name for one in contenders] == list(SERVED)[-2:]
+    assert "SciPy LSODA and DOP853: written for one cylinder of phase 0 and bank 0" in notes
+    found = differences(contenders[-1].run(2000.0).trace, contenders[-1].reference, reference.start)
+    assert found[MOTION] <= 4e-6
+    assert max(found[force] for force in REACTIONS) <= 2e-5
 
 
 def test_a_load_that_one_peer_does_not_know_is_its_own_sentence():

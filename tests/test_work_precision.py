@@ -153,9 +153,8 @@ def test_the_time_of_a_row_is_the_median():
 
 
 def test_what_takes_too_long_is_neither_refined_nor_repeated(monkeypatch):
-    monkeypatch.setattr(rounds, "_LONGEST", 0.0)
     monkeypatch.setattr(rounds, "_PATIENCE", 0.0)
-    rows, notes = play((contender(lambda setting, trace: Answer(trace, 1)),), 0.0)
+    rows, notes = play((contender(lambda setting, trace: Answer(trace, 1)),), 0.0, longest=0.0)
     assert [(one.setting, len(one.times)) for one in rows] == [(1e-3, 1)]
     assert notes == ("one, rtol 0.001: took 0 s; nothing finer was run",)
 

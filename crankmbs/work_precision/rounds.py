@@ -15,7 +15,6 @@ __all__ = ["Row", "play"]
 
 _ROUNDS = 5  # the median of so many
 _PATIENCE = 2.0  # s: a setting is not repeated beyond this
-_LONGEST = 10.0  # s: what takes longer is the last setting of its contender
 _RESOLVED = 5e-3  # s: what is shorter is repeated within a round
 
 
@@ -42,15 +41,18 @@ class Row:
         return statistics.median(self.times)
 
 
-def play(contenders: Sequence[Contender], start: float) -> tuple[tuple[Row, ...], tuple[str, ...]]:
+def play(
+    contenders: Sequence[Contender], start: float, longest: float = 10.0
+) -> tuple[tuple[Row, ...], tuple[str, ...]]:
     """Rows of everything that ran, and a sentence for everything that did not.
 
-    start [rad] : where the motion starts
+    start [rad] : where the motion starts; longest [s] : what takes longer is the last setting of
+        its contender
     """
     entries: list[_Entry] = []
     notes: list[str] = []
     for contender in contenders:
-        first, why = _first_round(contender)
+        first, why = _first_round(contender, longest)
         entries += first
         notes += why
     for _ in range(_ROUNDS - 1):
@@ -83,7 +85,7 @@ class _Entry:
         )
 
 
-def _first_round(contender: Contender) -> tuple[list[_Entry], list[str]]:
+def _first_round(contender: Contender, longest: float) -> tuple[list[_Entry], list[str]]:
     """Every setting once, after a run that is not counted: it imports and compiles."""
     with suppress(ContenderFailed):
         contender.run(contender.settings[0])
@@ -96,7 +98,7 @@ def _first_round(contender: Contender) -> tuple[list[_Entry], list[str]]:
             failures.setdefault(str(failure), []).append(f"{setting:g}")
             continue
         entries.append(_Entry(contender, setting, answer, [spent]))
-        why = _last(answer, setting, spent)
+        why = _last(answer, setting, spent, longest)
         if why and setting != contender.settings[-1]:
             failures[f"{why}; nothing finer was run"] = [f"{setting:g}"]
             break
@@ -107,9 +109,9 @@ def _first_round(contender: Contender) -> tuple[list[_Entry], list[str]]:
     return entries, notes
 
 
-def _last(answer: Answer, setting: float, spent: float) -> str:
+def _last(answer: Answer, setting: float, spent: float, longest: float) -> str:
     """Why a finer setting is of no use; empty when it is."""
-    if spent > _LONGEST:
+    if spent > longest:
         return f"took {spent:.0f} s"
     if answer.stated is not None and answer.stated > setting:
         return f"states {answer.stated:.1e}, no less"

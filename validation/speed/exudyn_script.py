@@ -6,15 +6,21 @@ import math
 from functools import partial
 from typing import Any
 
+import exudyn
 import numpy as np
+from exudyn import itemInterface
 
+from crankmbs.numerics.arrays import Array
 from crankmbs.work_precision.contender import Answer, Contender
 from crankmbs.work_precision.trace import Trace
 from validation.speed.gas import gas_function
-from validation.speed.job import Job
+from validation.speed.job import Cylinder, Job
 
 __all__ = ["exudyn_contenders"]
 
+exu: Any = exudyn  # its stubs are narrower than what it takes
+eii: Any = itemInterface
+_KIND = exu.OutputVariableType
 _STEPS_PER_TURN = (250.0, 500.0, 1000.0, 2000.0, 4000.0)
 
 
@@ -33,110 +39,25 @@ def exudyn_contenders(job: Job, reference: Trace) -> tuple[Contender, ...]:
 
 
 def _run(job: Job, best: bool, steps_per_turn: float) -> Answer:
-    import exudyn as exu
-    import exudyn.itemInterface as items
-
-    eii: Any = items  # its stubs take no Python function for a load
     intervals = len(job.times) - 1
     steps = math.ceil(steps_per_turn * job.turns / intervals) * intervals
-    gas = gas_function(job)
-
-    # where everything stands, and how fast it moves, at the start
-    r, l, a, c = job.radius, job.rod_length, job.rod_center, job.crank_center
-    sine, cosine = math.sin(job.theta), math.cos(job.theta)
-    beta = math.asin((r * sine - job.offset) / l)
-    turning = r * cosine * job.omega / (l * math.cos(beta))
-    sb, cb = math.sin(beta), math.cos(beta)
-    u, v = -r * sine * job.omega, r * cosine * job.omega
-
     container = exu.SystemContainer()
     mbs: Any = container.AddSystem()
-    ground = mbs.AddObject(eii.ObjectGround())
-    crank_node = mbs.AddNode(
-        eii.NodeRigidBody2D(
-            referenceCoordinates=[c * cosine, c * sine, job.theta],
-            initialVelocities=[-c * sine * job.omega, c * cosine * job.omega, job.omega],
-        )
-    )
-    rod_node = mbs.AddNode(
-        eii.NodeRigidBody2D(
-            referenceCoordinates=[r * cosine + a * cb, r * sine - a * sb, -beta],
-            initialVelocities=[u - a * sb * turning, v - a * cb * turning, -turning],
-        )
-    )
-    piston_node = mbs.AddNode(
-        eii.NodePoint2D(
-            referenceCoordinates=[r * cosine + l * cb, job.offset],
-            initialVelocities=[u - l * sb * turning, 0.0],
-        )
-    )
-    central = job.crank_inertia - job.crank_mass * c**2
-    crank = mbs.AddObject(
-        eii.ObjectRigidBody2D(nodeNumber=crank_node, mass=job.crank_mass, inertia=central)
-    )
-    rod = mbs.AddObject(
-        eii.ObjectRigidBody2D(nodeNumber=rod_node, mass=job.rod_mass, inertia=job.rod_inertia)
-    )
-    piston = mbs.AddObject(eii.ObjectMassPoint2D(nodeNumber=piston_node, mass=job.piston_mass))
+    crank_node, crank, bearing = _add_crank(mbs, job)
+    joints, guides = [bearing], []
+    for cylinder in job.cylinders:
+        crank_pin, piston_pin, guide = _add_cylinder(mbs, job, cylinder, crank_node, crank)
+        joints += [crank_pin, piston_pin]
+        guides.append(guide)
 
-    def at(body: int, x: float) -> int:
-        return int(mbs.AddMarker(eii.MarkerBodyPosition(bodyNumber=body, localPosition=[x, 0, 0])))
-
-    piston_marker = at(piston, 0.0)
-    pairs = [
-        (at(ground, 0.0), at(crank, -c)),
-        (at(crank, r - c), at(rod, -a)),
-        (at(rod, l - a), piston_marker),
+    stored = {"storeInternal": True, "writeToFile": False}
+    sensors = [
+        mbs.AddSensor(eii.SensorNode(nodeNumber=crank_node, outputVariableType=kind, **stored))
+        for kind in (_KIND.Coordinates, _KIND.Coordinates_t)
     ]
-    joints = [mbs.AddObject(eii.RevoluteJoint2D(markerNumbers=list(pair))) for pair in pairs]
-    fixed = mbs.AddNode(eii.NodePointGround())
-    zero, lateral = (
-        mbs.AddMarker(eii.MarkerNodeCoordinate(nodeNumber=node, coordinate=coordinate))
-        for node, coordinate in ((fixed, 0), (piston_node, 1))
-    )
-    guide = mbs.AddObject(eii.ObjectConnectorCoordinate(markerNumbers=[zero, lateral]))
-
-    for body in (crank, rod, piston):
-        marker = mbs.AddMarker(eii.MarkerBodyMass(bodyNumber=body))
-        mbs.AddLoad(eii.LoadMassProportional(markerNumber=marker, loadVector=[*job.gravity, 0]))
-
-    def gas_load(mbs: Any, t: float, load: list[float]) -> list[float]:
-        turned = mbs.GetNodeOutput(crank_node, exu.OutputVariableType.Coordinates)[2]
-        return [-gas(job.theta + turned), 0.0, 0.0]
-
-    def torque_load(mbs: Any, t: float, load: list[float]) -> list[float]:
-        omega = mbs.GetNodeOutput(crank_node, exu.OutputVariableType.Coordinates_t)[2]
-        return [0.0, 0.0, job.constant - (job.viscous + job.quadratic * abs(omega)) * omega]
-
-    if job.has_gas:
-        mbs.AddLoad(
-            eii.LoadForceVector(markerNumber=piston_marker, loadVectorUserFunction=gas_load)
-        )
-    if job.has_torque:
-        shaft = mbs.AddMarker(eii.MarkerNodeRigid(nodeNumber=crank_node))
-        mbs.AddLoad(eii.LoadTorqueVector(markerNumber=shaft, loadVectorUserFunction=torque_load))
-
-    forces = [
-        mbs.AddSensor(
-            eii.SensorObject(
-                objectNumber=joint,
-                outputVariableType=exu.OutputVariableType.Force,
-                storeInternal=True,
-                writeToFile=False,
-            )
-        )
-        for joint in (*joints, guide)
-    ]
-    states = [
-        mbs.AddSensor(
-            eii.SensorNode(
-                nodeNumber=crank_node,
-                outputVariableType=kind,
-                storeInternal=True,
-                writeToFile=False,
-            )
-        )
-        for kind in (exu.OutputVariableType.Coordinates, exu.OutputVariableType.Coordinates_t)
+    sensors += [
+        mbs.AddSensor(eii.SensorObject(objectNumber=one, outputVariableType=_KIND.Force, **stored))
+        for one in (*joints, *guides)
     ]
     mbs.Assemble()
 
@@ -161,17 +82,125 @@ def _run(job: Job, best: bool, steps_per_turn: float) -> Answer:
     if not complete:
         raise RuntimeError("its solver did not reach the end")
 
-    stored = [mbs.GetSensorStoredData(sensor) for sensor in (*states, *forces)]
+    tables = [mbs.GetSensorStoredData(sensor) for sensor in sensors]
     mbs.Reset()
-    if not np.allclose(stored[0][:, 0], job.times, rtol=0.0, atol=1e-9 * job.end):
+    if not np.allclose(tables[0][:, 0], job.times, rtol=0.0, atol=1e-9 * job.end):
         raise RuntimeError("its sensors did not record the times asked for")
-    turned, omega, *reactions = (table[:, 1:] for table in stored)
-    main, crank_pin, piston_pin, side = (-values[:, :2] for values in reactions)
-    names = ("main bearing", "crank pin", "piston pin", "side force")
-    trace = Trace(
-        job.times,
-        job.theta + turned[:, 2],
-        omega[:, 2],
-        dict(zip(names, (main, crank_pin, piston_pin, side), strict=True)),
+    return Answer(_trace(job, [table[:, 1:] for table in tables]), steps)
+
+
+def _add_crank(mbs: Any, job: Job) -> tuple[int, int, int]:
+    """The crank on its bearing under its loads: its node, its body and the joint."""
+    throw, c = np.exp(1j * job.theta), job.crank_center
+    node = mbs.AddNode(
+        eii.NodeRigidBody2D(
+            referenceCoordinates=[c * throw.real, c * throw.imag, job.theta],
+            initialVelocities=[-c * throw.imag * job.omega, c * throw.real * job.omega, job.omega],
+        )
     )
-    return Answer(trace, steps)
+    central = job.crank_inertia - job.crank_mass * c**2
+    crank = mbs.AddObject(
+        eii.ObjectRigidBody2D(nodeNumber=node, mass=job.crank_mass, inertia=central)
+    )
+    _add_weight(mbs, job, crank)
+    ground = mbs.AddObject(eii.ObjectGround())
+    bearing = _add_joint(mbs, _marker(mbs, ground, 0.0), _marker(mbs, crank, -c))
+    if job.has_torque:
+
+        def torque(mbs: Any, t: float, load: list[float]) -> list[float]:
+            omega = mbs.GetNodeOutput(node, _KIND.Coordinates_t)[2]
+            return [0.0, 0.0, job.constant - (job.viscous + job.quadratic * abs(omega)) * omega]
+
+        shaft = mbs.AddMarker(eii.MarkerNodeRigid(nodeNumber=node))
+        mbs.AddLoad(eii.LoadTorqueVector(markerNumber=shaft, loadVectorUserFunction=torque))
+    return node, crank, bearing
+
+
+def _add_cylinder(
+    mbs: Any, job: Job, cylinder: Cylinder, crank_node: int, crank: int
+) -> tuple[int, int, int]:
+    """A rod and a piston in its guide under weight and gas: crank pin, piston pin and guide."""
+    (rod_at, rod_v), (piston_at, piston_v) = _placed(job, cylinder)
+    node = mbs.AddNode(eii.NodeRigidBody2D(referenceCoordinates=rod_at, initialVelocities=rod_v))
+    rod = mbs.AddObject(
+        eii.ObjectRigidBody2D(nodeNumber=node, mass=job.rod_mass, inertia=job.rod_inertia)
+    )
+    node = mbs.AddNode(eii.NodePoint2D(referenceCoordinates=piston_at, initialVelocities=piston_v))
+    piston = mbs.AddObject(eii.ObjectMassPoint2D(nodeNumber=node, mass=job.piston_mass))
+    for body in (rod, piston):
+        _add_weight(mbs, job, body)
+
+    turn = cylinder.phase + cylinder.bank
+    throw = job.radius * math.cos(turn) - job.crank_center, job.radius * math.sin(turn)
+    crank_pin = _add_joint(mbs, _marker(mbs, crank, *throw), _marker(mbs, rod, -job.rod_center))
+    pushed = _marker(mbs, piston, 0.0)
+    small_end = _marker(mbs, rod, job.rod_length - job.rod_center)
+    piston_pin = _add_joint(mbs, small_end, pushed)
+    fixed = mbs.AddNode(eii.NodePointGround())
+    axis = math.cos(cylinder.bank), math.sin(cylinder.bank)
+    guide = mbs.AddObject(
+        eii.CoordinateVectorConstraint(
+            markerNumbers=[
+                mbs.AddMarker(eii.MarkerNodeCoordinates(nodeNumber=each)) for each in (fixed, node)
+            ],
+            scalingMarker1=np.array([[-axis[1], axis[0]]]),
+            offset=[job.offset],
+        )
+    )
+    if job.has_gas:
+        gas, begin = gas_function(cylinder), job.theta + cylinder.phase
+
+        def push(mbs: Any, t: float, load: list[float]) -> list[float]:
+            force = -gas(begin + mbs.GetNodeOutput(crank_node, _KIND.Coordinates)[2])
+            return [force * axis[0], force * axis[1], 0.0]
+
+        mbs.AddLoad(eii.LoadForceVector(markerNumber=pushed, loadVectorUserFunction=push))
+    return crank_pin, piston_pin, guide
+
+
+def _marker(mbs: Any, body: int, x: float, y: float = 0.0) -> int:
+    return int(mbs.AddMarker(eii.MarkerBodyPosition(bodyNumber=body, localPosition=[x, y, 0])))
+
+
+def _add_joint(mbs: Any, *markers: int) -> int:
+    return int(mbs.AddObject(eii.RevoluteJoint2D(markerNumbers=list(markers))))
+
+
+def _add_weight(mbs: Any, job: Job, body: int) -> None:
+    marker = mbs.AddMarker(eii.MarkerBodyMass(bodyNumber=body))
+    mbs.AddLoad(eii.LoadMassProportional(markerNumber=marker, loadVector=[*job.gravity, 0]))
+
+
+def _placed(job: Job, cylinder: Cylinder) -> tuple[tuple[list[float], list[float]], ...]:
+    """Where rod and piston are at the start, and how fast they move."""
+    phi, axis = job.theta + cylinder.phase, np.exp(1j * cylinder.bank)
+    throw = job.radius * np.exp(1j * phi)
+    beta = math.asin((throw.imag - job.offset) / job.rod_length)
+    rate = -throw.real * job.omega / (job.rod_length * math.cos(beta))  # of the rod's angle
+    along = np.exp(-1j * beta)
+    found = []
+    for length in (job.rod_center, job.rod_length):
+        place = axis * (throw + length * along)
+        speed = 1j * axis * (throw * job.omega + length * along * rate)
+        found.append(([place.real, place.imag], [speed.real, speed.imag]))
+    (rod_at, rod_v), piston = found
+    return (([*rod_at, cylinder.bank - beta], [*rod_v, rate]), piston)
+
+
+def _trace(job: Job, tables: list[Array]) -> Trace:
+    """What the sensors recorded, each cylinder's forces in its axes."""
+    turned, omega, main, *rest = tables
+    n = len(job.cylinders)
+    axes = np.exp(-1j * np.array([cylinder.bank for cylinder in job.cylinders]))
+    pins = -np.stack([each[:, 0] + 1j * each[:, 1] for each in rest[: 2 * n]], axis=1)
+    pins = pins.reshape(len(pins), n, 2) * axes[:, None]
+    crank_pin, piston_pin = (
+        np.stack([each.real, each.imag], axis=-1) for each in (pins[..., 0], pins[..., 1])
+    )
+    forces = {
+        "main bearing": -main[:, :2],
+        "crank pin": crank_pin,
+        "piston pin": piston_pin,
+        "side force": -np.stack([each[:, :1] for each in rest[2 * n :]], axis=1),
+    }
+    return Trace(job.times, job.theta + turned[:, 2], omega[:, 2], forces)

@@ -1,4 +1,4 @@
-"""The numbers of a scene that the peers can serve: one cylinder, free, with smooth loads."""
+"""The numbers of a scene that the peers can serve: a free crank with smooth loads."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from crankmbs.mechanics.pressure import pressures_of
 from crankmbs.scene.loads import Constant, Quadratic, Viscous
 from crankmbs.scene.scene import Scene
 
-__all__ = ["Job", "NotServed", "job_of"]
+__all__ = ["Cylinder", "Job", "NotServed", "job_of"]
 
 Array = NDArray[np.float64]
 
@@ -22,12 +22,25 @@ class NotServed(Exception):
 
 
 @dataclass(frozen=True)
-class Job:
-    """One cylinder whose axis is the engine's X, on a free crank; SI units.
+class Cylinder:
+    """One cylinder.
 
-    gravity : its two components [m/s2]
+    phase, bank : [rad]
     knots, force : cycle angles [rad], shape (n + 1,), and between them the gas force towards the
         crank as cubics of the angle behind the knot [N, by descending power], shape (4, n)
+    """
+
+    phase: float
+    bank: float
+    knots: Array
+    force: Array
+
+
+@dataclass(frozen=True)
+class Job:
+    """A free crank and its cylinders, alike but for phase, bank and gas; SI units.
+
+    gravity : its two components [m/s2]
     constant, viscous, quadratic : torque c0 - c1 omega - c2 omega |omega| on the crank
     theta, omega : start; times : shape (m,) [s], where the answer is wanted
     """
@@ -43,8 +56,7 @@ class Job:
     piston_mass: float
     offset: float
     gravity: tuple[float, float]
-    knots: Array
-    force: Array
+    cylinders: tuple[Cylinder, ...]
     constant: float
     viscous: float
     quadratic: float
@@ -65,12 +77,25 @@ class Job:
     @property
     def has_gas(self) -> bool:
         """Whether there is a gas force."""
-        return bool(self.force.any())
+        return any(cylinder.force.any() for cylinder in self.cylinders)
 
     @property
     def has_torque(self) -> bool:
         """Whether there is a torque on the crank."""
         return (self.constant, self.viscous, self.quadratic) != (0.0, 0.0, 0.0)
+
+    @property
+    def alone(self) -> Cylinder:
+        """The one cylinder, whose axis is the engine's X.
+
+        Raises
+        ------
+        NotServed : there are several, or it has a phase or a bank
+        """
+        cylinder, *others = self.cylinders
+        if others or cylinder.phase or cylinder.bank:
+            raise NotServed("written for one cylinder of phase 0 and bank 0")
+        return cylinder
 
 
 def job_of(scene: Scene, times: Array) -> Job:
@@ -78,13 +103,10 @@ def job_of(scene: Scene, times: Array) -> Job:
 
     Raises
     ------
-    NotServed : prescribed speed, several cylinders, a phase or a bank, a torque from a table
+    NotServed : prescribed speed, a torque from a table
     """
     if scene.start is None:
         raise NotServed("a prescribed speed leaves the peers nothing to integrate")
-    (cylinder, *others) = scene.cylinders
-    if others or cylinder.phase or cylinder.bank:
-        raise NotServed("the peers' scripts are written for one cylinder of phase 0 and bank 0")
     torque = dict.fromkeys((Constant, Viscous, Quadratic), 0.0)
     for load in scene.torque:
         match load:
@@ -98,9 +120,12 @@ def job_of(scene: Scene, times: Array) -> Job:
                     f"{load.kind.replace('_', ' ')}"
                 )
     pressures, gravity = pressures_of(scene), scene.gravity
-    pressure = None if pressures is None else pressures[0]
-    knots = np.array([0.0, scene.period]) if pressure is None else pressure.knots
-    force = np.zeros((4, 1)) if pressure is None else pressure.coefficients
+    area, none = scene.piston.gas_area or 0.0, (np.array([0.0, scene.period]), np.zeros((4, 1)))
+    gas = [(one.knots, area * one.coefficients) for one in pressures or ()]
+    cylinders = [
+        Cylinder(one.phase, one.bank, *(gas[k] if gas else none))
+        for k, one in enumerate(scene.cylinders)
+    ]
     pull, towards = (0.0, 0.0) if gravity is None else (gravity.acceleration, gravity.angle)
     return Job(
         radius=scene.crank.radius,
@@ -114,8 +139,7 @@ def job_of(scene: Scene, times: Array) -> Job:
         piston_mass=scene.piston.mass,
         offset=scene.piston.offset,
         gravity=(pull * math.cos(towards), pull * math.sin(towards)),
-        knots=knots,
-        force=force * (scene.piston.gas_area or 0.0),
+        cylinders=tuple(cylinders),
         constant=torque[Constant],
         viscous=torque[Viscous],
         quadratic=torque[Quadratic],

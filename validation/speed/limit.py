@@ -80,10 +80,10 @@ def dop853_contenders(job: Job, reference: Trace) -> tuple[Contender, ...]:
 def _function(name: str, job: Job, method: Sequence[Array]) -> Callable[[float], Answer]:
     """A function of limit.c with everything but its setting filled in."""
     function = getattr(library(), name)
-    machine = [parameters(job), job.knots, job.force]
+    machine = [parameters(job), job.alone.knots, job.alone.force]
     held = [np.ascontiguousarray(array, dtype=np.float64) for array in (*machine, *method)]
     pointers = [array.ctypes.data_as(ctypes.c_void_p) for array in held]  # they keep the arrays
-    pieces, end = ctypes.c_int(len(job.knots) - 1), ctypes.c_double(job.end)
+    pieces, end = ctypes.c_int(len(job.alone.knots) - 1), ctypes.c_double(job.end)
     before, after = [*pointers[:3], pieces], pointers[3:]
 
     def call(setting: float) -> Answer:

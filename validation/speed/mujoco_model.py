@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from functools import partial
 from typing import Any
 
@@ -53,18 +54,19 @@ def mujoco_contenders(job: Job, reference: Trace) -> tuple[Contender, ...]:
     """RK4 with the hardest constraint."""
     import mujoco  # noqa: F401  its absence is to be known before anything runs
 
+    gas = gas_function(job.alone)
     return (
         Contender(
             name="MuJoCo, RK4",
             knob="steps/rev",
             settings=_STEPS_PER_TURN,
-            run=partial(_run, job),
+            run=partial(_run, job, gas),
             reference=reference,
         ),
     )
 
 
-def _run(job: Job, steps_per_turn: float) -> Answer:
+def _run(job: Job, gas: Callable[[float], float], steps_per_turn: float) -> Answer:
     import mujoco
 
     intervals = len(job.times) - 1
@@ -73,7 +75,6 @@ def _run(job: Job, steps_per_turn: float) -> Answer:
     model: Any = mujoco.MjModel.from_xml_string(_xml(job, step))
     data: Any = mujoco.MjData(model)
     _start(job, data)
-    gas = gas_function(job)
 
     def push(model: Any, data: Any) -> None:
         theta, omega = data.qpos[0], data.qvel[0]

@@ -74,7 +74,7 @@ def scipy_contenders(job: Job, reference: Trace) -> tuple[Contender, ...]:
     import numba
 
     compiled: Any = numba.njit(slopes)
-    numbers, knots, force = parameters(job), job.knots, job.force
+    numbers, knots, force = parameters(job), job.alone.knots, job.alone.force
 
     def slope(t: float, y: Array) -> tuple[float, float]:
         return cast(tuple[float, float], compiled(t, y, numbers, knots, force))

@@ -16,7 +16,7 @@ __all__ = ["sympy_contenders"]
 
 def sympy_contenders(job: Job, reference: Trace) -> tuple[Contender, ...]:
     """One contender; the derivation is not timed."""
-    acceleration, gas = _derived(job), gas_function(job)
+    acceleration, gas = _derived(job), gas_function(job.alone)
 
     def slope(t: float, y: Any) -> tuple[float, float]:
         theta, omega = float(y[0]), float(y[1])
