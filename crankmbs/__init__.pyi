@@ -28,6 +28,7 @@ from .measures import (
 )
 from .motion.base import Decay
 from .result import Cost, Error, Result
+from .scene.bearings import Bearings, Shell
 from .scene.drives import Motion, Oscillation, Ramp, SpeedFile, Start
 from .scene.fuel import Fuel, Governor, Misfire
 from .scene.gas import Gas, Indicator, Polytrope
@@ -59,6 +60,7 @@ __all__ = [
     "AngleTable",
     "AtAngle",
     "Balance",
+    "Bearings",
     "Budget",
     "Choice",
     "Comparison",
@@ -106,6 +108,7 @@ __all__ = [
     "Scene",
     "SceneError",
     "Sensitivity",
+    "Shell",
     "Snapshot",
     "SobolIndices",
     "Solved",

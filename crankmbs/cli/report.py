@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import textwrap
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,7 +12,15 @@ from crankmbs.cli.text import table
 from crankmbs.digits import digits, error_digits
 from crankmbs.measures import Measures
 from crankmbs.measures.plausible import warnings
-from crankmbs.report.rows import FORCE_HEADINGS, degrees_within, force_rows, measure_rows
+from crankmbs.report.machine import journal_remarks
+from crankmbs.report.rows import (
+    FORCE_HEADINGS,
+    SPECIFIC_HEADINGS,
+    degrees_within,
+    force_rows,
+    measure_rows,
+    specific_rows,
+)
 from crankmbs.result import Result
 from crankmbs.scene.units import RPM
 
@@ -35,7 +44,11 @@ def report(name: str, result: Result, measures: Measures) -> str:
         ),
         "",
         table(FORCE_HEADINGS, force_rows(measures, result.scene.period)),
+        *(textwrap.fill(said, 100) for said in journal_remarks(result.scene)),
     ]
+    specific = specific_rows(measures)
+    if specific:
+        parts += ["", table(SPECIFIC_HEADINGS, specific)]
     return "\n".join(parts)
 
 

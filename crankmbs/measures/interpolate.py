@@ -73,7 +73,8 @@ def read_at(result: Result, passes: Passes, wanted: Array, *, in_time: bool) -> 
         error = float(sampled.attrs["error_estimate"]) + passes.share * max(apart, default=0.0)
         rows[variable] = (sampled.dims, found, {**sampled.attrs, "error_estimate": error})
     coordinates = {name: rows.pop(name) for name in ("time", "crank_angle")}
-    return xr.Dataset(rows, {**coordinates, "cylinder": result.data["cylinder"]})
+    numbers = {str(of): result.data[of] for of in result.data.dims if of != "time"}
+    return xr.Dataset(rows, {**coordinates, **numbers})
 
 
 def _inside(result: Result, name: str, unit: str, given: ArrayLike | None) -> Array:

@@ -19,8 +19,11 @@ __all__ = ["Joint", "JointForce", "joints_of"]
 class JointForce:
     """Magnitude of one joint's force over the window.
 
-    joint : "main bearing", "crank pin", "piston pin" or "side force"
-    cylinder : its number; None for the main bearing, which carries all of them
+    joint : "main bearing", "crank pin", "piston pin", "side force"; with bearings "main journal",
+        and "shared pin" where two rods share one
+    cylinder : its number; None for the main bearing, which carries all of them, and for journals
+    number : of the joint among its like; None of the main bearing
+    area [m2] : over which its specific load is taken; None without a shell
     peak [N] : largest value, between the samples too; crank_angle [rad], unwrapped, and cycle_angle
         [rad] of its cylinder say where that is
     mean [N] : over time
@@ -32,39 +35,81 @@ class JointForce:
     mean: Estimate
     crank_angle: float
     cycle_angle: float | None
+    number: int | None = None
+    area: float | None = None
+
+    @property
+    def specific_peak(self) -> Estimate | None:
+        """Peak over diameter times width [Pa]; None without a shell."""
+        return None if self.area is None else Estimate(*(x / self.area for x in self.peak))
+
+    @property
+    def specific_mean(self) -> Estimate | None:
+        """Mean over diameter times width [Pa]; None without a shell."""
+        return None if self.area is None else Estimate(*(x / self.area for x in self.mean))
 
 
 class Joint(NamedTuple):
-    """A joint, the variables of its force, and its cylinder's number."""
+    """A joint and the variables of its force; of : what it is one of, "cylinder", "journal" or
+    "pin", and its number among those; nothing of the main bearing."""
 
     joint: str
     variables: tuple[str, ...]
-    cylinder: int | None
+    of: str = ""
+    number: int | None = None
 
     def force(self, variables: Mapping[str, Array]) -> Array:
         """Its components at points, shape (2, p) [N]; of the side force the second is zero."""
         columns = [variables[name] for name in self.variables]
-        if self.cylinder is not None:
-            columns = [column[:, self.cylinder - 1] for column in columns]
+        if self.number is not None:
+            columns = [column[:, self.number - 1] for column in columns]
         return np.array([*columns, np.zeros_like(columns[0])][:2])
 
     def labelled(self, scene: Scene, peak: Estimate, mean: Estimate, angle: float) -> JointForce:
         """With its numbers; angle : of the crank where the peak is [rad]."""
-        cycle_angle = None
-        if self.cylinder is not None:
-            cycle_angle = (angle + scene.cylinders[self.cylinder - 1].phase) % scene.period
-        return JointForce(self.joint, self.cylinder, peak, mean, angle, cycle_angle)
+        cylinder, cycle_angle = None, None
+        if self.number is not None and self.of == "cylinder":
+            cylinder = self.number
+            cycle_angle = (angle + scene.cylinders[cylinder - 1].phase) % scene.period
+        area = _area(scene, self.joint)
+        numbers = peak, mean, angle, cycle_angle, self.number, area
+        return JointForce(self.joint, cylinder, *numbers)
 
 
 def joints_of(scene: Scene) -> tuple[Joint, ...]:
-    """The joints of a scene, from the main bearing up.
+    """The joints of a scene, from the main bearing up, then its journals and shared pins.
 
     >>> [joint.joint for joint in joints_of(load_scene("propeller"))]
     ['main bearing', 'crank pin', 'piston pin', 'side force']
     """
-    numbers = range(1, len(scene.cylinders) + 1)
-    joints = [Joint("main bearing", ("main_bearing_force_x", "main_bearing_force_y"), None)]
-    for joint in ("crank pin", "piston pin"):
-        stem = joint.replace(" ", "_")
-        joints += [Joint(joint, (f"{stem}_force_x", f"{stem}_force_y"), k) for k in numbers]
-    return (*joints, *(Joint("side force", ("side_force",), k) for k in numbers))
+    joints = [Joint("main bearing", _components("main_bearing_force"))]
+    cylinders, throws = len(scene.cylinders), scene.throws
+    joints += _alike("crank pin", _components("crank_pin_force"), "cylinder", cylinders)
+    joints += _alike("piston pin", _components("piston_pin_force"), "cylinder", cylinders)
+    joints += _alike("side force", ("side_force",), "cylinder", cylinders)
+    if throws is not None:
+        count = len(throws.rods)
+        joints += _alike("main journal", _components("main_journal_force"), "journal", count)
+        if throws.shared:
+            joints += _alike("shared pin", _components("pin_force"), "pin", count - 1)
+    return tuple(joints)
+
+
+def _components(name: str) -> tuple[str, str]:
+    return f"{name}_x", f"{name}_y"
+
+
+def _alike(joint: str, variables: tuple[str, ...], of: str, count: int) -> list[Joint]:
+    return [Joint(joint, variables, of, number) for number in range(1, count + 1)]
+
+
+def _area(scene: Scene, joint: str) -> float | None:
+    """Projected area of the shell of a joint [m2], if it has one."""
+    bearings = scene.bearings
+    shells = (
+        {}
+        if bearings is None
+        else {"crank pin": bearings.crank_pin, "main journal": bearings.main_journal}
+    )
+    shell = shells.get(joint)
+    return None if shell is None else shell.area

@@ -159,7 +159,9 @@ def _numbers(scene: Scene, window: Span, motion: Motion) -> Numbers:
     }
     over = nodes.magnitude(forces) / duration if duration else _last(_magnitudes(forces))
     sizes = found.sizes[: len(forces)]
-    sizes[0] = sizes.max()  # the main bearing's is a sum of the pins'
+    for k, joint in enumerate(joints_of(scene)):
+        if joint.of != "cylinder":
+            sizes[k] = sizes.max()  # a sum of the pins'
     late = 1.0 + (motion.end / duration if duration else 0.0)  # units of rounding of the duration
     numbers = {
         "mean_speed": mean,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from crankmbs.mechanics.inertia import axes_of, closed_loops
+from crankmbs.mechanics.journals import of_rods
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.periodic import Period, single
 from crankmbs.scene.scene import Scene
@@ -20,7 +21,7 @@ def pushed(scene: Scene, period: Period, forces: Array) -> dict[str, Array]:
     Returns
     -------
     by variable of the result, in its unit: shape (1, samples) of the crank, (cylinders, samples) of
-    each cylinder
+    each cylinder, as of each journal
 
     >>> scene = load_scene("coasting")
     >>> pushed(scene, single(np.zeros(1)), np.ones((1, 1)))["piston_pin_force_x"]
@@ -33,7 +34,7 @@ def pushed(scene: Scene, period: Period, forces: Array) -> dict[str, Array]:
     torque = period.times(lever, forces)
     moment = period.times(-loop.x * tangent - scene.piston.offset, forces)
     journal = np.cumsum(torque, axis=0)
-    return {
+    return of_rods(scene, forces, across) | {
         "external_torque": -journal[-1:],
         "main_bearing_force_x": (axes.cos @ forces - axes.sin @ across)[np.newaxis],
         "main_bearing_force_y": (axes.sin @ forces + axes.cos @ across)[np.newaxis],

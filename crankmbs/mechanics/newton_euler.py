@@ -26,6 +26,7 @@ from crankmbs.mechanics.inertia import (
     moving_inertias,
     rod_centre,
 )
+from crankmbs.mechanics.journals import journal_rows, of_journals
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
@@ -82,14 +83,16 @@ _OF_CYLINDER = (*_OF_JOINTS, *_ACCELERATIONS, *_OF_ANGLE)
 
 
 def rows_of(scene: Scene) -> dict[str, int]:
-    """How many rows `balanced` has of each variable, in its order: one, or one a cylinder.
+    """How many rows `balanced` has of each variable, in its order: one, or one for each journal,
+    shared pin or cylinder.
 
     >>> sum(rows_of(load_scene("v_twin")).values())
     41
     """
     count = len(scene.cylinders)
     rocking = () if scene.levers is None else ("rocking_moment_x", "rocking_moment_y")
-    return dict.fromkeys((*_OF_CRANK, *rocking), 1) | dict.fromkeys(_OF_CYLINDER, count)
+    of_crank = dict.fromkeys((*_OF_CRANK, *rocking), 1) | journal_rows(scene)
+    return of_crank | dict.fromkeys(_OF_CYLINDER, count)
 
 
 def powers_of(name: str) -> tuple[int, ...]:
@@ -229,8 +232,8 @@ def balanced(train: CrankTrain, theta: Array, motion: Powers) -> dict[str, Array
 
     Returns
     -------
-    shape (1, u, n) of the crank, (cylinders, u, n) of each cylinder; u is 1 of what depends on the
-    angle alone, which belongs to 1
+    shape (1, u, n) of the crank, (cylinders, u, n) of each cylinder, as of each journal; u is 1 of
+    what depends on the angle alone, which belongs to 1
 
     >>> train = crank_train(load_scene("torque_driven"))
     >>> balanced(train, np.zeros(2), UNITS)["side_force"].shape
@@ -239,7 +242,8 @@ def balanced(train: CrankTrain, theta: Array, motion: Powers) -> dict[str, Array
     cylinders = of_cylinders(train, theta, motion)
     crank = of_crank(train.scene, theta, motion, cylinders)
     of_one = {name: values[np.newaxis] for name, values in crank.items()}
-    every = of_one | cylinders.variables
+    rods = cylinders.variables["crank_pin_force_x"], cylinders.variables["crank_pin_force_y"]
+    every = of_one | of_journals(train.scene, theta, motion, rods) | cylinders.variables
     return {name: every[name] for name in rows_of(train.scene)}
 
 

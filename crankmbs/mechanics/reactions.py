@@ -52,9 +52,10 @@ class Table:
 
     @property
     def variables(self) -> dict[str, Array]:
-        """By name, shape (samples,) those of the crank, (samples, cylinders) of a cylinder."""
+        """By name, shape (samples,) those of the crank, (samples, cylinders) of a cylinder, as of
+        a journal."""
         found = ((name, self.values[rows]) for name, rows in self.places.items())
-        return {n: rows.T if EVERY[n].per_cylinder else rows[0] for n, rows in found}
+        return {n: rows.T if EVERY[n].of else rows[0] for n, rows in found}
 
     def largest(self, of_rows: Array) -> Array:
         """Of each variable, from something of its rows."""
@@ -138,7 +139,7 @@ class Balances(NamedTuple):
             if name in self.added:
                 values = values + self.added[name]
             rows = np.asarray(values)
-            found[name] = rows.T if EVERY[name].per_cylinder else rows[0]
+            found[name] = rows.T if EVERY[name].of else rows[0]
         return found
 
     def fill(self, room: Array) -> None:

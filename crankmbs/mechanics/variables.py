@@ -1,4 +1,4 @@
-"""The variables of a result: unit, long name, and whether each cylinder has its own."""
+"""The variables of a result: unit, long name, and of what each has its own."""
 
 from __future__ import annotations
 
@@ -10,16 +10,22 @@ __all__ = ["EVERY", "SUMS", "VARIABLES", "Variable", "variables_of"]
 
 
 class Variable(NamedTuple):
-    """Unit and long name of a variable; ``per_cylinder`` ones have the dimension cylinder."""
+    """Unit and long name of a variable; of : its dimension beside time, "cylinder", "journal" or
+    "pin", where it has one."""
 
     units: str
     long_name: str
-    per_cylinder: bool = False
+    of: str = ""
 
     @property
     def dims(self) -> tuple[str, ...]:
         """The dimensions of its array."""
-        return ("time", "cylinder") if self.per_cylinder else ("time",)
+        return ("time", self.of) if self.of else ("time",)
+
+    @property
+    def per_cylinder(self) -> bool:
+        """Whether each cylinder has its own."""
+        return self.of == "cylinder"
 
 
 VARIABLES = {
@@ -37,23 +43,31 @@ VARIABLES = {
     "rocking_moment_y": Variable("N m", "moving parts on the frame about Y, middle of the crank"),
     "kinetic_energy": Variable("J", "kinetic energy of crank, rods and pistons"),
     "energy_residual": Variable("J", "kinetic energy gained minus work done"),
-    "rod_angle": Variable("rad", "rod angle beta from the cylinder axis", True),
-    "rod_angular_speed": Variable("rad/s", "rate of the rod angle beta", True),
-    "rod_angular_acceleration": Variable("rad/s^2", "second rate of the rod angle beta", True),
-    "piston_position": Variable("m", "piston pin, cylinder's X from the crank axis", True),
-    "piston_displacement": Variable("m", "piston displacement from its top dead centre", True),
-    "piston_velocity": Variable("m/s", "piston velocity towards the crank", True),
-    "piston_acceleration": Variable("m/s^2", "piston acceleration towards the crank", True),
-    "gas_pressure": Variable("Pa", "pressure difference across the piston", True),
-    "gas_force": Variable("N", "gas force on the piston towards the crank", True),
-    "side_force": Variable("N", "cylinder wall on piston, cylinder's Y", True),
-    "piston_pin_force_x": Variable("N", "rod on piston, cylinder's X", True),
-    "piston_pin_force_y": Variable("N", "rod on piston, cylinder's Y", True),
-    "crank_pin_force_x": Variable("N", "crank on rod, cylinder's X", True),
-    "crank_pin_force_y": Variable("N", "crank on rod, cylinder's Y", True),
-    "crank_torque": Variable("N m", "moment of the rod's force on the crank", True),
-    "journal_torque": Variable("N m", "rods 1 to this one on the crank: its next journal", True),
-    "pin_torque": Variable("N m", "rods before this one and half of this one on the crank", True),
+    "rod_angle": Variable("rad", "rod angle beta from the cylinder axis", "cylinder"),
+    "rod_angular_speed": Variable("rad/s", "rate of the rod angle beta", "cylinder"),
+    "rod_angular_acceleration": Variable(
+        "rad/s^2", "second rate of the rod angle beta", "cylinder"
+    ),
+    "piston_position": Variable("m", "piston pin, cylinder's X from the crank axis", "cylinder"),
+    "piston_displacement": Variable(
+        "m", "piston displacement from its top dead centre", "cylinder"
+    ),
+    "piston_velocity": Variable("m/s", "piston velocity towards the crank", "cylinder"),
+    "piston_acceleration": Variable("m/s^2", "piston acceleration towards the crank", "cylinder"),
+    "gas_pressure": Variable("Pa", "pressure difference across the piston", "cylinder"),
+    "gas_force": Variable("N", "gas force on the piston towards the crank", "cylinder"),
+    "side_force": Variable("N", "cylinder wall on piston, cylinder's Y", "cylinder"),
+    "piston_pin_force_x": Variable("N", "rod on piston, cylinder's X", "cylinder"),
+    "piston_pin_force_y": Variable("N", "rod on piston, cylinder's Y", "cylinder"),
+    "crank_pin_force_x": Variable("N", "crank on rod, cylinder's X", "cylinder"),
+    "crank_pin_force_y": Variable("N", "crank on rod, cylinder's Y", "cylinder"),
+    "crank_torque": Variable("N m", "moment of the rod's force on the crank", "cylinder"),
+    "journal_torque": Variable(
+        "N m", "rods 1 to this one on the crank: its next journal", "cylinder"
+    ),
+    "pin_torque": Variable(
+        "N m", "rods before this one and half of this one on the crank", "cylinder"
+    ),
 }
 
 SUMS = frozenset({"journal_torque", "pin_torque"}) | {
@@ -63,15 +77,20 @@ SUMS = frozenset({"journal_torque", "pin_torque"}) | {
 of them, for that of what they sum up is."""
 
 EVERY = VARIABLES | {
-    "fuel": Variable("1", "share of the combustion of the firing that acts", True),
-    "friction_force": Variable("N", "wall's friction on the piston towards the crank", True),
+    "fuel": Variable("1", "share of the combustion of the firing that acts", "cylinder"),
+    "friction_force": Variable("N", "wall's friction on the piston towards the crank", "cylinder"),
+    "main_journal_force_x": Variable("N", "bearing on main journal, engine's X", "journal"),
+    "main_journal_force_y": Variable("N", "bearing on main journal, engine's Y", "journal"),
+    "pin_force_x": Variable("N", "crank on the rods of one pin, engine's X", "pin"),
+    "pin_force_y": Variable("N", "crank on the rods of one pin, engine's Y", "pin"),
 }
 """With those that only some scenes have."""
 
 
 def variables_of(scene: Scene) -> dict[str, Variable]:
     """The variables that a result of a scene has: rocking moments where the cylinders have places,
-    the shares of the combustion where there is fuel, friction where there is.
+    the shares of the combustion where there is fuel, friction where there is, the forces of main
+    journals where there are bearings, those of pins where two rods share one.
 
     >>> "rocking_moment_x" in variables_of(load_scene("propeller"))
     False
@@ -79,4 +98,8 @@ def variables_of(scene: Scene) -> dict[str, Variable]:
     without = {"fuel"} if scene.fuel is None else set()
     without |= {"friction_force"} if scene.friction is None else set()
     without |= {"rocking_moment_x", "rocking_moment_y"} if scene.levers is None else set()
+    throws = scene.throws
+    without |= {name for name, about in EVERY.items() if about.of == "journal" and throws is None}
+    shared = throws is not None and throws.shared
+    without |= {name for name, about in EVERY.items() if about.of == "pin" and not shared}
     return {name: about for name, about in EVERY.items() if name not in without}

@@ -214,12 +214,15 @@ def dataset(assembled: Assembled) -> xr.Dataset:
         }
         return xr.Variable(about.dims, variables[name], attrs)
 
-    cylinders = np.arange(1, variables["side_force"].shape[1] + 1)
+    def numbers(of: str, name: str) -> xr.Variable:
+        count = np.arange(1, variables[name].shape[1] + 1)
+        return xr.Variable(of, count, {"long_name": f"{of} number"})
+
     coordinates = {name: labelled(name) for name in ("time", "crank_angle")}
-    number = xr.Variable("cylinder", cylinders, {"long_name": "cylinder number"})
+    counted = {EVERY[name].of: name for name in variables if EVERY[name].of}
     return xr.Dataset(
         {n: labelled(n) for n in EVERY if n in variables.keys() - coordinates},
-        coords={**coordinates, "cylinder": number},
+        coords={**coordinates, **{of: numbers(of, name) for of, name in counted.items()}},
     )
 
 

@@ -36,10 +36,10 @@ CYCLES = {
     "least_speed": Variable("rad/s", "least crank speed"),
     "largest_speed": Variable("rad/s", "largest crank speed"),
     "kinetic_energy_gained": Variable("J", "kinetic energy at its end less that at its beginning"),
-    "gas_work": Variable("J", "work of the gas on the piston", True),
-    "imep": Variable("Pa", "work of the gas over the displaced volume", True),
-    "fuel": Variable("1", "share of the firing whose dead centre it holds", True),
-    "friction_work": Variable("J", "work of the friction on the piston", True),
+    "gas_work": Variable("J", "work of the gas on the piston", "cylinder"),
+    "imep": Variable("Pa", "work of the gas over the displaced volume", "cylinder"),
+    "fuel": Variable("1", "share of the firing whose dead centre it holds", "cylinder"),
+    "friction_work": Variable("J", "work of the friction on the piston", "cylinder"),
     "load_work": Variable("J", "work of the load"),
     "drive_work": Variable("J", "work of the drive"),
 }
@@ -121,7 +121,7 @@ def dims_of(name: str) -> tuple[str, ...]:
     """The dimensions of a variable of the cycles."""
     if name == "load_work":
         return "cycle", "load"
-    return ("cycle", "cylinder") if CYCLES[name].per_cylinder else ("cycle",)
+    return ("cycle", "cylinder") if CYCLES[name].of else ("cycle",)
 
 
 def cycles_dataset(scene: Scene, rows: Rows) -> xr.Dataset:

@@ -105,7 +105,7 @@ def plan_of(scene: Scene) -> Plan:
         return Plan(start, DEGREE, False, until, until_time, last, folds)
     every, in_time = scene.run.every.resolve(scene.period)
     cylinders = len(scene.cylinders)
-    room = Room(sum(cylinders if one.per_cylinder else 1 for one in variables_of(scene).values()))
+    room = Room(sum(cylinders if one.of else 1 for one in variables_of(scene).values()))
     if in_time == until_time:  # else their number shows on the way
         room.check(until / every)
     return Plan(start, every, in_time, until, until_time, folds=folds, room=room)

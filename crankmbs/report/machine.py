@@ -21,7 +21,7 @@ from crankmbs.scene.tables import CylinderTable, Table
 from crankmbs.scene.torque import Torque
 from crankmbs.scene.units import BAR, RPM
 
-__all__ = ["describe", "machine_rows"]
+__all__ = ["describe", "journal_remarks", "machine_rows"]
 
 
 def describe(path: str, scene: Scene, choice: Choice) -> str:
@@ -55,6 +55,8 @@ def machine_rows(scene: Scene) -> list[tuple[str, str]]:
         *(("pressure", _pressure(scene, pressure)) for pressure in pressures),
         *(("", remark) for remark in remarks(scene)),
         ("friction", _friction(scene)),
+        ("bearings", _shells(scene)),
+        *(("", said) for said in journal_remarks(scene)),
         ("motion", _motion(scene)),
         *(("", said) for said in speed_remarks(scene)),
         *((f"torque[{k}]", _load(scene, load)) for k, load in enumerate(scene.torque, start=1)),
@@ -170,6 +172,40 @@ def _friction(scene: Scene) -> str:
         f"{friction.viscous:.6g} N s/m times the velocity" * (friction.viscous > 0.0),
     ]
     return f"{' and '.join(part for part in parts if part) or 'none'}, against each sliding piston"
+
+
+def _shells(scene: Scene) -> str:
+    bearings, throws = scene.bearings, scene.throws
+    if bearings is None:
+        return ""
+    shells = {"crank pin": bearings.crank_pin, "main journal": bearings.main_journal}
+    parts = [
+        f"{name} {shell.diameter * 1e3:.6g} x {shell.width * 1e3:.6g} mm"
+        for name, shell in shells.items()
+        if shell is not None
+    ]
+    if throws is not None:
+        count = len(throws.unbalances)
+        parts.append(f"{count} throw{'s' if count > 1 else ''} in {count + 1} main journals")
+    return ", ".join(parts)
+
+
+def journal_remarks(scene: Scene) -> list[str]:
+    """What the loads of the main journals rest on.
+
+    >>> journal_remarks(load_scene("propeller"))
+    []
+    """
+    throws = scene.throws
+    if throws is None or scene.bearings is None:
+        return []
+    remarks = [
+        "a main journal's load is the usual statically determinate split, an approximation: each "
+        "throw rests on the two journals beside it"
+    ]
+    if scene.bearings.throw_unbalance is None and scene.crank.mass and len(throws.unbalances) > 1:
+        remarks.append("the crank's unbalance and weight are shared equally by its throws")
+    return remarks
 
 
 def _motion(scene: Scene) -> str:

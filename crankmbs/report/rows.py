@@ -3,12 +3,20 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 
 from crankmbs.digits import digits, error_digits
 from crankmbs.measures import Estimate, JointForce, Measures
 from crankmbs.scene.units import RPM
 
-__all__ = ["FORCE_HEADINGS", "degrees_within", "force_rows", "measure_rows"]
+__all__ = [
+    "FORCE_HEADINGS",
+    "SPECIFIC_HEADINGS",
+    "degrees_within",
+    "force_rows",
+    "measure_rows",
+    "specific_rows",
+]
 
 FORCE_HEADINGS = [
     "joint force [N]",
@@ -19,6 +27,8 @@ FORCE_HEADINGS = [
     "mean",
     "error",
 ]
+SPECIFIC_HEADINGS = ["specific load [N/mm2]", "peak", "error", "mean", "error"]
+_MPA = 1e6  # Pa in N/mm2
 
 
 def measure_rows(measures: Measures) -> list[list[str]]:
@@ -49,13 +59,38 @@ def measure_rows(measures: Measures) -> list[list[str]]:
 
 def force_rows(measures: Measures, period: float) -> list[list[str]]:
     """The cells under `FORCE_HEADINGS` for each joint; period [rad] : the engine's."""
-    several = any((joint.cylinder or 1) > 1 for joint in measures.joints)
-    return [_force(joint, period, several) for joint in measures.joints]
+    counts = Counter(joint.joint for joint in measures.joints)
+    return [_force(joint, period, counts[joint.joint] > 1) for joint in measures.joints]
+
+
+def specific_rows(measures: Measures) -> list[list[str]]:
+    """The cells under `SPECIFIC_HEADINGS` for each joint with a shell."""
+    counts = Counter(joint.joint for joint in measures.joints)
+    return [
+        [
+            _name(joint, counts[joint.joint] > 1),
+            *(
+                cell
+                for one in (joint.specific_peak, joint.specific_mean)
+                if one is not None
+                for cell in (
+                    digits(one.value / _MPA, one.error / _MPA),
+                    error_digits(one.error / _MPA),
+                )
+            ),
+        ]
+        for joint in measures.joints
+        if joint.area is not None
+    ]
 
 
 def degrees_within(angle: float, period: float) -> str:
     """An angle within one period, in degrees."""
     return f"{round(math.degrees(angle), 3) % round(math.degrees(period)):.6g}"
+
+
+def _name(joint: JointForce, several: bool) -> str:
+    return f"{joint.joint} {joint.number}" if several else joint.joint
 
 
 def _value(name: str, estimate: Estimate, scale: float = 1.0) -> list[str]:
@@ -64,10 +99,9 @@ def _value(name: str, estimate: Estimate, scale: float = 1.0) -> list[str]:
 
 
 def _force(joint: JointForce, period: float, several: bool) -> list[str]:
-    name = f"{joint.joint} {joint.cylinder}" if several and joint.cylinder else joint.joint
     cycle = "" if joint.cycle_angle is None else degrees_within(joint.cycle_angle, period)
     return [
-        name,
+        _name(joint, several),
         digits(*joint.peak),
         error_digits(joint.peak.error),
         degrees_within(joint.crank_angle, period),

@@ -56,8 +56,8 @@ def _columns(data: xr.Dataset) -> list[_Column]:
     for name in ("time", "crank_angle", *map(str, data.data_vars)):
         one = data[name]
         units, error = one.attrs["units"], float(one.attrs["error_estimate"])
-        if "cylinder" in one.dims:
-            for number, values in zip(data["cylinder"].values, one.values.T, strict=True):
+        if one.ndim > 1:
+            for number, values in zip(data[one.dims[1]].values, one.values.T, strict=True):
                 found.append(_Column(f"{name} {number}", units, values, error))
         else:
             found.append(_Column(name, units, one.values, error))

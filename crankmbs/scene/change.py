@@ -164,7 +164,12 @@ def _in_given_names(text: str, given: Mapping[str, list[str]]) -> str:
     """The sentence of a refusal with the name that the caller gave where it names a value so."""
     named = _OF_ONE.match(text)
     if named and named[1] in given and len(given[named[1]]) == 1:
-        return f"{given[named[1]][0]}{named[2]}: {text[named.end() :]}"
+        name = given[named[1]][0]
+        steps = [*filter(None, re.split(r"[.\[\]]+", named[1] + named[2]))]
+        whole = name.split("__")
+        below = steps[len(whole) :] if steps[: len(whole)] == whole else steps[1:]
+        rest = "".join(f"[{step}]" if step.isdigit() else f".{step}" for step in below)
+        return f"{name}{rest}: {text[named.end() :]}"
     names = [name for several in given.values() for name in several]
     if any(text.startswith(name) for name in names):
         return text

@@ -109,11 +109,13 @@ class Piston:
 @part
 class Cylinder:
     """phase [rad]: its cycle angle at crank angle 0; bank [rad]: its axis from the engine's X;
-    position [m]: of its throw along the crank, in the sense of X turned into Y."""
+    position [m]: of its rod along the crank, in the sense of X turned into Y; throw: number of the
+    throw on whose pin its rod is, from 1; left out, each has its own."""
 
     phase: Angle = 0.0
     bank: Angle = 0.0
     position: Distance | None = None
+    throw: Annotated[int, Strict(), Ge(1)] | None = None
 
 
 @part

@@ -15,6 +15,7 @@ from pydantic import Strict
 import crankmbs.scene.loads
 import crankmbs.scene.python_load  # noqa: F401  (both make their kinds of load known)
 from crankmbs.errors import InputError, shown
+from crankmbs.scene.bearings import Bearings, Throws, throws_of
 from crankmbs.scene.change import changed
 from crankmbs.scene.cycles import cycles_in
 from crankmbs.scene.drives import Motion, Start
@@ -45,6 +46,7 @@ class Scene:
     fuel: Fuel | None = None
     gravity: Gravity | None = None
     friction: Friction | None = None
+    bearings: Bearings | None = None
     motion: Motion | None = None
     start: Start | None = None
     torque: tuple[AnyTorque, ...] = ()
@@ -106,6 +108,12 @@ class Scene:
             return None
         middle = 0.5 * (min(places) + max(places))
         return tuple(place - middle for place in places)
+
+    @cached_property
+    def throws(self) -> Throws | None:
+        """The throws of the crank and how its main journals hold them; None without bearings, and
+        where the throws have no places."""
+        return throws_of(self)
 
     def with_(self, *unnamed: object, **values: object) -> Scene:
         """The scene with other values, each named by where it stands, with ``__`` between.

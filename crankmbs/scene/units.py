@@ -34,6 +34,7 @@ _USUAL = {  # the SI unit first
     "quadratic coefficient": ("N m s^2", "N m/rpm^2"),
     "time": ("s", "ms", "min"),
     "torque": ("N m", "kN m", "lbf ft"),
+    "unbalance": ("kg m", "g mm", "g cm", "lb in"),
     "viscous coefficient": ("N m s", "N m/rpm"),
     "viscous friction": ("N s/m", "lbf s/in"),
 }
@@ -63,6 +64,7 @@ EXAMPLES = {
     "quadratic coefficient": '"7.8e-4 N m s^2"',
     "time": '"0.75 s"',
     "torque": '"87 N m"',
+    "unbalance": '"0.01 kg m"',
     "viscous coefficient": '"0.26 N m s"',
     "viscous friction": '"30 N s/m"',
 }

@@ -44,6 +44,7 @@ def check_whole(scene: Scene) -> None:
         _check_loop,
         _check_gas,
         _check_friction,
+        _check_bearings,
         _check_motion,
         _check_settled,
         _check_tables,
@@ -125,6 +126,10 @@ def _check_friction(scene: Scene) -> None:
             "friction.ring_pressure: without [gas] there is no gas force to press the rings; "
             f"leave it out, or add [gas]; {scene.friction.ring_pressure:g} came"
         )
+
+
+def _check_bearings(scene: Scene) -> None:
+    _ = scene.throws
 
 
 def _check_motion(scene: Scene) -> None:

@@ -11,6 +11,7 @@ import numpy as np
 from crankmbs.compare import LECTURES, QUANTITIES, largest_deviations
 from crankmbs.errors import InputError
 from crankmbs.measures import Estimate, JointForce, Measures, measure
+from crankmbs.measures.joints import joints_of
 from crankmbs.mechanics.variables import variables_of
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
@@ -43,7 +44,6 @@ _MEASURES = {
     "friction_power": Column("W", "friction power"),
     "mechanical_efficiency": Column("1", "mechanical efficiency"),
 }
-_JOINTS = ("main_bearing", "crank_pin", "piston_pin", "side_force")
 _LECTURE = Column("1", "largest deviation of the lecture, over the peak", _FORMULAS)
 
 
@@ -59,8 +59,9 @@ def columns_of(scene: Scene, *, series: bool) -> dict[str, Column]:
         if (scene.gas is not None or name not in ("indicated_power", "imep"))
         and (scene.friction is not None or name not in ("friction_power", "mechanical_efficiency"))
     }
-    for joint in _JOINTS:
-        words, dims = joint.replace("_", " "), () if joint == "main_bearing" else _CYLINDER
+    joints = _joints(scene)
+    for joint, dims in joints.items():
+        words = joint.replace("_", " ")
         force = "side force" if joint == "side_force" else f"{words} force"
         found[f"{joint}_peak"] = Column("N", f"largest {force}", dims)
         found[f"{joint}_mean"] = Column("N", f"mean {force} over time", dims)
@@ -76,9 +77,8 @@ def columns_of(scene: Scene, *, series: bool) -> dict[str, Column]:
         )
         for name, one in found.items()
     }
-    for joint in _JOINTS:
-        dims = () if joint == "main_bearing" else _CYLINDER
-        angle = "crank angle" if joint == "main_bearing" else "cycle angle"
+    for joint, dims in joints.items():
+        angle = "cycle angle" if dims == _CYLINDER else "crank angle"
         words = joint.replace("_", " ")
         errors[f"{joint}_peak_angle"] = Column("rad", f"{angle} of the largest {words}", dims)
     errors["energy_closure"] = Column("1", "largest energy residual over peak kinetic energy")
@@ -86,11 +86,22 @@ def columns_of(scene: Scene, *, series: bool) -> dict[str, Column]:
     return found | errors
 
 
+def _joints(scene: Scene) -> dict[str, tuple[str, ...]]:
+    """The joints of a scene by name, and over which dimension each is one of many."""
+    return {
+        joint.joint.replace(" ", "_"): (joint.of,) if joint.of else () for joint in joints_of(scene)
+    }
+
+
 def dims_of(scene: Scene, *, series: bool) -> dict[str, tuple[str, ...] | tuple[int, ...]]:
     """The coordinates of the dimensions beyond the case."""
     found: dict[str, tuple[str, ...] | tuple[int, ...]] = {
         "cylinder": tuple(range(1, len(scene.cylinders) + 1))
     }
+    if scene.throws is not None:
+        found["journal"] = tuple(range(1, len(scene.throws.rods) + 1))
+        if scene.throws.shared:
+            found["pin"] = found["journal"][:-1]
     if scene.fuel is None:
         found |= {"lecture": tuple(LECTURES), "quantity": tuple(QUANTITIES)}
     if series:
@@ -141,9 +152,9 @@ def _measured(measures: Measures, scene: Scene) -> Row:
     row: Row = {"energy_closure": np.array(measures.energy_closure)}
     for name in _MEASURES:
         _put(row, name, getattr(measures, name))
-    for joint in _JOINTS:
+    for joint, dims in _joints(scene).items():
         of_one = [one for one in measures.joints if one.joint.replace(" ", "_") == joint]
-        single = of_one[0].cylinder is None
+        single = not dims
         for what in ("peak", "mean"):
             found = tuple(getattr(one, what) for one in of_one)
             _put(row, f"{joint}_{what}", found[0] if single else found)
@@ -179,7 +190,7 @@ def _series(scene: Scene) -> dict[str, Column]:
     sampled = {"time": Column("s", "time", ("sample",))}
     sampled["crank_angle"] = Column("rad", "crank angle", ("sample",))
     for name, about in variables_of(scene).items():
-        dims = ("sample", *_CYLINDER) if about.per_cylinder else ("sample",)
+        dims = ("sample", about.of) if about.of else ("sample",)
         sampled[name] = Column(about.units, about.long_name, dims)
     return {f"series_{name}": one for name, one in sampled.items()}
 

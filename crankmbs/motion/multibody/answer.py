@@ -234,7 +234,7 @@ class Answers:
         phases = np.array([cylinder.phase for cylinder in self._scene.cylinders])
         lever = crank.radius * np.exp(-1j * (found.position[:, 2:3] + phases))
         torque = -(lever * crank_pin).imag
-        return {
+        return self._of_journals(found, forces[:, 1::2]) | {
             "external_torque": found.torque,
             "main_bearing_force_x": forces[:, 0].real,
             "main_bearing_force_y": forces[:, 0].imag,
@@ -247,6 +247,24 @@ class Answers:
             "journal_torque": np.cumsum(torque, axis=1),
             "pin_torque": np.cumsum(torque, axis=1) - 0.5 * torque,
         }
+
+    def _of_journals(self, found: Consistent, rods: Array) -> dict[str, Array]:
+        """What holds each throw as a beam on two supports, from the forces on its rods [N], complex
+        in the engine's frame, and the acceleration of its unbalance."""
+        throws = self._scene.throws
+        if throws is None:
+            return {}
+        (spin, rate), theta = (each[:, 2:3] for each in found[2:0:-1]), found.position[:, 2:3]
+        accelerated = np.array(throws.unbalances) * np.exp(1j * theta) * (1j * spin - rate**2)
+        pull = complex(*self._model.mechanism.gravity) * self._scene.crank.mass
+        own = accelerated - pull / len(throws.unbalances)
+        journals = rods @ np.transpose(throws.rods) + own @ np.transpose(throws.throws)
+        values = {"main_journal_force_x": journals.real, "main_journal_force_y": journals.imag}
+        if throws.shared:
+            which = np.array(throws.numbers)
+            pins = np.stack([rods[:, which == k].sum(axis=1) for k in range(own.shape[1])], axis=1)
+            values |= {"pin_force_x": pins.real, "pin_force_y": pins.imag}
+        return values
 
 
 def _senses(theta: Array, omega: Array) -> Array:

@@ -1,0 +1,80 @@
+"""What each main journal carries, and each crank pin that two rods share.
+
+With R_k the crank's force on rod k, u_j the unbalance of throw j as a complex number in the
+engine's frame at crank angle 0, m g / T the weight of each of T throws, and the shares s and t of
+`crankmbs.scene.bearings.Throws`, the bearing's force on journal i is
+
+    F_i = sum_k s_ik R_k + sum_j t_ij ((i alpha - omega^2) u_j exp(i theta) - m g / T)
+
+As the shares of every load add up to 1, all journals together carry the main bearing's force.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from crankmbs.mechanics.inertia import axes_of, gravity_vector
+from crankmbs.numerics.arrays import Array
+from crankmbs.scene.scene import Scene
+
+if TYPE_CHECKING:
+    from crankmbs.mechanics.newton_euler import Powers
+
+__all__ = ["journal_rows", "of_journals", "of_rods"]
+
+_JOURNAL = ("main_journal_force_x", "main_journal_force_y")
+_PIN = ("pin_force_x", "pin_force_y")
+
+
+def journal_rows(scene: Scene) -> dict[str, int]:
+    """How many journals and shared pins a scene has a force of, by variable; none without bearings.
+
+    >>> journal_rows(load_scene("propeller"))
+    {}
+    """
+    throws = scene.throws
+    if throws is None:
+        return {}
+    pins = dict.fromkeys(_PIN, len(throws.unbalances)) if throws.shared else {}
+    return dict.fromkeys(_JOURNAL, len(throws.rods)) | pins
+
+
+def of_journals(
+    scene: Scene, theta: Array, motion: Powers, rods: tuple[Array, Array]
+) -> dict[str, Array]:
+    """The forces of journals and shared pins in the engine's frame, shape (journals, u, n) [N].
+
+    rods : the crank's force on each rod in its cylinder's axes, shape (cylinders, u, n)
+    """
+    found, throws = of_rods(scene, *rods), scene.throws
+    if throws is None:
+        return found
+    square, alpha, one = motion
+    weight = complex(*gravity_vector(scene)) * scene.crank.mass / len(throws.unbalances)
+    turning = np.exp(1j * theta) * (1j * alpha - square)
+    unbalance = np.array(throws.unbalances)[:, np.newaxis, np.newaxis]
+    of_throws = np.tensordot(np.array(throws.throws), unbalance * turning - weight * one, 1)
+    for name, part in zip(_JOURNAL, (of_throws.real, of_throws.imag), strict=True):
+        found[name] = found[name] + part
+    return found
+
+
+def of_rods(scene: Scene, x: Array, y: Array) -> dict[str, Array]:
+    """What the crank's forces on the rods add to those of journals and shared pins, shape
+    (journals, ...) [N]: forces in their cylinders' axes, shape (cylinders, ...)."""
+    throws = scene.throws
+    if throws is None:
+        return {}
+    axes, shape = axes_of(scene), (-1, *(1,) * (x.ndim - 1))
+    cos, sin = axes.cos.reshape(shape), axes.sin.reshape(shape)
+    along = cos * x - sin * y, sin * x + cos * y
+    held = {_JOURNAL: np.array(throws.rods)}
+    if throws.shared:
+        held[_PIN] = (np.arange(len(throws.unbalances))[:, None] == throws.numbers).astype(float)
+    return {
+        name: np.tensordot(shares, part, 1)
+        for names, shares in held.items()
+        for name, part in zip(names, along, strict=True)
+    }

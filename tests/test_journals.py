@@ -1,0 +1,219 @@
+"""Loads of the main journals and of shared pins, and what contradicts itself about them."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from crankmbs import (
+    Bearings,
+    Cylinder,
+    Gravity,
+    InputError,
+    Layout,
+    Shell,
+    load_scene,
+    simulate,
+    sweep,
+)
+from crankmbs.cli.report import report
+from crankmbs.measures import measure
+from crankmbs.mechanics.reactions import reactions
+from crankmbs.mechanics.train import crank_train
+from crankmbs.result import Result
+from crankmbs.scene.bearings import throws_of
+from validation.checks.journals import _apart
+from validation.random_bearings import random_bearings
+from validation.random_scenes import random_scene
+
+FOUR = load_scene("yi_diesel_free").with_(run__until="1 cycle", layout__spacing="100 mm")
+DIESEL = FOUR.with_(
+    bearings=Bearings(
+        crank_pin=Shell(diameter="56 mm", width="31 mm"),
+        main_journal=Shell(diameter="65 mm", width="32 mm"),
+    )
+)
+TWIN = load_scene("v_twin").with_(run__until="1 cycle")
+VEE = dataclasses.replace(
+    TWIN,
+    layout=Layout(
+        cylinders=tuple(
+            Cylinder(phase=c.phase, bank=c.bank, position=place, throw=1)
+            for c, place in zip(TWIN.cylinders, ("0 mm", "30 mm"), strict=True)
+        )
+    ),
+    gravity=Gravity(acceleration=300.0, angle=1.0),
+    bearings=Bearings(journal_positions=("-50 mm", "80 mm")),
+)
+AXES = ("x", "y")
+
+
+def test_journals_lie_between_throws_and_the_outer_two_as_far_outside():
+    throws = throws_of(DIESEL)
+    assert throws.numbers == (0, 1, 2, 3)
+    assert np.array(throws.rods) == pytest.approx(
+        0.5 * np.array([[1, 0, 0, 0], [1, 1, 0, 0], [0, 1, 1, 0], [0, 0, 1, 1], [0, 0, 0, 1]])
+    )
+
+
+def test_a_throw_off_the_middle_of_its_journals_loads_the_nearer_one_more():
+    (first, second), (left, right) = throws_of(VEE).rods
+    assert (first, left) == pytest.approx((80 / 130, 50 / 130))
+    assert (second, right) == pytest.approx((50 / 130, 80 / 130))
+
+
+def test_all_journals_together_carry_the_main_bearing_and_a_pin_its_rods():
+    for scene in (DIESEL, VEE):
+        data = simulate(scene).data
+        for axis in AXES:
+            total = data[f"main_journal_force_{axis}"].sum("journal")
+            bearing = data[f"main_bearing_force_{axis}"]
+            assert float(abs(total - bearing).max()) < 1e-12 * float(abs(bearing).max())
+    pin = data.pin_force_x.values + 1j * data.pin_force_y.values
+    rods = data.crank_pin_force_x.values + 1j * data.crank_pin_force_y.values
+    banks = np.array([c.bank for c in VEE.cylinders])
+    assert pin[:, 0] == pytest.approx((rods * np.exp(1j * banks)).sum(axis=1), rel=1e-12)
+
+
+@pytest.mark.parametrize("formulation", ["minimal", "multibody"])
+def test_every_formulation_agrees_within_what_it_states(formulation):
+    one, other = simulate(VEE), simulate(VEE, formulation=formulation)
+    for name in ("main_journal_force_x", "main_journal_force_y", "pin_force_x", "pin_force_y"):
+        apart = np.abs(one.data[name].values - other.data[name].values).max()
+        stated = [each.data[name].attrs["error_estimate"] for each in (one, other)]
+        assert 0.0 < apart <= sum(stated)
+        assert sum(stated) < 1e-5 * np.abs(one.data[name].values).max()
+
+
+@pytest.mark.parametrize("seed", [0, 7, 11, 184])
+def test_a_counterweight_pulls_at_its_own_throw(seed):
+    scene = random_bearings(random_scene(seed), seed)
+    motion = np.random.default_rng(seed).uniform(-5.0, 5.0, (3, 4))
+    found = reactions(crank_train(scene), *motion)
+    assert _apart(scene, found, found, tuple(motion)) < 1e-12
+
+
+def test_counterweights_change_the_journals_and_nothing_else():
+    counter = DIESEL.with_(bearings__throw_unbalance=(-0.02, -0.02, -0.02, -0.02))
+    plain, weighed = simulate(DIESEL).data, simulate(counter).data
+    assert float(abs(plain.main_bearing_force_x - weighed.main_bearing_force_x).max()) == 0.0
+    middle = plain.main_journal_force_x.sel(journal=3) - weighed.main_journal_force_x.sel(journal=3)
+    speed, angle = plain.crank_speed.values, plain.crank_angle.values
+    turning = 0.02 * speed**2 * np.cos(angle + np.pi)  # of throws 2 and 3, half of each
+    slow = 0.02 * plain.crank_acceleration.values * np.sin(angle + np.pi)
+    assert middle.values == pytest.approx(-turning - slow, abs=1e-9 * np.abs(turning).max())
+
+
+def test_measures_and_report_name_every_journal_with_its_specific_load(tmp_path):
+    result = simulate(DIESEL)
+    found = measure(result)
+    journals = [each for each in found.joints if each.joint == "main journal"]
+    assert [each.number for each in journals] == [1, 2, 3, 4, 5]
+    x, y = (result.data[f"main_journal_force_{axis}"].values for axis in AXES)
+    largest = np.hypot(x, y).max(axis=0)
+    for each, size in zip(journals, largest, strict=True):
+        assert each.cylinder is None
+        assert size * (1.0 - 1e-12) <= each.peak.value <= size * 1.01
+        assert each.specific_peak.value == pytest.approx(each.peak.value / (0.065 * 0.032))
+        assert each.mean.value < each.peak.value
+    pins = [each for each in found.joints if each.joint == "crank pin"]
+    assert pins[0].specific_mean.value == pytest.approx(pins[0].mean.value / (0.056 * 0.031))
+    text = report("diesel", result, found)
+    assert "main journal 5" in text
+    assert "specific load [N/mm2]" in text
+    assert "statically determinate" in text
+    result.save(tmp_path)
+    again = Result.load(tmp_path / "result.nc")
+    assert again.data.main_journal_force_x.equals(result.data.main_journal_force_x)
+    assert "main_journal_force_x 5 [N]" in (tmp_path / "motion.csv").read_text().splitlines()[0]
+    assert again.interp(time=[0.01]).main_journal_force_y.sizes == {"time": 1, "journal": 5}
+
+
+def test_one_throw_rests_on_its_two_journals_by_halves():
+    scene = load_scene("propeller").with_(bearings=Bearings(), run__until="1 cycle")
+    data = simulate(scene).data
+    half = 0.5 * data.main_bearing_force_x.values
+    for journal in (1, 2):
+        assert data.main_journal_force_x.sel(journal=journal).values == pytest.approx(half)
+
+
+def test_a_sweep_has_the_journals_of_every_case():
+    scene = DIESEL.with_(run__until="settled")
+    found = sweep(scene, {"crank.inertia": ["0.15 kg m^2", "0.3 kg m^2"]})
+    alone = measure(simulate(scene.with_(crank__inertia="0.3 kg m^2")))
+    (third,) = [j for j in alone.joints if (j.joint, j.number) == ("main journal", 3)]
+    assert found.main_journal_peak.sizes["journal"] == 5
+    assert float(found.main_journal_peak[1, 2]) == pytest.approx(third.peak.value, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("scene", "changes", "sentence"),
+    [
+        (
+            load_scene("yi_diesel_free"),
+            {"bearings": Bearings(main_journal=Shell(diameter=0.06, width=0.03))},
+            "give layout.spacing or each cylinder's position",
+        ),
+        (
+            DIESEL,
+            {"bearings__journal_positions": ("0 mm", "100 mm")},
+            "bearings__journal_positions: one more than throws is needed, 5; 2 came",
+        ),
+        (
+            DIESEL,
+            {"bearings__journal_positions": ("-50 mm", "110 mm", "150 mm", "250 mm", "350 mm")},
+            "throw 2 at 0.1 m must stand between journals 2 and 3; they are at 0.11 and 0.15 m",
+        ),
+        (
+            DIESEL,
+            {"bearings__throw_unbalance": (0.01, 0.01)},
+            "one for each throw is needed, 4; 2 came",
+        ),
+        (
+            DIESEL,
+            {"bearings__throw_unbalance": (0.01, 0.01, 0.01, 0.02)},
+            "together, each along its throw, they are the crank's mass * center_of_mass",
+        ),
+        (
+            VEE,
+            {"layout__cylinders__2__phase": "290 deg"},
+            "cylinders 1 and 2 of throw 1 have 330 and 320 degrees",
+        ),
+        (
+            VEE,
+            {"layout__cylinders__2__throw": 3},
+            "throws are numbered from 1 without a gap; [1, 3] came",
+        ),
+        (VEE, {"layout__cylinders__2__throw": None}, "give the throw of every cylinder or of none"),
+        (
+            VEE,
+            {"layout__cylinders__2__position": "90 mm"},
+            "layout__cylinders__2__position: the rod must stand between the journals beside its "
+            "throw, -0.05 and 0.08 m; 0.09 m came",
+        ),
+        (
+            VEE,
+            {"bearings__journal_positions": ("20 mm", "80 mm")},
+            "throw 1 at 0.015 m must stand between journals 1 and 2",
+        ),
+    ],
+)
+def test_what_contradicts_itself_is_refused_by_name(scene, changes, sentence):
+    with pytest.raises(InputError) as refused:
+        scene.with_(**changes)
+    assert sentence in str(refused.value)
+
+
+def test_two_throws_at_one_place_are_asked_for_their_pin():
+    cylinders = tuple(dataclasses.replace(c, throw=None, position=0.0) for c in VEE.cylinders)
+    with pytest.raises(InputError, match="cylinders on one pin have the same throw"):
+        dataclasses.replace(VEE, layout=Layout(cylinders=cylinders), bearings=Bearings())
+
+
+def test_without_main_journals_and_places_the_pins_alone_have_shells():
+    scene = load_scene("yi_diesel_free").with_(
+        bearings=Bearings(crank_pin=Shell(diameter="56 mm", width="31 mm"))
+    )
+    assert scene.throws is None
+    (first, *_) = [j for j in measure(simulate(scene)).joints if j.joint == "crank pin"]
+    assert first.specific_peak.value == pytest.approx(first.peak.value / (0.056 * 0.031))
