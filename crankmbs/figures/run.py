@@ -77,7 +77,7 @@ def _check_word(what: str, word: str, known: list[str]) -> None:
 
 
 def _cycles(result: Result) -> Figure:
-    count = result.cycles.sizes["cycle"]
+    count = result.cycle_table.length
     if count < FEWEST_CYCLES:
         raise InputError(
             f"cycles are drawn from {FEWEST_CYCLES} on, and this run has {count}; result.cycles "
@@ -100,7 +100,7 @@ def save_figures(result: Result, folder: Path) -> list[Path]:
             save(draw(view), part / f"{name}.png")
         names = list(_FIGURES)
         fewest = 2 if result.scene.settles else FEWEST_CYCLES  # what differs in a settled period
-        if result.keep is not None and result.cycles.sizes["cycle"] >= fewest:
+        if result.keep is not None and result.cycle_table.length >= fewest:
             save(cycles_figure(result), part / "cycles.png")
             names.append("cycles")
     return [folder / f"{name}.png" for name in names]

@@ -46,6 +46,7 @@ _DASHES = ("-", (0, (6, 2)), (0, (6, 2, 1.5, 2)), (0, (2.5, 1.5)))
 _GREY = "0.55"
 FLAT = 1e-6  # of the mean: what varies less is drawn as constant
 _SMALLER = 2  # points: text at the dead centres and of the caption, than the type of the figure
+_FAST = {"compress_level": 3}  # of a PNG: half the time, a sixth more bytes than by default
 _LINE = 1.27  # of its size: a line of it
 
 STYLE: Any = {
@@ -92,7 +93,7 @@ def save(figure: Figure, file: Path) -> Path:
     if layout is not None:
         layout.execute(figure)
         figure.set_layout_engine("none")
-    write_in_one_move(file, lambda part: figure.savefig(part, format="png"))
+    write_in_one_move(file, lambda part: figure.savefig(part, format="png", pil_kwargs=_FAST))
     return file
 
 

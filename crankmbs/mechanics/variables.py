@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
+from crankmbs.numerics.arrays import Array, Labelled
 from crankmbs.scene.scene import Scene
 
-__all__ = ["EVERY", "SUMS", "VARIABLES", "Variable", "variables_of"]
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["COORDINATES", "EVERY", "SUMS", "VARIABLES", "Variable", "dataset", "variables_of"]
 
 
 class Variable(NamedTuple):
@@ -20,6 +24,13 @@ class Variable(NamedTuple):
     def dims(self) -> tuple[str, ...]:
         """The dimensions of its array."""
         return ("time", "cylinder") if self.per_cylinder else ("time",)
+
+    def labelled(
+        self, values: Array, error: float, dims: tuple[str, ...] | None = None
+    ) -> tuple[tuple[str, ...], Array, dict[str, Any]]:
+        """Values with their dimensions, unit, long name and error, as `Labelled` has them."""
+        attrs = {"units": self.units, "long_name": self.long_name, "error_estimate": error}
+        return self.dims if dims is None else dims, values, attrs
 
 
 VARIABLES = {
@@ -68,6 +79,9 @@ EVERY = VARIABLES | {
 }
 """With those that only some scenes have."""
 
+COORDINATES = ("time", "crank_angle", "cylinder")
+"""What the data of a result lie over."""
+
 
 def variables_of(scene: Scene) -> dict[str, Variable]:
     """The variables that a result of a scene has: rocking moments where the cylinders have places,
@@ -80,3 +94,11 @@ def variables_of(scene: Scene) -> dict[str, Variable]:
     without |= {"friction_force"} if scene.friction is None else set()
     without |= {"rocking_moment_x", "rocking_moment_y"} if scene.levers is None else set()
     return {name: about for name, about in EVERY.items() if name not in without}
+
+
+def dataset(variables: Labelled, coordinates: tuple[str, ...], **attrs: str) -> xr.Dataset:
+    """The variables as a Dataset, some of them as coordinates."""
+    import xarray as xr
+
+    data = {name: one for name, one in variables.items() if name not in coordinates}
+    return xr.Dataset(data, {name: variables[name] for name in coordinates}, attrs)

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,12 +18,9 @@ from crankmbs.mechanics.variables import EVERY, SUMS
 from crankmbs.motion.base import Samples, Solution
 from crankmbs.motion.motion import Passes
 from crankmbs.motion.states import MOTION, balances_of, motion_rows, table_of
-from crankmbs.numerics.arrays import Array
+from crankmbs.numerics.arrays import Array, Labelled
 
-if TYPE_CHECKING:
-    import xarray as xr
-
-__all__ = ["ANGLE_ROUNDING", "Assembled", "assemble", "dataset"]
+__all__ = ["ANGLE_ROUNDING", "Assembled", "assemble", "labelled"]
 
 _ROUNDING = 64 * float(np.finfo(float).eps)  # of a variable's peak: what the formulas round
 _GIVEN = ("fuel", "friction_force")  # what reactions take from a formulation's own
@@ -199,28 +196,16 @@ def _speed_change(samples: Samples, ahead: float) -> Array:
     return np.asarray(steep * ahead)
 
 
-def dataset(assembled: Assembled) -> xr.Dataset:
-    """Label the variables with dimensions, units, long names and error estimates."""
-    import xarray as xr
-
+def labelled(assembled: Assembled) -> Labelled:
+    """The variables with dimensions, units, long names and error estimates."""
     variables, errors = assembled.variables, assembled.errors
-
-    def labelled(name: str) -> xr.Variable:
-        about = EVERY[name]
-        attrs = {
-            "units": about.units,
-            "long_name": about.long_name,
-            "error_estimate": errors[name],
-        }
-        return xr.Variable(about.dims, variables[name], attrs)
-
-    cylinders = np.arange(1, variables["side_force"].shape[1] + 1)
-    coordinates = {name: labelled(name) for name in ("time", "crank_angle")}
-    number = xr.Variable("cylinder", cylinders, {"long_name": "cylinder number"})
-    return xr.Dataset(
-        {n: labelled(n) for n in EVERY if n in variables.keys() - coordinates},
-        coords={**coordinates, "cylinder": number},
-    )
+    numbers = np.arange(1, variables["side_force"].shape[1] + 1)
+    found: Labelled = {
+        name: about.labelled(variables[name], errors[name])
+        for name, about in EVERY.items()
+        if name in variables
+    }
+    return {**found, "cylinder": (("cylinder",), numbers, {"long_name": "cylinder number"})}
 
 
 def _sizes(peaks: dict[str, float]) -> list[float]:
