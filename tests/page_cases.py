@@ -1,5 +1,5 @@
-"""The cases in which the page's modules, without its controls, are asked what they say and show, and
-Python's motion of each."""
+"""The cases in which the modules of the page, without its controls, say and show something, and
+the motion that Python has for each."""
 
 import dataclasses
 import json
