@@ -12,8 +12,8 @@ import numpy as np
 
 from crankmbs.mechanics.variables import Variable
 from crankmbs.motion.account import Account, Kind, Rows
-from crankmbs.motion.labels import CYCLES, EVENTS, dims_of
-from crankmbs.numerics.arrays import Array
+from crankmbs.motion.labels import CYCLES, EVENTS, Table, dims_of
+from crankmbs.numerics.arrays import Array, Labelled
 from crankmbs.scene.scene import Scene
 
 if TYPE_CHECKING:
@@ -30,15 +30,14 @@ class _Stored:
     about: dict[str, Variable]
     dims: Callable[[str], tuple[str, ...]]
 
-    def variables(self, rows: Rows) -> dict[str, tuple[tuple[str, ...], Array, dict[str, object]]]:
+    def variables(self, rows: Rows) -> Labelled:
         """The columns as variables of a file."""
-        found = {}
-        for name, values in rows.columns.items():
-            about = self.about[name]
-            attrs: dict[str, object] = {"units": about.units, "long_name": about.long_name}
-            attrs["error_estimate"] = rows.errors[name]
-            found[f"{self.rows}_{name}"] = (self.dims(name), values, attrs)
-        return found
+        return {
+            f"{self.rows}_{name}": self.about[name].labelled(
+                values, rows.errors[name], self.dims(name)
+            )
+            for name, values in rows.columns.items()
+        }
 
     def read(self, data: xr.Dataset, names: Iterable[str], left_out: int) -> Rows:
         """The rows with these columns that a file holds; no row where it holds none."""
@@ -62,15 +61,17 @@ DIMS |= {f"cycle_{name}": _CYCLES.dims(name) for name in _NUMBERED}
 """The dimensions of what an account adds to a file, by its name there."""
 
 
-def with_account(data: xr.Dataset, account: Account) -> xr.Dataset:
-    """The data with the rows of an account beside them."""
+def with_account(variables: Labelled, account: Account) -> Labelled:
+    """The variables with the rows of an account beside them."""
+    found = dict(variables)
     for stored, rows in ((_EVENTS, account.events), (_CYCLES, account.cycles)):
         if rows.count:
-            data = data.assign(stored.variables(rows))
-            data = data.assign_coords({stored.rows: np.arange(1, rows.count + 1)})
-            if "load" in data.dims:
-                data = data.assign_coords(load=np.arange(1, data.sizes["load"] + 1))
-    return data
+            found |= stored.variables(rows)
+            found[stored.rows] = ((stored.rows,), np.arange(1, rows.count + 1), {})
+    if "cycle_load_work" in found:
+        loads = found["cycle_load_work"][1].shape[1]
+        found["load"] = (("load",), np.arange(1, loads + 1), {})
+    return found
 
 
 def account_in(
@@ -112,20 +113,20 @@ def _has(scene: Scene, name: str) -> bool:
     }.get(name, True)
 
 
-def write_rows(data: xr.Dataset, file: Path) -> None:
-    """Write a dataset as CSV, a line for each of its rows; what has a value for each cylinder or
+def write_rows(table: Table, file: Path) -> None:
+    """Write a table as CSV, a line for each of its rows; what has a value for each cylinder or
     load in as many columns."""
     columns: dict[str, list[str]] = {}
-    (rows,) = {one.dims[0] for one in data.data_vars.values()}
-    if rows == "cycle":
-        columns["cycle"] = _cells(data["cycle"].values.tolist())
-    for name, one in data.data_vars.items():
-        unit = f" [{one.attrs['units']}]" if "units" in one.attrs else ""
-        if one.ndim == 1:
-            columns[f"{name}{unit}"] = _cells(one.values.tolist())
+    rows = table.coordinates[0]
+    for name, (dims, values, attrs) in table.variables.items():
+        if dims[0] != rows or name == "event":
+            continue
+        unit = f" [{attrs['units']}]" if "units" in attrs else ""
+        if values.ndim == 1:
+            columns[f"{name}{unit}"] = _cells(values.tolist())
         else:
-            for k, values in enumerate(one.values.T.tolist(), start=1):
-                columns[f"{name} {k}{unit}"] = _cells(values)
+            for k, column in enumerate(values.T.tolist(), start=1):
+                columns[f"{name} {k}{unit}"] = _cells(column)
     with file.open("w", newline="", encoding="utf-8") as stream:
         lines = csv.writer(stream, lineterminator="\n")
         lines.writerows([list(columns), *zip(*columns.values(), strict=True)])

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import time as clock
-from functools import partial
 
 from crankmbs.choose import choose, chosen
 from crankmbs.errors import InputError, shown
 from crankmbs.mechanics.pressure import remarks
 from crankmbs.mechanics.speed import speed_remarks
 from crankmbs.mechanics.train import crank_train
-from crankmbs.motion.assemble import dataset
+from crankmbs.motion.assemble import labelled
 from crankmbs.numerics.function import Function
 from crankmbs.result import Cost, Error, Result
 from crankmbs.scene.scene import Scene
@@ -61,8 +60,7 @@ def simulate(
     assembled = one.run(crank_train(scene), asked, cost_cap)
     solution = assembled.solution
     return Result.unlabelled(
-        partial(dataset, assembled),
-        assembled.variables,
+        labelled(assembled),
         scene=scene,
         formulation=choice.formulation,
         reasons=choice.reasons + remarks(scene) + speed_remarks(scene) + solution.reasons,

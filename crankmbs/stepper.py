@@ -14,7 +14,8 @@ from pydantic import TypeAdapter
 
 from crankmbs.errors import FormulationError, InputError, shown
 from crankmbs.mechanics.train import crank_train
-from crankmbs.motion.assemble import dataset
+from crankmbs.mechanics.variables import COORDINATES, dataset
+from crankmbs.motion.assemble import labelled
 from crankmbs.motion.stepwise.driven import Prescribed
 from crankmbs.motion.stepwise.free import Free
 from crankmbs.motion.stepwise.standing import Standing, Steps
@@ -156,7 +157,7 @@ class Stepper:
         >>> stepper.data["crank_pin_force_x"].shape
         (1, 4)
         """
-        found = dataset(self._steps.assembled(self._now))
+        found = dataset(labelled(self._steps.assembled(self._now)), COORDINATES)
         return found.drop_vars("energy_residual") if self.scene.motion is not None else found
 
     def save(self) -> Snapshot:

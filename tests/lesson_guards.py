@@ -1,7 +1,5 @@
 """What must be true of what the lessons draw and say: closed forms, other ways of computing them,
 and identities, by lesson; each takes a figure's answer and says whether it holds.
-
-Over 300 lines, as it is one table: lesson by lesson what must hold.
 """
 
 import math
@@ -10,6 +8,7 @@ from functools import cache
 
 import mpmath
 import numpy as np
+from lesson_readings import column, gear, of_first, said, same, x, y
 from lesson_shown import SIZE, made
 from scipy.optimize import brentq, minimize_scalar
 
@@ -18,43 +17,6 @@ from crankmbs.mechanics.train import crank_train
 
 RPM = math.pi / 30.0
 _NEAR = 0.02  # rad: a minimum so near to bottom dead centre is taken to lie there
-
-
-def same(found, wanted, near=1e-9):
-    """Whether numbers agree, to a share of the largest of them."""
-    found, wanted = np.asarray(found, dtype=float), np.asarray(wanted, dtype=float)
-    if found.shape != wanted.shape:
-        return False
-    return bool(np.all(np.abs(found - wanted) <= near * max(np.abs(wanted).max(), 1e-12)))
-
-
-def said(figure, what, wanted):
-    """Whether the first number of a text is a value, to its last digit."""
-    text = re.search(r"[-\u2212]?[\d.]+", figure["says"][what])[0].replace("\u2212", "-")
-    last = 10.0 ** -len(text.partition(".")[2])
-    return abs(float(text) - wanted) <= 0.5001 * last + 2e-9 * abs(wanted)
-
-
-def column(figure, name):
-    return np.array([v[name] for v in figure["samples"]])
-
-
-def of_first(figure, name):
-    return np.array([v["cylinders"][0][name] for v in figure["samples"]])
-
-
-def y(figure, curve, shape=0):
-    return np.array(figure["shapes"][shape]["curves"][curve]["y"], dtype=float)
-
-
-def x(figure, curve, shape=0):
-    return np.array(figure["shapes"][shape]["curves"][curve]["x"], dtype=float)
-
-
-def gear(figure):
-    scene = figure["scene"]
-    r, l = scene["crank"]["radius"], scene["rod"]["length"]
-    return r, l, r / l
 
 
 def swing(phi, ratio):

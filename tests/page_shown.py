@@ -1,233 +1,19 @@
-"""What the page says and shows as numbers and arrows, asked of its modules without its controls,
-and what must be true: Python's motion, Newton's law of every drawn body, the scene handed out.
-
-Over 300 lines, as it is one table: of a case what the page says, and guard by guard what must hold.
-"""
+"""What must be true of what the page says and shows as numbers and arrows: Python's motion, the law
+of Newton for every drawn body, the scene handed out."""
 
 import dataclasses
 import io
-import json
 import math
 from functools import cache
 
 import numpy as np
-from page_visit import expected
-from turned import turned
+from page_cases import CASES, CURVES, POLARS, SAID, cycle_of, frame, of_cylinder, same, truth
+from page_drawing import drawing_holds
 
-from crankmbs import flywheel, load_scene, simulate
+from crankmbs import flywheel
 from crankmbs.compare.lectured import LECTURES, lectured
 from crankmbs.mechanics.train import crank_train
 from crankmbs.mechanics.variables import EVERY, SUMS
-from crankmbs.page import joined
-from crankmbs.page.document import page_of
-from crankmbs.scene.run import Extent
-
-CASES = {
-    "vee": ("v_twin", {"rod_ratio": 0.3, "offset": 5.0, "pressure": 80.0, "load": 90.0}, 1),
-    "row": (
-        "propeller",
-        {"speed": 3400.0, "load": 80.0, "rod_mass": 2.0, "cylinders": "3", "flywheel": 0.05,
-         "counterweight": -20.0},
-        2,
-    ),
-    "lumped": ("propeller", {"rod": "two-mass", "offset": -4.0}, 0),
-    "driven": ("yi_diesel", {"speed": 4000.0, "rod_ratio": 0.2, "cylinders": "6"}, 2),
-    "prescribed": ("propeller", {"speed_is": "prescribed", "speed": 2500.0}, 0),
-    "drifting": ("propeller", {"load": 0.0}, 0),
-    "rubbing": ("friction", {"rod_ratio": 0.26, "offset": 3.0}, 0),
-    "freed": (
-        "compressor",
-        {"speed_is": "free", "speed": 1200.0, "flywheel": 0.015, "rod_ratio": 0.3,
-         "pressure": 120.0},
-        0,
-    ),
-    "freed rubbing": ("friction", {"speed_is": "free", "flywheel": 0.02, "rod_mass": 1.0}, 0),
-    "uniform": ("grega_lecture", {"rod": "rigid", "rod_mass": 0.5, "pressure": 80.0}, 0),
-}  # fmt: skip
-"""Name -> scene, values of its knobs, cylinder from 0."""
-FREED = ("freed", "freed rubbing")
-EVENED = "lumped"  # the case in which a flywheel for a fluctuation is sought
-
-CURVES = {
-    "crank speed": ("crank_speed", 30.0 / math.pi, "rpm"),
-    "turning moment": ("crank_torque", 1.0, "N m"),
-    "torque of the cylinder": ("crank_torque", 1.0, "N m"),
-    "piston displacement": ("piston_displacement", 1e3, "mm"),
-    "piston velocity": ("piston_velocity", 1.0, "m/s"),
-    "piston acceleration": ("piston_acceleration", 1.0, "m/s²"),
-    "gas pressure": ("gas_pressure", 1e-5, "bar"),
-    "side force on the piston": ("side_force", 1.0, "N"),
-    "piston pin force, axial": ("piston_pin_force_x", 1.0, "N"),
-    "crank pin force, axial": ("crank_pin_force_x", 1.0, "N"),
-    "crank pin force, across": ("crank_pin_force_y", 1.0, "N"),
-    "main bearing force, X": ("main_bearing_force_x", 1.0, "N"),
-    "main bearing force, Y": ("main_bearing_force_y", 1.0, "N"),
-    "frame force, X": ("frame_force_x", 1.0, "N"),
-    "frame force, Y": ("frame_force_y", 1.0, "N"),
-}
-"""What a plot calls it -> variable, shown units per SI unit, unit; newtons may become kN."""
-SAID = {
-    "turning moment": "torque",
-    "torque of the cylinder": "torque",
-    "piston displacement": "piston displacement",
-    "piston velocity": "piston velocity",
-    "piston acceleration": "piston acceleration",
-    "side force on the piston": "side thrust",
-    "piston pin force, axial": "piston pin force x",
-    "crank pin force, axial": "crank pin force x",
-    "crank pin force, across": "crank pin force y",
-    "main bearing force, X": "main bearing force x",
-    "main bearing force, Y": "main bearing force y",
-}
-POLARS = {
-    "main bearing, polar": "main_bearing_force",
-    "crank pin, polar": "crank_pin_force",
-    "frame force, polar": "frame_force",
-}
-POSES = (40, 130, 222, 310)  # samples at which the drawing is looked at
-
-_MODULES = (
-    *("answers", "cycle", "drawing", "engine", "flywheel", "forces"),
-    *("geometry", "quantities", "stage", "taken", "turned", "words"),
-)
-# a cycle that is computed is kept under the name of its case, for mutants that only show it
-_PROBE = """([script, text, { name, values, k, curves, poses, evens, fresh }]) => {
-  const page = eval(script);
-  const given = page.answers.decoded(JSON.parse(text));
-  const turner = new page.turned.Turner(given);
-  const own = new page.engine.Engine(given.rules);
-  window.cycles ??= {};
-  const asked = fresh ? turner.scene(values) : window.cycles[name].scene;
-  const of = (scene) => page.cycle.cycleOf(own, scene, given.endings, { fine: true });
-  const shown = fresh ? of(asked) : window.cycles[name];
-  if (fresh) window.cycles[name] = shown;
-  const root = document.createElementNS("http://www.w3.org/2000/svg", "svg");
-  document.body.replaceChildren(root);
-  const stage = new page.stage.Stage(root, given.compression, () => {});
-  const attributes = (each) => each && Object.fromEntries(
-    Array.from(each.attributes, ({ name, value }) => [name, value]));
-  const one = (what) => attributes(root.querySelector(what));
-  const all = (what) => Array.from(root.querySelectorAll(what), (each) =>
-    ({ ...attributes(each), text: each.textContent }));
-  const posed = (body, n) => {
-    const scenes = given.scene.crank.inertia;
-    const ratio = scenes > 0 ? asked.crank.inertia / scenes : 1;
-    stage.show(shown, { k, body, ratio, heavy: true });
-    stage.pose(shown.angles[n]);
-    return {
-      pin: one(".chosen [data-grip=pin]"), small: one(".chosen .eye:not(.grip)"),
-      piston: one(".chosen .piston"), web: one(".chosen .web"), mark: one(".mark"),
-      ring: one(".ring g"), lead: one("path.lead"), says: stage.leadInWords(shown.angles[n]),
-      arrows: all(".arrows path"), names: all(".arrows text"), bar: all(".scale *"),
-      rim: one(".rim"), disc: one(".disc"),
-    };
-  };
-  const bodies = ["piston", "rod", "crank"];
-  const dead = { top: page.geometry.deadCentres(shown.train.shape).top,
-    bottom: page.geometry.deadCentres(shown.train.shape).bottom };
-  const knob = given.knobs.find(({ name }) => name === "flywheel");
-  const even = (inertia) => of(turner.scene({ ...values, flywheel: inertia })).fluctuation;
-  const middle = 0.5 * (shown.angles[77] + shown.angles[78]);
-  const [, csv] = page.taken.dataFile(given, shown);
-  return csv.text().then((data) => JSON.stringify({
-    data, files: page.taken.sceneFiles(given, values, shown),
-    mean: shown.mean, gain: shown.gain, fluctuation: shown.fluctuation, leads: shown.leads,
-    settled: shown.settled, prescribed: shown.prescribed, angles: shown.angles,
-    lead: shown.leadAt(middle), ahead: shown.timeTo(middle),
-    angle: shown.angleAt(shown.timeTo(middle) + 2 * shown.duration),
-    curves: Object.fromEntries([...curves, "crank ahead of the mean"].map((name) => {
-      const drawn = page.quantities.drawn(name, shown, k);
-      return [name, { ...drawn, now: drawn.of(shown.angles[100]) }];
-    })),
-    forces: bodies.map((body) => shown.samples.map((v) =>
-      page.forces.forcesOn(body, shown.train, v, k))),
-    poses: bodies.map((body) => poses.map((n) => posed(body, n))),
-    numbers: page.words.numbersOf(shown, 2.3e-5), badge: page.words.badgeOf(shown, given.endings),
-    marks: page.words.deadCentreMarks(shown, k, dead),
-    rim: page.drawing.inertiaOfRim(posed("none", 0).rim.r / 1000, asked.crank.radius),
-    even: evens
-      ? page.flywheel.inertiaFor(0.04, even, { ...knob, value: asked.crank.inertia },
-        given.sentences.fluctuation)
-      : null,
-  }));
-}"""
-
-_TURN = """([script, text, values]) => {
-  const { answers, turned } = eval(script);
-  return JSON.stringify(new turned.Turner(answers.decoded(JSON.parse(text))).scene(values));
-}"""
-
-
-def shown_script():
-    """The page's script, giving its modules."""
-    script = joined("page")
-    modules = ", ".join(_MODULES)
-    end = "return page;\n})()"
-    assert script.count(end) == 1
-    return script.replace(end, f"return {{ {modules} }};\n}})()")
-
-
-@cache
-def given(name):
-    """What the page of a scene is given."""
-    text = page_of(load_scene(name), "mine")
-    return text.partition('id="given">')[2].partition("</script>")[0]
-
-
-def probe(page, script, name, *, fresh=True, evens=True):
-    """All that the modules say of a case.
-
-    fresh : whether the cycle is computed, else it is that of the last time; evens : whether a
-    flywheel is sought, in the case for it
-    """
-    scene, values, k = CASES[name]
-    asked = {
-        "name": name,
-        "values": values,
-        "k": k,
-        "curves": [*CURVES, "p-V diagram", *POLARS],
-        "poses": POSES,
-        "evens": evens and name == EVENED,
-        "fresh": fresh,
-    }
-    return json.loads(page.evaluate(_PROBE, [script, given(scene), asked]))
-
-
-def scene_of(page, script, name):
-    """The scene that the knobs give in a case, as text."""
-    scene, values, _ = CASES[name]
-    return page.evaluate(_TURN, [script, given(scene), values])
-
-
-@cache
-def truth(name):
-    """Scene and data of Python for a case."""
-    scene_name, values, _ = CASES[name]
-    scene = turned(load_scene(scene_name), values)
-    return scene, cycle_of(scene, name)
-
-
-def cycle_of(scene, name):
-    """The cycle that is shown: the settled one, the first, or that from the start."""
-    if name == "drifting":
-        every = Extent(value=math.radians(2.0), unit="rad")
-        until = Extent(value=1.0, unit="cycle")
-        run = dataclasses.replace(scene.run, until=until, every=every, rtol=1e-11)
-        return simulate(dataclasses.replace(scene, run=run)).data
-    if name in FREED:
-        every = Extent(value=scene.settled_period / 360.0, unit="rad")
-        run = dataclasses.replace(scene.run, every=every)
-        return simulate(dataclasses.replace(scene, run=run), rtol=1e-11).data
-    return expected(scene)
-
-
-def same(found, wanted, size=None, near=2e-9):
-    """Whether numbers are those of Python, to a share of the largest of them."""
-    found, wanted = (np.array(each, dtype=float) for each in (found, wanted))
-    if found.shape != wanted.shape:
-        return False
-    size = np.abs(wanted).max() if size is None else size
-    return bool((np.abs(found - wanted) <= near * max(size, 1e-9)).all())
 
 
 def wrong(name, said, read):
@@ -326,12 +112,6 @@ def at_mean(scene, data):
     ]
 
 
-def of_cylinder(values, k, total=False):
-    if values.ndim == 1:
-        return values
-    return values.sum(axis=1) if total else values[:, k]
-
-
 def curves_hold(said, scene, data, k):
     """Every curve in its unit, those of the lectures, and what one is less the next."""
     says = at_mean(scene, data)
@@ -407,11 +187,6 @@ def area(scene):
     """Of the piston's crown [m2]."""
     piston = scene.piston
     return piston.area if piston.bore is None else 0.25 * math.pi * piston.bore**2
-
-
-def frame(bank, x, y):
-    """From a cylinder's axes to the engine's, X and Y as a complex number."""
-    return np.exp(1j * bank) * (x + 1j * y)
 
 
 def forces_hold(forces, scene, data, k):
@@ -490,94 +265,6 @@ def named_rightly(forces, pins, scene):
             abs(abs(complex(*each["at"])) - scene.crank.radius) < 1e-12 for each in on_crank[:-1]
         )
     )
-
-
-def drawing_holds(said, scene, data, k):
-    """Pins, piston, notch and ring where the mechanism has them in millimetres with X upwards and Y
-    to the left, arrows as long as their bar says, the disc's inertia by its rim."""
-    crank, cylinder = scene.crank, scene.cylinders[k]
-    most = max(map(abs, said["leads"]))
-    position = of_cylinder(data["piston_position"].values, k)
-    for body, poses in enumerate(said["poses"]):
-        for n, pose in zip(POSES, poses, strict=True):
-            theta, lead = said["angles"][n], said["leads"][n]
-            throw = frame(cylinder.bank + cylinder.phase + theta, crank.radius, 0.0)
-            pin = frame(cylinder.bank, position[n], scene.piston.offset)
-            ok = (
-                at(pose["pin"], throw)
-                and at(pose["small"], pin)
-                and same(numbers(pose["piston"]["transform"]), [0.0, -1e3 * position[n]])
-                and turns(pose["web"], theta + cylinder.phase + cylinder.bank)
-                and turns(pose["mark"], theta)
-                and ring_holds(pose, theta, lead, most)
-                and arrows_hold(pose, said["forces"][body][n], 20.0 * crank.radius)
-            )
-            if not ok:
-                return False
-    return own_inertia(scene, said["rim"])
-
-
-def own_inertia(scene, found):
-    """A scene without a flywheel of its own, or one that is turned, has a rim accordingly."""
-    names = {id(case): case for case in CASES.values()}
-    for case in names.values():
-        if truth_is(case, scene):
-            own = load_scene(case[0]).crank.moment_of_inertia
-            return own == 0.0 or same(found, scene.crank.moment_of_inertia / own, near=1e-6)
-    return False
-
-
-def truth_is(case, scene):
-    return any(CASES[name] is case and truth(name)[0] is scene for name in CASES)
-
-
-def at(circle, place):
-    return same([float(circle["cx"]), float(circle["cy"])], [-1e3 * place.imag, -1e3 * place.real])
-
-
-def numbers(text):
-    return [float(each) for each in text.partition("(")[2].rstrip(")").split()]
-
-
-def turns(element, angle):
-    """Counter-clockwise, as the screen has it."""
-    (degrees,) = numbers(element["transform"])
-    return abs(np.exp(-1j * math.radians(degrees)) - np.exp(1j * angle)) < 1e-9
-
-
-def ring_holds(pose, theta, lead, most):
-    """The ring is behind the crank by the lead times what is said, at most 14 degrees."""
-    words = pose["says"]
-    if words == "the crank turns evenly":
-        return most <= 1e-9 and pose["ring"] is None
-    times = float(words.rpartition("shown ")[2].removesuffix(" times"))
-    degrees, where = words.removeprefix("crank ").split("° ")
-    ahead = "ahead" if lead > 0.0 else "behind"
-    return (
-        times * most <= math.radians(14.0) * (1.0 + 1e-9)
-        and turns(pose["ring"], theta - times * lead)
-        and abs(float(degrees) - abs(math.degrees(lead))) < 0.051
-        and where.startswith(ahead)
-        and pose["lead"]["class"] == f"lead {ahead}"
-    )
-
-
-def arrows_hold(pose, forces, least):
-    """Their lengths are to the scale's bar as their forces to what it says, and all are there that
-    are not too short [mm]."""
-    path, text = pose["bar"]
-    newtons, unit, *_ = text["text"].replace(",", "").split()
-    size = float(newtons) * (1e3 if unit == "kN" else 1.0)
-    bar = float(path["d"].partition("h")[2].partition("v")[0])
-    by_name = {each["name"]: complex(*each["force"]) for each in forces}
-    for arrow, name in zip(pose["arrows"], pose["names"], strict=True):
-        points = [complex(*map(float, each.split())) for each in arrow["d"][1:-1].split("L")]
-        drawn = points[3] - 0.5 * (points[0] + points[-1])
-        force = by_name[name["text"]]
-        if abs(drawn - bar / size * complex(-force.imag, -force.real)) > 0.3:
-            return False
-    long = {name for name, force in by_name.items() if bar / size * abs(force) > least}
-    return {each["text"] for each in pose["names"]} == long
 
 
 def words_hold(said, scene, data, k):

@@ -8,8 +8,8 @@ import pytest
 from crankmbs import load_scene
 from crankmbs.mechanics.inertia import reduce
 from crankmbs.mechanics.train import CrankTrain
-from crankmbs.mechanics.variables import VARIABLES, variables_of
-from crankmbs.motion.assemble import assemble, dataset
+from crankmbs.mechanics.variables import COORDINATES, VARIABLES, dataset, variables_of
+from crankmbs.motion.assemble import assemble, labelled
 from crankmbs.motion.base import Samples, Solution
 
 SCENE = load_scene("v_twin")
@@ -26,7 +26,7 @@ def solution(better=None, **more):
 
 
 def test_every_variable_has_its_name_shape_and_labels():
-    data = dataset(assemble(CrankTrain(SCENE, None), solution()))
+    data = dataset(labelled(assemble(CrankTrain(SCENE, None), solution())), COORDINATES)
     assert set(data.variables) == variables_of(SCENE).keys() | {"cylinder"}
     for name, about in variables_of(SCENE).items():
         assert data[name].dims == (("time", "cylinder") if about.per_cylinder else ("time",))

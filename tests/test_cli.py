@@ -11,7 +11,7 @@ import pytest
 from command_line import SCENE, crankmbs_, names, refused
 
 import crankmbs.cli.run
-import crankmbs.figures
+import crankmbs.figures.run
 import crankmbs.result.record
 from crankmbs import Result, simulate
 from crankmbs.scene.shipped import models_folder
@@ -187,7 +187,7 @@ def test_an_interrupt_exits_with_130_and_leaves_no_file_of_the_run(where, monkey
 
     owner = crankmbs.cli.run if where == "simulate" else crankmbs.result.record
     if where == "torque_figure":
-        monkeypatch.setitem(crankmbs.figures._FIGURES, "torque", interrupt)
+        monkeypatch.setitem(crankmbs.figures.run._FIGURES, "torque", interrupt)
     else:
         monkeypatch.setattr(owner, where, interrupt)
     result = crankmbs_("run", "engine.toml")

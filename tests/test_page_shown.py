@@ -1,8 +1,9 @@
 """Break what the page shows, one law at a time: the guards of `page_shown` see it."""
 
 import pytest
+from page_cases import CASES, probe, scene_of, shown_script
 from page_mutants import MUTANTS
-from page_shown import CASES, probe, scene_of, shown_script, wrong
+from page_shown import wrong
 from page_shown_mutants import DRAWING, SHOWN
 from playwright.sync_api import Error
 

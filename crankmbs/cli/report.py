@@ -87,8 +87,7 @@ _FIRST = 5  # events that are printed
 
 
 def _about(result: Result, measures: Measures) -> str:
-    time, angle = result.data["time"].values, result.data["crank_angle"].values
-    speed = result.data["crank_speed"].values
+    time, angle, speed = map(result.sampled, ("time", "crank_angle", "crank_speed"))
     turned = (angle[-1] - angle[0]) / (2.0 * math.pi)
     kept = "" if result.scene.run.every is not None else "; only the last cycle is kept"
     sense = ", backwards" if turned < 0.0 else ""
@@ -113,9 +112,9 @@ def _about(result: Result, measures: Measures) -> str:
 def _events(result: Result) -> list[str]:
     """How many events there are, and the first of them; decisions on the fuel only where they are
     all there is."""
-    events = result.events
-    fuel = events["kind"].values == "fuel"
-    count, left_out = fuel.size, str(events.attrs["left_out"])
+    events = result.event_table
+    fuel = events.values("kind") == "fuel"
+    count, left_out = fuel.size, events.left_out
     if count == 0 and not left_out:
         return []
     decided = f", {np.count_nonzero(fuel)} of them decisions on the fuel" if fuel.any() else ""
@@ -123,10 +122,10 @@ def _events(result: Result) -> list[str]:
     rows = np.flatnonzero(~fuel) if not fuel.all() else np.arange(count)
     for row in rows[:_FIRST].tolist():
         time, angle, speed = (
-            float(events[name][row]) for name in ("time", "crank_angle", "crank_speed")
+            float(events.values(name)[row]) for name in ("time", "crank_angle", "crank_speed")
         )
         where = f"{time:.6g} s, {math.degrees(angle):.6g} deg, {speed / RPM:.6g} rpm"
-        lines.append(f"{where}: {events['text'].values[row]}")
+        lines.append(f"{where}: {events.values('text')[row]}")
     lines += ["..."] if len(rows) > _FIRST else []
     return [f"{'' if k else 'events':<12} {line}" for k, line in enumerate(lines)]
 

@@ -144,7 +144,7 @@ class _Film:
         FigureCanvasAgg(self._figure)
         machines, trace = _places(self._figure, len(cuts))
         view = last_view(result)
-        shift = float(view.degrees[0]) - math.degrees(float(view.data["crank_angle"][0]))
+        shift = float(view.degrees[0]) - math.degrees(float(view.values("crank_angle")[0]))
         self._degrees = view.on_axis(np.degrees(frames.angle) + shift)
         parts = mechanism(result.scene, frames.angle)
         forces = [] if body is None else shown_forces(body, view, frames, parts, cuts)
@@ -237,6 +237,6 @@ def _heat(view: View, frames: Frames) -> Array | None:
     if view.scene.gas is None:
         return None
     pressure = np.maximum(view.values("gas_pressure"), 0.0)
-    time = view.data["time"].values - view.window.begin
+    time = view.values("time") - view.window.begin
     at = [np.interp(frames.time, time, column) for column in pressure.T]
     return _HOTTEST * np.sqrt(np.stack(at, axis=-1) / (float(pressure.max()) or 1.0))

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
 from crankmbs.design import Balance
-from crankmbs.figures.style import STYLE, footer, force_scale, legend, line_of, panels
+from crankmbs.figures.style import STYLE, footer, force_scale, legend, line_of, panels, save
 from crankmbs.measures import last_span
 
-__all__ = ["balance_figure"]
+__all__ = ["balance_figure", "save_balance_figure"]
 
 
 @rc_context(STYLE)
@@ -36,3 +38,13 @@ def balance_figure(found: Balance) -> Figure:
     legend(figure, ax)
     footer(figure, found.result, "force on the frame over the last cycle")
     return figure
+
+
+def save_balance_figure(found: Balance, folder: Path) -> Path:
+    """Draw the force on the frame before and after balancing into balance.png.
+
+    Raises
+    ------
+    OutputError : the folder cannot be made or written
+    """
+    return save(balance_figure(found), folder / "balance.png")

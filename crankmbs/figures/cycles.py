@@ -25,12 +25,12 @@ _HEAD = 0.3  # of a panel's height, kept free above the curve for them
 def cycles_figure(result: Result) -> Figure:
     """Mean, least and largest speed of each cycle and, with gas, the mean effective pressures; the
     events of the run at the place where they lie between the cycles."""
-    cycles = result.cycles
-    number = cycles["cycle"].values
-    with_gas = "imep" in cycles
+    cycles = result.cycle_table
+    number = cycles.values("cycle")
+    with_gas = "imep" in cycles.variables
     figure, axes = panels(1 + with_gas, 1, 10.0, 3.5 * (1 + with_gas))
     least, largest, mean = (
-        cycles[f"{name}_speed"].values / RPM for name in ("least", "largest", "mean")
+        cycles.values(f"{name}_speed") / RPM for name in ("least", "largest", "mean")
     )
     axes[0].fill_between(
         number, least, largest, color=COLOURS[4], alpha=0.4, label="least to largest"
@@ -38,18 +38,18 @@ def cycles_figure(result: Result) -> Figure:
     axes[0].plot(number, mean, color=COLOURS[0], label="mean")
     axes[0].set_ylabel("crank speed [rpm]")
     if with_gas:
-        imep = cycles["imep"].values / BAR
+        imep = cycles.values("imep") / BAR
         for group in one_curve_each(imep):
             axes[1].plot(number, imep[:, group[0]], **line_of(group[0]), label=whose(group))
         keep_flat(axes[1], imep)
         axes[1].set_ylabel("indicated mean\neffective pressure [bar]")
-    begins = cycles["time"].values
-    at = np.interp(result.events["time"].values, begins, number, np.nan, number[-1])
+    begins = cycles.values("time")
+    at = np.interp(result.event_table.values("time"), begins, number, np.nan, number[-1])
     mark_events(axes[0], result, np.asarray(at))
     for ax in axes:
         ax.locator_params("x", integer=True)
     axes[-1].set_xlabel("cycle")
-    legend(figure, *(axes if result.data.sizes["cylinder"] > 1 else axes[:1]))
+    legend(figure, *(axes if len(result.scene.cylinders) > 1 else axes[:1]))
     figure.align_ylabels(axes)
     footer(figure, result, "cycle by cycle")
     return figure
@@ -62,7 +62,7 @@ def mark_events(ax: Axes, result: Result, at: Array) -> None:
     at : shape (events,), where each stands on the panel's axis
     """
     low, high = ax.get_xlim()
-    kinds, loads = result.events["kind"].values, result.events["load"].values
+    kinds, loads = map(result.event_table.values, ("kind", "load"))
     shown = np.flatnonzero((kinds != "fuel") & (at >= low) & (at <= high))[:_MOST_MARKS]
     if len(shown):
         bottom, top = ax.get_ylim()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import numpy as np
 from matplotlib import rc_context
@@ -11,11 +12,11 @@ from matplotlib.figure import Figure
 
 from crankmbs.compare.confirm import Difference
 from crankmbs.figures.cylinders import one_curve_each, whose
-from crankmbs.figures.style import STYLE, footer, legend, line_of, panels
+from crankmbs.figures.style import STYLE, footer, legend, line_of, panels, save
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 
-__all__ = ["difference_figure"]
+__all__ = ["difference_figure", "save_differences"]
 
 _COLUMNS = 3  # panels side by side
 _ROUNDING = 1e-17  # of the peak: nothing below it is shown
@@ -45,6 +46,16 @@ def difference_figure(result: Result, differences: tuple[Difference, ...]) -> Fi
     legend(figure, max(axes, key=lambda ax: len(ax.lines)))
     footer(figure, result, f"difference from {differences[0].formulations[1]}")
     return figure
+
+
+def save_differences(result: Result, differences: tuple[Difference, ...], folder: Path) -> Path:
+    """Draw the differences between two runs of a scene into difference.png.
+
+    Raises
+    ------
+    OutputError : the folder cannot be made or written
+    """
+    return save(difference_figure(result, differences), folder / "difference.png")
 
 
 def _draw(ax: Axes, row: Difference, sizes: Array, groups: list[list[int]]) -> None:

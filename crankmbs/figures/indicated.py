@@ -3,17 +3,27 @@
 from __future__ import annotations
 
 import textwrap
-from pathlib import PurePath
+from pathlib import Path, PurePath
 
 import numpy as np
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
-from crankmbs.figures.style import COLOURS, STYLE, caption, legend, line_of, logarithmic, panels
+from crankmbs.figures.style import (
+    COLOURS,
+    STYLE,
+    caption,
+    legend,
+    line_of,
+    logarithmic,
+    panels,
+    save,
+)
 from crankmbs.indicated import CylinderPressure, Indicated
 from crankmbs.scene.units import BAR
+from crankmbs.storage.files import together
 
-__all__ = ["pressure_figure", "scatter_figure", "volume_figure"]
+__all__ = ["pressure_figure", "save_indicated_figures", "scatter_figure", "volume_figure"]
 
 
 @rc_context(STYLE)
@@ -86,6 +96,25 @@ def scatter_figure(found: Indicated) -> Figure:
     legend(figure, axes[0])
     _footer(figure, found, "cycle by cycle")
     return figure
+
+
+def save_indicated_figures(found: Indicated, folder: Path, stem: str) -> list[Path]:
+    """Draw measured pressures into STEM_angle.png, with a geometry STEM_pv.png, and of several
+    cycles STEM_cycles.png, which appear together.
+
+    Raises
+    ------
+    OutputError : the folder cannot be made or written
+    """
+    draw = {"angle": pressure_figure}
+    if found.shape is not None:
+        draw["pv"] = volume_figure
+    if any(len(each.pressure) > 1 for each in found.cylinders):
+        draw["cycles"] = scatter_figure
+    with together(folder) as part:
+        for name, figure in draw.items():
+            save(figure(found), part / f"{stem}_{name}.png")
+    return [folder / f"{stem}_{name}.png" for name in draw]
 
 
 def _several(found: Indicated) -> bool:

@@ -71,11 +71,11 @@ def shown_forces(
 ) -> list[Force]:
     """The forces on a body at the frames, linear between samples, of the cylinders that are drawn;
     the bearings' on the crank, all cylinders' together, where all are in one drawing."""
-    time = view.data["time"].values - view.window.begin
+    time = view.values("time") - view.window.begin
     data = {
         name: np.stack([np.interp(frames.time, time, row) for row in np.atleast_2d(values.T)])
         for name in (*_SEEN, *_PINS)
-        if name in view.data
+        if name in view.result.variables
         for values in (view.values(name),)
     }
     data = {name: rows.T if view.values(name).ndim > 1 else rows[0] for name, rows in data.items()}

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
-from crankmbs.figures.style import COLOURS, STYLE, footer, legend, panels
+from crankmbs.figures.style import COLOURS, STYLE, footer, legend, panels, save
 from crankmbs.measures import EngineOrders
 from crankmbs.mechanics.peaks import negligible
 from crankmbs.result import Result
 
-__all__ = ["orders_figure"]
+__all__ = ["orders_figure", "save_orders_figure"]
 
 _WIDTH = 0.18  # of an order: two bars side by side leave a gap to the next half order
 
@@ -39,3 +41,13 @@ def orders_figure(result: Result, found: EngineOrders) -> Figure:
     nothing = f"; {', '.join(sorted(zero))}: none" if zero else ""
     footer(figure, result, f"orders over the {found.window.kind}{nothing}")
     return figure
+
+
+def save_orders_figure(result: Result, found: EngineOrders, folder: Path) -> Path:
+    """Draw the orders of a run into orders.png.
+
+    Raises
+    ------
+    OutputError : the folder cannot be made or written
+    """
+    return save(orders_figure(result, found), folder / "orders.png")

@@ -35,7 +35,6 @@ _CYLINDER = ("X, from crank to head", "Y, 90 deg ahead of X")
 _ENGINE = ("engine's X", "engine's Y, 90 deg ahead of X")
 _THROW = ("radial, outwards along the throw", "tangential, in the sense of +theta")
 _CLOSE = 0.02  # of the curve's size: marks nearer than this share one label
-_LAYOUTS = 3  # until nothing moves any more
 _GAP, _LINE, _LETTER = 0.04, 0.045, 0.017  # of the axes: to the labels; their height and width
 
 
@@ -116,15 +115,7 @@ def _finish(figure: Figure, ax: Axes, view: View) -> None:
 
 
 def _caption(figure: Figure, view: View, angle: str) -> None:
-    """Write the caption and give it its room.
-
-    Axes of equal scales shrink within their place, which the layout sees only the next time.
-    """
     footer(figure, view.result, f"marks: {angle} [deg], {view.window.kind}")
-    layout = figure.get_layout_engine()
-    assert layout is not None
-    for _ in range(_LAYOUTS):
-        layout.execute(figure)
 
 
 def _draw(
@@ -170,16 +161,20 @@ def _marks(left: Array, up: Array, degrees: Array) -> list[_Mark]:
 
 
 def _frame(ax: Axes, left: Array, up: Array, marks: list[_Mark]) -> None:
-    """Square limits around curve and origin, with the labels in a column on either side."""
+    """Limits of equal scales around curve and origin, with the labels in a column on either side.
+
+    The axes fill their place, so the limits of one grow: a box that shrinks needs several layouts.
+    """
     low, high = min(float(left.min()), 0.0), max(float(left.max()), 0.0)
     bottom, top = min(float(up.min()), 0.0), max(float(up.max()), 0.0)
     letters = max((len(mark.text) for mark in marks), default=0)
     share = 1.0 - 2.0 * (_GAP + _LETTER * letters)
     span = max((high - low) / share, 1.1 * (top - bottom)) or 1.0
-    middle, centre = 0.5 * (low + high), 0.5 * (bottom + top)
-    ax.set_xlim(middle + 0.5 * span, middle - 0.5 * span)  # Y to the left
-    ax.set_ylim(centre - 0.5 * span, centre + 0.5 * span)
-    ax.set_aspect("equal")
+    middle = np.array([0.5 * (low + high), 0.5 * (bottom + top)])
+    ax.update_datalim([middle - 0.5 * span, middle + 0.5 * span])
+    ax.margins(0.0)
+    ax.invert_xaxis()  # Y to the left
+    ax.set_aspect("equal", adjustable="datalim")
     weight = 0.5 * (float(left.min()) + float(left.max()))
     for side, edge in ((1.0, high), (-1.0, low)):
         column = [mark for mark in marks if (mark.left > weight) == (side > 0.0)]

@@ -38,14 +38,13 @@ def speed_figure(view: View) -> Figure:
     whole = in_time or view.window.first > 0
     figure, axes = panels(1 + whole, 1, 10.0, 7.0 if whole else 5.0)
     if whole:
-        data = view.result.data
-        turned = np.degrees(data["crank_angle"].values) / 360.0
-        _speed(axes[0], data["time"].values if in_time else turned, data["crank_speed"].values)
+        time, angle, speed = map(view.result.sampled, ("time", "crank_angle", "crank_speed"))
+        _speed(axes[0], time if in_time else np.degrees(angle) / 360.0, speed)
         axes[0].set_xlabel(f"{'time [s]' if in_time else 'crank angle [rev]'}, whole run")
         if view.result.keep is not None:
-            events = view.result.events
-            angle = np.degrees(events["crank_angle"].values) / 360.0
-            mark_events(axes[0], view.result, events["time"].values if in_time else angle)
+            events = view.result.event_table
+            turned = np.degrees(events.values("crank_angle")) / 360.0
+            mark_events(axes[0], view.result, events.values("time") if in_time else turned)
         mark_points(axes[0])
     _speed(axes[-1], *view.drawn(view.degrees, view.values("crank_speed")))
     crank_axis(axes[-1:], view)

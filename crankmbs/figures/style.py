@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import math
 import textwrap
+from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
@@ -19,6 +20,7 @@ from numpy.typing import NDArray
 from crankmbs.figures.view import View
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
+from crankmbs.storage.files import write_in_one_move
 
 __all__ = [
     "COLOURS",
@@ -35,6 +37,7 @@ __all__ = [
     "mark_points",
     "panels",
     "png",
+    "save",
 ]
 
 # Okabe and Ito's palette without its yellow, which is too pale on white
@@ -43,6 +46,7 @@ _DASHES = ("-", (0, (6, 2)), (0, (6, 2, 1.5, 2)), (0, (2.5, 1.5)))
 _GREY = "0.55"
 FLAT = 1e-6  # of the mean: what varies less is drawn as constant
 _SMALLER = 2  # points: text at the dead centres and of the caption, than the type of the figure
+_FAST = {"compress_level": 3}  # of a PNG: half the time, a sixth more bytes than by default
 _LINE = 1.27  # of its size: a line of it
 
 STYLE: Any = {
@@ -76,6 +80,21 @@ def png(figure: Figure, dpi: float | Literal["figure"] = "figure") -> bytes:
     file = io.BytesIO()
     figure.savefig(file, format="png", dpi=dpi)
     return file.getvalue()
+
+
+def save(figure: Figure, file: Path) -> Path:
+    """Write the figure as a PNG file, with its layout fixed: savefig draws twice what has one.
+
+    Raises
+    ------
+    OutputError : the folder cannot be made or written
+    """
+    layout = figure.get_layout_engine()
+    if layout is not None:
+        layout.execute(figure)
+        figure.set_layout_engine("none")
+    write_in_one_move(file, lambda part: figure.savefig(part, format="png", pil_kwargs=_FAST))
+    return file
 
 
 def panels(

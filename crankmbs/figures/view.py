@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,9 +13,6 @@ from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.units import DEGREE
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 __all__ = ["View", "last_view"]
 
@@ -32,7 +28,7 @@ class View:
     A whole cycle is shown from the cycle angle 0 of cylinder 1, the gas-exchange dead centre of a
     four-stroke, wherever the run ends.
 
-    data : its samples; degrees : shape (n,), crank angle less whole periods
+    degrees : shape (n,), at its samples: crank angle less whole periods
     low, high [deg] : the stretch of crank angle shown
     whole : a last cycle, turned through in one sense
     begun [deg] : where such a cycle begins if it is cut at ``low``; None: nothing is cut
@@ -40,7 +36,6 @@ class View:
 
     result: Result
     window: Span
-    data: xr.Dataset
     degrees: Array
     low: float
     high: float
@@ -54,8 +49,7 @@ class View:
 
     def values(self, name: str) -> Array:
         """A variable over the cycle, shape (n,) or (n, cylinders)."""
-        values: Array = self.data[name].values
-        return values
+        return self.result.sampled(name)[self.window.first :]
 
     def drawn(self, degrees: Array, values: Array) -> tuple[Array, Array]:
         """Values over crank angles of the cycle [deg], in its order, as a line shows them.
@@ -125,7 +119,7 @@ class View:
         gas, phase = self.scene.gas, math.degrees(self.scene.cylinders[cylinder].phase)
         if gas is None or gas.stroke == 2 or not 180.0 < (at + phase) % 720.0 < 540.0:
             return False
-        if "fuel" not in self.data:
+        if "fuel" not in self.result.variables:
             return True
         nearest = int(np.argmin(np.abs(self.on_axis(self.degrees) - at)))
         return float(self.values("fuel")[nearest, cylinder]) > 0.0
@@ -141,8 +135,7 @@ def _top_centres(fires: dict[int, bool]) -> str:
 def last_view(result: Result) -> View:
     """The view of a result's last cycle, or of what there is."""
     window = last_span(result)
-    data = result.data.isel(time=slice(window.first, None))
-    angle = data["crank_angle"].values
+    angle = result.sampled("crank_angle")[window.first :]
     end = float(angle[-1])
     low, high = sorted((end - window.angle, end))
     in_one_sense = bool(np.all(np.diff(angle) * window.angle >= 0.0))
@@ -162,7 +155,6 @@ def last_view(result: Result) -> View:
     return View(
         result=result,
         window=window,
-        data=data,
         degrees=np.degrees(angle - shift),
         low=math.degrees(low - shift),
         high=math.degrees(high - shift),

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
+from crankmbs.numerics.arrays import Array, Labelled
 from crankmbs.scene.scene import Scene
 
-__all__ = ["EVERY", "SUMS", "VARIABLES", "Variable", "variables_of"]
+if TYPE_CHECKING:
+    import xarray as xr
+
+__all__ = ["COORDINATES", "EVERY", "SUMS", "VARIABLES", "Variable", "dataset", "variables_of"]
 
 
 class Variable(NamedTuple):
@@ -26,6 +30,13 @@ class Variable(NamedTuple):
     def per_cylinder(self) -> bool:
         """Whether each cylinder has its own."""
         return self.of == "cylinder"
+
+    def labelled(
+        self, values: Array, error: float, dims: tuple[str, ...] | None = None
+    ) -> tuple[tuple[str, ...], Array, dict[str, Any]]:
+        """Values with their dimensions, unit, long name and error, as `Labelled` has them."""
+        attrs = {"units": self.units, "long_name": self.long_name, "error_estimate": error}
+        return self.dims if dims is None else dims, values, attrs
 
 
 VARIABLES = {
@@ -86,6 +97,9 @@ EVERY = VARIABLES | {
 }
 """With those that only some scenes have."""
 
+COORDINATES = ("time", "crank_angle", "cylinder")
+"""What the data of a result lie over."""
+
 
 def variables_of(scene: Scene) -> dict[str, Variable]:
     """The variables that a result of a scene has: rocking moments where the cylinders have places,
@@ -103,3 +117,11 @@ def variables_of(scene: Scene) -> dict[str, Variable]:
     shared = throws is not None and throws.shared
     without |= {name for name, about in EVERY.items() if about.of == "pin" and not shared}
     return {name: about for name, about in EVERY.items() if name not in without}
+
+
+def dataset(variables: Labelled, coordinates: tuple[str, ...], **attrs: str) -> xr.Dataset:
+    """The variables as a Dataset, some of them as coordinates."""
+    import xarray as xr
+
+    data = {name: one for name, one in variables.items() if name not in coordinates}
+    return xr.Dataset(data, {name: variables[name] for name in coordinates}, attrs)

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,12 +18,9 @@ from crankmbs.mechanics.variables import EVERY, SUMS
 from crankmbs.motion.base import Samples, Solution
 from crankmbs.motion.motion import Passes
 from crankmbs.motion.states import MOTION, balances_of, motion_rows, table_of
-from crankmbs.numerics.arrays import Array
+from crankmbs.numerics.arrays import Array, Labelled
 
-if TYPE_CHECKING:
-    import xarray as xr
-
-__all__ = ["ANGLE_ROUNDING", "Assembled", "assemble", "dataset"]
+__all__ = ["ANGLE_ROUNDING", "Assembled", "assemble", "labelled"]
 
 _ROUNDING = 64 * float(np.finfo(float).eps)  # of a variable's peak: what the formulas round
 _GIVEN = ("fuel", "friction_force")  # what reactions take from a formulation's own
@@ -199,31 +196,18 @@ def _speed_change(samples: Samples, ahead: float) -> Array:
     return np.asarray(steep * ahead)
 
 
-def dataset(assembled: Assembled) -> xr.Dataset:
-    """Label the variables with dimensions, units, long names and error estimates."""
-    import xarray as xr
-
+def labelled(assembled: Assembled) -> Labelled:
+    """The variables with dimensions, units, long names and error estimates."""
     variables, errors = assembled.variables, assembled.errors
-
-    def labelled(name: str) -> xr.Variable:
-        about = EVERY[name]
-        attrs = {
-            "units": about.units,
-            "long_name": about.long_name,
-            "error_estimate": errors[name],
-        }
-        return xr.Variable(about.dims, variables[name], attrs)
-
-    def numbers(of: str, name: str) -> xr.Variable:
-        count = np.arange(1, variables[name].shape[1] + 1)
-        return xr.Variable(of, count, {"long_name": f"{of} number"})
-
-    coordinates = {name: labelled(name) for name in ("time", "crank_angle")}
-    counted = {EVERY[name].of: name for name in variables if EVERY[name].of}
-    return xr.Dataset(
-        {n: labelled(n) for n in EVERY if n in variables.keys() - coordinates},
-        coords={**coordinates, **{of: numbers(of, name) for of, name in counted.items()}},
-    )
+    found: Labelled = {
+        name: about.labelled(variables[name], errors[name])
+        for name, about in EVERY.items()
+        if name in variables
+    }
+    counts = {EVERY[name].of: values.shape[-1] for name, values in variables.items()}
+    for of in filter(None, counts):
+        found[of] = ((of,), np.arange(1, counts[of] + 1), {"long_name": f"{of} number"})
+    return found
 
 
 def _sizes(peaks: dict[str, float]) -> list[float]:

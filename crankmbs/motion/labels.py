@@ -1,22 +1,50 @@
-"""The account of a run as a labelled dataset, in words too."""
+"""The account of a run as labelled tables, in words too."""
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from crankmbs.mechanics.variables import Variable
+from crankmbs.mechanics.variables import Variable, dataset
 from crankmbs.motion.account import Kind, Rows
 from crankmbs.motion.events import MOST_EVENTS
+from crankmbs.numerics.arrays import Labelled
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.units import RPM
 
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["CYCLES", "EVENTS", "cycles_dataset", "dims_of", "events_dataset"]
+__all__ = ["CYCLES", "EVENTS", "Table", "cycles_table", "dims_of", "events_table"]
+
+
+class Table(NamedTuple):
+    """Rows of what happened.
+
+    coordinates : the names of these among the variables, that of the rows first
+    left_out : what is not among the rows, in a sentence
+    """
+
+    variables: Labelled
+    coordinates: tuple[str, ...]
+    left_out: str
+
+    def values(self, name: str) -> NDArray[Any]:
+        """The values of a variable."""
+        return self.variables[name][1]
+
+    @property
+    def length(self) -> int:
+        """How many rows there are."""
+        return len(self.values(self.coordinates[0]))
+
+    def dataset(self) -> xr.Dataset:
+        """The table as xarray has it."""
+        return dataset(self.variables, self.coordinates, left_out=self.left_out)
+
 
 EVENTS = {
     "time": Variable("s", "time"),
@@ -56,34 +84,28 @@ _WORDS = {
 _OF_LOADS = (Kind.LOAD_ON, Kind.LOAD_OFF)
 
 
-def events_dataset(scene: Scene, rows: Rows) -> xr.Dataset:
+def events_table(scene: Scene, rows: Rows) -> Table:
     """The events over ``event``, in their order, each with its kind in a word and a text.
 
     A cylinder or load is 0 where it is none's, a share NaN where none is decided.
     """
-    import xarray as xr
-
     codes, numbers = (rows.columns[name].astype(np.int64) for name in ("kind", "number"))
     kinds = [Kind(code) for code in codes.tolist()]
-    variables = {}
-    for name, about in list(EVENTS.items())[:4]:
-        attrs = {
-            "units": about.units,
-            "long_name": about.long_name,
-            "error_estimate": rows.errors[name],
-        }
-        variables[name] = xr.Variable("event", rows.columns[name], attrs)
+    variables: Labelled = {
+        name: about.labelled(rows.columns[name], rows.errors[name], ("event",))
+        for name, about in list(EVENTS.items())[:4]
+    }
     given = (rows.columns[name].tolist() for name in ("time", "share"))
     said = zip(kinds, numbers.tolist(), *given, strict=True)
-    own = np.isin(codes, _OF_LOADS)
-    variables["kind"] = xr.Variable("event", np.array([_WORDS[kind] for kind in kinds], dtype=str))
-    variables["cylinder"] = xr.Variable("event", np.where(codes == Kind.FUEL, numbers, 0))
-    variables["load"] = xr.Variable("event", np.where(own, numbers, 0))
-    texts = np.array([_text(scene, *one) for one in said], dtype=str)
-    variables["text"] = xr.Variable("event", texts)
-    return xr.Dataset(
-        variables, {"event": np.arange(1, rows.count + 1)}, {"left_out": _left_out(rows)}
-    )
+    more: dict[str, NDArray[Any]] = {
+        "kind": np.array([_WORDS[kind] for kind in kinds], dtype=str),
+        "cylinder": np.where(codes == Kind.FUEL, numbers, 0),
+        "load": np.where(np.isin(codes, _OF_LOADS), numbers, 0),
+        "text": np.array([_text(scene, *one) for one in said], dtype=str),
+        "event": np.arange(1, rows.count + 1),
+    }
+    variables |= {name: (("event",), values, {}) for name, values in more.items()}
+    return Table(variables, ("event",), _left_out(rows))
 
 
 def _left_out(rows: Rows) -> str:
@@ -124,24 +146,16 @@ def dims_of(name: str) -> tuple[str, ...]:
     return ("cycle", "cylinder") if CYCLES[name].of else ("cycle",)
 
 
-def cycles_dataset(scene: Scene, rows: Rows) -> xr.Dataset:
+def cycles_table(scene: Scene, rows: Rows) -> Table:
     """The whole cycles over ``cycle``, which counts them from 1 at the start."""
-    import xarray as xr
-
-    variables = {}
+    variables: Labelled = {
+        "cycle": (("cycle",), rows.columns["number"].astype(np.int64), {}),
+        "cylinder": (("cylinder",), np.arange(1, len(scene.cylinders) + 1), {}),
+        "load": (("load",), np.arange(1, len(scene.torque) + 1), {}),
+    }
+    coordinates = tuple(variables)
     for name, values in rows.columns.items():
         if name != "number":
-            about = CYCLES[name]
-            attrs = {
-                "units": about.units,
-                "long_name": about.long_name,
-                "error_estimate": rows.errors[name],
-            }
-            variables[name] = xr.Variable(dims_of(name), values, attrs)
-    coordinates = {
-        "cycle": rows.columns["number"].astype(np.int64),
-        "cylinder": np.arange(1, len(scene.cylinders) + 1),
-        "load": np.arange(1, len(scene.torque) + 1),
-    }
+            variables[name] = CYCLES[name].labelled(values, rows.errors[name], dims_of(name))
     said = f"the first {rows.left_out} cycles are left out" if rows.left_out else ""
-    return xr.Dataset(variables, coordinates, {"left_out": said})
+    return Table(variables, coordinates, said)

@@ -17,6 +17,7 @@ from crankmbs.mechanics.variables import VARIABLES, variables_of
 from crankmbs.motion.account import Account, Keep
 from crankmbs.motion.base import Decay
 from crankmbs.motion.motion import Passes
+from crankmbs.numerics.arrays import Labelled
 from crankmbs.result.motion_file import DIMS as MOTION_DIMS
 from crankmbs.result.motion_file import passes_in, with_passes
 from crankmbs.scene.scene import Scene
@@ -66,22 +67,28 @@ class _About:
 
 def write_saved(
     given: Mapping[str, Any],
-    data: xr.Dataset,
+    variables: Labelled,
     account: Account | None,
     passes: Passes | None,
     file: Path,
 ) -> None:
-    """Write result.nc: the data, the account of the way and the passes of the motion where there
-    are, and the fields of a result by name."""
+    """Write result.nc: the variables, the account of the way and the passes of the motion where
+    there are, and the fields of a result by name."""
     about: dict[str, Any] = {one.name: given.get(one.name) for one in fields(_About)}
     if passes is not None:
         about["share"] = passes.share
-        data = with_passes(data, passes)
+        variables = with_passes(variables, passes)
     if account is not None:
         about["left_out"] = tuple(rows.left_out for rows in account)
-        data = with_account(data, account)
+        variables = with_account(variables, account)
     text = json.dumps(_ABOUT.dump_python(_About(**about), mode="json"))
-    write_netcdf(data.assign_attrs(crankmbs=text), file)
+    angle = {"coordinates": "crank_angle"}  # by which a reader knows it as one, too
+    coordinates = ("time", "crank_angle")
+    labelled = {
+        name: (dims, values, attrs | angle if "time" in dims and name not in coordinates else attrs)
+        for name, (dims, values, attrs) in variables.items()
+    }
+    write_netcdf(labelled, file, crankmbs=text)
 
 
 def read_saved(path: str | Path) -> dict[str, Any]:

@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from crankmbs.numerics.arrays import Array
+from crankmbs.numerics.arrays import Array, Labelled
 
 if TYPE_CHECKING:
     import pandas as pd
-    import xarray as xr
 
 __all__ = ["data_frame", "write_csv"]
 
@@ -28,19 +27,19 @@ class _Column(NamedTuple):
         return f"{self.name} [{self.units}]"
 
 
-def write_csv(data: xr.Dataset, file: Path) -> None:
+def write_csv(variables: Labelled, file: Path) -> None:
     """Write time, crank angle and every variable as CSV, in SI units."""
-    columns = _columns(data)
+    columns = _columns(variables)
     table = np.column_stack([one.values for one in columns])
     header = ",".join(one.heading for one in columns)
     np.savetxt(file, table, fmt="%.12g", delimiter=",", header=header, comments="")
 
 
-def data_frame(data: xr.Dataset) -> pd.DataFrame:
+def data_frame(variables: Labelled) -> pd.DataFrame:
     """The columns of `write_csv` over the crank angle, all angles in degrees."""
     import pandas as pd
 
-    columns = [_in_degrees(one) for one in _columns(data)]
+    columns = [_in_degrees(one) for one in _columns(variables)]
     angle = columns.pop(1)
     frame = pd.DataFrame(
         {one.heading: one.values for one in columns},
@@ -50,17 +49,20 @@ def data_frame(data: xr.Dataset) -> pd.DataFrame:
     return frame
 
 
-def _columns(data: xr.Dataset) -> list[_Column]:
+def _columns(variables: Labelled) -> list[_Column]:
     """Time, crank angle, then the variables in their order."""
     found = []
-    for name in ("time", "crank_angle", *map(str, data.data_vars)):
-        one = data[name]
-        units, error = one.attrs["units"], float(one.attrs["error_estimate"])
-        if one.ndim > 1:
-            for number, values in zip(data[one.dims[1]].values, one.values.T, strict=True):
-                found.append(_Column(f"{name} {number}", units, values, error))
+    first = ("time", "crank_angle")
+    for name in (*first, *(name for name in variables if name not in first)):
+        dims, values, attrs = variables[name]
+        if dims == (name,) and name not in first:  # numbers of cylinders or journals
+            continue
+        units, error = attrs["units"], float(attrs["error_estimate"])
+        if len(dims) > 1:
+            for number, column in zip(variables[dims[1]][1], values.T, strict=True):
+                found.append(_Column(f"{name} {number}", units, column, error))
         else:
-            found.append(_Column(name, units, one.values, error))
+            found.append(_Column(name, units, values, error))
     return found
 
 

@@ -14,7 +14,7 @@ from crankmbs.mechanics.windows import Phase
 from crankmbs.motion.cells import Acting, Cells
 from crankmbs.motion.motion import Motion, Passes
 from crankmbs.motion.states import samples_in
-from crankmbs.numerics.arrays import Array
+from crankmbs.numerics.arrays import Array, Labelled
 from crankmbs.scene.scene import Scene
 
 if TYPE_CHECKING:
@@ -43,15 +43,14 @@ DIMS = {
 """The dimensions of what passes add to a file, by its name there."""
 
 
-def with_passes(data: xr.Dataset, passes: Passes) -> xr.Dataset:
-    """The data with the cells of every pass beside them, from the first sample on."""
-    begin = float(data["time"].values[0])
+def with_passes(variables: Labelled, passes: Passes) -> Labelled:
+    """The variables with the cells of every pass beside them, from the first sample on."""
+    found, begin = dict(variables), float(variables["time"][1][0])
     for number, motion in enumerate((passes.answer, *passes.checks)):
         rows = _rows(motion.after(begin))
-        data = data.assign(
-            {f"motion_{number}_{name}": (_dims(number, name), row) for name, row in rows.items()}
-        )
-    return data
+        for name, row in rows.items():
+            found[f"motion_{number}_{name}"] = (_dims(number, name), row, {})
+    return found
 
 
 def _rows(motion: Motion) -> dict[str, Array]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -13,11 +13,12 @@ from numpy.typing import ArrayLike
 
 from crankmbs.errors import InputError, shown
 from crankmbs.kept import write_rows
+from crankmbs.mechanics.variables import COORDINATES, dataset
 from crankmbs.motion.account import Account, Keep
 from crankmbs.motion.base import Decay
-from crankmbs.motion.labels import cycles_dataset, events_dataset
+from crankmbs.motion.labels import Table, cycles_table, events_table
 from crankmbs.motion.motion import Passes
-from crankmbs.numerics.arrays import Array
+from crankmbs.numerics.arrays import Array, Labelled
 from crankmbs.result.about import Cost, Error, read_saved, write_saved
 from crankmbs.result.columns import data_frame, write_csv
 from crankmbs.scene.scene import Scene
@@ -63,30 +64,39 @@ class Result:
     motion: Callable[[], Passes] | None = field(default=None, repr=False, compare=False)
 
     @classmethod
-    def unlabelled(
-        cls, label: Callable[[], xr.Dataset], variables: Mapping[str, Array], **fields: Any
-    ) -> Result:
-        """A result whose ``data`` are labelled when they are first asked for: that takes longer
-        than a short run.
+    def unlabelled(cls, variables: Labelled, **fields: Any) -> Result:
+        """A result whose ``data`` are labelled when they are first asked for: xarray takes longer
+        to be imported than a run.
 
-        label : makes the data of the variables; fields : all others, by name
+        fields : all others, by name
         """
         result = cls(data=None, **fields)  # type: ignore[arg-type]
         del result.__dict__["data"]
-        result.__dict__["_label"], result.__dict__["_variables"] = label, variables
+        result.__dict__["_variables"] = variables
         return result
 
     if not TYPE_CHECKING:
 
         def __getattr__(self, name: str) -> object:
             """The data, where they have not been asked for."""
-            label = self.__dict__.get("_label")
-            if name != "data" or label is None:
+            variables = self.__dict__.get("_variables")
+            if name != "data" or variables is None:
                 raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
-            data = self.__dict__["data"] = label()
-            self.__dict__.pop("_label", None)
+            data = self.__dict__["data"] = dataset(variables, COORDINATES)
             self.__dict__.pop("_variables", None)
             return data
+
+    @property
+    def variables(self) -> Labelled:
+        """The variables and coordinates of ``data``, by name: dimensions, values, attributes."""
+        variables: Labelled | None = self.__dict__.get("_variables")
+        if variables is not None:
+            return variables
+        every = {**self.data.coords, **self.data.data_vars}
+        return {
+            str(name): (tuple(map(str, one.dims)), one.values, one.attrs)
+            for name, one in every.items()
+        }
 
     def sampled(self, name: str) -> Array:
         """The values of a variable of ``data``, without the labels.
@@ -95,7 +105,7 @@ class Result:
         0.0
         """
         variables = self.__dict__.get("_variables")
-        return np.asarray(self.data[name].values if variables is None else variables[name])
+        return np.asarray(self.data[name].values if variables is None else variables[name][1])
 
     @cached_property
     def events(self) -> xr.Dataset:
@@ -120,7 +130,12 @@ class Result:
         >>> simulate(load_scene("coasting")).events.sizes["event"]
         0
         """
-        return events_dataset(self.scene, self._account.events)
+        return self.event_table.dataset()
+
+    @cached_property
+    def event_table(self) -> Table:
+        """The `events`, as they are before xarray has them."""
+        return events_table(self.scene, self._account.events)
 
     @cached_property
     def cycles(self) -> xr.Dataset:
@@ -148,7 +163,12 @@ class Result:
         >>> simulate(load_scene("propeller")).cycles.sizes["cycle"]
         19
         """
-        return cycles_dataset(self.scene, self._account.cycles)
+        return self.cycle_table.dataset()
+
+    @cached_property
+    def cycle_table(self) -> Table:
+        """The `cycles`, as they are before xarray has them."""
+        return cycles_table(self.scene, self._account.cycles)
 
     @cached_property
     def _account(self) -> Account:
@@ -247,7 +267,7 @@ class Result:
         >>> simulate(load_scene("torque_driven")).to_dataframe().columns[:2].tolist()
         ['time [s]', 'crank_speed [deg/s]']
         """
-        return data_frame(self.data)
+        return data_frame(self.variables)
 
     def save(self, folder: str | Path) -> Path:
         """Write result.nc (NetCDF), motion.csv and, where there are any, events.csv and cycles.csv
@@ -261,12 +281,12 @@ class Result:
         account = None if self.keep is None else self._account
         with together(target) as part:
             passes = None if self.motion is None else self.passes
-            write_saved(vars(self), self.data, account, passes, part / "result.nc")
-            write_csv(self.data, part / "motion.csv")
-            if self.keep is not None and self.events.sizes["event"]:
-                write_rows(self.events, part / "events.csv")
-            if self.keep is not None and self.cycles.sizes["cycle"]:
-                write_rows(self.cycles, part / "cycles.csv")
+            write_saved(vars(self), self.variables, account, passes, part / "result.nc")
+            write_csv(self.variables, part / "motion.csv")
+            if self.keep is not None and self.event_table.length:
+                write_rows(self.event_table, part / "events.csv")
+            if self.keep is not None and self.cycle_table.length:
+                write_rows(self.cycle_table, part / "cycles.csv")
         return target
 
     @classmethod

@@ -8,6 +8,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from crankmbs.numerics.arrays import Labelled
+
 if TYPE_CHECKING:
     import h5py
     import xarray as xr
@@ -17,8 +19,8 @@ __all__ = ["read_netcdf", "write_netcdf"]
 _NO_VARIABLE = b"This is a netCDF dimension but not a netCDF variable"
 
 
-def write_netcdf(data: xr.Dataset, file: Path) -> None:
-    """Write a dataset as netCDF-4.
+def write_netcdf(variables: Labelled, file: Path, **attrs: str) -> None:
+    """Write variables as netCDF-4.
 
     It is built in memory: where a disk is full, HDF5 fails once more when the process ends, and
     ends it with a segmentation fault.
@@ -28,11 +30,16 @@ def write_netcdf(data: xr.Dataset, file: Path) -> None:
     OSError : the file cannot be written
     """
     import h5netcdf
-    import xarray as xr
 
     built = io.BytesIO()
     with h5netcdf.File(built, "w") as opened:
-        data.dump_to_store(xr.backends.H5NetCDFStore(opened))
+        for dims, values, _ in variables.values():
+            for name, size in zip(dims, values.shape, strict=True):
+                if name not in opened.dimensions:
+                    opened.dimensions[name] = size
+        for name, (dims, values, about) in variables.items():
+            opened.create_variable(name, dims, data=values).attrs.update(about)
+        opened.attrs.update(attrs)
     with file.open("wb") as stream:
         stream.write(built.getbuffer())
 

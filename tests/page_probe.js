@@ -1,0 +1,61 @@
+// a cycle that is computed is kept under the name of its case, for mutants that only show it
+([script, text, { name, values, k, curves, poses, evens, fresh }]) => {
+  const page = eval(script);
+  const given = page.answers.decoded(JSON.parse(text));
+  const turner = new page.turned.Turner(given);
+  const own = new page.engine.Engine(given.rules);
+  window.cycles ??= {};
+  const asked = fresh ? turner.scene(values) : window.cycles[name].scene;
+  const of = (scene) => page.cycle.cycleOf(own, scene, given.endings, { fine: true });
+  const shown = fresh ? of(asked) : window.cycles[name];
+  if (fresh) window.cycles[name] = shown;
+  const root = document.createElementNS("http://www.w3.org/2000/svg", "svg");
+  document.body.replaceChildren(root);
+  const stage = new page.stage.Stage(root, given.compression, () => {});
+  const attributes = (each) => each && Object.fromEntries(
+    Array.from(each.attributes, ({ name, value }) => [name, value]));
+  const one = (what) => attributes(root.querySelector(what));
+  const all = (what) => Array.from(root.querySelectorAll(what), (each) =>
+    ({ ...attributes(each), text: each.textContent }));
+  const posed = (body, n) => {
+    const scenes = given.scene.crank.inertia;
+    const ratio = scenes > 0 ? asked.crank.inertia / scenes : 1;
+    stage.show(shown, { k, body, ratio, heavy: true });
+    stage.pose(shown.angles[n]);
+    return {
+      pin: one(".chosen [data-grip=pin]"), small: one(".chosen .eye:not(.grip)"),
+      piston: one(".chosen .piston"), web: one(".chosen .web"), mark: one(".mark"),
+      ring: one(".ring g"), lead: one("path.lead"), says: stage.leadInWords(shown.angles[n]),
+      arrows: all(".arrows path"), names: all(".arrows text"), bar: all(".scale *"),
+      rim: one(".rim"), disc: one(".disc"),
+    };
+  };
+  const bodies = ["piston", "rod", "crank"];
+  const dead = { top: page.geometry.deadCentres(shown.train.shape).top,
+    bottom: page.geometry.deadCentres(shown.train.shape).bottom };
+  const knob = given.knobs.find(({ name }) => name === "flywheel");
+  const even = (inertia) => of(turner.scene({ ...values, flywheel: inertia })).fluctuation;
+  const middle = 0.5 * (shown.angles[77] + shown.angles[78]);
+  const [, csv] = page.taken.dataFile(given, shown);
+  return csv.text().then((data) => JSON.stringify({
+    data, files: page.taken.sceneFiles(given, values, shown),
+    mean: shown.mean, gain: shown.gain, fluctuation: shown.fluctuation, leads: shown.leads,
+    settled: shown.settled, prescribed: shown.prescribed, angles: shown.angles,
+    lead: shown.leadAt(middle), ahead: shown.timeTo(middle),
+    angle: shown.angleAt(shown.timeTo(middle) + 2 * shown.duration),
+    curves: Object.fromEntries([...curves, "crank ahead of the mean"].map((name) => {
+      const drawn = page.quantities.drawn(name, shown, k);
+      return [name, { ...drawn, now: drawn.of(shown.angles[100]) }];
+    })),
+    forces: bodies.map((body) => shown.samples.map((v) =>
+      page.forces.forcesOn(body, shown.train, v, k))),
+    poses: bodies.map((body) => poses.map((n) => posed(body, n))),
+    numbers: page.words.numbersOf(shown, 2.3e-5), badge: page.words.badgeOf(shown, given.endings),
+    marks: page.words.deadCentreMarks(shown, k, dead),
+    rim: page.drawing.inertiaOfRim(posed("none", 0).rim.r / 1000, asked.crank.radius),
+    even: evens
+      ? page.flywheel.inertiaFor(0.04, even, { ...knob, value: asked.crank.inertia },
+        given.sentences.fluctuation)
+      : null,
+  }));
+}
