@@ -77,7 +77,7 @@ def forces_of(scene, body, cuts):
 
 
 def at_frames(view, frames, name):
-    time = view.data["time"].values - view.window.begin
+    time = view.values("time") - view.window.begin
     values = view.values(name)
     return np.stack([np.interp(frames.time, time, row) for row in np.atleast_2d(values.T)], -1)
 
