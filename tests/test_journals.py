@@ -217,3 +217,32 @@ def test_without_main_journals_and_places_the_pins_alone_have_shells():
     assert scene.throws is None
     (first, *_) = [j for j in measure(simulate(scene)).joints if j.joint == "crank pin"]
     assert first.specific_peak.value == pytest.approx(first.peak.value / (0.056 * 0.031))
+
+
+def test_loads_are_drawn_in_the_frame_of_the_body_that_carries_them():
+    result = simulate(VEE)
+    figure = result.plot("bearings")
+    shell, journal, big_end, pin = figure.axes
+    scale = 1e3  # kN
+    force = result.data.main_journal_force_x.values + 1j * result.data.main_journal_force_y.values
+    drawn = [
+        np.array(axes.lines[0].get_ydata()) + 1j * np.array(axes.lines[0].get_xdata())
+        for axes in figure.axes
+    ]
+    angle = result.data.crank_angle.values
+    assert drawn[0] * scale == pytest.approx(-force[:, 0])
+    assert drawn[1] * scale == pytest.approx(force[:, 0] * np.exp(-1j * angle))
+    rod = result.data.crank_pin_force_x.values + 1j * result.data.crank_pin_force_y.values
+    beta, phases = result.data.rod_angle.values, np.array([c.phase for c in VEE.cylinders])
+    assert drawn[2] * scale == pytest.approx(rod[:, 0] * np.exp(1j * beta[:, 0]))
+    load = -(rod * np.exp(-1j * (angle[:, None] + phases))).sum(axis=1)
+    assert drawn[3] * scale == pytest.approx(load)
+    titles = [axes.get_title() for axes in (shell, journal, big_end, pin)]
+    assert [title.split(":")[0] for title in titles] == [
+        "main shells",
+        "main journals",
+        "big-end shells",
+        "crank pins",
+    ]
+    with pytest.raises(InputError, match="bearings = Bearings"):
+        simulate(TWIN).plot("bearings")

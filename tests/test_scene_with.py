@@ -109,3 +109,10 @@ def test_what_cannot_be_is_refused_by_the_name_given(changes, said):
 def test_a_value_without_a_name_is_refused():
     with pytest.raises(InputError, match=r'such as with_\(rod__length="160 mm"\); "160 mm" came'):
         SCENE.with_("160 mm")
+
+
+def test_a_refusal_names_a_key_once():
+    with pytest.raises(InputError, match=r"^run__until: beyond"):
+        load_scene("coasting").with_(run__until="1e12 s")
+    with pytest.raises(InputError, match=r"^piston__area: piston\.bore: with gas"):
+        load_scene("yi_diesel").with_(piston__area=None)

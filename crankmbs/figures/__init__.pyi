@@ -1,6 +1,7 @@
 """The figures and where each lives."""
 
 from .balance import balance_figure, save_balance_figure
+from .bearings import bearings_figure
 from .compare import budget_figure, comparison_figure, save_validation
 from .cycles import cycles_figure
 from .difference import difference_figure, save_differences
@@ -16,6 +17,7 @@ from .view import last_view
 
 __all__ = [
     "balance_figure",
+    "bearings_figure",
     "budget_figure",
     "comparison_figure",
     "crank_pin_figure",

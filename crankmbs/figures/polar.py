@@ -28,12 +28,20 @@ from crankmbs.figures.style import (
 from crankmbs.figures.view import View
 from crankmbs.numerics.arrays import Array
 
-__all__ = ["crank_pin_figure", "main_bearing_figure", "piston_pin_figure"]
+__all__ = [
+    "ENGINE",
+    "THROW",
+    "alike",
+    "crank_pin_figure",
+    "draw_polar",
+    "main_bearing_figure",
+    "piston_pin_figure",
+]
 
 
 _CYLINDER = ("X, from crank to head", "Y, 90 deg ahead of X")
-_ENGINE = ("engine's X", "engine's Y, 90 deg ahead of X")
-_THROW = ("radial, outwards along the throw", "tangential, in the sense of +theta")
+ENGINE = ("engine's X", "engine's Y, 90 deg ahead of X")
+THROW = ("radial, outwards along the throw", "tangential, in the sense of +theta")
 _CLOSE = 0.02  # of the curve's size: marks nearer than this share one label
 _GAP, _LINE, _LETTER = 0.04, 0.045, 0.017  # of the axes: to the labels; their height and width
 
@@ -54,7 +62,7 @@ def main_bearing_figure(view: View) -> Figure:
     """Force of the main bearings on the crank, all cylinders, in the engine's frame."""
     figure, (ax,) = panels(1, 1, 8.0, 8.0)
     x, y = view.values("main_bearing_force_x"), view.values("main_bearing_force_y")
-    _draw(ax, ([x], [y]), view.degrees, [[0]], _ENGINE)
+    draw_polar(ax, ([x], [y]), view.degrees, {0: ""}, ENGINE)
     ax.set_title("main bearing: bearing on crank, engine's frame")
     _caption(figure, view, "crank angle")
     return figure
@@ -65,13 +73,13 @@ def crank_pin_figure(view: View) -> Figure:
     """Force of the crank on the rod: in the cylinder's frame, and turning with the crank."""
     figure, (fixed, turning) = panels(1, 2, 14.0, 8.0)
     x, y, cycles = _columns(view, "crank_pin_force")
-    groups = _groups(view, x, y, cycles)
-    _draw(fixed, (x, y), cycles[0], groups, _CYLINDER)
+    groups = alike(view, x, y, cycles)
+    draw_polar(fixed, (x, y), cycles[0], groups, _CYLINDER)
     fixed.set_title("crank pin: crank on rod, cylinder's frame")
     angle = [np.radians(cycle) for cycle in cycles]
     radial = [np.cos(a) * u + np.sin(a) * v for a, u, v in zip(angle, x, y, strict=True)]
     tangential = [np.cos(a) * v - np.sin(a) * u for a, u, v in zip(angle, x, y, strict=True)]
-    _draw(turning, (radial, tangential), cycles[0], groups, _THROW)
+    draw_polar(turning, (radial, tangential), cycles[0], groups, THROW)
     turning.set_title("crank pin: crank on rod, turning with the crank")
     _finish(figure, fixed, view)
     return figure
@@ -82,7 +90,7 @@ def piston_pin_figure(view: View) -> Figure:
     """Force of the rod on the piston in the cylinder's frame."""
     figure, (ax,) = panels(1, 1, 8.0, 8.0)
     x, y, cycles = _columns(view, "piston_pin_force")
-    _draw(ax, (x, y), cycles[0], _groups(view, x, y, cycles), _CYLINDER)
+    draw_polar(ax, (x, y), cycles[0], alike(view, x, y, cycles), _CYLINDER)
     ax.set_title("piston pin: rod on piston, cylinder's frame")
     _finish(figure, ax, view)
     return figure
@@ -94,17 +102,19 @@ def _columns(view: View, name: str) -> tuple[list[Array], list[Array], list[Arra
     return list(x.T), list(y.T), [view.cycle_degrees(k) for k in range(count)]
 
 
-def _groups(view: View, x: list[Array], y: list[Array], cycles: list[Array]) -> list[list[int]]:
-    """Cylinders whose curves coincide: those whose forces do at the same cycle angle."""
+def alike(view: View, x: list[Array], y: list[Array], cycles: list[Array]) -> dict[int, str]:
+    """Which cylinders' curves are drawn, and whose each is: those of equal forces at the same cycle
+    angle coincide."""
     if not view.whole:
-        return [[k] for k in range(len(x))]
+        return {k: whose([k]) for k in range(len(x))}
     period = math.degrees(view.scene.period)
 
     def side_by_side(curves: list[Array]) -> Array:
         pairs = zip(cycles, curves, strict=True)
         return np.stack([np.interp(cycles[0], *pair, period=period) for pair in pairs], axis=-1)
 
-    return one_curve_each(side_by_side(x), side_by_side(y))
+    groups = one_curve_each(side_by_side(x), side_by_side(y))
+    return {group[0]: whose(group) for group in groups}
 
 
 def _finish(figure: Figure, ax: Axes, view: View) -> None:
@@ -118,22 +128,21 @@ def _caption(figure: Figure, view: View, angle: str) -> None:
     footer(figure, view.result, f"marks: {angle} [deg], {view.window.kind}")
 
 
-def _draw(
+def draw_polar(
     ax: Axes,
     curves: tuple[list[Array], list[Array]],
     degrees: Array,
-    groups: list[list[int]],
+    labels: dict[int, str],
     sense: tuple[str, str],
 ) -> None:
-    """Draw one curve for each group of cylinders and mark the first one at every 90 degrees.
+    """Draw the curves with a label and mark the first one at every 90 degrees.
 
-    curves : upwards and to the left; degrees : of the first cylinder
+    curves : upwards and to the left; degrees : of the first; sense : what is upwards, to the left
     """
     up, left = curves
     scale, unit = force_scale(*up, *left)
-    for group in groups:
-        k = group[0]
-        ax.plot(left[k] / scale, up[k] / scale, **line_of(k), linewidth=1.8, label=whose(group))
+    for k, label in labels.items():
+        ax.plot(left[k] / scale, up[k] / scale, **line_of(k), linewidth=1.8, label=label)
     mark_points(ax)
     ax.axhline(0.0, color="0.55", linewidth=1.0, zorder=1)
     ax.axvline(0.0, color="0.55", linewidth=1.0, zorder=1)

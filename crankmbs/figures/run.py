@@ -8,6 +8,7 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 from crankmbs.errors import InputError, shown
+from crankmbs.figures.bearings import bearings_figure
 from crankmbs.figures.cycles import FEWEST_CYCLES, cycles_figure
 from crankmbs.figures.orders import orders_figure
 from crankmbs.figures.polar import crank_pin_figure, main_bearing_figure, piston_pin_figure
@@ -43,6 +44,7 @@ _KINDS: dict[str, Callable[[Result], Figure]] = {
     "torque": lambda result: torque_figure(last_view(result)),
     "orders": lambda result: orders_figure(result, engine_orders(result)),
     "cycles": lambda result: _cycles(result),
+    "bearings": lambda result: _bearings(result),
 }
 _POLAR = {name: _FIGURES[name] for name in ("main_bearing", "crank_pin", "piston_pin")}
 
@@ -53,12 +55,13 @@ def plot(result: Result, kind: str = "speed", joint: str = "crank_pin") -> Figur
     Parameters
     ----------
     kind : "speed", "motion" of the pistons, "forces" along and across the cylinders, "polar" load,
-        "torque", "orders" of torque and frame force, or "cycles"
+        "torque", "orders" of torque and frame force, "cycles", or "bearings"
     joint : of a "polar" load: "main_bearing", "crank_pin" or "piston_pin"
 
     Raises
     ------
-    InputError : another kind or joint; no orders without a whole cycle, no cycles kept
+    InputError : another kind or joint; no orders without a whole cycle, no cycles kept, no
+        journals
 
     >>> len(plot(simulate(load_scene("propeller")), "motion").axes)
     3
@@ -86,9 +89,18 @@ def _cycles(result: Result) -> Figure:
     return cycles_figure(result)
 
 
+def _bearings(result: Result) -> Figure:
+    if result.scene.throws is None:
+        raise InputError(
+            "loads of journals and pins are drawn of a scene with [bearings] whose throws have "
+            "places along the crank; give them, such as bearings = Bearings()"
+        )
+    return bearings_figure(last_view(result))
+
+
 def save_figures(result: Result, folder: Path) -> list[Path]:
     """Draw every figure of a result into PNG files, which appear together; the cycles where there
-    are more than three, or several in a settled period.
+    are more than three, or several in a settled period, the bearings where a scene has them.
 
     Raises
     ------
@@ -99,6 +111,9 @@ def save_figures(result: Result, folder: Path) -> list[Path]:
         for name, draw in _FIGURES.items():
             save(draw(view), part / f"{name}.png")
         names = list(_FIGURES)
+        if result.scene.throws is not None:
+            save(bearings_figure(view), part / "bearings.png")
+            names.append("bearings")
         fewest = 2 if result.scene.settles else FEWEST_CYCLES  # what differs in a settled period
         if result.keep is not None and result.cycle_table.length >= fewest:
             save(cycles_figure(result), part / "cycles.png")

@@ -166,10 +166,13 @@ def _in_given_names(text: str, given: Mapping[str, list[str]]) -> str:
     if named and named[1] in given and len(given[named[1]]) == 1:
         name = given[named[1]][0]
         steps = [*filter(None, re.split(r"[.\[\]]+", named[1] + named[2]))]
-        whole = name.split("__")
-        below = steps[len(whole) :] if steps[: len(whole)] == whole else steps[1:]
-        rest = "".join(f"[{step}]" if step.isdigit() else f".{step}" for step in below)
-        return f"{name}{rest}: {text[named.end() :]}"
+        whole = re.split(r"__|[.]", name)
+        for k in range(len(whole)):  # the refusal names it from here on
+            below = steps[len(whole) - k :]
+            if steps[: len(whole) - k] == whole[k:]:
+                rest = "".join(f"[{step}]" if step.isdigit() else f".{step}" for step in below)
+                return f"{name}{rest}: {text[named.end() :]}"
+        return f"{name}: {text}"
     names = [name for several in given.values() for name in several]
     if any(text.startswith(name) for name in names):
         return text

@@ -29,10 +29,19 @@ _PAGES = {
 }
 _VALIDATION = ("REPORT", "ERRATA", "MUTANTS", "BIBLIOGRAPHY")
 _ANCHOR = re.compile(r'^(#+ )<a id="([^"]+)"></a>', re.MULTILINE)
-_FIGURES = {  # scene, its end, kind of the figure
-    "speed": ("yi_diesel_free", "4 cycles", "speed"),
-    "polar": ("yi_diesel", "1 cycle", "polar"),
-    "cycles": ("misfire", "8 cycles", "cycles"),
+_FIGURES: dict[str, tuple[str, dict[str, object], str]] = {  # scene, changes, kind of the figure
+    "speed": ("yi_diesel_free", {"run__until": "4 cycles"}, "speed"),
+    "polar": ("yi_diesel", {"run__until": "1 cycle"}, "polar"),
+    "cycles": ("misfire", {"run__until": "8 cycles"}, "cycles"),
+    "bearings": (
+        "yi_diesel_free",
+        {
+            "run__until": "settled",
+            "layout__spacing": "100 mm",
+            "bearings": crankmbs.Bearings(),
+        },
+        "bearings",
+    ),
 }
 
 
@@ -44,8 +53,8 @@ def _make(app: Sphinx) -> None:
         page = (made.parents[1] / "validation" / f"{name}.md").read_text(encoding="utf-8")
         (made / f"{name}.md").write_text(_linked(page), encoding="utf-8")
     mpl.use("agg")
-    for name, (scene, until, kind) in _FIGURES.items():
-        result = crankmbs.simulate(crankmbs.load_scene(scene).with_(run__until=until))
+    for name, (scene, changes, kind) in _FIGURES.items():
+        result = crankmbs.simulate(crankmbs.load_scene(scene).with_(**changes))
         result.plot(kind).savefig(made / f"{name}.png", dpi=110)
     write_lessons(made / "pages" / "lessons")
     demo = page_of(crankmbs.load_scene("yi_diesel_free"), "yi_diesel_free")
