@@ -15,10 +15,11 @@ from datetime import date
 from pathlib import Path
 from queue import SimpleQueue
 
+from validation.about import commit
 from validation.case import load_cases
 from validation.mutants.page import summary, write_page
 from validation.mutants.plan import Guards, Mutant, load_mutants, wide_guards
-from validation.mutants.results import NO_END, PAGE, RESULTS, Row, commit, read_rows, write_rows
+from validation.mutants.results import NO_END, PAGE, RESULTS, Row, read_rows, write_rows
 from validation.mutants.scratch import Red, Scratch
 
 _LIMIT = 300.0  # s for the guards of one mutant; unbroken they take a tenth of it or so
@@ -98,9 +99,9 @@ def _tried(mutants: list[Mutant], processes: int) -> Iterator[Row]:
                 free.put(scratch)
             seconds = round(time.perf_counter() - begin)
             if red is None:
-                return Row(mutant.name, "survived", "", seconds, today, at)
+                return Row(mutant.name, "survived", "", seconds, today, at, mutant.digest)
             verdict = "killed" if red.ended else NO_END
-            return Row(mutant.name, verdict, red.guard, seconds, today, at)
+            return Row(mutant.name, verdict, red.guard, seconds, today, at, mutant.digest)
 
         futures = [pool.submit(tried, mutant) for mutant in mutants]
         try:

@@ -9,7 +9,7 @@ from pathlib import Path
 from validation.mutants.plan import Mutant, load_mutants
 from validation.mutants.results import NO_END, PAGE, Row, read_rows, score
 
-__all__ = ["section", "summary", "write_page"]
+__all__ = ["in_short", "summary", "write_page"]
 
 
 def write_page(mutants: list[Mutant], rows: dict[str, Row], path: Path = PAGE) -> Path:
@@ -22,10 +22,16 @@ def write_page(mutants: list[Mutant], rows: dict[str, Row], path: Path = PAGE) -
     return path
 
 
-def section() -> list[str]:
-    """The committed results for the report, in half a page."""
-    lines = summary(load_mutants(), read_rows())
-    return ["", "## Every law guarded", "", *lines, "", f"All of them: [{PAGE.name}]({PAGE.name})."]
+def in_short() -> list[str]:
+    """The committed results for the report, in a few lines."""
+    dead, counted = score(load_mutants(), read_rows())
+    return [
+        "## Every law guarded",
+        "",
+        "The source is broken, one law at a time: terms dropped, signs flipped, units, phases and "
+        f"orders mixed up. {dead} of {counted} such mutants turn a test or a claim red: "
+        f"[{PAGE.name}]({PAGE.name}).",
+    ]
 
 
 def summary(mutants: list[Mutant], rows: dict[str, Row]) -> list[str]:
