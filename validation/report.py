@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from itertools import groupby
 from pathlib import Path
@@ -31,7 +32,7 @@ _KINDS = """\
 _WORST = """\
 ## Worst figures
 
-Of all claims of one kind by one check, the one that comes closest to its tolerance.
+Of the claims of one kind that one module checks, the one that comes closest to its tolerance.
 
 | claim | of | norm | measured | tolerance |
 |---|---|---|---|---|"""
@@ -42,6 +43,8 @@ A published number is predicted where every parameter is printed in its source. 
 radius, rod ratio, bore nor reciprocating mass: they were identified from its own cells, and a claim
 about the cells that they were identified from shows consistency, no more. Parameters, cells and
 standard errors are in [CLAIMS.md](CLAIMS.md); misprints in [ERRATA.md](ERRATA.md)."""
+
+_FIRST_CLAUSE = re.compile(r"[,;:] (?![^\[]*\])")  # of a norm; units stand in brackets
 
 
 def write_pages(
@@ -95,20 +98,23 @@ def _of_kind(kind: Kind, cases: Sequence[Case], rows: Mapping[str, Row]) -> list
 
 
 def _worst(cases: Sequence[Case], rows: Mapping[str, Row]) -> list[str]:
-    """Of every kind and check the claim with the largest share of its tolerance."""
+    """Of every kind and module of checks the claim with the largest share of its tolerance."""
     lines = _WORST.splitlines()
     for kind in KINDS:
-        own = sorted((case for case in cases if kind_of(case) is kind), key=lambda case: case.check)
+        own = sorted((case for case in cases if kind_of(case) is kind), key=_module)
         if own:
             lines.append(f"| **{kind.title}** | | | | |")
-        for _, same in groupby(own, key=lambda case: case.check):
+        for _, same in groupby(own, key=_module):
             group = list(same)
             worst = max(group, key=lambda case: rows[case.name].share)
-            row = rows[worst.name]
-            norm = worst.norm.partition(",")[0].partition(";")[0].partition(":")[0]
+            row, norm = rows[worst.name], _FIRST_CLAUSE.split(worst.norm)[0]
             numbers = f"{row.measured:.2g} | {row.tolerance:.2g}"
             lines.append(f"| {_link(row)} | {len(group)} | {norm} | {numbers} |")
     return lines
+
+
+def _module(case: Case) -> str:
+    return case.check.partition(".")[0]
 
 
 def _standings(cases: Sequence[Case]) -> list[str]:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 
 from validation.mutants.plan import FOLDER, Mutant
 
-__all__ = ["NO_END", "PAGE", "RESULTS", "Row", "read_rows", "score", "write_rows"]
+__all__ = ["NO_END", "PAGE", "RESULTS", "Row", "read_rows", "score", "untried", "write_rows"]
 
 RESULTS = FOLDER / "results.csv"
 NO_END = "no end"
@@ -61,6 +61,11 @@ def write_rows(rows: Iterable[Row], path: Path = RESULTS) -> None:
         writer.writeheader()
         writer.writerows(asdict(row) for row in rows)
     part.replace(path)
+
+
+def untried(mutants: Iterable[Mutant], rows: Mapping[str, Row]) -> list[str]:
+    """The mutants without a row, and those whose row is of another text."""
+    return [m.name for m in mutants if m.name not in rows or rows[m.name].mutant != m.digest]
 
 
 def score(mutants: list[Mutant], rows: dict[str, Row]) -> tuple[int, int]:
