@@ -11,7 +11,6 @@ from validation import bibliography
 from validation.case import Case
 from validation.claims import claims_page
 from validation.kinds import KINDS, Kind, kind_of
-from validation.mutants.page import in_short
 from validation.results import Row
 
 __all__ = ["CLAIMS", "REPORT", "write_pages"]
@@ -44,6 +43,12 @@ radius, rod ratio, bore nor reciprocating mass: they were identified from its ow
 about the cells that they were identified from shows consistency, no more. Parameters, cells and
 standard errors are in [CLAIMS.md](CLAIMS.md); misprints in [ERRATA.md](ERRATA.md)."""
 
+_MUTANTS = """\
+## Every law guarded
+
+A claim can be trusted if it can fail. `python -m validation.mutants` breaks the source, one law at
+a time: terms dropped, signs flipped, units, phases and orders mixed up; then a test or a claim has
+to turn red. [MUTANTS.md](MUTANTS.md) has every one, with what turned red."""
 _FIRST_CLAUSE = re.compile(r"[,;:] (?![^\[]*\])")  # of a norm; units stand in brackets
 
 
@@ -53,7 +58,7 @@ def write_pages(
     """Write REPORT.md and CLAIMS.md of claims that all have their row; returns the report."""
     (folder / CLAIMS.name).write_text(claims_page(cases, rows), encoding="utf-8")
     lines = [_INTRODUCTION, "", *_head(cases, rows), "", *_kinds(cases, rows), ""]
-    lines += [*_worst(cases, rows), "", *_standings(cases), "", *in_short(), ""]
+    lines += [*_worst(cases, rows), "", *_standings(cases), "", *_MUTANTS.splitlines(), ""]
     report = folder / REPORT.name
     report.write_text("\n".join([*lines, *bibliography.links(["S1"])]) + "\n", encoding="utf-8")
     return report

@@ -6,10 +6,10 @@ from collections.abc import Iterator
 from itertools import groupby
 from pathlib import Path
 
-from validation.mutants.plan import Mutant, load_mutants
-from validation.mutants.results import NO_END, PAGE, Row, read_rows, score
+from validation.mutants.plan import Mutant
+from validation.mutants.results import NO_END, PAGE, Row, score
 
-__all__ = ["in_short", "summary", "write_page"]
+__all__ = ["summary", "write_page"]
 
 
 def write_page(mutants: list[Mutant], rows: dict[str, Row], path: Path = PAGE) -> Path:
@@ -20,18 +20,6 @@ def write_page(mutants: list[Mutant], rows: dict[str, Row], path: Path = PAGE) -
         lines += [f"## {file}", "", *_table(list(own), rows), ""]
     path.write_text("\n".join(lines), encoding="utf-8")
     return path
-
-
-def in_short() -> list[str]:
-    """The committed results for the report, in a few lines."""
-    dead, counted = score(load_mutants(), read_rows())
-    return [
-        "## Every law guarded",
-        "",
-        "The source is broken, one law at a time: terms dropped, signs flipped, units, phases and "
-        f"orders mixed up. {dead} of {counted} such mutants turn a test or a claim red: "
-        f"[{PAGE.name}]({PAGE.name}).",
-    ]
 
 
 def summary(mutants: list[Mutant], rows: dict[str, Row]) -> list[str]:
