@@ -2,7 +2,7 @@
 
 import pytest
 from browser import started
-from guards import quick_guards
+from guards import COLLECTED, quick_guards
 from page_engine import engine
 from scene_texts import GAS
 
@@ -11,8 +11,9 @@ from crankmbs.scene.read import parse_scene
 
 
 @pytest.hookimpl(tryfirst=True)
-def pytest_collection_modifyitems(items):
-    """What kills a mutant runs by default."""
+def pytest_collection_modifyitems(config, items):
+    """What kills a mutant runs by default; what is collected is known before -m leaves some out."""
+    config.stash[COLLECTED] = {item.nodeid for item in items}
     guards = quick_guards()
     for item in items:
         if item.nodeid in guards:

@@ -109,6 +109,10 @@ def test_a_course_is_the_sum_of_the_loads_between_jumps():
     np.testing.assert_allclose(course.slope(omega), [0.25, 0.25, -1.75, 0.0], rtol=1e-14)
 
 
+def test_a_course_ends_where_a_table_jumps():
+    assert course_of(LOADS, branch_of(LOADS, 0.4, 6.0, rising=True), 0.4).t_end == 1.0
+
+
 @pytest.mark.parametrize("sense", [1.0, -1.0])
 def test_cells_cut_are_parts_of_cells(sense):
     scene = load_scene("propeller")

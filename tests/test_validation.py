@@ -12,8 +12,10 @@ from validation import __main__ as command
 from validation import judge as judging
 from validation import reference
 from validation.case import Case, Mutant, load_case, load_cases, shifted
+from validation.claims import claims_page
 from validation.judge import Outcome, Skipped, Verdict, judge
-from validation.report import write_report
+from validation.report import write_pages
+from validation.results import read_rows, row_of, write_rows
 
 CASES = {case.name: case for case in load_cases()}
 CASE = CASES["s2_mean_speed"]
@@ -69,6 +71,42 @@ def test_exit_status(monkeypatch, capsys, outcome, status):
     assert f"1 claims, {status} red" in capsys.readouterr().out
 
 
+def test_rows_are_read_as_they_were_written(tmp_path):
+    table = ("| a |", "|---|", "| 1, 2 |")
+    verdict = Verdict(CASE, "fails", Outcome(float("inf"), 'said "so", and\nmore', table))
+    rows = rows_of([verdict])
+    write_rows(rows, tmp_path)
+    (again,) = read_rows(tmp_path).values()
+    assert replace(again, table=tuple(again.table), figures=tuple(again.figures)) == rows[CASE.name]
+    assert read_rows(tmp_path / "nowhere") == {}
+
+
+def test_named_claims_are_judged_and_the_rows_of_the_others_kept(monkeypatch, tmp_path, capsys):
+    cases = [CASE, CASES["s1_table_3"], CASES["s2_special_angles"]]
+    rows = rows_of([Verdict(case, "holds", Outcome(0.0, "before")) for case in cases[:2]])
+    written = []
+    monkeypatch.setattr(command, "load_cases", lambda: cases)
+    monkeypatch.setattr(command, "read_rows", lambda: dict(rows))
+    monkeypatch.setattr(command, "write_rows", lambda rows: written.append(dict(rows)))
+    monkeypatch.setattr(command, "write_pages", lambda cases, rows: "the pages")
+    assert command.main([CASES["s1_table_3"].name]) == 1
+    said = capsys.readouterr().out
+    assert "new: s2_special_angles" in said
+    assert "the pages" not in said
+    assert command.main(["s2_special_angles"]) == 0
+    assert "the pages" in capsys.readouterr().out
+    assert written[-1][CASE.name].detail == "before"
+    assert written[-1]["s2_special_angles"].detail != "before"
+    monkeypatch.setattr(command, "read_rows", lambda: written[-1])
+    assert command.main(["--page"]) == 0
+
+
+def test_claims_are_judged_in_processes(monkeypatch, capsys):
+    monkeypatch.setattr(command, "load_cases", lambda: [CASE, CASES["s1_table_3"]])
+    assert command.main(["--quick", "--processes", "2"]) == 0
+    assert "2 claims, 0 red" in capsys.readouterr().out
+
+
 def test_no_claim_at_all_is_red(monkeypatch):
     monkeypatch.setattr(command, "load_cases", list)
     assert command.main(["--quick"]) == 1
@@ -90,29 +128,46 @@ def test_every_reference_names_its_source():
         assert "Source: " in head, path.name
 
 
-def test_report(monkeypatch, tmp_path):
+def rows_of(verdicts):
+    made = {"seconds": 1, "date": "2000-01-01", "commit": "0", "environment": "a machine"}
+    return {v.case.name: row_of(v, **made) for v in verdicts}
+
+
+def test_report(tmp_path):
     green = Verdict(CASE, "holds", Outcome(1e-14, "fine", table=("| a |", "|---|", "| 1 |")))
     red = Verdict(CASES["khurmi_speed_printed"], "fails", Outcome(3.0, "too far"))
-    text = write_report([green, red], tmp_path).read_text(encoding="utf-8")
-    assert "1 of 2 claims hold." in text
-    assert "| 1 |" in text
-    assert "mutants turn a test or a claim red" in text
-    assert "**fails**" in text
-    for case in (green.case, red.case):
-        assert text.count(f'<a id="{case.name}"></a>') == 1
-        assert case.reason in text
-        assert case.source in text
+    cases = [green.case, red.case]
+    report = write_pages(cases, rows_of([green, red]), tmp_path).read_text(encoding="utf-8")
+    assert "1 of 2 claims hold." in report
+    assert "- commit 0: 2 claims" in report
+    assert f"- **fails**: [{red.case.claim}](CLAIMS.md#{red.case.name})" in report
+    assert f"- prediction: [{red.case.name}](CLAIMS.md#{red.case.name})" in report
+    claims = (tmp_path / "CLAIMS.md").read_text(encoding="utf-8")
+    assert "| 1 |" in claims
+    for case in cases:
+        assert claims.count(f'<a id="{case.name}"></a>') == 1
+        assert case.reason in claims
+        assert case.source in claims
 
 
-def test_the_hard_cases_share_one_table(tmp_path):
+def test_the_report_shows_the_worst_of_each_kind(tmp_path):
+    cases = [case for case in CASES.values() if case.check == "honest.stated_errors"][:2]
+    verdicts = [Verdict(c, "holds", Outcome(e, "")) for c, e in zip(cases, (0.2, 0.7), strict=True)]
+    report = write_pages(cases, rows_of(verdicts), tmp_path).read_text(encoding="utf-8")
+    assert "| 2 | 2 | 0.7 |" in report
+    worst = f"| [{cases[1].claim}](CLAIMS.md#{cases[1].name}) | 2 | true error over twice"
+    assert worst in report
+    assert f"CLAIMS.md#{cases[0].name}" not in report
+
+
+def test_the_hard_cases_share_one_table():
     head = ("| case | kinetostatic |", "|---|---|")
     cases = [case for case in CASES.values() if case.check == "hard.every_formulation"]
     verdicts = [
         Verdict(case, "holds", Outcome(0.0, "right", (*head, f"| {case.claim} | right |")))
         for case in cases
     ]
-    text = write_report(verdicts, tmp_path).read_text(encoding="utf-8")
-    _, _, table = text.partition("## Hard cases")
+    _, _, table = claims_page(cases, rows_of(verdicts)).partition("## Hard cases")
     assert table.count(head[0]) == 1
     assert all(table.count(f"| {case.claim} | right |") == 1 for case in cases)
 

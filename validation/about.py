@@ -1,40 +1,44 @@
-"""What a report was made with: the day, the version and commit, other packages, the machine."""
+"""What evidence was made with: the commit, the versions of the packages, the machine."""
 
 from __future__ import annotations
 
 import subprocess
-from datetime import UTC, datetime
 from pathlib import Path
 
 from crankmbs.work_precision.machine import about_machine
 
-__all__ = ["about", "commit"]
+__all__ = ["commit", "environment"]
 
 _HERE = Path(__file__).parent
+_WRITTEN = (
+    "validation/REPORT.md",
+    "validation/CLAIMS.md",
+    "validation/MUTANTS.md",
+    "validation/details.json",
+    "validation/results.csv",
+    "validation/figures/",
+    "validation/mutants/results.csv",
+)
 
 
-def about() -> tuple[str, ...]:
-    """Lines of Markdown for the head of a report: neither a host's name nor a path."""
+def environment() -> str:
+    """Versions and machine in one line, with neither a host's name nor a path."""
     machine, versions = about_machine()
-    return (
-        f"- date: {datetime.now(UTC):%Y-%m-%d}",
-        f"- commit: {commit()}",
-        f"- versions: {versions}",
-        f"- machine: {machine}",
-    )
+    return f"{versions}; {machine}"
 
 
 def commit(folder: Path = _HERE) -> str:
-    """The commit that a folder is at, and whether it has been changed since."""
+    """The commit of a checkout, with a plus where a file differs from it, but for the evidence that
+    is written; "unknown" without git."""
     try:
-        number = _git(folder, "rev-parse", "HEAD")
-        changed = _git(folder, "status", "--porcelain")
+        head = _git(folder, "rev-parse", "--short", "HEAD").strip()
+        lines = _git(folder, "status", "--porcelain").splitlines()
     except (OSError, subprocess.CalledProcessError):
-        return "unknown, not a git checkout"
-    return f"{number}, with uncommitted changes" if changed else number
+        return "unknown"
+    return f"{head}+" if any(not line[3:].startswith(_WRITTEN) for line in lines) else head
 
 
 def _git(folder: Path, *arguments: str) -> str:
     command = ["git", "-C", str(folder), *arguments]
     done = subprocess.run(command, check=True, capture_output=True, text=True)
-    return done.stdout.strip()
+    return done.stdout

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from crankmbs.scene.drives import Motion, Start
-from crankmbs.scene.read import load_scene
+from crankmbs.scene.read import load_scene, scene_path
 from crankmbs.scene.run import Extent
 from crankmbs.scene.scene import Scene
 
@@ -43,8 +43,8 @@ class Case:
     scene : a file in validation/scenes or a shipped scene; change : paths in it and new values
     drive : "constant" prescribes the speed of a free scene, "free" frees a prescribed one
     until : shortens the run [cycles]
-    standing : where parameters were identified from a source, whether the claim predicts its cells
-        or is consistent with them
+    standing : of published numbers, whether the claim predicts them or, where parameters were
+        identified from the source, is consistent with them
     """
 
     name: str
@@ -66,11 +66,14 @@ class Case:
     mutated: bool = False
     shortened: bool = False
 
+    def scene_file(self) -> Path:
+        """The file of the scene."""
+        path = _SCENES / f"{self.scene}.toml"
+        return path if path.is_file() else scene_path(self.scene)
+
     def theirs(self) -> Scene:
         """The scene that the reference is taken for."""
-        scene = load_scene(
-            path if (path := _SCENES / f"{self.scene}.toml").is_file() else self.scene
-        )
+        scene = load_scene(self.scene_file())
         for key, value in self.change.items():
             scene = shifted(scene, key, lambda _, value=value: value)
         if self.until is not None:

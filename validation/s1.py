@@ -1,4 +1,4 @@
-"""What S1 does not print: parameters identified from its cells, and what its claims then are."""
+"""What S1 does not print: parameters identified from its cells."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from validation import reference
-from validation.case import Case
 from validation.checks.s1_tables import printed_cells
 
 __all__ = ["Identified", "identified", "section"]
@@ -27,8 +26,7 @@ _INTRODUCTION = """\
 nor reciprocating mass; the offset only as 0.015 of the bore, piston and rod only as ranges per
 area. What is below was identified from its own cells by least squares; "rest" is the root mean
 square of what the fit leaves. Masses of piston, rod and crank, the rod's inertia, the flywheel and
-the firing order are guessed. A claim about cells from which its parameters were identified shows
-consistency, not prediction. The misprints found, with their corrections, and what the paper says
+the firing order are guessed. The misprints found, with their corrections, and what the paper says
 against itself are in [ERRATA.md](ERRATA.md).
 
 | parameter | identified | used | from | rest |
@@ -58,22 +56,16 @@ def identified() -> list[Identified]:
     return [*_geometry(), *_gas(), _mass()]
 
 
-def section(cases: Sequence[Case]) -> list[str]:
-    """Lines of the report: the identified parameters, and every claim with its standing."""
-    standing = [case for case in cases if case.standing]
-    if not standing:
-        return []
+def section() -> list[str]:
+    """Lines of Markdown: the identified parameters."""
     lines = _INTRODUCTION.splitlines()
     lines += [_row(parameter) for parameter in identified()]
     implied = len([row for row in reference.rows("s1_table6_pressure") if _implied(row)])
-    lines += [
+    return [
+        *lines,
         f"| pressures of 390 to 690 degrees | {implied} values, reference/s1_table6_pressure.csv | "
         f"as identified | Table 6, torque, {implied} cells | 0: one value a cell |",
-        "",
-        "| claim | what it shows |",
-        "|---|---|",
     ]
-    return lines + [f"| [{case.claim}](#{case.name}) | {case.standing} |" for case in standing]
 
 
 def _row(p: Identified) -> str:

@@ -15,10 +15,11 @@ from datetime import date
 from pathlib import Path
 from queue import SimpleQueue
 
+from validation.about import commit
 from validation.case import load_cases
 from validation.mutants.page import summary, write_page
 from validation.mutants.plan import Guards, Mutant, load_mutants, wide_guards
-from validation.mutants.results import NO_END, PAGE, RESULTS, Row, commit, read_rows, write_rows
+from validation.mutants.results import NO_END, PAGE, RESULTS, Row, read_rows, untried, write_rows
 from validation.mutants.scratch import Red, Scratch
 
 _LIMIT = 300.0  # s for the guards of one mutant; unbroken they take a tenth of it or so
@@ -30,13 +31,13 @@ def main(arguments: list[str] | None = None) -> int:
     mutants, rows = load_mutants(), read_rows(RESULTS)
     asked = _parser(mutants).parse_args(arguments)
     rows = {mutant.name: rows[mutant.name] for mutant in mutants if mutant.name in rows}
-    for row in _tried([m for m in mutants if _is_asked(m, asked, rows)], asked.processes):
+    left = untried(mutants, rows)
+    for row in _tried([m for m in mutants if _is_asked(m, asked, left)], asked.processes):
         rows[row.name] = row
         write_rows((rows[m.name] for m in mutants if m.name in rows), RESULTS)
         print(f"{row.verdict:9} {row.seconds:4} s  {row.name:40} {row.by}", flush=True)
-    missing = [mutant.name for mutant in mutants if mutant.name not in rows]
-    if missing:
-        print(f"{len(missing)} mutants have no result yet; --missing tries them")
+    if left := untried(mutants, rows):
+        print(f"{len(left)} mutants have no result as they are; --missing tries them")
         return 1
     print("\n".join(summary(mutants, rows)))
     print(f"written: {write_page(mutants, rows, PAGE)}")
@@ -59,15 +60,17 @@ def _parser(mutants: list[Mutant]) -> argparse.ArgumentParser:
         help="those of these TOML files",
     )
     parser.add_argument(
-        "--missing", action="store_true", help="those without a result, of the above or of all"
+        "--missing",
+        action="store_true",
+        help="those without a result as they are, of the above or of all",
     )
     parser.add_argument("--page", action="store_true", help="none: write the page anew")
     parser.add_argument("--processes", type=int, default=1, metavar="P", help="how many at a time")
     return parser
 
 
-def _is_asked(mutant: Mutant, asked: argparse.Namespace, rows: dict[str, Row]) -> bool:
-    if asked.page or (asked.missing and mutant.name in rows):
+def _is_asked(mutant: Mutant, asked: argparse.Namespace, left: list[str]) -> bool:
+    if asked.page or (asked.missing and mutant.name not in left):
         return False
     chosen = [mutant.name in (asked.only or ()), mutant.room in (asked.room or ())]
     return any(chosen) or (asked.only is None and asked.room is None)
@@ -98,9 +101,9 @@ def _tried(mutants: list[Mutant], processes: int) -> Iterator[Row]:
                 free.put(scratch)
             seconds = round(time.perf_counter() - begin)
             if red is None:
-                return Row(mutant.name, "survived", "", seconds, today, at)
+                return Row(mutant.name, "survived", "", seconds, today, at, mutant.digest)
             verdict = "killed" if red.ended else NO_END
-            return Row(mutant.name, verdict, red.guard, seconds, today, at)
+            return Row(mutant.name, verdict, red.guard, seconds, today, at, mutant.digest)
 
         futures = [pool.submit(tried, mutant) for mutant in mutants]
         try:

@@ -6,10 +6,10 @@ from collections.abc import Iterator
 from itertools import groupby
 from pathlib import Path
 
-from validation.mutants.plan import Mutant, load_mutants
-from validation.mutants.results import NO_END, PAGE, Row, read_rows, score
+from validation.mutants.plan import Mutant
+from validation.mutants.results import NO_END, PAGE, Row, score
 
-__all__ = ["section", "summary", "write_page"]
+__all__ = ["summary", "write_page"]
 
 
 def write_page(mutants: list[Mutant], rows: dict[str, Row], path: Path = PAGE) -> Path:
@@ -20,12 +20,6 @@ def write_page(mutants: list[Mutant], rows: dict[str, Row], path: Path = PAGE) -
         lines += [f"## {file}", "", *_table(list(own), rows), ""]
     path.write_text("\n".join(lines), encoding="utf-8")
     return path
-
-
-def section() -> list[str]:
-    """The committed results for the report, in half a page."""
-    lines = summary(load_mutants(), read_rows())
-    return ["", "## Every law guarded", "", *lines, "", f"All of them: [{PAGE.name}]({PAGE.name})."]
 
 
 def summary(mutants: list[Mutant], rows: dict[str, Row]) -> list[str]:

@@ -12,6 +12,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from validation.inputs import short_hash
+
 __all__ = ["FOLDER", "ROOT", "Guards", "Mutant", "load_mutants", "wide_guards"]
 
 FOLDER = Path(__file__).parent
@@ -55,6 +57,11 @@ class Mutant:
     replace: str
     guards: Guards
     equivalent: str = ""
+
+    @property
+    def digest(self) -> str:
+        """Twelve hexadecimal digits of the file, the text in it and what stands there instead."""
+        return short_hash((self.file, self.find, self.replace))
 
     def applied(self, source: str) -> str:
         """The mutated text of a source file.

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import csv
-import subprocess
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 
-from validation.mutants.plan import FOLDER, ROOT, Mutant
+from validation.mutants.plan import FOLDER, Mutant
 
-__all__ = ["NO_END", "PAGE", "RESULTS", "Row", "commit", "read_rows", "score", "write_rows"]
+__all__ = ["NO_END", "PAGE", "RESULTS", "Row", "read_rows", "score", "untried", "write_rows"]
 
 RESULTS = FOLDER / "results.csv"
 NO_END = "no end"
@@ -23,6 +22,7 @@ class Row:
 
     verdict : "killed", "no end" (its guards did not come to their end) or "survived"
     by : the guard that turned red first; seconds : what that took
+    mutant : digest of the mutant that was tried
     """
 
     name: str
@@ -31,6 +31,7 @@ class Row:
     seconds: int
     date: str
     commit: str
+    mutant: str
 
     @property
     def dead(self) -> bool:
@@ -62,25 +63,12 @@ def write_rows(rows: Iterable[Row], path: Path = RESULTS) -> None:
     part.replace(path)
 
 
+def untried(mutants: Iterable[Mutant], rows: Mapping[str, Row]) -> list[str]:
+    """The mutants without a row, and those whose row is of another text."""
+    return [m.name for m in mutants if m.name not in rows or rows[m.name].mutant != m.digest]
+
+
 def score(mutants: list[Mutant], rows: dict[str, Row]) -> tuple[int, int]:
     """How many are dead, and of how many: those that no number can show are not counted."""
     counted = [rows[mutant.name] for mutant in mutants if not mutant.equivalent]
     return sum(row.dead for row in counted), len(counted)
-
-
-def commit() -> str:
-    """The commit of the checkout, with a plus where a file differs from it; "unknown" without
-    git."""
-    try:
-        head = _git("rev-parse", "--short", "HEAD").strip()
-        changed = _git("status", "--porcelain", "--untracked-files=no").splitlines()
-    except (OSError, subprocess.CalledProcessError):
-        return "unknown"
-    own = {str(path.relative_to(ROOT)) for path in (RESULTS, PAGE)}
-    return head + ("+" if any(line[3:] not in own for line in changed) else "")
-
-
-def _git(*words: str) -> str:
-    return subprocess.run(
-        ["git", *words], cwd=ROOT, check=True, capture_output=True, text=True
-    ).stdout
