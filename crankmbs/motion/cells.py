@@ -25,7 +25,8 @@ __all__ = ["Acting", "Cells", "Loads", "cell_of"]
 _INSIDE = 2.0 * KNOT  # rad: so far from the end of a cell nothing counts as on a knot there
 _MOST = 0.25  # of a cell
 _SAME = 8 * float(np.finfo(float).eps)  # of the largest value: rounding
-_ROWS = ("time", "angle", "speed", "shares", "energy", "acceleration", "outside", "residual")
+_OF_CELLS = ("shares", "residual")
+_ROWS = ("time", "angle", "speed", "energy", "acceleration", "outside", *_OF_CELLS)
 
 
 def cell_of(ends: Array, values: Array) -> Index:
@@ -124,24 +125,13 @@ class Cells:
 
     def part(self, k: Index, low: Array, high: Array) -> Cells:
         """Parts of cells, each from a place in it to another, as cells; shape (p,) each."""
-        shape = len(k), len(self.places)
-        basis = self.basis(low[:, None] + (high - low)[:, None] * self.places)
-        cell = np.repeat(k, shape[1])
+        x = low[:, None] + (high - low)[:, None] * self.places
+        cell = np.repeat(k, x.shape[1])
 
         def cut(rows: Array) -> Array:
-            return self._polynomials.values(rows, cell, basis).reshape(shape)
+            return self.values(rows, cell, x.ravel()).reshape(x.shape)
 
-        return replace(
-            self,
-            time=cut(self.time),
-            angle=cut(self.angle),
-            speed=cut(self.speed),
-            shares=self.shares[k],
-            energy=None if self.energy is None else cut(self.energy),
-            acceleration=None if self.acceleration is None else cut(self.acceleration),
-            outside=None if self.outside is None else cut(self.outside),
-            residual=None if self.residual is None else self.residual[k],
-        )
+        return self._with(lambda row: row[k], cut)
 
     def first(self, m: int) -> Cells:
         """The first m cells."""
@@ -163,12 +153,17 @@ class Cells:
         first = self.part(np.array([k]), np.array([x]), np.ones(1))
         return first.joined(rest.since(1))
 
-    def _with(self, function: Callable[[Array], Array]) -> Cells:
-        """With a function of all its rows in their place."""
+    def _with(
+        self,
+        function: Callable[[Array], Array],
+        of_polynomials: Callable[[Array], Array] | None = None,
+    ) -> Cells:
+        """With a function of all its rows in their place, or another one of its polynomials."""
         rows: dict[str, Any] = {}
         for name in _ROWS:
             row = getattr(self, name)
-            rows[name] = None if row is None else function(row)
+            one = of_polynomials if of_polynomials and name not in _OF_CELLS else function
+            rows[name] = None if row is None else one(row)
         return replace(self, **rows)
 
     def cut_at(self, knots: Array, period: float) -> Cells:
@@ -217,20 +212,15 @@ class Cells:
     def inner_reader(self) -> Callable[[Array], Array]:
         """What reads a row at the places of `inner`, cell after cell: at the nodes as it is."""
         every, places = np.arange(len(self.time)), self.inner()
-        ends = [(at, self.basis(places[:, at])) for at in (0, -1)]
 
         def read(row: Array) -> Array:
             values = row.copy()
-            for at, basis in ends:
-                values[:, at] = self.values(row, every, basis)
+            for at in (0, -1):
+                values[:, at] = self.values(row, every, places[:, at])
             return values.ravel()
 
         return read
 
-    def values(self, row: Array, k: Index, basis: Array) -> Array:
-        """A row at the places in the cells k that a basis was made for, shape (p,)."""
-        return self._polynomials.values(row, k, basis)
-
-    def basis(self, x: Array) -> Array:
-        """Of places, for `values`."""
-        return self._polynomials.basis(x.ravel())
+    def values(self, row: Array, k: Index, x: Array) -> Array:
+        """A row at places x in the cells k, shape (p,) each."""
+        return self._polynomials.values(row, k, x)

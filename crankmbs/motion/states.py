@@ -44,15 +44,13 @@ def samples_at(cells: Cells, train: CrankTrain, values: Array, *, in_time: bool)
     """The motion at times [s], or else at crank angles [rad], shape (p,) in any order; where cells
     meet it is that before, beyond an end that at the end."""
     k, x = cells.located(values, in_time=in_time)
-    basis = cells.basis(x)
     known = {"time" if in_time else "angle": values}
-    return _samples(cells, train, k, lambda row: cells.values(row, k, basis), known)
+    return _samples(cells, train, k, lambda row: cells.values(row, k, x), known)
 
 
 def samples_in(cells: Cells, train: CrankTrain, k: Index, x: Array) -> Samples:
     """The motion at places x in the cells k, shape (p,) each."""
-    basis = cells.basis(x)
-    return _samples(cells, train, k, lambda row: cells.values(row, k, basis), {})
+    return _samples(cells, train, k, lambda row: cells.values(row, k, x), {})
 
 
 def inner_samples(cells: Cells, train: CrankTrain) -> Samples:
