@@ -25,8 +25,8 @@ __all__ = ["Acting", "Cells", "Loads", "cell_of"]
 _INSIDE = 2.0 * KNOT  # rad: so far from the end of a cell nothing counts as on a knot there
 _MOST = 0.25  # of a cell
 _SAME = 8 * float(np.finfo(float).eps)  # of the largest value: rounding
-_OF_CELLS = ("shares", "residual")
-_ROWS = ("time", "angle", "speed", "energy", "acceleration", "outside", *_OF_CELLS)
+_POLYNOMIALS = ("time", "angle", "speed", "energy", "acceleration", "outside")
+_ROWS = (*_POLYNOMIALS, "shares", "residual")
 
 
 def cell_of(ends: Array, values: Array) -> Index:
@@ -126,12 +126,12 @@ class Cells:
     def part(self, k: Index, low: Array, high: Array) -> Cells:
         """Parts of cells, each from a place in it to another, as cells; shape (p,) each."""
         x = low[:, None] + (high - low)[:, None] * self.places
-        cell = np.repeat(k, x.shape[1])
-
-        def cut(rows: Array) -> Array:
-            return self.values(rows, cell, x.ravel()).reshape(x.shape)
-
-        return self._with(lambda row: row[k], cut)
+        names = [name for name in _POLYNOMIALS if getattr(self, name) is not None]
+        rows = np.array([getattr(self, name) for name in names])
+        cut = self.values(rows, np.repeat(k, x.shape[1]), x.ravel()).reshape(-1, *x.shape)
+        residual = None if self.residual is None else self.residual[k]
+        rest: dict[str, Any] = dict(zip(names, cut, strict=True))
+        return replace(self, shares=self.shares[k], residual=residual, **rest)
 
     def first(self, m: int) -> Cells:
         """The first m cells."""
@@ -153,17 +153,12 @@ class Cells:
         first = self.part(np.array([k]), np.array([x]), np.ones(1))
         return first.joined(rest.since(1))
 
-    def _with(
-        self,
-        function: Callable[[Array], Array],
-        of_polynomials: Callable[[Array], Array] | None = None,
-    ) -> Cells:
-        """With a function of all its rows in their place, or another one of its polynomials."""
+    def _with(self, function: Callable[[Array], Array]) -> Cells:
+        """With a function of all its rows in their place."""
         rows: dict[str, Any] = {}
         for name in _ROWS:
             row = getattr(self, name)
-            one = of_polynomials if of_polynomials and name not in _OF_CELLS else function
-            rows[name] = None if row is None else one(row)
+            rows[name] = None if row is None else function(row)
         return replace(self, **rows)
 
     def cut_at(self, knots: Array, period: float) -> Cells:
@@ -210,17 +205,17 @@ class Cells:
         return places
 
     def inner_reader(self) -> Callable[[Array], Array]:
-        """What reads a row at the places of `inner`, cell after cell: at the nodes as it is."""
+        """What reads rows at the places of `inner`, cell after cell: at the nodes as they are."""
         every, places = np.arange(len(self.time)), self.inner()
 
         def read(row: Array) -> Array:
             values = row.copy()
             for at in (0, -1):
-                values[:, at] = self.values(row, every, places[:, at])
-            return values.ravel()
+                values[..., at] = self.values(row, every, places[:, at])
+            return values.reshape(*row.shape[:-2], -1)
 
         return read
 
     def values(self, row: Array, k: Index, x: Array) -> Array:
-        """A row at places x in the cells k, shape (p,) each."""
+        """A row, or several, shape (..., m, n), at places x in the cells k, shape (p,) each."""
         return self._polynomials.values(row, k, x)

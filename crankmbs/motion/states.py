@@ -68,17 +68,16 @@ def _samples(
 ) -> Samples:
     """The motion at points in the cells k, shape (p,), at which rows are read, but for those that
     are known there."""
-    time, angle = (
-        known[name] if name in known else read(row)
-        for name, row in (("time", cells.time), ("angle", cells.angle))
-    )
+    faster = cells.speed if cells.energy is None else cells.energy
+    rows = {"time": cells.time, "angle": cells.angle, "speed": faster}
+    asked = [name for name in rows if name not in known]
+    known |= zip(asked, read(np.array([rows[name] for name in asked])), strict=True)
+    time, angle, speed = (known[name] for name in rows)
     sense = cells.acting.sense
     own = {"fuel": cells.shares[k]} if cells.shares.shape[1] else {}
     inertia, slope, torque = _reduced(train, angle, own.get("fuel"))
-    if cells.energy is None:
-        speed = read(cells.speed)
-    else:
-        speed = sense * np.sqrt(2.0 * np.maximum(read(cells.energy), 0.0) / inertia)
+    if cells.energy is not None:
+        speed = sense * np.sqrt(2.0 * np.maximum(speed, 0.0) / inertia)
     slides, rate = np.full_like(speed, sense), None
     outside = _outside(cells, train, read, (time, angle, speed))
     if outside is not None:

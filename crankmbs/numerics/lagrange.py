@@ -64,12 +64,13 @@ class Lagrange:
         return np.stack(matrices, axis=1)
 
     def values(self, rows: Array, k: Index, x: Array) -> Array:
-        """The polynomials through rows k, shape (m, n), at places x in them, shape (p,)."""
-        if len(k) < len(rows):
-            rows, k = rows.take(k, axis=0), np.arange(len(k))
-        first = rows[:, 0]
-        series = self._to_series[:, 0] @ (rows - first[:, None]).T
-        return np.asarray(first.take(k) + summed(series.take(k, axis=1), x))
+        """The polynomials through rows k, shape (..., m, n), at places x in them, shape (p,);
+        shape (..., p)."""
+        if len(k) < rows.shape[-2]:
+            rows, k = rows.take(k, axis=-2), np.arange(len(k))
+        first = rows[..., 0]
+        series = np.moveaxis((rows - first[..., None]) @ self._to_series[:, 0].T, -1, 0)
+        return np.asarray(first.take(k, axis=-1) + summed(series.take(k, axis=-1), x))
 
     def inverse(self, rows: Array, k: Index, values: Array) -> Array:
         """Where in [0, 1] the monotone polynomials through rows k take values, shape (p,)."""
