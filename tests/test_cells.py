@@ -127,9 +127,9 @@ def test_a_cell_is_read_where_it_is_asked_for(stages):
     angle = np.array([[1.0], [0.5]]) - 0.5 * at
     energy = np.array([[9.0], [3.0]]) - np.array([[6.0], [0.5 / stages]]) * at**stages
     cells = Cells(time, angle, angle, Acting(-1.0), np.empty((2, 0)), energy)
-    basis, second = cells.basis(x), np.ones(11, np.intp)
-    np.testing.assert_allclose(cells.values(time, second, basis), 5.0 + x**stages, rtol=1e-15)
-    np.testing.assert_allclose(cells.values(energy, second, basis), 3.0 - 0.5 * grown, rtol=1e-15)
+    second = np.ones(11, np.intp)
+    np.testing.assert_allclose(cells.values(time, second, x), 5.0 + x**stages, rtol=1e-15)
+    np.testing.assert_allclose(cells.values(energy, second, x), 3.0 - 0.5 * grown, rtol=1e-15)
     k, place = cells.located(0.5 - 0.5 * x, in_time=False)
     assert k.tolist() == [0] + 10 * [1]
     np.testing.assert_allclose(place[1:], x[1:], rtol=1e-15)

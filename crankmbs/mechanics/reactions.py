@@ -149,12 +149,14 @@ class Balances(NamedTuple):
 
     def apart(self, values: Array) -> Array:
         """Largest absolute difference of each row from one of another motion, NaN where one is:
-        values as `fill` gives them; these here are not kept."""
-        largest = np.empty(len(values))
+        values as `fill` gives them, the last of them for all samples beyond; these here are not
+        kept."""
+        largest, count = np.empty(len(values)), values.shape[1]
         for names, rows in self.groups:
-            own = np.empty((rows.stop - rows.start, values.shape[1]))
+            own = np.empty((rows.stop - rows.start, len(self.period.which)))
             self.put(names, own)
-            own -= values[rows]
+            own[:, :count] -= values[rows]
+            own[:, count:] -= values[rows, -1:]
             largest[rows] = peaks_of(own)
         return largest
 

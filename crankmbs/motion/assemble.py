@@ -23,7 +23,6 @@ from crankmbs.numerics.arrays import Array, Labelled
 __all__ = ["ANGLE_ROUNDING", "Assembled", "assemble", "labelled"]
 
 _ROUNDING = 64 * float(np.finfo(float).eps)  # of a variable's peak: what the formulas round
-_GIVEN = ("fuel", "friction_force")  # what reactions take from a formulation's own
 _FEW = 32  # samples: among more there is one where nothing cancels
 ANGLE_ROUNDING = 2 * float(np.finfo(float).eps)  # of the crank angle
 
@@ -67,7 +66,7 @@ def assemble(train: CrankTrain, solution: Solution) -> Assembled:
     more than the difference of two passes:
 
         few samples        sum of what angle, speed and acceleration make one after the other
-        an end in time     at least |f(b'') - f(a)| there, b'' as far ahead as in the last turn
+        an end in time     |f(b'') - f(a)| there counts too, b'' as far ahead as in the last turn
         free crank         alpha also errs by (torque that b' needs, less what it has) / min J
 
     Two variables have a law of their own:
@@ -91,14 +90,11 @@ def _errors(
     answer, better = solution.samples, solution.better or solution.samples
     late = better.time - answer.time
     ahead = better.theta - answer.theta - answer.omega * late
-    passes = _Passes(train.off, answer, _turned_by_rounding(better), table)
-    apart, missed, angles = passes.difference()
-    largest = _ROUNDING * np.array(_sizes(peaks)) + apart
+    rounded = _turned_by_rounding(better)
     if late.any() and late[-1] == 0.0 != ahead[-1]:  # else it ends at an angle, at the same time
-        apart, missed_there = passes.end_in_time(ahead)
-        missed = max(missed, missed_there)
-        rounded = _ROUNDING * np.array(list(peaks.values()))
-        largest = np.maximum(largest, apart + rounded)
+        rounded = _with_end_in_time(rounded, ahead)
+    apart, missed, angles = _Passes(train.off, answer, rounded, table).difference()
+    largest = _ROUNDING * np.array(_sizes(peaks)) + apart
     errors = dict(zip(table.rows, largest.tolist(), strict=True))
     if missed:  # of a free crank, which has inertia at every angle; a driven one may have none
         errors["crank_acceleration"] += missed / float(reduce(train, angles).inertia.min())
@@ -111,7 +107,8 @@ class _Passes(NamedTuple):
     """Two passes of one motion.
 
     off : the crank train of the better one
-    rounded : the better answer, turned ahead by the rounding of its angle
+    rounded : the better answer, turned ahead by the rounding of its angle; with one sample more it
+        is compared with the last of the answer there
     table : the variables of the answer
     """
 
@@ -138,10 +135,11 @@ class _Passes(NamedTuple):
             if samples.own:
                 row = places["external_torque"].start
                 given = samples.own.get("external_torque", before[row])
-                missed = peak(found.row("external_torque") - given)
-            apart[:first] = peaks_of(before[:first] - motion_rows(samples))
+                missed = peak(found.row("external_torque")[: len(given)] - given)
+            count = before.shape[1]
+            apart[:first] = peaks_of(before[:first] - motion_rows(samples)[:, :count])
             for name, values in samples.own.items():
-                apart[places[name]] = peaks_of(before[places[name]] - values.T)
+                apart[places[name]] = peaks_of(before[places[name]] - values.T[..., :count])
             total += self.table.largest(apart)
             if samples is not self.rounded:
                 before = table_of(self.off, samples).values
@@ -150,35 +148,24 @@ class _Passes(NamedTuple):
     def _chain(self) -> list[Samples]:
         if len(self.answer.time) > _FEW:
             return [self.rounded]
-        turned = replace(self.answer, theta=self.rounded.theta)
+        count = len(self.answer.time)
+        answer = self.answer.select(np.minimum(np.arange(len(self.rounded.time)), count - 1))
+        turned = replace(answer, theta=self.rounded.theta)
         return [turned, replace(turned, omega=self.rounded.omega), self.rounded]
 
-    def end_in_time(self, ahead: Array) -> tuple[Array, float]:
-        """The same at the last sample, its angle as far off as the passes were in the last turn;
-        zero of what a formulation computed by itself.
 
-        At an end in time that sample is the only one whose angle errs where the others are at
-        angles, and two passes may agree in it by chance.
+def _with_end_in_time(samples: Samples, ahead: Array) -> Samples:
+    """With the last sample once more, its angle as far off as the passes were in the last turn.
 
-        ahead : shape (n,) [rad], by which the better answer is ahead at equal time
-        """
-        theta, own, places = self.rounded.theta, self.rounded.own, self.table.places
-        recent = ahead[np.abs(theta - theta[-1]) <= 2.0 * math.pi]
-        more = math.copysign(peak(recent) - abs(ahead[-1]), ahead[-1])
-        given = {name: values for name, values in own.items() if name in _GIVEN}
-        last = replace(self.rounded, own=given).select(np.array([-1]))
-        end = replace(last, theta=last.theta + more)
-        found, first, before = balances_of(self.off, end), len(MOTION), self.table.values[:, -1:]
-        balanced = slice(first, first + sum(found.rows.values()))
-        apart = np.zeros(len(before))
-        apart[:first] = peaks_of(before[:first] - motion_rows(end))
-        apart[balanced] = found.apart(before[balanced])
-        missed = 0.0
-        if own:
-            missed = peak(own["external_torque"][-1:] - found.row("external_torque"))
-        for name in own:
-            apart[places[name]] = 0.0
-        return self.table.largest(apart), missed
+    At an end in time that sample is the only one whose angle errs where the others are at angles,
+    and two passes may agree in it by chance.
+
+    ahead : shape (n,) [rad], by which the better answer is ahead at equal time
+    """
+    theta, end = samples.theta, samples.select(np.array([-1]))
+    recent = ahead[np.abs(theta - theta[-1]) <= 2.0 * math.pi]
+    more = math.copysign(peak(recent) - abs(ahead[-1]), ahead[-1])
+    return Samples.joined([samples, replace(end, theta=end.theta + more)])
 
 
 def _turned_by_rounding(samples: Samples) -> Samples:

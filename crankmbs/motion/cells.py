@@ -25,7 +25,8 @@ __all__ = ["Acting", "Cells", "Loads", "cell_of"]
 _INSIDE = 2.0 * KNOT  # rad: so far from the end of a cell nothing counts as on a knot there
 _MOST = 0.25  # of a cell
 _SAME = 8 * float(np.finfo(float).eps)  # of the largest value: rounding
-_ROWS = ("time", "angle", "speed", "shares", "energy", "acceleration", "outside", "residual")
+_POLYNOMIALS = ("time", "angle", "speed", "energy", "acceleration", "outside")
+_ROWS = (*_POLYNOMIALS, "shares", "residual")
 
 
 def cell_of(ends: Array, values: Array) -> Index:
@@ -124,24 +125,13 @@ class Cells:
 
     def part(self, k: Index, low: Array, high: Array) -> Cells:
         """Parts of cells, each from a place in it to another, as cells; shape (p,) each."""
-        shape = len(k), len(self.places)
-        basis = self.basis(low[:, None] + (high - low)[:, None] * self.places)
-        cell = np.repeat(k, shape[1])
-
-        def cut(rows: Array) -> Array:
-            return self._polynomials.values(rows, cell, basis).reshape(shape)
-
-        return replace(
-            self,
-            time=cut(self.time),
-            angle=cut(self.angle),
-            speed=cut(self.speed),
-            shares=self.shares[k],
-            energy=None if self.energy is None else cut(self.energy),
-            acceleration=None if self.acceleration is None else cut(self.acceleration),
-            outside=None if self.outside is None else cut(self.outside),
-            residual=None if self.residual is None else self.residual[k],
-        )
+        x = low[:, None] + (high - low)[:, None] * self.places
+        names = [name for name in _POLYNOMIALS if getattr(self, name) is not None]
+        rows = np.array([getattr(self, name) for name in names])
+        cut = self.values(rows, np.repeat(k, x.shape[1]), x.ravel()).reshape(-1, *x.shape)
+        residual = None if self.residual is None else self.residual[k]
+        rest: dict[str, Any] = dict(zip(names, cut, strict=True))
+        return replace(self, shares=self.shares[k], residual=residual, **rest)
 
     def first(self, m: int) -> Cells:
         """The first m cells."""
@@ -215,22 +205,17 @@ class Cells:
         return places
 
     def inner_reader(self) -> Callable[[Array], Array]:
-        """What reads a row at the places of `inner`, cell after cell: at the nodes as it is."""
+        """What reads rows at the places of `inner`, cell after cell: at the nodes as they are."""
         every, places = np.arange(len(self.time)), self.inner()
-        ends = [(at, self.basis(places[:, at])) for at in (0, -1)]
 
         def read(row: Array) -> Array:
             values = row.copy()
-            for at, basis in ends:
-                values[:, at] = self.values(row, every, basis)
-            return values.ravel()
+            for at in (0, -1):
+                values[..., at] = self.values(row, every, places[:, at])
+            return values.reshape(*row.shape[:-2], -1)
 
         return read
 
-    def values(self, row: Array, k: Index, basis: Array) -> Array:
-        """A row at the places in the cells k that a basis was made for, shape (p,)."""
-        return self._polynomials.values(row, k, basis)
-
-    def basis(self, x: Array) -> Array:
-        """Of places, for `values`."""
-        return self._polynomials.basis(x.ravel())
+    def values(self, row: Array, k: Index, x: Array) -> Array:
+        """A row, or several, shape (..., m, n), at places x in the cells k, shape (p,) each."""
+        return self._polynomials.values(row, k, x)

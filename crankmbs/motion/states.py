@@ -44,15 +44,13 @@ def samples_at(cells: Cells, train: CrankTrain, values: Array, *, in_time: bool)
     """The motion at times [s], or else at crank angles [rad], shape (p,) in any order; where cells
     meet it is that before, beyond an end that at the end."""
     k, x = cells.located(values, in_time=in_time)
-    basis = cells.basis(x)
     known = {"time" if in_time else "angle": values}
-    return _samples(cells, train, k, lambda row: cells.values(row, k, basis), known)
+    return _samples(cells, train, k, lambda row: cells.values(row, k, x), known)
 
 
 def samples_in(cells: Cells, train: CrankTrain, k: Index, x: Array) -> Samples:
     """The motion at places x in the cells k, shape (p,) each."""
-    basis = cells.basis(x)
-    return _samples(cells, train, k, lambda row: cells.values(row, k, basis), {})
+    return _samples(cells, train, k, lambda row: cells.values(row, k, x), {})
 
 
 def inner_samples(cells: Cells, train: CrankTrain) -> Samples:
@@ -70,17 +68,16 @@ def _samples(
 ) -> Samples:
     """The motion at points in the cells k, shape (p,), at which rows are read, but for those that
     are known there."""
-    time, angle = (
-        known[name] if name in known else read(row)
-        for name, row in (("time", cells.time), ("angle", cells.angle))
-    )
+    faster = cells.speed if cells.energy is None else cells.energy
+    rows = {"time": cells.time, "angle": cells.angle, "speed": faster}
+    asked = [name for name in rows if name not in known]
+    known |= zip(asked, read(np.array([rows[name] for name in asked])), strict=True)
+    time, angle, speed = (known[name] for name in rows)
     sense = cells.acting.sense
     own = {"fuel": cells.shares[k]} if cells.shares.shape[1] else {}
     inertia, slope, torque = _reduced(train, angle, own.get("fuel"))
-    if cells.energy is None:
-        speed = read(cells.speed)
-    else:
-        speed = sense * np.sqrt(2.0 * np.maximum(read(cells.energy), 0.0) / inertia)
+    if cells.energy is not None:
+        speed = sense * np.sqrt(2.0 * np.maximum(speed, 0.0) / inertia)
     slides, rate = np.full_like(speed, sense), None
     outside = _outside(cells, train, read, (time, angle, speed))
     if outside is not None:

@@ -23,7 +23,6 @@ class Lagrange:
 
     def __init__(self, places: Array, weights: Array) -> None:
         self.places, self.weights = places, weights
-        self._series = np.linalg.inv(self._chebyshev(places))
         apart = places[:, None] - places
         np.fill_diagonal(apart, 1.0)
         barycentric = 1.0 / apart.prod(axis=1)
@@ -39,7 +38,7 @@ class Lagrange:
         >>> ends_and_nodes(1).basis(np.array([0.25])).round(12)
         array([[ 0.375,  0.75 , -0.125]])
         """
-        return np.asarray(self._chebyshev(x) @ self._series)
+        return summed(self._to_series[:, 0, :, None], x).T
 
     def series(self, values: Array, derivatives: int = 0) -> Array:
         """Chebyshev series on the unit interval of polynomials through values, shape (n, ...), and
@@ -64,26 +63,25 @@ class Lagrange:
             matrices.append(matrices[-1] @ self.slopes)
         return np.stack(matrices, axis=1)
 
-    def _chebyshev(self, x: Array) -> Array:
-        first, last = self.places[0], self.places[-1]
-        z = (2.0 * x - (first + last)) / (last - first)
-        return np.polynomial.chebyshev.chebvander(z, len(self.places) - 1)
-
-    def values(self, rows: Array, k: Index, basis: Array) -> Array:
-        """The polynomials through rows k, shape (m, n), where a basis was made, shape (p,)."""
-        first = rows[k, 0]
-        return np.asarray(first + np.einsum("pn,pn->p", basis, rows[k] - first[:, None]))
+    def values(self, rows: Array, k: Index, x: Array) -> Array:
+        """The polynomials through rows k, shape (..., m, n), at places x in them, shape (p,);
+        shape (..., p)."""
+        if len(k) < rows.shape[-2]:
+            rows, k = rows.take(k, axis=-2), np.arange(len(k))
+        first = rows[..., 0]
+        series = np.moveaxis((rows - first[..., None]) @ self._to_series[:, 0].T, -1, 0)
+        return np.asarray(first.take(k, axis=-1) + summed(series.take(k, axis=-1), x))
 
     def inverse(self, rows: Array, k: Index, values: Array) -> Array:
         """Where in [0, 1] the monotone polynomials through rows k take values, shape (p,)."""
-        some = rows[k] - rows[k, :1]
-        slopes = some @ self.slopes.T
+        first = rows[k, 0]
+        series = self.series(rows[k].T - first, 1)
 
         def at(x: Array) -> tuple[Array, Array]:
-            basis = self.basis(x)
-            return np.einsum("pn,pn->p", basis, some), np.einsum("pn,pn->p", basis, slopes)
+            value, slope = summed(series, x)
+            return value, slope
 
-        return invert_monotone(at, values - rows[k, 0], np.zeros(len(k)), np.ones(len(k)))
+        return invert_monotone(at, values - first, np.zeros(len(k)), np.ones(len(k)))
 
 
 @cache

@@ -84,8 +84,7 @@ def _loop(scene: Scene, grid: Grid, reference: Reference) -> Callable[[], Answer
     def run() -> Answer:
         cells = solve(grid, strip, branch, begin)
         m = len(cells.torque)
-        edges = strip.turned[: m + 1]
-        window = Window(grid, strip.first(m), branch, sense, state, edges, *cells, (m - 1, 1.0))
+        window = Window(grid, strip.first(m), branch, sense, state, *cells, (m - 1, 1.0))
         time, at, speed, *_ = window.cut(t_end, bound).end
         trace = Trace(np.array([time]), np.array([at]), np.array([speed]))
         return Answer(trace, cells.torque.size)

@@ -254,7 +254,6 @@ def _solved(way: _Way, loads: Branch | Course, strip: Strip, t_end: float) -> Wi
         loads,
         sense,
         state,
-        strip.turned[: m + 1],
         *cells.first(m),
         (m - 1, 1.0),
         modes=tuple(one for one in modes if one[0] < m),

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crankmbs.mechanics.friction import rubbing
-from crankmbs.mechanics.inertia import fired_torque, inertia_alone, reduce
+from crankmbs.mechanics.inertia import fired_torque, reduce
 from crankmbs.mechanics.torque import over_angle
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.windows import Phases
@@ -22,6 +22,7 @@ from crankmbs.motion.crank_angle.edges import WIDEST, edges_of
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.collocation import Rule, gauss
 from crankmbs.numerics.cycle import Cycle
+from crankmbs.numerics.lagrange import ends_and_nodes
 
 __all__ = ["FINEST_CELL", "Grid", "Strip", "grid_of", "largest_of_row"]
 
@@ -321,12 +322,13 @@ class Grid:
         return Strip(cell, width, turned, against, inertia, torque, combustion, *others)
 
     def _tabulate(self, start: Array, width: Array) -> _Tables:
-        theta = start[:, None] + width[:, None] * self.rule.nodes
-        found = reduce(self.train, theta)
-        torque = np.asarray(found.torque + self.outside(theta))
+        places = ends_and_nodes(len(self.rule.nodes)).places
+        every = start[:, None] + width[:, None] * places
+        theta, found = every[:, 1:-1], reduce(self.train, every)
+        inertia, ends = found.inertia[:, 1:-1], found.inertia[:, [0, -1]]
+        torque = np.asarray(found.torque[:, 1:-1] + self.outside(theta))
         combustion, rubbed = fired_torque(self.train, theta), self._rub(theta)
-        ends = inertia_alone(self.train.scene, np.column_stack([start, start + width]))
-        return _Tables(found.inertia, torque, combustion, *rubbed, ends)
+        return _Tables(inertia, torque, combustion, *rubbed, ends)
 
     def _rub(self, theta: Array) -> tuple[Array, Array, Array]:
         """What of `_Tables` comes from friction, at angles of shape (m, s)."""

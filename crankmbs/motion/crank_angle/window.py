@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crankmbs.mechanics.torque import Branch, Course
-from crankmbs.motion.base import NOWHERE, State
+from crankmbs.motion.base import NOWHERE, Samples, State
 from crankmbs.motion.cells import Acting, Cells
 from crankmbs.motion.crank_angle.crossing import crossing
 from crankmbs.motion.crank_angle.errors import Errors, errors_of
@@ -29,8 +29,8 @@ _SAME = 1e-6  # rad: more than rounding of an angle, less than a cell
 class Window:
     """Consecutive solved cells on one branch or course of the loads.
 
-    edges : shape (m + 1,) [rad], angle turned since the beginning, u >= 0; energy and time at
-    them; torque : shape (m, s), Q at the nodes [N m]; slowness : shape (m, s), dt/du [s/rad];
+    energy, time : shape (m + 1,), at the edges
+    torque, slowness : shape (m, s), Q [N m] and dt/du [s/rad] at the nodes
     stop : cell and position in it, 0 to 1, where the window ends; landed : what is exact there;
     skipped : cells of whole periods passed before it and not kept;
     modes : with fuel, from which cell on which mode holds.
@@ -41,7 +41,6 @@ class Window:
     branch: Branch | Course
     sense: float
     begin: State
-    edges: Array
     energy: Array
     time: Array
     torque: Array
@@ -50,6 +49,11 @@ class Window:
     landed: State = NOWHERE
     skipped: int = 0
     modes: tuple[tuple[int, Mode], ...] = ()
+
+    @property
+    def edges(self) -> Array:
+        """Angle turned since the beginning up to each edge, u >= 0, shape (m + 1,) [rad]."""
+        return self.strip.turned
 
     @cached_property
     def whole(self) -> Cells:
@@ -82,19 +86,20 @@ class Window:
     def _cells(self, low: int, high: int) -> Cells:
         """The cells from one number to another."""
         rule, sense = self.grid.rule, self.sense
-        some, edges = slice(low, high), slice(low, high + 1)
-        strip = self.strip.part(low, high)
-        width, shape = strip.width[:, None], (high - low, len(rule.nodes) + 2)
-        angle, energy, time, speed = np.empty((4, *shape))
-        angle[:, 1:-1] = strip.angles(self.begin.theta, sense, rule)
-        gained, spent = self.torque[some] @ rule.matrix.T, self.slowness[some] @ rule.matrix.T
-        energy[:, 1:-1] = self.energy[some, None] + sense * width * gained
-        time[:, 1:-1] = self.time[some, None] + width * spent
-        speed[:, 1:-1] = sense / self.slowness[some]
+        some, edges, width = slice(low, high), slice(low, high + 1), self.strip.width[low:high]
+        slowness = self.slowness[some].T
         turned = self.begin.theta + sense * self.edges[edges]
         ends = turned, self.energy[edges], self.time[edges], self.speeds[edges]
-        for inside, at in zip((angle, energy, time, speed), ends, strict=True):
-            inside[:, 0], inside[:, -1] = at[:-1], at[1:]
+        inside = (
+            sense * (width * rule.nodes[:, None]) + turned[:-1],
+            sense * width * (rule.matrix @ self.torque[some].T) + self.energy[some],
+            width * (rule.matrix @ slowness) + self.time[some],
+            sense / slowness,
+        )
+        rows = np.empty((4, len(rule.nodes) + 2, high - low))  # along the cells they are long
+        for row, nodes, at in zip(rows, inside, ends, strict=True):
+            row[0], row[1:-1], row[-1] = at[:-1], nodes, at[1:]
+        angle, energy, time, speed = rows.transpose(0, 2, 1)
         acting = Acting(sense, phases=self.begin.mode.loads, loads=self.branch)
         return Cells(time, angle, speed, acting, self.shares[some], energy)
 
@@ -120,19 +125,24 @@ class Window:
         return self.steps * len(self.grid.rule.nodes)
 
     @cached_property
+    def last(self) -> Samples:
+        """The motion where the window ends, by the polynomials of its last cell."""
+        k, x = self.stop
+        at = np.zeros(1, np.intp), np.array([x])
+        return samples_in(self._cells(k, k + 1), self.grid.train, *at)
+
+    @cached_property
     def end(self) -> State:
         """The state where the window ends; what is known exactly as it is."""
-        (k, x), train = self.stop, self.grid.train
+        k, x = self.stop
         theta = self.begin.theta + self.sense * float(self.edges[k] + x * self.strip.width[k])
         time, omega = float(self.time[k + 1]), float(self.speeds[k + 1])
         if x < 1.0:
-            cell = self._cells(k, k + 1)
-            at = samples_in(cell, train, np.zeros(1, np.intp), np.array([x]))
-            time, omega = float(at.time[0]), float(at.omega[0])
+            time, omega = float(self.last.time[0]), float(self.last.omega[0])
         pairs = zip(self.landed[:3], (time, theta, omega), strict=True)
         time, theta, omega = (here if math.isnan(known) else known for known, here in pairs)
         last = self.modes[-1][1] if self.modes else self.begin.mode
-        mode = decided(train, last, time, theta, omega)
+        mode = decided(self.grid.train, last, time, theta, omega)
         return State(time, theta, omega, self.begin.residual - float(self.missed[k + 1]), mode)
 
     @property
@@ -196,7 +206,6 @@ class Window:
         return replace(
             self,
             strip=strip,
-            edges=strip.turned,
             energy=np.concatenate([self.energy[:k], last.energy]),
             time=np.concatenate([self.time[:k], last.time]),
             torque=np.concatenate([self.torque[:k], last.torque]),
@@ -217,7 +226,6 @@ class Window:
         return replace(
             self,
             strip=self.strip.first(m),
-            edges=self.edges[: m + 1],
             energy=self.energy[: m + 1],
             time=self.time[: m + 1],
             torque=self.torque[:m],

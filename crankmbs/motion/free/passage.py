@@ -18,7 +18,7 @@ from crankmbs.motion.ending import Ending
 from crankmbs.motion.events import Log
 from crankmbs.motion.minimal.stretch import Stretch
 from crankmbs.motion.plan import Plan
-from crankmbs.motion.states import samples_at, samples_in
+from crankmbs.motion.states import samples_at
 
 __all__ = ["Passage", "Piece", "Watch"]
 
@@ -30,6 +30,10 @@ _SAMPLE = 200  # evaluations as costly as a sample of a swing
 
 class Piece(base.Piece, Protocol):
     """A solved stretch of a free motion."""
+
+    @property
+    def last(self) -> Samples:
+        """The motion at its end, by its polynomials."""
 
     @property
     def size(self) -> int:
@@ -165,10 +169,9 @@ class Passage:
 
     def _last(self) -> Samples:
         """The one sample at the end."""
-        cells, end = self.pieces[-1].cells, self.pieces[-1].end
-        found = samples_in(cells, self._train, np.array([len(cells.time) - 1]), np.ones(1))
-        time, theta, omega = np.array(end[:3])[:, None]
-        return replace(found, time=time, theta=theta, omega=omega)
+        piece = self.pieces[-1]
+        time, theta, omega, residual = np.array(piece.end[:4])[:, None]
+        return replace(piece.last, time=time, theta=theta, omega=omega, energy_residual=residual)
 
     def _swings(self) -> bool:
         """Whether an end in angle is not coming nearer, reversal by reversal."""

@@ -11,10 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crankmbs.mechanics.inertia import inertia_alone
-from crankmbs.motion.base import State
+from crankmbs.motion.base import Samples, State
 from crankmbs.motion.cells import Acting, Cells
 from crankmbs.motion.minimal.equation import Equation
 from crankmbs.motion.mode import decided
+from crankmbs.motion.states import samples_in
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.lagrange import ends_and_nodes
 
@@ -107,6 +108,12 @@ class Stretch:
         shares = np.tile(begin.mode.shares, (self.steps, 1))
         residual = begin.residual + gained - work[:, -1]
         return Cells(time, angle, speed, acting, shares, residual=residual)
+
+    @property
+    def last(self) -> Samples:
+        """The motion at its end, by its polynomials."""
+        at = np.array([self.steps - 1]), np.ones(1)
+        return samples_in(self.cells, self.equation.pieces.train, *at)
 
     @property
     def _sense(self) -> float:
