@@ -18,6 +18,7 @@ from crankmbs import (
     Extent,
     Fuel,
     InputError,
+    Load,
     Motion,
     Piston,
     Ramp,
@@ -341,3 +342,17 @@ def test_a_share_is_imposed_under_a_prescribed_speed_too():
     stepper = Stepper(scene)
     stepper.advance(0.05, fuel=0.25)
     assert set(stepper.data["fuel"].values.ravel()) == {0.25}
+
+
+@pytest.mark.parametrize("angle", [0.65, 0.825, 1.1, 1.15, 1.25, 1.3])
+def test_what_a_function_does_undeclared_is_in_the_stated_error(angle):
+    def jumps(_time, theta, _omega):
+        return 40.0 if theta > angle else 0.0
+
+    undeclared, declared = (
+        Stepper(COASTING.with_(torque=(Load(jumps, kink_angles=kinks),))).advance(0.02)
+        for kinks in ((), (angle,))
+    )
+    for name in ("crank_angle", "crank_speed"):
+        apart = abs(getattr(undeclared, name) - getattr(declared, name))
+        assert 0.0 < apart <= 2.0 * getattr(undeclared, f"{name}_error")

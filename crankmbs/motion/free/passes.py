@@ -34,7 +34,7 @@ from crankmbs.numerics.collocation import gauss
 from crankmbs.numerics.once import once
 from crankmbs.scene.scene import Scene
 
-__all__ = ["Lead", "evaluations", "first_grid", "run"]
+__all__ = ["Lead", "evaluations", "first_grid", "has_functions", "run", "staggered"]
 
 _PASSES = 12  # at most; each splits cells, or asks for less of an error
 _EVALUATIONS = 50_000  # over time, for which a second of the cost cap stands: as measured
@@ -65,7 +65,8 @@ def evaluations(cost_cap: float) -> int:
     return int(min(cost_cap * _EVALUATIONS, 1e18))
 
 
-def _has_functions(train: CrankTrain) -> bool:
+def has_functions(train: CrankTrain) -> bool:
+    """Whether a load is a function of Python, which may do what it does not declare."""
     return any(load.parts.function is not None for load in train.scene.torque)
 
 
@@ -85,7 +86,7 @@ def run(
     """
     grid, local, begin = lead or Lead(first_grid(train, rtol), rtol, begin_at_start)
     way = Way(begin, plan_of(train.scene), evaluations(cost_cap))
-    functions = _has_functions(train)
+    functions = has_functions(train)
     best: Assembled | None = None
     least, rounded = math.inf, False
     finest = FINEST_CELL if by_angle else 100.0 * FINEST_STEP
@@ -102,10 +103,10 @@ def run(
         solution = _solution(train.scene, answer, better, way)
         assembled = assemble(train, solution)
         if functions:
-            other = _staggered(grid)
-            staggered = travel(other, way, 0.1 * local, by_angle=by_angle, first=trail)
-            passes.append(_Made(other, 0.1 * local, staggered))
-            again = assemble(train, _solution(train.scene, answer, staggered, way))
+            other = staggered(grid)
+            elsewhere = travel(other, way, 0.1 * local, by_angle=by_angle, first=trail)
+            passes.append(_Made(other, 0.1 * local, elsewhere))
+            again = assemble(train, _solution(train.scene, answer, elsewhere, way))
             assembled = _stated_twice(assembled, again)
         near = local <= 10.0 * finest
         estimate = assembled.relative_error * (2.0 if near else 1.0)
@@ -161,7 +162,8 @@ def _given(state: State, _grid: Grid, _local: float) -> State:
     return state
 
 
-def _staggered(grid: Grid) -> Grid:
+@once
+def staggered(grid: Grid) -> Grid:
     """Cells halved, and with edges beside those that are no knots: a jump that nobody has declared,
     and that hides between the end of a cell and its first node, then lies amid the nodes."""
     knots = grid_of(grid.train, grid.rule, math.inf).edges

@@ -1,4 +1,4 @@
-"""A free motion in steps over time: two passes side by side, carried as those of a run are."""
+"""A free motion in steps over time: passes side by side, carried as those of a run are."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from crankmbs.motion.crank_angle.grid import FINEST_CELL, Grid
 from crankmbs.motion.crank_angle.window import Window
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.free.handover import Handover, Spans
-from crankmbs.motion.free.passes import first_grid
+from crankmbs.motion.free.passes import first_grid, has_functions, staggered
 from crankmbs.motion.minimal.entering import enter
 from crankmbs.motion.minimal.reduced import Reduced
 from crankmbs.motion.mode import begun
@@ -27,7 +27,7 @@ from crankmbs.numerics.arrays import Array
 
 __all__ = ["Free"]
 
-_LOCAL = 0.1  # of rtol: what a pass may err locally
+_LOCAL = 0.1  # of rtol: what a pass may err locally; of that: what the third may
 _BETTER = 1e-2  # of that: what the better pass may
 _NEAR = 1e-12  # rtol: from there on rounding, in both passes alike, is most of the error
 _ALLOWED = 1_500_000  # evaluations in one step: half a minute
@@ -45,15 +45,16 @@ class _Carried(NamedTuple):
 
 
 class Free:
-    """The steps of a free crank train; the better pass is of higher order, in finer steps."""
+    """The steps of a free crank train; the better pass is of higher order, in finer steps. Where
+    there are functions a third has its cells elsewhere, for what they do undeclared."""
 
     def __init__(self, train: CrankTrain) -> None:
         scene = train.scene
         assert scene.start is not None
         self._train, self._start = train, scene.start
-        functions = any(load.parts.function is not None for load in scene.torque)
+        self._functions = has_functions(train)
         # as in a run: twice where rounding is left, or what functions do undeclared
-        self._share = 2.0 if functions or scene.run.rtol <= _NEAR else 1.0
+        self._share = 2.0 if self._functions or scene.run.rtol <= _NEAR else 1.0
         self._by_angle = scene.run.formulation != "minimal"  # which is time throughout
         self._local = max(_LOCAL * scene.run.rtol, FINEST_CELL)
         self._reduced = Reduced(train), Reduced(train.off, checks=True)
@@ -63,16 +64,17 @@ class Free:
         self._plan = Plan(scene.start.angle, 1.0, True, 0.0, True, folds=folds)
 
     def begin(self) -> Standing:
-        """Where it starts; the better pass a rounding ahead, as in a run."""
+        """Where it starts; the other passes a rounding ahead, as in a run."""
         start = self._start
         state = State(0.0, start.angle, start.speed, 0.0, begun(self._train))
         ahead = math.copysign(ANGLE_ROUNDING * start.angle, start.speed)
-        return Standing((state, state._replace(theta=start.angle + ahead)), abs(ahead))
+        others = (state._replace(theta=start.angle + ahead),) * (1 + self._functions)
+        return Standing((state, *others), abs(ahead))
 
     def advance(
         self, standing: Standing, until: float, torque: float, share: float | None
     ) -> Standing:
-        """One step of both passes; see `crankmbs.motion.stepwise.standing.Steps`."""
+        """One step of all passes; see `crankmbs.motion.stepwise.standing.Steps`."""
         begins = [commanded(state, torque, share) for state in standing.states]
         grid, edges = self._grid_of(standing.edges), standing.edges
         while True:
@@ -83,22 +85,26 @@ class Free:
                 break
             grid, edges = refined, tuple(refined.edges.tolist())
             self._refined = edges, grid
-        local = _BETTER * self._local
-        finer = Handover(grid.finer, self._reduced[1], local, self._by_angle, answer.spans)
-        better = self._carried(finer, begins[1], until)
-        for state, ending in (answer[:2], better[:2]):
-            if ending.value[0] < 0:
-                return standing._replace(ending=ending, where=state.theta)
-        one, other = answer.state, better.state
-        ahead = other.theta - one.theta - one.omega * (other.time - one.time)
-        return Standing(
-            (one, other),
-            max(standing.ahead, abs(ahead)),
-            max(standing.faster, abs(other.omega - one.omega)),
-            _worse(answer.ending, better.ending),
-            one.theta,
-            edges,
-        )
+        ways = [(grid.finer, self._reduced[1], _BETTER * self._local)]
+        if self._functions:
+            ways.append((staggered(grid), self._reduced[0], _LOCAL * self._local))
+        others = [
+            self._carried(Handover(*way, self._by_angle, answer.spans), begin, until)
+            for way, begin in zip(ways, begins[1:], strict=True)
+        ]
+        for each in (answer, *others):
+            if each.ending.value[0] < 0:
+                return standing._replace(ending=each.ending, where=each.state.theta)
+        one, ending = answer.state, answer.ending
+        ahead, faster = standing.ahead, standing.faster
+        for other in (each.state for each in others):
+            late = other.time - one.time
+            ahead = max(ahead, abs(other.theta - one.theta - one.omega * late))
+            faster = max(faster, abs(other.omega - one.omega))
+        for each in others:
+            ending = _worse(ending, each.ending)
+        states = one, *(each.state for each in others)
+        return Standing(states, ahead, faster, ending, one.theta, edges)
 
     def _grid_of(self, edges: tuple[float, ...]) -> Grid:
         """The grid with these edges, the coarsest one without."""
@@ -159,7 +165,7 @@ class Free:
     def assembled(self, standing: Standing) -> Assembled:
         """Every variable of the answer, beside a motion that is as far from it as the passes have
         been, at most: that they agree here may be chance."""
-        one, other = standing.states
+        one, other, *_ = standing.states
         turned = math.copysign(standing.ahead, other.theta - one.theta)
         moves = one.omega != 0.0 or other.omega != 0.0
         faster = math.copysign(standing.faster, other.omega - one.omega) if moves else 0.0

@@ -18,7 +18,7 @@ AT_REST = (Ending.REST, Ending.STUCK, Ending.STICKS, Ending.HELD)
 class Standing(NamedTuple):
     """Where a motion stands; all that its next step needs.
 
-    states : of the answer, and where there is one of the better pass
+    states : of the answer, and of the other passes where there are
     ahead [rad], faster [rad/s] : the most by which the passes have differed so far, at equal time
     edges [rad] : of the crank angle's cells, where steps so far needed finer ones than at first
     ending : of the last step; COMPLETE where it came to its time. A broken one was not taken
