@@ -12,10 +12,13 @@ from crankmbs import (
     InputError,
     Layout,
     Shell,
+    at_angle,
+    confirm,
     load_scene,
     simulate,
     sweep,
 )
+from crankmbs.cli.orders import reading_report
 from crankmbs.cli.report import report
 from crankmbs.measures import measure
 from crankmbs.mechanics.reactions import reactions
@@ -246,3 +249,19 @@ def test_loads_are_drawn_in_the_frame_of_the_body_that_carries_them():
     ]
     with pytest.raises(InputError, match="bearings = Bearings"):
         simulate(TWIN).plot("bearings")
+
+
+def test_a_reading_at_an_angle_and_exudyn_have_every_journal():
+    result = simulate(VEE)
+    readings = {r.quantity: r for r in at_angle(result, "60 deg").readings}
+    for number in (1, 2):
+        found = readings[f"main_journal_force_x {number}"]
+        assert found.cylinder is None
+        sample = result.data.main_journal_force_x.values[60, number - 1]
+        assert found.value == pytest.approx(sample, abs=1e-6)
+    text = reading_report(at_angle(result, "60 deg"), VEE.period)
+    assert "main journal force x 2" in text
+    bodies = confirm(result)
+    (journals,) = [row for row in bodies.period if row.quantity == "main journal"]
+    assert journals.share <= 1.0
+    assert journals.largest[0] < 1e-5 * journals.peak

@@ -105,8 +105,9 @@ def _variables(data: xr.Dataset) -> Iterator[Reading]:
         units, error = variable.attrs["units"], variable.attrs["error_estimate"]
         for k, value in enumerate(np.atleast_1d(variable.values[0]), start=1):
             cylinder = k if "cylinder" in variable.dims else None
-            symbol = symbols.get(str(name), "")
-            yield Reading(str(name), symbol, units, cylinder, float(value), error)
+            of_many = variable.ndim > 1 and cylinder is None  # journals, pins
+            quantity, symbol = f"{name} {k}" if of_many else str(name), symbols.get(str(name), "")
+            yield Reading(quantity, symbol, units, cylinder, float(value), error)
 
 
 def _lectured(scene: Scene, data: xr.Dataset) -> Iterator[Reading]:

@@ -20,6 +20,7 @@ from crankmbs.motion.plan import Plan, plan_of
 from crankmbs.motion.states import variables_at
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
+from crankmbs.scene.scene import Scene
 
 if TYPE_CHECKING:
     from crankmbs.motion.multibody.beside import Shares
@@ -209,7 +210,7 @@ def _last_period(
         phases, steps = part.cells[0].acting.phases, _STEPS // len(result.scene.cylinders)
         theirs, errors = beside.integrated(train, state, (phases, shares), times, _RTOL, steps)
     turned = abs(part.turned)
-    rows = {"crank angle": ("crank_angle",), **_MOTION, **_FORCES}
+    rows = {"crank angle": ("crank_angle",), **_MOTION, **_forces(result.scene)}
     return _rows(rows, ours, theirs, _stated_by(result), errors, turned), (begin, end)
 
 
@@ -230,10 +231,11 @@ def _at_states(result: Result, train: CrankTrain) -> tuple[Difference, ...]:
 
     count = result.data.sizes["time"]
     chosen = np.unique(np.linspace(0, count - 1, _STATES).astype(int))
-    names = [str(name) for name in result.data.variables if name != "cylinder"]
+    names = [name for name, (dims, _, _) in result.variables.items() if dims[0] == "time"]
     ours = {name: result.sampled(name)[chosen] for name in names}
     theirs = beside.consistent(train, ours, driven=result.scene.motion is not None)
-    rows = {name: _MOTION[name] for name in ("crank acceleration", "piston acceleration")} | _FORCES
+    motion = {name: _MOTION[name] for name in ("crank acceleration", "piston acceleration")}
+    rows = {**motion, **_forces(result.scene)}
     none = dict.fromkeys(theirs, 0.0)
     return _rows(rows, ours, theirs, _stated_by(result), none, math.inf)
 
@@ -274,6 +276,13 @@ def _rows(
     return tuple(found)
 
 
+def _forces(scene: Scene) -> dict[str, tuple[str, ...]]:
+    """The forces and the torque that are compared, by their variables."""
+    if scene.throws is None:
+        return _FORCES
+    return _FORCES | {"main journal": ("main_journal_force_x", "main_journal_force_y")}
+
+
 def _stated_by(result: Result) -> dict[str, float]:
     return {
         str(name): float(variable.attrs.get("error_estimate", 0.0))
@@ -301,7 +310,7 @@ def differences(result: Result, check: Result) -> tuple[Difference, ...]:
     if plan != plan_of(check.scene) or _cylinders(result) != _cylinders(check):
         raise InputError("only runs of one scene, sampled alike, can be compared")
     base = {"crank angle": ("crank_angle",)} if plan.in_time else {"time": ("time",)}
-    rows = {**base, **_MOTION, **_FORCES}
+    rows = {**base, **_MOTION, **_forces(result.scene)}
     n = min(result.data.sizes["time"], check.data.sizes["time"])
     # where only the end is kept the samples agree from the end, else from the start
     kept = slice(-n, None)

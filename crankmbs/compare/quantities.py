@@ -58,7 +58,7 @@ QUANTITIES = {
 OBSERVABLES = {
     name.replace("_", " "): Quantity(about.units, per_cylinder=about.per_cylinder)
     for name, about in EVERY.items()
-    if name not in ("time", "crank_angle", "fuel")
+    if name not in ("time", "crank_angle", "fuel") and about.of in ("", "cylinder")
 } | QUANTITIES
 """What a formula may stand for: the lectures' quantities, and the variables of a result."""
 
