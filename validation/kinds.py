@@ -38,7 +38,7 @@ KINDS = (
         "Nothing but the scene: other equations and other methods, mostly in 25 to 40 digits or "
         "80-bit floats, that never import crankmbs.",
         "computed changing.governed changing.mean_pressures frame.by_momentum indicator "
-        "measured settled.fluctuation settled.long_run settled.set_free",
+        "journals.beams measured settled.fluctuation settled.long_run settled.set_free",
     ),
     Kind(
         "Oracles: the stated errors",
@@ -62,7 +62,7 @@ KINDS = (
         "Identities and rules",
         "No second computation: a law that any right result obeys, a closed form, or input that "
         "has to be refused.",
-        "energy firing friction.closes friction.mean_pressure sums turning weight "
+        "energy firing friction.closes friction.mean_pressure journals.of_runs sums turning weight "
         "frame.closed_form_orders frame.one_cylinder_balanced hard.refused",
     ),
     Kind(

@@ -107,10 +107,8 @@ def _answer(case: Case, formulation: str) -> _Answer:
     if formulation == "kinetostatic" and case.parameters.get("constant_speed"):
         ours, theirs = driven(ours, "constant"), driven(theirs, "constant")
         note = "at constant speed, "
-    caps = {"multibody": case.parameters.get("cost_cap", _CAP)}
-    if "cap_over_time" in case.parameters:
-        caps["minimal"] = case.parameters["cap_over_time"]
-    cap = {"cost_cap": float(caps[formulation])} if formulation in caps else {}
+    limit = float(case.parameters.get("cost_cap", _CAP))
+    cap = {"cost_cap": limit} if formulation == "multibody" else {}
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error")

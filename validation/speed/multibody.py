@@ -18,7 +18,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from crankmbs import load_scene, simulate
-from crankmbs.figures.style import STYLE, caption
+from crankmbs.figures.style import STYLE, caption, logarithmic
 from crankmbs.scene.scene import Scene
 from crankmbs.storage.files import write_in_one_move
 from crankmbs.work_precision.contender import Answer, Contender
@@ -33,7 +33,7 @@ __all__ = ["FILE", "SCENES", "Point", "drawn", "main", "measured"]
 
 SCENES: dict[str, dict[str, Any]] = {
     "coasting": {},
-    "propeller": {},
+    "propeller": {"run__until": "4 cycles"},
     "yi_diesel_free": {"run__until": "2 cycles"},
     # begun beside the jump of its pressure at top dead centre: on it a force has two values
     "v_twin": {"run__until": "2 cycles", "start__angle": "5 deg"},
@@ -107,12 +107,14 @@ def drawn(points: list[Point], machine: tuple[str, ...] = ()) -> Figure:
                 ax.loglog([p.stated or 0.0 for p in rows], time, label="it states", **_STATED)
         ends = SCENES.get(name, {}).get("run__until")
         ax.set_title(name + (f", {ends}" if ends else ""), loc="left")
-        ax.set_xlabel("largest relative error of motion and joint forces [1]")
+        ax.set_xlabel("relative error [1]")
+        logarithmic(ax.yaxis)
         ax.set_ylabel("wall time [s]")
     handles, labels = axes[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside upper center", ncols=3)
     if machine:
-        caption(figure, list(machine))
+        about = "error: the worst of motion and joint forces, over their peaks"
+        caption(figure, [about, *machine])
     return figure
 
 
