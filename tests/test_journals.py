@@ -78,6 +78,18 @@ def test_all_journals_together_carry_the_main_bearing_and_a_pin_its_rods():
     assert pin[:, 0] == pytest.approx((rods * np.exp(1j * banks)).sum(axis=1), rel=1e-12)
 
 
+@pytest.mark.parametrize("name", ["friction", "misfire"])
+def test_friction_and_each_firing_reach_the_journals(name):
+    scene = load_scene(name).with_(run__until="1 cycle")
+    if len(scene.cylinders) > 1:
+        scene = scene.with_(layout__spacing="90 mm")
+    data = simulate(scene.with_(bearings=Bearings())).data
+    for axis in AXES:
+        bearing = data[f"main_bearing_force_{axis}"]
+        apart = data[f"main_journal_force_{axis}"].sum("journal") - bearing
+        assert float(abs(apart).max()) < 1e-12 * float(abs(bearing).max())
+
+
 @pytest.mark.parametrize("formulation", ["minimal", "multibody"])
 def test_every_formulation_agrees_within_what_it_states(formulation):
     one, other = simulate(VEE), simulate(VEE, formulation=formulation)

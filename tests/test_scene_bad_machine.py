@@ -4,8 +4,8 @@ import pytest
 from scene_texts import FREE, edited, refusal
 
 KEYS = (
-    "crank, rod, piston, run, layout, gas, fuel, gravity, friction, motion, start, torque, title, "
-    "source"
+    "crank, rod, piston, run, layout, gas, fuel, gravity, friction, bearings, motion, start, torque, "
+    "title, source"
 )
 
 
@@ -182,7 +182,7 @@ KEYS = (
                 ("cylinders = []", ".cylinders: must have at least 1 entry; [] came"),
                 (
                     "cylinders = [1]",
-                    ".cylinders[1]: must be a table with phase, bank, position; 1 came",
+                    ".cylinders[1]: must be a table with phase, bank, position, throw; 1 came",
                 ),
                 (
                     "cylinders = [{ phase = 90 }]",

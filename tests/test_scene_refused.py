@@ -115,7 +115,7 @@ from crankmbs.errors import SceneError
         (
             lambda: Layout(cylinders=Cylinder()),
             "cylinders: must be a tuple or list of Cylinder; "
-            "Cylinder(phase=0.0, bank=0.0, position=None) came",
+            "Cylinder(phase=0.0, bank=0.0, position=None, throw=None) came",
         ),
         (lambda: Layout(firing_order=3), "firing_order: must be a tuple or list; 3 came"),
         (
