@@ -356,3 +356,24 @@ def test_what_a_function_does_undeclared_is_in_the_stated_error(angle):
     for name in ("crank_angle", "crank_speed"):
         apart = abs(getattr(undeclared, name) - getattr(declared, name))
         assert 0.0 < apart <= 2.0 * getattr(undeclared, f"{name}_error")
+
+
+def test_the_forces_know_the_load_that_is_held():
+    stepper = Stepper(DIESEL)
+    state = stepper.advance(1e-3, load=-50.0)
+    (brake,) = DIESEL.torque
+    own = -brake.coefficient * state.crank_speed * abs(state.crank_speed)
+    assert float(stepper.data.external_torque[0]) == pytest.approx(own - 50.0, rel=1e-12)
+    found = float(stepper.data.crank_acceleration[0])
+    assert found == pytest.approx(state.crank_acceleration, rel=1e-10)
+
+
+def test_what_the_passes_differ_by_is_the_most_so_far():
+    stepper, standings = Stepper(DIESEL), []
+    for _ in range(20):
+        stepper.advance(1e-3)
+        standings.append(stepper.save().standing)
+    for name in ("ahead", "faster"):
+        found = [getattr(standing, name) for standing in standings]
+        assert found == sorted(found)
+        assert found[-1] > 0.0
