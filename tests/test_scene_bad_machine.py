@@ -4,8 +4,8 @@ import pytest
 from scene_texts import FREE, edited, refusal
 
 KEYS = (
-    "crank, rod, piston, run, layout, gas, fuel, gravity, friction, bearings, motion, start, torque, "
-    "title, source"
+    "crank, rod, piston, run, layout, gas, fuel, gravity, friction, bearings, motion, start, "
+    "torque, title, source"
 )
 
 

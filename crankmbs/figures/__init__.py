@@ -4,7 +4,7 @@
 functions below draw each from a `last_view`, its last cycle with angles in degrees. All return a
 matplotlib figure, to be changed and saved as any other:
 
->>> figure = plot(simulate(load_scene("propeller")), "polar")
+>>> figure = simulate(load_scene("propeller")).plot("polar")
 >>> _ = figure.axes[0].set_title("my crank pin")
 
 What is drawn is computed elsewhere: in measures, compare and mechanics; here are axes and labels.
