@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 RESULTS = Path(__file__).parent.parent / "validation" / "mutants" / "results.csv"
-COLLECTED = pytest.StashKey[set[str]]()  # the tests of a session, with those left out
+COLLECTED = pytest.StashKey[set[str]]()  # all tests that are there, also those left out
 LONGEST = 60  # s, of a guard in which its mutant turned red
 
 
