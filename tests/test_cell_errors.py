@@ -35,28 +35,28 @@ SCENES = {
 }
 
 
-def in_arrays(window):
+def in_arrays(segment):
     """Energy missed at the end of every cell, and the relative errors there and inside."""
-    rule, finer = window.grid.rule, window.grid.finer.rule
-    strip = window.grid.finer.same(window.strip, window.begin.theta, window.sense)
-    shares, width = window.shares[:, None, :], window.sense * strip.width[:, None]
-    torque = strip.torque + (strip.combustion * shares).sum(axis=2)
-    if strip.rubbed.shape[2]:
-        pressed = np.abs(strip.rubbed + strip.combustion * shares).sum(axis=2)
-        torque = torque - strip.against * pressed
+    rule, finer = segment.grid.rule, segment.grid.finer.rule
+    terms = segment.grid.finer.same(segment.terms, segment.begin.theta, segment.sense)
+    shares, width = segment.shares[:, None, :], segment.sense * terms.width[:, None]
+    torque = terms.torque + (terms.combustion * shares).sum(axis=2)
+    if terms.rubbed.shape[2]:
+        pressed = np.abs(terms.rubbed + terms.combustion * shares).sum(axis=2)
+        torque = torque - terms.against * pressed
     inside = rule.integrals(finer.nodes).T
-    energy = window.energy[:-1, None] + width * (window.torque @ inside)
-    t = window.time[:-1, None] + strip.width[:, None] * (window.slowness @ inside)
-    slowness = np.sqrt(0.5 * strip.inertia / energy)
-    omega = window.sense / slowness
-    torque = torque + window.branch(t, omega) - (strip.drag * omega if strip.drags else 0.0)
-    theta = strip.angles(window.begin.theta, window.sense, finer)
-    torque = torque + sum(function(t, theta, omega) for function in window.branch.functions)
+    energy = segment.energy[:-1, None] + width * (segment.torque @ inside)
+    t = segment.time[:-1, None] + terms.width[:, None] * (segment.slowness @ inside)
+    slowness = np.sqrt(0.5 * terms.inertia / energy)
+    omega = segment.sense / slowness
+    torque = torque + segment.branch(t, omega) - (terms.drag * omega if terms.drags else 0.0)
+    theta = terms.angles(segment.begin.theta, segment.sense, finer)
+    torque = torque + sum(function(t, theta, omega) for function in segment.branch.functions)
     to_nodes, own = np.vstack([finer.matrix, finer.weights]).T, np.vstack([inside.T, rule.weights])
-    gained = width * (torque @ to_nodes - window.torque @ own.T)
-    late = np.abs(width) * np.abs(slowness @ to_nodes - window.slowness @ own.T)
-    per_time = np.maximum((1.0 / window.slowness).min(axis=1), 1.0 / window.time[1:])
-    both = np.abs(gained) / window.energy[1:, None] + late * per_time[:, None]
+    gained = width * (torque @ to_nodes - segment.torque @ own.T)
+    late = np.abs(width) * np.abs(slowness @ to_nodes - segment.slowness @ own.T)
+    per_time = np.maximum((1.0 / segment.slowness).min(axis=1), 1.0 / segment.time[1:])
+    both = np.abs(gained) / segment.energy[1:, None] + late * per_time[:, None]
     return gained[:, -1], both[:, -1], both.max(axis=1)
 
 
@@ -67,10 +67,10 @@ def test_compiled_errors_are_those_of_the_formula(scene):
     start = State(0.0, scene.start.angle, scene.start.speed, 0.0, begun(train))
     windows = list(crank_angle.advance(grid, start, plan_of(scene), 1e-9))
     seen = 0
-    for window in windows:
-        expected, rounding = in_arrays(window), 1e-13 * window.energy.max()
+    for segment in windows:
+        expected, rounding = in_arrays(segment), 1e-13 * segment.energy.max()
         scales = (rounding, 1e-13, 1e-13)
-        for found, error, scale in zip(window.errors, expected, scales, strict=True):
+        for found, error, scale in zip(segment.errors, expected, scales, strict=True):
             assert found == pytest.approx(error, rel=1e-6, abs=scale)
             seen += int(np.count_nonzero(np.abs(error) > 1e3 * scale))
     assert seen > 20

@@ -28,23 +28,23 @@ def test_clock_and_energy_lose_nothing_over_many_cells(viscous):
     """What rounding takes is the same in every pass, and their difference would not show it."""
     grid = replace(COASTING)
     grid.__dict__["weights_alone"] = False
-    strip = grid.strip(0.0, 1.0, 4000, math.inf)
+    terms = grid.terms(0.0, 1.0, 4000, math.inf)
     branch = replace(branch_of((Constant(torque=0.1),), 0.0, 1.0, rising=True), c1=-viscous)
-    cells = solve(grid, strip, branch, Begin(1.0, 50.0, 0.1, math.inf, 0.0))
-    spent = strip.width * (cells.slowness @ grid.rule.weights)
+    cells = solve(grid, terms, branch, Begin(1.0, 50.0, 0.1, math.inf, 0.0))
+    spent = terms.width * (cells.slowness @ grid.rule.weights)
     assert abs(cells.time[-1] - math.fsum([0.1, *spent])) <= 2.0 * math.ulp(cells.time[-1])
-    gained = strip.width * (cells.torque @ grid.rule.weights)
+    gained = terms.width * (cells.torque @ grid.rule.weights)
     assert abs(cells.edges[-1] - math.fsum([50.0, *gained])) <= 2.0 * math.ulp(cells.edges[-1])
 
 
 def test_weights_do_no_work_in_any_period():
-    strip = COASTING.strip(0.0, 1.0, 4000, math.inf)
+    terms = COASTING.terms(0.0, 1.0, 4000, math.inf)
     period = len(COASTING.edges) - 1
     branch = branch_of((), 0.0, 1.0, rising=True)
-    cells = solve(COASTING, strip, branch, Begin(1.0, 50.0, 0.0, math.inf, 0.0))
+    cells = solve(COASTING, terms, branch, Begin(1.0, 50.0, 0.0, math.inf, 0.0))
     assert np.ptp(cells.edges) > 1.0
     assert np.max(np.abs(cells.edges[::period] - 50.0)) <= 2.0 * math.ulp(50.0)
-    once = period_of(COASTING, strip.first(period), branch, 1.0)
+    once = period_of(COASTING, terms.first(period), branch, 1.0)
     assert abs(once.rise) <= 1e-30
     assert once.growth == 0.0
 
@@ -54,8 +54,8 @@ def test_newton_and_affine_maps_agree(sense):
     """A viscous load that takes nothing sends the same cells through Newton's method."""
     loads = (Quadratic(coefficient=7e-4),)
     branch = branch_of(loads, 0.0, sense, rising=sense > 0.0)
-    strip, begin = DIESEL.strip(0.3, sense, 2000, math.inf), Begin(sense, 9e3, 0.0, 1e9, 0.3)
-    affine, newton = (solve(DIESEL, strip, b, begin) for b in (branch, replace(branch, c1=1e-300)))
+    terms, begin = DIESEL.terms(0.3, sense, 2000, math.inf), Begin(sense, 9e3, 0.0, 1e9, 0.3)
+    affine, newton = (solve(DIESEL, terms, b, begin) for b in (branch, replace(branch, c1=1e-300)))
     for mine, other in zip(affine, newton, strict=True):
         scale = np.max(np.abs(mine))
         np.testing.assert_allclose(mine, other, rtol=0.0, atol=1e-13 * scale)
@@ -64,11 +64,11 @@ def test_newton_and_affine_maps_agree(sense):
 def test_cells_end_before_rest_and_every_one_solves_its_equation():
     loads = (Viscous(coefficient=5.0),)
     branch = branch_of(loads, 0.0, 300.0, rising=True)
-    strip = DIESEL.strip(0.0, 1.0, 4000, math.inf)
-    cells = solve(DIESEL, strip, branch, Begin(1.0, 7e3, 0.0, math.inf, 0.0))
-    m = lasting(0.01, DIESEL, strip.first(len(cells.torque)), cells)
+    terms = DIESEL.terms(0.0, 1.0, 4000, math.inf)
+    cells = solve(DIESEL, terms, branch, Begin(1.0, 7e3, 0.0, math.inf, 0.0))
+    m = lasting(0.01, DIESEL, terms.first(len(cells.torque)), cells)
     assert 300 < m < 4000
-    part, rule = strip.first(m), DIESEL.rule
+    part, rule = terms.first(m), DIESEL.rule
     energy = cells.edges[:m, None] + part.pace * (cells.torque[:m] @ rule.matrix.T)
     omega = np.sqrt(2.0 * energy / part.inertia)
     torque = part.torque - 5.0 * omega
@@ -79,8 +79,8 @@ def test_cells_end_before_rest_and_every_one_solves_its_equation():
 
 def test_cells_end_behind_the_one_that_passes_the_end_in_time():
     branch = branch_of((), 0.0, 1.0, rising=True)
-    strip = COASTING.strip(0.0, 1.0, 500, math.inf)
-    cells = solve(COASTING, strip, branch, Begin(1.0, 50.0, 0.0, 0.2, 0.0))
+    terms = COASTING.terms(0.0, 1.0, 500, math.inf)
+    cells = solve(COASTING, terms, branch, Begin(1.0, 50.0, 0.0, 0.2, 0.0))
     assert cells.time[-2] < 0.2 <= cells.time[-1]
 
 
@@ -107,15 +107,15 @@ def test_cells_last_as_long_as_their_energy():
     """Energy 1 at every edge, torque 0 outside, largest torque 1: 0.9 rad are allowed, 1.1 not."""
     grid = SimpleNamespace(scale=np.ones(4), least=np.full(4, 2.0))
     slow = np.full((4, 3), 0.1)
-    strip = SimpleNamespace(cell=np.arange(4), torque=np.zeros((4, 3)))
+    terms = SimpleNamespace(cell=np.arange(4), torque=np.zeros((4, 3)))
     cells = SimpleNamespace(edges=np.ones(5), torque=np.zeros((4, 3)), slowness=slow)
-    assert lasting(0.9, grid, strip, cells) == 4
-    assert lasting(1.1, grid, strip, cells) == 0
+    assert lasting(0.9, grid, terms, cells) == 4
+    assert lasting(1.1, grid, terms, cells) == 0
     for k, slowness in ((2, 2.0), (1, math.nan)):
         slow[k, 1] = slowness
-        assert lasting(0.9, grid, strip, cells) == k
+        assert lasting(0.9, grid, terms, cells) == k
     cells.edges[1] = math.nan
-    assert lasting(0.9, grid, strip, cells) == 0
+    assert lasting(0.9, grid, terms, cells) == 0
 
 
 @pytest.mark.parametrize("stages", range(1, 10))

@@ -148,10 +148,10 @@ def test_tighter_costs_more(load):
 @pytest.mark.slow
 def test_a_swing_is_left_to_time(monkeypatch):
     """Eight hand-overs that did not last a period are enough: from then on it must turn one."""
-    pieces, advance = [], handover.crank_angle.advance
+    segments, advance = [], handover.crank_angle.advance
 
     def counted(*args):
-        pieces.append(args)
+        segments.append(args)
         return advance(*args)
 
     monkeypatch.setattr(handover.crank_angle, "advance", counted)
@@ -159,4 +159,4 @@ def test_a_swing_is_left_to_time(monkeypatch):
     result = simulate(swing, formulation="crank_angle")
     assert result.status == 0
     assert np.count_nonzero(np.diff(np.sign(result.data["crank_speed"].values))) > 20
-    assert 8 <= len(pieces) <= 40, "both passes together"
+    assert 8 <= len(segments) <= 40, "both passes together"

@@ -292,20 +292,20 @@ def test_a_diagram_has_its_own(read):
 
 @pytest.mark.parametrize("speed", [300.0, -300.0])
 @pytest.mark.parametrize("loads", [(Quadratic(coefficient=7e-4),), (Viscous(coefficient=0.2),)])
-@pytest.mark.parametrize("name", [*FUELS, "window"])
+@pytest.mark.parametrize("name", [*FUELS, "segment"])
 def test_cells_solved_at_once_are_those_from_decision_to_decision(name, loads, speed, monkeypatch):
-    window = replace(FUELS["all at once"], from_speed=0.98 * speed, until=0.2)
-    fuel = window if name == "window" else FUELS[name]
+    segment = replace(FUELS["all at once"], from_speed=0.98 * speed, until=0.2)
+    fuel = segment if name == "segment" else FUELS[name]
     start = replace(FOUR.start, angle=0.1, speed=speed)
     grid = grid_of(crank_train(fuelled(fuel, start=start, torque=loads)), gauss(5))
     sense = math.copysign(1.0, speed)
     begin = State(0.0, 0.1, speed, 0.0, begun(grid.train))
-    strip = grid.strip(0.1, sense, 5000, sense * math.inf)
+    terms = grid.terms(0.1, sense, 5000, sense * math.inf)
     branch = branch_of(loads, 0.0, speed, rising=speed > 0.0)
     at = Begin(sense, 8000.0, 0.0, math.inf, 0.1)
-    once = solve_fired(grid, strip, branch, at, begin)
+    once = solve_fired(grid, terms, branch, at, begin)
     monkeypatch.setattr(crank_angle_firings, "_foreseen", lambda *_: False)
-    each = solve_fired(grid, strip, branch, at, begin)
+    each = solve_fired(grid, terms, branch, at, begin)
     assert [cell for cell, _ in once.modes] == [cell for cell, _ in each.modes]
     assert len(once.modes) > 10
     for (_, mine), (_, other) in zip(once.modes[:-3], each.modes[:-3], strict=True):
@@ -315,7 +315,7 @@ def test_cells_solved_at_once_are_those_from_decision_to_decision(name, loads, s
     assert m > 1000
     for row, beside in zip(once.cells.first(m), each.cells.first(m), strict=True):
         np.testing.assert_allclose(row, beside, rtol=1e-12, atol=1e-10)
-    torques = once.strip.torque[:m], each.strip.torque[:m]
+    torques = once.terms.torque[:m], each.terms.torque[:m]
     np.testing.assert_allclose(*torques, rtol=1e-12, atol=1e-10)
 
 

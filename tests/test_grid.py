@@ -64,19 +64,19 @@ def test_without_gas():
 @pytest.mark.parametrize("sense", [1.0, -1.0])
 def test_the_angle_turned_is_that_of_the_cells_however_many(sense):
     """A sum of their widths would be off by a hundred roundings, the same in every pass."""
-    strip = GRID.strip(0.37, sense, 4000, sense * 1e9)
+    terms = GRID.terms(0.37, sense, 4000, sense * 1e9)
     edges = [Fraction(float(edge)) for edge in GRID.edges]
-    widths = [edges[k + 1] - edges[k] for k in strip.cell[1:].tolist()]
-    exact = list(accumulate(widths, initial=Fraction(float(strip.width[0]))))
-    off = [abs(float(Fraction(float(u)) - e)) for u, e in zip(strip.turned[1:], exact, strict=True)]
-    assert max(off) <= 2.0 * np.spacing(strip.turned[-1])
+    widths = [edges[k + 1] - edges[k] for k in terms.cell[1:].tolist()]
+    exact = list(accumulate(widths, initial=Fraction(float(terms.width[0]))))
+    off = [abs(float(Fraction(float(u)) - e)) for u, e in zip(terms.turned[1:], exact, strict=True)]
+    assert max(off) <= 2.0 * np.spacing(terms.turned[-1])
 
 
-def test_a_strip_ends_at_its_bound():
-    strip = GRID.strip(0.37, 1.0, 4000, 40.0)
-    assert strip.turned[-1] == 40.0 - 0.37
-    assert strip.width[-1] == strip.turned[-1] - strip.turned[-2]
-    assert len(strip.width) == len(strip.turned) - 1
+def test_terms_end_at_their_bound():
+    terms = GRID.terms(0.37, 1.0, 4000, 40.0)
+    assert terms.turned[-1] == 40.0 - 0.37
+    assert terms.width[-1] == terms.turned[-1] - terms.turned[-2]
+    assert len(terms.width) == len(terms.turned) - 1
 
 
 def test_two_rules_do_not_err_alike_where_a_rod_hardly_escapes_its_fold():

@@ -117,12 +117,12 @@ def test_a_course_ends_where_a_table_jumps():
 def test_cells_cut_are_parts_of_cells(sense):
     scene = load_scene("propeller")
     grid = grid_of(crank_train(scene), gauss(5))
-    strip = grid.strip(3.0, sense, 40, np.inf)
-    marks = strip.turned[[7, 7, 20]] + np.array([0.25, 0.5, 0.5]) * strip.width[[7, 7, 20]]
-    cut = grid.cut(strip, 3.0, sense, np.append(marks, strip.turned[11]))
+    terms = grid.terms(3.0, sense, 40, np.inf)
+    marks = terms.turned[[7, 7, 20]] + np.array([0.25, 0.5, 0.5]) * terms.width[[7, 7, 20]]
+    cut = grid.cut(terms, 3.0, sense, np.append(marks, terms.turned[11]))
     assert len(cut.width) == 43
-    assert cut.cell.tolist() == np.insert(strip.cell, [7, 7, 20], strip.cell[[7, 7, 20]]).tolist()
-    np.testing.assert_array_equal(np.setdiff1d(cut.turned, strip.turned), np.sort(marks))
-    assert np.array_equal(cut.inertia[24:], strip.inertia[21:])
-    work = [np.sum(s.width * (s.torque @ grid.rule.weights)) for s in (strip, cut)]
+    assert cut.cell.tolist() == np.insert(terms.cell, [7, 7, 20], terms.cell[[7, 7, 20]]).tolist()
+    np.testing.assert_array_equal(np.setdiff1d(cut.turned, terms.turned), np.sort(marks))
+    assert np.array_equal(cut.inertia[24:], terms.inertia[21:])
+    work = [np.sum(s.width * (s.torque @ grid.rule.weights)) for s in (terms, cut)]
     assert work[0] == pytest.approx(work[1], rel=1e-9)

@@ -128,7 +128,7 @@ def machine_of(scene: Scene, *, finest: bool = False) -> Machine:
     narrow = float(np.mean(np.diff(edges))) < _NARROW and not finest
     answer, check = (
         _tabulated(one, begin, sense, gauss(stages), np.diff(edges), shares)
-        for one, stages in zip((train, train.off), _FEW if narrow else _MANY, strict=True)
+        for one, stages in zip((train, train.perturbed), _FEW if narrow else _MANY, strict=True)
     )
     angles = np.linspace(0.0, 2.0 * math.pi, 361)
     folds = bool(np.min(close_loop(angles, *shape).cos_beta) < _FOLDED)

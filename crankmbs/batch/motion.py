@@ -81,7 +81,7 @@ class Courses(NamedTuple):
         return Courses(*(each[which] for each in self))
 
 
-class _Strip:
+class _Equation:
     """The equation of motion of k cases in the cells of a pass from one on."""
 
     def __init__(self, tables: Pass, cases: Cases, sense: float, first: int = 0) -> None:
@@ -153,12 +153,12 @@ def settled(tables: Pass, cases: Cases, sense: float, nudge: float) -> Courses:
     nudge : how far above the fixed point the period is to begin, as a part of its greatest energy
         over its damping
     """
-    strip, left = _Strip(tables, cases, sense), np.arange(len(cases.mass))
-    energy = strip.half * cases.speed[:, None, None] ** 2
+    equation, left = _Equation(tables, cases, sense), np.arange(len(cases.mass))
+    energy = equation.half * cases.speed[:, None, None] ** 2
     edges = np.empty((len(left), energy.shape[1] + 1))
     growth, least = np.full((2, len(left)), np.nan)
     for _ in range(_ROUNDS):
-        maps = strip.maps(energy[left], left)
+        maps = equation.maps(energy[left], left)
         grown, risen = maps.growth[:, -1], maps.rise[:, -1]
         begin = np.divide(-risen, grown, out=np.full_like(grown, np.nan), where=grown < 0.0)
         new, _ = _passed(maps, begin)
@@ -167,7 +167,7 @@ def settled(tables: Pass, cases: Cases, sense: float, nudge: float) -> Courses:
         growth[left] = grown
         energy[left], edges[left] = _passed(maps, begin - nudge * most / grown)
         good = low > 0.0  # there is one, and it turns on
-        done = good & ~(strip.viscous[left] & (moved > _CLOSE * most))
+        done = good & ~(equation.viscous[left] & (moved > _CLOSE * most))
         least[left[done]] = low[done]
         left = left[good & ~done]
         if len(left) == 0:
@@ -184,23 +184,23 @@ def over_periods(
     nudge : by what part of itself every period raises the energy besides
     """
     (first, energy), k = start, len(cases.mass)
-    strip, left, which = _Strip(tables, cases, sense), cases.end.copy(), np.arange(k)
+    equation, left, which = _Equation(tables, cases, sense), cases.end.copy(), np.arange(k)
     at, least = energy.copy(), np.full(k, np.inf)
     if first:
-        part = _Strip(tables, cases, sense, first)
+        part = _Equation(tables, cases, sense, first)
         nodes, edges = part.solve(at, at[:, None, None], which)
         at, least = edges[:, -1].copy(), nodes.min(axis=(1, 2))
-    energies = at[:, None, None] + 0.0 * strip.half
+    energies = at[:, None, None] + 0.0 * equation.half
     edges = np.full((k, len(tables.width) + 1), np.nan)
     while len(which := which[(left[which] > 0.0) & (least[which] > 0.0)]):
         begun = at[which] * (1.0 + nudge)
-        energies[which], edges[which] = strip.solve(begun, energies[which], which)
+        energies[which], edges[which] = equation.solve(begun, energies[which], which)
         at[which] = edges[which, -1]
         least[which] = np.minimum(least[which], energies[which].min(axis=(1, 2)))
         left[which] -= 1.0
-        plain = which[~strip.viscous[which] & (left[which] > 1.0) & (at[which] > 0.0)]
+        plain = which[~equation.viscous[which] & (left[which] > 1.0) & (at[which] > 0.0)]
         if len(plain):  # energies where periods begin rise or fall throughout
-            maps = strip.maps(energies[plain], plain)
+            maps = equation.maps(energies[plain], plain)
             of_period = maps.growth[:, -1], maps.rise[:, -1]
             at[plain] = _leapt(*of_period, at[plain], left[plain] - 1.0, nudge)
             left[plain] = 1.0
@@ -228,12 +228,12 @@ def to_times(
 
     nudge : by what part of itself every period raises the energy besides
     """
-    strip, each, m = _Strip(tables, cases, sense), np.arange(len(energy)), len(tables.width)
-    last = _last_periods(strip, cases.end, energy, nudge)
+    equation, each, m = _Equation(tables, cases, sense), np.arange(len(energy)), len(tables.width)
+    last = _last_periods(equation, cases.end, energy, nudge)
     if cell is None:
         cell = np.minimum((last.ahead[:, 1:] < last.left[:, None]).sum(axis=1), m - 1)
-    slow = strip.slowness(last.energy, each)[each, cell]
-    place = _place(strip.rule, slow, last.left - last.ahead[each, cell])
+    slow = equation.slowness(last.energy, each)[each, cell]
+    place = _place(equation.rule, slow, last.left - last.ahead[each, cell])
     begin, end = (
         _inside(nodes[each, cell], edges[each, cell], edges[each, cell + 1], place)
         for nodes, edges in ((last.before, last.earlier), (last.energy, last.edges))
@@ -277,24 +277,24 @@ class _Last(NamedTuple):
     ahead: Array
 
 
-def _last_periods(strip: _Strip, end: Array, energy: Array, nudge: float) -> _Last:
+def _last_periods(equation: _Equation, end: Array, energy: Array, nudge: float) -> _Last:
     """Those up to times [s] from energies on [J], shape (k,)."""
-    k, m, _ = strip.half.shape
+    k, m, _ = equation.half.shape
     which, at, least, periods = np.arange(k), energy.copy(), np.full(k, np.inf), np.zeros(k)
-    last, before = np.array(2 * [at[:, None, None] + 0.0 * strip.half])
+    last, before = np.array(2 * [at[:, None, None] + 0.0 * equation.half])
     edges, earlier, ahead = np.zeros((3, k, m + 1))
     time, since = np.zeros((2, k), np.longdouble)  # the time of a cell is little of it
-    if not strip.viscous.any():
-        least = _passed(strip.maps(last, which), energy)[0].min(axis=(1, 2))
-        for n, period in enumerate(strip.periods(nudge)):
+    if not equation.viscous.any():
+        least = _passed(equation.maps(last, which), energy)[0].min(axis=(1, 2))
+        for n, period in enumerate(equation.periods(nudge)):
             periods[n], at[n], _, time[n] = period.run(at[n], 0.0, math.inf, end[n], 1)
     while len(which := which[(time[which] < end[which]) & (least[which] > 0.0)]):
         before[which], earlier[which], since[which] = last[which], edges[which], time[which]
         begun = at[which] * (1.0 + nudge)
-        last[which], edges[which] = strip.solve(begun, last[which], which)
+        last[which], edges[which] = equation.solve(begun, last[which], which)
         at[which], periods[which] = edges[which, -1], periods[which] + 1.0
         least[which] = np.minimum(least[which], last[which].min(axis=(1, 2)))
-        spent = strip.slowness(last[which], which) @ strip.rule.weights
+        spent = equation.slowness(last[which], which) @ equation.rule.weights
         ahead[which, 1:] = np.cumsum(spent, axis=1)
         time[which] += ahead[which, -1]
     least[periods < 2.0] = np.nan

@@ -135,23 +135,23 @@ def _at_any_speed(scene: Scene) -> tuple[Scene, bool]:
     start, period = scene.start, scene.settled_period
     sense = math.copysign(1.0, start.speed)
     grid = grid_of(crank_train(scene), gauss(_STAGES))
-    strip = grid.strip(start.angle, sense, len(grid.edges) + 1, start.angle + sense * period)
-    if strip.drags:
-        strip = replace(strip, torque=strip.torque - start.speed * strip.drag)
-    mean = float(strip.width @ (strip.torque @ grid.rule.weights)) / period
+    terms = grid.terms(start.angle, sense, len(grid.edges) + 1, start.angle + sense * period)
+    if terms.drags:
+        terms = replace(terms, torque=terms.torque - start.speed * terms.drag)
+    mean = float(terms.width @ (terms.torque @ grid.rule.weights)) / period
     given = sum(float(load.parts.over_time(0.0)) for load in scene.torque if load.parts.over_time)
     loads = (*scene.torque, Constant(torque=-mean - given))
-    one = period_of(grid, strip, branch_of(loads, 0.0, 0.0, rising=True), sense)
+    one = period_of(grid, terms, branch_of(loads, 0.0, 0.0, rising=True), sense)
     least, wanted = -float(one.shift.min()), period / abs(start.speed)
 
     def late(above: float) -> float:
         return float((1.0 / np.sqrt(least + above + one.shift)) @ one.weight) - wanted
 
-    most = 0.5 * float(strip.inertia.max()) * start.speed**2 + float(np.ptp(one.shift))
+    most = 0.5 * float(terms.inertia.max()) * start.speed**2 + float(np.ptp(one.shift))
     above = _LEAST * most
     if late(above) > 0.0:
         above = float(brentq(late, above, 2.0 * most, xtol=1e-300, rtol=1e-15))
-    largest = float(np.abs(strip.torque).max()) + abs(mean)
+    largest = float(np.abs(terms.torque).max()) + abs(mean)
     return _from(scene, -mean - given, least + above), above <= _SLOW * largest
 
 

@@ -55,7 +55,7 @@ class PeriodicPressure:
     missed: Array | None = None
 
     @property
-    def off(self) -> PeriodicPressure:
+    def perturbed(self) -> PeriodicPressure:
         """A pressure as far from this one as the true pressure may be."""
         if self.missed is None:
             return self

@@ -35,7 +35,7 @@ class SpeedLaw(Protocol):
         """Times [s] strictly between two others at which the acceleration or its slope jumps."""
 
     @property
-    def off(self) -> SpeedLaw:
+    def perturbed(self) -> SpeedLaw:
         """The law as far from this one as what it is made from may be, in the last digits."""
 
     def at_time(self, t: ArrayLike) -> tuple[Array, Array, Array]:
@@ -100,7 +100,7 @@ class _PolynomialLaw:
         self.turning_times = (*self._reversals(), float(omega.x[-1]))
 
     @property
-    def off(self) -> SpeedLaw:
+    def perturbed(self) -> SpeedLaw:
         return self
 
     def corners(self, begin: float, end: float) -> Array:
@@ -167,7 +167,7 @@ class _OscillatingLaw:
     turning_times = (math.inf,)
 
     @property
-    def off(self) -> SpeedLaw:
+    def perturbed(self) -> SpeedLaw:
         return self
 
     def corners(self, begin: float, end: float) -> Array:

@@ -92,7 +92,7 @@ class AngleLaw:
         return np.asarray(self._sense * (self._slowly(theta) - self._begun))
 
     @cached_property
-    def off(self) -> AngleLaw:
+    def perturbed(self) -> AngleLaw:
         """The law for a speed as far from this one as rounding may have it."""
         speeds = np.abs(self._coefficients[-1])
         largest = np.maximum(speeds, np.roll(speeds, -1))

@@ -45,12 +45,14 @@ class CrankTrain:
     law: FuelLaw | None = None
 
     @cached_property
-    def off(self) -> CrankTrain:
+    def perturbed(self) -> CrankTrain:
         """The same with pressures as far from these as the true ones may be."""
-        if all(each.off is each for each in (*(self.pressure or ()), *(self.combustion or ()))):
+        if all(
+            each.perturbed is each for each in (*(self.pressure or ()), *(self.combustion or ()))
+        ):
             return self
-        pressure = self.pressure and tuple(each.off for each in self.pressure)
-        more = self.combustion and tuple(each.off for each in self.combustion)
+        pressure = self.pressure and tuple(each.perturbed for each in self.pressure)
+        more = self.combustion and tuple(each.perturbed for each in self.combustion)
         return replace(self, pressure=pressure, combustion=more)
 
     @cached_property

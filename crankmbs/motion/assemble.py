@@ -93,7 +93,7 @@ def _errors(
     rounded = _turned_by_rounding(better)
     if late.any() and late[-1] == 0.0 != ahead[-1]:  # else it ends at an angle, at the same time
         rounded = _with_end_in_time(rounded, ahead)
-    apart, missed, angles = _Passes(train.off, answer, rounded, table).difference()
+    apart, missed, angles = _Passes(train.perturbed, answer, rounded, table).difference()
     largest = _ROUNDING * np.array(_sizes(peaks)) + apart
     errors = dict(zip(table.rows, largest.tolist(), strict=True))
     if missed:  # of a free crank, which has inertia at every angle; a driven one may have none
@@ -106,13 +106,13 @@ def _errors(
 class _Passes(NamedTuple):
     """Two passes of one motion.
 
-    off : the crank train of the better one
+    perturbed : the crank train of the better one
     rounded : the better answer, turned ahead by the rounding of its angle; with one sample more it
         is compared with the last of the answer there
     table : the variables of the answer
     """
 
-    off: CrankTrain
+    perturbed: CrankTrain
     answer: Samples
     rounded: Samples
     table: Table
@@ -128,7 +128,7 @@ class _Passes(NamedTuple):
         before, places, first = self.table.values, self.table.places, len(MOTION)
         total = np.zeros(len(self.table.rows))
         for samples in self._chain():
-            found, apart = balances_of(self.off, samples), np.zeros(len(before))
+            found, apart = balances_of(self.perturbed, samples), np.zeros(len(before))
             balanced = slice(first, first + sum(found.rows.values()))
             apart[balanced] = found.apart(before[balanced])
             missed = 0.0
@@ -142,7 +142,7 @@ class _Passes(NamedTuple):
                 apart[places[name]] = peaks_of(before[places[name]] - values.T[..., :count])
             total += self.table.largest(apart)
             if samples is not self.rounded:
-                before = table_of(self.off, samples).values
+                before = table_of(self.perturbed, samples).values
         return total, missed, found.period.angles
 
     def _chain(self) -> list[Samples]:

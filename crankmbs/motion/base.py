@@ -18,8 +18,8 @@ from crankmbs.numerics.arrays import Array
 __all__ = [
     "NOWHERE",
     "Decay",
-    "Piece",
     "Samples",
+    "Segment",
     "Solution",
     "State",
     "Stretched",
@@ -129,7 +129,7 @@ class Stretched(Protocol):
         """The state where it ends."""
 
 
-class Piece(Stretched, Protocol):
+class Segment(Stretched, Protocol):
     """A stretch of a motion that can be read anywhere."""
 
     @property

@@ -20,7 +20,7 @@ from crankmbs.mechanics.inertia import closed_loops, inertia_alone
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.windows import acting
 from crankmbs.motion.account import Rows, beside
-from crankmbs.motion.base import Piece, Samples
+from crankmbs.motion.base import Samples, Segment
 from crankmbs.motion.cells import Cells
 from crankmbs.motion.extremes import extremes
 from crankmbs.motion.gas_work import GasWork
@@ -85,7 +85,7 @@ class Cycles:
         """How many cycles were passed that are not kept."""
         return self._passed - len(self.done)
 
-    def add(self, piece: Piece) -> None:
+    def add(self, piece: Segment) -> None:
         """One piece more of the motion."""
         begin, end = piece.begin, piece.end
         if begin.theta == end.theta:
@@ -217,7 +217,7 @@ class Cycles:
 
 
 def _shares_beside(
-    piece: Piece, theta: float, sense: float
+    piece: Segment, theta: float, sense: float
 ) -> tuple[tuple[float, ...], tuple[float, ...]]:
     """The shares of the combustion that act up to a crank angle [rad] and from there on."""
     before = after = piece.begin.mode.shares

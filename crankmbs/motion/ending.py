@@ -61,7 +61,7 @@ class Ending(Enum):
         "does not settle: the governor hunts, from its least share to its greatest and back; lower "
         "its gains",
     )
-    WANDERS = -1, "no periodic motion found within {shots} periods"
+    WANDERS = -1, "no periodic motion found within {periods} periods"
     COSTLY = (
         -1,
         "stopped at {angle:.6g} degrees: to follow the motion over time beyond it takes more than "

@@ -143,7 +143,7 @@ def _passes_of(kept: Kept, samples: Samples) -> Passes:
     if not kept.passes:
         alone = Motion.of_one(kept.train, samples)
         return Passes(alone, (alone,))
-    trains = kept.train, kept.train.off, kept.train, kept.train
+    trains = kept.train, kept.train.perturbed, kept.train, kept.train
     answer, *checks = (Motion(one, each) for one, each in zip(trains, kept.stretches, strict=False))
     return Passes(answer, tuple(checks), _HALVED)
 

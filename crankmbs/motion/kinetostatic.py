@@ -56,7 +56,7 @@ def run(train: CrankTrain) -> Solution:
         ending = Ending.FOLD
     by_angle = np.full(len(time), not plan.in_time)
     by_angle[-1] = reached and not plan.until_time
-    better = None if law.off is law else _by(law.off, samples, by_angle)
+    better = None if law.perturbed is law else _by(law.perturbed, samples, by_angle)
     return Solution(samples, *ending.said(float(theta[-1])), len(time), 0, better)
 
 
@@ -67,7 +67,7 @@ def passes(train: CrankTrain) -> Passes:
     stretches, _ = monotone_stretches(plan_of(train.scene), law)
     answer, check = (
         Motion(one, list(driven(_way(one, of, finer=finer), stretches)))
-        for one, of, finer in ((train, law, False), (train.off, law.off, True))
+        for one, of, finer in ((train, law, False), (train.perturbed, law.perturbed, True))
     )
     return Passes(answer, (check,))
 
@@ -78,7 +78,7 @@ def account(train: CrankTrain) -> Account:
     law = speed_law(train.scene.motion)
     stretches, reached = monotone_stretches(plan_of(train.scene), law)
     followed, ending = [], Ending.COMPLETE if reached else Ending.LAW_RESTS
-    for one, finer in ((train, False), (train.off, True)):
+    for one, finer in ((train, False), (train.perturbed, True)):
         way = _way(one, law, finer=finer)
         followed.append(Followed(one, begun_at(way), driven(way, stretches), ending))
     return account_of(followed, 1.0)

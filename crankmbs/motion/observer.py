@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion.account import Account
-from crankmbs.motion.base import Piece, State
+from crankmbs.motion.base import Segment, State
 from crankmbs.motion.cycles import Cycles, cycles_of
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.events import Log, events_of
@@ -20,7 +20,7 @@ class Followed(NamedTuple):
 
     train: CrankTrain
     begin: State
-    pieces: Iterable[Piece]
+    pieces: Iterable[Segment]
     ending: Ending
 
 

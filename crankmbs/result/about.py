@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING, Any, Literal, TypeVar
 from pydantic import TypeAdapter
 
 from crankmbs.errors import OutputError, shown
-from crankmbs.kept import DIMS, account_in, with_account
 from crankmbs.mechanics.variables import VARIABLES, variables_of
 from crankmbs.motion.account import Account, Keep
 from crankmbs.motion.base import Decay
 from crankmbs.motion.motion import Passes
 from crankmbs.numerics.arrays import Labelled
+from crankmbs.result.account_file import DIMS, account_in, with_account
 from crankmbs.result.motion_file import DIMS as MOTION_DIMS
 from crankmbs.result.motion_file import passes_in, with_passes
 from crankmbs.scene.scene import Scene

@@ -93,7 +93,7 @@ def passes_in(data: xr.Dataset, scene: Scene, share: float) -> tuple[Passes, xr.
             name: np.asarray(data[f"motion_{number}_{name}"].values, dtype=np.float64)
             for name in (*_OF_NODES, *_OF_CELLS)
         }
-        one = train.off if number == 1 else train  # the pass that betters the answer
+        one = train.perturbed if number == 1 else train  # the pass that betters the answer
         motions.append(Motion(one, list(_stretches(one, rows))))
     dims = [f"motion_{k}_{what}" for k in range(_MOST) for what in ("node", "cell")]
     return Passes(motions[0], tuple(motions[1:]), share), data.drop_dims(dims, errors="ignore")

@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from crankmbs.errors import InputError, shown
-from crankmbs.kept import write_rows
 from crankmbs.mechanics.variables import COORDINATES, dataset
 from crankmbs.motion.account import Account, Keep
 from crankmbs.motion.base import Decay
@@ -20,6 +19,7 @@ from crankmbs.motion.labels import Table, cycles_table, events_table
 from crankmbs.motion.motion import Passes
 from crankmbs.numerics.arrays import Array, Labelled
 from crankmbs.result.about import Cost, Error, read_saved, write_saved
+from crankmbs.result.account_file import write_rows
 from crankmbs.result.columns import data_frame, write_csv
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.units import RPM

@@ -14,8 +14,8 @@ from crankmbs.mechanics.torque import branch_of
 from crankmbs.mechanics.train import crank_train
 from crankmbs.motion.base import State
 from crankmbs.motion.crank_angle.grid import Grid, grid_of
+from crankmbs.motion.crank_angle.segment import AngleSegment
 from crankmbs.motion.crank_angle.solvers import Begin, solve
-from crankmbs.motion.crank_angle.window import Window
 from crankmbs.numerics.collocation import gauss
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.units import DEGREE
@@ -76,15 +76,15 @@ def _loop(scene: Scene, grid: Grid, reference: Reference) -> Callable[[], Answer
     # of an end in time the last cell goes beyond it
     far = bound + until_time * sense * float(np.max(np.diff(grid.edges)))
     count = int(abs(far - theta) / float(grid.edges[-1]) * len(grid.edges)) + 2
-    strip = grid.strip(theta, sense, count, far)
+    terms = grid.terms(theta, sense, count, far)
     energy = 0.5 * float(inertia_alone(scene, theta)) * omega**2
     t_end = until if until_time else math.inf
     begin, state = Begin(sense, energy, 0.0, t_end, theta), State(0.0, theta, omega, 0.0)
 
     def run() -> Answer:
-        cells = solve(grid, strip, branch, begin)
+        cells = solve(grid, terms, branch, begin)
         m = len(cells.torque)
-        window = Window(grid, strip.first(m), branch, sense, state, *cells, (m - 1, 1.0))
+        window = AngleSegment(grid, terms.first(m), branch, sense, state, *cells, (m - 1, 1.0))
         time, at, speed, *_ = window.cut(t_end, bound).end
         trace = Trace(np.array([time]), np.array([at]), np.array([speed]))
         return Answer(trace, cells.torque.size)

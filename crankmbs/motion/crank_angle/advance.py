@@ -5,8 +5,8 @@ from dt/dtheta = 1 / omega. J and the torque of gas and gravity depend on theta 
 tabulated once, at the nodes of a Gauss collocation whose cells no knot of the pressure lies
 inside. On every branch of the loads Q is quadratic in omega and linear in t; without linear terms
 it is linear in E, each cell is an affine map, and whole blocks of periods are solved at once.
-Otherwise Newton's method solves a window of cells at once, across kinks of the loads, which become
-edges of cells where they matter; at a jump a window ends.
+Otherwise Newton's method solves a segment of cells at once, across kinks of the loads, which become
+edges of cells where they matter; at a jump a segment ends.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ from crankmbs.mechanics.inertia import reduce
 from crankmbs.mechanics.torque import Branch, Course, branch_at, course_of
 from crankmbs.motion.base import State
 from crankmbs.motion.crank_angle.firings import solve_fired
-from crankmbs.motion.crank_angle.grid import Grid, Strip
+from crankmbs.motion.crank_angle.grid import Grid, Terms
 from crankmbs.motion.crank_angle.kinks import what_misses
 from crankmbs.motion.crank_angle.periods import period_of
 from crankmbs.motion.crank_angle.rings import sign_changes_in
+from crankmbs.motion.crank_angle.segment import AngleSegment
 from crankmbs.motion.crank_angle.solvers import Begin, lasting, solve
-from crankmbs.motion.crank_angle.window import Window
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.mode import Mode
 from crankmbs.motion.plan import Plan
@@ -37,7 +37,7 @@ from crankmbs.scene.units import DEGREE
 __all__ = ["advance", "is_fast"]
 
 _SLOW = 0.5 * DEGREE  # where the energy would be gone within this angle, time must be the variable
-_BLOCK = 4096  # cells of one window; with more BLAS would wake a second thread
+_BLOCK = 4096  # cells of one segment; with more BLAS would wake a second thread
 _SPEED_BLOCK = 512  # where the loads' branch may end at a speed, and the rest is for nothing
 _REACH = 1.0  # rad: what Newton's method can hold of loads that are functions, on all cells at once
 _HAIR = 1e-6  # of a cell: as near its edge it is as exact as there
@@ -59,8 +59,8 @@ def is_fast(grid: Grid, state: State, branch: Branch, times: float) -> bool:
 
 def advance(
     grid: Grid, state: State, plan: Plan, allowed: float
-) -> Generator[Window, None, Ending | None]:
-    """Carry the motion on, window by window.
+) -> Generator[AngleSegment, None, Ending | None]:
+    """Carry the motion on, segment by segment.
 
     allowed [1/rad] : of the energy that a cell may miss at kinks of the loads, per radian
 
@@ -75,30 +75,30 @@ def advance(
         mode = state.mode
         grid = grid.at(mode.loads)
         bound = min(end, mode.high) if sense > 0.0 else max(end, mode.low)
-        bound = bound if grid.train.law is None else end  # decisions are edges within a window
+        bound = bound if grid.train.law is None else end  # decisions are edges within a segment
         branch, energy = _enter(grid, state)
         if branch is None:
             return Ending.HELD
-        way = _Way(grid, state, energy, sense, bound, plan.time_bound, allowed)
-        window = _stretch(way, branch)
-        if window is None:
+        problem = _Problem(grid, state, energy, sense, bound, plan.time_bound, allowed)
+        segment = _stretch(problem, branch)
+        if segment is None:
             return None
-        t_end = min(window.branch.t_end, plan.time_bound)
-        window = (replace(window, skipped=skipped) if skipped else window).cut(t_end, bound)
-        window = _landed(way, window, t_end)
-        yield window
-        if window.end.time >= plan.time_bound or window.end.theta == end:
+        t_end = min(segment.branch.t_end, plan.time_bound)
+        segment = (replace(segment, skipped=skipped) if skipped else segment).cut(t_end, bound)
+        segment = _ended_exactly(problem, segment, t_end)
+        yield segment
+        if segment.end.time >= plan.time_bound or segment.end.theta == end:
             return Ending.COMPLETE
-        if window.end.theta == state.theta and window.end.mode == mode:
+        if segment.end.theta == state.theta and segment.end.mode == mode:
             return Ending.HELD
-        state, skipped = window.end, 0
+        state, skipped = segment.end, 0
         t_end = min(branch.t_end, plan.time_bound)
         goes_on = state.mode == mode and state.time < t_end and grid.train.law is None
         if math.isfinite(plan.last) and goes_on and branch.is_affine_in_energy and not grid.drags:
-            state, skipped = _skip(way._replace(state=state, t_end=t_end), branch, plan.last)
+            state, skipped = _skip(problem._replace(state=state, t_end=t_end), branch, plan.last)
 
 
-class _Way(NamedTuple):
+class _Problem(NamedTuple):
     """From a state and its kinetic energy [J] on: sense of rotation, bounds in angle [rad] and time
     [s], and what a cell may miss at kinks, as `advance` takes it."""
 
@@ -111,68 +111,70 @@ class _Way(NamedTuple):
     allowed: float
 
 
-def _stretch(way: _Way, branch: Branch) -> Window | None:
+def _stretch(problem: _Problem, branch: Branch) -> AngleSegment | None:
     """The next cells on the course that continues a branch; on the branch alone where its cells are
     affine, or where kinks are too strong to be found by solving again."""
-    course = course_of(way.grid.train.scene.torque, branch, way.state.time, way.state.mode.loads)
+    course = course_of(
+        problem.grid.train.scene.torque, branch, problem.state.time, problem.state.mode.loads
+    )
     if isinstance(course, Branch):
-        return _solve(way, course)
-    course = course.plus(way.state.mode.held)
-    affine = branch.is_affine_in_energy and not way.grid.drags
-    window = _before_kink(way, branch, course) if affine else None
-    return window or _solve(way, course) or _solve(way, branch)
+        return _solve(problem, course)
+    course = course.plus(problem.state.mode.held)
+    affine = branch.is_affine_in_energy and not problem.grid.drags
+    segment = _before_kink(problem, branch, course) if affine else None
+    return segment or _solve(problem, course) or _solve(problem, branch)
 
 
-def _before_kink(way: _Way, branch: Branch, course: Course) -> Window | None:
+def _before_kink(problem: _Problem, branch: Branch, course: Course) -> AngleSegment | None:
     """The whole cells on an affine branch, as far as none of its kinks lies in them."""
-    window = _solve(way, branch)
-    if window is None:
+    segment = _solve(problem, branch)
+    if segment is None:
         return None
-    cut = window.cut(min(branch.t_end, way.t_end), way.bound)
-    bent = cut.landed.time < min(course.t_end, way.t_end)
-    bent |= course.omega_low < cut.landed.omega < course.omega_high
+    cut = segment.cut(min(branch.t_end, problem.t_end), problem.bound)
+    bent = cut.exact.time < min(course.t_end, problem.t_end)
+    bent |= course.omega_low < cut.exact.omega < course.omega_high
     if not bent:
-        return window
-    return window.first(cut.stop[0]) if cut.stop[0] > 0 else None
+        return segment
+    return segment.first(cut.stop[0]) if cut.stop[0] > 0 else None
 
 
-def _landed(way: _Way, window: Window, t_end: float) -> Window:
-    """A window that ends inside a cell, with that one solved again up to the end: inside a cell the
-    answer is of lower order than at its edge."""
-    k, x = window.stop
+def _ended_exactly(problem: _Problem, segment: AngleSegment, t_end: float) -> AngleSegment:
+    """A segment that ends inside a cell, with that one solved again up to the end: inside a cell
+    the answer is of lower order than at its edge."""
+    k, x = segment.stop
     if not _HAIR < x < 1.0 - _HAIR:
-        return window
-    begin, energy = window.at_edge(k), float(window.energy[k])
+        return segment
+    begin, energy = segment.at_edge(k), float(segment.energy[k])
     for beyond in _BEYOND:
-        turned = float(window.edges[k]) + (x + beyond) * float(window.strip.width[k])
-        bound = window.begin.theta + window.sense * turned
-        again = way._replace(state=begin, energy=energy, bound=bound, t_end=math.inf)
-        last = _solve(again, window.branch)
+        turned = float(segment.edges[k]) + (x + beyond) * float(segment.terms.width[k])
+        bound = segment.begin.theta + segment.sense * turned
+        again = problem._replace(state=begin, energy=energy, bound=bound, t_end=math.inf)
+        last = _solve(again, segment.branch)
         if last is None:
             break
         last = last.cut(t_end, math.inf)
-        if last.landed[:3] == window.landed[:3]:  # also what neither knows: it is one NaN
-            return window.ended_by(last)
-    return window
+        if last.exact[:3] == segment.exact[:3]:  # also what neither knows: it is one NaN
+            return segment.ended_by(last)
+    return segment
 
 
-def _skip(way: _Way, branch: Branch, last: float) -> tuple[State, int]:
+def _skip(problem: _Problem, branch: Branch, last: float) -> tuple[State, int]:
     """Pass whole periods at once, all but the last ones; return the state after them and the
     number of cells passed."""
-    grid, state, _, sense, bound, t_end, _ = way
+    grid, state, _, sense, bound, t_end, _ = problem
     period = float(grid.edges[-1])
 
-    def at(time: float, turned: float, energy: float) -> Window | None:
+    def at(time: float, turned: float, energy: float) -> AngleSegment | None:
         """The period that begins with this energy, if the motion passes it whole."""
         theta = state.theta + sense * turned
         omega = sense * math.sqrt(2.0 * energy / float(reduce(grid.train, theta).inertia))
         begin = state._replace(time=time, theta=theta, omega=omega)
         end = theta + sense * period
-        from_there = way._replace(state=begin, energy=energy, bound=end, t_end=math.inf)
-        window = _solve(from_there, branch)
-        if window is None or window.edges[-1] < (1.0 - 1e-9) * period:
+        from_there = problem._replace(state=begin, energy=energy, bound=end, t_end=math.inf)
+        segment = _solve(from_there, branch)
+        if segment is None or segment.edges[-1] < (1.0 - 1e-9) * period:
             return None
-        return window if window.cut(math.inf, math.inf).stop == window.stop else None
+        return segment if segment.cut(math.inf, math.inf).stop == segment.stop else None
 
     start = _enter(grid, state)[1]
     first = at(state.time, 0.0, start)
@@ -180,7 +182,7 @@ def _skip(way: _Way, branch: Branch, last: float) -> tuple[State, int]:
     most = min(abs(bound - state.theta) / period, 1e15) // 1.0 - kept
     if first is None:
         return state, 0
-    one = period_of(grid, first.strip, branch, sense)
+    one = period_of(grid, first.terms, branch, sense)
     while most >= 1.0:
         run = one.run(start, state.time, most, t_end, kept)
         if run.periods == 0:
@@ -206,10 +208,10 @@ def _enter(grid: Grid, state: State) -> tuple[Branch | None, float]:
     return branch and branch.plus(mode.held), 0.5 * float(reduction.inertia) * omega**2
 
 
-def _solve(way: _Way, loads: Branch | Course) -> Window | None:
-    """Solve as many cells as one window holds; None when the first is too slow already, or misses
+def _solve(problem: _Problem, loads: Branch | Course) -> AngleSegment | None:
+    """Solve as many cells as one segment holds; None when the first is too slow already, or misses
     too much at kinks."""
-    grid, state, _, sense, bound, t_end, allowed = way
+    grid, state, _, sense, bound, t_end, allowed = problem
     t_end = min(t_end, loads.t_end)
     n, period = len(grid.edges) - 1, float(grid.edges[-1])
     ahead = 1.2 * (t_end - state.time) * abs(state.omega)
@@ -219,38 +221,40 @@ def _solve(way: _Way, loads: Branch | Course) -> Window | None:
     else:
         ends = (loads.omega_low * sense, loads.omega_high * sense)
         most = _SPEED_BLOCK if any(0.0 < end < math.inf for end in ends) else _BLOCK
-    strip = grid.strip(state.theta, sense, int(min(cells, most)), bound)
-    window = _solved(way, loads, strip, t_end)
+    terms = grid.terms(state.theta, sense, int(min(cells, most)), bound)
+    segment = _solved(problem, loads, terms, t_end)
     if isinstance(loads, Branch) and grid.train.law is None:
-        return window
+        return segment
     for _ in range(_ROUNDS):
-        if window is None:
+        if segment is None:
             return None
-        marks, missing, gained = what_misses(window, allowed)
-        bends = sign_changes_in(window)
+        marks, missing, gained = what_misses(segment, allowed)
+        bends = sign_changes_in(segment)
         if len(missing) == 0 and len(bends) == 0:
-            return window.with_more(gained) if gained.any() else window
-        strip = grid.cut(strip, state.theta, sense, np.append(marks, bends))
-        window = _solved(way, loads, strip, t_end)
+            return segment.with_more(gained) if gained.any() else segment
+        terms = grid.cut(terms, state.theta, sense, np.append(marks, bends))
+        segment = _solved(problem, loads, terms, t_end)
     return None
 
 
-def _solved(way: _Way, loads: Branch | Course, strip: Strip, t_end: float) -> Window | None:
-    """The cells of a strip, up to where they are too slow."""
-    grid, state, energy, sense, *_ = way
+def _solved(
+    problem: _Problem, loads: Branch | Course, terms: Terms, t_end: float
+) -> AngleSegment | None:
+    """The solved cells, up to where they are too slow."""
+    grid, state, energy, sense, *_ = problem
     begin = Begin(sense, energy, state.time, t_end, state.theta)
     modes: tuple[tuple[int, Mode], ...] = ()
     if grid.train.law is None:
-        cells = solve(grid, strip, loads, begin)
+        cells = solve(grid, terms, loads, begin)
     else:
-        cells, strip, modes = solve_fired(grid, strip, loads, begin, state)
-    strip = strip.first(len(cells.torque))
-    m = lasting(_SLOW, grid, strip, cells)
+        cells, terms, modes = solve_fired(grid, terms, loads, begin, state)
+    terms = terms.first(len(cells.torque))
+    m = lasting(_SLOW, grid, terms, cells)
     if m == 0:
         return None
-    return Window(
+    return AngleSegment(
         grid,
-        strip.first(m),
+        terms.first(m),
         loads,
         sense,
         state,

@@ -12,18 +12,18 @@ from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.roots import first_above
 
 if TYPE_CHECKING:
-    from crankmbs.motion.crank_angle.window import Window
+    from crankmbs.motion.crank_angle.segment import AngleSegment
 
 __all__ = ["crossing"]
 
 
-def crossing(window: Window, limit: float, *, above: bool) -> tuple[int, float] | None:
+def crossing(segment: AngleSegment, limit: float, *, above: bool) -> tuple[int, float] | None:
     """Cell and place in it, 0 to 1, where the speed first passes a limit [rad/s]; None where it
     does not."""
-    omega = np.column_stack([window.sense / window.slowness, window.speeds[1:]])
-    positions = np.concatenate([[0.0], window.grid.rule.nodes, [1.0]])
+    omega = np.column_stack([segment.sense / segment.slowness, segment.speeds[1:]])
+    positions = np.concatenate([[0.0], segment.grid.rule.nodes, [1.0]])
     side = 1.0 if above else -1.0
-    beyond = side * (np.append(window.begin.omega, omega) - limit)
+    beyond = side * (np.append(segment.begin.omega, omega) - limit)
     inside = int(np.argmax(np.append(beyond[1:] > 0.0, True)))  # stretches before it is seen
     stretches = np.append(np.flatnonzero(_may_leave(beyond)[:inside]), inside)
     for k, j in zip(*divmod(stretches, omega.shape[1]), strict=True):
@@ -31,8 +31,8 @@ def crossing(window: Window, limit: float, *, above: bool) -> tuple[int, float] 
             break
 
         def speed(x: Array, k: int = k) -> tuple[Array, Array]:
-            there = samples_in(window.whole, window.grid.train, np.full(1, k), x)
-            slope = window.strip.width[k] * there.alpha / np.abs(there.omega)
+            there = samples_in(segment.whole, segment.grid.train, np.full(1, k), x)
+            slope = segment.terms.width[k] * there.alpha / np.abs(there.omega)
             return side * (there.omega - limit), side * slope
 
         x = first_above(speed, positions[j], positions[j + 1])

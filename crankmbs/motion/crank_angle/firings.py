@@ -1,9 +1,9 @@
 """Cells of the crank angle across the decisions on the fuel, which fall on edges of cells.
 
 Between two decisions the shares of the combustion are fixed, and with them the torque over the
-angle. Shares that are known beforehand, all but a governor's, cut nothing: the strip is solved with
-them at once, and only where a decision turns out otherwise, as a window of the fuel opens or
-closes, does it end there.
+angle. Shares that are known beforehand, all but a governor's, cut nothing: the cells are solved
+with them at once, and only where a decision turns out otherwise, as a window of the
+fuel opens or closes, do they end there.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ import numpy as np
 from crankmbs.mechanics.firing import Firing, FuelLaw
 from crankmbs.mechanics.torque import Branch, Course
 from crankmbs.motion.base import State
-from crankmbs.motion.crank_angle.grid import Grid, Strip
+from crankmbs.motion.crank_angle.grid import Grid, Terms
 from crankmbs.motion.crank_angle.solvers import Begin, Cells, solve
 from crankmbs.motion.mode import Mode, decided
 from crankmbs.numerics.arrays import Array, Index
@@ -29,16 +29,16 @@ _HAIR = 1e-9  # rad: an edge so near is where the decision falls
 
 
 class Fired(NamedTuple):
-    """Solved cells, their strip with the torque of the combustion, and from which cell on each mode
+    """Solved cells, their terms with the torque of the combustion, and from which cell on each mode
     holds."""
 
     cells: Cells
-    strip: Strip
+    terms: Terms
     modes: tuple[tuple[int, Mode], ...]
 
 
 class _Ahead(NamedTuple):
-    """Decisions on the way: the cell before which each falls, the last one behind the strip; crank
+    """Decisions on the way: the cell before which each falls, the last one behind all cells; crank
     angle [rad] and J [kg m2] there; what misfires and scatter leave of each share, shape
     (n, cylinders), NaN where a cylinder does not decide."""
 
@@ -59,15 +59,15 @@ class _Ahead(NamedTuple):
 
 
 def solve_fired(
-    grid: Grid, strip: Strip, loads: Branch | Course, begin: Begin, state: State
+    grid: Grid, terms: Terms, loads: Branch | Course, begin: Begin, state: State
 ) -> Fired:
-    """Solve the cells of a strip from a state on, as far at once as the shares are foreseen."""
+    """Solve consecutive cells from a state on, as far at once as the shares are foreseen."""
     law, mode = grid.train.law, state.mode
     assert law is not None
     assert mode.firing is not None
     foreseen = _foreseen(law, mode.firing)
-    ahead, count = _ahead(grid, strip, begin.sense, state), len(strip.cell)
-    torque, modes, parts = strip.torque.copy(), [(0, mode)], list[Cells]()
+    ahead, count = _ahead(grid, terms, begin.sense, state), len(terms.cell)
+    torque, modes, parts = terms.torque.copy(), [(0, mode)], list[Cells]()
     k, n, now = 0, 0, begin
     while k < count and now.energy > 0.0 and now.time < begin.t_end:
         last = len(ahead.cell) - 1 if foreseen else n
@@ -75,7 +75,7 @@ def solve_fired(
         shares = expected[0]
         if last > n:
             shares = expected.repeat(np.diff([k, *ahead.cell[n : last + 1]]), axis=0)
-        part = strip.part(k, stop).fired(shares)
+        part = terms.part(k, stop).fired(shares)
         solved = solve(grid, part, loads, now)
         m = whole = len(solved.torque)
         for shares_after in [*expected[1:].tolist(), None]:
@@ -94,10 +94,9 @@ def solve_fired(
         k, goes_on = k + m, m < whole or whole == stop - k
         if not goes_on:
             break
-        now = now._replace(
-            energy=float(solved.edges[m]), time=float(solved.time[m])
-        )  # the angle counts from the strip's begin
-    return Fired(_joined(parts), replace(strip, torque=torque).first(k), tuple(modes))
+        # the angle counts from where the terms begin
+        now = now._replace(energy=float(solved.edges[m]), time=float(solved.time[m]))
+    return Fired(_joined(parts), replace(terms, torque=torque).first(k), tuple(modes))
 
 
 def _foreseen(law: FuelLaw, firing: Firing) -> bool:
@@ -105,15 +104,15 @@ def _foreseen(law: FuelLaw, firing: Firing) -> bool:
     return law.fuel.governor is None and firing.imposed is None
 
 
-def _ahead(grid: Grid, strip: Strip, sense: float, state: State) -> _Ahead:
-    """The decisions on a strip from a state on; on a way back all is decided, as far as it went
-    before."""
-    law, mode, count = grid.train.law, state.mode, len(strip.cell)
+def _ahead(grid: Grid, terms: Terms, sense: float, state: State) -> _Ahead:
+    """The decisions in consecutive cells from a state on; backwards all is decided, as far as it
+    went before."""
+    law, mode, count = grid.train.law, state.mode, len(terms.cell)
     assert law is not None
     first = mode.high if sense > 0.0 else mode.low
-    reach = max(0.0, float(strip.turned[-1]) - sense * (first - state.theta))
+    reach = max(0.0, float(terms.turned[-1]) - sense * (first - state.theta))
     angles, slots, parts = law.ahead(first, sense, reach)
-    cell = strip.turned[:count].searchsorted(sense * (angles - state.theta) - _HAIR)
+    cell = terms.turned[:count].searchsorted(sense * (angles - state.theta) - _HAIR)
     cell[-1] = count
     return _Ahead(cell, angles, grid.at_decisions[slots], parts)
 

@@ -24,7 +24,7 @@ from crankmbs.numerics.collocation import Rule, gauss
 from crankmbs.numerics.cycle import Cycle
 from crankmbs.numerics.lagrange import ends_and_nodes
 
-__all__ = ["FINEST_CELL", "Grid", "Strip", "grid_of", "largest_of_row"]
+__all__ = ["FINEST_CELL", "Grid", "Terms", "grid_of", "largest_of_row"]
 
 
 FINEST_CELL = 3e-14
@@ -36,8 +36,8 @@ _SLIVER = 1e-12  # rad: a start this close to an edge is on it
 
 
 @dataclass(frozen=True)
-class Strip:
-    """Consecutive cells in the sense of rotation.
+class Terms:
+    """Terms of the equation of motion in consecutive cells, in the sense of rotation.
 
     cell : shape (m,), their numbers in the grid; width : shape (m,) [rad]
     turned : shape (m + 1,) [rad], angle from the beginning to every edge
@@ -74,7 +74,7 @@ class Strip:
         nodes [rad]."""
         return self.width[:, None]
 
-    def fired(self, shares: Array) -> Strip:
+    def fired(self, shares: Array) -> Terms:
         """With what the combustion adds to the torque, and the rings that it presses; shares of
         each cylinder, shape (cylinders,), or (m, cylinders)."""
         torque = self.torque + (self.combustion @ shares[..., None])[..., 0]
@@ -88,7 +88,7 @@ class Strip:
         ahead = self.turned[:-1, None] + self.width[:, None] * rule.nodes
         return np.asarray(theta + sense * ahead)
 
-    def first(self, m: int) -> Strip:
+    def first(self, m: int) -> Terms:
         """The first m cells."""
         return self if m == len(self.cell) else self.part(0, m)
 
@@ -96,24 +96,24 @@ class Strip:
     def _tables(self) -> tuple[Array, ...]:
         return self.inertia, self.torque, self.combustion, self.rubbed, self.drag, self.ends
 
-    def part(self, low: int, high: int) -> Strip:
+    def part(self, low: int, high: int) -> Terms:
         """The cells from one number to another; edges are still counted from the beginning."""
         of_cells = (table[low:high] for table in self._tables)
         turned = self.turned[low : high + 1]
-        return Strip(self.cell[low:high], self.width[low:high], turned, self.against, *of_cells)
+        return Terms(self.cell[low:high], self.width[low:high], turned, self.against, *of_cells)
 
-    def joined(self, after: Strip) -> Strip:
+    def joined(self, after: Terms) -> Terms:
         """These cells and those after them, whose angles are counted from where these end."""
         cell = np.concatenate([self.cell, after.cell])
         width = np.concatenate([self.width, after.width])
         turned = np.concatenate([self.turned[:-1], self.turned[-1] + after.turned])
         pairs = zip(self._tables, after._tables, strict=True)
-        return Strip(cell, width, turned, self.against, *map(np.concatenate, pairs))
+        return Terms(cell, width, turned, self.against, *map(np.concatenate, pairs))
 
 
 class _Tables(NamedTuple):
     """At the nodes of every cell: J, torque over the angle without friction, what the combustion of
-    each cylinder adds; friction against either sense of rotation; rubbed and drag of `Strip`; J at
+    each cylinder adds; friction against either sense of rotation; rubbed and drag of `Terms`; J at
     both ends."""
 
     inertia: Array
@@ -226,7 +226,7 @@ class Grid:
         """The same cells for a rule of two more stages, which checks this one, under a pressure
         that is off by as much as this one may be."""
         rule = gauss(len(self.rule.nodes) + 2)
-        return Grid(self.train.off, self.edges, rule, checks=True, phases=self.phases)
+        return Grid(self.train.perturbed, self.edges, rule, checks=True, phases=self.phases)
 
     def split(self, parts: NDArray[np.intp]) -> Grid:
         """Every cell cut into equal parts, as many as ``parts``, shape (n,), says."""
@@ -256,7 +256,7 @@ class Grid:
         k = int(np.searchsorted(self.edges, local + sense * _SLIVER, side="right")) - 1
         return k % (len(self.edges) - 1)
 
-    def strip(self, theta: float, sense: float, count: int, bound: float) -> Strip:
+    def terms(self, theta: float, sense: float, count: int, bound: float) -> Terms:
         """At most ``count`` cells from a crank angle on, in the sense of rotation, cut at the
         angle ``bound``; the first and the last may be parts of cells."""
         n, period, reach = len(self.edges) - 1, float(self.edges[-1]), abs(bound - theta)
@@ -281,26 +281,26 @@ class Grid:
         period = float(self.edges[-1])
         return theta - math.floor((theta + sense * _SLIVER) / period) * period
 
-    def same(self, strip: Strip, theta: float, sense: float) -> Strip:
-        """The cells of another grid's strip from a crank angle on, where edges are the same."""
-        return self._filled(theta, sense, strip.cell, strip.width, strip.turned)
+    def same(self, terms: Terms, theta: float, sense: float) -> Terms:
+        """The terms of another grid's cells from a crank angle on, where edges are the same."""
+        return self._filled(theta, sense, terms.cell, terms.width, terms.turned)
 
-    def cut(self, strip: Strip, theta: float, sense: float, marks: Array) -> Strip:
-        """A strip from a crank angle on with edges more, at angles turned [rad]."""
+    def cut(self, terms: Terms, theta: float, sense: float, marks: Array) -> Terms:
+        """The terms from a crank angle on with edges more, at angles turned [rad]."""
         marks = np.unique(marks)
         marks = marks[np.append(True, np.diff(marks) > _SLIVER)]
-        k = np.searchsorted(strip.turned, marks) - 1
-        apart = np.minimum(marks - strip.turned[k], strip.turned[k + 1] - marks) > _SLIVER
+        k = np.searchsorted(terms.turned, marks) - 1
+        apart = np.minimum(marks - terms.turned[k], terms.turned[k + 1] - marks) > _SLIVER
         marks, k = marks[apart], k[apart]
-        of = np.insert(np.arange(len(strip.cell)), k, k)
-        turned = np.insert(strip.turned, k + 1, marks)
-        width = np.where(np.isin(of, k), np.diff(turned), strip.width[of])
-        return self._filled(theta, sense, strip.cell[of], width, turned)
+        of = np.insert(np.arange(len(terms.cell)), k, k)
+        turned = np.insert(terms.turned, k + 1, marks)
+        width = np.where(np.isin(of, k), np.diff(turned), terms.width[of])
+        return self._filled(theta, sense, terms.cell[of], width, turned)
 
     def _filled(
         self, theta: float, sense: float, cell: NDArray[np.intp], width: Array, turned: Array
-    ) -> Strip:
-        """The strip of these cells; what is a part of a cell is tabulated anew."""
+    ) -> Terms:
+        """The terms of these cells; what is a part of a cell is tabulated anew."""
         parts = (width != self._widths.take(cell)).nonzero()[0]
         anew: tuple[Array, ...] = ()
         if len(parts):
@@ -319,7 +319,7 @@ class Grid:
         if self.train.scene.friction is not None:
             against = sense * self.train.scene.friction.ring_pressure
             torque -= sense * friction
-        return Strip(cell, width, turned, against, inertia, torque, combustion, *others)
+        return Terms(cell, width, turned, against, inertia, torque, combustion, *others)
 
     def _tabulate(self, start: Array, width: Array) -> _Tables:
         places = ends_and_nodes(len(self.rule.nodes)).places

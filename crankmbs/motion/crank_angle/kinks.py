@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from crankmbs.mechanics.torque import Course
 from crankmbs.motion.crank_angle.grid import largest_of_row
-from crankmbs.motion.crank_angle.window import Window
+from crankmbs.motion.crank_angle.segment import AngleSegment
 from crankmbs.numerics.arrays import Array, Index
 
 __all__ = ["Missing", "what_misses"]
@@ -82,28 +82,28 @@ class Missing(NamedTuple):
     gained: Array
 
 
-def what_misses(window: Window, allowed: float) -> Missing:
-    """What the cells of a window miss at kinks of its loads.
+def what_misses(segment: AngleSegment, allowed: float) -> Missing:
+    """What the cells of a segment miss at kinks of its loads.
 
     On a grid that checks another, little kinks cut no cell: their errors are known well enough to
     be added. Elsewhere the finer rule by which the cells' errors are read would count them again.
 
     allowed [1/rad] : of the energy that a cell may miss at kinks, per radian
     """
-    width, k, x = window.strip.width, np.empty(0, dtype=np.intp), np.empty(0)
-    least = allowed * width * window.energy[1:]
+    width, k, x = segment.terms.width, np.empty(0, dtype=np.intp), np.empty(0)
+    least = allowed * width * segment.energy[1:]
     missed, gained = np.zeros_like(least), np.zeros_like(least)
-    if not isinstance(window.branch, Course):
+    if not isinstance(segment.branch, Course):
         return Missing(x, k, gained)
     found = [
         (points, _passed(points), _turns(points))
-        for points in _near_rows(window, window.branch, least)
+        for points in _near_rows(segment, segment.branch, least)
     ]
     for points, rows, _ in found:
         missed += np.bincount(points.cell[rows.cell], rows.missed, len(least))
     bad = missed > least
-    mended = bad & (missed < _MENDED * least) & window.grid.checks & window.branch.is_steady
-    mended[mended] = np.abs(window.rate(mended)).sum(axis=1) * width[mended] < _CALM
+    mended = bad & (missed < _MENDED * least) & segment.grid.checks & segment.branch.is_steady
+    mended[mended] = np.abs(segment.rate(mended)).sum(axis=1) * width[mended] < _CALM
     for points, _, (turning, _) in found:
         mended[points.cell[turning]] = False
     for points, rows, (turning, tops) in found:
@@ -111,59 +111,59 @@ def what_misses(window: Window, allowed: float) -> Missing:
         passed = rows.select(worth)
         cell, at = points.cell[passed.cell], _located(points, passed)
         added = mended[cell]
-        more = _gained(points, passed.select(added), at[added], window)
+        more = _gained(points, passed.select(added), at[added], segment)
         gained += np.bincount(cell[added], more, len(gained))
         k = np.concatenate([k, cell[~added], points.cell[turning]])
         x = np.concatenate([x, at[~added], tops])
-    return Missing(window.edges[k] + x * width[k], np.unique(k), gained)
+    return Missing(segment.edges[k] + x * width[k], np.unique(k), gained)
 
 
-def _gained(points: _Points, passed: _Passed, x: Array, window: Window) -> Array:
+def _gained(points: _Points, passed: _Passed, x: Array, segment: AngleSegment) -> Array:
     """Energy [J] that the Gauss rule misses of the rows' kinks at positions x: the integral of the
     variable's polynomial beyond the row, less its sum over the nodes there."""
-    of, nodes, weights = points.polynomials(passed.cell), points.x[1:-1], window.grid.rule.weights
+    of, nodes, weights = points.polynomials(passed.cell), points.x[1:-1], segment.grid.rule.weights
     degree = np.arange(len(of), 0, -1.0)[:, None]
     whole = np.vstack([of / degree, np.zeros(len(x))])
     integral = _value(whole, np.ones_like(x))[0] - _value(whole, x)[0]
     above = points.values[passed.cell, 1:-1] - points.rows[passed.row][:, None]
     total = np.where(nodes > x[:, None], above, 0.0) @ weights
     error = integral - points.rows[passed.row] * (1.0 - x) - total
-    width = window.sense * points.width[passed.cell]
+    width = segment.sense * points.width[passed.cell]
     return np.asarray(width * points.bends[passed.row] * passed.rises * error)
 
 
-def _near_rows(window: Window, course: Course, least: Array) -> list[_Points]:
+def _near_rows(segment: AngleSegment, course: Course, least: Array) -> list[_Points]:
     """Time and speed in the cells that a row lies in, or is no farther from than the nodes from one
     another."""
-    x = np.concatenate([[0.0], window.grid.rule.nodes, [1.0]])
-    width, found = window.strip.width, []
-    passed = np.diff(np.searchsorted(course.times, window.time))
+    x = np.concatenate([[0.0], segment.grid.rule.nodes, [1.0]])
+    width, found = segment.terms.width, []
+    passed = np.diff(np.searchsorted(course.times, segment.time))
     k = np.flatnonzero(passed)
     if len(k):
-        spent = width[k, None] * (window.slowness[k] @ window.grid.rule.matrix.T)
-        begin = window.time[k, None]
-        time = np.hstack([begin, begin + spent, window.time[k + 1, None]])
+        spent = width[k, None] * (segment.slowness[k] @ segment.grid.rule.matrix.T)
+        begin = segment.time[k, None]
+        time = np.hstack([begin, begin + spent, segment.time[k + 1, None]])
         bends = np.diff(course.in_time[:, 1])
         found.append(_Points(x, time, course.times, bends, k, width[k], least[k]))
-    slow, fast = 1.0 / largest_of_row(window.slowness), -1.0 / largest_of_row(-window.slowness)
-    rows = np.sort(window.sense * course.speeds)
+    slow, fast = 1.0 / largest_of_row(segment.slowness), -1.0 / largest_of_row(-segment.slowness)
+    rows = np.sort(segment.sense * course.speeds)
     before, after = np.searchsorted(rows, [2.0 * slow - fast, 2.0 * fast - slow])
     k = np.flatnonzero(after > before)
     bends = np.diff(course.in_speed[:, 1])
-    most = np.append(0.0, np.cumsum(np.abs(bends)[:: int(window.sense)]))
-    k = k[_may_miss(window, k, (most[after] - most[before])[k] * width[k] / least[k])]
+    most = np.append(0.0, np.cumsum(np.abs(bends)[:: int(segment.sense)]))
+    k = k[_may_miss(segment, k, (most[after] - most[before])[k] * width[k] / least[k])]
     if len(k):
-        inside = window.sense / window.slowness[k]
-        omega = np.column_stack([window.speeds[k], inside, window.speeds[k + 1]])
+        inside = segment.sense / segment.slowness[k]
+        omega = np.column_stack([segment.speeds[k], inside, segment.speeds[k + 1]])
         found.append(_Points(x, omega, course.speeds, bends, k, width[k], least[k]))
     return found
 
 
-def _may_miss(window: Window, k: Index, worth: Array) -> NDArray[np.bool_]:
+def _may_miss(segment: AngleSegment, k: Index, worth: Array) -> NDArray[np.bool_]:
     """Whether rows that are worth so much in each of the cells k, by the slope of the speed, can
     make it miss more than it may: between nodes where it rises or falls, or where it turns."""
-    nodes = window.grid.rule.nodes
-    slope = np.diff(1.0 / window.slowness[k]).T / np.diff(nodes)[:, None]
+    nodes = segment.grid.rule.nodes
+    slope = np.diff(1.0 / segment.slowness[k]).T / np.diff(nodes)[:, None]
     before, after = 1.5 * slope[0] - 0.5 * slope[1], 1.5 * slope[-1] - 0.5 * slope[-2]
     slopes = np.vstack([before, slope, after])
     low, high = slopes.min(axis=0), slopes.max(axis=0)

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from crankmbs.mechanics.torque import Branch
-from crankmbs.motion.crank_angle.grid import Grid, Strip
+from crankmbs.motion.crank_angle.grid import Grid, Terms
 from crankmbs.motion.crank_angle.solvers import surplus
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.collocation import carried
@@ -70,13 +70,13 @@ class Period(NamedTuple):
         return Skipped(done, energy, total / max(done, 1), float(clock))
 
 
-def period_of(grid: Grid, strip: Strip, branch: Branch, sense: float) -> Period:
-    """Compose the maps of the cells of one period, given as a strip."""
-    rule, inertia = grid.rule, strip.inertia
-    push, rate = strip.torque + branch.c0, 2.0 * branch.c2 / inertia
-    maps = rule.maps(sense * strip.pace, push, rate)
+def period_of(grid: Grid, terms: Terms, branch: Branch, sense: float) -> Period:
+    """Compose the maps of the cells of one period."""
+    rule, inertia = grid.rule, terms.inertia
+    push, rate = terms.torque + branch.c0, 2.0 * branch.c2 / inertia
+    maps = rule.maps(sense * terms.pace, push, rate)
     gain, shift, grown, _ = maps.composed()
-    weight = np.sqrt(0.5 * inertia) * strip.pace * rule.weights
+    weight = np.sqrt(0.5 * inertia) * terms.pace * rule.weights
     with np.errstate(divide="ignore", invalid="ignore"):
         left = (1.0 + grown[-1]) / (1.0 + grown[1:])  # what the rest of the period makes of it
     # the cells' rises nearly cancel in a steady motion

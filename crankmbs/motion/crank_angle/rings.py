@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from crankmbs.motion.crank_angle.window import Window
+from crankmbs.motion.crank_angle.segment import AngleSegment
 from crankmbs.numerics.arrays import Array
 
 __all__ = ["sign_changes_in"]
@@ -19,20 +19,20 @@ _AT_EDGE = 1e-7  # rad: a root so near an edge is there
 _BISECTIONS = 50  # to 1e-15 of a piece
 
 
-def sign_changes_in(window: Window) -> Array:
+def sign_changes_in(segment: AngleSegment) -> Array:
     """Angles turned [rad] at which gas forces change their sign inside cells and press rings;
     empty without fuel."""
-    train, strip = window.grid.train, window.strip
+    train, terms = segment.grid.train, segment.terms
     found = [np.empty(0)]
-    if strip.rubbed.shape[-1] == 0 or train.pressure is None or train.combustion is None:
+    if terms.rubbed.shape[-1] == 0 or train.pressure is None or train.combustion is None:
         return found[0]
-    theta = strip.angles(window.begin.theta, window.sense, window.grid.rule)
-    nodes = window.grid.rule.nodes
+    theta = terms.angles(segment.begin.theta, segment.sense, segment.grid.rule)
+    nodes = segment.grid.rule.nodes
     to_cubic = np.linalg.pinv(np.vander(nodes, 4)).T
     x = np.concatenate([[0.0], nodes, [1.0]])
     for k, cylinder in enumerate(train.scene.cylinders):
         phi = theta + cylinder.phase
-        force = train.pressure[k](phi) + window.shares[:, k, None] * train.combustion[k](phi)
+        force = train.pressure[k](phi) + segment.shares[:, k, None] * train.combustion[k](phi)
         cubics = force @ to_cubic
         values = cubics @ np.vander(x, 4).T
         cell, at = np.nonzero(values[:, 1:] * values[:, :-1] < 0.0)
@@ -45,7 +45,7 @@ def sign_changes_in(window: Window) -> Array:
                 np.where(positive == falls, middle, low),
                 np.where(positive == falls, high, middle),
             )
-        behind = low * strip.width[cell]
-        inside = np.minimum(behind, strip.width[cell] - behind) > _AT_EDGE
-        found.append((window.edges[cell] + behind)[inside])
+        behind = low * terms.width[cell]
+        inside = np.minimum(behind, terms.width[cell] - behind) > _AT_EDGE
+        found.append((segment.edges[cell] + behind)[inside])
     return np.concatenate(found)

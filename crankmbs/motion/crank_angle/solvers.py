@@ -1,7 +1,7 @@
-"""The energy over the crank angle and the time, on all cells of a strip at once.
+"""The energy over the crank angle and the time, on consecutive cells at once.
 
 A load c0 + c2 omega^2 is affine in the energy: one pass over affine maps is the answer. Everything
-else is solved by Newton's method on the whole strip: about the last motion the torque is
+else is solved by Newton's method on all of them: about the last motion the torque is
 f + rate E, each cell an affine map, and all of them are chained. What a cell does depends on those
 before it alone, so the cells solved are the first ones, up to one that has not converged.
 """
@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from crankmbs.mechanics.torque import Branch, Course
-from crankmbs.motion.crank_angle.grid import Grid, Strip, largest_of_row
+from crankmbs.motion.crank_angle.grid import Grid, Terms, largest_of_row
 from crankmbs.numerics.arrays import Array, Index
 from crankmbs.numerics.collocation import Maps, carried, chain
 
@@ -53,19 +53,19 @@ class Cells(NamedTuple):
         return Cells(self.edges[: m + 1], self.time[: m + 1], self.torque[:m], self.slowness[:m])
 
 
-def is_affine(strip: Strip, loads: Branch | Course) -> bool:
+def is_affine(terms: Terms, loads: Branch | Course) -> bool:
     """Whether the torque is affine in the energy."""
-    return isinstance(loads, Branch) and loads.is_affine_in_energy and not strip.drags
+    return isinstance(loads, Branch) and loads.is_affine_in_energy and not terms.drags
 
 
-def solve(grid: Grid, strip: Strip, loads: Branch | Course, begin: Begin) -> Cells:
-    """The cells of a strip, the last one across the end in time or a bound of the loads in the
+def solve(grid: Grid, terms: Terms, loads: Branch | Course, begin: Begin) -> Cells:
+    """Solved cells, the last one across the end in time or a bound of the loads in the
     speed; fewer where the energy is gone or Newton's method does not converge."""
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-        if isinstance(loads, Branch) and is_affine(strip, loads):
-            cells = _affine(grid, strip, loads, begin)
+        if isinstance(loads, Branch) and is_affine(terms, loads):
+            cells = _affine(grid, terms, loads, begin)
         else:
-            cells = _newton(grid, strip, loads, begin)
+            cells = _newton(grid, terms, loads, begin)
     count = len(cells.torque)
     if count == 0:
         return cells
@@ -78,12 +78,12 @@ def solve(grid: Grid, strip: Strip, loads: Branch | Course, begin: Begin) -> Cel
     return cells.first(count)
 
 
-def lasting(slow: float, grid: Grid, strip: Strip, cells: Cells) -> int:
+def lasting(slow: float, grid: Grid, terms: Terms, cells: Cells) -> int:
     """How many solved cells come before one whose energy would be gone within an angle ``slow``
     [rad], or that has none."""
-    energy, least = cells.edges, grid.least[strip.cell]
-    outside = cells.torque[:, -1] - strip.torque[:, -1]
-    enough = slow * (grid.scale[strip.cell] + np.abs(outside))
+    energy, least = cells.edges, grid.least[terms.cell]
+    outside = cells.torque[:, -1] - terms.torque[:, -1]
+    enough = slow * (grid.scale[terms.cell] + np.abs(outside))
     slowest = largest_of_row(cells.slowness)  # NaN where one is
     lasts = (energy[:-1] > enough) & (energy[1:] > enough)
     lasts &= 0.5 * least > enough * slowest**2
@@ -96,10 +96,10 @@ def added(begin: float, steps: Array) -> Array:
     return np.asarray(begin + np.append(0.0, np.cumsum(steps, dtype=np.longdouble)), np.float64)
 
 
-def _affine(grid: Grid, strip: Strip, branch: Branch, begin: Begin) -> Cells:
+def _affine(grid: Grid, terms: Terms, branch: Branch, begin: Begin) -> Cells:
     """dE/du = sense (T + c0) + 2 sense c2 E / J: an affine map per cell, the same every period."""
-    once, of = _alike(grid, strip)
-    inertia, torque, turned = strip.inertia, strip.torque, begin.sense * strip.pace
+    once, of = _alike(grid, terms)
+    inertia, torque, turned = terms.inertia, terms.torque, begin.sense * terms.pace
     push, rate = torque[once] + branch.c0, 2.0 * branch.c2 / inertia[once]
     maps = grid.rule.maps(turned[once], push, rate)
     rises = maps.rise
@@ -108,13 +108,13 @@ def _affine(grid: Grid, strip: Strip, branch: Branch, begin: Begin) -> Cells:
         push = push.take(of, axis=0)
     whole = of is not None
     more = surplus(grid, branch, begin.sense, rises[1:-1]) if whole else -grid.rounding
-    edges = carried(maps.growth, maps.rise, begin.energy, more * strip.width)
+    edges = carried(maps.growth, maps.rise, begin.energy, more * terms.width)
     energy = edges[:-1, None] + maps.shift
     if branch.c2:
         energy = maps.gain * edges[:-1, None] + maps.shift
         push = push + 2.0 * branch.c2 * energy / inertia
     slowness = np.sqrt(0.5 * inertia / energy)
-    time = added(begin.time, (strip.pace * slowness) @ grid.rule.weights)
+    time = added(begin.time, (terms.pace * slowness) @ grid.rule.weights)
     return Cells(edges, time, push, slowness)
 
 
@@ -131,10 +131,10 @@ def surplus(grid: Grid, branch: Branch, sense: float, rises: Array) -> float:
     return math.fsum([*rises.tolist(), -sense * branch.c0 * period]) / period
 
 
-def _alike(grid: Grid, strip: Strip) -> tuple[slice | Index, Index | None]:
+def _alike(grid: Grid, terms: Terms) -> tuple[slice | Index, Index | None]:
     """Cells of which the others are copies, and of which each is one: after a period they come
     again, but for the first and the last, which may be parts, and shares of the fuel."""
-    count, period = len(strip.cell), len(grid.edges) - 1
+    count, period = len(terms.cell), len(grid.edges) - 1
     if count <= period + 2 or grid.train.law is not None:
         return slice(None), None
     of = 1 + (np.arange(count) - 1) % period
@@ -142,7 +142,7 @@ def _alike(grid: Grid, strip: Strip) -> tuple[slice | Index, Index | None]:
     return np.append(np.arange(period + 1), count - 1), of
 
 
-def _newton(grid: Grid, strip: Strip, loads: Branch | Course, begin: Begin) -> Cells:
+def _newton(grid: Grid, terms: Terms, loads: Branch | Course, begin: Begin) -> Cells:
     """Newton's method on energies e at the edges and y at the nodes.
 
     With the torque f and its slope k about the last ones, u' the pace, A and b the rule's matrix
@@ -156,14 +156,14 @@ def _newton(grid: Grid, strip: Strip, loads: Branch | Course, begin: Begin) -> C
     sense, start, t0, _, angle = begin
     rule, theta = grid.rule, np.empty(0)
     if loads.functions:
-        theta = strip.angles(angle, sense, rule)
+        theta = terms.angles(angle, sense, rule)
     timed = not loads.is_steady or bool(loads.functions)
-    energy, edges = np.full(strip.inertia.shape, start), np.full(len(strip.cell) + 1, start)
-    slowness, t = np.sqrt(0.5 * strip.inertia / energy), np.full_like(energy, t0)
+    energy, edges = np.full(terms.inertia.shape, start), np.full(len(terms.cell) + 1, start)
+    slowness, t = np.sqrt(0.5 * terms.inertia / energy), np.full_like(energy, t0)
     before = np.full(len(energy), math.inf)
     for step in range(_NEWTON):
-        torque, slope = _linear(strip, loads, t, theta, sense / slowness)
-        turned = sense * strip.pace
+        torque, slope = _linear(terms, loads, t, theta, sense / slowness)
+        turned = sense * terms.pace
         push, rate = turned * torque, turned * slope
         missed = edges[:-1, None] + push @ rule.matrix.T - energy
         gain, shift = rule.corrected(missed, rate)
@@ -177,40 +177,40 @@ def _newton(grid: Grid, strip: Strip, loads: Branch | Course, begin: Begin) -> C
             m = int(np.argmax((new < least).any(axis=1)))
             if m == 0:
                 break
-            strip, edges, new, least = strip.first(m), edges[: m + 1], new[:m], least[:m]
+            terms, edges, new, least = terms.first(m), edges[: m + 1], new[:m], least[:m]
             change, left, t, theta = change[:m], left[:m], t[:m], theta[:m]
         energy, before = np.maximum(new, least), change
-        slowness = np.sqrt(0.5 * strip.inertia / energy)
+        slowness = np.sqrt(0.5 * terms.inertia / energy)
         if timed:
-            time = added(t0, (strip.pace * slowness) @ rule.weights)
-            t = time[:-1, None] + (strip.pace * slowness) @ rule.matrix.T
+            time = added(t0, (terms.pace * slowness) @ rule.weights)
+            t = time[:-1, None] + (terms.pace * slowness) @ rule.matrix.T
         if not (left > _SETTLED).any():
             break
     m = int(np.argmin(np.append(left < _GOOD, False)))
-    strip, slowness, theta = strip.first(m), slowness[:m], theta[:m]
-    torque = torque_at(strip, loads, t[:m], theta, sense / slowness)
-    work = (sense * strip.pace * torque) @ rule.weights + grid.rounding * strip.width
+    terms, slowness, theta = terms.first(m), slowness[:m], theta[:m]
+    torque = torque_at(terms, loads, t[:m], theta, sense / slowness)
+    work = (sense * terms.pace * torque) @ rule.weights + grid.rounding * terms.width
     edges = added(start, work)
-    return Cells(edges, added(t0, (strip.pace * slowness) @ rule.weights), torque, slowness)
+    return Cells(edges, added(t0, (terms.pace * slowness) @ rule.weights), torque, slowness)
 
 
 def _linear(
-    strip: Strip, loads: Branch | Course, t: Array, theta: Array, omega: Array
+    terms: Terms, loads: Branch | Course, t: Array, theta: Array, omega: Array
 ) -> tuple[Array, Array]:
     """Torque [N m] and its slope over the energy [1/rad] at the nodes."""
     slope = loads.slope(omega)
-    if strip.drags:
-        slope = slope - strip.drag
+    if terms.drags:
+        slope = slope - terms.drag
     for function in loads.functions:
         slope = slope + function.slope(t, theta, omega)
-    return torque_at(strip, loads, t, theta, omega), slope / (strip.inertia * omega)
+    return torque_at(terms, loads, t, theta, omega), slope / (terms.inertia * omega)
 
 
-def torque_at(strip: Strip, loads: Branch | Course, t: Array, theta: Array, omega: Array) -> Array:
+def torque_at(terms: Terms, loads: Branch | Course, t: Array, theta: Array, omega: Array) -> Array:
     """Torque of all at the nodes [N m]; angles are for functions."""
-    torque = strip.torque + loads(t, omega)
-    if strip.drags:
-        torque = torque - strip.drag * omega
+    torque = terms.torque + loads(t, omega)
+    if terms.drags:
+        torque = torque - terms.drag * omega
     for function in loads.functions:
         torque = torque + function(t, theta, omega)
     return torque

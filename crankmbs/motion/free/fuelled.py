@@ -19,8 +19,8 @@ from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion.base import Decay, State
 from crankmbs.motion.crank_angle.grid import Grid
 from crankmbs.motion.ending import Ending
-from crankmbs.motion.free.section import LostError
-from crankmbs.motion.free.travel import Way, travel
+from crankmbs.motion.free.integrate import Setup, integrate
+from crankmbs.motion.free.period_map import LostError
 from crankmbs.motion.mode import Mode, begun, decided
 from crankmbs.motion.plan import plan_of
 from crankmbs.numerics.arrays import Array
@@ -233,8 +233,8 @@ class Fuelled:
         LostError : the crank does not turn through them
         """
         plan = replace(self._plan, until=count * self._period)
-        way = Way(lambda *_: state, plan, self._allowed)
-        found = travel(grid, way, local, by_angle=self._by_angle)
+        setup = Setup(lambda *_: state, plan, self._allowed)
+        found = integrate(grid, setup, local, by_angle=self._by_angle)
         end = found.path.state
         if found.ending is not Ending.COMPLETE or end is None:
             raise LostError(Ending.STALLS if found.ending in _STILL else found.ending)

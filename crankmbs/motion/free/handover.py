@@ -1,5 +1,5 @@
-"""A free motion piece by piece: the crank angle carries it wherever the crank turns fast enough,
-time across rest and reversal. This is where the one hands over to the other.
+"""A free motion segment by segment: the crank angle carries it wherever the crank turns fast
+enough, time across rest and reversal. This is where the one hands over to the other.
 """
 
 from __future__ import annotations
@@ -13,11 +13,11 @@ from crankmbs.mechanics.torque import Branch
 from crankmbs.motion.base import State
 from crankmbs.motion.crank_angle import advance as crank_angle
 from crankmbs.motion.crank_angle.grid import Grid
-from crankmbs.motion.crank_angle.window import Window
+from crankmbs.motion.crank_angle.segment import AngleSegment
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.minimal import advance as minimal
 from crankmbs.motion.minimal.reduced import Reduced
-from crankmbs.motion.minimal.stretch import Stretch
+from crankmbs.motion.minimal.segment import TimeSegment
 from crankmbs.motion.plan import Plan
 
 __all__ = ["FINEST_STEP", "Handover", "Spans"]
@@ -48,10 +48,10 @@ class Handover:
     by_angle: bool = True
     usable: Spans | None = None
 
-    def pieces(
+    def segments(
         self, state: State, plan: Plan, allowed: int
-    ) -> Generator[Window | Stretch, None, Ending]:
-        """The pieces from a state on; return how the motion ends.
+    ) -> Generator[AngleSegment | TimeSegment, None, Ending]:
+        """The segments from a state on; return how the motion ends.
 
         allowed : evaluations over time
         """
@@ -75,14 +75,14 @@ class Handover:
             )
             while True:
                 try:
-                    piece = next(found)
+                    segment = next(found)
                 except StopIteration as stop:
                     ending: Ending | None = stop.value
                     break
-                state = piece.end
+                state = segment.end
                 turned_back = state.theta if state.omega == 0.0 else turned_back
-                allowed -= piece.evaluations if over_time else 0
-                yield piece
+                allowed -= segment.evaluations if over_time else 0
+                yield segment
             if ending is not None:
                 return ending
             vain += not over_time and slow and abs(state.theta - begin.theta) < period

@@ -19,14 +19,14 @@ from crankmbs.motion.cycles import MOST_CYCLES, Cycles, cycles_of
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.events import events_of
 from crankmbs.motion.free.handover import FINEST_STEP
-from crankmbs.motion.free.matching import match, stays
-from crankmbs.motion.free.travel import (
+from crankmbs.motion.free.integrate import (
     Begin,
     Pass,
-    Way,
+    Setup,
     begin_at_start,
-    travel,
+    integrate,
 )
+from crankmbs.motion.free.matching import match, stays
 from crankmbs.motion.motion import Motion, Passes
 from crankmbs.motion.plan import plan_of
 from crankmbs.motion.remarks import left_open
@@ -85,28 +85,28 @@ def run(
     lead : of a motion that does not begin at the start
     """
     grid, local, begin = lead or Lead(first_grid(train, rtol), rtol, begin_at_start)
-    way = Way(begin, plan_of(train.scene), evaluations(cost_cap))
+    setup = Setup(begin, plan_of(train.scene), evaluations(cost_cap))
     functions = has_functions(train)
     best: Assembled | None = None
     least, rounded = math.inf, False
     finest = FINEST_CELL if by_angle else 100.0 * FINEST_STEP
     local = max(local, finest)
     for left in reversed(range(_PASSES)):
-        answer = travel(grid, way, local, by_angle=by_angle)
+        answer = integrate(grid, setup, local, by_angle=by_angle)
         refined = grid.refined(answer.local, local)
         if left and refined is not grid:
             grid = refined
             continue
-        trail = answer.trail
-        better = travel(grid.finer, way, 1e-2 * local, by_angle=by_angle, first=trail)
+        origin = answer.origin
+        better = integrate(grid.finer, setup, 1e-2 * local, by_angle=by_angle, first=origin)
         passes = [_Made(grid, local, answer), _Made(grid.finer, 1e-2 * local, better)]
-        solution = _solution(train.scene, answer, better, way)
+        solution = _solution(train.scene, answer, better, setup)
         assembled = assemble(train, solution)
         if functions:
             other = staggered(grid)
-            elsewhere = travel(other, way, 0.1 * local, by_angle=by_angle, first=trail)
+            elsewhere = integrate(other, setup, 0.1 * local, by_angle=by_angle, first=origin)
             passes.append(_Made(other, 0.1 * local, elsewhere))
-            again = assemble(train, _solution(train.scene, answer, elsewhere, way))
+            again = assemble(train, _solution(train.scene, answer, elsewhere, setup))
             assembled = _stated_twice(assembled, again)
         near = local <= 10.0 * finest
         estimate = assembled.relative_error * (2.0 if near else 1.0)
@@ -122,10 +122,10 @@ def run(
         # what is left is rounding, in both passes alike, and their difference too small an estimate
         best = _doubled(best)
         share *= 2.0
-    first, *others = (Motion(one.grid.train, [*one.made.path.pieces]) for one in followed)
-    if not all(one.made.path.pieces for one in followed):  # the crank never moves
+    first, *others = (Motion(one.grid.train, [*one.made.path.segments]) for one in followed)
+    if not all(one.made.path.segments for one in followed):  # the crank never moves
         first, *others = [Motion.of_one(train, best.solution.samples)] * len(followed)
-    keep = partial(_account, followed, way, share, by_angle=by_angle)
+    keep = partial(_account, followed, setup, share, by_angle=by_angle)
     solution = replace(best.solution, keep=keep)
     if best.relative_error > rtol and solution.status >= 0:
         text = f"asked for {rtol:.0e}, reached {best.relative_error:.0e}"
@@ -141,19 +141,19 @@ class _Made(NamedTuple):
     made: Pass
 
 
-def _account(passes: tuple[_Made, ...], way: Way, share: float, *, by_angle: bool) -> Account:
-    """The events of a motion and its whole cycles; where its pieces were not kept it is followed
+def _account(passes: tuple[_Made, ...], setup: Setup, share: float, *, by_angle: bool) -> Account:
+    """The events of a motion and its whole cycles; where its segments were not kept it is followed
     once more."""
-    cycles, trail = [], passes[0].made.trail
+    cycles, origin = [], passes[0].made.origin
     for k, (grid, local, made) in enumerate(passes):
-        cycles.append(Cycles(grid.train, made.trail.state.theta, finer=k > 0))
-        if not (math.isfinite(way.plan.last) or made.path.dropped):
-            for piece in made.path.pieces:
-                cycles[-1].add(piece)
+        cycles.append(Cycles(grid.train, made.origin.state.theta, finer=k > 0))
+        if not (math.isfinite(setup.plan.last) or made.path.dropped):
+            for segment in made.path.segments:
+                cycles[-1].add(segment)
             continue
-        plan = replace(way.plan, last=(MOST_CYCLES + 1) * grid.train.scene.period)
-        again = Way(partial(_given, made.trail.state), plan, way.allowed, cycles[-1].add)
-        travel(grid, again, local, by_angle=by_angle, first=None if k == 0 else trail)
+        plan = replace(setup.plan, last=(MOST_CYCLES + 1) * grid.train.scene.period)
+        again = Setup(partial(_given, made.origin.state), plan, setup.allowed, cycles[-1].add)
+        integrate(grid, again, local, by_angle=by_angle, first=None if k == 0 else origin)
     events = events_of([one.made.path.log for one in passes], share)
     return Account(events, cycles_of(cycles, share))
 
@@ -183,8 +183,8 @@ def _doubled(one: Assembled) -> Assembled:
     return replace(one, errors={name: 2.0 * error for name, error in one.errors.items()})
 
 
-def _solution(scene: Scene, answer: Pass, better: Pass, way: Way) -> Solution:
-    plan, path, endings = way.plan, answer.path, {answer.ending, better.ending}
+def _solution(scene: Scene, answer: Pass, better: Pass, setup: Setup) -> Solution:
+    plan, path, endings = setup.plan, answer.path, {answer.ending, better.ending}
     ends = _RESTING if plan.until_time else _RESTING - {Ending.COMPLETE}
     both, in_time, reversals = (answer.samples, better.samples), plan.in_time, path.reversals
     still = endings <= ends and stays(*both)
@@ -201,7 +201,7 @@ def _solution(scene: Scene, answer: Pass, better: Pass, way: Way) -> Solution:
     elif (len(endings) > 1 and not at_rest) or parted:
         ending = Ending.PARTED
     last = float(samples.theta[-1]), float(samples.omega[-1])
-    status, text = ending.said(*last, reversals=path.reversals, allowed=way.allowed)
+    status, text = ending.said(*last, reversals=path.reversals, allowed=setup.allowed)
     if status >= 0 and path.state is not None:
         text = "; ".join([text, *left_open(scene, path.state.mode, samples.own.get("fuel"))])
     reasons: tuple[str, ...] = ()

@@ -19,9 +19,9 @@ from crankmbs.motion.crank_angle.grid import Grid
 from crankmbs.motion.crank_angle.periods import Period
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.free import passes
+from crankmbs.motion.free.fixed_point import Limit, fixed_point
 from crankmbs.motion.free.fuelled import Fuelled
-from crankmbs.motion.free.search import Limit, search
-from crankmbs.motion.free.section import MOST_SHOTS, LostError, Section
+from crankmbs.motion.free.period_map import MOST_PERIODS, LostError, PeriodMap
 
 __all__ = ["run"]
 
@@ -42,8 +42,8 @@ def run(train: CrankTrain, rtol: float, cost_cap: float, *, by_angle: bool) -> A
         grid = passes.first_grid(train, rtol)
         settling: _Settling | Fuelled
         if train.law is None:
-            section = Section(train, allowed, by_angle=by_angle)
-            settling = _Settling(section, search(section, grid))
+            period_map = PeriodMap(train, allowed, by_angle=by_angle)
+            settling = _Settling(period_map, fixed_point(period_map, grid))
         else:
             settling = Fuelled(train, grid, allowed, by_angle=by_angle)
         lead = passes.Lead(grid, rtol * min(settling.damping, 1.0), settling.begin)
@@ -59,7 +59,7 @@ def _said(found: Assembled, lost: LostError) -> Assembled:
     """The period from the start, with the reason why nothing settles."""
     samples = found.solution.samples
     at = float(samples.theta[-1]), float(samples.omega[-1])
-    status, message = lost.ending.said(*at, shots=MOST_SHOTS, factor=lost.factor)
+    status, message = lost.ending.said(*at, periods=MOST_PERIODS, factor=lost.factor)
     return replace(found, solution=replace(found.solution, status=status, message=message))
 
 
@@ -73,8 +73,8 @@ def _settled(found: Assembled, decay: Decay) -> Assembled:
 class _Settling:
     """A limit on the grids of the passes."""
 
-    def __init__(self, section: Section, limit: Limit) -> None:
-        self._section, self._limit = section, limit
+    def __init__(self, period_map: PeriodMap, limit: Limit) -> None:
+        self._period_map, self._limit = period_map, limit
         # grids, energies and closed forms of the passes
         self._seen: list[tuple[Grid, float, Period | None]] = []
 
@@ -86,14 +86,14 @@ class _Settling:
     def begin(self, grid: Grid, local: float) -> State:
         """Where the settled period begins on a grid, by periods with this tolerance; on one that
         checks another away from where it does there, by what rounding may make of it."""
-        section, limit = self._section, self._limit
-        one = section.closed_form(grid, limit.sense) if limit.affine else None
+        period_map, limit = self._period_map, self._limit
+        one = period_map.closed_form(grid, limit.sense) if limit.affine else None
         energy = self._polished(grid, local) if one is None else -one.rise / one.growth
         if grid.checks and self._seen:
             more = _ROUNDING * limit.swing / limit.damping * energy
             energy += math.copysign(more, energy - self._seen[-1][1])
         self._seen.append((grid, energy, one))
-        return section.state(energy, limit.sense)
+        return period_map.state(energy, limit.sense)
 
     def decay(self) -> Decay:
         """The factor by which a disturbance changes in a period, and its error: what it differs by
@@ -104,17 +104,17 @@ class _Settling:
     def _factor(self, grid: Grid, energy: float, one: Period | None) -> tuple[float, float]:
         if one is not None:
             return 1.0 + one.growth, _ROUNDING
-        return self._section.slope(grid, energy, self._limit.sense)[:2]
+        return self._period_map.slope(grid, energy, self._limit.sense)[:2]
 
     def _polished(self, grid: Grid, local: float) -> float:
         """The fixed point on a grid, from the one before."""
-        section, limit, before = self._section, self._limit, math.inf
+        period_map, limit, before = self._period_map, self._limit, math.inf
         energy = self._seen[-1][1] if self._seen else limit.energy
         for _ in range(_POLISHES):
-            shot = section.shot(grid, local, section.state(energy, limit.sense))
-            if shot.ending is not Ending.COMPLETE:
-                raise LostError(shot.ending)
-            step = (shot.energy - energy) / limit.damping
+            returned = period_map.period(grid, local, period_map.state(energy, limit.sense))
+            if returned.ending is not Ending.COMPLETE:
+                raise LostError(returned.ending)
+            step = (returned.energy - energy) / limit.damping
             if abs(step) > 0.5 * before:
                 break  # nothing but what the periods err
             energy, before = energy + step, abs(step)

@@ -25,13 +25,13 @@ from crankmbs.motion.minimal.entering import enter
 from crankmbs.motion.minimal.equation import Equation
 from crankmbs.motion.minimal.exits import first_exit, interpolant, value
 from crankmbs.motion.minimal.reduced import Reduced
-from crankmbs.motion.minimal.stretch import Stretch, Track
+from crankmbs.motion.minimal.segment import TimeSegment, Track
 from crankmbs.motion.plan import Plan
 from crankmbs.numerics.arrays import Array
 
 __all__ = ["Effort", "advance"]
 
-_MOST_STEPS = 4096  # of one stretch
+_MOST_STEPS = 4096  # of one segment
 _FINEST, _RADAU = 2.3e-14, 1e-13  # tolerances of a step relative to a value, SciPy's; of Radau
 _BEYOND = 1.02  # of the way to a knot: a step that goes there, so that it is passed
 _LEAVES = 1e-12  # of a step: a motion that leaves a limit before has not set out
@@ -40,7 +40,7 @@ _ROUNDED = float(np.finfo(float).eps)  # of the speed, that a step may round
 
 class Effort(NamedTuple):
     """Relative tolerance of each step, into how many it is divided then, the evaluations that are
-    allowed, and how many steps the first stretch may have."""
+    allowed, and how many steps the first segment may have."""
 
     tolerance: float
     parts: int
@@ -54,8 +54,8 @@ def advance(
     plan: Plan,
     effort: Effort,
     is_fast: Callable[[State, Branch], bool],
-) -> Generator[Stretch, None, Ending | None]:
-    """Carry the motion on, in stretches of ever more steps: a short crossing is soon over.
+) -> Generator[TimeSegment, None, Ending | None]:
+    """Carry the motion on, in segments of ever more steps: a short crossing is soon over.
 
     is_fast : whether the crank angle can take over again
 
@@ -71,7 +71,9 @@ def advance(
         if isinstance(equation, Ending):
             return equation
         if equation.holds:
-            yield (rest := Stretch.at_rest(equation, state, min(equation.until, plan.time_bound)))
+            yield (
+                rest := TimeSegment.at_rest(equation, state, min(equation.until, plan.time_bound))
+            )
             state = rest.end
             if state.time >= plan.time_bound:
                 return Ending.COMPLETE
@@ -94,9 +96,9 @@ def advance(
             track = walk.track()
         if len(track.widths) == 0:
             return Ending.FAILED
-        stretch = Stretch.of(equation, track, state)
-        yield stretch
-        begin, state, h, most = state, stretch.end, track.next_step, track.most
+        segment = TimeSegment.of(equation, track, state)
+        yield segment
+        begin, state, h, most = state, segment.end, track.next_step, track.most
         evaluations, room = evaluations + track.evaluations, min(2 * room, _MOST_STEPS)
         if state.time >= plan.time_bound or state.theta in plan.angle_bounds:
             return Ending.COMPLETE
@@ -116,7 +118,7 @@ def advance(
 @dataclass(frozen=True)
 class _Control:
     """Tolerance of a step, speed [rad/s] to which it is relative, end in time [s], crank angles
-    [rad] at which a stretch ends, most steps, and into how many each is divided: of a second answer
+    [rad] at which a segment ends, most steps, and into how many each is divided: of a second answer
     none is as long as of the first."""
 
     tolerance: float
@@ -155,7 +157,7 @@ class _Walk:
         self._inside = 0  # steps in this piece
 
     def track(self) -> Track:
-        """The steps, up to the end of the stretch."""
+        """The steps, up to the end of the segment."""
         self._most = max(self._most, self._kinetic())
         # steps that come again every period round alike in both answers, so the second one errs by
         # it on purpose, and the difference knows what the motion makes of it
@@ -176,7 +178,7 @@ class _Walk:
         return self._equation.kinetic(float(self._y[0]), float(self._y[1]))
 
     def _step(self) -> bool:
-        """The next step; whether the stretch goes on."""
+        """The next step; whether the segment goes on."""
         width, left = self._width(), self._control.bound - self._time
         step = self._tried(width)
         if step is None:

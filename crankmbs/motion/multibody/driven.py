@@ -87,13 +87,13 @@ def _errors(
 ) -> dict[str, float]:
     """Rounding, and what the law itself may be off by."""
     off = dict.fromkeys(values, 0.0)
-    if law.off is not law:
+    if law.perturbed is not law:
         time, theta = values["time"], values["crank_angle"]
         if by_angle:
-            time = law.off.time_at(theta, 0.0, math.inf)
+            time = law.perturbed.time_at(theta, 0.0, math.inf)
         else:
-            theta = law.off.at_time(time)[0]
-        found = _values(answers, law.off, time, theta)
+            theta = law.perturbed.at_time(time)[0]
+        found = _values(answers, law.perturbed, time, theta)
         off |= {name: peak(found[name] - each) for name, each in values.items() if name in found}
     off["energy_residual"] = peak(values["energy_residual"])
     return {name: off[name] + least for name, least in rounding(values).items()}

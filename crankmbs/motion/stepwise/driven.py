@@ -53,7 +53,7 @@ class Prescribed:
         for _, end in stretches:
             if end > state.time:
                 state = self._carried(state, end)
-        theta, omega, _ = _at(self._law.off, state.time)
+        theta, omega, _ = _at(self._law.perturbed, state.time)
         ahead = max(standing.ahead, abs(theta - state.theta))
         faster = max(standing.faster, abs(omega - state.omega))
         ending = Ending.COMPLETE if state.time == until else Ending.FOLD
@@ -86,7 +86,7 @@ class Prescribed:
     def assembled(self, standing: Standing) -> Assembled:
         """Every variable, beside a law that is off by as much as this one may be."""
         (state,) = standing.states
-        answer, better = (self._sample(law, state) for law in (self._law, self._law.off))
+        answer, better = (self._sample(law, state) for law in (self._law, self._law.perturbed))
         return assemble(self._train, Solution(answer, *self.said(standing), 0, 0, better))
 
     def _sample(self, law: SpeedLaw, state: State) -> Samples:

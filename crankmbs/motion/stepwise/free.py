@@ -13,7 +13,7 @@ from crankmbs.mechanics.windows import acting
 from crankmbs.motion.assemble import ANGLE_ROUNDING, Assembled, assemble
 from crankmbs.motion.base import Samples, Solution, State
 from crankmbs.motion.crank_angle.grid import FINEST_CELL, Grid
-from crankmbs.motion.crank_angle.window import Window
+from crankmbs.motion.crank_angle.segment import AngleSegment
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.free.handover import Handover, Spans
 from crankmbs.motion.free.passes import first_grid, has_functions, staggered
@@ -57,7 +57,7 @@ class Free:
         self._share = 2.0 if self._functions or scene.run.rtol <= _NEAR else 1.0
         self._by_angle = scene.run.formulation != "minimal"  # which is time throughout
         self._local = max(_LOCAL * scene.run.rtol, FINEST_CELL)
-        self._reduced = Reduced(train), Reduced(train.off, checks=True)
+        self._reduced = Reduced(train), Reduced(train.perturbed, checks=True)
         self._coarsest = first_grid(train, scene.run.rtol)
         self._refined: tuple[tuple[float, ...], Grid] = (), self._coarsest  # the last, by its edges
         folds = folds_of(scene, scene.start.angle)
@@ -119,19 +119,19 @@ class Free:
             return _Carried(state, Ending.COMPLETE, (), worst)
         if self._plan.folds_at(state.theta):
             return _Carried(state, Ending.FOLD, (), worst)
-        pieces = hand.pieces(state, replace(self._plan, until=until), _ALLOWED)
+        segments = hand.segments(state, replace(self._plan, until=until), _ALLOWED)
         ending: Ending | None = None
         while ending is None:
             try:
-                piece = next(pieces)
+                segment = next(segments)
             except StopIteration as stop:
                 ending = stop.value
                 continue
-            state = piece.end
-            if isinstance(piece, Window):
-                spans.append((piece.begin.time, state.time))
+            state = segment.end
+            if isinstance(segment, AngleSegment):
+                spans.append((segment.begin.time, state.time))
                 if not hand.grid.checks:
-                    piece.errors.raised(worst, piece.strip.cell)
+                    segment.errors.raised(worst, segment.terms.cell)
         if ending is Ending.REST or (ending in AT_REST and state.omega == 0.0):
             state = state._replace(time=until, omega=0.0)
         elif ending is Ending.COMPLETE and state.time < until:
@@ -171,7 +171,7 @@ class Free:
         faster = math.copysign(standing.faster, other.omega - one.omega) if moves else 0.0
         beside = one._replace(theta=one.theta + turned, omega=one.omega + faster, mode=other.mode)
         answer = self._sample(self._train, one)
-        better = self._sample(self._train.off, beside)
+        better = self._sample(self._train.perturbed, beside)
         found = assemble(self._train, Solution(answer, *self.said(standing), 0, 0, better))
         errors = {name: self._share * error for name, error in found.errors.items()}
         return replace(found, errors=errors)

@@ -12,10 +12,10 @@ import numpy as np
 from crankmbs.motion.assemble import ANGLE_ROUNDING
 from crankmbs.motion.base import Samples, State
 from crankmbs.motion.crank_angle.grid import Grid
-from crankmbs.motion.crank_angle.window import Window
+from crankmbs.motion.crank_angle.segment import AngleSegment
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.free.handover import Handover, Spans
-from crankmbs.motion.free.passage import Passage, Watch
+from crankmbs.motion.free.recorder import Recorder, Watch
 from crankmbs.motion.minimal.reduced import Reduced
 from crankmbs.motion.mode import begun
 from crankmbs.motion.plan import Plan
@@ -23,15 +23,15 @@ from crankmbs.motion.states import first_sample
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 
-__all__ = ["Begin", "Pass", "Trail", "Way", "begin_at_start", "travel"]
+__all__ = ["Begin", "Origin", "Pass", "Setup", "begin_at_start", "integrate"]
 
 Begin = Callable[[Grid, float], State]
 
 
-class Way(NamedTuple):
+class Setup(NamedTuple):
     """What a pass follows: from where, sampled how, and the evaluations over time it may take.
 
-    watch : is shown every piece
+    watch : is shown every segment
     """
 
     begin: Begin
@@ -40,7 +40,7 @@ class Way(NamedTuple):
     watch: Watch | None = None
 
 
-class Trail(NamedTuple):
+class Origin(NamedTuple):
     """Where a pass begins, the one sample there, and the spans of time [s] that the crank angle
     carries."""
 
@@ -56,10 +56,10 @@ class Pass(NamedTuple):
     slow : times [s] where time took over
     """
 
-    trail: Trail
+    origin: Origin
     samples: Samples
     ending: Ending
-    path: Passage
+    path: Recorder
     local: Array
     slow: list[float]
 
@@ -71,19 +71,21 @@ def begin_at_start(grid: Grid, _: float) -> State:
     return State(0.0, start.angle, start.speed, 0.0, begun(grid.train))
 
 
-def travel(
-    grid: Grid, way: Way, local: float, *, by_angle: bool, first: Trail | None = None
+def integrate(
+    grid: Grid, setup: Setup, local: float, *, by_angle: bool, first: Origin | None = None
 ) -> Pass:
     """One pass from start to end, handing over between the formulations near rest; a second one
     betters the ``first``."""
-    scene, plan = grid.train.scene, way.plan
-    state = begun_in = way.begin(grid, local)
+    scene, plan = grid.train.scene, setup.plan
+    state = begun_in = setup.begin(grid, local)
     steady = all(load.is_steady for load in scene.torque) and grid.train.law is None
     steady = steady and not _sticks(scene)
     same = first is not None and first.begin.omega[0] == state.omega
     of_angle = float(grid.at(state.mode.loads).outside(np.asarray(state.theta)))
     begin = first.begin if first and same else first_sample(grid.train, state, of_angle)
-    path = Passage(grid.train, plan, begin, can_swing=steady, allowed=way.allowed, watch=way.watch)
+    path = Recorder(
+        grid.train, plan, begin, can_swing=steady, allowed=setup.allowed, watch=setup.watch
+    )
     if not scene.settles:  # a periodic motion has no start: what acts was decided before
         path.log.start(state)
     if first:  # it begins a rounding ahead: so the difference knows what the motion makes of one
@@ -93,12 +95,12 @@ def travel(
     hand = Handover(grid, reduced, local, by_angle, usable)
     worst = np.zeros((2, len(grid.edges) - 1))
     note = partial(_note, worst) if first is None else None
-    ending = path.follow(hand.pieces(state, plan, way.allowed), note)
+    ending = path.follow(hand.segments(state, plan, setup.allowed), note)
     if ending is Ending.COMPLETE and plan.folds_at((path.state or state).theta):
         ending = Ending.FOLD
     path.log.close(ending, path.state or begun_in)
-    trail = Trail(begun_in, begin, tuple(path.fast))
-    return Pass(trail, path.samples(), ending, path, worst, path.slow if by_angle else [])
+    origin = Origin(begun_in, begin, tuple(path.fast))
+    return Pass(origin, path.samples(), ending, path, worst, path.slow if by_angle else [])
 
 
 def _sticks(scene: Scene) -> bool:
@@ -107,6 +109,6 @@ def _sticks(scene: Scene) -> bool:
     return friction is not None and friction.ring_force + friction.ring_pressure > 0.0
 
 
-def _note(worst: Array, window: Window) -> None:
-    """Keep the largest errors so far of a window's cells."""
-    window.errors.raised(worst, window.strip.cell)
+def _note(worst: Array, segment: AngleSegment) -> None:
+    """Keep the largest errors so far of a segment's cells."""
+    segment.errors.raised(worst, segment.terms.cell)

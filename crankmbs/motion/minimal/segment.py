@@ -1,4 +1,4 @@
-"""The solution over time on a stretch of steps."""
+"""The solution over time on a segment of steps."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from crankmbs.motion.states import samples_in
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.lagrange import ends_and_nodes
 
-__all__ = ["Stretch", "Track"]
+__all__ = ["TimeSegment", "Track"]
 
 _STAGES = 8  # of the rule at whose nodes, and at both ends, a step of degree 7 is told
 
@@ -54,7 +54,7 @@ class Track(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Stretch:
+class TimeSegment:
     """Steps on one branch of the loads in one sense of rotation, across any number of knots."""
 
     equation: Equation
@@ -63,7 +63,7 @@ class Stretch:
     end: State
 
     @classmethod
-    def of(cls, equation: Equation, track: Track, begin: State) -> Stretch:
+    def of(cls, equation: Equation, track: Track, begin: State) -> TimeSegment:
         """The steps of a track, and the state after them."""
         theta, omega, work = track.y.tolist()
         gained = track.equation.kinetic(theta, omega)
@@ -74,7 +74,7 @@ class Stretch:
 
     @property
     def decisions(self) -> tuple[State, ...]:
-        """None inside: a decision ends a stretch."""
+        """None inside: a decision ends a segment."""
         return ()
 
     @property
@@ -122,12 +122,12 @@ class Stretch:
         return float(np.sign(turned or self.begin.omega or self.end.omega))
 
     @staticmethod
-    def at_rest(equation: Equation, begin: State, until: float) -> Stretch:
+    def at_rest(equation: Equation, begin: State, until: float) -> TimeSegment:
         """A crank that its loads hold at rest, up to a time [s]."""
         y = np.array([begin.theta, 0.0, 0.0])
         rows = np.zeros((1, 8, 3))
         rows[0, 0] = y
         times = np.array([begin.time]), np.array([until - begin.time])
-        return Stretch.of(
+        return TimeSegment.of(
             equation, Track(*times, rows, until, y, equation, math.inf, 0.0, 0), begin
         )

@@ -14,30 +14,30 @@ from crankmbs.motion.base import NOWHERE, Samples, State
 from crankmbs.motion.cells import Acting, Cells
 from crankmbs.motion.crank_angle.crossing import crossing
 from crankmbs.motion.crank_angle.errors import Errors, errors_of
-from crankmbs.motion.crank_angle.grid import Grid, Strip
+from crankmbs.motion.crank_angle.grid import Grid, Terms
 from crankmbs.motion.mode import Mode, decided
 from crankmbs.motion.states import samples_in
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.collocation import chain
 
-__all__ = ["Window"]
+__all__ = ["AngleSegment"]
 
 _SAME = 1e-6  # rad: more than rounding of an angle, less than a cell
 
 
 @dataclass(frozen=True)
-class Window:
+class AngleSegment:
     """Consecutive solved cells on one branch or course of the loads.
 
     energy, time : shape (m + 1,), at the edges
     torque, slowness : shape (m, s), Q [N m] and dt/du [s/rad] at the nodes
-    stop : cell and position in it, 0 to 1, where the window ends; landed : what is exact there;
+    stop : cell and position in it, 0 to 1, where the segment ends; exact : what is exact there;
     skipped : cells of whole periods passed before it and not kept;
     modes : with fuel, from which cell on which mode holds.
     """
 
     grid: Grid
-    strip: Strip
+    terms: Terms
     branch: Branch | Course
     sense: float
     begin: State
@@ -46,14 +46,14 @@ class Window:
     torque: Array
     slowness: Array
     stop: tuple[int, float]
-    landed: State = NOWHERE
+    exact: State = NOWHERE
     skipped: int = 0
     modes: tuple[tuple[int, Mode], ...] = ()
 
     @property
     def edges(self) -> Array:
         """Angle turned since the beginning up to each edge, u >= 0, shape (m + 1,) [rad]."""
-        return self.strip.turned
+        return self.terms.turned
 
     @cached_property
     def whole(self) -> Cells:
@@ -68,12 +68,12 @@ class Window:
     def ending(self, turned: float) -> Cells:
         """Its cells from one on that begins so far before its end [rad], or farther."""
         k, x = self.stop
-        begin = float(self.edges[k]) + x * float(self.strip.width[k]) - turned
+        begin = float(self.edges[k]) + x * float(self.terms.width[k]) - turned
         first = max(int(np.searchsorted(self.edges, begin - _SAME)) - 1, 0)
         return self._ended(self._cells(first, k + 1))
 
     def _ended(self, cells: Cells) -> Cells:
-        """The last cells up to where the window ends, with their energy residuals."""
+        """The last cells up to where the segment ends, with their energy residuals."""
         x, last = self.stop[1], len(cells.time) - 1
         residual = self.begin.residual - self.missed[-len(cells.time) :]
         cells = replace(cells, residual=residual)
@@ -86,7 +86,7 @@ class Window:
     def _cells(self, low: int, high: int) -> Cells:
         """The cells from one number to another."""
         rule, sense = self.grid.rule, self.sense
-        some, edges, width = slice(low, high), slice(low, high + 1), self.strip.width[low:high]
+        some, edges, width = slice(low, high), slice(low, high + 1), self.terms.width[low:high]
         slowness = self.slowness[some].T
         turned = self.begin.theta + sense * self.edges[edges]
         ends = turned, self.energy[edges], self.time[edges], self.speeds[edges]
@@ -106,40 +106,40 @@ class Window:
     @cached_property
     def speeds(self) -> Array:
         """Speed [rad/s] at the edges, shape (m + 1,)."""
-        inertia = np.append(self.strip.ends[:, 0], self.strip.ends[-1, 1])
+        inertia = np.append(self.terms.ends[:, 0], self.terms.ends[-1, 1])
         return np.asarray(self.sense * np.sqrt(2.0 * self.energy / inertia))
 
     @property
     def steps(self) -> int:
-        """Cells in the window and before it."""
+        """Cells in the segment and before it."""
         return self.skipped + len(self.torque)
 
     @property
     def size(self) -> int:
         """About how many numbers it holds."""
-        return 16 * self.torque.size + self.strip.combustion.size
+        return 16 * self.torque.size + self.terms.combustion.size
 
     @property
     def evaluations(self) -> int:
-        """Nodes in the window and before it."""
+        """Nodes in the segment and before it."""
         return self.steps * len(self.grid.rule.nodes)
 
     @cached_property
     def last(self) -> Samples:
-        """The motion where the window ends, by the polynomials of its last cell."""
+        """The motion where the segment ends, by the polynomials of its last cell."""
         k, x = self.stop
         at = np.zeros(1, np.intp), np.array([x])
         return samples_in(self._cells(k, k + 1), self.grid.train, *at)
 
     @cached_property
     def end(self) -> State:
-        """The state where the window ends; what is known exactly as it is."""
+        """The state where the segment ends; what is known exactly as it is."""
         k, x = self.stop
-        theta = self.begin.theta + self.sense * float(self.edges[k] + x * self.strip.width[k])
+        theta = self.begin.theta + self.sense * float(self.edges[k] + x * self.terms.width[k])
         time, omega = float(self.time[k + 1]), float(self.speeds[k + 1])
         if x < 1.0:
             time, omega = float(self.last.time[0]), float(self.last.omega[0])
-        pairs = zip(self.landed[:3], (time, theta, omega), strict=True)
+        pairs = zip(self.exact[:3], (time, theta, omega), strict=True)
         time, theta, omega = (here if math.isnan(known) else known for known, here in pairs)
         last = self.modes[-1][1] if self.modes else self.begin.mode
         mode = decided(self.grid.train, last, time, theta, omega)
@@ -170,9 +170,9 @@ class Window:
             return np.zeros_like(self.edges)
         return np.concatenate([[0.0], np.cumsum(self.errors.energy)])
 
-    def cut(self, t_end: float, bound: float) -> Window:
+    def cut(self, t_end: float, bound: float) -> AngleSegment:
         """End where time, speed or angle leaves its bounds, whichever comes first."""
-        nowhere = self.landed
+        nowhere = self.exact
         whole = self.begin.theta + self.sense * self.edges[-1]
         at_bound = math.isfinite(bound) and abs(whole - bound) <= 1e-12 * max(1.0, abs(bound))
         stops = [(self.stop, nowhere._replace(theta=bound) if at_bound else nowhere)]
@@ -185,10 +185,10 @@ class Window:
                 stop = crossing(self, limit, above=above)
                 if stop is not None:
                     stops.append((stop, nowhere._replace(omega=limit)))
-        stop, landed = min(stops, key=lambda item: item[0])
-        if (stop, landed) == (self.stop, self.landed):
+        stop, exact = min(stops, key=lambda item: item[0])
+        if (stop, exact) == (self.stop, self.exact):
             return self
-        return self._up_to(stop, landed)
+        return self._up_to(stop, exact)
 
     def at_edge(self, k: int) -> State:
         """The state where a cell begins; without the energy residual, but for the first."""
@@ -198,40 +198,40 @@ class Window:
         theta = self.begin.theta + self.sense * float(self.edges[k])
         return State(float(self.time[k]), theta, float(self.speeds[k]), math.nan, mode)
 
-    def ended_by(self, last: Window) -> Window:
+    def ended_by(self, last: AngleSegment) -> AngleSegment:
         """With cells that were solved from where its last one begins, in place of that."""
         k = self.stop[0]
-        strip = self.strip.part(0, k).joined(last.strip)
+        terms = self.terms.part(0, k).joined(last.terms)
         later = tuple((k + cell, mode) for cell, mode in last.modes[1:])
         return replace(
             self,
-            strip=strip,
+            terms=terms,
             energy=np.concatenate([self.energy[:k], last.energy]),
             time=np.concatenate([self.time[:k], last.time]),
             torque=np.concatenate([self.torque[:k], last.torque]),
             slowness=np.concatenate([self.slowness[:k], last.slowness]),
             stop=(k + last.stop[0], last.stop[1]),
-            landed=last.landed,
+            exact=last.exact,
             modes=self.modes + later,
         )
 
-    def first(self, m: int) -> Window:
+    def first(self, m: int) -> AngleSegment:
         """The first m cells."""
         return self._up_to((m - 1, 1.0), NOWHERE)
 
-    def _up_to(self, stop: tuple[int, float], landed: State) -> Window:
+    def _up_to(self, stop: tuple[int, float], exact: State) -> AngleSegment:
         m = stop[0] + 1
         if m == len(self.torque):
-            return replace(self, stop=stop, landed=landed)
+            return replace(self, stop=stop, exact=exact)
         return replace(
             self,
-            strip=self.strip.first(m),
+            terms=self.terms.first(m),
             energy=self.energy[: m + 1],
             time=self.time[: m + 1],
             torque=self.torque[:m],
             slowness=self.slowness[:m],
             stop=stop,
-            landed=landed,
+            exact=exact,
             modes=tuple(one for one in self.modes if one[0] < m),
         )
 
@@ -248,20 +248,20 @@ class Window:
         """dQ/dE [1/rad] at the nodes of some cells."""
         omega = self.sense / self.slowness[which]
         slope = self.branch.slope(omega)
-        if self.strip.drags:
-            slope = slope - self.strip.drag[which]
-        return slope / (self.strip.inertia[which] * omega)
+        if self.terms.drags:
+            slope = slope - self.terms.drag[which]
+        return slope / (self.terms.inertia[which] * omega)
 
-    def with_more(self, gained: Array) -> Window:
+    def with_more(self, gained: Array) -> AngleSegment:
         """With so much more energy [J] gained in each cell, little enough for what follows from it
         to be linear; in the cell itself the torque is higher by as much throughout."""
-        width, weights = self.sense * self.strip.width, self.grid.rule.weights
+        width, weights = self.sense * self.terms.width, self.grid.rule.weights
         rate = self.rate(np.ones(len(width), dtype=np.bool_))
         more = chain(width * (rate @ weights), gained, 0.0)
         before = more[:-1, None]
         torque = self.torque + rate * before + (gained / width)[:, None]
-        faster = self.slowness * (self.slowness**2 / self.strip.inertia * before)
-        late = np.append(0.0, np.cumsum(self.strip.width * (faster @ weights)))
+        faster = self.slowness * (self.slowness**2 / self.terms.inertia * before)
+        late = np.append(0.0, np.cumsum(self.terms.width * (faster @ weights)))
         return replace(
             self,
             energy=self.energy + more,

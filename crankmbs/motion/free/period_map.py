@@ -23,13 +23,13 @@ from crankmbs.motion.base import State
 from crankmbs.motion.crank_angle.grid import Grid
 from crankmbs.motion.crank_angle.periods import Period, period_of
 from crankmbs.motion.ending import Ending
-from crankmbs.motion.free.travel import Way, travel
+from crankmbs.motion.free.integrate import Setup, integrate
 from crankmbs.motion.plan import plan_of
 from crankmbs.numerics.arrays import Array
 
-__all__ = ["MOST_SHOTS", "LostError", "Section", "Shot", "Slope"]
+__all__ = ["MOST_PERIODS", "LostError", "PeriodMap", "Returned", "Slope"]
 
-MOST_SHOTS = 400  # periods that are tried before the search is given up
+MOST_PERIODS = 400  # periods that are tried before the search is given up
 
 _SAMPLES = 36  # of a period, to see its least and its greatest speed
 _ANGLES = 721  # at which the inertia is looked at
@@ -42,7 +42,7 @@ _NOISE = 1e-11  # relative, of such a period
 _CLEAR = 0.05  # rad: an energy that the largest torque does not take within it is clear of rest
 
 
-class Shot(NamedTuple):
+class Returned(NamedTuple):
     """A period: how it ends, COMPLETE where the crank has turned through it; energy [J] and sense
     after it; least and greatest speed [rad/s], forwards or backwards; its duration [s]."""
 
@@ -71,7 +71,7 @@ class LostError(Exception):
         self.ending, self.factor = ending, factor
 
 
-class Section:
+class PeriodMap:
     """Periods of a crank train from the angle of its start.
 
     by_angle : the crank angle is the variable wherever it can be; allowed : evaluations over time
@@ -88,7 +88,7 @@ class Section:
         rows = np.concatenate([np.empty(0), *tables])
         self._rows = np.concatenate([rows * (1.0 - _BESIDE), rows * (1.0 + _BESIDE)])
         self._plan = replace(plan_of(scene), every=every, in_time=False, last=math.inf)
-        self._allowed, self._by_angle, self._shots = allowed, by_angle, 0
+        self._allowed, self._by_angle, self._periods = allowed, by_angle, 0
         self._closed: list[tuple[Grid, float, Period | None]] = []
 
     @cached_property
@@ -115,20 +115,20 @@ class Section:
         """Kinetic energy [J] of a state at the angle of the start."""
         return 0.5 * self.inertia * state.omega**2
 
-    def shot(self, grid: Grid, local: float, state: State) -> Shot:
+    def period(self, grid: Grid, local: float, state: State) -> Returned:
         """The period that begins in a state, by steps of this tolerance.
 
         Raises
         ------
         LostError : there have been too many
         """
-        self._shots += 1
-        if self._shots > MOST_SHOTS:
+        self._periods += 1
+        if self._periods > MOST_PERIODS:
             raise LostError(Ending.WANDERS)
-        way = Way(lambda *_: state, self._plan, self._allowed)
-        found = travel(grid, way, local, by_angle=self._by_angle)
+        setup = Setup(lambda *_: state, self._plan, self._allowed)
+        found = integrate(grid, setup, local, by_angle=self._by_angle)
         omega, speed = float(found.samples.omega[-1]), np.abs(found.samples.omega)
-        return Shot(
+        return Returned(
             found.ending,
             0.5 * self.inertia * omega**2,
             math.copysign(1.0, omega),
@@ -140,7 +140,7 @@ class Section:
     def slope(self, grid: Grid, energy: float, sense: float) -> Slope:
         """How a difference of energies changes in a period, by differences of two widths."""
         high, low, higher, lower = (
-            self.shot(grid, _FINE, self.state(energy * (1.0 + n * _STEP), sense))
+            self.period(grid, _FINE, self.state(energy * (1.0 + n * _STEP), sense))
             for n in (1, -1, 2, -2)
         )
         width = 2.0 * _STEP * energy
@@ -190,8 +190,8 @@ class Section:
             return None
         period, theta = self.scene.settled_period, self.start.angle
         count = round(period / float(grid.edges[-1]) * (len(grid.edges) - 1)) + 2
-        strip = grid.strip(theta, sense, count, theta + sense * period)
-        return period_of(grid, strip, branch, sense)
+        terms = grid.terms(theta, sense, count, theta + sense * period)
+        return period_of(grid, terms, branch, sense)
 
     def turns(self, grid: Grid, one: Period, energy: float, sense: float) -> bool:
         """Whether the period that begins with this energy [J] stays clear of rest."""

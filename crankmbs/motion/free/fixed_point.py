@@ -1,4 +1,4 @@
-"""From the start of a free run to what it settles to: the nearest fixed point of its section.
+"""From the start of a free run to what it settles to: the nearest fixed point of its period map.
 
 Steps towards it are as wide as the slopes of the loads allow without passing a nearer one by.
 """
@@ -13,9 +13,9 @@ from scipy.optimize import brentq
 from crankmbs.motion.base import State
 from crankmbs.motion.crank_angle.grid import Grid
 from crankmbs.motion.ending import Ending
-from crankmbs.motion.free.section import LostError, Section, Shot
+from crankmbs.motion.free.period_map import LostError, PeriodMap, Returned
 
-__all__ = ["Limit", "search"]
+__all__ = ["Limit", "fixed_point"]
 
 _SEARCH = 1e-9  # relative error of the energy with which the search ends
 _LOCAL = 1e-10  # tolerance of its periods
@@ -40,46 +40,46 @@ class Limit(NamedTuple):
     affine: bool
 
 
-def search(section: Section, grid: Grid) -> Limit:
+def fixed_point(period_map: PeriodMap, grid: Grid) -> Limit:
     """What the run from the start comes to.
 
     Raises
     ------
     LostError : it does not settle
     """
-    start = section.start
-    return _Search(section, grid).from_state(State(0.0, start.angle, start.speed, 0.0))
+    start = period_map.start
+    return _FixedPoint(period_map, grid).from_state(State(0.0, start.angle, start.speed, 0.0))
 
 
-class _Search:
-    def __init__(self, section: Section, grid: Grid) -> None:
-        self._section, self._grid = section, grid
+class _FixedPoint:
+    def __init__(self, period_map: PeriodMap, grid: Grid) -> None:
+        self._period_map, self._grid = period_map, grid
 
     def from_state(self, state: State) -> Limit:
         """What comes of a state."""
-        section = self._section
+        period_map = self._period_map
         for _ in range(_FLIPS):
             limit = self._in_closed_form(state)
             if limit is not None:
                 return limit
-            shot = section.shot(self._grid, _LOCAL, state)
-            if shot.ending is not Ending.COMPLETE:
-                raise LostError(shot.ending)
-            if shot.sense * state.omega > 0.0:
-                after = self._walk(state, shot)
+            returned = period_map.period(self._grid, _LOCAL, state)
+            if returned.ending is not Ending.COMPLETE:
+                raise LostError(returned.ending)
+            if returned.sense * state.omega > 0.0:
+                after = self._walk(state, returned)
                 if isinstance(after, Limit):
                     return after
                 state = after
             else:  # from rest, or turned round
-                state = section.state(shot.energy, shot.sense)
+                state = period_map.state(returned.energy, returned.sense)
         raise LostError(Ending.WANDERS)
 
     def _in_closed_form(self, state: State) -> Limit | None:
         """The limit of an affine map, where no period on the way to it comes near rest."""
-        section, sense = self._section, math.copysign(1.0, state.omega)
-        energy = section.energy(state)
-        one = section.closed_form(self._grid, sense) if energy > 0.0 else None
-        if one is None or not section.turns(self._grid, one, energy, sense):
+        period_map, sense = self._period_map, math.copysign(1.0, state.omega)
+        energy = period_map.energy(state)
+        one = period_map.closed_form(self._grid, sense) if energy > 0.0 else None
+        if one is None or not period_map.turns(self._grid, one, energy, sense):
             return None
         gained = one.growth * energy + one.rise
         if one.growth >= -_NONE:
@@ -89,96 +89,98 @@ class _Search:
                 raise LostError(Ending.RUNS_AWAY)
             return None
         limit = -one.rise / one.growth
-        if not (limit > 0.0 and section.turns(self._grid, one, limit, sense)):
+        if not (limit > 0.0 and period_map.turns(self._grid, one, limit, sense)):
             return None
         inside = one.gain * limit + one.shift
         return Limit(limit, sense, -one.growth, float(inside.max()) / limit, affine=True)
 
-    def _walk(self, state: State, first: Shot) -> Limit | State:
+    def _walk(self, state: State, first: Returned) -> Limit | State:
         """From a state and its period to the nearest fixed point in the direction in which the
         energy changes; the state in which the crank turns the other way where it stalls before."""
-        section, sense = self._section, first.sense
-        energy, shot, edge = section.energy(state), first, math.inf
+        period_map, sense = self._period_map, first.sense
+        energy, returned, edge = period_map.energy(state), first, math.inf
         while True:
-            gained = shot.energy - energy
+            gained = returned.energy - energy
             if abs(gained) <= _NONE * energy:
                 return self._limit_at(energy, sense)
-            reach = self._reach(shot, energy, gained, edge)
+            reach = self._reach(returned, energy, gained, edge)
             if reach >= _FARTHEST * energy:
                 raise LostError(Ending.RUNS_AWAY)
             other = energy + math.copysign(reach, gained)
             if reach <= _SEARCH * energy:
                 return self._limit_at(other, sense)
-            beyond = section.shot(self._grid, _LOCAL, section.state(other, sense))
+            beyond = period_map.period(self._grid, _LOCAL, period_map.state(other, sense))
             if beyond.ending is not Ending.COMPLETE or beyond.sense != sense:
                 if reach <= _AT_EDGE * energy:
                     return self._stalled(energy, sense)
                 edge = reach / 3.0
             elif (beyond.energy - other) * gained > 0.0:
                 edge = edge - reach if edge > reach else math.inf
-                energy, shot = other, beyond
-            elif reach > _CLOSE * energy and self._may_be_several(shot, beyond):
+                energy, returned = other, beyond
+            elif reach > _CLOSE * energy and self._may_be_several(returned, beyond):
                 edge = reach / 2.0
             else:
                 return self._limit_at(self._between(energy, other, sense), sense)
 
-    def _reach(self, shot: Shot, energy: float, gained: float, edge: float) -> float:
+    def _reach(self, returned: Returned, energy: float, gained: float, edge: float) -> float:
         """How far from an energy [J] the next period may be tried without missing a fixed point.
 
         Over a period a difference of energies grows by exp(int T' / J dt), T' the slope of the
         loads: where it is nowhere less than T'_min the gain falls by at most 1 - exp(T'_min t / J)
         of the way. Where T' is nowhere above 0 there is one fixed point at most.
         """
-        section, safe = self._section, 0.0
-        held = shot.time / section.least_inertia
+        period_map, safe = self._period_map, 0.0
+        held = returned.time / period_map.least_inertia
         for part in _REACHES:
-            reach, slow, fast, longer = min(part * energy, edge), shot.slow, shot.fast, 1.0
+            reach, slow, fast, longer = min(part * energy, edge), returned.slow, returned.fast, 1.0
             if gained > 0.0:
-                fast = math.sqrt(fast**2 + 2.0 * reach / section.least_inertia)
+                fast = math.sqrt(fast**2 + 2.0 * reach / period_map.least_inertia)
             elif reach >= energy:
                 continue
             else:
                 longer = 1.0 / math.sqrt(1.0 - reach / energy)
                 slow /= longer
-            least, most = section.slopes(slow, fast, shot.sense)
+            least, most = period_map.slopes(slow, fast, returned.sense)
             falls = -math.expm1(min(least * held * longer, 0.0))
             if falls * reach <= abs(gained):
                 return max(reach, safe)
             safe = max(safe, abs(gained) / falls)
             if most <= 0.0:
-                mean = 0.5 * sum(section.slopes(shot.slow, shot.fast, shot.sense))
+                mean = 0.5 * sum(period_map.slopes(returned.slow, returned.fast, returned.sense))
                 falls = -math.expm1(mean * held)
                 return min(reach, _BEYOND * abs(gained) / falls) if falls > 0.0 else reach
         return safe
 
-    def _may_be_several(self, one: Shot, other: Shot) -> bool:
+    def _may_be_several(self, one: Returned, other: Returned) -> bool:
         """Whether there may be more than one fixed point between two periods."""
         slow, fast = min(one.slow, other.slow), max(one.fast, other.fast)
-        return self._section.slopes(slow, fast, one.sense)[1] > 0.0
+        return self._period_map.slopes(slow, fast, one.sense)[1] > 0.0
 
     def _between(self, energy: float, other: float, sense: float) -> float:
         """The fixed point between two energies [J]."""
-        section = self._section
+        period_map = self._period_map
 
         def gained(trial: float) -> float:
-            return section.shot(self._grid, _LOCAL, section.state(trial, sense)).energy - trial
+            return (
+                period_map.period(self._grid, _LOCAL, period_map.state(trial, sense)).energy - trial
+            )
 
         return float(brentq(gained, energy, other, xtol=_SEARCH * energy, rtol=_SEARCH))
 
     def _limit_at(self, energy: float, sense: float) -> Limit:
         """The limit at a fixed point, with how fast it is reached."""
-        found = self._section.slope(self._grid, energy, sense)
+        found = self._period_map.slope(self._grid, energy, sense)
         if 1.0 - found.factor <= found.error:
             raise LostError(Ending.BALANCED)
         return Limit(energy, sense, 1.0 - found.factor, found.swing, affine=False)
 
     def _stalled(self, energy: float, sense: float) -> State:
         """Where the crank turns after it has stopped, if it does."""
-        section = self._section
+        period_map = self._period_map
         while True:
-            shot = section.shot(self._grid, _LOCAL, section.state(energy, sense))
-            if shot.ending is not Ending.COMPLETE:
-                raise LostError(Ending.STALLS if shot.ending in _STILL else shot.ending)
-            if shot.sense != sense:
-                return section.state(shot.energy, shot.sense)
-            energy = shot.energy
+            returned = period_map.period(self._grid, _LOCAL, period_map.state(energy, sense))
+            if returned.ending is not Ending.COMPLETE:
+                raise LostError(Ending.STALLS if returned.ending in _STILL else returned.ending)
+            if returned.sense != sense:
+                return period_map.state(returned.energy, returned.sense)
+            energy = returned.energy

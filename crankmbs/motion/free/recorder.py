@@ -1,4 +1,4 @@
-"""The way of a free motion, piece by piece."""
+"""The segments of a free motion as they are solved: kept, sampled, and counted."""
 
 from __future__ import annotations
 
@@ -13,22 +13,22 @@ import numpy as np
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion import base
 from crankmbs.motion.base import Samples, State
-from crankmbs.motion.crank_angle.window import Window
+from crankmbs.motion.crank_angle.segment import AngleSegment
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.events import Log
-from crankmbs.motion.minimal.stretch import Stretch
+from crankmbs.motion.minimal.segment import TimeSegment
 from crankmbs.motion.plan import Plan
 from crankmbs.motion.states import samples_at
 
-__all__ = ["Passage", "Piece", "Watch"]
+__all__ = ["Recorder", "Segment", "Watch"]
 
 _VAIN = 20  # as many reversals that reach no farther, and the end is not coming
-_MOST_HELD, _A_SAMPLE = 10_000_000, 100  # numbers in pieces: at most, or as many for each sample
+_MOST_HELD, _A_SAMPLE = 10_000_000, 100  # numbers in segments: at most, or as many for each sample
 _KEPT_AT_LEAST = 8.0 * math.pi  # rad: the end of a run that is always kept, two cycles
 _SAMPLE = 200  # evaluations as costly as a sample of a swing
 
 
-class Piece(base.Piece, Protocol):
+class Segment(base.Segment, Protocol):
     """A solved stretch of a free motion."""
 
     @property
@@ -48,17 +48,17 @@ class Piece(base.Piece, Protocol):
         """Evaluations of the equation of motion that it took."""
 
 
-Watch = Callable[[Piece], None]
+Watch = Callable[[Segment], None]
 
 
-class Passage:
-    """The pieces of one pass, sampled as they come; with a finite plan.last only the last stay.
+class Recorder:
+    """The segments of one pass, sampled as they come; with a finite plan.last only the last stay.
 
     can_swing : whether a swing that reaches no farther is known to go on so for ever
     allowed : evaluations over time
-    log : of the events; watch : is shown every piece
+    log : of the events; watch : is shown every segment
     fast : spans of time [s] that the crank angle carries; slow : times at which time takes over
-    dropped : whether pieces were given up, as memory would not hold all
+    dropped : whether segments were given up, as memory would not hold all
     """
 
     def __init__(
@@ -77,31 +77,31 @@ class Passage:
         self._over_time: bool | None = None
         self.fast, self.slow = list[tuple[float, float]](), list[float]()
         self._blocks, self._count = [first], 1
-        self.pieces: deque[Piece] = deque()
+        self.segments: deque[Segment] = deque()
         self.reversals = self.steps = self.evaluations = 0
 
     def follow(
         self,
-        pieces: Generator[Window | Stretch, None, Ending],
-        note: Callable[[Window], None] | None = None,
+        segments: Generator[AngleSegment | TimeSegment, None, Ending],
+        note: Callable[[AngleSegment], None] | None = None,
     ) -> Ending:
-        """Add every piece; return how the motion ends.
+        """Add every segment; return how the motion ends.
 
-        note : is shown every window before
+        note : is shown every segment before
         """
         while True:
             try:
-                piece = next(pieces)
+                segment = next(segments)
             except StopIteration as stop:
                 ending: Ending = stop.value
                 return ending
-            over_time = isinstance(piece, Stretch)
-            if note is not None and isinstance(piece, Window):
-                note(piece)
-            self._span(piece.begin.time, piece.end.time, over_time=over_time)
+            over_time = isinstance(segment, TimeSegment)
+            if note is not None and isinstance(segment, AngleSegment):
+                note(segment)
+            self._span(segment.begin.time, segment.end.time, over_time=over_time)
             count = self._count
-            self._add(piece)
-            self._left -= piece.evaluations if over_time else 0
+            self._add(segment)
+            self._left -= segment.evaluations if over_time else 0
             if self._swings():
                 if self._can_swing:
                     return Ending.SWING
@@ -118,60 +118,60 @@ class Passage:
         elif not over_time:
             self.fast[-1] = self.fast[-1][0], end
 
-    def _add(self, piece: Piece) -> None:
-        self.log.add(piece)
+    def _add(self, segment: Segment) -> None:
+        self.log.add(segment)
         if self._watch is not None:
-            self._watch(piece)
-        self.steps += piece.steps
-        self.evaluations += piece.evaluations
-        if piece.end.omega == 0.0:
+            self._watch(segment)
+        self.steps += segment.steps
+        self.evaluations += segment.evaluations
+        if segment.end.omega == 0.0:
             self.reversals += 1
-            reach = abs(piece.end.theta - self._plan.start)
+            reach = abs(segment.end.theta - self._plan.start)
             if reach > self._farthest * (1.0 + 1e-4):
                 self._farthest, self._since = reach, 0
             self._since += 1
         if math.isinf(self._plan.last):
-            if self.pieces and self._plan.in_time:
-                self._blocks[-1] = self._begun_by(piece, self._blocks[-1])
-            self._blocks += (found := self._sampled(piece))
+            if self.segments and self._plan.in_time:
+                self._blocks[-1] = self._begun_by(segment, self._blocks[-1])
+            self._blocks += (found := self._sampled(segment))
             self._count += sum(len(block.time) for block in found)
             self._plan.room.check(self._count)
-        self.pieces.append(piece)
-        self._held += piece.size
-        while self._is_spare(abs(piece.end.theta - self.pieces[0].end.theta)):
-            self._held -= self.pieces.popleft().size
+        self.segments.append(segment)
+        self._held += segment.size
+        while self._is_spare(abs(segment.end.theta - self.segments[0].end.theta)):
+            self._held -= self.segments.popleft().size
             self.dropped = True
             if math.isfinite(self._plan.last):
                 self._blocks = []  # the sample at the start lies before what is kept
 
     def _is_spare(self, behind: float) -> bool:
-        """Whether a piece that ends an angle [rad] behind the motion's end is given up."""
+        """Whether a segment that ends an angle [rad] behind the motion's end is given up."""
         most = max(_MOST_HELD, _A_SAMPLE * self._count)
         return behind > self._plan.last or (self._held > most and behind > _KEPT_AT_LEAST)
 
-    def _begun_by(self, piece: Piece, before: Samples) -> Samples:
-        """Samples up to the time at which a piece begins: one there has its values, as a load that
-        sets in, ends or jumps does so between the two."""
+    def _begun_by(self, segment: Segment, before: Samples) -> Samples:
+        """Samples up to the time at which a segment begins: one there has its values, as a load
+        that sets in, ends or jumps does so between the two."""
         at = before.time[-1:]
-        if abs(at[0] - piece.begin.time) > self._plan.hair:
+        if abs(at[0] - segment.begin.time) > self._plan.hair:
             return before
-        after = samples_at(piece.cells, self._train, at, in_time=True)
+        after = samples_at(segment.cells, self._train, at, in_time=True)
         return Samples.joined([before.select(slice(-1)), after])
 
-    def _sampled(self, piece: Piece) -> list[Samples]:
-        """The samples of the plan in a piece, if any: after its begin, up to its end."""
-        plan, (begin, end) = self._plan, (piece.begin, piece.end)
+    def _sampled(self, segment: Segment) -> list[Samples]:
+        """The samples of the plan in a segment, if any: after its begin, up to its end."""
+        plan, (begin, end) = self._plan, (segment.begin, segment.end)
         between = (begin.time, end.time) if plan.in_time else (begin.theta, end.theta)
         values = plan.between(*between)
         if len(values) == 0:
             return []
-        return [samples_at(piece.cells, self._train, values, in_time=plan.in_time)]
+        return [samples_at(segment.cells, self._train, values, in_time=plan.in_time)]
 
     def _last(self) -> Samples:
         """The one sample at the end."""
-        piece = self.pieces[-1]
-        time, theta, omega, residual = np.array(piece.end[:4])[:, None]
-        return replace(piece.last, time=time, theta=theta, omega=omega, energy_residual=residual)
+        segment = self.segments[-1]
+        time, theta, omega, residual = np.array(segment.end[:4])[:, None]
+        return replace(segment.last, time=time, theta=theta, omega=omega, energy_residual=residual)
 
     def _swings(self) -> bool:
         """Whether an end in angle is not coming nearer, reversal by reversal."""
@@ -179,11 +179,14 @@ class Passage:
 
     def samples(self) -> Samples:
         """All samples, the last one exactly at the end."""
-        if not self.pieces:
+        if not self.segments:
             return self._blocks[0]
         blocks = self._blocks
         if math.isfinite(self._plan.last):
-            blocks = [*blocks, *(found for piece in self.pieces for found in self._sampled(piece))]
+            blocks = [
+                *blocks,
+                *(found for segment in self.segments for found in self._sampled(segment)),
+            ]
         joined = Samples.joined([*blocks, self._last()])
         kept = np.ones(len(joined.time), dtype=np.bool_)
         values = joined.time if self._plan.in_time else joined.theta
@@ -196,5 +199,5 @@ class Passage:
 
     @property
     def state(self) -> State | None:
-        """The state reached, None before the first piece."""
-        return self.pieces[-1].end if self.pieces else None
+        """The state reached, None before the first segment."""
+        return self.segments[-1].end if self.segments else None
