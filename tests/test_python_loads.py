@@ -233,7 +233,7 @@ def test_it_is_no_load_of_a_file():
     ("arguments", "said"),
     [
         ({"function": 3.0}, "function: must be a function of t, theta and omega .*; 3.0 came"),
-        ({"function": is_nan, "period": 5.0}, "period must be a whole part of two revolutions"),
+        ({"function": is_nan, "period": 5.0}, "period must be a multiple of half a revolution"),
         ({"function": is_nan, "period": -1.0}, "period: must be above 0; -1.0 came"),
         ({}, "function: this argument is missing"),
     ],

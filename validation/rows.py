@@ -92,11 +92,12 @@ def loads_of(torques: tuple[Torque, ...]) -> Loads:
 
 
 def turns_of(load: AngleTable) -> PressureTable:
-    """Rows that span at most one turn repeat after one, else after two; a closing row that is like
-    the first is left out, an other one is the value before a jump."""
+    """Rows repeat after their period; without one after a turn if they span no more, else after
+    two; a closing row that is like the first is left out, an other one is the value before a jump.
+    """
     x, y = load.file.x, load.file.y
     turns = 1 if x[-1] - x[0] <= 2.0 * math.pi + SAME_ANGLE else 2
-    period = 2.0 * math.pi * turns
+    period = 2.0 * math.pi * turns if load.period is None else load.period
     opening = 2 if x[1] == x[0] else 1
     closing = sum(angle - x[0] > period - SAME_ANGLE for angle in x)
     inner = slice(opening - 1, len(x) - closing)

@@ -43,7 +43,7 @@ def loads_of(scene: Scene) -> Loads | None:
         return None
     if abs(scene.settled_period - scene.period) > _SAME:
         return None
-    if any(load.lacks or load.parts.over_angle or not load.is_steady for load in scene.torque):
+    if any(load.lacks or load.parts.period or not load.is_steady for load in scene.torque):
         return None
     sense = math.copysign(1.0, start.speed)
     branch = branch_of(scene.torque, 0.0, 0.0, rising=sense > 0.0)

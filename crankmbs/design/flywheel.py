@@ -120,8 +120,8 @@ def excess_at(scene: Scene, speed: float) -> tuple[float, float]:
 
 def excess(even: Result, loads: tuple[Torque, ...] = ()) -> tuple[float, float]:
     """(W [J], J omega^2 [J]) of the lecture's formula, from a run of whole cycles at constant
-    speed: the range of the work that rods, and loads over the angle, do beyond its mean, twice the
-    mean kinetic energy.
+    speed: the range of the work that rods, and loads over the angle or of Python, do beyond its
+    mean, twice the mean kinetic energy.
 
     >>> excess(simulate(load_scene("yi_diesel")))[0] > 0.0
     True
@@ -130,10 +130,13 @@ def excess(even: Result, loads: tuple[Torque, ...] = ()) -> tuple[float, float]:
     turned = np.abs(angle - angle[0])
     work = cumulative_simpson(even.data["crank_torque"].values.sum(axis=1), x=turned, initial=0.0)
     sense = math.copysign(1.0, angle[-1] - angle[0])
+    speed = even.data["crank_speed"].values
     for load in loads:
         if load.parts.over_angle is not None:
             done = load.parts.over_angle.integral(angle)
             work += sense * (done - done[0])
+        elif load.parts.function is not None:
+            work += cumulative_simpson(load(0.0, angle, speed), x=turned, initial=0.0)
     surplus = work - work[-1] * turned / turned[-1]
     return float(np.ptp(surplus)), 2.0 * float(even.data["kinetic_energy"].values.mean())
 

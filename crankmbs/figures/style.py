@@ -83,7 +83,7 @@ def png(figure: Figure, dpi: float | Literal["figure"] = "figure") -> bytes:
 
 
 def save(figure: Figure, file: Path) -> Path:
-    """Write the figure as a PNG file, laid out and drawn once: savefig draws twice what has a layout.
+    """Write the figure as a PNG file, laid out and drawn once: savefig would draw it twice.
 
     Raises
     ------
@@ -93,7 +93,7 @@ def save(figure: Figure, file: Path) -> Path:
     if layout is not None:
         layout.execute(figure)
         figure.set_layout_engine("none")
-    canvas = FigureCanvasAgg(figure)
+    canvas: Any = FigureCanvasAgg(figure)
     write_in_one_move(file, lambda part: canvas.print_png(part, pil_kwargs=_FAST))
     return file
 

@@ -11,7 +11,7 @@ import numpy as np
 from crankmbs.errors import InputError
 from crankmbs.measures.estimate import ROUNDING
 from crankmbs.measures.nodes import nodes_of
-from crankmbs.measures.span import measured_span, passes_over
+from crankmbs.measures.span import CYCLES, measured_span, passes_over
 from crankmbs.motion.motion import Motion
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
@@ -76,7 +76,7 @@ class Harmonics:
 
     def __init__(self, result: Result, highest: float = 12.0) -> None:
         window = measured_span(result)
-        if window.kind not in ("last cycle", "settled period"):
+        if window.kind not in CYCLES:
             raise InputError("orders need one whole cycle; let the run last longer")
         self.passes = passes_over(result, window)
         if not self.passes.answer.turns_one_way:

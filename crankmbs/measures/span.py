@@ -10,7 +10,10 @@ import numpy as np
 from crankmbs.motion.motion import Motion, Passes
 from crankmbs.result import Result
 
-__all__ = ["Span", "last_span", "measured_span", "passes_over"]
+__all__ = ["CYCLES", "Span", "last_span", "measured_span", "passes_over"]
+
+CYCLES = "last cycle", "last period", "settled period"
+"""Kinds of spans that are whole cycles."""
 
 _SAME_ANGLE = 1e-9  # rad: rounding of start + k * every must not lose a cycle
 
@@ -19,7 +22,8 @@ _SAME_ANGLE = 1e-9  # rad: rounding of start + k * every must not lose a cycle
 class Span:
     """A stretch of a run up to its end.
 
-    kind : "last cycle", "last revolution" or "whole run"; "settled period" of several cycles
+    kind : "last cycle", "last revolution" or "whole run"; of several cycles "settled period", or
+        "last period" under loads over the angle that come again after them
     begin, end [s]; angle : crank angle turned between them [rad], negative backwards
     first : number of the last sample at or before ``begin``
     inside : number of the first sample at or after ``begin``
@@ -54,10 +58,14 @@ def last_span(result: Result) -> Span:
 
 
 def measured_span(result: Result) -> Span:
-    """What a run is summed up over: of a settled motion its whole period, else the `last_span`."""
+    """What a run is summed up over: of a settled motion its whole period, else the last one of the
+    engine with its loads over the angle, else the `last_span`."""
     scene = result.scene
-    if scene.settles and result.status == 0 and scene.settled_period > scene.period + _SAME_ANGLE:
-        whole = _ending(result, "settled period", scene.settled_period)
+    kind, wanted = "last period", scene.load_period
+    if scene.settles and result.status == 0:
+        kind, wanted = "settled period", scene.settled_period
+    if wanted > scene.period + _SAME_ANGLE:
+        whole = _ending(result, kind, wanted)
         if whole is not None:
             return whole
     return last_span(result)

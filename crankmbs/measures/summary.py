@@ -12,7 +12,7 @@ import numpy as np
 from crankmbs.measures.estimate import Estimate, Number, Numbers, estimates
 from crankmbs.measures.joints import JointForce, joints_of
 from crankmbs.measures.nodes import Nodes, nodes_of
-from crankmbs.measures.span import Span, measured_span, passes_over
+from crankmbs.measures.span import CYCLES, Span, measured_span, passes_over
 from crankmbs.mechanics.geometry import close_loop, dead_centres
 from crankmbs.motion.motion import Motion
 from crankmbs.motion.states import samples_in
@@ -64,8 +64,8 @@ class Measures:
 
 
 def measure(result: Result) -> Measures:
-    """Sum up a run over its last whole cycle (or revolution, or the run); a settled motion over
-    its period.
+    """Sum up a run over its last whole cycle (or revolution, or the run), under loads over the
+    angle of a longer period over that; a settled motion over its period.
 
     Every number is read from the motion as it was solved (`crankmbs.measures.nodes`). Its error is
     what the same number of the motion that checks it differs by, and the rounding of what it is
@@ -191,7 +191,7 @@ def _powers(scene: Scene, window: Span, nodes: Nodes, late: float) -> Numbers:
             for name in ("gas_force", "friction_force")
         )
     )
-    whole = window.kind in ("last cycle", "settled period")
+    whole = window.kind in CYCLES
     cycles = abs(window.angle) / scene.period if whole else 0.0
     return powers(scene, of_gas, rubbed, cycles, nodes.motion.end - nodes.motion.begin)
 

@@ -23,7 +23,7 @@ from crankmbs.errors import InputError
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.windows import Phases, acting, phase_ends
 from crankmbs.numerics.arrays import Array
-from crankmbs.numerics.cycle import Cycle, summed, tiled
+from crankmbs.numerics.cycle import Cycle, common_period, summed, tiled
 from crankmbs.numerics.function import Function
 from crankmbs.numerics.piecewise import total
 from crankmbs.scene.scene import Scene
@@ -266,7 +266,7 @@ def over_angle(scene: Scene, phases: Phases = ()) -> Cycle | None:
     """What the loads that act give over the crank angle."""
     parts = [load.parts.over_angle for _, load in acting(scene.torque, phases)]
     found = [part for part in parts if part is not None]
-    return summed(found, max((part.period for part in found), default=0.0))
+    return summed(found, common_period(part.period for part in found))
 
 
 def knots_over_angle(train: CrankTrain) -> Array:
@@ -275,7 +275,7 @@ def knots_over_angle(train: CrankTrain) -> Array:
     parts = [load.parts for load in train.scene.torque]
     cycles = [part.over_angle for part in parts if part.over_angle is not None]
     knots = [np.mod(tiled(cycle, period), period) for cycle in cycles]
-    knots += [np.mod(part.function.angles, period) for part in parts if part.function is not None]
+    knots += [part.function.angles_in(period) for part in parts if part.function is not None]
     return np.unique(np.concatenate([np.empty(0), *knots]))
 
 

@@ -16,6 +16,7 @@ from crankmbs.mechanics.knots import KNOT, apart
 from crankmbs.mechanics.pressure import PeriodicPressure, combustion_of, motored_of, pressures_of
 from crankmbs.mechanics.speed import speed_law
 from crankmbs.numerics.arrays import Array
+from crankmbs.numerics.cycle import common_period
 from crankmbs.numerics.once import once
 from crankmbs.scene.scene import Scene
 
@@ -66,11 +67,9 @@ class CrankTrain:
     @cached_property
     def period(self) -> float:
         """Crank angle [rad] after which everything comes again: the least common multiple of the
-        periods of the engine, the pressures and the loads over the angle, whole revolutions all."""
-        loads = (load.parts.over_angle for load in self.scene.torque)
-        own = [each.period for each in (*(self.pressure or ()), *loads) if each is not None]
-        turns = (round(period / (2.0 * math.pi)) for period in (self.scene.period, *own))
-        return math.lcm(*turns) * 2.0 * math.pi
+        periods of the engine, the pressures and the loads, whole revolutions."""
+        pressures = (pressure.period for pressure in self.pressure or ())
+        return common_period([self.scene.load_period, *pressures])
 
 
 @once

@@ -1,5 +1,5 @@
-"""What a run that has ended leaves open: windows that a speed did not end or begin, and a governor
-that hunts."""
+"""What a reader of a run has to know besides: windows that a speed did not end or begin, a governor
+that hunts, and a crank that turned back under a load over its angle."""
 
 from __future__ import annotations
 
@@ -8,27 +8,30 @@ from collections.abc import Iterator
 import numpy as np
 
 from crankmbs.mechanics.windows import Phase
+from crankmbs.motion.base import Samples
 from crankmbs.motion.mode import Mode
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.fuel import Fuel
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.units import RPM
 
-__all__ = ["left_open"]
+__all__ = ["remarks"]
 
 _SWINGS = 3  # from one end to the other: a load step makes one, and one back
 
 
-def left_open(scene: Scene, mode: Mode, shares: Array | None) -> tuple[str, ...]:
-    """A sentence for each window that waits for a speed at the end of a run, and for a governor
-    whose share goes from its least to its greatest and back throughout the second half of it.
+def remarks(scene: Scene, mode: Mode, samples: Samples) -> tuple[str, ...]:
+    """A sentence for each window that waits for a speed at the end of a run, for a governor whose
+    share goes from its least to its greatest and back throughout the second half of it, and for
+    each load over the angle of a crank that turned back.
 
-    mode : at the end; shares : shape (n, cylinders), of the combustion at the samples, if any
+    mode : at the end
 
-    >>> left_open(load_scene("propeller"), Mode(), None)
-    ()
+    >>> simulate(load_scene("propeller")).message
+    'reached the end of the run'
     """
-    said = [*_windows(scene, mode)]
+    shares = samples.own.get("fuel")
+    said = [*_windows(scene, mode), *_turned_back(scene, samples.omega)]
     fuel, firing = scene.fuel, mode.firing
     if fuel is not None and firing is not None:
         if firing.set_in is None and fuel.from_speed is not None:
@@ -52,6 +55,17 @@ def _windows(scene: Scene, mode: Mode) -> Iterator[str]:
             yield (
                 f"torque[{number}]: from_speed, {load.from_speed / RPM:.6g} rpm, was not met, and "
                 "the load never set in"
+            )
+
+
+def _turned_back(scene: Scene, omega: Array) -> Iterator[str]:
+    if not np.min(omega) < 0.0 < np.max(omega):
+        return
+    for number, load in enumerate(scene.torque, start=1):
+        if load.parts.over_angle is not None:
+            yield (
+                f"torque[{number}]: the crank turned back, and the {load.name} is the same at an "
+                "angle whichever way the crank turns"
             )
 
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from bisect import bisect_right
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -13,7 +14,7 @@ from scipy.interpolate import PPoly
 
 from crankmbs.numerics.arrays import Array
 
-__all__ = ["NEAR", "Cycle", "summed", "tiled"]
+__all__ = ["NEAR", "Cycle", "common_period", "summed", "tiled"]
 
 NEAR = 1e-9  # rad: an angle this close below a knot counts as on it, or rounding decides the side
 _JUMP = 1e-9  # of the largest value or slope: less is rounding
@@ -115,6 +116,15 @@ def summed(cycles: list[Cycle], period: float) -> Cycle | None:
         slope, square = (3.0 * a * x + 2.0 * b) * x + c, 3.0 * a * x + b
         total += np.array([a, square, slope, ((a * x + b) * x + c) * x + d])
     return Cycle(knots, total)
+
+
+def common_period(periods: Iterable[float]) -> float:
+    """Least common multiple of periods that are multiples of half a revolution [rad].
+
+    >>> round(common_period([4.0 * math.pi, 3.0 * math.pi]) / math.pi)
+    12
+    """
+    return math.lcm(*(round(period / math.pi) for period in periods)) * math.pi
 
 
 def tiled(cycle: Cycle, period: float) -> Array:

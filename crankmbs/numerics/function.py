@@ -29,7 +29,9 @@ class Function:
     """Where it raises or gives no finite number it is NaN, and `failure` says so.
 
     function : (t, theta, omega) -> a number, pure
-    times, angles, speeds : where it bends or jumps, [s], [rad] and [rad/s]
+    times, angles, speeds : where it bends or jumps, [s], [rad] and [rad/s]; angles within a period,
+        or a revolution where it has none
+    period [rad] : after which it comes again, of what does not depend on the time
     """
 
     def __init__(
@@ -38,10 +40,18 @@ class Function:
         times: tuple[float, ...] = (),
         angles: tuple[float, ...] = (),
         speeds: tuple[float, ...] = (),
+        period: float | None = None,
     ) -> None:
+        self.period = period
         self.times, self.angles, self.speeds = sorted(times), sorted(angles), sorted(speeds)
         self.failure = ""
         self._function = function
+
+    def angles_in(self, period: float) -> Array:
+        """Its angles repeated over a period [rad] of which its own is a part."""
+        own = self.period or 2.0 * math.pi
+        turns = own * np.arange(round(period / own))[:, None]
+        return np.asarray((np.array(self.angles) % own + turns).ravel())
 
     def number(self, t: float, theta: float, omega: float) -> float:
         """Its value at one time [s], angle [rad] and speed [rad/s]; NaN where it has none."""

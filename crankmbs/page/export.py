@@ -47,6 +47,7 @@ def exported(scene: Scene) -> dict[str, Any]:
         "loads": [_load(load) for load in scene.torque],
         "fuel": None if scene.fuel is None else _fuel(scene.fuel),
         "period": scene.period,
+        "load_period": scene.load_period,
         "grid_period": _grid_period(scene, train),
         "start": None if scene.start is None else _fields(scene.start, "angle", "speed"),
         "motion": None if scene.motion is None else _motion(scene.motion),

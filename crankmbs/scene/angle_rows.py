@@ -13,22 +13,39 @@ from crankmbs.scene.pressure_rows import Period, interpolate
 from crankmbs.scene.tables import Table, check_abscissae
 from crankmbs.scene.units import DEGREE
 
-__all__ = ["check_turns", "cycle_of"]
+__all__ = ["check_turns", "cycle_of", "is_of_halves"]
 
 
-def check_turns(table: Table) -> None:
-    """Refuse rows that are no one or two revolutions.
+def is_of_halves(period: float) -> bool:
+    """Whether a period [rad] is a multiple of half a revolution.
+
+    >>> is_of_halves(3.0 * math.pi), is_of_halves(4.0)
+    (True, False)
+    """
+    halves = period / math.pi
+    return round(halves) > 0 and abs(halves - round(halves)) <= NEAR * halves
+
+
+def check_turns(table: Table, given: float | None) -> None:
+    """Refuse rows that are no period: that given [rad], or else one or two revolutions.
 
     Raises
     ------
     InputError : the file, the rule, what came, and the way out
     """
     check_abscissae(table, "crank angles", jumps=True)
-    x, period = table.x, _period(table)
-    if x[-1] - x[0] > period + NEAR:
+    if given is not None and not is_of_halves(given):
         raise InputError(
-            f"{table.source}: the rows span {(x[-1] - x[0]) / DEGREE:g} degrees, more than two "
-            "revolutions, after which the torque repeats; leave out the rest"
+            "period: must be a multiple of 180 degrees, so that it fits the engine's; "
+            f"{given / DEGREE:g} degrees came"
+        )
+    x, period = table.x, _period(table, given)
+    if x[-1] - x[0] > period + NEAR:
+        of = "two revolutions" if given is None else f"the period of {given / DEGREE:g} degrees"
+        way_out = 'leave out the rest, or give a longer period, such as "3 rev"'
+        raise InputError(
+            f"{table.source}: the rows span {(x[-1] - x[0]) / DEGREE:g} degrees, more than {of}, "
+            f"after which the torque repeats; {way_out}"
         )
     for k, (a, b) in enumerate(pairwise(x)):
         if 0.0 < b - a <= NEAR:
@@ -44,13 +61,13 @@ def check_turns(table: Table) -> None:
         )
 
 
-def cycle_of(table: Table, interpolation: str) -> Cycle:
-    """The torque over the crank angle.
+def cycle_of(table: Table, interpolation: str, given: float | None) -> Cycle:
+    """The torque over the crank angle; given : its period [rad], if it is not by its rows.
 
-    >>> cycle_of(Table([0.0, 3.0, 6.0], [1.0, 4.0, 1.0]), "linear")(np.array([1.5]))
+    >>> cycle_of(Table([0.0, 3.0, 6.0], [1.0, 4.0, 1.0]), "linear", None)(np.array([1.5]))
     array([2.5])
     """
-    x, y, period = list(table.x), list(table.y), _period(table)
+    x, y, period = list(table.x), list(table.y), _period(table, given)
     before = [y[0]] if x[1] == x[0] else []  # a jump where the rows begin
     x, y = x[len(before) :], y[len(before) :]
     closing = [value for angle, value in zip(x, y, strict=True) if angle > x[0] + period - NEAR]
@@ -60,7 +77,9 @@ def cycle_of(table: Table, interpolation: str) -> Cycle:
     return Cycle(*interpolate(rows, interpolation))
 
 
-def _period(table: Table) -> float:
-    """One revolution where the rows span no more, else two [rad]."""
+def _period(table: Table, given: float | None) -> float:
+    """That given, or one revolution where the rows span no more, else two [rad]."""
+    if given is not None:
+        return round(given / math.pi) * math.pi
     turns = 1 if table.x[-1] - table.x[0] <= 2.0 * math.pi + NEAR else 2
     return 2.0 * math.pi * turns

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cached_property
 from typing import Annotated, Any, ClassVar, Literal
 
-from annotated_types import Ge
+from annotated_types import Ge, Gt
 
 from crankmbs.numerics.piecewise import Piecewise
 from crankmbs.scene.angle_rows import check_turns, cycle_of
@@ -147,24 +147,29 @@ _OVER_ANGLE = Header("crank_angle_deg", DEGREE, "torque_Nm", 1.0)
 @load
 @part
 class AngleTable(_OfTable):
-    """Torque [N m] over the crank angle [rad], modulo 360 degrees where its rows span no more, else
-    720; linear, pchip or cubic. Two rows at one angle, or a closing row unlike the first, are a
-    jump, up to which and from which it is interpolated.
+    """Torque [N m] over the crank angle [rad], modulo its period; linear, pchip or cubic. Two rows
+    at one angle, or a closing row unlike the first, are a jump, up to which and from which it is
+    interpolated.
+
+    period [rad] : any multiple of half a revolution; by default 360 degrees where the rows span no
+        more, else 720
     """
 
     header: ClassVar[Header | None] = _OVER_ANGLE
     kind: Literal["angle_table"] = "angle_table"
     file: Annotated[Table, from_file(*_OVER_ANGLE.units, "crank angles [rad], torques [N m]")]
     interpolation: Literal["linear", "pchip", "cubic"] = "linear"
+    period: Annotated[Float, Gt(0), si("angle")] | None = None
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        check_turns(self.file)
+        check_turns(self.file, self.period)
 
     @cached_property
     def parts(self) -> Parts:
-        return Parts(over_angle=cycle_of(self.file, self.interpolation))
+        return Parts(over_angle=cycle_of(self.file, self.interpolation, self.period))
 
     @property
     def words(self) -> str:
-        return f"{super().words}, {self.interpolation}"
+        every = "" if self.period is None else f", every {self.period / DEGREE:g} degrees"
+        return f"{super().words}, {self.interpolation}{every}"

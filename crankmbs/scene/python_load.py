@@ -12,6 +12,7 @@ from pydantic import PlainSerializer, PlainValidator, ValidationInfo
 
 from crankmbs.errors import InputError, shown
 from crankmbs.numerics.function import Function, named
+from crankmbs.scene.angle_rows import is_of_halves
 from crankmbs.scene.schema import SAVED, Float, part, si
 from crankmbs.scene.torque import Parts, Torque
 
@@ -45,8 +46,8 @@ class Load(Torque):
     kink_times [s], kink_angles [rad], kink_speeds [rad/s] : where it bends or jumps, the angles
         every ``period``, without one every revolution; what is not declared is found by finer
         cells, and costs accuracy that the stated errors know of
-    period [rad] : declares that it does not depend on t and repeats over the crank angle; a whole
-        number of them or a whole part must be two revolutions
+    period [rad] : declares that it does not depend on t and repeats over the crank angle; any
+        multiple of half a revolution, or a whole part of two revolutions
 
     >>> Load(lambda t, theta, omega: -2.0 * omega)(0.0, 0.0, 3.0)
     array(-6.)
@@ -62,23 +63,25 @@ class Load(Torque):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        share = 4.0 * math.pi / (self.period or 2.0 * math.pi)
-        if abs(share - round(share)) > 1e-9 * share and abs(1.0 / share % 1.0) > 1e-9:
+        if self.period is None or is_of_halves(self.period):
+            return
+        share = 4.0 * math.pi / self.period
+        if abs(share - round(share)) > 1e-9 * share:
             raise InputError(
-                "period must be a whole part of two revolutions, 4 pi, or a whole number of them; "
-                f"{self.period:.6g} rad came"
+                "period must be a multiple of half a revolution, such as 6 pi, or a whole part of "
+                f"two revolutions, such as 4 pi / 3; {self.period:.6g} rad came"
             )
 
     @cached_property
     def parts(self) -> Parts:
-        every = min(self.period or 2.0 * math.pi, 4.0 * math.pi)
-        turns = range(max(round(4.0 * math.pi / every), 1))
-        angles = tuple(
-            (angle + k * every) % (4.0 * math.pi) for angle in self.kink_angles for k in turns
-        )
         if isinstance(self.function, _Kept):
             return Parts()
-        return Parts(function=Function(self.function, self.kink_times, angles, self.kink_speeds))
+        every = self.period or 2.0 * math.pi
+        whole = every if is_of_halves(every) else 4.0 * math.pi
+        turns = range(round(whole / every))
+        angles = tuple((angle + k * every) % whole for angle in self.kink_angles for k in turns)
+        known = self.kink_times, angles, self.kink_speeds
+        return Parts(function=Function(self.function, *known, whole if self.period else None))
 
     @property
     def words(self) -> str:

@@ -15,6 +15,7 @@ from pydantic import Strict
 import crankmbs.scene.loads
 import crankmbs.scene.python_load  # noqa: F401  (both make their kinds of load known)
 from crankmbs.errors import InputError, shown
+from crankmbs.numerics.cycle import common_period
 from crankmbs.scene.bearings import Bearings, Throws, throws_of
 from crankmbs.scene.change import changed
 from crankmbs.scene.cycles import cycles_in
@@ -67,19 +68,28 @@ class Scene:
         return self.run.until == SETTLED
 
     @cached_property
+    def load_period(self) -> float:
+        """The angle [rad] after which the engine and the loads over the angle come again: the least
+        common multiple of their periods.
+
+        >>> load_scene("propeller").load_period / math.pi
+        2.0
+        """
+        periods = (load.parts.period for load in self.torque)
+        return common_period([self.period, *(period for period in periods if period)])
+
+    @cached_property
     def settled_period(self) -> float:
         """The angle [rad] after which a settled motion repeats itself: the least common multiple
         of the periods of the engine, of a sequence of cycles, of misfires "every n" and of loads
         over the angle."""
-        loads = (load.parts.over_angle for load in self.torque)
-        own = [self.period, *(part.period for part in loads if part is not None)]
+        own = [self.load_period]
         if self.gas is not None and self.gas.cycles == "sequence":
             one = self.gas.period
             own += [cycles_in(table, one) * one for table in self.gas.tables]
         misfires = (self.fuel.misfire if self.fuel else None) or ()
         own += [self.period * one.every for one in misfires if one.every]
-        turns = (round(period / (2.0 * math.pi)) for period in own)
-        return math.lcm(*turns) * 2.0 * math.pi
+        return common_period(own)
 
     @property
     def end(self) -> tuple[float, bool]:

@@ -42,6 +42,13 @@ class Parts(NamedTuple):
     over_angle: Cycle | None = None
     function: Function | None = None
 
+    @property
+    def period(self) -> float | None:
+        """Crank angle [rad] after which it comes again; None of what does not depend on it, or is
+        not known to come again."""
+        found = self.over_angle or self.function
+        return None if found is None else found.period
+
 
 @part
 class Torque(ABC):
@@ -114,7 +121,8 @@ class Torque(ABC):
         """Whether it is always the same function of angle and speed."""
         over_time, _, _, function = self.parts
         varies = over_time is not None and bool(over_time.knots or not over_time.is_constant)
-        return not (varies or self.has_window or function is not None)
+        unknown = function is not None and function.period is None
+        return not (varies or self.has_window or unknown)
 
     @property
     def table_over_time(self) -> Table | None:

@@ -30,6 +30,7 @@ NO_INERTIA = (
 )
 
 _FARTHEST = 1e9  # rad or s: its last digit is 1e-7
+_MOST_CYCLES = 1000  # of the engine, after which its loads over the angle come again
 _MOST_SAMPLES = 2e7  # the memory of a machine may hold less: `crankmbs.motion.memory`
 
 
@@ -46,6 +47,7 @@ def check_whole(scene: Scene) -> None:
         _check_friction,
         _check_bearings,
         _check_motion,
+        _check_periods,
         _check_settled,
         _check_tables,
         _check_size,
@@ -57,7 +59,10 @@ def _passing(load: Torque) -> str:
     """What in a load happens once or depends on time, so that nothing settles under it, if any."""
     if load.has_window:
         return f"a {load.kind} with a window acts once"
-    return "" if load.is_steady else f"a {load.kind} depends on time"
+    if load.is_steady:
+        return ""
+    way_out = "; where it does not, say so by its period" if load.parts.function else ""
+    return f"a {load.kind} depends on time{way_out}"
 
 
 def _uneven(fuel: Fuel) -> str:
@@ -178,6 +183,16 @@ def _check_settled(scene: Scene) -> None:
                 f"torque[{number}], {_passing(load)}; give an end such as "
                 f"{EXAMPLES['extent']}, or another load"
             )
+
+
+def _check_periods(scene: Scene) -> None:
+    """Refuse periods of loads that come together after too many cycles."""
+    cycles = round(scene.load_period / scene.period)
+    if cycles > _MOST_CYCLES:
+        raise InputError(
+            f"torque: the loads and the engine come again together after {cycles} cycles, and "
+            f"{_MOST_CYCLES} are the most; give periods with a smaller common multiple"
+        )
 
 
 def _check_tables(scene: Scene) -> None:

@@ -19,7 +19,7 @@ from crankmbs.scene.units import DEGREE, RPM
 __all__ = ["scene_files"]
 
 _ANGULAR = {
-    **dict.fromkeys(("angle", "phase", "bank"), (DEGREE, "deg", "rad")),
+    **dict.fromkeys(("angle", "phase", "bank", "period"), (DEGREE, "deg", "rad")),
     **dict.fromkeys(
         ("speed", "mean", "amplitude", "from", "to", "from_speed", "until_speed"),
         (RPM, "rpm", "rad/s"),

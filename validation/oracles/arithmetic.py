@@ -38,9 +38,9 @@ class Arithmetic:
         return np.full(shape, self.number(0), dtype=self.dtype)
 
     def whole_turns(self, angle: Number) -> Number:
-        """The whole turns [rad] that a float stands for, else the angle itself: the float is not a
-        period, which after a thousand turns is seen."""
-        turns = 2 * self.pi * round(float(angle / (2 * self.pi)))
+        """The turns, whole or and a half [rad], that a float stands for, else the angle itself: the
+        float is not a period, which after a thousand turns is seen."""
+        turns = self.pi * round(float(angle / self.pi))
         return turns if float(turns) == float(angle) else self.number(angle)
 
 

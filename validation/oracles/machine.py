@@ -130,5 +130,4 @@ class Machine:
         own = [each.period for each in all_of] or [2.0 * math.pi]
         if all(period == own[0] for period in own):
             return own[0]
-        turns = (round(float(period) / (2.0 * math.pi)) for period in own)
-        return 2.0 * math.pi * math.lcm(*turns)
+        return math.pi * math.lcm(*(round(float(period) / math.pi) for period in own))

@@ -29,7 +29,7 @@ from crankmbs.motion.free.integrate import (
 from crankmbs.motion.free.matching import match, stays
 from crankmbs.motion.motion import Motion, Passes
 from crankmbs.motion.plan import plan_of
-from crankmbs.motion.remarks import left_open
+from crankmbs.motion.remarks import remarks
 from crankmbs.numerics.collocation import gauss
 from crankmbs.numerics.once import once
 from crankmbs.scene.scene import Scene
@@ -203,7 +203,7 @@ def _solution(scene: Scene, answer: Pass, better: Pass, setup: Setup) -> Solutio
     last = float(samples.theta[-1]), float(samples.omega[-1])
     status, text = ending.said(*last, reversals=path.reversals, allowed=setup.allowed)
     if status >= 0 and path.state is not None:
-        text = "; ".join([text, *left_open(scene, path.state.mode, samples.own.get("fuel"))])
+        text = "; ".join([text, *remarks(scene, path.state.mode, samples)])
     reasons: tuple[str, ...] = ()
     if answer.slow:
         times = ", ".join(f"{t:.4g}" for t in answer.slow[:5])

@@ -33,6 +33,7 @@ MOST_PERIODS = 400  # periods that are tried before the search is given up
 
 _SAMPLES = 36  # of a period, to see its least and its greatest speed
 _ANGLES = 721  # at which the inertia is looked at
+_LOOKS = 48  # at so many angles in a cycle, where they may depend on both
 _SPEEDS = 65  # at which the slope of the loads is looked at, beside those of the rows of tables
 _BESIDE = 1e-7  # of a row: on either side of it
 _FLAT = 1e-6  # of the steepest slope: rounding
@@ -83,8 +84,13 @@ class PeriodMap:
         self._train, self.scene, self.start = train, scene, scene.start
         self.inertia = float(reduce(train, scene.start.angle).inertia)
         every = scene.settled_period / _SAMPLES
-        over_speed = [load.parts.over_speed for load in scene.torque]
-        tables = [np.abs(part.knots) for part in over_speed if part is not None]
+        parts = [load.parts for load in scene.torque]
+        tables = [np.abs(part.over_speed.knots) for part in parts if part.over_speed is not None]
+        functions = [part.function for part in parts if part.function is not None]
+        tables += [np.abs(function.speeds) for function in functions]
+        # a function may depend on angle and speed together
+        count = round(_LOOKS * scene.settled_period / scene.period) if functions else 1
+        self._angles = np.linspace(0.0, scene.settled_period, count, endpoint=False)[:, None]
         rows = np.concatenate([np.empty(0), *tables])
         self._rows = np.concatenate([rows * (1.0 - _BESIDE), rows * (1.0 + _BESIDE)])
         self._plan = replace(plan_of(scene), every=every, in_time=False, last=math.inf)
@@ -163,8 +169,8 @@ class PeriodMap:
         inside = self._rows[(self._rows > slow) & (self._rows < fast)]
         speeds = np.geomspace(max(slow, 1e-6 * fast), fast, _SPEEDS)
         omega = sense * np.unique(np.concatenate([speeds, inside]))
-        still = np.zeros_like(omega)
-        torque = torque_at(self.scene.torque, still, still, omega)
+        theta, omega = np.broadcast_arrays(self._angles, omega)
+        torque = torque_at(self.scene.torque, np.zeros_like(omega), theta, omega)
         slope = np.diff(torque) / np.diff(omega)
         least, most = float(slope.min()) - self._drag, float(slope.max())
         return least, most if most > _FLAT * abs(least) else min(most, 0.0)

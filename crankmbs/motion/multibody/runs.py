@@ -31,9 +31,6 @@ _UNTOUCHED = 0.98  # of the time to where it fails: before it goes wrong
 _EPS = float(np.finfo(float).eps)
 _STUCK = 1e-9  # rad/s2
 _EXTRAPOLATED = (-1.0 / 3.0, 4.0 / 3.0)  # weights of two runs, h and h/2, whose error is of h^2
-# of three, h to h/4: a fourth of what the extrapolated answer changed by from the one before, which
-# errs eight times as much or more where the next error is of h^3
-_CHECKED = (-1.0 / 12.0, 1.0 / 12.0, 1.0)
 _SHAKEN = 1e-12  # of the crank angle: how far off a run begins that shows what rounding grows to
 _HELD = "a jump of the loads drives the speed back from both sides"
 _NO_STEP = "exudyn's Newton iteration does not converge"
@@ -194,10 +191,10 @@ class Runs:
 
         With f, f', f'' the last three runs, coarse to fine, the answer is E'' = f'' + (f'' - f')/3
         where that differs from E' = f' + (f' - f)/3 by at most a third of f'' - f', and loads jump
-        nowhere within a step; the check is off by a fourth of E' - E''. Else the answer is f'', and
-        the checks are off by half of f - f'' and by f' - f'': at order 1 the first is no less by
-        chance where f' is between, and the second where it is not. The last check is off by what
-        the rounding of all steps grows to, as they do at random. Of one run there is none.
+        nowhere within a step; it is checked by E'. Else the answer is f'', and the checks are off
+        by half of f - f'' and by f' - f'': at order 1 the first is no less by chance where f' is
+        between, and the second where it is not. The last check is off by what the rounding of all
+        steps grows to, as they do at random. Of one run there is none.
         """
         *coarser, fine = self.paths[-3:]
         if not coarser:
@@ -206,7 +203,7 @@ class Runs:
         checks = [Motion((coarser[0], fine), (0.5, 0.5)), Motion((coarser[-1],), (1.0,))]
         if len(coarser) == 2 and fine.whole and self._is_clean():
             answer = Motion((coarser[1], fine), _EXTRAPOLATED)
-            checks = [Motion((*coarser, fine), _CHECKED)]
+            checks = [Motion(tuple(coarser), _EXTRAPOLATED)]
         rounded = math.sqrt(fine.steps) * _EPS / _SHAKEN
         also = (self.shaken, self.paths[0], *answer.paths), (rounded, -rounded, *answer.weights)
         return answer, (*checks, Motion(*also))

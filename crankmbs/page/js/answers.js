@@ -34,7 +34,7 @@ export function answer(engine, { scene, angles }) {
   const { ending, factor = null, balanced = false } = motion;
   if (ending !== "complete") return { ending };
   const samples = Array.from(angles, (theta) => reactionsAt(motion.train, motion.at(theta)));
-  const span = lastSpan(angles[0], angles[angles.length - 1], scene.period);
+  const span = lastSpan(angles[0], angles[angles.length - 1], scene.load_period);
   const measures = measuresOf(motion, engine.rules[9], span);
   return { ending, factor, balanced, variables: columns(samples), measures };
 }

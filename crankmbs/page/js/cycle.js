@@ -30,7 +30,7 @@ export function cycleOf(engine, asked, endings, { fine = false, warm = null, spe
   if (motion.ending !== "complete") {
     throw new Refused(filled(endings[motion.ending], { came: scene.crank.inertia }));
   }
-  const period = scene.run.settled ? scene.grid_period : scene.period;
+  const period = scene.run.settled ? scene.grid_period : scene.load_period;
   const span = lastSpan(motion.from, motion.to, period);
   const measures = fine ? measuresOf(motion, engine.rules[9], span) : null;
   return new Cycle(scene, motion, span, { why, measures, share });

@@ -51,7 +51,7 @@ export function measuresOf(motion, rule, span) {
   const [fastest, slowest] = peaks.slice(-2).map((each) => each.peak);
   const [rods, outside, rubbed, ...gas] = means.slice(places.length);
   const work = gas.map((each) => each * duration);
-  const { indicated_power: gained, imep } = indicated(train, span.kind, work, duration);
+  const { indicated_power: gained, imep } = indicated(train, span, work, duration);
   return {
     window: span.kind,
     mean_speed: speed,
@@ -68,11 +68,12 @@ export function measuresOf(motion, rule, span) {
 }
 
 /** Power and mean effective pressure of the gas, whose work on each piston is given [J]. */
-function indicated({ pressure, piston, shape }, kind, work, duration) {
+function indicated({ pressure, piston, shape, period }, { kind, from, to }, work, duration) {
   if (!pressure.length) return { indicated_power: null, imep: null };
   const total = work.reduce((sum, each) => sum + each, 0);
   const volume = piston.area * (topPosition(shape) - bottomPosition(shape));
-  const imep = kind === "last cycle" ? work.map((each) => each / volume) : null;
+  const cycles = Math.round(Math.abs(to - from) / period);
+  const imep = kind === "last cycle" ? work.map((each) => each / (cycles * volume)) : null;
   return { indicated_power: total / duration, imep };
 }
 
