@@ -11,7 +11,7 @@ from scipy.integrate import quad
 from crankmbs import InputError, Result, Viscous, load_scene, simulate
 from crankmbs.errors import OutputError
 from crankmbs.measures.nodes import nodes_of
-from crankmbs.motion.free import passage
+from crankmbs.motion.free import recorder
 from crankmbs.numerics.lagrange import ends_and_nodes
 from crankmbs.storage.netcdf import read_netcdf, write_netcdf
 
@@ -196,7 +196,7 @@ def test_by_angle_a_motion_that_turns_back_is_refused():
 @pytest.mark.slow
 def test_of_a_long_run_with_few_samples_the_end_is_kept(monkeypatch):
     """Its events and cycles all the same, by following it once more."""
-    monkeypatch.setattr(passage, "_MOST_HELD", 20_000)
+    monkeypatch.setattr(recorder, "_MOST_HELD", 20_000)
     long = load_scene("yi_diesel_free").with_(run__until="30 cycles", run__every="1 cycle")
     long = replace(long, torque=(Viscous(coefficient=0.26),))
     result = simulate(long)

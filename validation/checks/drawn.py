@@ -11,14 +11,13 @@ from validation.checks.honest import scales, true_errors
 from validation.judge import Outcome
 from validation.oracles.free_motion import series_path
 from validation.oracles.path import Path
-from validation.random_periods import random_periods
 from validation.random_speeds import random_speeds
 from validation.random_turning import random_turning
 from validation.runs import run
 
 __all__ = ["stated_ratio", "stated_scene", "stated_scenes"]
 
-_DRAWS = {"periods": random_periods, "speeds": random_speeds, "turning": random_turning}
+_DRAWS = {"speeds": random_speeds, "turning": random_turning}
 _ROUNDED = 1e-12  # of the peak of what has the same unit: there no statement is asked for
 _MOST_LEFT_OUT = 0.2  # runs that do not reach their end, of the scenes
 _TOO_SMALL = 2.0  # the true error may be this many times the stated one
