@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from page_engine import differences, sizes, unlike
 
 from crankmbs import (
     AngleTable,
@@ -29,6 +30,7 @@ from crankmbs import (
 from crankmbs.measures import measure
 from crankmbs.mechanics.torque import knots_over_angle
 from crankmbs.mechanics.train import crank_train
+from crankmbs.page import refusals
 from crankmbs.scene.read import parse_scene
 from crankmbs.scene.units import DEGREE
 from crankmbs.scene.write import scene_files
@@ -259,3 +261,20 @@ def test_random_periods_against_the_oracle(seed, formulation):
     if result.status == 0:  # else it swings without end
         ratio, said, _ = stated_ratio(result, scene)
         assert ratio <= 1.0, said
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("until", ["settled", "7 rev"])
+def test_the_page_runs_and_measures_it_as_python_does(page, until):
+    scene = load_scene("propeller")
+    strikes = AngleTable(file=Table(ROWS.x, tuple(0.002 * y for y in ROWS.y)), period=3.0 * TURN)
+    scene = replace(scene, torque=(*scene.torque, strikes)).with_(run__until=until)
+    assert refusals(scene) == ()
+    scene = scene.with_(run__every="0.5 deg")
+    result = simulate(scene, rtol=1e-12)
+    assert result.status == 0, result.message
+    found = page.answer(scene, result.data["crank_angle"].values)
+    worst = differences(result, found["variables"])
+    assert max(worst.values()) < 1e-9, max(worst.items(), key=lambda one: one[1])
+    measures = measure(result)
+    assert unlike(measures, found["measures"], sizes(result, measures)) == {}

@@ -3,7 +3,7 @@ import { pressuresOf } from "./gas.js";
 import { Engine } from "./engine.js";
 import { setFree } from "./freed.js";
 import { LECTURES, lecturedAt } from "./lecture.js";
-import { lastSpan, measuresOf } from "./measures.js";
+import { measuredSpan, measuresOf } from "./measures.js";
 import { reactionsAt } from "./reactions.js";
 
 const FINE = { stages: 7, tolerance: 1e-12 };
@@ -34,7 +34,7 @@ export function answer(engine, { scene, angles }) {
   const { ending, factor = null, balanced = false } = motion;
   if (ending !== "complete") return { ending };
   const samples = Array.from(angles, (theta) => reactionsAt(motion.train, motion.at(theta)));
-  const span = lastSpan(angles[0], angles[angles.length - 1], scene.load_period);
+  const span = measuredSpan(scene, angles[0], angles[angles.length - 1]);
   const measures = measuresOf(motion, engine.rules[9], span);
   return { ending, factor, balanced, variables: columns(samples), measures };
 }

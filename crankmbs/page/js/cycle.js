@@ -1,7 +1,7 @@
 /** One cycle of a scene as the page shows it: the settled one, or one that says how it drifts. */
 import { filled } from "./format.js";
 import { LECTURES, cylinderLectured, lecturedAt } from "./lecture.js";
-import { lastSpan, measuresOf } from "./measures.js";
+import { measuredSpan, measuresOf } from "./measures.js";
 import { reactionsAt } from "./reactions.js";
 import { Refused } from "./refused.js";
 
@@ -30,8 +30,7 @@ export function cycleOf(engine, asked, endings, { fine = false, warm = null, spe
   if (motion.ending !== "complete") {
     throw new Refused(filled(endings[motion.ending], { came: scene.crank.inertia }));
   }
-  const period = scene.run.settled ? scene.grid_period : scene.load_period;
-  const span = lastSpan(motion.from, motion.to, period);
+  const span = measuredSpan(scene, motion.from, motion.to);
   const measures = fine ? measuresOf(motion, engine.rules[9], span) : null;
   return new Cycle(scene, motion, span, { why, measures, share });
 }

@@ -22,12 +22,22 @@ const JOINTS = {
   "side force": (v) => Math.abs(v.side_force),
 };
 
-/** The last whole cycle of a motion that ends at `to` after turning from `from`; without one the
- * last whole revolution, or else all of it: its kind, and where it begins [rad]. */
-export function lastSpan(from, to, period) {
+/** Over what the motion of a scene that turns from `from` to `to` [rad] is measured: its last period
+ * with the loads, or the one that it settles to. */
+export function measuredSpan(scene, from, to) {
+  const { settled } = scene.run;
+  const period = settled ? scene.grid_period : scene.load_period;
+  if (period < scene.period + 1e-9) return lastSpan(from, to, scene.period);
+  return lastSpan(from, to, period, settled ? "settled period" : "last period");
+}
+
+/** The last whole cycle of a motion that ends at `to` after turning from `from`, or the last period
+ * of another kind; without one the last whole revolution, or else all of it: its kind, and where it
+ * begins [rad]. */
+export function lastSpan(from, to, period, cycle = "last cycle") {
   const turned = Math.abs(to - from);
   const sense = Math.sign(to - from);
-  for (const [kind, wanted] of [["last cycle", period], ["last revolution", 2 * Math.PI]]) {
+  for (const [kind, wanted] of [[cycle, period], ["last revolution", 2 * Math.PI]]) {
     if (turned >= wanted - 1e-9) return { kind, from: to - sense * wanted, to };
   }
   return { kind: "whole run", from, to };
@@ -73,7 +83,8 @@ function indicated({ pressure, piston, shape, period }, { kind, from, to }, work
   const total = work.reduce((sum, each) => sum + each, 0);
   const volume = piston.area * (topPosition(shape) - bottomPosition(shape));
   const cycles = Math.round(Math.abs(to - from) / period);
-  const imep = kind === "last cycle" ? work.map((each) => each / (cycles * volume)) : null;
+  const whole = ["last cycle", "last period", "settled period"].includes(kind);
+  const imep = whole ? work.map((each) => each / (cycles * volume)) : null;
   return { indicated_power: total / duration, imep };
 }
 
