@@ -66,9 +66,9 @@ def flywheel(scene: Scene, fluctuation: float = 0.01) -> Flywheel:
 
     The coefficient of fluctuation is (max - min) / mean speed over the settled cycle of the very
     scene (`crankmbs.measures.measure`), met within 1e-7 of itself. Under loads the mean speed is
-    the one they settle at; a scene without a load that depends on the speed is balanced with a
-    constant one, and takes the motion whose mean speed is start.speed or that of the motion
-    prescribed (`crankmbs.freed`).
+    the one they settle at; a scene without a load that depends on the speed, as one of Python is
+    taken to do, is balanced with a constant one, and takes the motion whose mean speed is
+    start.speed or that of the motion prescribed (`crankmbs.freed`).
 
     Parameters
     ----------

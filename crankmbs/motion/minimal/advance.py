@@ -35,7 +35,6 @@ _MOST_STEPS = 4096  # of one segment
 _FINEST, _RADAU = 2.3e-14, 1e-13  # tolerances of a step relative to a value, SciPy's; of Radau
 _BEYOND = 1.02  # of the way to a knot: a step that goes there, so that it is passed
 _LEAVES = 1e-12  # of a step: a motion that leaves a limit before has not set out
-_ROUNDED = float(np.finfo(float).eps)  # of the speed, that a step may round
 
 
 class Effort(NamedTuple):
@@ -159,11 +158,7 @@ class _Walk:
     def track(self) -> Track:
         """The steps, up to the end of the segment."""
         self._most = max(self._most, self._kinetic())
-        # steps that come again every period round alike in both answers, so the second one errs by
-        # it on purpose, and the difference knows what the motion makes of it
-        rounded = 1.0 + _ROUNDED * (self._control.parts > 1)
         while len(self._steps) < self._control.room and self._step():
-            self._y[1] *= rounded
             kinetic = self._kinetic()
             self._most = max(self._most, kinetic)
             dies = kinetic <= self._control.tolerance**2 * self._most
