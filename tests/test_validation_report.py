@@ -52,7 +52,10 @@ def test_every_mutant_shifts_a_number(case):
         ),
         ("s2_brix", 'scene: `yi_diesel`; changed: `piston.offset = "0 mm"`'),
         ("s2_brix", 'parameters: `rod_ratio = "0.30"`'),
-        ("hard_thousand_revolutions", "`only_to = { multibody = inf }`, `constant_speed = true`"),
+        (
+            "hard_thousand_revolutions",
+            "`only_to = { minimal = inf, multibody = inf }`, `constant_speed = true`",
+        ),
         ("s1_motion_curves", '`curves = ["piston_displacement", "piston_velocity", "piston_acc'),
         ("hard_stiff_load", "changed: `"),
     ],
