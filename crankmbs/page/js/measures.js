@@ -22,8 +22,8 @@ const JOINTS = {
   "side force": (v) => Math.abs(v.side_force),
 };
 
-/** Over what the motion of a scene that turns from `from` to `to` [rad] is measured: its last period
- * with the loads, or the one that it settles to. */
+/** Over what the motion of a scene that turns from `from` to `to` [rad] is measured: its last
+ * period with the loads, or the one that it settles to. */
 export function measuredSpan(scene, from, to) {
   const { settled } = scene.run;
   const period = settled ? scene.grid_period : scene.load_period;
