@@ -31,8 +31,8 @@ __all__ = ["MOST_PERIODS", "LostError", "PeriodMap", "Returned", "Slope"]
 
 MOST_PERIODS = 400  # periods that are tried before the search is given up
 
-_SAMPLES = 36  # of a period, to see its least and its greatest speed
-_ANGLES = 721  # at which the inertia is looked at
+_SAMPLES = 36  # of a cycle, to see its least and its greatest speed
+_ANGLES = 721  # of a cycle, at which the inertia is looked at
 _LOOKS = 48  # at so many angles in a cycle, where they may depend on both
 _SPEEDS = 65  # at which the slope of the loads is looked at, beside those of the rows of tables
 _BESIDE = 1e-7  # of a row: on either side of it
@@ -83,7 +83,7 @@ class PeriodMap:
         assert scene.start is not None
         self._train, self.scene, self.start = train, scene, scene.start
         self.inertia = float(reduce(train, scene.start.angle).inertia)
-        every = scene.settled_period / _SAMPLES
+        every = scene.period / _SAMPLES
         parts = [load.parts for load in scene.torque]
         tables = [np.abs(part.over_speed.knots) for part in parts if part.over_speed is not None]
         functions = [part.function for part in parts if part.function is not None]
@@ -99,7 +99,7 @@ class PeriodMap:
 
     @cached_property
     def _inertias(self) -> Array:
-        angles = np.linspace(0.0, self.scene.settled_period, _ANGLES)
+        angles = np.linspace(0.0, self.scene.period, _ANGLES)
         return reduce(self._train, angles).inertia
 
     @property
@@ -159,7 +159,7 @@ class PeriodMap:
     @cached_property
     def _drag(self) -> float:
         """The largest torque of viscous friction per speed [N m s/rad] in a period."""
-        angles = np.linspace(0.0, self.scene.settled_period, _ANGLES)
+        angles = np.linspace(0.0, self.scene.period, _ANGLES)
         return float(rubbing(CrankTrain(self.scene, None), angles).drag.max())
 
     def slopes(self, slow: float, fast: float, sense: float) -> tuple[float, float]:
