@@ -98,7 +98,7 @@ def _side(scene: Scene) -> Section:
         before="The tilted rod presses the piston against the wall. The lectures put two masses in "
         "place of the rod: right in weight and balance, but too hard to swing. Move the slider: "
         "both agree only where the rod has the inertia of its two masses. Now they differ by "
-        '<output data-say="side.perturbed"></output> at most.',
+        '<output data-say="side.off"></output> at most.',
         figure=Figure(
             name="side",
             caption="Side thrust of the wall on the piston with a rigid rod and with the lecture's "
