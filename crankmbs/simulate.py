@@ -9,6 +9,7 @@ from crankmbs.errors import InputError, shown
 from crankmbs.mechanics.pressure import remarks
 from crankmbs.mechanics.speed import speed_remarks
 from crankmbs.mechanics.train import crank_train
+from crankmbs.mechanics.windows import place_of
 from crankmbs.motion.assemble import labelled
 from crankmbs.numerics.function import Function
 from crankmbs.result import Cost, Error, Result
@@ -74,20 +75,22 @@ def simulate(
     )
 
 
-def functions_of(scene: Scene) -> list[tuple[int, Function]]:
-    """The functions among the loads, each with its number, none of which has failed yet."""
+def functions_of(scene: Scene) -> list[tuple[str, Function]]:
+    """The functions among the loads, each with where it stands in the scene, none of which has failed yet."""
     found = []
-    for number, load in enumerate(scene.torque, start=1):
+    loads = crank_train(scene).loads
+    for number, load in enumerate(loads, start=1):
+        place = place_of(loads, number)
         if load.lacks:
-            raise InputError(f"torque[{number}]: {load.lacks}")
+            raise InputError(f"{place}: {load.lacks}")
         if load.parts.function is not None:
             load.parts.function.failure = ""
-            found.append((number, load.parts.function))
+            found.append((place, load.parts.function))
     return found
 
 
-def why(status: int, message: str, functions: list[tuple[int, Function]]) -> str:
+def why(status: int, message: str, functions: list[tuple[str, Function]]) -> str:
     """How a run ended, by its status and message; where it broke off after a function had failed,
     what that did."""
-    failed = [f"torque[{number}]: {one.failure}" for number, one in functions if one.failure]
+    failed = [f"{place}: {one.failure}" for place, one in functions if one.failure]
     return message if status >= 0 or not failed else f"{message}; {failed[0]}"

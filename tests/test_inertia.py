@@ -7,7 +7,8 @@ import pytest
 
 from crankmbs import Gravity
 from crankmbs.mechanics.geometry import close_loop
-from crankmbs.mechanics.inertia import fired_torque, gravity_vector, reduce, rod_centre
+from crankmbs.mechanics.axes import gravity_vector
+from crankmbs.mechanics.inertia import fired_torque, reduce, rod_centre
 from crankmbs.mechanics.train import CrankTrain, crank_angle_knots, crank_train
 from crankmbs.scene.read import load_scene
 from crankmbs.scene.shipped import shipped_scenes

@@ -18,7 +18,7 @@ from crankmbs.batch.balances import Balances, balances
 from crankmbs.compare.lectured import LECTURES, gear_of, of_cylinders, turning_crank
 from crankmbs.compare.quantities import QUANTITIES, observed_cylinders
 from crankmbs.errors import InputError
-from crankmbs.mechanics.inertia import axes_of
+from crankmbs.mechanics.axes import axes_of
 from crankmbs.mechanics.newton_euler import UNITS
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.numerics.arrays import Array, Index

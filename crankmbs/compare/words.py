@@ -12,7 +12,8 @@ from crankmbs.compare.excerpt import Excerpt
 from crankmbs.compare.quantities import cycle_angles
 from crankmbs.errors import InputError
 from crankmbs.lecture import TwoMassRod
-from crankmbs.mechanics.inertia import gravity_vector, reduce
+from crankmbs.mechanics.axes import gravity_vector
+from crankmbs.mechanics.inertia import reduce
 from crankmbs.numerics.arrays import Array
 
 __all__ = ["WORDS", "Word", "Words"]

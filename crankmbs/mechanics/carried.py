@@ -17,7 +17,13 @@ from numpy.typing import ArrayLike
 
 from crankmbs.errors import InputError
 from crankmbs.mechanics.cycle_rows import Tables, behind
-from crankmbs.mechanics.geometry import close_loop, dead_centres, top_position
+from crankmbs.mechanics.geometry import (
+    bottom_position,
+    close_loop,
+    dead_centres,
+    throw_angles,
+    top_position,
+)
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.gas import Gas, tables_of
 from crankmbs.scene.scene import Scene
@@ -73,14 +79,6 @@ def carried_angle(cycle_angle: ArrayLike, before: Shape, after: Shape) -> Array:
     """The cycle angles [rad] at which a machine has swept the same fraction of the same stroke as
     another before at these, shape (...).
 
-    With the pin at x, d = hypot(x, e) from the crank axis, the throw leads the direction
-    atan2(e, x) of the pin by the angle opposite the rod,
-
-        tan^2(lead / 2) = (r + l - d)(l + d - r) / ((r + d - l)(r + d + l)),
-
-    on the way down, and lags it as much on the way up. Exact to rounding also at the dead centres,
-    where the distances from them are computed as such and not as differences.
-
     >>> same = Shape(0.046, 0.153, 0.001)
     >>> f"{carried_angle(1.0, same, same):.12f}"
     '1.000000000000'
@@ -90,17 +88,8 @@ def carried_angle(cycle_angle: ArrayLike, before: Shape, after: Shape) -> Array:
     turns = np.floor((phi - top) / _TURN)
     within = phi - turns * _TURN
     swept, left = _swept(within, before)
-    r, l, e = after
-    stroke = top_position(*after) - _bottom_position(after)
-    above, below = swept * stroke, left * stroke
-    x = top_position(*after) - above
-    distance = np.hypot(x, e)
-    near_top = above * (top_position(*after) + x) / (r + l + distance)
-    near_bottom = below * (_bottom_position(after) + x) / (distance + l - r)
-    over, under = near_top * (l + distance - r), near_bottom * (r + distance + l)
-    lead = 2.0 * np.arctan2(np.sqrt(np.maximum(over, 0.0)), np.sqrt(np.maximum(under, 0.0)))
-    along = np.arctan2(e, x)
-    moved = np.where(within <= bottom, along + lead, along - lead + _TURN)
+    stroke = top_position(*after) - bottom_position(*after)
+    moved = np.where(within <= bottom, *throw_angles(swept * stroke, left * stroke, *after))
     return np.asarray(moved + turns * _TURN)
 
 
@@ -113,12 +102,8 @@ def _swept(phi: Array, shape: Shape) -> tuple[Array, Array]:
     loop = close_loop(phi, *shape)
     half = 0.5 * (phi + loop.beta)
     above = 4.0 * r * l * np.sin(half) ** 2 / (top_position(*shape) + loop.x)
-    below = 4.0 * r * l * np.cos(half) ** 2 / (loop.x + _bottom_position(shape))
+    below = 4.0 * r * l * np.cos(half) ** 2 / (loop.x + bottom_position(*shape))
     return above / (above + below), below / (above + below)
-
-
-def _bottom_position(shape: Shape) -> float:
-    return float(close_loop(dead_centres(*shape)[1], *shape).x)
 
 
 def _shape(scene: Scene) -> Shape:

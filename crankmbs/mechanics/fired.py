@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from crankmbs.mechanics.inertia import axes_of, closed_loops
+from crankmbs.mechanics.axes import axes_of, closed_loops
 from crankmbs.mechanics.journals import of_rods
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.periodic import Period, single

@@ -16,18 +16,18 @@ its sign.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from crankmbs.mechanics.geometry import dead_centres
-from crankmbs.mechanics.inertia import axes_of, closed_loops, fired_torque, gas_at
-from crankmbs.mechanics.knots import KNOT
+from crankmbs.mechanics.geometry import slides as slides_of
+from crankmbs.mechanics.axes import axes_of, closed_loops
+from crankmbs.mechanics.inertia import fired_torque, gas_at
 from crankmbs.mechanics.pressure import pressures_at
 from crankmbs.mechanics.train import CrankTrain
+from crankmbs.mechanics.windows import Phases, pushing
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.periodic import period_of
 from crankmbs.scene.parts import Friction
@@ -45,7 +45,8 @@ _NONE = Friction()
 
 
 class Rubbing(NamedTuple):
-    """What rubs at crank angles of shape (...), as torques on the crank.
+    """What rubs at crank angles of shape (...), as torques on the crank, with what of the forces
+    from outside on the pistons does as friction does.
 
     rings : shape (...) [N m], of the ring force, against either sense of rotation
     gas : shape (..., cylinders) [N m], torque of the gas without combustion, of which the rings
@@ -64,8 +65,9 @@ class Rubbing(NamedTuple):
         return np.asarray(self.rings + self.pressed * np.abs(self.gas + more).sum(axis=-1))
 
 
-def rubbing(train: CrankTrain, theta: ArrayLike) -> Rubbing:
-    """Friction reduced to the crank, at crank angles of shape (...) [rad]; exact.
+def rubbing(train: CrankTrain, theta: ArrayLike, phases: Phases = ()) -> Rubbing:
+    """Friction reduced to the crank, at crank angles of shape (...) [rad], in these phases of the
+    loads; exact.
 
     >>> float(rubbing(crank_train(load_scene("coasting")), 1.0).coulomb())
     0.0
@@ -73,9 +75,13 @@ def rubbing(train: CrankTrain, theta: ArrayLike) -> Rubbing:
     scene, friction = train.scene, train.scene.friction or _NONE
     theta = np.asarray(theta, dtype=np.float64)
     angles = theta.ravel()
-    x_1 = closed_loops(scene, angles).x_1
+    loop = closed_loops(scene, angles)
+    x_1 = loop.x_1
     rings = friction.ring_force * np.abs(x_1).sum(axis=0)
     drag = friction.viscous * (x_1**2).sum(axis=0)
+    for push in pushing(train, phases):
+        more = push.resisting(angles, loop)
+        rings, drag = rings + more[0], drag + more[1]
     pressure = gas_at(train, angles)
     gas = np.zeros_like(x_1) if pressure is None else pressure
     torque = -(scene.piston.gas_area or 0.0) * gas * x_1
@@ -93,6 +99,7 @@ def friction_torque(
     omega: ArrayLike,
     sense: ArrayLike,
     shares: ArrayLike | None = None,
+    phases: Phases = (),
 ) -> Array:
     """Torque of the friction on the crank [N m], at crank angles, speeds and senses of rotation of
     one shape (...) [rad, rad/s, a sign]; 0 where nothing rubs.
@@ -102,9 +109,9 @@ def friction_torque(
     >>> float(friction_torque(crank_train(load_scene("coasting")), 1.0, 2.0, 1.0))
     0.0
     """
-    if train.scene.friction is None:
+    if not train.rubs:
         return np.zeros(np.shape(theta))
-    found, more = rubbing(train, theta), 0.0
+    found, more = rubbing(train, theta, phases), 0.0
     if shares is not None and train.combustion is not None:
         more = fired_torque(train, theta) * np.asarray(shares)
     against = np.asarray(sense) * found.coulomb(more)
@@ -145,7 +152,8 @@ def friction_forces(
         gas += (area * pressures_at(train.pressure, phi))[:, period.which]
     if train.combustion is not None and fuel is not None:
         gas += fuel.T * (area * pressures_at(train.combustion, phi))[:, period.which]
-    sliding = (_towards(scene, phi, sense)[:, period.which] for sense in (1.0, -1.0))
+    shape = scene.crank.radius, scene.rod.length, scene.piston.offset
+    sliding = (slides_of(phi, sense, *shape)[:, period.which] for sense in (1.0, -1.0))
     towards = np.where(slides >= 0.0, *sliding)
     limit = friction.ring_force + friction.ring_pressure * np.abs(gas)
     velocity = -closed_loops(scene, period.angles).x_1[:, period.which] * omega
@@ -154,7 +162,11 @@ def friction_forces(
 
 
 def held_share(
-    train: CrankTrain, theta: float, torque: ArrayLike, shares: Sequence[float] = ()
+    train: CrankTrain,
+    theta: float,
+    torque: ArrayLike,
+    shares: Sequence[float] = (),
+    phases: Phases = (),
 ) -> Array:
     """The share of the friction of a crank at rest that it takes to hold a torque [N m] on it, with
     its sign; above 1 or below -1 it does not hold, infinite where nothing rubs.
@@ -163,13 +175,6 @@ def held_share(
     -inf
     """
     torque = np.asarray(torque, dtype=np.float64)
-    most = -friction_torque(train, theta, 0.0, 1.0, shares or None)
+    most = -friction_torque(train, theta, 0.0, 1.0, shares or None, phases)
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(torque == 0.0, 0.0, torque / np.abs(most))
-
-
-def _towards(scene: Scene, phi: Array, sense: float) -> Array:
-    """The sign of a piston's velocity just beyond cycle angles [rad], in a sense of rotation."""
-    top, bottom = dead_centres(scene.crank.radius, scene.rod.length, scene.piston.offset)
-    behind = np.mod(phi + sense * KNOT - top, 2.0 * math.pi)
-    return np.where(behind < bottom - top, sense, -sense)

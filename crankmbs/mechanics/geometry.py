@@ -16,9 +16,19 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from crankmbs.mechanics.knots import KNOT
 from crankmbs.numerics.arrays import Array
 
-__all__ = ["Loop", "close_loop", "close_loops", "dead_centres", "top_position"]
+__all__ = [
+    "Loop",
+    "bottom_position",
+    "close_loop",
+    "close_loops",
+    "dead_centres",
+    "slides",
+    "throw_angles",
+    "top_position",
+]
 
 
 class Loop(NamedTuple):
@@ -135,6 +145,56 @@ def dead_centres(radius: float, rod_length: float, offset: float) -> tuple[float
     return math.asin(offset / (rod_length + radius)), math.pi + bottom
 
 
+def slides(
+    cycle_angle: ArrayLike, sense: float, radius: float, rod_length: float, offset: float
+) -> Array:
+    """The sign of a piston's velocity towards the crank just beyond cycle angles, shape (...)
+    [rad], in a sense of rotation (a sign).
+
+    >>> slides([0.0, 4.0], 1.0, 0.1, 0.3, 0.0)
+    array([ 1., -1.])
+    """
+    top, bottom = dead_centres(radius, rod_length, offset)
+    behind = np.mod(np.asarray(cycle_angle) + sense * KNOT - top, 2.0 * math.pi)
+    return np.where(behind < bottom - top, sense, -sense)
+
+
 def top_position(radius: float, rod_length: float, offset: float) -> float:
     """Piston pin position x [m] at the true top dead centre: sqrt((l + r)^2 - e^2)."""
     return math.sqrt((rod_length + radius - offset) * (rod_length + radius + offset))
+
+
+def bottom_position(radius: float, rod_length: float, offset: float) -> float:
+    """Piston pin position x [m] at the true bottom dead centre."""
+    shape = radius, rod_length, offset
+    return float(close_loop(dead_centres(*shape)[1], *shape).x)
+
+
+def throw_angles(
+    above: Array, below: Array, radius: float, rod_length: float, offset: float
+) -> tuple[Array, Array]:
+    """The cycle angles [rad] at which a piston has come so far from its top dead centre, on the way
+    to the bottom one and, less than a turn later, on the way back.
+
+    With the pin at x, d = hypot(x, e) from the crank axis, the throw leads the direction
+    atan2(e, x) of the pin by the angle opposite the rod,
+
+        tan^2(lead / 2) = (r + l - d)(l + d - r) / ((r + d - l)(r + d + l)),
+
+    on the way down, and lags it as much on the way up. Exact to rounding also at the dead centres,
+    where the distances from them are given as such and not as differences.
+
+    above, below : shape (...) [m], from the top and from the bottom dead centre
+
+    >>> throw_angles(np.array([0.2]), np.array([0.0]), 0.1, 0.3, 0.0)[0].round(12)
+    array([3.14159265])
+    """
+    r, l, e = radius, rod_length, offset
+    top, bottom = top_position(r, l, e), bottom_position(r, l, e)
+    x = top - above
+    distance = np.hypot(x, e)
+    over = above * (top + x) / (r + l + distance) * (l + distance - r)
+    under = below * (bottom + x) / (distance + l - r) * (r + distance + l)
+    lead = 2.0 * np.arctan2(np.sqrt(np.maximum(over, 0.0)), np.sqrt(np.maximum(under, 0.0)))
+    along = np.arctan2(e, x)
+    return np.asarray(along + lead), np.asarray(along - lead + 2.0 * math.pi)

@@ -16,23 +16,19 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from crankmbs.mechanics.geometry import Loop, close_loops
+from crankmbs.mechanics.axes import axes_of, closed_loops, gravity_vector
+from crankmbs.mechanics.geometry import Loop
 from crankmbs.mechanics.pressure import pressures_at
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.numerics.arrays import Array
-from crankmbs.numerics.once import once
 from crankmbs.scene.scene import Scene
 
 __all__ = [
-    "Axes",
     "Reduction",
     "RodCentre",
-    "axes_of",
-    "closed_loops",
     "crank_weight",
     "fired_torque",
     "gas_at",
-    "gravity_vector",
     "inertia_alone",
     "moving_inertias",
     "reduce",
@@ -88,42 +84,6 @@ def _half_slopes(scene: Scene, loop: Loop, centre: RodCentre) -> Array:
     if rod.moment_of_inertia:
         slope += rod.moment_of_inertia * loop.beta_1 * loop.beta_2
     return np.asarray(slope)
-
-
-def gravity_vector(scene: Scene, bank: float = 0.0) -> tuple[float, float]:
-    """Gravity [m/s2] in the frame of a cylinder at this bank [rad]; (0, 0) without gravity."""
-    if scene.gravity is None:
-        return 0.0, 0.0
-    angle = scene.gravity.angle - bank
-    g = scene.gravity.acceleration
-    return g * math.cos(angle), g * math.sin(angle)
-
-
-class Axes(NamedTuple):
-    """Where the cylinders stand.
-
-    phases : shape (cylinders,) [rad]
-    cos, sin : of the banks, shape (cylinders,)
-    gravity : along and across each axis, shape (2, cylinders, 1) [m/s2]
-    """
-
-    phases: Array
-    cos: Array
-    sin: Array
-    gravity: Array
-
-
-@once
-def axes_of(scene: Scene) -> Axes:
-    """The axes of a scene's cylinders.
-
-    >>> axes_of(load_scene("v_twin")).phases.shape
-    (2,)
-    """
-    banks = np.array([c.bank for c in scene.cylinders])
-    gravity = np.array([gravity_vector(scene, c.bank) for c in scene.cylinders])
-    phases = np.array([c.phase for c in scene.cylinders])
-    return Axes(phases, np.cos(banks), np.sin(banks), gravity.T[:, :, np.newaxis])
 
 
 class Reduction(NamedTuple):
@@ -208,13 +168,6 @@ def crank_weight(scene: Scene, theta: Array) -> Array | float:
         return 0.0
     gx, gy = gravity_vector(scene)
     return np.asarray(moment * (gy * np.cos(theta) - gx * np.sin(theta)))
-
-
-def closed_loops(scene: Scene, theta: Array) -> Loop:
-    """The closed loop of every cylinder at crank angles of shape (n,) [rad]; every field has shape
-    (cylinders, n)."""
-    r, l, e = scene.crank.radius, scene.rod.length, scene.piston.offset
-    return close_loops(theta, axes_of(scene).phases, r, l, e)
 
 
 def gas_at(train: CrankTrain, theta: Array, shares: Array | None = None) -> Array | None:

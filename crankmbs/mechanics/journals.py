@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from crankmbs.mechanics.inertia import axes_of, gravity_vector
+from crankmbs.mechanics.axes import axes_of, gravity_vector
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 

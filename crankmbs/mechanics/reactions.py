@@ -1,7 +1,7 @@
 """Motion of every part and force in every joint from crank angle, speed and acceleration. Exact.
 
 Every balance (`crankmbs.mechanics.newton_euler`) is linear in omega^2, alpha, 1, the shares of the
-combustion and the friction on the pistons, which pushes them as gas does. So where the angles of
+combustion, and friction and forces from outside on the pistons, which push them as gas does. So where the angles of
 the samples repeat it is made for these alone, once for every angle of a period, and put together
 for each sample.
 """
@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 
 from crankmbs.mechanics.fired import pushed
 from crankmbs.mechanics.friction import friction_forces
-from crankmbs.mechanics.inertia import axes_of
+from crankmbs.mechanics.axes import axes_of
 from crankmbs.mechanics.newton_euler import UNITS, Powers, balanced, powers_of, rows_of
 from crankmbs.mechanics.pressure import pressures_at
 from crankmbs.mechanics.train import CrankTrain
@@ -30,7 +30,7 @@ __all__ = ["Balances", "Table", "balances", "peaks_of", "reactions"]
 
 
 _PER_SPEED = ("piston_velocity", "rod_angular_speed")
-_RUBBED = "friction_force"
+_RUBBED, _APPLIED = "friction_force", "applied_force"
 _BLOCK = 60_000  # numbers at once: half a megabyte, which stays in the cache
 _OFTEN = 3  # so often an angle must come back for its parts to pay
 
@@ -78,6 +78,7 @@ def reactions(
     alpha: ArrayLike,
     fuel: Array | None = None,
     friction: Array | None = None,
+    applied: Array | None = None,
 ) -> dict[str, Array]:
     """Motion of every part and force in every joint.
 
@@ -87,6 +88,7 @@ def reactions(
     fuel : shape (n, cylinders), shares of the combustion; None leaves it out
     friction : shape (n, cylinders) [N], towards the crank; by default what the speeds make of it,
         `crankmbs.mechanics.friction.friction_forces`
+    applied : shape (n, cylinders) [N], forces from outside on the pistons towards the crank
 
     Returns
     -------
@@ -97,7 +99,7 @@ def reactions(
     >>> float(reactions(train, [0.0], [10.0], [0.0])["rod_angle"][0, 0])
     0.0
     """
-    found = balances(train, theta, omega, alpha, fuel, friction)
+    found = balances(train, theta, omega, alpha, fuel, friction, applied)
     if not found.by_parts:
         return found.alone
     # one piece of memory, so large that the system is not asked for every run's anew
@@ -210,7 +212,7 @@ def _groups(rows: tuple[tuple[str, int], ...], samples: int) -> tuple[tuple[list
 
 
 def _kind(name: str) -> tuple[object, ...]:
-    return name == _RUBBED, name in _PER_SPEED, powers_of(name)
+    return name in (_RUBBED, _APPLIED), name in _PER_SPEED, powers_of(name)
 
 
 def peaks_of(rows: Array) -> Array:
@@ -226,6 +228,7 @@ def balances(
     alpha: ArrayLike,
     fuel: Array | None = None,
     friction: Array | None = None,
+    applied: Array | None = None,
 ) -> Balances:
     """What `reactions` puts together, before it does.
 
@@ -246,15 +249,18 @@ def balances(
         rows[_RUBBED] = len(scene.cylinders)
         if friction is None:
             friction = friction_forces(train, theta, omega, fuel)
-    added = _added(train, period, fuel, friction if scene.friction is not None else None)
+    if applied is not None:
+        rows[_APPLIED] = len(scene.cylinders)
+    given = {_RUBBED: friction if scene.friction is not None else None, _APPLIED: applied}
+    added = _added(train, period, fuel, given)
     groups = _groups(tuple(rows.items()), len(theta))
     return Balances(period, rows, parts, (square, alpha, omega), added, by_parts, groups)
 
 
 def _added(
-    train: CrankTrain, period: Period, fuel: Array | None, friction: Array | None
+    train: CrankTrain, period: Period, fuel: Array | None, given: dict[str, Array | None]
 ) -> dict[str, Array]:
-    """What combustion and friction do at the samples, by variable."""
+    """What combustion and given forces on the pistons do at the samples, by variable."""
     forces: list[Array] = []
     found: dict[str, Array] = {}
     if fuel is not None and train.combustion is not None:
@@ -262,7 +268,8 @@ def _added(
         more = period.times(pressures_at(train.combustion, phi), np.ascontiguousarray(fuel.T))
         forces.append((train.scene.piston.gas_area or 0.0) * more)
         found |= {"gas_pressure": more, "gas_force": forces[0]}
-    if friction is not None:
-        forces.append(np.ascontiguousarray(friction.T))
-        found[_RUBBED] = forces[-1]
+    for name, push in given.items():
+        if push is not None:
+            forces.append(np.ascontiguousarray(push.T))
+            found[name] = forces[-1]
     return found | pushed(train.scene, period, sum(forces[1:], forces[0])) if forces else found

@@ -13,21 +13,22 @@ from one jump to the next, for a solver that crosses the rows between them at on
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from crankmbs.errors import InputError
 from crankmbs.mechanics.train import CrankTrain
-from crankmbs.mechanics.windows import Phases, acting, phase_ends
+from crankmbs.mechanics.windows import Phases, acting, phase_ends, place_of
 from crankmbs.numerics.arrays import Array
-from crankmbs.numerics.cycle import Cycle, common_period, summed, tiled
+from crankmbs.numerics.cycle import Cycle, Periodic, common_period, summed, tiled
 from crankmbs.numerics.function import Function
 from crankmbs.numerics.piecewise import total
 from crankmbs.scene.scene import Scene
-from crankmbs.scene.torque import Torque
+from crankmbs.scene.torque import Acting
 
 __all__ = [
     "Branch",
@@ -38,7 +39,7 @@ __all__ = [
     "course_of",
     "knots_over_angle",
     "over_angle",
-    "torque_at",
+    "times_of",
 ]
 
 Tables = tuple[Array, Array, Array, Array]  # times, in_time, speeds and in_speed of `Course`
@@ -145,7 +146,7 @@ class Course:
 
 
 def branch_of(
-    torques: tuple[Torque, ...], t: float, omega: float, *, rising: bool, phases: Phases = ()
+    torques: tuple[Acting, ...], t: float, omega: float, *, rising: bool, phases: Phases = ()
 ) -> Branch:
     """The smooth stretch of all loads together that begins at (t, omega).
 
@@ -171,7 +172,7 @@ def branch_of(
         try:
             load.check_time(t)
         except InputError as error:
-            raise InputError(f"torque[{number}].{error}") from None
+            raise InputError(f"{place_of(torques, number)}.{error}") from None
         over_time, over_speed, _, function = load.parts
         if over_time is not None:
             (value, slope, _), _, end = over_time.piece(t, after=True)
@@ -189,7 +190,7 @@ def branch_of(
 
 
 def branch_at(
-    torques: tuple[Torque, ...],
+    torques: tuple[Acting, ...],
     state: tuple[float, float, float],
     rest: float,
     phases: Phases = (),
@@ -221,7 +222,7 @@ def branch_at(
 
 
 def course_of(
-    torques: tuple[Torque, ...], branch: Branch, t: float, phases: Phases = ()
+    torques: tuple[Acting, ...], branch: Branch, t: float, phases: Phases = ()
 ) -> Branch | Course:
     """What continues a branch of these loads from a time [s] on, without a jump and in its sense of
     rotation; a branch where that has no kink."""
@@ -262,41 +263,40 @@ def _outside(ends: list[float], low: float, high: float) -> tuple[float, float]:
     return below, min((end for end in ends if end >= high), default=math.inf)
 
 
-def over_angle(scene: Scene, phases: Phases = ()) -> Cycle | None:
-    """What the loads that act give over the crank angle."""
-    parts = [load.parts.over_angle for _, load in acting(scene.torque, phases)]
+def times_of(loads: tuple[Acting, ...]) -> list[float]:
+    """Times [s] at which functions of time bend or jump.
+
+    >>> times_of((Constant(torque=2.0),))
+    []
+    """
+    functions = (load.parts.function for load in loads)
+    return [time for function in functions if function is not None for time in function.times]
+
+
+class _Sum(NamedTuple):
+    """Functions of the crank angle together."""
+
+    parts: tuple[Periodic, ...]
+
+    def __call__(self, angle: ArrayLike) -> Array:
+        return np.asarray(sum(part(angle) for part in self.parts))
+
+
+def over_angle(train: CrankTrain, phases: Phases = ()) -> Callable[[ArrayLike], Array] | None:
+    """What the loads that act give over the crank angle [N m], at angles [rad] of any shape."""
+    parts = [load.parts.over_angle for _, load in acting(train.loads, phases)]
     found = [part for part in parts if part is not None]
-    return summed(found, common_period(part.period for part in found))
+    tables = [part for part in found if isinstance(part, Cycle)]
+    if len(tables) == len(found):
+        return summed(tables, common_period(part.period for part in tables))
+    return _Sum(tuple(found))
 
 
 def knots_over_angle(train: CrankTrain) -> Array:
     """Crank angles in [0, period) at which loads bend or jump, acting or not [rad]."""
     period = train.period
-    parts = [load.parts for load in train.scene.torque]
+    parts = [load.parts for load in train.loads]
     cycles = [part.over_angle for part in parts if part.over_angle is not None]
     knots = [np.mod(tiled(cycle, period), period) for cycle in cycles]
     knots += [part.function.angles_in(period) for part in parts if part.function is not None]
     return np.unique(np.concatenate([np.empty(0), *knots]))
-
-
-def torque_at(
-    torques: tuple[Torque, ...],
-    t: Array,
-    theta: Array,
-    omega: Array,
-    spans: Sequence[tuple[float, float]] = (),
-) -> Array:
-    """Torque of all loads [N m] at times [s], crank angles [rad] and speeds [rad/s] of one shape.
-
-    On a jump it is the value after it; a time table's ends are held.
-
-    spans : from when to when [s] each load acts; all throughout where none are given
-
-    >>> torque_at((Viscous(coefficient=2.0),), np.zeros(2), np.zeros(2), np.array([1.0, -3.0]))
-    array([-2.,  6.])
-    """
-    total = np.zeros_like(omega)
-    for k, load in enumerate(torques):
-        torque = load(t, theta, omega)
-        total += np.where((t >= spans[k][0]) & (t < spans[k][1]), torque, 0.0) if spans else torque
-    return total

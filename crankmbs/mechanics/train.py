@@ -11,6 +11,7 @@ import numpy as np
 from scipy.interpolate import PPoly
 
 from crankmbs.mechanics.firing import FuelLaw
+from crankmbs.mechanics.forces import OnCrank
 from crankmbs.mechanics.geometry import dead_centres
 from crankmbs.mechanics.knots import KNOT, apart
 from crankmbs.mechanics.pressure import PeriodicPressure, combustion_of, motored_of, pressures_of
@@ -19,6 +20,7 @@ from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.cycle import common_period
 from crankmbs.numerics.once import once
 from crankmbs.scene.scene import Scene
+from crankmbs.scene.torque import Acting
 
 __all__ = [
     "CrankTrain",
@@ -57,10 +59,47 @@ class CrankTrain:
         return replace(self, pressure=pressure, combustion=more)
 
     @cached_property
+    def pushes(self) -> tuple[OnCrank, ...]:
+        """The forces from outside on the pistons."""
+        return tuple(OnCrank(self.scene, force) for force in self.scene.force)
+
+    @cached_property
+    def alone(self) -> CrankTrain:
+        """The same without forces from outside on the pistons."""
+        return replace(self, scene=replace(self.scene, force=())) if self.pushes else self
+
+    @cached_property
+    def loads(self) -> tuple[Acting, ...]:
+        """All that acts from outside on the crank, in the order of the numbers of their phases:
+        torques, then forces on the pistons."""
+        return *self.scene.torque, *self.pushes
+
+    @cached_property
+    def rubs(self) -> bool:
+        """Whether something resists either sense of rotation, or with the speed: friction, or
+        forces that change on the way back or with the piston's velocity."""
+        laws = (force.law for force in self.scene.force)
+        return self.scene.friction is not None or any(law.switches or law.viscous for law in laws)
+
+    @cached_property
+    def drags(self) -> bool:
+        """Whether something of this resists with the speed."""
+        friction = self.scene.friction
+        viscous = friction is not None and friction.viscous > 0.0
+        return viscous or any(force.law.viscous for force in self.scene.force)
+
+    @cached_property
+    def sticks(self) -> bool:
+        """Whether something may hold the crank at rest."""
+        friction = self.scene.friction
+        dry = friction is not None and friction.ring_force + friction.ring_pressure > 0.0
+        return dry or any(force.law.switches for force in self.scene.force)
+
+    @cached_property
     def repeats(self) -> float:
         """Crank angle [rad] after which what depends on it alone comes again: a revolution without
         gas, where no load has another."""
-        loads = (load.parts.over_angle for load in self.scene.torque)
+        loads = (load.parts.over_angle for load in self.loads)
         one = self.pressure is None and all(each is None for each in loads)
         return 2.0 * math.pi if one else self.period
 
@@ -131,8 +170,8 @@ def _repeated(knots: Array, own: float, period: float) -> Array:
 
 
 def friction_knots(train: CrankTrain) -> Array:
-    """Crank angles in [0, period) at which friction jumps or bends: dead centres, and, without
-    fuel, where a gas force changes its sign.
+    """Crank angles in [0, period) at which friction jumps or bends, or a force that is another on
+    the way back: dead centres, and, without fuel, where a gas force changes its sign.
 
     Returns
     -------
@@ -143,7 +182,7 @@ def friction_knots(train: CrankTrain) -> Array:
     0
     """
     scene = train.scene
-    if scene.friction is None:
+    if scene.friction is None and not train.sticks:
         return np.empty(0)
     turns = 2.0 * math.pi * np.arange(round(train.period / (2.0 * math.pi)))
     centres = dead_centres(scene.crank.radius, scene.rod.length, scene.piston.offset)

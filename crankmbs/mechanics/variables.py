@@ -90,6 +90,9 @@ of them, for that of what they sum up is."""
 EVERY = VARIABLES | {
     "fuel": Variable("1", "share of the combustion of the firing that acts", "cylinder"),
     "friction_force": Variable("N", "wall's friction on the piston towards the crank", "cylinder"),
+    "applied_force": Variable(
+        "N", "force from outside on the piston towards the crank", "cylinder"
+    ),
     "main_journal_force_x": Variable("N", "bearing on main journal, engine's X", "journal"),
     "main_journal_force_y": Variable("N", "bearing on main journal, engine's Y", "journal"),
     "pin_force_x": Variable("N", "crank on the rods of one pin, engine's X", "pin"),
@@ -103,7 +106,7 @@ COORDINATES = ("time", "crank_angle", "cylinder")
 
 def variables_of(scene: Scene) -> dict[str, Variable]:
     """The variables that a result of a scene has: rocking moments where the cylinders have places,
-    the shares of the combustion where there is fuel, friction where there is, the forces of main
+    the shares of the combustion where there is fuel, friction and forces from outside where there are, the forces of main
     journals where there are bearings, those of pins where two rods share one.
 
     >>> "rocking_moment_x" in variables_of(load_scene("propeller"))
@@ -111,6 +114,7 @@ def variables_of(scene: Scene) -> dict[str, Variable]:
     """
     without = {"fuel"} if scene.fuel is None else set()
     without |= {"friction_force"} if scene.friction is None else set()
+    without |= set() if scene.force else {"applied_force"}
     without |= {"rocking_moment_x", "rocking_moment_y"} if scene.levers is None else set()
     throws = scene.throws
     without |= {name for name, about in EVERY.items() if about.of == "journal" and throws is None}

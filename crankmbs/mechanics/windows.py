@@ -15,10 +15,12 @@ from enum import IntEnum
 import numpy as np
 from numpy.typing import NDArray
 
+from crankmbs.mechanics.forces import OnCrank
+from crankmbs.mechanics.train import CrankTrain
 from crankmbs.numerics.arrays import Array
-from crankmbs.scene.torque import Torque
+from crankmbs.scene.torque import Acting
 
-__all__ = ["Phase", "Phases", "acting", "first_phases", "later_phases", "phase_ends", "span"]
+__all__ = ["Phase", "Phases", "acting", "first_phases", "later_phases", "phase_ends", "place_of", "pushing", "span"]
 
 
 class Phase(IntEnum):
@@ -34,7 +36,7 @@ Phases = tuple[Phase, ...]
 """One for each load; empty where no load has a window, and all act throughout."""
 
 
-def first_phases(torques: tuple[Torque, ...], omega: float) -> Phases:
+def first_phases(torques: tuple[Acting, ...], omega: float) -> Phases:
     """The phases at time 0.
 
     >>> first_phases((Constant(torque=2.0, after=1.0),), 5.0)
@@ -45,14 +47,14 @@ def first_phases(torques: tuple[Torque, ...], omega: float) -> Phases:
     return later_phases(torques, (Phase.WAITING,) * len(torques), 0.0, omega)
 
 
-def later_phases(torques: tuple[Torque, ...], phases: Phases, t: float, omega: float) -> Phases:
+def later_phases(torques: tuple[Acting, ...], phases: Phases, t: float, omega: float) -> Phases:
     """The phases after landing at a time [s] and a speed [rad/s], which must be met exactly."""
     return tuple(
         _later(load, phase, t, omega) for load, phase in zip(torques, phases, strict=False)
     )
 
 
-def _later(load: Torque, phase: Phase, t: float, omega: float) -> Phase:
+def _later(load: Acting, phase: Phase, t: float, omega: float) -> Phase:
     if load.until is not None and t >= load.until:
         return Phase.OVER
     if phase is Phase.ACTING and omega == load.until_speed:
@@ -64,14 +66,38 @@ def _later(load: Torque, phase: Phase, t: float, omega: float) -> Phase:
     return phase
 
 
-def acting(torques: tuple[Torque, ...], phases: Phases) -> tuple[tuple[int, Torque], ...]:
+def acting(torques: tuple[Acting, ...], phases: Phases) -> tuple[tuple[int, Acting], ...]:
     """The loads that act, each with its number from 1."""
     numbered = tuple(enumerate(torques, start=1))
     return tuple(one for one in numbered if not phases or phases[one[0] - 1] is Phase.ACTING)
 
 
+def pushing(train: CrankTrain, phases: Phases) -> tuple[OnCrank, ...]:
+    """The forces on the pistons that act.
+
+    >>> pushing(crank_train(load_scene("coasting")), ())
+    ()
+    """
+    first = len(train.loads) - len(train.pushes)
+    return tuple(
+        push
+        for number, push in enumerate(train.pushes, start=first)
+        if not phases or phases[number] is Phase.ACTING
+    )
+
+
+def place_of(loads: tuple[Acting, ...], number: int) -> str:
+    """Where in a scene the load with a number among all stands, as in every message.
+
+    >>> place_of((Constant(torque=2.0), Constant(torque=1.0)), 2)
+    'torque[2]'
+    """
+    heading = loads[number - 1].heading
+    return f"{heading}[{sum(load.heading == heading for load in loads[:number])}]"
+
+
 def phase_ends(
-    torques: tuple[Torque, ...], phases: Phases
+    torques: tuple[Acting, ...], phases: Phases
 ) -> tuple[tuple[float, ...], tuple[float, ...]]:
     """Times [s] and speeds [rad/s] at which a phase may end."""
     times: list[float] = []
@@ -87,7 +113,7 @@ def phase_ends(
     return tuple(times), tuple(speeds)
 
 
-def span(load: Torque, time: Array, omega: Array) -> tuple[float, float]:
+def span(load: Acting, time: Array, omega: Array) -> tuple[float, float]:
     """From when to when [s] a load acts in a motion given by its samples; where a speed is met
     between two of them by the straight line.
 

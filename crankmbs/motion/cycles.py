@@ -16,7 +16,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from crankmbs.mechanics.inertia import closed_loops, inertia_alone
+from crankmbs.mechanics.axes import closed_loops
+from crankmbs.mechanics.inertia import inertia_alone
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.windows import acting
 from crankmbs.motion.account import Rows, beside
@@ -26,7 +27,7 @@ from crankmbs.motion.extremes import extremes
 from crankmbs.motion.gas_work import GasWork
 from crankmbs.motion.states import balances_of, inner_samples, samples_at
 from crankmbs.numerics.arrays import Array
-from crankmbs.scene.torque import Torque
+from crankmbs.scene.torque import Acting
 
 __all__ = ["MOST_CYCLES", "Cycles", "cycles_of"]
 
@@ -73,7 +74,7 @@ class Cycles:
         self._open: _Open | None = None
         self._sense, self._reached = 0.0, start
         scene = train.scene
-        self._columns = len(scene.torque) + 1
+        self._columns = len(train.loads) + 1
         self._columns += len(scene.cylinders) if scene.friction else 0
         self._works, self._speeds = np.zeros(self._columns), np.empty(0)
         self._gas = GasWork(train, start, _POINTS[finer])
@@ -99,7 +100,7 @@ class Cycles:
         low, high = sorted((begin.theta, end.theta))
         at = samples_at(cells, self._train, np.clip(marks, low, high), in_time=False)
         kinetic = 0.5 * inertia_alone(self._train.scene, at.theta) * at.omega**2
-        works, speeds = self._summed(cells, acting(self._train.scene.torque, begin.mode.loads), at)
+        works, speeds = self._summed(cells, acting(self._train.loads, begin.mode.loads), at)
         for k in range(len(places) + 1):
             self._works = self._works + works[k]
             self._speeds = np.append(self._speeds, speeds[k])
@@ -151,7 +152,7 @@ class Cycles:
         )
 
     def _summed(
-        self, cells: Cells, loads: Sequence[tuple[int, Torque]], marks: Samples
+        self, cells: Cells, loads: Sequence[tuple[int, Acting]], marks: Samples
     ) -> tuple[Array, Array]:
         """Between marks, at which cells end, and the ends of all: works [J], shape (n + 1,
         columns), of loads by number; least and largest speed [rad/s], shape (n + 1, 2)."""
@@ -165,7 +166,7 @@ class Cycles:
         return works, extremes(cells, self._train, marks.time, points)
 
     def _works_of(
-        self, points: Samples, loads: Sequence[tuple[int, Torque]], duration: Array
+        self, points: Samples, loads: Sequence[tuple[int, Acting]], duration: Array
     ) -> Array:
         """Work [J] at points that stand for a duration [s], shape (n,): of every load, of the
         drive, of the friction of every piston; shape (n, columns)."""
@@ -177,17 +178,17 @@ class Cycles:
             drive = points.own.get("external_torque")
             if drive is None:
                 drive = balances_of(train, points).row("external_torque")
-            works[:, len(scene.torque)] = drive * turned
+            works[:, len(train.loads)] = drive * turned
         if scene.friction is not None:
             velocity = -closed_loops(scene, points.theta).x_1.T * turned[:, None]
-            works[:, len(scene.torque) + 1 :] = points.own["friction_force"] * velocity
+            works[:, len(train.loads) + 1 :] = points.own["friction_force"] * velocity
         return works
 
     def rows(self, count: int) -> Rows:
         """The last cycles, as many as are asked for."""
         done = list(self.done)[len(self.done) - count :]
         columns = {name: np.array([getattr(one, name) for one in done]) for name in _Done._fields}
-        scene, sense = self._train.scene, columns["sense"]
+        scene, sense, loads = self._train.scene, columns["sense"], len(self._train.loads)
         fired = len(scene.cylinders) if scene.fuel else 0  # given, as there may be no cycle
         before, after = (columns[name].reshape(count, fired) for name in ("before", "after"))
         works = columns["works"].reshape(count, self._columns)
@@ -209,10 +210,12 @@ class Cycles:
             found["fuel"] = self._gas.shares(sense, before, after)
         if scene.torque:
             found["load_work"] = works[:, : len(scene.torque)]
+        if scene.force:
+            found["force_work"] = works[:, len(scene.torque) : loads]
         if scene.motion is not None:
-            found["drive_work"] = works[:, len(scene.torque)]
+            found["drive_work"] = works[:, loads]
         if scene.friction is not None:
-            found["friction_work"] = works[:, len(scene.torque) + 1 :]
+            found["friction_work"] = works[:, loads + 1 :]
         return Rows(found, {}, self.left_out + len(self.done) - count)
 
 

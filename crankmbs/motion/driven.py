@@ -13,7 +13,9 @@ import numpy as np
 
 from crankmbs.mechanics.knots import KNOT, apart, repeat
 from crankmbs.mechanics.speed import SpeedLaw
+from crankmbs.mechanics.torque import knots_over_angle, times_of
 from crankmbs.mechanics.train import CrankTrain, crank_angle_knots, friction_knots, sign_changes
+from crankmbs.mechanics.windows import later_phases
 from crankmbs.motion.base import State
 from crankmbs.motion.cells import Acting, Cells
 from crankmbs.motion.mode import Mode, begun, decided
@@ -21,7 +23,7 @@ from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.lagrange import ends_and_nodes
 from crankmbs.scene.units import DEGREE
 
-__all__ = ["Driven", "Way", "begun_at", "decisions", "driven"]
+__all__ = ["Driven", "Way", "begun_at", "decisions", "driven", "windows_at"]
 
 _PANEL = 5.0 * DEGREE  # widest panel of a quadrature over the angle
 _TURNS = 100  # periods in a piece
@@ -60,7 +62,8 @@ class Driven:
         modes = [self.begin.mode, *(state.mode for state in self.decisions)]
         which = np.searchsorted([state.time for state in self.decisions], time[:, points // 2])
         shares = np.array([mode.shares for mode in modes])[which]
-        return Cells(time, angle, speed, Acting(sense), shares, acceleration=rate)
+        acting = Acting(sense, phases=self.begin.mode.loads)
+        return Cells(time, angle, speed, acting, shares, acceleration=rate)
 
     @property
     def _edges(self) -> Array:
@@ -69,10 +72,11 @@ class Driven:
         count = math.ceil(abs(end.theta - begin.theta) / _PANEL)
         low, high = sorted((begin.theta, end.theta))
         train, law = self.way.train, self.way.law
-        knots = np.concatenate([crank_angle_knots(train), friction_knots(train)])
-        inside = [np.linspace(low, high, count + 1)[1:-1], repeat(knots, train.period, low, high)]
+        knots = [crank_angle_knots(train), friction_knots(train), knots_over_angle(train)]
+        inside = [np.linspace(low, high, count + 1)[1:-1], repeat(np.concatenate(knots), train.period, low, high)]
         angles = apart(np.concatenate([*inside, *self._bends()]))
-        corners = np.unique([begin.time, *law.corners(begin.time, end.time), end.time])
+        given = [t for t in times_of(train.loads) if begin.time < t < end.time]
+        corners = np.unique([begin.time, *law.corners(begin.time, end.time), *given, end.time])
         at = np.sort(law.at_time(corners)[0])
         after = np.clip(np.searchsorted(at, angles), 1, len(at) - 1)
         away = np.minimum(angles - at[after - 1], at[after] - angles)
@@ -98,25 +102,33 @@ def driven(way: Way, stretches: Iterable[tuple[float, float]]) -> Iterator[Drive
     for k, (begin, end) in enumerate(stretches):
         first = _state(law, begin, mode, turns=k > 0)
         last = _state(law, end, mode, turns=k + 1 < len(stretches))
-        if float(law.at_time(0.5 * (begin + end))[1]) == 0.0:
-            yield Driven(way, first, last._replace(theta=first.theta), ())
-            continue
-        for state in _apart(law, first, last, _TURNS * train.scene.period):
+        rests = float(law.at_time(0.5 * (begin + end))[1]) == 0.0
+        last = last._replace(theta=first.theta) if rests else last
+        for state in _apart(train, law, first, last):
             first = first._replace(mode=mode)
-            found = tuple(decisions(train, law, first, state))
-            mode = found[-1].mode if found else mode
+            found = () if rests else tuple(decisions(train, law, first, state))
+            mode = windows_at(train, found[-1].mode if found else mode, state.time)
             state = state._replace(mode=mode)
             yield Driven(way, first, state, found)
             first = state
 
 
-def _apart(law: SpeedLaw, first: State, last: State, most: float) -> Iterator[State]:
-    """States on the way from one to another, no more than an angle [rad] apart, and the last."""
-    count = math.ceil(abs(last.theta - first.theta) / most)
-    for angle in np.linspace(first.theta, last.theta, count + 1)[1:-1].tolist():
-        time = float(law.time_at(np.array([angle]), first.time, last.time)[0])
-        yield State(time, angle, float(law.at_time(time)[1]), 0.0)
+def _apart(train: CrankTrain, law: SpeedLaw, first: State, last: State) -> Iterator[State]:
+    """States on the way from one to another, not too many periods apart and where a load's window
+    begins or ends, and the last."""
+    count = math.ceil(abs(last.theta - first.theta) / (_TURNS * train.scene.period))
+    angles = np.linspace(first.theta, last.theta, count + 1)[1:-1]
+    ends = {end for load in train.loads for end in (load.after, load.until) if end is not None}
+    inside = [end for end in ends if first.time < end < last.time]
+    for time in np.unique([*law.time_at(angles, first.time, last.time), *inside]).tolist():
+        theta, omega, _ = law.at_time(time)
+        yield State(time, float(theta), float(omega), 0.0)
     yield last
+
+
+def windows_at(train: CrankTrain, mode: Mode, time: float) -> Mode:
+    """A mode with what the loads' windows are at a later time [s]."""
+    return mode._replace(loads=later_phases(train.loads, mode.loads, time, math.nan))
 
 
 def begun_at(way: Way) -> State:

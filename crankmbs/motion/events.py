@@ -63,7 +63,7 @@ class Log:
         """What is decided at the start."""
         before = tuple(
             Phase.WAITING if load.has_window else phase
-            for load, phase in zip(self._train.scene.torque, state.mode.loads, strict=False)
+            for load, phase in zip(self._train.loads, state.mode.loads, strict=False)
         )
         self._change(state.mode._replace(loads=before, firing=None), state, everywhere=True)
 

@@ -72,10 +72,12 @@ def _if_settled_or_held(scene: Scene) -> str:
 
 def _may_be_held(scene: Scene) -> bool:
     """Whether friction may hold a crank, for a time."""
-    if scene.friction is None:
+    if scene.friction is None and not any(force.law.switches for force in scene.force):
         return False
     if scene.start is not None:
-        waits = any(load.has_window or not load.is_steady for load in scene.torque)
+        waits = any(
+            load.has_window or not load.is_steady for load in (*scene.torque, *scene.force)
+        )
         return waits or scene.fuel is not None or scene.start.speed == 0.0
     speed = scene.motion.speed if scene.motion else 0.0
     match speed:

@@ -50,13 +50,14 @@ def run(train: CrankTrain) -> Solution:
     _, omega, alpha = law.at_time(time)
     residual = _energy_residual(driven(_way(train, law), stretches), train, time)
     own = {} if firings is None else {"fuel": firings.at(time)}
+    own |= _applied(train, time, theta, omega)
     samples = Samples(time, theta, omega, alpha, residual, own)
     ending = Ending.COMPLETE if reached else Ending.LAW_RESTS
     if plan.folds_at(float(theta[-1])):
         ending = Ending.FOLD
     by_angle = np.full(len(time), not plan.in_time)
     by_angle[-1] = reached and not plan.until_time
-    better = None if law.perturbed is law else _by(law.perturbed, samples, by_angle)
+    better = None if law.perturbed is law else _by(train, law.perturbed, samples, by_angle)
     return Solution(samples, *ending.said(float(theta[-1])), len(time), 0, better)
 
 
@@ -88,14 +89,31 @@ def _way(train: CrankTrain, law: SpeedLaw, *, finer: bool = False) -> Way:
     return Way(train, law, _POINTS[finer])
 
 
-def _by(law: SpeedLaw, samples: Samples, by_angle: NDArray[np.bool_]) -> Samples:
+def _by(
+    train: CrankTrain, law: SpeedLaw, samples: Samples, by_angle: NDArray[np.bool_]
+) -> Samples:
     """The samples by another law, at the same crank angles where these are chosen, else at the
     same times."""
     passed = law.time_at(samples.theta, 0.0, math.inf)
     time = np.where(by_angle, passed, samples.time)
     theta, omega, alpha = law.at_time(time)
     theta = np.where(by_angle, samples.theta, theta)
-    return replace(samples, time=time, theta=theta, omega=omega, alpha=alpha)
+    own = {**samples.own, **_applied(train, time, theta, omega)}
+    return replace(samples, time=time, theta=theta, omega=omega, alpha=alpha, own=own)
+
+
+def _applied(train: CrankTrain, time: Array, theta: Array, omega: Array) -> dict[str, Array]:
+    """The forces from outside on the pistons, where there are; at the ends of their windows those
+    after."""
+    if not train.pushes:
+        return {}
+    total = np.zeros((len(time), len(train.scene.cylinders)))
+    for push in train.pushes:
+        begin, end = push.after or 0.0, math.inf if push.until is None else push.until
+        acts = (time >= begin) & (time < end)
+        motion = time[acts], theta[acts], omega[acts]
+        total[acts] += push.forces(*motion, np.sign(motion[2]))
+    return {"applied_force": total}
 
 
 class _Firings(NamedTuple):
@@ -183,6 +201,7 @@ def _gained(cells: Cells, train: CrankTrain) -> Array:
     at = inner_samples(cells, train)
     forces = table_of(train, at).variables
     along = forces["gas_force"] + forces.get("friction_force", 0.0)
+    along = along + forces.get("applied_force", 0.0)
     weight = reduce(replace(train, pressure=None), at.theta).torque
     power = (forces["external_torque"] + weight) * at.omega
     power += (along * forces["piston_velocity"]).sum(axis=1)

@@ -69,6 +69,7 @@ CYCLES = {
     "fuel": Variable("1", "share of the firing whose dead centre it holds", "cylinder"),
     "friction_work": Variable("J", "work of the friction on the piston", "cylinder"),
     "load_work": Variable("J", "work of the load"),
+    "force_work": Variable("J", "work of the force from outside on the pistons"),
     "drive_work": Variable("J", "work of the drive"),
 }
 """What a cycle has, where the scene has it too: gas, fuel, loads, a drive."""
@@ -91,6 +92,7 @@ def events_table(scene: Scene, rows: Rows) -> Table:
     """
     codes, numbers = (rows.columns[name].astype(np.int64) for name in ("kind", "number"))
     kinds = [Kind(code) for code in codes.tolist()]
+    of_loads, torques = np.isin(codes, _OF_LOADS), len(scene.torque)
     variables: Labelled = {
         name: about.labelled(rows.columns[name], rows.errors[name], ("event",))
         for name, about in list(EVENTS.items())[:4]
@@ -100,10 +102,12 @@ def events_table(scene: Scene, rows: Rows) -> Table:
     more: dict[str, NDArray[Any]] = {
         "kind": np.array([_WORDS[kind] for kind in kinds], dtype=str),
         "cylinder": np.where(codes == Kind.FUEL, numbers, 0),
-        "load": np.where(np.isin(codes, _OF_LOADS), numbers, 0),
+        "load": np.where(of_loads & (numbers <= torques), numbers, 0),
         "text": np.array([_text(scene, *one) for one in said], dtype=str),
         "event": np.arange(1, rows.count + 1),
     }
+    if scene.force:
+        more["force"] = np.where(of_loads & (numbers > torques), numbers - torques, 0)
     variables |= {name: (("event",), values, {}) for name, values in more.items()}
     return Table(variables, ("event",), _left_out(rows))
 
@@ -122,12 +126,13 @@ def _text(scene: Scene, kind: Kind, number: int, time: float, share: float) -> s
     sense = "forwards" if number > 0 else "backwards"
     if kind is Kind.FUEL:
         return f"cylinder {number} decides q = {share:.4g}"
-    if kind is Kind.LOAD_ON:
-        load = scene.torque[number - 1]
-        return f"load {number}, {load.name}, sets in at {_met(time, load.after, load.from_speed)}"
-    if kind is Kind.LOAD_OFF:
-        load = scene.torque[number - 1]
-        return f"load {number}, {load.name}, ends at {_met(time, load.until, load.until_speed)}"
+    if kind in _OF_LOADS:
+        load = (*scene.torque, *scene.force)[number - 1]
+        torques = len(scene.torque)
+        which = f"load {number}" if number <= torques else f"force {number - torques}"
+        if kind is Kind.LOAD_ON:
+            return f"{which}, {load.name}, sets in at {_met(time, load.after, load.from_speed)}"
+        return f"{which}, {load.name}, ends at {_met(time, load.until, load.until_speed)}"
     if kind is Kind.REST:
         return "comes to rest" if time > 0.0 else "stands at rest"
     return f"moves off {sense}" if kind is Kind.START else f"turns back, {sense} from here"
@@ -143,6 +148,8 @@ def dims_of(name: str) -> tuple[str, ...]:
     """The dimensions of a variable of the cycles."""
     if name == "load_work":
         return "cycle", "load"
+    if name == "force_work":
+        return "cycle", "force"
     return ("cycle", "cylinder") if CYCLES[name].of else ("cycle",)
 
 
@@ -153,6 +160,8 @@ def cycles_table(scene: Scene, rows: Rows) -> Table:
         "cylinder": (("cylinder",), np.arange(1, len(scene.cylinders) + 1), {}),
         "load": (("load",), np.arange(1, len(scene.torque) + 1), {}),
     }
+    if scene.force:
+        variables["force"] = ("force",), np.arange(1, len(scene.force) + 1), {}
     coordinates = tuple(variables)
     for name, values in rows.columns.items():
         if name != "number":

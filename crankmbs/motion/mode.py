@@ -47,7 +47,7 @@ def begun(train: CrankTrain) -> Mode:
     ()
     """
     scene, law = train.scene, train.law
-    mode = Mode(first_phases(scene.torque, scene.start.speed) if scene.start else ())
+    mode = Mode(first_phases(train.loads, scene.start.speed if scene.start else math.nan))
     return _fired(mode, law, law.first) if law else mode
 
 
@@ -60,7 +60,7 @@ def decided(train: CrankTrain, mode: Mode, time: float, theta: float, omega: flo
     True
     """
     if mode.loads:
-        phases = later_phases(train.scene.torque, mode.loads, time, omega)
+        phases = later_phases(train.loads, mode.loads, time, omega)
         mode = mode._replace(loads=phases)
     law, firing = train.law, mode.firing
     if law and firing and theta in (mode.low, mode.high):

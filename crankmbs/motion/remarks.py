@@ -45,15 +45,20 @@ def remarks(scene: Scene, mode: Mode, samples: Samples) -> tuple[str, ...]:
 
 
 def _windows(scene: Scene, mode: Mode) -> Iterator[str]:
-    for number, (load, phase) in enumerate(zip(scene.torque, mode.loads, strict=False), start=1):
+    numbered = [
+        (f"{load.heading}[{number}]", load)
+        for loads in (scene.torque, scene.force)
+        for number, load in enumerate(loads, start=1)
+    ]
+    for (place, load), phase in zip(numbered, mode.loads, strict=False):
         if phase is Phase.ACTING and load.until_speed is not None:
             yield (
-                f"torque[{number}]: until_speed, {load.until_speed / RPM:.6g} rpm, was not met, "
+                f"{place}: until_speed, {load.until_speed / RPM:.6g} rpm, was not met, "
                 "and the load never let go"
             )
         if phase is Phase.WAITING and load.from_speed is not None:
             yield (
-                f"torque[{number}]: from_speed, {load.from_speed / RPM:.6g} rpm, was not met, and "
+                f"{place}: from_speed, {load.from_speed / RPM:.6g} rpm, was not met, and "
                 "the load never set in"
             )
 

@@ -7,16 +7,18 @@ between them and measures are read from a solved motion.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 
 import numpy as np
 
+from crankmbs.mechanics.forces import OnCrank
 from crankmbs.mechanics.friction import friction_forces, friction_torque, held_share
 from crankmbs.mechanics.inertia import fired_torque, reduce
 from crankmbs.mechanics.reactions import Balances, Table, balances
 from crankmbs.mechanics.torque import branch_at, branch_of, over_angle
 from crankmbs.mechanics.train import CrankTrain
+from crankmbs.mechanics.windows import pushing
 from crankmbs.motion.base import Samples, State
 from crankmbs.motion.cells import Cells
 from crankmbs.numerics.arrays import Array, Index
@@ -24,6 +26,7 @@ from crankmbs.numerics.periodic import one_period
 
 __all__ = [
     "MOTION",
+    "applied_forces",
     "balances_of",
     "first_sample",
     "inner_samples",
@@ -37,7 +40,7 @@ __all__ = [
 MOTION = ("time", "crank_angle", "crank_speed", "crank_acceleration", "energy_residual")
 """The variables of a result that are the motion's own."""
 
-_GIVEN = ("fuel", "friction_force")  # what reactions take from samples
+_GIVEN = ("fuel", "friction_force", "applied_force")  # what reactions take from samples
 
 
 def samples_at(cells: Cells, train: CrankTrain, values: Array, *, in_time: bool) -> Samples:
@@ -75,27 +78,45 @@ def _samples(
     time, angle, speed = (known[name] for name in rows)
     sense = cells.acting.sense
     own = {"fuel": cells.shares[k]} if cells.shares.shape[1] else {}
+    phases = cells.acting.phases
     inertia, slope, torque = _reduced(train, angle, own.get("fuel"))
     if cells.energy is not None:
         speed = sense * np.sqrt(2.0 * np.maximum(speed, 0.0) / inertia)
     slides, rate = np.full_like(speed, sense), None
     outside = _outside(cells, train, read, (time, angle, speed))
+    pushes = pushing(train, phases)
     if outside is not None:
-        rubs = train.scene.friction is not None
-        if cells.acting.holds and rubs:
+        if cells.acting.holds and train.rubs:
             slides = _holding(cells, train, torque + outside)
-        if rubs:
-            torque = torque + friction_torque(train, angle, speed, slides, own.get("fuel"))
+        if train.rubs:
+            fuel = own.get("fuel")
+            torque = torque + friction_torque(train, angle, speed, slides, fuel, phases)
         rest = torque - 0.5 * slope * speed**2
         outside = -rest if cells.acting.holds else outside
-        rate, own["external_torque"] = (rest + outside) / inertia, outside
+        rate = (rest + outside) / inertia
+        own["external_torque"] = outside - sum(push.parts(time, angle, speed) for push in pushes)
     if cells.acceleration is not None:
         rate = read(cells.acceleration)
     assert rate is not None
     if train.scene.friction is not None:
         own["friction_force"] = friction_forces(train, angle, speed, own.get("fuel"), slides)
+    if train.pushes:
+        own["applied_force"] = applied_forces(train, pushes, (time, angle, speed), slides)
     residual = np.zeros_like(time) if cells.residual is None else cells.residual[k]
     return Samples(time, angle, speed, rate, residual, own)
+
+
+def applied_forces(
+    train: CrankTrain,
+    pushes: Sequence[OnCrank],
+    motion: tuple[Array, Array, Array],
+    share: Array | None = None,
+) -> Array:
+    """Forces from outside on the pistons [N], shape (p, cylinders), at times, crank angles and
+    speeds; share : of what jumps with the sense of sliding, by default the speed's sign."""
+    share = np.sign(motion[2]) if share is None else share
+    none = np.zeros((len(share), len(train.scene.cylinders)))
+    return sum((push.forces(*motion, share) for push in pushes), none)
 
 
 def _reduced(train: CrankTrain, angle: Array, shares: Array | None) -> tuple[Array, Array, Array]:
@@ -122,7 +143,7 @@ def _outside(
     if loads is None:
         return None
     time, angle, speed = motion
-    outside, of_angle = loads(time, speed), over_angle(train.scene, cells.acting.phases)
+    outside, of_angle = loads(time, speed), over_angle(train, cells.acting.phases)
     if of_angle is not None:
         outside = outside + of_angle(angle)
     for function in loads.functions:
@@ -133,7 +154,8 @@ def _outside(
 def _holding(cells: Cells, train: CrankTrain, torque: Array) -> Array:
     """The share of its friction that a crank at rest needs to be held, with its sign."""
     shares = tuple(cells.shares[0].tolist())
-    return np.clip(held_share(train, float(cells.angle[0, 0]), torque, shares), -1.0, 1.0)
+    at, phases = float(cells.angle[0, 0]), cells.acting.phases
+    return np.clip(held_share(train, at, torque, shares, phases), -1.0, 1.0)
 
 
 def table_of(train: CrankTrain, samples: Samples) -> Table:
@@ -181,8 +203,8 @@ def first_sample(train: CrankTrain, state: State, of_angle: float) -> Samples:
     reduction = reduce(train, theta, shares)
     of_angle += state.mode.held
     rest = float(reduction.rest(omega)) + of_angle
-    torques, phases = train.scene.torque, state.mode.loads
-    rub = partial(friction_torque, train, theta, omega, shares=shares or None)
+    torques, phases = train.loads, state.mode.loads
+    rub = partial(friction_torque, train, theta, omega, shares=shares or None, phases=phases)
     sliding = math.copysign(1.0, omega) if omega else 0.0
     rubbed = float(rub(sliding))
     branch = branch_at(torques, state[:3], rest + rubbed, phases)
@@ -192,18 +214,22 @@ def first_sample(train: CrankTrain, state: State, of_angle: float) -> Samples:
     outside += sum(f.number(time, theta, omega) for f in branch.functions)
     outside = -rest if held else outside
     own = {"fuel": np.array([shares])} if shares else {}
+    if train.rubs and omega == 0.0:
+        share = float(held_share(train, theta, rest + outside, shares, phases))
+        sliding = min(max(share, -1.0), 1.0)
+        rubbed = -(rest + outside) if abs(share) <= 1.0 else float(rub(sliding))
+    at, along = np.array([[time], [theta], [omega]]), np.array([sliding])
     if train.scene.friction is not None:
-        if omega == 0.0:
-            share = float(held_share(train, theta, rest + outside, shares))
-            sliding = min(max(share, -1.0), 1.0)
-            rubbed = -(rest + outside) if abs(share) <= 1.0 else float(rub(sliding))
-        motion = np.array([theta]), np.array([omega]), own.get("fuel")
-        own["friction_force"] = friction_forces(train, *motion, np.array([sliding]))
+        own["friction_force"] = friction_forces(train, *at[1:], own.get("fuel"), along)
+    pushes, feels = pushing(train, phases), outside + of_angle
+    if train.pushes:
+        own["applied_force"] = applied_forces(train, pushes, (at[0], at[1], at[2]), along)
+        feels -= sum(float(push.parts(*state[:3])) for push in pushes)
     return Samples(
         time=np.array([time]),
         theta=np.array([theta]),
         omega=np.array([omega]),
         alpha=np.array([(rest + outside + rubbed) / float(reduction.inertia)]),
         energy_residual=np.array([state.residual]),
-        own={"external_torque": np.array([outside + of_angle]), **own},
+        own={"external_torque": np.array([feels]), **own},
     )

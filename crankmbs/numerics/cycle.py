@@ -7,6 +7,7 @@ from bisect import bisect_right
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,10 +15,32 @@ from scipy.interpolate import PPoly
 
 from crankmbs.numerics.arrays import Array
 
-__all__ = ["NEAR", "Cycle", "common_period", "summed", "tiled"]
+__all__ = ["NEAR", "Cycle", "Periodic", "common_period", "summed", "tiled"]
 
 NEAR = 1e-9  # rad: an angle this close below a knot counts as on it, or rounding decides the side
 _JUMP = 1e-9  # of the largest value or slope: less is rounding
+
+
+class Periodic(Protocol):
+    """A periodic function of an angle, smooth between its knots.
+
+    knots : shape (n + 1,) [rad], increasing, the last one period above the first
+    """
+
+    @property
+    def knots(self) -> Array:
+        """Its knots."""
+
+    @property
+    def period(self) -> float:
+        """Period [rad]."""
+
+    @property
+    def largest(self) -> float:
+        """About its largest value, without its sign."""
+
+    def __call__(self, angle: ArrayLike) -> Array:
+        """Values at angles [rad] of any shape; on a jump that after it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,7 +150,7 @@ def common_period(periods: Iterable[float]) -> float:
     return math.lcm(*(round(period / math.pi) for period in periods)) * math.pi
 
 
-def tiled(cycle: Cycle, period: float) -> Array:
+def tiled(cycle: Periodic, period: float) -> Array:
     """The knots of a cycle repeated over a period of which its own is a part [rad]."""
     turns = np.arange(round(period / cycle.period))[:, None]
     return np.asarray((cycle.knots[:-1] + turns * cycle.period).ravel())

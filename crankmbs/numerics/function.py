@@ -32,7 +32,10 @@ class Function:
     times, angles, speeds : where it bends or jumps, [s], [rad] and [rad/s]; angles within a period,
         or a revolution where it has none
     period [rad] : after which it comes again, of what does not depend on the time
+    declared : whether it is known to bend and jump nowhere else
     """
+
+    declared = False
 
     def __init__(
         self,
@@ -94,10 +97,14 @@ class Function:
     def _quick(self, at: list[Array]) -> Array | None:
         """Its values, if none raises and all are finite numbers."""
         try:
-            values = np.asarray(self._each(*at), dtype=np.float64)
+            values = self._values(at)
         except Exception:  # again one by one, which tells where it was
             return None
         return values if np.isfinite(values).all() else None
+
+    def _values(self, at: list[Array]) -> Array:
+        """Its values at times, angles and speeds of shape (n,)."""
+        return np.asarray(self._each(*at), dtype=np.float64)
 
     @cached_property
     def _each(self) -> np.ufunc:

@@ -61,8 +61,12 @@ class Piecewise:
         if not self.knots:
             a, b, c = self.pieces[0]
             return np.asarray(a + (b + c * x) * x)
+        return self.of_piece(x, x)
+
+    def of_piece(self, at: Array, x: Array) -> Array:
+        """Values at numbers by the parabolas that hold at others, of one shape."""
         knots, rows = self.arrays
-        row = rows[np.searchsorted(knots, x, side="right")]
+        row = rows[np.searchsorted(knots, at, side="right")]
         return np.asarray(row[..., 0] + (row[..., 1] + row[..., 2] * x) * x)
 
     @cached_property

@@ -61,6 +61,10 @@ DIMS |= {f"cycle_{name}": _CYCLES.dims(name) for name in _NUMBERED}
 """The dimensions of what an account adds to a file, by its name there."""
 
 
+_LOADS = ("load", "force")
+"""The dimensions of what acts from outside."""
+
+
 def with_account(variables: Labelled, account: Account) -> Labelled:
     """The variables with the rows of an account beside them."""
     found = dict(variables)
@@ -68,9 +72,10 @@ def with_account(variables: Labelled, account: Account) -> Labelled:
         if rows.count:
             found |= stored.variables(rows)
             found[stored.rows] = ((stored.rows,), np.arange(1, rows.count + 1), {})
-    if "cycle_load_work" in found:
-        loads = found["cycle_load_work"][1].shape[1]
-        found["load"] = (("load",), np.arange(1, loads + 1), {})
+    for of in _LOADS:
+        if f"cycle_{of}_work" in found:
+            count = found[f"cycle_{of}_work"][1].shape[1]
+            found[of] = ((of,), np.arange(1, count + 1), {})
     return found
 
 
@@ -86,19 +91,20 @@ def account_in(
     ValueError, KeyError : it is no account of this scene
     """
     names = [name for name in _NUMBERED if _has(scene, name)]
-    if data.sizes.get("load", len(scene.torque)) != len(scene.torque):
+    counts = dict(zip(_LOADS, (len(scene.torque), len(scene.force)), strict=True))
+    if any(data.sizes.get(of, count) != count for of, count in counts.items()):
         raise ValueError("loads of another scene")
-    sizes = data.assign_coords(load=np.arange(len(scene.torque)))
+    sizes = data.assign_coords({of: np.arange(count) for of, count in counts.items()})
     account = Account(
         _EVENTS.read(data, EVENTS, left_out[0]), _CYCLES.read(sizes, names, left_out[1])
     )
     of_loads = (Kind.LOAD_ON, Kind.LOAD_OFF)
-    most = {Kind.FUEL: len(scene.cylinders), **dict.fromkeys(of_loads, len(scene.torque))}
+    most = {Kind.FUEL: len(scene.cylinders), **dict.fromkeys(of_loads, sum(counts.values()))}
     codes, numbers = (account.events.columns[name].tolist() for name in ("kind", "number"))
     for code, number in zip(codes, numbers, strict=True):
         if Kind(code) in most and number not in range(1, most[Kind(code)] + 1):
             raise ValueError(f"an event of number {number}")
-    return account, data.drop_dims(["event", "cycle", "load"], errors="ignore")
+    return account, data.drop_dims(["event", "cycle", *_LOADS], errors="ignore")
 
 
 def _has(scene: Scene, name: str) -> bool:
@@ -109,6 +115,7 @@ def _has(scene: Scene, name: str) -> bool:
         "fuel": scene.fuel is not None,
         "friction_work": scene.friction is not None,
         "load_work": bool(scene.torque),
+        "force_work": bool(scene.force),
         "drive_work": scene.motion is not None,
     }.get(name, True)
 

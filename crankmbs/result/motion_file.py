@@ -55,7 +55,7 @@ def with_passes(variables: Labelled, passes: Passes) -> Labelled:
 
 def _rows(motion: Motion) -> dict[str, Array]:
     """What is written of a motion, by name."""
-    functions = any(load.parts.function is not None for load in motion.train.scene.torque)
+    functions = any(load.parts.function is not None for load in motion.train.loads)
     columns: dict[str, list[Array]] = {name: [] for name in (*_OF_NODES, *_OF_CELLS)}
     for stretch, cells in enumerate(motion.cells):
         m, n = cells.time.shape
@@ -127,6 +127,6 @@ def _loads(
     train: CrankTrain, phases: tuple[Phase, ...], time: float, speed: float
 ) -> Branch | Course:
     """What acts around a time [s] and a speed [rad/s]."""
-    torques = train.scene.torque
+    torques = train.loads
     branch = branch_of(torques, time, speed, rising=True, phases=phases)
     return course_of(torques, branch, time, phases)

@@ -19,7 +19,7 @@ from crankmbs.scene.cycles import mean_cycle
 from crankmbs.scene.measured_rows import HowRead, read_measured, sign_of
 from crankmbs.scene.pressure_rows import check_rows
 from crankmbs.scene.schema import SAVED, Float, dumped, folder_of, part, si, to_si
-from crankmbs.scene.tables import CylinderTable, Table, read_columns
+from crankmbs.scene.tables import CylinderTable, Table, read_columns, undumped
 from crankmbs.scene.units import DEGREE
 
 __all__ = ["Gas", "Indicator", "Polytrope", "PressureGiven", "tables_of"]
@@ -101,8 +101,7 @@ def _table(value: Any, info: ValidationInfo) -> Table | CylinderTable:
     if isinstance(value, Table | CylinderTable):
         return value
     if dumped(value, info):
-        by_cylinder = any(isinstance(each, list | tuple) for each in value.get("y", ()))
-        return CylinderTable(**value) if by_cylinder else Table(**value)
+        return undumped(value)
     if info.context is SAVED:
         raise InputError(f"must hold its rows in a saved scene; {shown(value)} came")
     if not isinstance(value, str | Path):

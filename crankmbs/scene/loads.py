@@ -7,6 +7,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from annotated_types import Ge, Gt
 
+from crankmbs.numerics.cycle import Cycle
 from crankmbs.numerics.piecewise import Piecewise
 from crankmbs.scene.angle_rows import check_turns, cycle_of
 from crankmbs.scene.schema import Float, from_file, part, si
@@ -26,7 +27,7 @@ class Constant(Torque):
     torque: Annotated[Float, si("torque")]
 
     @cached_property
-    def parts(self) -> Parts:
+    def parts(self) -> Parts[Cycle]:
         return Parts(over_time=Piecewise((), ((self.torque, 0.0, 0.0),)))
 
     @property
@@ -46,7 +47,7 @@ class Viscous(Torque):
     coefficient: Annotated[Float, Ge(0), si("viscous coefficient")]
 
     @cached_property
-    def parts(self) -> Parts:
+    def parts(self) -> Parts[Cycle]:
         return Parts(over_speed=Piecewise((), ((0.0, -self.coefficient, 0.0),)))
 
     @property
@@ -66,7 +67,7 @@ class Quadratic(Torque):
     coefficient: Annotated[Float, Ge(0), si("quadratic coefficient")]
 
     @cached_property
-    def parts(self) -> Parts:
+    def parts(self) -> Parts[Cycle]:
         c = self.coefficient
         return Parts(over_speed=Piecewise((0.0,), ((0.0, 0.0, c), (0.0, 0.0, -c))))
 
@@ -112,7 +113,7 @@ class TimeTable(_OfTable):
         check_abscissae(self.file, "times", jumps=True)
 
     @cached_property
-    def parts(self) -> Parts:
+    def parts(self) -> Parts[Cycle]:
         return Parts(over_time=Piecewise.through(self.file.x, self.file.y))
 
     @property
@@ -134,7 +135,7 @@ class SpeedTable(_OfTable):
         check_abscissae(self.file, "speeds", jumps=True)
 
     @cached_property
-    def parts(self) -> Parts:
+    def parts(self) -> Parts[Cycle]:
         return Parts(over_speed=Piecewise.through(self.file.x, self.file.y))
 
     def _scaled(self, share: float, faster: float) -> dict[str, Any]:
@@ -166,7 +167,7 @@ class AngleTable(_OfTable):
         check_turns(self.file, self.period)
 
     @cached_property
-    def parts(self) -> Parts:
+    def parts(self) -> Parts[Cycle]:
         return Parts(over_angle=cycle_of(self.file, self.interpolation, self.period))
 
     @property

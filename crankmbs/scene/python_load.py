@@ -11,31 +11,70 @@ from annotated_types import Gt
 from pydantic import PlainSerializer, PlainValidator, ValidationInfo
 
 from crankmbs.errors import InputError, shown
+from crankmbs.numerics.cycle import Cycle
 from crankmbs.numerics.function import Function, named
 from crankmbs.scene.angle_rows import is_of_halves
 from crankmbs.scene.schema import SAVED, Float, part, si
 from crankmbs.scene.torque import Parts, Torque
 
-__all__ = ["Load"]
+__all__ = ["KeptName", "Load", "check_period", "function_of", "whole_period"]
 
 Numbers = tuple[Float, ...]
 
 
-class _Kept:
+class KeptName:
     """The name of a function that a saved result tells, and nothing that could be called."""
 
     def __init__(self, name: str) -> None:
         self.__name__ = name
 
-
-def _function(value: Any, info: ValidationInfo) -> Any:
-    if info.context is SAVED and isinstance(value, str):
-        return _Kept(value)
-    if not callable(value) and not isinstance(value, _Kept):
-        raise InputError(
-            f"must be a function of t, theta and omega that gives a torque; {shown(value)} came"
+    def lacks(self, anew: str) -> str:
+        """Why it cannot be run again, and the way out: to give that anew."""
+        return (
+            f"of the function {self.__name__} a saved result keeps only the name; to run the scene "
+            f"again, give the {anew}"
         )
-    return value
+
+
+def function_of(arguments: str, gives: str) -> Callable[[Any, ValidationInfo], Any]:
+    """What takes a function of these arguments that gives something, both in words."""
+
+    def taken(value: Any, info: ValidationInfo) -> Any:
+        if info.context is SAVED and isinstance(value, str):
+            return KeptName(value)
+        if not callable(value) and not isinstance(value, KeptName):
+            raise InputError(
+                f"must be a function of {arguments} that gives {gives}; {shown(value)} came"
+            )
+        return value
+
+    return taken
+
+
+def check_period(period: float | None) -> None:
+    """Refuse a period [rad] that does not fit the engine's.
+
+    Raises
+    ------
+    InputError : the rule and what came
+    """
+    if period is None or is_of_halves(period):
+        return
+    share = 4.0 * math.pi / period
+    if abs(share - round(share)) > 1e-9 * share:
+        raise InputError(
+            "period must be a multiple of half a revolution, such as 6 pi, or a whole part of "
+            f"two revolutions, such as 4 pi / 3; {period:.6g} rad came"
+        )
+
+
+def whole_period(every: float) -> float:
+    """The multiple of half a revolution [rad] after which what comes again every so often does.
+
+    >>> whole_period(4.0 * math.pi / 3.0) / math.pi
+    4.0
+    """
+    return every if is_of_halves(every) else 4.0 * math.pi
 
 
 @part
@@ -55,7 +94,7 @@ class Load(Torque):
 
     positional: ClassVar[tuple[str, ...]] = ("function",)
     kind: Literal["function"] = "function"
-    function: Annotated[Any, PlainValidator(_function), PlainSerializer(named)]
+    function: Annotated[Any, PlainValidator(function_of("t, theta and omega", "a torque")), PlainSerializer(named)]
     kink_times: Numbers = ()
     kink_angles: Numbers = ()
     kink_speeds: Numbers = ()
@@ -63,21 +102,14 @@ class Load(Torque):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if self.period is None or is_of_halves(self.period):
-            return
-        share = 4.0 * math.pi / self.period
-        if abs(share - round(share)) > 1e-9 * share:
-            raise InputError(
-                "period must be a multiple of half a revolution, such as 6 pi, or a whole part of "
-                f"two revolutions, such as 4 pi / 3; {self.period:.6g} rad came"
-            )
+        check_period(self.period)
 
     @cached_property
-    def parts(self) -> Parts:
-        if isinstance(self.function, _Kept):
+    def parts(self) -> Parts[Cycle]:
+        if isinstance(self.function, KeptName):
             return Parts()
         every = self.period or 2.0 * math.pi
-        whole = every if is_of_halves(every) else 4.0 * math.pi
+        whole = whole_period(every)
         turns = range(round(whole / every))
         angles = tuple((angle + k * every) % whole for angle in self.kink_angles for k in turns)
         known = self.kink_times, angles, self.kink_speeds
@@ -89,12 +121,9 @@ class Load(Torque):
 
     @property
     def lacks(self) -> str | None:
-        if not isinstance(self.function, _Kept):
+        if not isinstance(self.function, KeptName):
             return None
-        return (
-            f"of the function {named(self.function)} a saved result keeps only the name; to run "
-            "the scene again, give the load anew with crankmbs.Load"
-        )
+        return self.function.lacks("load anew with crankmbs.Load")
 
     def _scaled(self, share: float, faster: float) -> dict[str, Any]:
         function: Callable[[float, float, float], float] = self.function

@@ -12,14 +12,17 @@ from typing import Annotated
 
 from pydantic import Strict
 
+import crankmbs.scene.forces
 import crankmbs.scene.loads
-import crankmbs.scene.python_load  # noqa: F401  (both make their kinds of load known)
+import crankmbs.scene.python_force
+import crankmbs.scene.python_load  # noqa: F401  (all make their kinds known)
 from crankmbs.errors import InputError, shown
 from crankmbs.numerics.cycle import common_period
 from crankmbs.scene.bearings import Bearings, Throws, throws_of
 from crankmbs.scene.change import changed
 from crankmbs.scene.cycles import cycles_in
 from crankmbs.scene.drives import Motion, Start
+from crankmbs.scene.force import AnyForce
 from crankmbs.scene.fuel import Fuel
 from crankmbs.scene.gas import Gas
 from crankmbs.scene.parts import Crank, Cylinder, Friction, Gravity, Layout, Piston, Rod
@@ -51,6 +54,7 @@ class Scene:
     motion: Motion | None = None
     start: Start | None = None
     torque: tuple[AnyTorque, ...] = ()
+    force: tuple[AnyForce, ...] = ()
     title: Annotated[str, Strict()] = ""
     source: Annotated[str, Strict()] = ""
 
@@ -75,7 +79,8 @@ class Scene:
         >>> load_scene("propeller").load_period / math.pi
         2.0
         """
-        periods = (load.parts.period for load in self.torque)
+        periods = [load.parts.period for load in self.torque]
+        periods += [force.law.period for force in self.force]
         return common_period([self.period, *(period for period in periods if period)])
 
     @cached_property

@@ -165,7 +165,7 @@ def _as_a_call(text: str) -> str:
     >>> _as_a_call("give [motion], or absolute = false")
     'give motion, or absolute=False'
     """
-    text = re.sub(r"\[{1,2}(motion|start|gas|torque)\]{1,2}", r"\1", text)
+    text = re.sub(r"\[{1,2}(motion|start|gas|torque|force)\]{1,2}", r"\1", text)
     text = re.sub(r"\b([a-z_]+) = (?=true|false|[\"0-9])", r"\1=", text)
     return text.replace("=true", "=True").replace("=false", "=False")
 

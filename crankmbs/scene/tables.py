@@ -8,7 +8,7 @@ import re
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from crankmbs.errors import InputError, shown
 from crankmbs.scene.content import content_of
@@ -21,18 +21,23 @@ __all__ = [
     "headings",
     "read_columns",
     "read_table",
+    "undumped",
 ]
 
 _LARGEST = 1e15  # a number in a table: beyond it nothing is a unit any more
 
 
 class Header(NamedTuple):
-    """Headings of a table's two columns, and the factors that bring them to SI."""
+    """Headings of a table's two columns, and the factors that bring them to SI.
+
+    y_names : of several columns of ordinates; left out, numbered
+    """
 
     x_name: str
     x_factor: float
     y_name: str
     y_factor: float
+    y_names: tuple[str, ...] = ()
 
     @property
     def units(self) -> tuple[dict[str, float], dict[str, float]]:
@@ -109,7 +114,7 @@ def check_abscissae(table: Table, what: str, *, jumps: bool) -> None:
 
 @dataclass(frozen=True)
 class CylinderTable:
-    """Rows with one value for each cylinder; ``source`` names where they came from.
+    """Rows with several values, as one for each cylinder; ``source`` names where they came from.
 
     x : shape (n,), y : shape (cylinders, n), in SI units, kept as tuples
 
@@ -143,6 +148,16 @@ class CylinderTable:
             Table(self.x, y, f"{self.source}, cylinder {number}")
             for number, y in enumerate(self.y, start=1)
         )
+
+
+def undumped(value: dict[str, Any]) -> Table | CylinderTable:
+    """The table that a saved scene holds by its fields.
+
+    >>> undumped({"x": [0.0], "y": [[5.0], [7.0]]}).y
+    ((5.0,), (7.0,))
+    """
+    several = any(isinstance(each, list | tuple) for each in value.get("y", ()))
+    return CylinderTable(**value) if several else Table(**value)
 
 
 def read_table(path: Path, x_units: dict[str, float], y_units: dict[str, float]) -> Table:

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 from crankmbs.errors import InputError
 from crankmbs.scene.cover import check_angles, check_times
 from crankmbs.scene.drives import Oscillation, Ramp, SpeedFile
+from crankmbs.scene.force import PistonForce
+from crankmbs.scene.forces import TravelTable
 from crankmbs.scene.fuel import Fuel
 from crankmbs.scene.gas import tables_of
 from crankmbs.scene.speed_rows import repeats
@@ -29,6 +31,7 @@ NO_INERTIA = (
     "centres; 0 came"
 )
 
+_SPARE = 1e-3  # of the stroke, over which the ends of a table over the travel are held
 _FARTHEST = 1e9  # rad or s: its last digit is 1e-7
 _MOST_CYCLES = 1000  # of the engine, after which its loads over the angle come again
 _MOST_SAMPLES = 2e7  # the memory of a machine may hold less: `crankmbs.motion.memory`
@@ -45,6 +48,7 @@ def check_whole(scene: Scene) -> None:
         _check_loop,
         _check_gas,
         _check_friction,
+        _check_forces,
         _check_bearings,
         _check_motion,
         _check_periods,
@@ -55,13 +59,13 @@ def check_whole(scene: Scene) -> None:
         check(scene)
 
 
-def _passing(load: Torque) -> str:
+def _passing(load: Torque | PistonForce) -> str:
     """What in a load happens once or depends on time, so that nothing settles under it, if any."""
     if load.has_window:
         return f"a {load.kind} with a window acts once"
     if load.is_steady:
         return ""
-    way_out = "; where it does not, say so by its period" if load.parts.function else ""
+    way_out = "; where it does not, say so by its period" if load.kind == "function" else ""
     return f"a {load.kind} depends on time{way_out}"
 
 
@@ -133,6 +137,33 @@ def _check_friction(scene: Scene) -> None:
         )
 
 
+def _check_forces(scene: Scene) -> None:
+    """Refuse forces on pistons that are not there, over a travel that is left, and windows of speed
+    where the speed is prescribed."""
+    r, l, e = scene.crank.radius, scene.rod.length, scene.piston.offset
+    top = math.sqrt((l + r - e) * (l + r + e))
+    stroke = top - math.sqrt(max((l - r - e) * (l - r + e), 0.0))
+    for number, force in enumerate(scene.force, start=1):
+        where = f"force[{number}]"
+        if force.cylinder is not None and force.cylinder > len(scene.cylinders):
+            raise InputError(
+                f"{where}.cylinder: must be from 1 to {len(scene.cylinders)}; {force.cylinder} came"
+            )
+        if scene.motion is not None and (force.from_speed, force.until_speed) != (None, None):
+            raise InputError(
+                f"{where}: with [motion] the speed is prescribed, and a window is one of time; give "
+                "after and until, or free the crank with [start]"
+            )
+        if isinstance(force, TravelTable):
+            low, high = 1e3 * force.file.x[0], 1e3 * force.file.x[-1]
+            spare = _SPARE * stroke
+            if force.file.x[0] > spare or force.file.x[-1] < stroke - spare:
+                raise InputError(
+                    f"{where}.file: {force.file.source}: the rows must cover the stroke, 0 to "
+                    f"{1e3 * stroke:.6g} mm; they go from {low:.6g} to {high:.6g} mm"
+                )
+
+
 def _check_bearings(scene: Scene) -> None:
     _ = scene.throws
 
@@ -176,13 +207,14 @@ def _check_settled(scene: Scene) -> None:
             f'run.until: "settled" needs firings that are alike in every cycle, and in [fuel], '
             f"{_uneven(scene.fuel)}; give an end such as {EXAMPLES['extent']}, or remove [fuel]"
         )
-    for number, load in enumerate(scene.torque, start=1):
-        if _passing(load):
-            raise InputError(
-                f'run.until: "settled" needs loads that act alike in every cycle, and '
-                f"torque[{number}], {_passing(load)}; give an end such as "
-                f"{EXAMPLES['extent']}, or another load"
-            )
+    for loads in (scene.torque, scene.force):
+        for number, load in enumerate(loads, start=1):
+            if _passing(load):
+                raise InputError(
+                    f'run.until: "settled" needs loads that act alike in every cycle, and '
+                    f"{load.heading}[{number}], {_passing(load)}; give an end such as "
+                    f"{EXAMPLES['extent']}, or another load"
+                )
 
 
 def _check_periods(scene: Scene) -> None:
@@ -200,7 +232,7 @@ def _check_tables(scene: Scene) -> None:
     end = until if until_time else 0.0
     if scene.motion is not None and isinstance(scene.motion.speed, SpeedFile):
         _check_speed(scene, scene.motion.speed, end)
-    for load in scene.torque:
+    for load in (*scene.torque, *scene.force):
         if load.table_over_time is None:
             continue
         if load.until_speed is None and (load.after or 0.0) < end:

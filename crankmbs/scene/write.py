@@ -13,7 +13,6 @@ from crankmbs.scene.drives import Ramp
 from crankmbs.scene.run import Extent
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.tables import CylinderTable, Header, Table
-from crankmbs.scene.torque import Torque
 from crankmbs.scene.units import DEGREE, RPM
 
 __all__ = ["scene_files"]
@@ -28,7 +27,7 @@ _ANGULAR = {
 _WORDS = ("title", "source")
 _UNITS = {
     **dict.fromkeys(("radius", "length", "bore", "offset", "center_of_mass"), "m"),
-    **dict.fromkeys(("position", "spacing"), "m"),
+    **dict.fromkeys(("position", "spacing", "relaxed_at"), "m"),
     **dict.fromkeys(("intake_pressure", "exhaust_pressure", "peak_pressure"), "Pa"),
     **dict.fromkeys(("ambient", "closing", "pressure"), "Pa"),
     "mass": "kg",
@@ -36,7 +35,8 @@ _UNITS = {
     "area": "m^2",
     "acceleration": "m/s^2",
     "torque": "N m",
-    "ring_force": "N",
+    **dict.fromkeys(("ring_force", "force"), "N"),
+    "stiffness": "N/m",
     "viscous": "N s/m",
     **dict.fromkeys(("over", "after", "until"), "s"),
 }
@@ -88,18 +88,20 @@ def scene_files(scene: Scene, stem: str) -> dict[str, str]:
 
     lines = [f"{key} = {_quoted(value)}" for key, value in _values(scene) if key in _WORDS]
     for key, part in _values(scene):
-        if key not in _WORDS and key not in ("torque", "run"):
+        if key not in _WORDS and key not in ("torque", "force", "run"):
             use = "pressure" if key == "gas" else "speed"
             header = getattr(getattr(part, "speed", None), "header", _PRESSURE)
             lines += section(f"[{key}]", part, use, header)
-    for number, load in enumerate(scene.torque, start=1):
-        if load.kind not in Torque.kinds:
-            raise InputError(
-                f"torque[{number}]: a load that is a function of Python, {load.words}, cannot be "
-                "written to a scene file; leave it out, or give it as a table"
-            )
-        heading, *rest = section("[[torque]]", load, f"{load.kind}{number}", load.header)[1:]
-        lines += ["", heading, f"kind = {_quoted(load.kind)}", *rest]
+    for of, all_of in (("torque", scene.torque), ("force", scene.force)):
+        for number, load in enumerate(all_of, start=1):
+            if load.kind not in load.kinds:
+                raise InputError(
+                    f"{of}[{number}]: what is a function of Python, {load.words}, cannot be "
+                    "written to a scene file; leave it out, or give it as a table"
+                )
+            use = f"{'force_' * (of == 'force')}{load.kind}{number}"
+            heading, *rest = section(f"[[{of}]]", load, use, load.header)[1:]
+            lines += ["", heading, f"kind = {_quoted(load.kind)}", *rest]
     lines += section("[run]", scene.run, "", None)
     if scene.run.every is None:
         lines.append('every = "none"')
@@ -166,12 +168,13 @@ def _divided(value: float, factor: float) -> float:
 
 
 def _csv(table: Table | CylinderTable, header: Header) -> str:
-    x_name, x_factor, y_name, y_factor = header
+    x_name, x_factor, y_name, y_factor, y_names = header
     of_each = [(x_name, table.x, x_factor)]
     if isinstance(table, Table):
         of_each.append((y_name, table.y, y_factor))
     else:
-        of_each += [(f"{y_name}_{k}", y, y_factor) for k, y in enumerate(table.y, start=1)]
+        names = y_names or [f"{y_name}_{k}" for k in range(1, len(table.y) + 1)]
+        of_each += [(name, y, y_factor) for name, y in zip(names, table.y, strict=True)]
     cells = ([_digits(_divided(v, factor)) for v in values] for _, values, factor in of_each)
     lines = [",".join(row) for row in zip(*cells, strict=True)]
     return "\n".join([",".join(name for name, *_ in of_each), *lines]) + "\n"

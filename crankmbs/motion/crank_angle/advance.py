@@ -115,7 +115,7 @@ def _stretch(problem: _Problem, branch: Branch) -> AngleSegment | None:
     """The next cells on the course that continues a branch; on the branch alone where its cells are
     affine, or where kinks are too strong to be found by solving again."""
     course = course_of(
-        problem.grid.train.scene.torque, branch, problem.state.time, problem.state.mode.loads
+        problem.grid.train.loads, branch, problem.state.time, problem.state.mode.loads
     )
     if isinstance(course, Branch):
         return _solve(problem, course)
@@ -202,9 +202,9 @@ def _enter(grid: Grid, state: State) -> tuple[Branch | None, float]:
     train, (time, theta, omega, _, mode) = grid.train, state
     reduction = reduce(train, theta, mode.shares)
     rest = reduction.rest(omega) + grid.outside(np.asarray(theta))
-    rest += friction_torque(train, theta, omega, math.copysign(1.0, omega), mode.shares or None)
+    rest += friction_torque(train, theta, omega, math.copysign(1.0, omega), mode.shares or None, mode.loads)
     rest += mode.held
-    branch = branch_at(train.scene.torque, (time, theta, omega), float(rest), mode.loads)
+    branch = branch_at(train.loads, (time, theta, omega), float(rest), mode.loads)
     return branch and branch.plus(mode.held), 0.5 * float(reduction.inertia) * omega**2
 
 

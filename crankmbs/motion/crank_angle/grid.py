@@ -6,12 +6,13 @@ No knot of the pressure lies inside a cell, so everything in it is smooth.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from crankmbs.mechanics.friction import rubbing
 from crankmbs.mechanics.inertia import fired_torque, reduce
@@ -21,7 +22,6 @@ from crankmbs.mechanics.windows import Phases
 from crankmbs.motion.crank_angle.edges import WIDEST, edges_of
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.collocation import Rule, gauss
-from crankmbs.numerics.cycle import Cycle
 from crankmbs.numerics.lagrange import ends_and_nodes
 
 __all__ = ["FINEST_CELL", "Grid", "Terms", "grid_of", "largest_of_row"]
@@ -151,18 +151,18 @@ class Grid:
     @property
     def drags(self) -> bool:
         """Whether friction depends on angle and speed together."""
-        friction = self.train.scene.friction
-        return friction is not None and friction.viscous > 0.0
+        return self.train.drags
 
     @cached_property
     def _has_loads(self) -> bool:
         """Whether loads depend on the angle."""
-        return any(load.parts.over_angle is not None for load in self.train.scene.torque)
+        over_angle = any(load.parts.over_angle is not None for load in self.train.loads)
+        return over_angle or bool(self.train.pushes)
 
     @cached_property
-    def over_angle(self) -> Cycle | None:
+    def over_angle(self) -> Callable[[ArrayLike], Array] | None:
         """What loads that act give over the angle."""
-        return over_angle(self.train.scene, self.phases)
+        return over_angle(self.train, self.phases)
 
     @cached_property
     def at_decisions(self) -> Array:
@@ -188,13 +188,13 @@ class Grid:
     @cached_property
     def scale(self) -> Array:
         """Largest torque over the angle in and around each cell, shape (n,) [N m]."""
-        tables, scene = self.tables, self.train.scene
-        share = self.train.law.most if self.train.law else 0.0
+        tables, train, scene = self.tables, self.train, self.train.scene
+        share = train.law.most if train.law else 0.0
         pressing = scene.friction.ring_pressure if scene.friction else 0.0
         torque = np.abs(tables.torque)
         torque = torque + (1.0 + pressing) * share * np.abs(tables.combustion).sum(axis=-1)
-        if scene.friction is not None:
-            torque += tables.friction + pressing * np.abs(tables.rubbed).sum(axis=-1)
+        if train.rubs:
+            torque += np.abs(tables.friction) + pressing * np.abs(tables.rubbed).sum(axis=-1)
         most = np.append(largest_of_row(torque), 0.0)
         middle = 0.5 * (self.edges[1:] + self.edges[:-1])
         around = np.add.outer(middle, [-WIDEST, WIDEST])
@@ -205,7 +205,7 @@ class Grid:
     def weights_alone(self) -> bool:
         """Whether nothing but weights acts over the angle."""
         train = self.train
-        gas_or_friction = train.pressure is not None or train.scene.friction is not None
+        gas_or_friction = train.pressure is not None or train.rubs
         return not gas_or_friction and self.over_angle is None
 
     @cached_property
@@ -316,8 +316,9 @@ class Grid:
                 table[parts] = part
         inertia, torque, combustion, friction, *others = tables
         against = 0.0
-        if self.train.scene.friction is not None:
-            against = sense * self.train.scene.friction.ring_pressure
+        if self.train.rubs:
+            rings = self.train.scene.friction
+            against = sense * rings.ring_pressure if rings else 0.0
             torque -= sense * friction
         return Terms(cell, width, turned, against, inertia, torque, combustion, *others)
 
@@ -334,11 +335,12 @@ class Grid:
         """What of `_Tables` comes from friction, at angles of shape (m, s)."""
         friction, empty = self.train.scene.friction, np.empty((*theta.shape, 0))
         nothing = np.empty((len(theta), 0))
-        if friction is None:
+        if not self.train.rubs:
             return nothing, empty, nothing
-        found = rubbing(self.train, theta)
-        drag = found.drag if friction.viscous > 0.0 else nothing
-        if friction.ring_pressure > 0.0 and self.train.combustion is not None:
+        found = rubbing(self.train, theta, self.phases)
+        drag = found.drag if self.drags else nothing
+        pressed = friction is not None and friction.ring_pressure > 0.0
+        if pressed and self.train.combustion is not None:
             return found.rings, found.gas, drag
         return found.coulomb(), empty, drag
 

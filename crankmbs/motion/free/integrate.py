@@ -21,7 +21,6 @@ from crankmbs.motion.mode import begun
 from crankmbs.motion.plan import Plan
 from crankmbs.motion.states import first_sample
 from crankmbs.numerics.arrays import Array
-from crankmbs.scene.scene import Scene
 
 __all__ = ["Begin", "Origin", "Pass", "Setup", "begin_at_start", "integrate"]
 
@@ -78,8 +77,8 @@ def integrate(
     betters the ``first``."""
     scene, plan = grid.train.scene, setup.plan
     state = begun_in = setup.begin(grid, local)
-    steady = all(load.is_steady for load in scene.torque) and grid.train.law is None
-    steady = steady and not _sticks(scene)
+    steady = all(load.is_steady for load in grid.train.loads) and grid.train.law is None
+    steady = steady and not grid.train.sticks
     same = first is not None and first.begin.omega[0] == state.omega
     of_angle = float(grid.at(state.mode.loads).outside(np.asarray(state.theta)))
     begin = first.begin if first and same else first_sample(grid.train, state, of_angle)
@@ -101,12 +100,6 @@ def integrate(
     path.log.close(ending, path.state or begun_in)
     origin = Origin(begun_in, begin, tuple(path.fast))
     return Pass(origin, path.samples(), ending, path, worst, path.slow if by_angle else [])
-
-
-def _sticks(scene: Scene) -> bool:
-    """Whether friction brings a swing to rest."""
-    friction = scene.friction
-    return friction is not None and friction.ring_force + friction.ring_pressure > 0.0
 
 
 def _note(worst: Array, segment: AngleSegment) -> None:

@@ -67,7 +67,8 @@ def evaluations(cost_cap: float) -> int:
 
 def has_functions(train: CrankTrain) -> bool:
     """Whether a load is a function of Python, which may do what it does not declare."""
-    return any(load.parts.function is not None for load in train.scene.torque)
+    functions = (load.parts.function for load in train.loads)
+    return any(not function.declared for function in functions if function is not None)
 
 
 def run(

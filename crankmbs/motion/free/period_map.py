@@ -17,7 +17,7 @@ import numpy as np
 
 from crankmbs.mechanics.friction import rubbing
 from crankmbs.mechanics.inertia import reduce
-from crankmbs.mechanics.torque import branch_of, torque_at
+from crankmbs.mechanics.torque import branch_of
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion.base import State
 from crankmbs.motion.crank_angle.grid import Grid
@@ -84,7 +84,7 @@ class PeriodMap:
         self._train, self.scene, self.start = train, scene, scene.start
         self.inertia = float(reduce(train, scene.start.angle).inertia)
         every = scene.period / _SAMPLES
-        parts = [load.parts for load in scene.torque]
+        parts = [load.parts for load in train.loads]
         tables = [np.abs(part.over_speed.knots) for part in parts if part.over_speed is not None]
         functions = [part.function for part in parts if part.function is not None]
         tables += [np.abs(function.speeds) for function in functions]
@@ -170,7 +170,7 @@ class PeriodMap:
         speeds = np.geomspace(max(slow, 1e-6 * fast), fast, _SPEEDS)
         omega = sense * np.unique(np.concatenate([speeds, inside]))
         theta, omega = np.broadcast_arrays(self._angles, omega)
-        torque = torque_at(self.scene.torque, np.zeros_like(omega), theta, omega)
+        torque = sum((load.parts(0.0, theta, omega) for load in self._train.loads), 0.0 * omega)
         slope = np.diff(torque) / np.diff(omega)
         least, most = float(slope.min()) - self._drag, float(slope.max())
         return least, most if most > _FLAT * abs(least) else min(most, 0.0)
@@ -184,7 +184,7 @@ class PeriodMap:
         return self._closed[-1][2]
 
     def _composed(self, grid: Grid, sense: float) -> Period | None:
-        branch = branch_of(self.scene.torque, 0.0, 0.0, rising=sense > 0.0)
+        branch = branch_of(self._train.loads, 0.0, 0.0, rising=sense > 0.0)
         bounds = (branch.omega_low, branch.omega_high)
         if (
             grid.drags
@@ -201,6 +201,6 @@ class PeriodMap:
 
     def turns(self, grid: Grid, one: Period, energy: float, sense: float) -> bool:
         """Whether the period that begins with this energy [J] stays clear of rest."""
-        branch = branch_of(self.scene.torque, 0.0, 0.0, rising=sense > 0.0)
+        branch = branch_of(self._train.loads, 0.0, 0.0, rising=sense > 0.0)
         torque = float(grid.scale.max()) + abs(branch.c0)
         return bool(np.min(one.gain * energy + one.shift) > _CLEAR * torque)

@@ -27,7 +27,7 @@ def enter(reduced: Reduced, state: State, scale: float) -> Equation | Ending:
 
     scale [N m] : largest torque, against which rounding is told
     """
-    torques, phases = reduced.train.scene.torque, state.mode.loads
+    torques, phases = reduced.train.loads, state.mode.loads
     pieces = reduced.at(state.mode)
     if state.omega != 0.0:
         piece = pieces.around(state.theta, math.copysign(1.0, state.omega))
@@ -47,7 +47,7 @@ def enter(reduced: Reduced, state: State, scale: float) -> Equation | Ending:
             return equation
         resisted = resisted or pull * sense < -BALANCED * scale
         sides.append(equation)
-    rubs = reduced.train.scene.friction is not None
+    rubs = reduced.train.rubs
     if resisted:
         waits = bool(phase_ends(torques, phases)[0])
         until = _until(sides, state, scale) if rubs else sides[0].branch.t_end

@@ -14,15 +14,15 @@ from typing import NamedTuple
 
 import numpy as np
 
+from crankmbs.mechanics.axes import closed_loops
 from crankmbs.mechanics.friction import friction_torque, rubbing
 from crankmbs.mechanics.inertia import fired_torque, reduce
 from crankmbs.mechanics.knots import KNOT, apart
 from crankmbs.mechanics.torque import knots_over_angle, over_angle
 from crankmbs.mechanics.train import CrankTrain, crank_angle_knots, friction_knots, sign_changes
-from crankmbs.mechanics.windows import Phases
+from crankmbs.mechanics.windows import Phases, pushing
 from crankmbs.motion.mode import Mode
 from crankmbs.numerics.arrays import Array, Index
-from crankmbs.numerics.cycle import Cycle
 
 __all__ = ["Piece", "Pieces", "Reduced"]
 
@@ -70,6 +70,8 @@ class _Fits(NamedTuple):
         without friction, loads and combustion
     gas, combustion : shape (n, terms, cylinders) [N m], what presses rings, and what firings of
         share 1 add; no cylinders where there is none
+
+    rings and drag are of friction alone, without forces from outside on the pistons
     """
 
     edges: list[float]
@@ -108,10 +110,10 @@ class Reduced:
     def torque_scale(self) -> float:
         """Largest torque of gas and gravity over one period, and of the loads at their knots
         [N m]."""
-        parts = (part for load in self.train.scene.torque for part in load.parts[:3])
+        parts = (part for load in self.train.loads for part in load.parts[:3])
         load = sum(part.largest for part in parts if part is not None)
         start = self.train.scene.start
-        for given in self.train.scene.torque:
+        for given in self.train.loads:
             if given.parts.function is not None and start is not None:
                 load += abs(given.parts.function.number(0.0, start.angle, start.speed))
         period = self.train.period
@@ -157,7 +159,7 @@ class Reduced:
     def _fitted(self, edges: Array) -> Array:
         """Coefficients of all that depends on the angle, shape (n, terms, functions)."""
         theta = self.nodes(edges)
-        found, rubs = reduce(self.train, theta), rubbing(self.train, theta)
+        found, rubs = reduce(self.train, theta), rubbing(self.train.alone, theta)
         alone = np.stack([*found, rubs.rings, rubs.drag], axis=-1)
         gas = rubs.gas if self._presses else rubs.gas[..., :0]
         values = np.concatenate([alone, gas, fired_torque(self.train, theta)], axis=-1)
@@ -188,7 +190,8 @@ class Pieces:
     def __init__(self, base: Reduced, phases: Phases, shares: tuple[float, ...]) -> None:
         self.train, self.torque_scale = base.train, base.torque_scale
         self._base, self._shares = base, np.array(shares)
-        self.over_angle: Cycle | None = over_angle(base.train.scene, phases)
+        self.over_angle = over_angle(base.train, phases)
+        self._phases = phases
         fired = base.train.combustion is not None
         self._bends = sign_changes(base.train, shares).tolist() if fired else []
 
@@ -209,21 +212,32 @@ class Pieces:
         return Piece(*knots, found.half, found.powers)
 
     @cached_property
-    def _loads(self) -> Array | None:
-        """Coefficients of the loads over the angle."""
-        if self.over_angle is None:
+    def _loads(self) -> tuple[Array, Array, Array] | None:
+        """Coefficients of what loads give over the angle, of what of them is against either sense
+        of rotation, and of that per speed."""
+        pushes = pushing(self.train, self._phases)
+        if self.over_angle is None and not pushes:
             return None
-        values = self.over_angle(self._base.nodes(np.array(self._base.fits.edges)))
-        return np.asarray(values @ self._base.to_chebyshev.T)
+        nodes = self._base.nodes(np.array(self._base.fits.edges))
+        torque = np.zeros_like(nodes) if self.over_angle is None else self.over_angle(nodes)
+        resisting = np.zeros((2, nodes.size))
+        loop = closed_loops(self.train.scene, nodes.ravel())
+        for push in pushes:
+            resisting += push.resisting(nodes.ravel(), loop)
+        every = np.stack([torque, *resisting.reshape(2, *nodes.shape)])
+        found = every @ self._base.to_chebyshev.T
+        return found[0], found[1], found[2]
 
     def _piece(self, k: int, low: float, high: float, sense: float) -> Piece:
         """A part of the piece k, where friction keeps its signs."""
         fits = self._base.fits
         begin, end = np.array(fits.edges[k : k + 2])
         middle, half = (float(each) for each in _placed(begin, end))
-        torque = fits.torque[k] + 0.0
+        torque, drag = fits.torque[k] + 0.0, fits.drag[k]
         if self._loads is not None:
-            torque += self._loads[k]
+            given, against, per_speed = (part[k] for part in self._loads)
+            torque += given - sense * against
+            drag = drag + per_speed
         more = np.zeros((1, 1))
         if len(self._shares):
             more = fits.combustion[k] * self._shares
@@ -235,7 +249,7 @@ class Pieces:
             gas = gas + more
             pressing = gas * np.sign(np.polynomial.chebyshev.chebval(at, gas))
             torque -= sense * friction.ring_pressure * pressing.sum(axis=-1)
-        rows = np.stack([fits.inertia[k], fits.slope[k], torque, fits.drag[k]])
+        rows = np.stack([fits.inertia[k], fits.slope[k], torque, drag])
         matters = (np.abs(rows) > _ROUNDING * np.abs(rows).max(axis=1, keepdims=True)).any(axis=0)
         count = int(np.flatnonzero(matters)[-1]) + 1
         powers = rows[:, :count] @ _powers(count)

@@ -83,7 +83,7 @@ def _cells(
     time[:, -1] = edges[1:]
     angle, speed = at(time.ravel())
     loads = [phase is Phase.ACTING for phase in begin.mode.loads]
-    acts = np.tile(loads or [True] * len(forces.train.scene.torque), (time.size, 1))
+    acts = np.tile(loads or [True] * len(forces.train.loads), (time.size, 1))
     hair = _HAIR * (edges[-1] - edges[0])
     inside = np.clip(time.ravel(), edges[0] + hair, edges[-1] - hair)
     outside = forces.torque(inside, *at(inside), acts).reshape(time.shape)

@@ -123,7 +123,7 @@ class Forces:
 
     def torque(self, time: Array, theta: Array, omega: Array, acts: Array) -> Array:
         """Torque [N m] of all loads, shape (m,); acts : shape (m, loads), whether each does."""
-        loads = self.train.scene.torque
+        loads = self.train.loads
         total = np.zeros_like(theta)
         for load, when in zip(loads, acts.T, strict=True):
             total += np.where(when, load(time, theta, omega), 0.0)
@@ -137,7 +137,7 @@ class Forces:
 
         senses : signs in which the crank angle, and its speed, leave the state
         """
-        torques = self.train.scene.torque
+        torques = self.train.loads
         ends = phase_ends(torques, mode.loads)
         times, speeds = {*ends[0], *self.times}, set(ends[1])
         for _, load in acting(torques, mode.loads) if self._stops else ():
@@ -160,7 +160,7 @@ class Forces:
     def times(self) -> tuple[float, ...]:
         """Times [s] at which a load jumps; or bends, where these are few."""
         jumps, bends = set[float](), set[float]()
-        for load in self.train.scene.torque:
+        for load in self.train.loads:
             jumps |= set(load.parts.function.times if load.parts.function else ())
             if load.parts.over_time is not None:
                 jumps |= set(load.parts.over_time.jumps)
@@ -187,7 +187,7 @@ class Forces:
 
     def load(self, bounds: Bounds, mode: Mode) -> Callable[[float, float, float], float]:
         """Torque [N m] of the loads that act, of time [s], crank angle [rad] and speed [rad/s]."""
-        parts = [load.parts for _, load in acting(self.train.scene.torque, mode.loads)]
+        parts = [load.parts for _, load in acting(self.train.loads, mode.loads)]
         in_time = [_between(p.over_time, *bounds.times) for p in parts if p.over_time]
         in_speed = [_between(p.over_speed, *bounds.speeds) for p in parts if p.over_speed]
         in_angle = [

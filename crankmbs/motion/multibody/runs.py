@@ -232,7 +232,7 @@ class Runs:
         if speed == 0.0:
             leaves = acceleration(self.model, self.forces, self.start)
             alpha = abs(leaves or 0.0)
-            steady = all(load.is_steady for load in self._train.scene.torque)
+            steady = all(load.is_steady for load in self._train.loads)
             moves = leaves is None or alpha > _STUCK or not steady
             speed = min(math.sqrt(4.0 * math.pi * alpha), alpha * end)
         turn = 2.0 * math.pi / speed if speed > 0.0 else math.inf

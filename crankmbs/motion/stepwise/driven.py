@@ -8,13 +8,15 @@ import numpy as np
 
 from crankmbs.mechanics.speed import SpeedLaw, speed_law
 from crankmbs.mechanics.train import CrankTrain
+from crankmbs.mechanics.windows import pushing
 from crankmbs.motion.assemble import Assembled, assemble
 from crankmbs.motion.base import Samples, Solution, State
-from crankmbs.motion.driven import decisions
+from crankmbs.motion.driven import decisions, windows_at
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.mode import begun
 from crankmbs.motion.plan import Plan, folds_of
 from crankmbs.motion.prescribed import monotone_stretches
+from crankmbs.motion.states import applied_forces
 from crankmbs.motion.stepwise.standing import Moving, Standing, commanded, said
 
 __all__ = ["Prescribed"]
@@ -67,7 +69,7 @@ class Prescribed:
         if self._train.law is not None:
             for decision in decisions(self._train, self._law, first, last):
                 mode = decision.mode
-        return last._replace(mode=mode)
+        return last._replace(mode=windows_at(self._train, mode, time))
 
     def moving(self, standing: Standing) -> Moving:
         """The motion by its law."""
@@ -93,7 +95,11 @@ class Prescribed:
         shares = state.mode.shares
         own = {"fuel": np.array([shares])} if shares else {}
         time = np.array([state.time])
-        return Samples(time, *law.at_time(time), np.zeros(1), own)
+        theta, omega, alpha = law.at_time(time)
+        if self._train.pushes:
+            pushes = pushing(self._train, state.mode.loads)
+            own["applied_force"] = applied_forces(self._train, pushes, (time, theta, omega))
+        return Samples(time, theta, omega, alpha, np.zeros(1), own)
 
 
 def _at(law: SpeedLaw, time: float) -> tuple[float, float, float]:

@@ -1,0 +1,78 @@
+"""A force on a piston that is any function, given from Python."""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+from typing import Annotated, ClassVar, Literal
+
+from annotated_types import Gt
+from pydantic import PlainSerializer, PlainValidator
+
+from crankmbs.numerics.function import named
+from crankmbs.scene.force import Given, Law, PistonForce
+from crankmbs.scene.python_load import KeptName, check_period, function_of, whole_period
+from crankmbs.scene.schema import Float, part, si
+
+__all__ = ["Force"]
+
+Numbers = tuple[Float, ...]
+
+
+@part
+class Force(PistonForce):
+    """The force [N] on a piston, positive towards the crank, that a function(t, cycle_angle,
+    displacement, velocity) gives, of time [s], cycle angle [rad], and the piston's displacement
+    from its top dead centre [m] and its velocity towards the crank [m/s], four floats in, one out;
+    it must be pure.
+
+    kink_times [s], kink_angles [rad], kink_displacements [m] : where it bends or jumps, the angles
+        every ``period``, without one every revolution; that it jumps with the sense of the
+        velocity is always allowed for. What is not declared is found by finer cells, and costs
+        accuracy that the stated errors know of
+    period [rad] : declares that it does not depend on t and repeats over the cycle angle; any
+        multiple of half a revolution, or a whole part of two revolutions
+
+    >>> Force(lambda t, cycle_angle, displacement, velocity: -2.0 * velocity).name
+    'function'
+    """
+
+    positional: ClassVar[tuple[str, ...]] = ("function",)
+    kind: Literal["function"] = "function"
+    function: Annotated[
+        object,
+        PlainValidator(function_of("t, cycle_angle, displacement and velocity", "a force")),
+        PlainSerializer(named),
+    ]
+    kink_times: Numbers = ()
+    kink_angles: Numbers = ()
+    kink_displacements: Numbers = ()
+    period: Annotated[Float, Gt(0), si("angle")] | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        check_period(self.period)
+
+    @cached_property
+    def law(self) -> Law:
+        if isinstance(self.function, KeptName):
+            return Law()
+        every = self.period or 2.0 * math.pi
+        whole = whole_period(every)
+        turns = range(round(whole / every))
+        angles = tuple((angle + k * every) % whole for angle in self.kink_angles for k in turns)
+        declared = self.kink_times, angles, self.kink_displacements
+        return Law(given=Given(self.function, *declared, whole if self.period else None))
+
+    @property
+    def words(self) -> str:
+        return named(self.function)
+
+    @property
+    def lacks(self) -> str | None:
+        if not isinstance(self.function, KeptName):
+            return None
+        return self.function.lacks("force anew with crankmbs.Force")
+
+
+PistonForce.unwritten["function"] = Force
