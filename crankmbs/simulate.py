@@ -76,7 +76,8 @@ def simulate(
 
 
 def functions_of(scene: Scene) -> list[tuple[str, Function]]:
-    """The functions among the loads, each with where it stands in the scene, none of which has failed yet."""
+    """The functions among the loads, each with where it stands in the scene; none has failed
+    yet."""
     found = []
     loads = crank_train(scene).loads
     for number, load in enumerate(loads, start=1):

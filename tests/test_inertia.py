@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from crankmbs import Gravity
-from crankmbs.mechanics.geometry import close_loop
 from crankmbs.mechanics.axes import gravity_vector
+from crankmbs.mechanics.geometry import close_loop
 from crankmbs.mechanics.inertia import fired_torque, reduce, rod_centre
 from crankmbs.mechanics.train import CrankTrain, crank_angle_knots, crank_train
 from crankmbs.scene.read import load_scene

@@ -14,6 +14,7 @@ from crankmbs.errors import FormulationError, InputError
 from crankmbs.mechanics.knots import repeat
 from crankmbs.mechanics.train import CrankTrain, crank_train
 from crankmbs.mechanics.variables import EVERY
+from crankmbs.mechanics.windows import Phase
 from crankmbs.motion.cells import Cells
 from crankmbs.motion.motion import Motion
 from crankmbs.motion.plan import Plan, plan_of
@@ -201,7 +202,8 @@ def _last_period(
     states = part.at(times, in_time=True)
     ours, fuel = variables_at(part.train, states), states.own.get("fuel")
     if result.scene.motion is not None:
-        theirs = beside.consistent(train, ours, driven=True) | {"time": times}
+        acts = _acts(part, times)
+        theirs = beside.consistent(train, ours, acts, driven=True) | {"time": times}
         errors = dict.fromkeys(theirs, 0.0)
     else:
         start = part.at(np.array([begin]), in_time=True)
@@ -233,11 +235,22 @@ def _at_states(result: Result, train: CrankTrain) -> tuple[Difference, ...]:
     chosen = np.unique(np.linspace(0, count - 1, _STATES).astype(int))
     names = [name for name, (dims, _, _) in result.variables.items() if dims[0] == "time"]
     ours = {name: result.sampled(name)[chosen] for name in names}
-    theirs = beside.consistent(train, ours, driven=result.scene.motion is not None)
+    acts = _acts(result.passes.answer, ours["time"])
+    theirs = beside.consistent(train, ours, acts, driven=result.scene.motion is not None)
     motion = {name: _MOTION[name] for name in ("crank acceleration", "piston acceleration")}
     rows = {**motion, **_forces(result.scene)}
     none = dict.fromkeys(theirs, 0.0)
     return _rows(rows, ours, theirs, _stated_by(result), none, math.inf)
+
+
+def _acts(motion: Motion, times: Array) -> Array:
+    """Which loads act at times [s] of a motion, shape (m, loads); where they change as before."""
+    cells, loads = motion.cells, len(motion.train.loads)
+    k = np.searchsorted([float(part.time[-1, -1]) for part in cells[:-1]], times)
+    rows = [
+        [phase is Phase.ACTING for phase in part.acting.phases] or [True] * loads for part in cells
+    ]
+    return np.array(rows, dtype=bool).reshape(len(cells), loads)[k]
 
 
 def _rows(

@@ -34,7 +34,6 @@ from crankmbs.mechanics.geometry import (
     throw_angles,
     top_position,
 )
-from crankmbs.mechanics.axes import axes_of, closed_loops
 from crankmbs.mechanics.knots import KNOT, apart
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.cycle import tiled

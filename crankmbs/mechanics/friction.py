@@ -22,8 +22,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from crankmbs.mechanics.geometry import slides as slides_of
 from crankmbs.mechanics.axes import axes_of, closed_loops
+from crankmbs.mechanics.geometry import slides as slides_of
 from crankmbs.mechanics.inertia import fired_torque, gas_at
 from crankmbs.mechanics.pressure import pressures_at
 from crankmbs.mechanics.train import CrankTrain
@@ -31,7 +31,6 @@ from crankmbs.mechanics.windows import Phases, pushing
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.periodic import period_of
 from crankmbs.scene.parts import Friction
-from crankmbs.scene.scene import Scene
 
 __all__ = [
     "Rubbing",

@@ -10,7 +10,6 @@ cylinders are an axis in front of the angles.
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np

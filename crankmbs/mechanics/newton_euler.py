@@ -16,8 +16,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from crankmbs.mechanics.geometry import Loop, top_position
 from crankmbs.mechanics.axes import axes_of, closed_loops, gravity_vector
+from crankmbs.mechanics.geometry import Loop, top_position
 from crankmbs.mechanics.inertia import crank_weight, gas_at, moving_inertias, rod_centre
 from crankmbs.mechanics.journals import journal_rows, of_journals
 from crankmbs.mechanics.train import CrankTrain

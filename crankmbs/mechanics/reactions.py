@@ -1,24 +1,26 @@
 """Motion of every part and force in every joint from crank angle, speed and acceleration. Exact.
 
 Every balance (`crankmbs.mechanics.newton_euler`) is linear in omega^2, alpha, 1, the shares of the
-combustion, and friction and forces from outside on the pistons, which push them as gas does. So where the angles of
-the samples repeat it is made for these alone, once for every angle of a period, and put together
-for each sample.
+combustion, and friction and forces from outside on the pistons, which push them as gas does. So
+where the angles of the samples repeat it is made for these alone, once for every angle of a period,
+and put together for each sample.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from itertools import accumulate
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from crankmbs.mechanics.axes import axes_of
 from crankmbs.mechanics.fired import pushed
 from crankmbs.mechanics.friction import friction_forces
-from crankmbs.mechanics.axes import axes_of
 from crankmbs.mechanics.newton_euler import UNITS, Powers, balanced, powers_of, rows_of
 from crankmbs.mechanics.pressure import pressures_at
 from crankmbs.mechanics.train import CrankTrain
@@ -30,7 +32,9 @@ __all__ = ["Balances", "Table", "balances", "peaks_of", "reactions"]
 
 
 _PER_SPEED = ("piston_velocity", "rod_angular_speed")
-_RUBBED, _APPLIED = "friction_force", "applied_force"
+_RUBBED = "friction_force"
+_PUSHES = (_RUBBED, "applied_force")
+_NOTHING: Mapping[str, Array] = MappingProxyType({})
 _BLOCK = 60_000  # numbers at once: half a megabyte, which stays in the cache
 _OFTEN = 3  # so often an angle must come back for its parts to pay
 
@@ -76,19 +80,17 @@ def reactions(
     theta: ArrayLike,
     omega: ArrayLike,
     alpha: ArrayLike,
-    fuel: Array | None = None,
-    friction: Array | None = None,
-    applied: Array | None = None,
+    given: Mapping[str, Array] = _NOTHING,
 ) -> dict[str, Array]:
     """Motion of every part and force in every joint.
 
     Parameters
     ----------
     theta, omega, alpha : shape (n,) [rad, rad/s, rad/s2]; any motion, prescribed or free
-    fuel : shape (n, cylinders), shares of the combustion; None leaves it out
-    friction : shape (n, cylinders) [N], towards the crank; by default what the speeds make of it,
+    given : what does not follow from these, by its name in a result, shape (n, cylinders) each:
+        "fuel", shares of the combustion; "applied_force" [N], from outside on the pistons;
+        "friction_force" [N], by default what the speeds make of it,
         `crankmbs.mechanics.friction.friction_forces`
-    applied : shape (n, cylinders) [N], forces from outside on the pistons towards the crank
 
     Returns
     -------
@@ -99,7 +101,7 @@ def reactions(
     >>> float(reactions(train, [0.0], [10.0], [0.0])["rod_angle"][0, 0])
     0.0
     """
-    found = balances(train, theta, omega, alpha, fuel, friction, applied)
+    found = balances(train, theta, omega, alpha, given)
     if not found.by_parts:
         return found.alone
     # one piece of memory, so large that the system is not asked for every run's anew
@@ -212,7 +214,7 @@ def _groups(rows: tuple[tuple[str, int], ...], samples: int) -> tuple[tuple[list
 
 
 def _kind(name: str) -> tuple[object, ...]:
-    return name in (_RUBBED, _APPLIED), name in _PER_SPEED, powers_of(name)
+    return name in _PUSHES, name in _PER_SPEED, powers_of(name)
 
 
 def peaks_of(rows: Array) -> Array:
@@ -226,9 +228,7 @@ def balances(
     theta: ArrayLike,
     omega: ArrayLike,
     alpha: ArrayLike,
-    fuel: Array | None = None,
-    friction: Array | None = None,
-    applied: Array | None = None,
+    given: Mapping[str, Array] = _NOTHING,
 ) -> Balances:
     """What `reactions` puts together, before it does.
 
@@ -245,20 +245,17 @@ def balances(
         period = single(theta)
     motion = UNITS if by_parts else Powers(square[None], alpha[None], np.ones((1, 1)))
     rows, parts = rows_of(scene), balanced(train, period.angles, motion)
-    if scene.friction is not None:
-        rows[_RUBBED] = len(scene.cylinders)
-        if friction is None:
-            friction = friction_forces(train, theta, omega, fuel)
-    if applied is not None:
-        rows[_APPLIED] = len(scene.cylinders)
-    given = {_RUBBED: friction if scene.friction is not None else None, _APPLIED: applied}
-    added = _added(train, period, fuel, given)
+    fuel, pushes = given.get("fuel"), {n: given[n] for n in _PUSHES if n in given}
+    if scene.friction is not None and _RUBBED not in pushes:
+        pushes[_RUBBED] = friction_forces(train, theta, omega, fuel)
+    rows |= dict.fromkeys(pushes, len(scene.cylinders))
+    added = _added(train, period, fuel, pushes)
     groups = _groups(tuple(rows.items()), len(theta))
     return Balances(period, rows, parts, (square, alpha, omega), added, by_parts, groups)
 
 
 def _added(
-    train: CrankTrain, period: Period, fuel: Array | None, given: dict[str, Array | None]
+    train: CrankTrain, period: Period, fuel: Array | None, pushes: dict[str, Array]
 ) -> dict[str, Array]:
     """What combustion and given forces on the pistons do at the samples, by variable."""
     forces: list[Array] = []
@@ -268,8 +265,7 @@ def _added(
         more = period.times(pressures_at(train.combustion, phi), np.ascontiguousarray(fuel.T))
         forces.append((train.scene.piston.gas_area or 0.0) * more)
         found |= {"gas_pressure": more, "gas_force": forces[0]}
-    for name, push in given.items():
-        if push is not None:
-            forces.append(np.ascontiguousarray(push.T))
-            found[name] = forces[-1]
+    for name, push in pushes.items():
+        forces.append(np.ascontiguousarray(push.T))
+        found[name] = forces[-1]
     return found | pushed(train.scene, period, sum(forces[1:], forces[0])) if forces else found

@@ -15,7 +15,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -24,10 +23,9 @@ from crankmbs.errors import InputError
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.windows import Phases, acting, phase_ends, place_of
 from crankmbs.numerics.arrays import Array
-from crankmbs.numerics.cycle import Cycle, Periodic, common_period, summed, tiled
+from crankmbs.numerics.cycle import Cycle, common_period, summed, tiled
 from crankmbs.numerics.function import Function
 from crankmbs.numerics.piecewise import total
-from crankmbs.scene.scene import Scene
 from crankmbs.scene.torque import Acting
 
 __all__ = [
@@ -273,15 +271,6 @@ def times_of(loads: tuple[Acting, ...]) -> list[float]:
     return [time for function in functions if function is not None for time in function.times]
 
 
-class _Sum(NamedTuple):
-    """Functions of the crank angle together."""
-
-    parts: tuple[Periodic, ...]
-
-    def __call__(self, angle: ArrayLike) -> Array:
-        return np.asarray(sum(part(angle) for part in self.parts))
-
-
 def over_angle(train: CrankTrain, phases: Phases = ()) -> Callable[[ArrayLike], Array] | None:
     """What the loads that act give over the crank angle [N m], at angles [rad] of any shape."""
     parts = [load.parts.over_angle for _, load in acting(train.loads, phases)]
@@ -289,7 +278,7 @@ def over_angle(train: CrankTrain, phases: Phases = ()) -> Callable[[ArrayLike], 
     tables = [part for part in found if isinstance(part, Cycle)]
     if len(tables) == len(found):
         return summed(tables, common_period(part.period for part in tables))
-    return _Sum(tuple(found))
+    return lambda angle: np.asarray(sum(part(angle) for part in found))
 
 
 def knots_over_angle(train: CrankTrain) -> Array:

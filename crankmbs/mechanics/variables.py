@@ -106,8 +106,9 @@ COORDINATES = ("time", "crank_angle", "cylinder")
 
 def variables_of(scene: Scene) -> dict[str, Variable]:
     """The variables that a result of a scene has: rocking moments where the cylinders have places,
-    the shares of the combustion where there is fuel, friction and forces from outside where there are, the forces of main
-    journals where there are bearings, those of pins where two rods share one.
+    the shares of the combustion where there is fuel, friction and forces from outside where there
+    are, the forces of main journals where there are bearings, those of pins where two rods share
+    one.
 
     >>> "rocking_moment_x" in variables_of(load_scene("propeller"))
     False

@@ -20,7 +20,17 @@ from crankmbs.mechanics.train import CrankTrain
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.torque import Acting
 
-__all__ = ["Phase", "Phases", "acting", "first_phases", "later_phases", "phase_ends", "place_of", "pushing", "span"]
+__all__ = [
+    "Phase",
+    "Phases",
+    "acting",
+    "first_phases",
+    "later_phases",
+    "phase_ends",
+    "place_of",
+    "pushing",
+    "span",
+]
 
 
 class Phase(IntEnum):

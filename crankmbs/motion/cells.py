@@ -74,7 +74,8 @@ class Cells:
     energy : shape (m, n) [J]; where there is one it is the polynomial, and the speed follows
     shares : shape (m, cylinders), of the combustion; (m, 0) without fuel
     acceleration : shape (m, n) [rad/s2], where it is given and not what the torques make
-    outside : shape (m, n) [N m], the torque of the loads where these are known at the nodes alone
+    outside : shape (m, n) [N m], the torque of the loads, without that of forces on the pistons,
+        where these are known at the nodes alone
     residual : shape (m,) [J], kinetic energy gained up to the end of each less work done, if known
     """
 

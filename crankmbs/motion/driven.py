@@ -72,9 +72,10 @@ class Driven:
         count = math.ceil(abs(end.theta - begin.theta) / _PANEL)
         low, high = sorted((begin.theta, end.theta))
         train, law = self.way.train, self.way.law
+        panels = np.linspace(low, high, count + 1)[1:-1]
         knots = [crank_angle_knots(train), friction_knots(train), knots_over_angle(train)]
-        inside = [np.linspace(low, high, count + 1)[1:-1], repeat(np.concatenate(knots), train.period, low, high)]
-        angles = apart(np.concatenate([*inside, *self._bends()]))
+        inside = repeat(np.concatenate(knots), train.period, low, high)
+        angles = apart(np.concatenate([panels, inside, *self._bends()]))
         given = [t for t in times_of(train.loads) if begin.time < t < end.time]
         corners = np.unique([begin.time, *law.corners(begin.time, end.time), *given, end.time])
         at = np.sort(law.at_time(corners)[0])

@@ -12,7 +12,9 @@ from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from crankmbs.scene.drives import Oscillation, Ramp, SpeedFile
+from crankmbs.scene.force import PistonForce
 from crankmbs.scene.scene import Scene
+from crankmbs.scene.torque import Torque
 
 if TYPE_CHECKING:
     from crankmbs.mechanics.train import CrankTrain
@@ -75,9 +77,8 @@ def _may_be_held(scene: Scene) -> bool:
     if scene.friction is None and not any(force.law.switches for force in scene.force):
         return False
     if scene.start is not None:
-        waits = any(
-            load.has_window or not load.is_steady for load in (*scene.torque, *scene.force)
-        )
+        loads: tuple[Torque | PistonForce, ...] = *scene.torque, *scene.force
+        waits = any(load.has_window or not load.is_steady for load in loads)
         return waits or scene.fuel is not None or scene.start.speed == 0.0
     speed = scene.motion.speed if scene.motion else 0.0
     match speed:

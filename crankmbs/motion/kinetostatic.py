@@ -89,9 +89,7 @@ def _way(train: CrankTrain, law: SpeedLaw, *, finer: bool = False) -> Way:
     return Way(train, law, _POINTS[finer])
 
 
-def _by(
-    train: CrankTrain, law: SpeedLaw, samples: Samples, by_angle: NDArray[np.bool_]
-) -> Samples:
+def _by(train: CrankTrain, law: SpeedLaw, samples: Samples, by_angle: NDArray[np.bool_]) -> Samples:
     """The samples by another law, at the same crank angles where these are chosen, else at the
     same times."""
     passed = law.time_at(samples.theta, 0.0, math.inf)

@@ -135,14 +135,14 @@ def _outside(
     read: Callable[[Array], Array],
     motion: tuple[Array, Array, Array],
 ) -> Array | None:
-    """Torque of all loads that act [N m] at times, angles and speeds; None where it is what the
-    acceleration takes."""
+    """Torque of all loads that act [N m] at times, angles and speeds, but for what resists as
+    friction does; None where it is what the acceleration takes."""
+    loads, (time, angle, speed) = cells.acting.loads, motion
     if cells.outside is not None:
-        return read(cells.outside)
-    loads = cells.acting.loads
+        pushes = pushing(train, cells.acting.phases)
+        return read(cells.outside) + sum((push.parts(*motion) for push in pushes), 0.0 * time)
     if loads is None:
         return None
-    time, angle, speed = motion
     outside, of_angle = loads(time, speed), over_angle(train, cells.acting.phases)
     if of_angle is not None:
         outside = outside + of_angle(angle)
@@ -183,8 +183,8 @@ def variables_at(train: CrankTrain, samples: Samples) -> dict[str, Array]:
 
 def balances_of(train: CrankTrain, samples: Samples) -> Balances:
     """What follows from the motion at samples, not yet put together."""
-    given = (samples.own.get(name) for name in _GIVEN)
-    return balances(train, samples.theta, samples.omega, samples.alpha, *given)
+    given = {name: samples.own[name] for name in _GIVEN if name in samples.own}
+    return balances(train, samples.theta, samples.omega, samples.alpha, given)
 
 
 def motion_rows(samples: Samples) -> Array:
@@ -220,7 +220,7 @@ def first_sample(train: CrankTrain, state: State, of_angle: float) -> Samples:
         rubbed = -(rest + outside) if abs(share) <= 1.0 else float(rub(sliding))
     at, along = np.array([[time], [theta], [omega]]), np.array([sliding])
     if train.scene.friction is not None:
-        own["friction_force"] = friction_forces(train, *at[1:], own.get("fuel"), along)
+        own["friction_force"] = friction_forces(train, at[1], at[2], own.get("fuel"), along)
     pushes, feels = pushing(train, phases), outside + of_angle
     if train.pushes:
         own["applied_force"] = applied_forces(train, pushes, (at[0], at[1], at[2]), along)

@@ -280,7 +280,8 @@ class Result:
         target = Path(folder)
         account = None if self.keep is None else self._account
         with together(target) as part:
-            passes = None if self.motion is None else self.passes
+            kept = self.motion is not None and all(f.law.given is None for f in self.scene.force)
+            passes = self.passes if kept else None
             write_saved(vars(self), self.variables, account, passes, part / "result.nc")
             write_csv(self.variables, part / "motion.csv")
             if self.keep is not None and self.event_table.length:

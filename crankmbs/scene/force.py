@@ -106,4 +106,3 @@ def force(cls: T) -> T:
 
 AnyForce = Annotated[SerializeAsAny[PistonForce], PlainValidator(one_of_kinds(PistonForce))]
 """A force of whatever class."""
-

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from annotated_types import Gt
 from pydantic import PlainSerializer, PlainValidator
@@ -40,7 +40,7 @@ class Force(PistonForce):
     positional: ClassVar[tuple[str, ...]] = ("function",)
     kind: Literal["function"] = "function"
     function: Annotated[
-        object,
+        Any,
         PlainValidator(function_of("t, cycle_angle, displacement and velocity", "a force")),
         PlainSerializer(named),
     ]

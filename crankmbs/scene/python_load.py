@@ -94,7 +94,11 @@ class Load(Torque):
 
     positional: ClassVar[tuple[str, ...]] = ("function",)
     kind: Literal["function"] = "function"
-    function: Annotated[Any, PlainValidator(function_of("t, theta and omega", "a torque")), PlainSerializer(named)]
+    function: Annotated[
+        Any,
+        PlainValidator(function_of("t, theta and omega", "a torque")),
+        PlainSerializer(named),
+    ]
     kink_times: Numbers = ()
     kink_angles: Numbers = ()
     kink_speeds: Numbers = ()

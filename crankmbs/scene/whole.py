@@ -151,8 +151,8 @@ def _check_forces(scene: Scene) -> None:
             )
         if scene.motion is not None and (force.from_speed, force.until_speed) != (None, None):
             raise InputError(
-                f"{where}: with [motion] the speed is prescribed, and a window is one of time; give "
-                "after and until, or free the crank with [start]"
+                f"{where}: with [motion] the speed is prescribed, and a window is one of time; "
+                "give after and until, or free the crank with [start]"
             )
         if isinstance(force, TravelTable):
             low, high = 1e3 * force.file.x[0], 1e3 * force.file.x[-1]
@@ -207,7 +207,8 @@ def _check_settled(scene: Scene) -> None:
             f'run.until: "settled" needs firings that are alike in every cycle, and in [fuel], '
             f"{_uneven(scene.fuel)}; give an end such as {EXAMPLES['extent']}, or remove [fuel]"
         )
-    for loads in (scene.torque, scene.force):
+    every: tuple[tuple[Torque | PistonForce, ...], ...] = (scene.torque, scene.force)
+    for loads in every:
         for number, load in enumerate(loads, start=1):
             if _passing(load):
                 raise InputError(

@@ -14,6 +14,7 @@ from crankmbs.scene.run import Extent
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.tables import CylinderTable, Header, Table
 from crankmbs.scene.units import DEGREE, RPM
+from crankmbs.scene.windowed import Windowed
 
 __all__ = ["scene_files"]
 
@@ -92,20 +93,26 @@ def scene_files(scene: Scene, stem: str) -> dict[str, str]:
             use = "pressure" if key == "gas" else "speed"
             header = getattr(getattr(part, "speed", None), "header", _PRESSURE)
             lines += section(f"[{key}]", part, use, header)
-    for of, all_of in (("torque", scene.torque), ("force", scene.force)):
-        for number, load in enumerate(all_of, start=1):
-            if load.kind not in load.kinds:
-                raise InputError(
-                    f"{of}[{number}]: what is a function of Python, {load.words}, cannot be "
-                    "written to a scene file; leave it out, or give it as a table"
-                )
-            use = f"{'force_' * (of == 'force')}{load.kind}{number}"
-            heading, *rest = section(f"[[{of}]]", load, use, load.header)[1:]
-            lines += ["", heading, f"kind = {_quoted(load.kind)}", *rest]
+    every: tuple[tuple[Windowed, ...], ...] = (scene.torque, scene.force)
+    for loads in every:
+        for number, load in enumerate(loads, start=1):
+            heading = f"[[{load.heading}]]"
+            rows = section(heading, load, _use(load, number), load.header)[2:]
+            lines += ["", heading, f"kind = {_quoted(load.kind)}", *rows]
     lines += section("[run]", scene.run, "", None)
     if scene.run.every is None:
         lines.append('every = "none"')
     return {f"{stem}.toml": "\n".join(lines).lstrip("\n") + "\n", **tables}
+
+
+def _use(load: Windowed, number: int) -> str:
+    """What the files of a load are for, in their names."""
+    if load.kind not in load.kinds:
+        raise InputError(
+            f"{load.heading}[{number}]: what is a function of Python, {load.words}, cannot be "
+            "written to a scene file; leave it out, or give it as a table"
+        )
+    return f"{'force_' * (load.heading == 'force')}{load.kind}{number}"
 
 
 def _values(part: Any) -> Iterator[tuple[str, Any]]:

@@ -39,7 +39,7 @@ __all__ = ["advance", "is_fast"]
 _SLOW = 0.5 * DEGREE  # where the energy would be gone within this angle, time must be the variable
 _BLOCK = 4096  # cells of one segment; with more BLAS would wake a second thread
 _SPEED_BLOCK = 512  # where the loads' branch may end at a speed, and the rest is for nothing
-_REACH = 1.0  # rad: what Newton's method can hold of loads that are functions, on all cells at once
+_REACH = 1.0  # rad: what Newton's method can hold of functions of Python, on all cells at once
 _HAIR = 1e-6  # of a cell: as near its edge it is as exact as there
 _BEYOND = (_HAIR, 1e-4, 1e-2)  # of a cell: how far ahead a landing near a turn may really be
 _ROUNDS = 6  # of cutting cells at kinks
@@ -202,8 +202,8 @@ def _enter(grid: Grid, state: State) -> tuple[Branch | None, float]:
     train, (time, theta, omega, _, mode) = grid.train, state
     reduction = reduce(train, theta, mode.shares)
     rest = reduction.rest(omega) + grid.outside(np.asarray(theta))
-    rest += friction_torque(train, theta, omega, math.copysign(1.0, omega), mode.shares or None, mode.loads)
-    rest += mode.held
+    sense, shares = math.copysign(1.0, omega), mode.shares or None
+    rest += friction_torque(train, theta, omega, sense, shares, mode.loads) + mode.held
     branch = branch_at(train.loads, (time, theta, omega), float(rest), mode.loads)
     return branch and branch.plus(mode.held), 0.5 * float(reduction.inertia) * omega**2
 
@@ -216,7 +216,7 @@ def _solve(problem: _Problem, loads: Branch | Course) -> AngleSegment | None:
     n, period = len(grid.edges) - 1, float(grid.edges[-1])
     ahead = 1.2 * (t_end - state.time) * abs(state.omega)
     cells = min(ahead, abs(bound - state.theta)) / period * n + 2.0
-    if loads.functions:
+    if not all(function.declared for function in loads.functions):
         most = max(2, int(_REACH / period * n))
     else:
         ends = (loads.omega_low * sense, loads.omega_high * sense)

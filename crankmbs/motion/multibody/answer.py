@@ -122,32 +122,35 @@ class Answers:
         """
         shares = self._shares(time, theta)
         gas = self._forces.gas(theta, shares)
-        friction = self._forces.friction(theta, omega, gas, _senses(theta, omega))
-        torque = None
+        senses, acts, torque = _senses(theta, omega), self._acts(time), None
+        friction = self._forces.friction(theta, omega, gas, senses)
+        applied = self._forces.applied(time, theta, omega, senses, acts)
         if alpha is None:
-            torque = self._forces.torque(time, theta, omega, self._acts(time))
-        values = self.under((gas, friction), torque, theta, omega, alpha)
+            torque = self._forces.torque(time, theta, omega, acts)
+        values = self.under((gas, friction, applied), torque, theta, omega, alpha)
         return values | {"time": time} | ({} if shares is None else {"fuel": shares})
 
     def under(
         self,
-        pushes: tuple[Array, Array],
+        pushes: tuple[Array, Array, Array],
         torque: Array | None,
         theta: Array,
         omega: Array,
         alpha: Array | None,
     ) -> dict[str, Array]:
-        """The same under given forces of gas and friction [N] and torque [N m]."""
-        gas, friction = pushes
+        """The same under given forces of gas, friction and from outside [N], and torque [N m]."""
+        gas, friction, applied = pushes
+        along = gas + friction + applied
         if torque is None:
             assert alpha is not None
-            found = self._model.driven(theta, omega, alpha, gas + friction)
+            found = self._model.driven(theta, omega, alpha, along)
         else:
-            found = self._model.states(theta, omega, gas + friction, torque)
+            found = self._model.states(theta, omega, along, torque)
         values = {"crank_angle": theta, "crank_speed": omega}
         values |= self._of_bodies(found) | self._of_joints(found)
         values |= {"gas_force": gas, "gas_pressure": gas / (self._scene.piston.gas_area or 1.0)}
-        return values | ({} if self._scene.friction is None else {"friction_force": friction})
+        values |= {} if self._scene.friction is None else {"friction_force": friction}
+        return values | ({"applied_force": applied} if self._scene.force else {})
 
     def work(self, course: Course, edges: Array, law: SpeedLaw | None = None) -> Array:
         """Work of gas, friction and torque [J] up to each of some times [s], from the first on, by
@@ -158,18 +161,20 @@ class Answers:
         theta, omega = course.at(time)
         shares = self._shares(time, theta)
         gas = self._forces.gas(theta, shares)
-        along = gas + self._forces.friction(theta, omega, gas, _senses(theta, omega))
+        senses, acts = _senses(theta, omega), self._acts(time)
+        along = gas + self._forces.friction(theta, omega, gas, senses)
+        along += self._forces.applied(time, theta, omega, senses, acts)
         if law is not None:
             torque = self._model.driven(theta, omega, law.at_time(time)[2], along).torque
         else:
-            torque = self._forces.torque(time, theta, omega, self._acts(time))
+            torque = self._forces.torque(time, theta, omega, acts)
         power = torque * omega + (along * self._forces.sliding(theta, omega)).sum(axis=1)
         return np.append(0.0, np.cumsum((half * power.reshape(half.size, -1)) @ weights))
 
     def _acts(self, time: Array) -> Array:
         """Which loads act at times, shape (m, loads); at an end of a window as after it."""
         k = np.searchsorted(self._edges, time * (1.0 + 1e-11), side="right")
-        loads = len(self._scene.torque)
+        loads = len(self._forces.train.loads)
         rows = [
             [phase is Phase.ACTING for phase in state.mode.loads] or [True] * loads
             for state in self._states

@@ -78,23 +78,29 @@ def integrated(
     return follow(train, State(*state, 0.0, mode), times, rtol, steps)
 
 
-def consistent(train: CrankTrain, motion: dict[str, Array], *, driven: bool) -> dict[str, Array]:
+def consistent(
+    train: CrankTrain, motion: dict[str, Array], acts: Array, *, driven: bool
+) -> dict[str, Array]:
     """Accelerations, multipliers and all that follows from them at states of a motion.
 
-    motion : at states of shape (m,), "crank_angle", "crank_speed"; of a driven crank its
+    motion : at states of shape (m,), "time", "crank_angle", "crank_speed"; of a driven crank its
         "crank_acceleration", else "external_torque"; "fuel" and, for a crank at rest,
-        "friction_force" where there are
+        "friction_force" and "applied_force" where there are
+    acts : shape (m, loads), which of the loads do
     """
     theta, omega = motion["crank_angle"], motion["crank_speed"]
     model, forces = Model(train.scene), Forces(train)
     try:
         gas = forces.gas(theta, motion.get("fuel"))
-        friction = forces.friction(theta, omega, gas, np.sign(omega))
-        if "friction_force" in motion:
-            friction = np.where(omega[:, None] == 0.0, motion["friction_force"], friction)
+        senses, rests = np.sign(omega), omega[:, None] == 0.0
+        friction = forces.friction(theta, omega, gas, senses)
+        applied = forces.applied(motion["time"], theta, omega, senses, acts)
+        friction = np.where(rests, motion.get("friction_force", 0.0), friction)
+        applied = np.where(rests, motion.get("applied_force", 0.0), applied)
         torque = None if driven else motion["external_torque"]
         alpha = motion["crank_acceleration"] if driven else None
-        return Answers(model, forces, ()).under((gas, friction), torque, theta, omega, alpha)
+        pushes = gas, friction, applied
+        return Answers(model, forces, ()).under(pushes, torque, theta, omega, alpha)
     finally:
         model.close()
 

@@ -19,11 +19,13 @@ from crankmbs.mechanics.geometry import close_loop, dead_centres
 from crankmbs.mechanics.knots import KNOT, apart, repeat
 from crankmbs.mechanics.pressure import PeriodicPressure
 from crankmbs.mechanics.train import CrankTrain, merged_knots
-from crankmbs.mechanics.windows import acting, phase_ends
+from crankmbs.mechanics.windows import Phase, phase_ends
 from crankmbs.motion.mode import Mode
+from crankmbs.motion.multibody.applied import Applied, Push
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.cycle import Cycle
 from crankmbs.numerics.piecewise import Piecewise
+from crankmbs.scene.torque import Torque
 
 __all__ = ["EVERYWHERE", "Bounds", "Forces"]
 
@@ -65,17 +67,23 @@ class Forces:
             np.unique(np.concatenate([_jumps(each) for each in parts]))
             for parts in zip(train.pressure or (), *filter(None, [train.combustion]), strict=True)
         ]
+        self._applied = Applied(train)
         loads = [load.parts.over_angle for load in scene.torque]
         jumps = [merged_knots(train, gas)] if gas else []
         jumps += [_of_load(load, train.period) for load in loads if load is not None]
-        angles = apart(np.concatenate([np.empty(0), *jumps]))
+        angles = apart(np.concatenate([self._applied.angles, *jumps]))
         self.smooth = len(angles) <= _MOST_JUMPS
         self.angles = angles if self.smooth else np.empty(0)
-        if scene.friction is not None:
+        if self._sticks:
             turns = 2.0 * math.pi * np.arange(round(train.period / (2.0 * math.pi)))
             centres = np.add.outer(np.array(dead_centres(*self._shape)), turns)
             centres = np.subtract.outer(centres, self._phases).ravel()
             self.angles = apart(np.concatenate([self.angles, np.mod(centres, train.period)]))
+
+    @property
+    def _sticks(self) -> bool:
+        """Whether a force changes with the sense of sliding."""
+        return self.train.scene.friction is not None or self._applied.switches
 
     @property
     def blind(self) -> Forces:
@@ -116,16 +124,22 @@ class Forces:
         """Whether a force jumps anywhere over angle or time."""
         return bool(len(self.angles) or self.times or not self.smooth)
 
+    def applied(self, time: Array, theta: Array, omega: Array, sense: Array, acts: Array) -> Array:
+        """Forces from outside on the pistons [N] towards the crank, shape (m, n), that slide in
+        this sense of rotation; acts : shape (m, loads), whether each does."""
+        x = close_loop(theta[:, None] + self._phases, *self._shape).x
+        slides, velocity = self.slides(theta, sense), self.sliding(theta, omega)
+        return self._applied.forces((time, theta, omega), acts, slides, x, velocity)
+
     def sliding(self, theta: Array, omega: Array) -> Array:
         """Velocities of the pistons towards the crank [m/s], shape (m, n)."""
         rise = close_loop(theta[:, None] + self._phases, *self._shape).x_1
         return np.asarray(-rise * omega[:, None])
 
     def torque(self, time: Array, theta: Array, omega: Array, acts: Array) -> Array:
-        """Torque [N m] of all loads, shape (m,); acts : shape (m, loads), whether each does."""
-        loads = self.train.loads
+        """Torque [N m] of all torques, shape (m,); acts : shape (m, loads), whether each does."""
         total = np.zeros_like(theta)
-        for load, when in zip(loads, acts.T, strict=True):
+        for load, when in zip(self.train.scene.torque, acts.T, strict=False):
             total += np.where(when, load(time, theta, omega), 0.0)
         return total
 
@@ -137,14 +151,13 @@ class Forces:
 
         senses : signs in which the crank angle, and its speed, leave the state
         """
-        torques = self.train.loads
-        ends = phase_ends(torques, mode.loads)
+        ends = phase_ends(self.train.loads, mode.loads)
         times, speeds = {*ends[0], *self.times}, set(ends[1])
-        for _, load in acting(torques, mode.loads) if self._stops else ():
+        for _, load in self._turning(mode) if self._stops else ():
             parts = load.parts
             speeds |= set(parts.over_speed.bends if parts.over_speed else ())
             speeds |= set(parts.function.speeds if parts.function else ())
-        if self.train.scene.friction is not None:
+        if self._sticks:
             speeds.add(0.0)
         at, period = theta + 2.0 * KNOT * senses[0], self.train.period
         knots = repeat(self.angles, period, at - 1.5 * period, at + 1.5 * period)
@@ -159,8 +172,8 @@ class Forces:
     @cached_property
     def times(self) -> tuple[float, ...]:
         """Times [s] at which a load jumps; or bends, where these are few."""
-        jumps, bends = set[float](), set[float]()
-        for load in self.train.loads:
+        jumps, bends = set[float](), set[float](self._applied.times)
+        for load in self.train.scene.torque:
             jumps |= set(load.parts.function.times if load.parts.function else ())
             if load.parts.over_time is not None:
                 jumps |= set(load.parts.over_time.jumps)
@@ -168,14 +181,11 @@ class Forces:
         within = jumps | bends
         return tuple(within if len(bends) <= _MOST_BENDS else jumps)
 
-    def pushes(
-        self, bounds: Bounds, mode: Mode, theta: float, sense: float
-    ) -> list[Callable[[float, float], float]]:
-        """For each cylinder the force of gas and friction towards the crank [N], of crank angle
-        [rad] and of the piston's velocity [m/s]."""
+    def pushes(self, bounds: Bounds, mode: Mode, theta: float, sense: float) -> list[Push]:
+        """For each cylinder the force of gas, friction and from outside towards the crank."""
         friction = self.train.scene.friction
         slides = self.slides(np.array([theta]), np.array([sense]))[0].tolist()
-        found: list[Callable[[float, float], float]] = []
+        found: list[Push] = []
         for k, phase in enumerate(self._phases.tolist()):
             gas = _straight(self._gas_by_number(k, phase, mode.shares), *bounds.angles)
             if friction is None:
@@ -183,11 +193,20 @@ class Forces:
             else:
                 rubs = friction.ring_force, friction.ring_pressure, friction.viscous
                 found.append(_rubbed(gas, slides[k], *rubs))
+            more = self._applied.by_number(k, mode, slides[k])
+            found[k] = _together([found[k], *more]) if more else found[k]
         return found
+
+    def _turning(self, mode: Mode) -> tuple[tuple[int, Torque], ...]:
+        """The torques that act."""
+        numbered = tuple(enumerate(self.train.scene.torque, start=1))
+        return tuple(
+            one for one in numbered if not mode.loads or mode.loads[one[0] - 1] is Phase.ACTING
+        )
 
     def load(self, bounds: Bounds, mode: Mode) -> Callable[[float, float, float], float]:
         """Torque [N m] of the loads that act, of time [s], crank angle [rad] and speed [rad/s]."""
-        parts = [load.parts for _, load in acting(self.train.loads, mode.loads)]
+        parts = [load.parts for _, load in self._turning(mode)]
         in_time = [_between(p.over_time, *bounds.times) for p in parts if p.over_time]
         in_speed = [_between(p.over_speed, *bounds.speeds) for p in parts if p.over_speed]
         in_angle = [
@@ -259,16 +278,18 @@ def _between(part: Piecewise, begin: float, end: float) -> Scalar:
     return value
 
 
-def _alone(gas: Scalar) -> Callable[[float, float], float]:
-    return lambda theta, _speed: gas(theta)
+def _alone(gas: Scalar) -> Push:
+    return lambda _time, theta, _displacement, _speed: gas(theta)
 
 
-def _rubbed(
-    gas: Scalar, slides: float, ring: float, pressed: float, viscous: float
-) -> Callable[[float, float], float]:
+def _together(pushes: list[Push]) -> Push:
+    return lambda *at: sum(push(*at) for push in pushes)
+
+
+def _rubbed(gas: Scalar, slides: float, ring: float, pressed: float, viscous: float) -> Push:
     """A gas force with the friction of a piston that slides with this sign."""
 
-    def along(theta: float, speed: float) -> float:
+    def along(_time: float, theta: float, _displacement: float, speed: float) -> float:
         force = gas(theta)
         return force - slides * (ring + pressed * abs(force)) - viscous * speed
 

@@ -17,7 +17,9 @@ import exudyn
 import numpy as np
 from exudyn import itemInterface
 
+from crankmbs.mechanics.geometry import top_position
 from crankmbs.motion.ending import Ending
+from crankmbs.motion.multibody.applied import Push
 from crankmbs.motion.multibody.mechanism import Mechanism, closed, mechanism_of
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
@@ -122,16 +124,16 @@ class Model:
     """A scene in exudyn. Set its forces, then run it from a state, or solve for states.
 
     torque [N m] : on a free crank, of time [s], crank angle [rad] and speed [rad/s]
-    pushes [N] : on each piston towards the crank, of crank angle and of the piston's velocity in
-        that direction [m/s]
+    pushes [N] : on each piston towards the crank, of time, crank angle, and of the piston's
+        displacement from its top dead centre [m] and velocity in that direction [m/s]
     """
 
     def __init__(self, scene: Scene) -> None:
         self.scene, self.mechanism = scene, mechanism_of(scene)
         self.torque: Callable[[float, float, float], float] = lambda time, theta, omega: 0.0
-        self.pushes: Sequence[Callable[[float, float], float]] = ()
+        self.pushes: Sequence[Push] = ()
         self._begin = self._largest = 0.0
-        pushed = scene.gas is not None or scene.friction is not None
+        pushed = bool(scene.gas or scene.friction or scene.force)
         self._container, self._system = build(
             self.mechanism, self._push if pushed else None, self._torque
         )
@@ -142,6 +144,7 @@ class Model:
             data.GetODE2Coordinates_t(copy=False),
             data.GetODE2Coordinates_tt(copy=False),
         )
+        self._top = top_position(scene.crank.radius, scene.rod.length, scene.piston.offset)
         self._towards = [(-guide.normal[1], guide.normal[0]) for guide in self.mechanism.guides]
         self._read()
 
@@ -155,10 +158,11 @@ class Model:
         push = np.zeros((1, len(self.scene.cylinders)))
         torque = np.array([self.torque(time, theta, omega)])
         if self.pushes:
-            moving = self.states(at, faster, push, torque).velocity[0]
-            speeds = (moving[3:].reshape(-1, 5)[:, 3:] * self._towards).sum(axis=1).tolist()
-            pairs = zip(self.pushes, speeds, strict=True)
-            push = np.array([[each(theta, speed) for each, speed in pairs]])
+            moving = self.states(at, faster, push, torque)
+            rows = (row[0, 3:].reshape(-1, 5)[:, 3:] for row in (moving.position, moving.velocity))
+            down, speeds = ((row * self._towards).sum(axis=1) for row in rows)
+            pairs = zip(self.pushes, (self._top + down).tolist(), speeds.tolist(), strict=True)
+            push = np.array([[each(time, theta, *where) for each, *where in pairs]])
         if driven:
             return self.driven(at, faster, np.zeros(1), push)
         return self.states(at, faster, push, torque)
@@ -347,16 +351,17 @@ class Model:
     def _torque(self, time: float) -> float:
         return self.torque(self._begin + time, self._q.item(2), self._v.item(2))
 
-    def _push(self, k: int, _time: float) -> tuple[float, float]:
+    def _push(self, k: int, time: float) -> tuple[float, float]:
         x, y = self._towards[k]
         at = 6 + 5 * k
         speed = x * self._v.item(at) + y * self._v.item(at + 1)
-        force = self.pushes[k](self._q.item(2), speed)
+        down = self._top + x * self._q.item(at) + y * self._q.item(at + 1)
+        force = self.pushes[k](self._begin + time, self._q.item(2), down, speed)
         return force * x, force * y
 
 
-def _constant(value: float) -> Callable[[float, float], float]:
-    return lambda _theta, _speed: value
+def _constant(value: float) -> Push:
+    return lambda _time, _theta, _displacement, _speed: value
 
 
 def _in_blocks(solve: Callable[..., Consistent], *rows: Array) -> Consistent:
