@@ -23,6 +23,7 @@ Push = Callable[[float, float, float, float], float]
 velocity towards the crank [m/s]."""
 
 _TURN = 2.0 * math.pi
+_MOST_BENDS = 12  # over the travel: more are run over
 _SIDE = 3.0 * KNOT  # rad: so near beside an angle at which a force may jump
 
 
@@ -50,11 +51,15 @@ class Applied:
         self.times = tuple({time for times in (*given, *rows) for time in times})
 
     def _jumps(self, law: Law) -> Array:
-        """Cycle angles [rad] in a revolution at which a force jumps."""
+        """Cycle angles [rad] in a revolution at which a force jumps; or bends over the travel, where
+        such places are few."""
         top = top_position(*self._shape)
         stroke = top - bottom_position(*self._shape)
-        ways = (way.jumps for way in (law.forward, law.back) if way is not None)
-        rows = np.array(sorted({row for jumps in ways for row in jumps if 0.0 < row < stroke}))
+        ways = [way for way in (law.forward, law.back) if way is not None]
+        bends = {row for way in ways for row in way.bends}
+        jumps = {row for way in ways for row in way.jumps}
+        rows = bends if len(bends) <= _MOST_BENDS else jumps
+        rows = np.array(sorted(row for row in rows if 0.0 < row < stroke))
         found = [*throw_angles(rows, stroke - rows, *self._shape)]
         if law.over_angle is not None:
             knots = law.over_angle.knots[:-1]
