@@ -51,15 +51,15 @@ class Applied:
         self.times = tuple({time for times in (*given, *rows) for time in times})
 
     def _jumps(self, law: Law) -> Array:
-        """Cycle angles [rad] in a revolution at which a force jumps; or bends over the travel, where
-        such places are few."""
+        """Cycle angles [rad] in a revolution at which a force jumps; or, where such places are few,
+        bends over the travel."""
         top = top_position(*self._shape)
         stroke = top - bottom_position(*self._shape)
         ways = [way for way in (law.forward, law.back) if way is not None]
         bends = {row for way in ways for row in way.bends}
         jumps = {row for way in ways for row in way.jumps}
-        rows = bends if len(bends) <= _MOST_BENDS else jumps
-        rows = np.array(sorted(row for row in rows if 0.0 < row < stroke))
+        chosen = bends if len(bends) <= _MOST_BENDS else jumps
+        rows = np.array(sorted(row for row in chosen if 0.0 < row < stroke))
         found = [*throw_angles(rows, stroke - rows, *self._shape)]
         if law.over_angle is not None:
             knots = law.over_angle.knots[:-1]
