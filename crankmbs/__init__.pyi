@@ -30,10 +30,19 @@ from .motion.base import Decay
 from .result import Cost, Error, Result
 from .scene.bearings import Bearings, Shell
 from .scene.drives import Motion, Oscillation, Ramp, SpeedFile, Start
+from .scene.forces import (
+    ConstantForce,
+    Damper,
+    ForceAngleTable,
+    ForceTimeTable,
+    Spring,
+    TravelTable,
+)
 from .scene.fuel import Fuel, Governor, Misfire
 from .scene.gas import Gas, Indicator, Polytrope
 from .scene.loads import AngleTable, Constant, Quadratic, SpeedTable, TimeTable, Viscous
 from .scene.parts import Crank, Cylinder, Gravity, Layout, Piston, Rod
+from .scene.python_force import Force
 from .scene.python_load import Load
 from .scene.read import load_scene
 from .scene.run import Extent, Run
@@ -66,18 +75,23 @@ __all__ = [
     "Comparison",
     "Confirmation",
     "Constant",
+    "ConstantForce",
     "Cost",
     "Crank",
     "CrankmbsError",
     "Cylinder",
     "CylinderPressure",
     "CylinderTable",
+    "Damper",
     "Decay",
     "EngineOrders",
     "Error",
     "Estimate",
     "Extent",
     "Flywheel",
+    "Force",
+    "ForceAngleTable",
+    "ForceTimeTable",
     "FormulationError",
     "Fuel",
     "Gas",
@@ -114,11 +128,13 @@ __all__ = [
     "Solved",
     "SpeedFile",
     "SpeedTable",
+    "Spring",
     "Start",
     "Stepper",
     "StepperState",
     "Table",
     "TimeTable",
+    "TravelTable",
     "UndecidedError",
     "Viscous",
     "accumulated_torque",

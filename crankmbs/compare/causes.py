@@ -55,13 +55,15 @@ def budget(
             two-mass rod    with the rigid rod, whose couple (m a b - I) beta'' two masses lack
             gravity         with gravity
             friction        with the pistons' friction, where the scene has any
+            forces          with the run's forces from outside on the pistons, where it has any
             solver          the run
 
     so that they add up to formula minus run, to rounding. The mean speed is the time mean.
 
     A formula of one's own idealizes what it does not ask for: the constant speed without omega and
     alpha, the two-mass rod without rod_inertia (or the reduced inertia, or its slope), gravity
-    without gravity_x and gravity_y (or the generalized force), friction without friction_force;
+    without gravity_x and gravity_y (or the generalized force), friction without friction_force,
+    forces without applied_force;
     the datum where ``chain`` names it. Its "series" is what it differs by from the closed form
     under just these idealizations.
 

@@ -24,6 +24,7 @@ CAUSES = {
     "two-mass rod": "the two-mass rod",
     "gravity": "gravity",
     "friction": "friction",
+    "forces": "the forces from outside on the pistons",
     "solver": "the solver",
 }
 """The causes in their order unless told otherwise, and how a sentence names them."""
@@ -38,7 +39,9 @@ def checked_chain(chain: Sequence[str] | None, scene: Scene) -> tuple[str, ...]:
     ------
     InputError : no such cause, one that comes twice, none at all
     """
-    all_there = tuple(name for name in CAUSES if scene.friction is not None or name != "friction")
+    missing = {"friction"} if scene.friction is None else set()
+    missing |= set() if scene.force else {"forces"}
+    all_there = tuple(name for name in CAUSES if name not in missing)
     if chain is None:
         return all_there
     if isinstance(chain, str) or not isinstance(chain, Sequence) or not chain:
@@ -109,6 +112,8 @@ class Idealized:
             scene = dataclasses.replace(scene, gravity=None)
         if "friction" in under:
             scene = dataclasses.replace(scene, friction=None)
+        if "forces" in under:
+            scene = dataclasses.replace(scene, force=())
         if "two-mass rod" in under:
             scene = dataclasses.replace(
                 scene, rod=dataclasses.replace(scene.rod, inertia="two-mass")

@@ -68,9 +68,12 @@ class Excerpt:
 
     def newton_euler(self, scene: Scene, *, constant_speed: bool = False) -> Answer:
         """The exact closed form at the run's own theta, at its own or its mean speed; ``scene`` may
-        differ."""
+        differ. Forces from outside on the pistons are the run's own."""
         speed, rate = self._speeds(constant_speed)
-        found = reactions(replace(self.train, scene=scene), self.theta, speed, rate)
+        given = {}
+        if scene.force:
+            given["applied_force"] = self.result.sampled("applied_force")[self.samples]
+        found = reactions(replace(self.train, scene=scene), self.theta, speed, rate, given)
         return self._of(found, speed, rate)
 
     def lecture(self, formulas: Formulas, *, constant_speed: bool) -> Answer:

@@ -38,6 +38,7 @@ _KNOWS = {
     "two-mass rod": {"rod_inertia", "reduced_inertia", "reduced_slope"},
     "gravity": {"gravity_x", "gravity_y", "generalized_force"},
     "friction": {"friction_force"},
+    "forces": {"applied_force"},
 }
 
 

@@ -101,6 +101,11 @@ WORDS = {
     "friction_force": Word(
         "N", "wall's friction on the piston towards the crank", lambda w: w.of_run("friction_force")
     ),
+    "applied_force": Word(
+        "N",
+        "force from outside on the piston towards the crank",
+        lambda w: w.of_run("applied_force"),
+    ),
     "reduced_inertia": Word(
         "kg m^2", "J(theta), of the whole crank train", lambda w: w.reduced.inertia
     ),

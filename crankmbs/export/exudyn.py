@@ -60,7 +60,7 @@ def exudyn_script(scene: Scene, stem: str) -> str:
 
     Raises
     ------
-    InputError : fuel, friction, loads with windows, tables or functions, a speed that changes, a
+    InputError : fuel, friction, forces on pistons, loads with windows, tables or functions, a speed that changes, a
         settled motion, forces that jump, a crank that nothing moves; says which
 
     >>> "def run():" in exudyn_script(load_scene("torque_driven"), "mine")
@@ -136,6 +136,8 @@ def _refused(scene: Scene) -> str:
         return "[fuel], whose shares are decided on the way; remove [fuel]"
     if scene.friction is not None:
         return "[friction], which jumps where a piston turns; remove [friction]"
+    if scene.force:
+        return "[[force]], forces on the pistons; remove them"
     if scene.motion is not None and not isinstance(scene.motion.speed, float):
         return "a prescribed speed that changes; give one constant speed, or free the crank"
     for number, load in enumerate(scene.torque, start=1):

@@ -67,6 +67,9 @@ def _on_piston(k: int, scene: Scene, parts: Mechanism, data: dict[str, Array]) -
         away = np.where(data["side_force"][:, k, None] > 0.0, -0.5, 0.5)
         at = pin + away * (corners[:, 0] - corners[:, 3])  # on the side that the wall presses
         found.append(Force("friction on piston", "bearing", k, at, rubs))
+    if "applied_force" in data:
+        given = in_engine_frame(scene, -data["applied_force"], none)[:, k]
+        found.append(Force("force from outside on piston", "bearing", k, pin, given))
     if "gas_force" in data:
         gas = in_engine_frame(scene, -data["gas_force"], none)[:, k]
         crown = 0.5 * (corners[:, 1] + corners[:, 2])

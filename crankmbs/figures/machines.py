@@ -21,6 +21,7 @@ _SEEN = (
     "side_force",
     "gas_force",
     "friction_force",
+    "applied_force",
     "main_bearing_force_x",
     "main_bearing_force_y",
 )

@@ -46,6 +46,8 @@ class Measures:
     mechanical_efficiency : where the gas drives, the share of the indicated power that friction
         leaves; where it is driven, indicated power over that with the friction's; None without
         friction or gas
+    force_power [W] : what the forces from outside on all pistons give per time, negative where they
+        take; None without
     energy_closure : max |energy residual| / peak kinetic energy over the whole run
     """
 
@@ -60,6 +62,7 @@ class Measures:
     imep: tuple[Estimate, ...] | None
     friction_power: Estimate | None
     mechanical_efficiency: Estimate | None
+    force_power: Estimate | None
     energy_closure: float
 
 
@@ -96,6 +99,7 @@ def measure(result: Result) -> Measures:
         imep=found.get("imep"),
         friction_power=single("friction_power"),
         mechanical_efficiency=single("mechanical_efficiency"),
+        force_power=single("force_power"),
         energy_closure=_energy_closure(result),
     )
 
@@ -182,18 +186,20 @@ def _numbers(scene: Scene, window: Span, motion: Motion) -> Numbers:
 
 
 def _powers(scene: Scene, window: Span, nodes: Nodes, late: float) -> Numbers:
-    """Of gas and friction on the pistons; late : units of rounding of the duration."""
+    """Of gas, friction and forces from outside on the pistons; late : units of rounding of the duration."""
     velocity = nodes.variables["piston_velocity"]
-    of_gas, rubbed = (
+    of_gas, rubbed, applied = (
         Number(nodes.integral(power), late * nodes.integral(np.abs(power)))
         for power in (
             nodes.variables[name] * velocity if name in nodes.variables else 0.0 * velocity
-            for name in ("gas_force", "friction_force")
+            for name in ("gas_force", "friction_force", "applied_force")
         )
     )
     whole = window.kind in CYCLES
     cycles = abs(window.angle) / scene.period if whole else 0.0
-    return powers(scene, of_gas, rubbed, cycles, nodes.motion.end - nodes.motion.begin)
+    duration = nodes.motion.end - nodes.motion.begin
+    numbers = powers(scene, of_gas, rubbed, cycles, duration)
+    return numbers | ({"force_power": applied.summed.over(duration)} if scene.force else {})
 
 
 def powers(

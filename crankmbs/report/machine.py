@@ -13,6 +13,7 @@ from crankmbs.mechanics.pressure import PeriodicPressure, pressures_of, remarks
 from crankmbs.mechanics.speed import speed_remarks
 from crankmbs.scene.cycles import cycles_in
 from crankmbs.scene.drives import Oscillation, Ramp, SpeedFile
+from crankmbs.scene.force import PistonForce
 from crankmbs.scene.gas import Gas
 from crankmbs.scene.run import SETTLED, Extent
 from crankmbs.scene.scene import Scene
@@ -60,6 +61,7 @@ def machine_rows(scene: Scene) -> list[tuple[str, str]]:
         ("motion", _motion(scene)),
         *(("", said) for said in speed_remarks(scene)),
         *((f"torque[{k}]", _load(scene, load)) for k, load in enumerate(scene.torque, start=1)),
+        *((f"force[{k}]", _force(one)) for k, one in enumerate(scene.force, start=1)),
         ("run", _run(scene)),
     ]
     return [(name, text) for name, text in rows if text]
@@ -174,6 +176,10 @@ def _friction(scene: Scene) -> str:
     return f"{' and '.join(part for part in parts if part) or 'none'}, against each sliding piston"
 
 
+def _force(force: PistonForce) -> str:
+    return f"on {force.acts_on}, {force.name}: {force.words}{force.window_words}"
+
+
 def _shells(scene: Scene) -> str:
     bearings, throws = scene.bearings, scene.throws
     if bearings is None:
@@ -215,7 +221,7 @@ def _motion(scene: Scene) -> str:
     assert scene.start is not None
     speed, begin = _rpm(scene.start.speed), math.degrees(scene.start.angle)
     sense = _sense(scene.start.speed)
-    return f"free, from {speed} at {begin:.6g} deg{sense}{'' if scene.torque else ', no load'}"
+    return f"free, from {speed} at {begin:.6g} deg{sense}{'' if scene.torque or scene.force else ', no load'}"
 
 
 def _speed(speed: float | Oscillation | Ramp | SpeedFile) -> str:

@@ -50,6 +50,8 @@ def measure_rows(measures: Measures) -> list[list[str]]:
         rows.append(_value("power of the pistons' friction [kW]", measures.friction_power, 1e-3))
     if measures.mechanical_efficiency is not None:
         rows.append(_value("mechanical efficiency [1]", measures.mechanical_efficiency))
+    if measures.force_power is not None:
+        rows.append(_value("power of the forces on the pistons [kW]", measures.force_power, 1e-3))
     pressures = measures.imep or ()
     for number, imep in enumerate(pressures, start=1):
         whose = f", cylinder {number}" if len(pressures) > 1 else ""

@@ -43,6 +43,7 @@ _MEASURES = {
     "imep": Column("Pa", "indicated mean effective pressure", _CYLINDER),
     "friction_power": Column("W", "friction power"),
     "mechanical_efficiency": Column("1", "mechanical efficiency"),
+    "force_power": Column("W", "power of the forces on the pistons"),
 }
 _LECTURE = Column("1", "largest deviation of the lecture, over the peak", _FORMULAS)
 
@@ -58,6 +59,7 @@ def columns_of(scene: Scene, *, series: bool) -> dict[str, Column]:
         for name, column in _MEASURES.items()
         if (scene.gas is not None or name not in ("indicated_power", "imep"))
         and (scene.friction is not None or name not in ("friction_power", "mechanical_efficiency"))
+        and (scene.force or name != "force_power")
     }
     joints = _joints(scene)
     for joint, dims in joints.items():

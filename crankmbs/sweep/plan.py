@@ -16,6 +16,7 @@ from pydantic import TypeAdapter
 
 from crankmbs.batch.serves import loads_of
 from crankmbs.errors import CrankmbsError, InputError, shown
+from crankmbs.scene.python_force import Force
 from crankmbs.scene.python_load import Load
 from crankmbs.scene.scene import Scene, check_scene
 from crankmbs.sweep.block import Job, block_size
@@ -88,6 +89,7 @@ class Plan:
         """What an unfinished sweep must have in common with this one to be resumed; what is empty,
         which nothing identifies, agrees with nothing."""
         functions = [one.function for one in self.scene.torque if isinstance(one, Load)]
+        functions += [one.function for one in self.scene.force if isinstance(one, Force)]
         scene = json.dumps(_SCENE.dump_python(self.scene, mode="json"), sort_keys=True)
         return {
             "version": metadata.version("crankmbs"),
