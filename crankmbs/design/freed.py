@@ -119,18 +119,17 @@ def balanced(scene: Scene) -> tuple[Scene, bool]:
     degree, or no such motion is found: then the mean speed may not be reached.
 
     Over the angle E = E_0 + (E - E_0)(theta), the same at every speed: E_0 is the one with which a
-    period takes as long as at the mean speed. What viscous friction takes depends on the motion:
-    load and E_0 are then sought together, run by run.
+    period takes as long as at the mean speed. What viscous friction and dampers take depends on the
+    motion, as a force of Python may: load and E_0 are then sought together, run by run.
     """
     found, rests = _at_any_speed(scene)
-    friction = scene.friction
-    if friction is None or friction.viscous == 0.0:
-        return found, rests
-    return _with_drag(scene, found)
+    train = crank_train(scene)
+    depends = train.drags or any(push.parts.function is not None for push in train.pushes)
+    return _with_drag(scene, found) if depends else (found, rests)
 
 
 def _at_any_speed(scene: Scene) -> tuple[Scene, bool]:
-    """The same, but for viscous friction that is what it would be at a constant speed."""
+    """The same, but for what depends on the motion, which is as at a constant speed."""
     assert scene.start is not None
     start, period = scene.start, scene.settled_period
     sense = math.copysign(1.0, start.speed)
@@ -138,6 +137,11 @@ def _at_any_speed(scene: Scene) -> tuple[Scene, bool]:
     terms = grid.terms(start.angle, sense, len(grid.edges) + 1, start.angle + sense * period)
     if terms.drags:
         terms = replace(terms, torque=terms.torque - start.speed * terms.drag)
+    for push in crank_train(scene).pushes:
+        if push.parts.function is not None:
+            at = terms.angles(start.angle, sense, grid.rule)
+            given = push.parts.function(np.zeros_like(at), at, np.full_like(at, start.speed))
+            terms = replace(terms, torque=terms.torque + given)
     mean = float(terms.width @ (terms.torque @ grid.rule.weights)) / period
     given = sum(float(load.parts.over_time(0.0)) for load in scene.torque if load.parts.over_time)
     loads = (*scene.torque, Constant(torque=-mean - given))

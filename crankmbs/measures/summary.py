@@ -186,7 +186,8 @@ def _numbers(scene: Scene, window: Span, motion: Motion) -> Numbers:
 
 
 def _powers(scene: Scene, window: Span, nodes: Nodes, late: float) -> Numbers:
-    """Of gas, friction and forces from outside on the pistons; late : units of rounding of the duration."""
+    """Of gas, friction and forces from outside on the pistons; late : units of rounding of the
+    duration."""
     velocity = nodes.variables["piston_velocity"]
     of_gas, rubbed, applied = (
         Number(nodes.integral(power), late * nodes.integral(np.abs(power)))

@@ -221,7 +221,8 @@ def _motion(scene: Scene) -> str:
     assert scene.start is not None
     speed, begin = _rpm(scene.start.speed), math.degrees(scene.start.angle)
     sense = _sense(scene.start.speed)
-    return f"free, from {speed} at {begin:.6g} deg{sense}{'' if scene.torque or scene.force else ', no load'}"
+    loads = "" if scene.torque or scene.force else ", no load"
+    return f"free, from {speed} at {begin:.6g} deg{sense}{loads}"
 
 
 def _speed(speed: float | Oscillation | Ramp | SpeedFile) -> str:
