@@ -140,8 +140,8 @@ def _at_any_speed(scene: Scene) -> tuple[Scene, bool]:
     for push in crank_train(scene).pushes:
         if push.parts.function is not None:
             at = terms.angles(start.angle, sense, grid.rule)
-            given = push.parts.function(np.zeros_like(at), at, np.full_like(at, start.speed))
-            terms = replace(terms, torque=terms.torque + given)
+            more = push.parts.function(np.zeros_like(at), at, np.full_like(at, start.speed))
+            terms = replace(terms, torque=terms.torque + more)
     mean = float(terms.width @ (terms.torque @ grid.rule.weights)) / period
     given = sum(float(load.parts.over_time(0.0)) for load in scene.torque if load.parts.over_time)
     loads = (*scene.torque, Constant(torque=-mean - given))

@@ -61,7 +61,8 @@ def exudyn_script(scene: Scene, stem: str) -> str:
     Raises
     ------
     InputError : fuel, friction, forces on pistons, loads with windows, tables or functions, a
-        speed that changes, a settled motion, forces that jump, a crank that nothing moves; says which
+        speed that changes, a settled motion, forces that jump, a crank that nothing moves; says
+        which
 
     >>> "def run():" in exudyn_script(load_scene("torque_driven"), "mine")
     True

@@ -10,12 +10,14 @@ from typing import Annotated, Any, Literal, NamedTuple, get_args, get_origin
 from annotated_types import Ge, Gt, Le, Len, Lt
 
 from crankmbs.scene.drives import SpeedFile
+from crankmbs.scene.force import PistonForce
 from crankmbs.scene.run import Extent
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.schema import CsvFile, Quantity
 from crankmbs.scene.tables import CylinderTable, Table
 from crankmbs.scene.torque import Torque
 from crankmbs.scene.units import DEGREE, EXAMPLES
+from crankmbs.scene.windowed import Windowed
 
 __all__ = ["Key", "keys_of", "keys_page", "sections"]
 
@@ -52,7 +54,7 @@ def sections(part: type = Scene, path: str = "") -> Iterator[tuple[str, type]]:
     """Every table of a scene file, ``[crank]`` or ``[fuel] misfire``, with its class."""
     for key in keys_of(part):
         for inner in key.parts:
-            listed = "[[torque]]" if issubclass(inner, Torque) else f"[{key.name}]"
+            listed = f"[[{key.name}]]" if issubclass(inner, Windowed) else f"[{key.name}]"
             here = f"{path} {key.name}" if path else listed
             yield here, inner
             yield from sections(inner, here)
@@ -73,7 +75,7 @@ def _own(keys: list[Key]) -> list[Key]:
 def _table(title: str, part: type, keys: list[Key]) -> str:
     about = inspect.cleandoc(part.__doc__ or "").replace("``", "`")
     kind = next((key.default for key in keys if key.name == "kind"), "")
-    title += f" of kind {kind}" if kind and issubclass(part, Torque) else f", {part.__name__}"
+    title += f" of kind {kind}" if kind and issubclass(part, Windowed) else f", {part.__name__}"
     rows = [
         f"| `{key.name}` | {' or '.join(key.values)} | {key.default} | {', '.join(key.rules)} |"
         for key in keys
@@ -135,8 +137,8 @@ class _Found:
             self.values.append(_FILE)
         elif one is Extent:
             self.values.append(EXAMPLES["extent"])
-        elif one is Torque:
-            self.parts += Torque.kinds.values()
+        elif one in (Torque, PistonForce):
+            self.parts += one.kinds.values()
             self.values.append("tables")
         elif hasattr(one, "__pydantic_fields__"):
             self.parts.append(one)

@@ -14,7 +14,7 @@ from typer.main import get_command
 import crankmbs
 from crankmbs.cli import app
 from crankmbs.mechanics.variables import EVERY
-from crankmbs.scene.torque import Torque
+from crankmbs.scene.windowed import Windowed
 
 __all__ = ["commands_page", "python_page", "variables_page"]
 
@@ -93,7 +93,7 @@ def _autodoc(name: str) -> list[str]:
     module, _, last = name.rpartition(".")
     thing = getattr(importlib.import_module(module), last)
     if inspect.isclass(thing):
-        members = [] if issubclass(thing, tuple | Torque) else ["   :members:"]
+        members = [] if issubclass(thing, tuple | Windowed) else ["   :members:"]
         return [f".. autoclass:: {name}", *members, ""]
     return [f".. auto{'function' if callable(thing) else 'data'}:: {name}", ""]
 
