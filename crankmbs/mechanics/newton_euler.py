@@ -21,6 +21,7 @@ from crankmbs.mechanics.inertia import (
     axes_of,
     closed_loops,
     crank_weight,
+    ends_at,
     gas_at,
     gravity_vector,
     moving_inertias,
@@ -78,8 +79,9 @@ _OF_JOINTS = (
 _ACCELERATIONS = ("rod_angular_acceleration", "piston_acceleration")
 _VELOCITIES = ("rod_angular_speed", "piston_velocity")
 _OF_PLACE = ("rod_angle", "piston_position", "piston_displacement", "gas_pressure", "gas_force")
-_OF_ANGLE = (*_VELOCITIES, *_OF_PLACE)
-_OF_CYLINDER = (*_OF_JOINTS, *_ACCELERATIONS, *_OF_ANGLE)
+_OF_CRANK_END = "crank_end_pressure"
+_OF_ANGLE = (*_VELOCITIES, *_OF_PLACE, _OF_CRANK_END)
+_OF_CYLINDER = (*_OF_JOINTS, *_ACCELERATIONS, *_VELOCITIES, *_OF_PLACE)
 
 
 def rows_of(scene: Scene) -> dict[str, int]:
@@ -92,7 +94,8 @@ def rows_of(scene: Scene) -> dict[str, int]:
     count = len(scene.cylinders)
     rocking = () if scene.levers is None else ("rocking_moment_x", "rocking_moment_y")
     of_crank = dict.fromkeys((*_OF_CRANK, *rocking), 1) | journal_rows(scene)
-    return of_crank | dict.fromkeys(_OF_CYLINDER, count)
+    ends = (_OF_CRANK_END,) if scene.double_acting else ()
+    return of_crank | dict.fromkeys((*_OF_CYLINDER, *ends), count)
 
 
 def powers_of(name: str) -> tuple[int, ...]:
@@ -170,6 +173,8 @@ def of_cylinders(train: CrankTrain, theta: Array, motion: Powers) -> Cylinders:
         "journal_torque": journal,
         "pin_torque": journal - 0.5 * torque,
     }
+    for name, pressures in ends_at(train, theta, gas[:, 0]).items():
+        variables[name] = pressures[:, np.newaxis]
     shake_x, shake_y = -inertial_x - carried, leaning - inertial_y
     moment = -loop.x * side - piston.offset * push
     return Cylinders(variables, shake_x, shake_y, moment, moving_inertias(scene, loop, g))

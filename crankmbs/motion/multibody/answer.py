@@ -146,7 +146,7 @@ class Answers:
             found = self._model.states(theta, omega, gas + friction, torque)
         values = {"crank_angle": theta, "crank_speed": omega}
         values |= self._of_bodies(found) | self._of_joints(found)
-        values |= {"gas_force": gas, "gas_pressure": gas / (self._scene.piston.gas_area or 1.0)}
+        values |= {"gas_force": gas, **self._forces.pressures(theta, gas)}
         return values | ({} if self._scene.friction is None else {"friction_force": friction})
 
     def work(self, course: Course, edges: Array, law: SpeedLaw | None = None) -> Array:
