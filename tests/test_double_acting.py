@@ -9,6 +9,7 @@ import pytest
 from crankmbs import InputError, Result, load_scene, simulate
 from crankmbs.batch.rows import rows_of
 from crankmbs.figures import save_figures
+from crankmbs.measures.plausible import warnings
 from crankmbs.mechanics.carried import carried_over
 from crankmbs.mechanics.train import crank_train
 from crankmbs.page import exported
@@ -16,7 +17,7 @@ from crankmbs.report.machine import machine_rows
 from crankmbs.scene.drives import Start
 from crankmbs.scene.fuel import Fuel, Misfire
 from crankmbs.scene.gas import Gas, Indicator
-from crankmbs.scene.loads import Quadratic
+from crankmbs.scene.loads import Constant, Quadratic
 from crankmbs.scene.parts import Friction, Piston
 from crankmbs.scene.run import Extent
 from crankmbs.scene.tables import CylinderTable, Table
@@ -290,6 +291,14 @@ def test_the_machine_is_described_by_both_ends():
         assert words in said
     (piston,) = (text for name, text in machine_rows(load_scene("propeller")) if name == "piston")
     assert "rod" not in piston
+
+
+def test_a_load_that_drives_as_the_crank_end_does_is_warned_of():
+    gas = replace(STEAM.gas, pressure=0.0, interpolation="pchip")
+    driven = replace(FREE, gas=gas, torque=(Constant(torque=500.0),))
+    (said,) = warnings(driven)
+    assert "drives, as the gas does" in said
+    assert warnings(replace(driven, torque=(Constant(torque=-500.0),))) == ()
 
 
 def test_the_page_is_given_both_ends():
