@@ -36,10 +36,27 @@ CASES = {
         0,
     ),
     "freed rubbing": ("friction", {"speed_is": "free", "flywheel": 0.02, "rod_mass": 1.0}, 0),
+    "steam": ("absolute_steam", {"pressure": 80.0, "rod_ratio": 0.25, "offset": 12.0}, 0),
     "uniform": ("grega_lecture", {"rod": "rigid", "rod_mass": 0.5, "pressure": 80.0}, 0),
 }  # fmt: skip
 """Name -> scene, values of its knobs, cylinder from 0."""
 FREED = ("freed", "freed rubbing")
+
+
+def named(name):
+    """A shipped scene; or the steam engine, its pressures absolute."""
+    if name != "absolute_steam":
+        return load_scene(name)
+    scene, ambient = load_scene("steam_engine"), 101325.0
+
+    def lifted(table):
+        return dataclasses.replace(table, y=tuple(y + ambient for y in table.y))
+
+    ends = {key: lifted(getattr(scene.gas, key)) for key in ("pressure", "crank_end")}
+    gas = dataclasses.replace(scene.gas, absolute=True, ambient=ambient, **ends)
+    return dataclasses.replace(scene, gas=gas)
+
+
 EVENED = "lumped"  # the case in which a flywheel for a fluctuation is sought
 
 CURVES = {
@@ -78,6 +95,7 @@ POLARS = {
     "crank pin, polar": "crank_pin_force",
     "frame force, polar": "frame_force",
 }
+DOUBLE = ("crank end pressure",)  # of double-acting cylinders
 POSES = (40, 130, 222, 310)  # samples at which the drawing is looked at
 
 _MODULES = (
@@ -103,7 +121,7 @@ def shown_script():
 @cache
 def given(name):
     """What the page of a scene is given."""
-    text = page_of(load_scene(name), "mine")
+    text = page_of(named(name), "mine")
     return text.partition('id="given">')[2].partition("</script>")[0]
 
 
@@ -118,7 +136,7 @@ def probe(page, script, name, *, fresh=True, evens=True):
         "name": name,
         "values": values,
         "k": k,
-        "curves": [*CURVES, "p-V diagram", *POLARS],
+        "curves": [*CURVES, "p-V diagram", *POLARS, *DOUBLE[: named(scene).double_acting]],
         "poses": POSES,
         "evens": evens and name == EVENED,
         "fresh": fresh,
@@ -136,7 +154,7 @@ def scene_of(page, script, name):
 def truth(name):
     """Scene and data of Python for a case."""
     scene_name, values, _ = CASES[name]
-    scene = turned(load_scene(scene_name), values)
+    scene = turned(named(scene_name), values)
     return scene, cycle_of(scene, name)
 
 

@@ -3,9 +3,7 @@
 import math
 
 import numpy as np
-from page_cases import CASES, POSES, frame, of_cylinder, same, truth
-
-from crankmbs import load_scene
+from page_cases import CASES, POSES, frame, named, of_cylinder, same, truth
 
 
 def drawing_holds(said, scene, data, k):
@@ -38,7 +36,7 @@ def own_inertia(scene, found):
     names = {id(case): case for case in CASES.values()}
     for case in names.values():
         if truth_is(case, scene):
-            own = load_scene(case[0]).crank.moment_of_inertia
+            own = named(case[0]).crank.moment_of_inertia
             return own == 0.0 or same(found, scene.crank.moment_of_inertia / own, near=1e-6)
     return False
 

@@ -78,8 +78,12 @@ def unlike(measures, found, size):
     for name in ("friction_power", "mechanical_efficiency"):
         if (one := getattr(measures, name)) is not None:
             pairs[name] = (found[name], one)
-    for k, one in enumerate(measures.imep or ()):
-        pairs[f"imep {k}"] = (found["imep"][k], one)
+    for name in ("imep", "imep_crank_end"):
+        for k, one in enumerate(getattr(measures, name) or ()):
+            pairs[f"{name} {k}"] = (found[name][k], one)
+    for name in ("indicated_power_head_end", "indicated_power_crank_end"):
+        if (one := getattr(measures, name)) is not None:
+            pairs[name] = (found[name], one)
     for own, one in zip(found["joints"], measures.joints, strict=True):
         assert (own["joint"], own["cylinder"]) == (one.joint, one.cylinder)
         for part in ("peak", "mean"):
@@ -107,5 +111,8 @@ def sizes(result, measures):
         "friction_power": torque * speed,
         "mechanical_efficiency": 1.0,
         "imep": peak(result.data["gas_pressure"].values),
+        "imep_crank_end": peak(result.data["gas_pressure"].values),
+        "indicated_power_head_end": torque * speed,
+        "indicated_power_crank_end": torque * speed,
         "force": max(one.peak.value for one in measures.joints),
     }

@@ -110,6 +110,15 @@ def misfiring(scene):
     return replace(scene, gas=replace(scene.gas, motored=POLYTROPE), fuel=fuel)
 
 
+def both_ends():
+    """Gas below the pistons too, over as long again."""
+    scene = running("yi_diesel_free", Extent(value=0.06, unit="s"), **MACHINE)
+    rows = tuple(np.linspace(0.3, 0.3 + 8.0 * math.pi, 12, endpoint=False).tolist())
+    values = (1e5, 3e5, 9e5, 2e5, 1e5, 4e5, 6e5, 1e5, 2e5, 1e5, 5e5, 3e5)
+    gas = replace(scene.gas, crank_end=Table(rows, values), cycles="sequence")
+    return replace(scene, gas=gas, piston=replace(scene.piston, rod_diameter=0.04))
+
+
 SWING = Oscillation(mean=300.0, amplitude=60.0, order=1.5, phase=0.4)
 RISE = Ramp(start=250.0, to=330.0, over=0.02)
 MEASURED_SPEED = SpeedFile(file=Table((0.0, 0.02, 0.05, 0.2), (280.0, 300.0, 260.0, 300.0)))
@@ -131,6 +140,7 @@ GUARDS = {
     "rubbing driven": replace(misfiring(driven(RISE)), friction=RUBBING),
     "rubbing backwards": replace(backwards(), friction=replace(RUBBING, ring_pressure=0.0)),
     "started": replace(started(), friction=RUBBING),
+    "both ends": replace(misfiring(both_ends()), friction=RUBBING),
 }
 
 
@@ -172,7 +182,7 @@ def tasks(angles):
     found = [("lectured", lecture(name)) for name in ("untruncated lecture", S1)]
     shape = {"radius": 0.044, "length": 0.14, "offset": 0.011}
     scenes = [joined_by(*pair) for pair in JOINED]
-    scenes += [jumping(), GUARDS["started"], GUARDS["affine"]]
+    scenes += [jumping(), *(GUARDS[name] for name in ("started", "affine", "both ends"))]
     found += [("carried", {"scene": exported(scene), "shape": shape}) for scene in scenes]
     names, balancing = ("affine", "started"), ("affine", "settling")
     found += [("dragged", {"scene": longer(GUARDS[n]), "angles": angles[n][::3]}) for n in names]

@@ -148,6 +148,10 @@ def curves_hold(said, scene, data, k):
                 return False
         if len(found["differences"]) != len(wanted) - 1:
             return False
+    if scene.double_acting:
+        below = 1e-5 * of_cylinder(data["crank_end_pressure"].values, k)
+        if not same(said["curves"]["crank end pressure"]["curves"][0]["y"], below, near=1e-8):
+            return False
     ahead = said["curves"]["crank ahead of the mean"]
     return ahead["up"]["unit"] == "°" and same(ahead["curves"][0]["y"], np.degrees(said["leads"]))
 
@@ -173,13 +177,19 @@ def polars_hold(said, scene, data, k):
     if scene.gas is None:
         return True
     volume = area(scene) * 1e6 * of_cylinder(data["piston_displacement"].values, k)
-    pressure = 1e-5 * of_cylinder(data["gas_pressure"].values, k)
-    (curve,) = found["curves"]
+    wanted = {"simulated": (volume, data["gas_pressure"])}
+    if scene.double_acting:
+        share = 1.0 - 0.25 * math.pi * scene.piston.rod_diameter**2 / area(scene)
+        wanted = {
+            "head end": (volume, data["gas_pressure"]),
+            "crank end": (share * volume, data["crank_end_pressure"]),
+        }
+    if [curve["name"] for curve in found["curves"]] != list(wanted):
+        return False
     shown = [found[axis]["unit"] for axis in ("right", "up")]
-    return (
-        same(curve["x"], volume)
-        and same(curve["y"], pressure, near=1e-8)
-        and shown == ["cm³", "bar"]
+    return shown == ["cm³", "bar"] and all(
+        same(curve["x"], x) and same(curve["y"], 1e-5 * of_cylinder(y.values, k), near=1e-8)
+        for curve, (x, y) in zip(found["curves"], wanted.values(), strict=True)
     )
 
 
@@ -281,14 +291,18 @@ def words_hold(said, scene, data, k):
     drives = scene.motion is not None or done > 0.0
     close["drive torque" if drives else "load torque"] = (done / (angle[-1] - angle[0]), "N m", 0.2)
     if scene.gas is not None:
-        volume = area(scene) * data["piston_displacement"].values
-        pressure = data["gas_pressure"].values
-        work = (
-            np.trapezoid(pressure, volume, axis=0)
-            if volume.ndim == 1
-            else sum(np.trapezoid(p, v) for p, v in zip(pressure.T, volume.T, strict=True))
-        )
-        close["indicated power"] = (1e-3 * work / (time[-1] - time[0]), "kW", 0.05)
+        travel, seconds = data["piston_displacement"].values, time[-1] - time[0]
+
+        def done_by(force):
+            pairs = zip(force.T, travel.T, strict=True)
+            return sum(np.trapezoid(f, x) for f, x in pairs)
+
+        work = done_by(data["gas_force"].values)
+        close["indicated power"] = (1e-3 * work / seconds, "kW", 0.05)
+        if scene.double_acting:
+            head = done_by(area(scene) * data["gas_pressure"].values)
+            close["of the head end"] = (1e-3 * head / seconds, "kW", 0.05)
+            close["of the crank end"] = (1e-3 * (work - head) / seconds, "kW", 0.05)
     if scene.friction is not None:
         power = data["friction_force"].values * data["piston_velocity"].values
         rubbed = -np.trapezoid(power.reshape(len(time), -1).sum(axis=1), time)

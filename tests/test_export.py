@@ -24,6 +24,7 @@ SCENES = {
     "propeller": load_scene("propeller").with_(run__until="0.7 cycles"),
     "coasting": load_scene("coasting").with_(run__until="0.03 s"),
     "yi_diesel": load_scene("yi_diesel").with_(run__until="0.5 rev"),
+    "steam_engine": load_scene("steam_engine").with_(run__until="0.5 rev"),
     "four cylinders": load_scene("yi_diesel_free").with_(run__until="0.2 rev"),
     "banks": load_scene("torque_driven").with_(
         run__until="0.1 s",

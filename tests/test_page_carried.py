@@ -1,6 +1,7 @@
 """Pressures carried over to another geometry in the page, as in Python, and what it shows while a
 knob moves."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -13,6 +14,7 @@ from crankmbs.mechanics.carried import carried_over
 from crankmbs.mechanics.train import crank_train
 from crankmbs.page import exported
 from crankmbs.scene.fuel import Fuel
+from crankmbs.scene.tables import Table
 
 pytestmark = pytest.mark.slow
 
@@ -39,6 +41,25 @@ def test_diagrams_and_combustion_are_carried_over_too(page, change):
         assert_carried(page, scene, altered(scene, **change))
 
 
+@pytest.mark.parametrize("change", [{"length": 0.75}, {"offset": 0.011}], ids=str)
+def test_both_ends_are_carried_over_too(page, change):
+    steam, turn = load_scene("steam_engine"), 2.0 * math.pi
+    rows = tuple(turn * k / 5.0 for k in range(15))
+    thrice = Table(
+        rows, (0.0, 1e5, 4e5, 2e5, 5e4, 0.0, 2e5, 3e5, 1e5, 0.0, 0.0, 3e5, 3e5, 2e5, 1e4)
+    )
+    gas = replace(steam.gas, crank_end=thrice, cycles="sequence")
+    twice = Table(tuple(turn * k / 4.0 for k in range(8)), (5e5, 1e5, 0.0, 2e5) * 2)
+    fired = replace(gas, pressure=twice, motored=steam.gas.pressure)
+    for scene in (
+        steam,
+        replace(steam, gas=replace(gas, pressure=twice)),
+        replace(steam, gas=fired, fuel=Fuel(misfire=(MISFIRE,))),
+        replace(steam, gas=replace(steam.gas, crank_end=2e5)),
+    ):
+        assert_carried(page, scene, altered(scene, **change))
+
+
 def assert_carried(page, before, scene):
     train = crank_train(carried_over(scene, before))
     shape = {
@@ -47,7 +68,8 @@ def assert_carried(page, before, scene):
         "offset": scene.piston.offset,
     }
     found = page.ask("carried", scene=exported(before), shape=shape)
-    for name, expected in (("pressure", train.pressure), ("combustion", train.combustion or ())):
+    for name in ("pressure", "combustion", "crank_end"):
+        expected = getattr(train, name) or ()
         assert len(found[name]) == len(expected)
         for (knots, coefficients), one in zip(found[name], expected, strict=True):
             phi = 0.5 * (one.knots[1:] + one.knots[:-1])

@@ -21,6 +21,7 @@ NAMES = [
     "propeller",
     "run_down",
     "run_up",
+    "steam_engine",
     "torque_driven",
     "turning_moment",
     "v_twin",
@@ -49,6 +50,7 @@ def test_a_shipped_table_says_what_it_is_and_is_used(path):
     assert path.read_text().startswith("# ")
     scenes = [load_scene(name) for name in NAMES]
     users = [scene.gas.pressure for scene in scenes if scene.gas]
+    users += [scene.gas.crank_end for scene in scenes if scene.gas]
     users += [getattr(load, "file", None) for scene in scenes for load in scene.torque]
     assert str(path) in {table.source for table in users if table}
 

@@ -107,6 +107,8 @@ def _sped(scene: Scene, speed: float, faster: float) -> dict[str, Any]:
 
 def _pressed(gas: Gas, factor: float) -> Gas:
     """The pressures of the table or of the diagram times the factor; ambient stays."""
+    if gas.crank_end is not None:
+        gas = dataclasses.replace(gas, crank_end=_pressed_more(gas.crank_end, factor))
     if gas.pressure is not None:
         closing = None if gas.closing is None else factor * gas.closing
         pressed = _pressed_more(gas.pressure, factor)

@@ -10,6 +10,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from crankmbs.mechanics.pressure import crank_ends_of as crank_ends_at
 from crankmbs.mechanics.pressure import pressures_of
 from crankmbs.motion.plan import plan_of
 from crankmbs.result import Result
@@ -33,7 +34,7 @@ from validation.oracles.prescribed import (
     spline,
 )
 from validation.oracles.pressure import pressure_pieces
-from validation.rows import SAME_ANGLE, loads_of, pressure_of
+from validation.rows import SAME_ANGLE, crank_ends_of, loads_of, pressure_of
 
 __all__ = [
     "at_jumps",
@@ -73,7 +74,16 @@ def machine_of(scene: Scene) -> Machine:
         pressure=pressure_of(scene),
         gravity=(gx, gy),
         loads=loads_of(scene.torque),
+        crank_ends=crank_ends_of(scene),
+        crank_end_area=_crank_end_area(scene),
     )
+
+
+def _crank_end_area(scene: Scene) -> float:
+    if not scene.double_acting:
+        return 0.0
+    area, rod = scene.piston.gas_area or 0.0, scene.piston.rod_diameter or 0.0
+    return area - math.pi / 4.0 * rod**2
 
 
 def reference_motion(
@@ -136,6 +146,8 @@ def reference_variables(
     machine = machine_of(scene)
     reactions = newton_euler(machine, theta, omega, alpha, arithmetic)
     variables = dict(vars(reactions))
+    if not scene.double_acting:
+        del variables["crank_end_pressure"]
     for name in _TOWARDS_CRANK:
         variables[name] = -variables[name]
     variables |= frame_loads(machine, theta, omega, alpha, arithmetic)
@@ -178,7 +190,9 @@ def at_jumps(scene: Scene, theta: Array) -> NDArray[np.bool_]:
             beside = SAME_ANGLE * np.array([[-3.0], [3.0]])
             below, above = load.parts.over_angle(np.asarray(theta, dtype=np.float64) + beside)
             on |= np.abs(above - below) > 1e-6 * load.parts.over_angle.largest
-    for cylinder, pressure in zip(scene.cylinders, pressures_of(scene) or (), strict=False):
+    ends = (pressures_of(scene) or (), crank_ends_at(scene) or ())
+    pairs = [pair for end in ends for pair in zip(scene.cylinders, end, strict=False)]
+    for cylinder, pressure in pairs:
         width = np.diff(pressure.knots)
         before = np.roll(pressure.piece(np.arange(len(width)), width), 1)
         after = pressure.coefficients[-1]

@@ -47,6 +47,7 @@ def changes_of(scene: Scene) -> Changes:
         firings,
         gas.period if gas else 4.0 * math.pi,
         (rings.ring_force, rings.ring_pressure, rings.viscous) if rings else None,
+        tuple(curve_of(pressure) for pressure in machine.crank_ends),
     )
 
 

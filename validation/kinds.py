@@ -25,7 +25,7 @@ KINDS = (
         "Nothing: a book, a paper or the output of another program, by the method of the source "
         "where that is truncated or rounded on the way.",
         "printed s1_tables s1_figures polytropes.expansion design s2.special_angles "
-        "s2.brix_correction",
+        "s2.brix_correction steam.by_series",
     ),
     Kind(
         "Formulas of the lectures",
@@ -37,7 +37,8 @@ KINDS = (
         "Oracles: the numbers",
         "Nothing but the scene: other equations and other methods, mostly in 25 to 40 digits or "
         "80-bit floats, that never import crankmbs.",
-        "computed changing.governed changing.mean_pressures frame.by_momentum indicator "
+        "computed changing.governed changing.mean_pressures double.every_variable "
+        "double.mean_pressures frame.by_momentum indicator steam.in_full "
         "journals.beams measured settled.fluctuation settled.long_run settled.set_free",
     ),
     Kind(
@@ -50,7 +51,8 @@ KINDS = (
     Kind(
         "Random scenes",
         "Nothing but the scene, drawn from a seed: stated errors against the oracles.",
-        "changing.stated_scenes drawn.stated_scenes friction.random_errors periods stepped",
+        "changing.stated_scenes double.stated_scenes drawn.stated_scenes friction.random_errors "
+        "periods stepped",
     ),
     Kind(
         "Another formulation that shares no mechanics",

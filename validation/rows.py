@@ -3,36 +3,48 @@
 import math
 
 from crankmbs.mechanics.pressure import PeriodicPressure, pressures_of
-from crankmbs.scene.gas import Gas
+from crankmbs.scene.gas import Gas, PressureGiven, tables_of
 from crankmbs.scene.loads import AngleTable, Constant, Quadratic, SpeedTable, TimeTable, Viscous
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.tables import CylinderTable, Table
 from crankmbs.scene.torque import Torque
 from validation.oracles.machine import Loads, LoadTable, Pressure, PressurePieces, PressureTable
 
-__all__ = ["SAME_ANGLE", "loads_of", "pressure_of", "turns_of"]
+__all__ = ["SAME_ANGLE", "crank_ends_of", "loads_of", "pressure_of", "turns_of"]
 
 SAME_ANGLE = 1e-9  # rad: rows so near stand at one angle
 
 
 def pressure_of(scene: Scene) -> Pressure | tuple[Pressure, ...] | None:
     """One for all cylinders, or one for each."""
-    gas, cylinders = scene.gas, scene.cylinders
+    gas = scene.gas
     if gas is None:
         return None
-    if isinstance(gas.pressure, float):
-        rows = Table((0.0, gas.period / 3.0, gas.period / 1.5), (gas.pressure,) * 3)
-        return _table(gas, rows)
-    if isinstance(gas.pressure, Table):
-        return _table(gas, gas.pressure)
     if gas.pressure is None:
         return _pieces((pressures_of(scene) or ())[0])
-    first = cylinders[0].phase
-    instants = isinstance(gas.pressure, CylinderTable) and not gas.aligned
-    lags = [cylinder.phase - first if instants else 0.0 for cylinder in cylinders]
+    return _given(scene, gas, gas.pressure)
+
+
+def crank_ends_of(scene: Scene) -> tuple[Pressure, ...]:
+    """One for each cylinder; none where they are single-acting."""
+    gas = scene.gas
+    if gas is None or gas.crank_end is None:
+        return ()
+    found = _given(scene, gas, gas.crank_end)
+    return found if isinstance(found, tuple) else (found,) * len(scene.cylinders)
+
+
+def _given(scene: Scene, gas: Gas, source: PressureGiven) -> Pressure | tuple[Pressure, ...]:
+    if isinstance(source, float):
+        return _table(gas, Table((0.0, gas.period / 3.0, gas.period / 1.5), (source,) * 3))
+    if isinstance(source, Table):
+        return _table(gas, source)
+    first = scene.cylinders[0].phase
+    instants = isinstance(source, CylinderTable) and not gas.aligned
+    lags = [cylinder.phase - first if instants else 0.0 for cylinder in scene.cylinders]
     return tuple(
         _table(gas, Table(tuple(angle + lag for angle in rows.x), rows.y))
-        for rows, lag in zip(gas.tables, lags, strict=True)
+        for rows, lag in zip(tables_of(source), lags, strict=True)
     )
 
 

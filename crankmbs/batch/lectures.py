@@ -83,7 +83,8 @@ class Deviations:
         theta = self.begin + self.sense * turned
         found = balances(self.train, theta, self.sense)
         own, scene = _observed(self.train.scene, found, theta), self.train.scene
-        said = _lectured(scene, found.cylinders["gas_pressure"][:, 0], theta)
+        gas = found.cylinders["gas_force"][:, 0] / (scene.piston.gas_area or 1.0)
+        said = _lectured(scene, gas, theta)
         table = np.empty((len(QUANTITIES), EACH, 4, len(theta)))
         table[:, :, :2] = own[:, None, :2]
         table[:, 0, 2], table[:, 0, 3] = own[:, 2], own[:, 0]

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crankmbs.batch.balances import balances
+from crankmbs.batch.balances import Balances, balances
 from crankmbs.batch.lectures import Deviations
 from crankmbs.batch.peaks import sparse_nodes
 from crankmbs.mechanics.geometry import close_loop
@@ -40,7 +40,8 @@ class Pass:
     rods : torque of all rods, shape (3, m, s)
     forces : of the joints, the main bearing, crank pins, piston pins and side forces, which have no
         second component, shape (joints, 2, 3, m, s)
-    works, rubbed : of the gas and of the friction on each piston there, shape (cylinders,) [J]
+    works : of gas and friction on the pistons there, rows of shape (cylinders,) [J]: the gas, the
+        friction, and of double-acting cylinders the gas of the head end and of the crank end
     """
 
     rule: Rule
@@ -52,8 +53,7 @@ class Pass:
     rods: Array
     forces: Array
     lectures: Deviations
-    works: Array
-    rubbed: Array
+    works: tuple[Array, ...]
 
 
 @dataclass(frozen=True)
@@ -194,9 +194,18 @@ def _tabulated(
         rods.reshape(3, *turned.shape),
         forces.reshape(-1, 2, 3, *turned.shape),
         Deviations(train, begin, sense, rule, whole, sparse_nodes(whole, len(rule.nodes))),
-        (cylinders["gas_force"][:, 0] * path).sum(axis=1),
-        (found.friction * path).sum(axis=1),
+        tuple((force * path).sum(axis=1) for force in _forces(train.scene, found)),
     )
+
+
+def _forces(scene: Scene, found: Balances) -> list[Array]:
+    """Of the gas and the friction on the pistons, and of the gas of either end, shape (cylinders,
+    n) [N]."""
+    forces = [found.cylinders["gas_force"][:, 0], found.friction]
+    if scene.double_acting:
+        head = (scene.piston.gas_area or 0.0) * found.cylinders["gas_pressure"][:, 0]
+        forces += [head, forces[0] - head]
+    return forces
 
 
 def _without_crank(train: CrankTrain, theta: float, sense: float) -> float:

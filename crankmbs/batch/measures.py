@@ -13,7 +13,7 @@ from crankmbs.batch.motion import Cases, Cuts
 from crankmbs.batch.passes import Pairs, Solved
 from crankmbs.batch.peaks import Curves, Peaks, Which, find_peaks, sizes_at, sparse_nodes
 from crankmbs.measures.estimate import ROUNDING, Number
-from crankmbs.measures.summary import powers
+from crankmbs.measures.summary import Works, powers
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.lagrange import at_nodes
 from crankmbs.numerics.magnitudes import impulses
@@ -157,14 +157,18 @@ def _gained(solved: Solved, sense: float, mass: Array) -> Array:
 
 def _powers(machine: Machine, tables: Pass, time: Array) -> Numbers:
     """Of gas and friction on the pistons, over periods of these durations [s]."""
-    of_gas, rubbed = (
+    gas, rubbed, *ends = (
         Number(machine.shares * by_turns(works, machine.shares), 0.0 * works)
-        for works in (tables.works, tables.rubbed)
+        for works in tables.works
     )
-    found = powers(machine.scene, of_gas, rubbed, 1.0, time)
-    numbers = {name: number.value + 0.0 * time for name, number in found.items() if name != "imep"}
-    if "imep" in found:
-        numbers["imep"] = np.tile(found["imep"].value, (len(time), 1))
+    works = Works(gas, rubbed, (ends[0], ends[1]) if ends else None)
+    found = powers(machine.scene, works, 1.0, time)
+    numbers = {
+        name: np.tile(number.value, (len(time), 1))
+        if name.startswith("imep")
+        else number.value + 0.0 * time
+        for name, number in found.items()
+    }
     if machine.scene.friction is not None:
         numbers.setdefault("mechanical_efficiency", np.full_like(time, np.nan))
     return numbers

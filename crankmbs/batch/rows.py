@@ -26,6 +26,9 @@ _MEASURES = (
     "external_torque",
     "indicated_power",
     "imep",
+    "imep_crank_end",
+    "indicated_power_head_end",
+    "indicated_power_crank_end",
     "friction_power",
     "mechanical_efficiency",
 )

@@ -93,7 +93,10 @@ WORDS = {
         "the scene has no [start]",
     ),
     "gas_pressure": Word(
-        "Pa", "pressure difference across the piston", lambda w: w.of_run("gas_pressure")
+        "Pa", "pressure of the head end less ambient", lambda w: w.of_run("gas_pressure")
+    ),
+    "crank_end_pressure": Word(
+        "Pa", "pressure of the crank end less ambient", lambda w: w.of_run("crank_end_pressure")
     ),
     "gas_force": Word(
         "N", "gas force on the piston towards the crank", lambda w: w.of_run("gas_force")
@@ -135,6 +138,12 @@ WORDS = {
         "m^2",
         "of the piston",
         lambda w: w.scene.piston.gas_area,
+        "the scene has neither piston.bore nor piston.area",
+    ),
+    "crank_end_area": Word(
+        "m^2",
+        "of the piston less the piston rod's",
+        lambda w: None if w.scene.piston.gas_area is None else w.scene.piston.crank_end_area,
         "the scene has neither piston.bore nor piston.area",
     ),
     "offset": Word("m", "e, of the cylinder axis in +Y", lambda w: w.scene.piston.offset),

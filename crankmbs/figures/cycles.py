@@ -27,7 +27,7 @@ def cycles_figure(result: Result) -> Figure:
     events of the run at the place where they lie between the cycles."""
     cycles = result.cycle_table
     number = cycles.values("cycle")
-    with_gas = "imep" in cycles.variables
+    with_gas, double = "imep" in cycles.variables, result.scene.double_acting
     figure, axes = panels(1 + with_gas, 1, 10.0, 3.5 * (1 + with_gas))
     least, largest, mean = (
         cycles.values(f"{name}_speed") / RPM for name in ("least", "largest", "mean")
@@ -38,10 +38,14 @@ def cycles_figure(result: Result) -> Figure:
     axes[0].plot(number, mean, color=COLOURS[0], label="mean")
     axes[0].set_ylabel("crank speed [rpm]")
     if with_gas:
-        imep = cycles.values("imep") / BAR
-        for group in one_curve_each(imep):
-            axes[1].plot(number, imep[:, group[0]], **line_of(group[0]), label=whose(group))
-        keep_flat(axes[1], imep)
+        names = {"imep": "head end", "imep_crank_end": "crank end"} if double else {"imep": ""}
+        for k, (name, end) in enumerate(names.items()):
+            imep = cycles.values(name) / BAR
+            for group in one_curve_each(imep):
+                label = f"{whose(group)} {end}".rstrip()
+                line = line_of(group[0] + k * imep.shape[1])
+                axes[1].plot(number, imep[:, group[0]], **line, label=label)
+        keep_flat(axes[1], np.concatenate([cycles.values(name) / BAR for name in names]))
         axes[1].set_ylabel("indicated mean\neffective pressure [bar]")
     begins = cycles.values("time")
     at = np.interp(result.event_table.values("time"), begins, number, np.nan, number[-1])
@@ -49,7 +53,7 @@ def cycles_figure(result: Result) -> Figure:
     for ax in axes:
         ax.locator_params("x", integer=True)
     axes[-1].set_xlabel("cycle")
-    legend(figure, *(axes if len(result.scene.cylinders) > 1 else axes[:1]))
+    legend(figure, *(axes if double or len(result.scene.cylinders) > 1 else axes[:1]))
     figure.align_ylabels(axes)
     footer(figure, result, "cycle by cycle")
     return figure

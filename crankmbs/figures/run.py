@@ -12,6 +12,7 @@ from crankmbs.figures.bearings import bearings_figure
 from crankmbs.figures.cycles import FEWEST_CYCLES, cycles_figure
 from crankmbs.figures.orders import orders_figure
 from crankmbs.figures.polar import crank_pin_figure, main_bearing_figure, piston_pin_figure
+from crankmbs.figures.pressures import pressures_figure
 from crankmbs.figures.strips import (
     forces_figure,
     piston_motion_figure,
@@ -45,6 +46,7 @@ _KINDS: dict[str, Callable[[Result], Figure]] = {
     "orders": lambda result: orders_figure(result, engine_orders(result)),
     "cycles": lambda result: _cycles(result),
     "bearings": lambda result: _bearings(result),
+    "pressures": lambda result: _pressures(result),
 }
 _POLAR = {name: _FIGURES[name] for name in ("main_bearing", "crank_pin", "piston_pin")}
 
@@ -55,13 +57,14 @@ def plot(result: Result, kind: str = "speed", joint: str = "crank_pin") -> Figur
     Parameters
     ----------
     kind : "speed", "motion" of the pistons, "forces" along and across the cylinders, "polar" load,
-        "torque", "orders" of torque and frame force, "cycles", or "bearings"
+        "torque", "orders" of torque and frame force, "cycles", "bearings", or "pressures" over the
+        swept volume
     joint : of a "polar" load: "main_bearing", "crank_pin" or "piston_pin"
 
     Raises
     ------
     InputError : another kind or joint; no orders without a whole cycle, no cycles kept, no
-        journals
+        journals, no gas
 
     >>> len(plot(simulate(load_scene("propeller")), "motion").axes)
     3
@@ -98,9 +101,16 @@ def _bearings(result: Result) -> Figure:
     return bearings_figure(last_view(result))
 
 
+def _pressures(result: Result) -> Figure:
+    if result.scene.gas is None:
+        raise InputError("pressures are drawn of a scene with [gas]; add it, or draw another kind")
+    return pressures_figure(last_view(result))
+
+
 def save_figures(result: Result, folder: Path) -> list[Path]:
     """Draw every figure of a result into PNG files, which appear together; the cycles where there
-    are more than three, or several in a settled period, the bearings where a scene has them.
+    are more than three, or several in a settled period, the bearings where a scene has them, the
+    pressures of both ends over the volume where it is double-acting.
 
     Raises
     ------
@@ -114,6 +124,9 @@ def save_figures(result: Result, folder: Path) -> list[Path]:
         if result.scene.throws is not None:
             save(bearings_figure(view), part / "bearings.png")
             names.append("bearings")
+        if result.scene.double_acting:
+            save(pressures_figure(view), part / "pressures.png")
+            names.append("pressures")
         fewest = 2 if result.scene.settles else FEWEST_CYCLES  # what differs in a settled period
         if result.keep is not None and result.cycle_table.length >= fewest:
             save(cycles_figure(result), part / "cycles.png")

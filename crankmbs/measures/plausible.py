@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from crankmbs.mechanics.geometry import close_loop, dead_centres, top_position
-from crankmbs.mechanics.pressure import PeriodicPressure, pressures_of
+from crankmbs.mechanics.pressure import PeriodicPressure, crank_ends_of, pressures_of
 from crankmbs.scene.gas import Gas
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.units import BAR
@@ -24,7 +24,7 @@ _STEEL = 7850.0  # kg/m3
 
 
 class _Sized(NamedTuple):
-    """A scene, the gas of its cylinders, the stroke [m] and the piston's diameter, without area the
+    """A scene, the gas of its head ends, the stroke [m] and the piston's diameter, without area the
     stroke [m]."""
 
     scene: Scene
@@ -199,11 +199,13 @@ def _loads(machine: _Sized) -> Iterator[str]:
 def _gas_work(machine: _Sized) -> float:
     """Work of the gas over one period of the engine in the sense of +theta [J]."""
     scene, work = machine.scene, 0.0
-    for pressure in machine.pressure:
+    pushing = [(scene.piston.gas_area or 0.0, each) for each in machine.pressure]
+    pushing += [(-scene.piston.crank_end_area, each) for each in crank_ends_of(scene) or ()]
+    for area, pressure in pushing:
         count = 1440 * round(pressure.period / scene.period)
         angle = (np.arange(count) + 0.5) * pressure.period / count
         loop = close_loop(angle, scene.crank.radius, scene.rod.length, scene.piston.offset)
-        torque = -pressure(angle) * (scene.piston.gas_area or 0.0) * loop.x_1
+        torque = -pressure(angle) * area * loop.x_1
         work += float(np.mean(torque)) * scene.period
     return work
 

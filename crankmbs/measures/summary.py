@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
@@ -22,6 +23,7 @@ from crankmbs.scene.scene import Scene
 
 __all__ = [
     "Measures",
+    "Works",
     "efficiency",
     "fluctuation",
     "largest",
@@ -41,7 +43,12 @@ class Measures:
         both means are work per angle turned, so that torque times mean speed is power
     indicated_power [W] : work of the gas on all pistons per time; None without gas
     imep [Pa] : work of the gas in a cycle, the mean of several, over the displaced volume, per
-        cylinder; None without gas or without a whole cycle
+        cylinder; of double-acting ones that of the head end; None without gas or without a whole
+        cycle
+    imep_crank_end [Pa] : the same of the crank end, over its own volume, stroke times the piston's
+        area less the rod's; None where cylinders are single-acting
+    indicated_power_head_end, indicated_power_crank_end [W] : the parts of the indicated power; None
+        where cylinders are single-acting
     friction_power [W] : what the friction of all pistons takes per time; None without friction
     mechanical_efficiency : where the gas drives, the share of the indicated power that friction
         leaves; where it is driven, indicated power over that with the friction's; None without
@@ -60,6 +67,9 @@ class Measures:
     external_torque: Estimate
     indicated_power: Estimate | None
     imep: tuple[Estimate, ...] | None
+    imep_crank_end: tuple[Estimate, ...] | None
+    indicated_power_head_end: Estimate | None
+    indicated_power_crank_end: Estimate | None
     friction_power: Estimate | None
     mechanical_efficiency: Estimate | None
     force_power: Estimate | None
@@ -97,6 +107,9 @@ def measure(result: Result) -> Measures:
         external_torque=found["external_torque"][0],
         indicated_power=single("indicated_power"),
         imep=found.get("imep"),
+        imep_crank_end=found.get("imep_crank_end"),
+        indicated_power_head_end=single("indicated_power_head_end"),
+        indicated_power_crank_end=single("indicated_power_crank_end"),
         friction_power=single("friction_power"),
         mechanical_efficiency=single("mechanical_efficiency"),
         force_power=single("force_power"),
@@ -188,34 +201,52 @@ def _numbers(scene: Scene, window: Span, motion: Motion) -> Numbers:
 def _powers(scene: Scene, window: Span, nodes: Nodes, late: float) -> Numbers:
     """Of gas, friction and forces from outside on the pistons; late : units of rounding of the
     duration."""
-    velocity = nodes.variables["piston_velocity"]
-    of_gas, rubbed, applied = (
-        Number(nodes.integral(power), late * nodes.integral(np.abs(power)))
-        for power in (
-            nodes.variables[name] * velocity if name in nodes.variables else 0.0 * velocity
-            for name in ("gas_force", "friction_force", "applied_force")
-        )
-    )
+    variables, velocity = nodes.variables, nodes.variables["piston_velocity"]
+
+    def work(name: str, factor: float = 1.0) -> Number:
+        power = factor * variables[name] * velocity if name in variables else 0.0 * velocity
+        return Number(nodes.integral(power), late * nodes.integral(np.abs(power)))
+
+    ends = None
+    if scene.double_acting:
+        head, crank = scene.piston.gas_area or 0.0, scene.piston.crank_end_area
+        ends = work("gas_pressure", head), work("crank_end_pressure", -crank)
+    works = Works(work("gas_force"), work("friction_force"), ends)
     whole = window.kind in CYCLES
     cycles = abs(window.angle) / scene.period if whole else 0.0
     duration = nodes.motion.end - nodes.motion.begin
-    numbers = powers(scene, of_gas, rubbed, cycles, duration)
-    return numbers | ({"force_power": applied.summed.over(duration)} if scene.force else {})
+    numbers = powers(scene, works, cycles, duration)
+    if scene.force:
+        numbers["force_power"] = work("applied_force").summed.over(duration)
+    return numbers
 
 
-def powers(
-    scene: Scene, of_gas: Number, rubbed: Number, cycles: float, duration: float | Array
-) -> Numbers:
-    """Powers, mean effective pressures and efficiency by the works of gas and friction on the
-    pistons, shape (cylinders,) [J], over so many cycles, 0 where they are not whole ones, in a
-    duration [s]."""
-    numbers, area = {}, scene.piston.gas_area
-    if scene.gas is not None and area is not None:
+class Works(NamedTuple):
+    """Works on the pistons, shape (cylinders,) [J]: of the gas, of friction, and of the gas of
+    double-acting cylinders in the head end and in the crank end."""
+
+    gas: Number
+    rubbed: Number
+    ends: tuple[Number, Number] | None = None
+
+
+def powers(scene: Scene, works: Works, cycles: float, duration: float | Array) -> Numbers:
+    """Powers, mean effective pressures and efficiency by the works on the pistons over so many
+    cycles, 0 where they are not whole ones, in a duration [s]."""
+    numbers, (of_gas, rubbed, ends), piston = {}, works, scene.piston
+    if scene.gas is not None and piston.gas_area is not None:
         numbers["indicated_power"] = of_gas.summed.over(duration)
+        head, crank = ends or (of_gas, None)
+        if crank is not None:
+            numbers["indicated_power_head_end"] = head.summed.over(duration)
+            numbers["indicated_power_crank_end"] = crank.summed.over(duration)
         if cycles:
             shape = scene.crank.radius, scene.rod.length, scene.piston.offset
             top, bottom = close_loop(dead_centres(*shape), *shape).x
-            numbers["imep"] = of_gas.over(cycles * area * float(top - bottom))
+            strokes = cycles * float(top - bottom)
+            numbers["imep"] = head.over(piston.gas_area * strokes)
+            if crank is not None:
+                numbers["imep_crank_end"] = crank.over(piston.crank_end_area * strokes)
     if scene.friction is not None:
         numbers["friction_power"] = rubbed.summed.over(-duration)
         gained, lost = (

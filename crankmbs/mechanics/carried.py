@@ -58,7 +58,9 @@ def carried_over(scene: Scene, before: Scene) -> Scene:
     True
     """
     gas, ways = scene.gas, (_shape(before), _shape(scene))
-    if gas is None or gas.indicator is not None or ways[0] == ways[1]:
+    if gas is None or ways[0] == ways[1]:
+        return scene
+    if gas.indicator is not None and not tables_of(gas.crank_end):
         return scene
     if any(radius == length and offset == 0.0 for radius, length, offset in ways):
         raise InputError(
@@ -67,11 +69,11 @@ def carried_over(scene: Scene, before: Scene) -> Scene:
         )
     moved: dict[str, Any] = {
         name: _moved(before, gas, given, ways)
-        for name in ("pressure", "motored")
+        for name in ("pressure", "motored", "crank_end")
         if isinstance(given := getattr(gas, name), Table | CylinderTable | tuple)
     }
-    of_table = isinstance(moved.get("pressure"), tuple) and not isinstance(gas.pressure, tuple)
-    moved |= {"aligned": False} if of_table else {}
+    if any(isinstance(getattr(gas, name), CylinderTable) for name in moved):
+        moved["aligned"] = False
     return dataclasses.replace(scene, gas=dataclasses.replace(gas, **moved))
 
 

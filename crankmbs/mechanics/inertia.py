@@ -26,6 +26,7 @@ __all__ = [
     "Reduction",
     "RodCentre",
     "crank_weight",
+    "ends_at",
     "fired_torque",
     "gas_at",
     "inertia_alone",
@@ -183,6 +184,22 @@ def gas_at(train: CrankTrain, theta: Array, shares: Array | None = None) -> Arra
     if shares is not None and train.combustion is not None:
         gas += shares * pressures_at(train.combustion, phi)
     return gas
+
+
+def ends_at(train: CrankTrain, theta: Array, net: Array) -> dict[str, Array]:
+    """The pressures of both ends of the cylinders less ambient [Pa] at crank angles of shape (n,)
+    [rad], by variable; without crank ends nothing.
+
+    net : gas forces over the piston's area [Pa], shape (cylinders, n)
+
+    >>> ends_at(crank_train(load_scene("propeller")), np.zeros(1), np.zeros((1, 1)))
+    {}
+    """
+    if train.crank_end is None:
+        return {}
+    below = pressures_at(train.crank_end, np.add.outer(axes_of(train.scene).phases, theta))
+    head = net + train.scene.piston.crank_end_share * below
+    return {"gas_pressure": head, "crank_end_pressure": below}
 
 
 def fired_torque(train: CrankTrain, theta: ArrayLike) -> Array:

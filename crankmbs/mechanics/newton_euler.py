@@ -18,7 +18,7 @@ import numpy as np
 
 from crankmbs.mechanics.axes import axes_of, closed_loops, gravity_vector
 from crankmbs.mechanics.geometry import Loop, top_position
-from crankmbs.mechanics.inertia import crank_weight, gas_at, moving_inertias, rod_centre
+from crankmbs.mechanics.inertia import crank_weight, ends_at, gas_at, moving_inertias, rod_centre
 from crankmbs.mechanics.journals import journal_rows, of_journals
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.numerics.arrays import Array
@@ -71,8 +71,9 @@ _OF_JOINTS = (
 _ACCELERATIONS = ("rod_angular_acceleration", "piston_acceleration")
 _VELOCITIES = ("rod_angular_speed", "piston_velocity")
 _OF_PLACE = ("rod_angle", "piston_position", "piston_displacement", "gas_pressure", "gas_force")
-_OF_ANGLE = (*_VELOCITIES, *_OF_PLACE)
-_OF_CYLINDER = (*_OF_JOINTS, *_ACCELERATIONS, *_OF_ANGLE)
+_OF_CRANK_END = "crank_end_pressure"
+_OF_ANGLE = (*_VELOCITIES, *_OF_PLACE, _OF_CRANK_END)
+_OF_CYLINDER = (*_OF_JOINTS, *_ACCELERATIONS, *_VELOCITIES, *_OF_PLACE)
 
 
 def rows_of(scene: Scene) -> dict[str, int]:
@@ -85,7 +86,8 @@ def rows_of(scene: Scene) -> dict[str, int]:
     count = len(scene.cylinders)
     rocking = () if scene.levers is None else ("rocking_moment_x", "rocking_moment_y")
     of_crank = dict.fromkeys((*_OF_CRANK, *rocking), 1) | journal_rows(scene)
-    return of_crank | dict.fromkeys(_OF_CYLINDER, count)
+    ends = (_OF_CRANK_END,) if scene.double_acting else ()
+    return of_crank | dict.fromkeys((*_OF_CYLINDER, *ends), count)
 
 
 def powers_of(name: str) -> tuple[int, ...]:
@@ -163,6 +165,8 @@ def of_cylinders(train: CrankTrain, theta: Array, motion: Powers) -> Cylinders:
         "journal_torque": journal,
         "pin_torque": journal - 0.5 * torque,
     }
+    for name, pressures in ends_at(train, theta, gas[:, 0]).items():
+        variables[name] = pressures[:, np.newaxis]
     shake_x, shake_y = -inertial_x - carried, leaning - inertial_y
     moment = -loop.x * side - piston.offset * push
     return Cylinders(variables, shake_x, shake_y, moment, moving_inertias(scene, loop, g))

@@ -30,7 +30,9 @@ from crankmbs.scene.units import BAR
 __all__ = [
     "PeriodicPressure",
     "combustion_of",
+    "crank_ends_of",
     "motored_of",
+    "net_of",
     "pressures_at",
     "pressures_of",
     "remarks",
@@ -140,22 +142,37 @@ def combustion_of(
     fired: PeriodicPressure, motored: PeriodicPressure
 ) -> tuple[PeriodicPressure, PeriodicPressure]:
     """The pressure without combustion, and what combustion adds to it, on the same knots."""
-    one = 2.0 * math.pi
-    period = math.lcm(*(round(each.period / one) for each in (fired, motored))) * one
-    first = float(fired.knots[0])
-    inner = [repeat(p.knots[:-1], p.period, first, first + period) for p in (fired, motored)]
-    knots = apart(np.concatenate([[first], *inner]))
-    knots = np.append(knots[knots < first + period - KNOT], first + period)
-    without, whole = motored.on(knots), fired.on(knots)
+    whole, without = _on_all_knots(fired, motored)
     missed = None
     if without.missed is not None and whole.missed is not None:
         missed = whole.missed - without.missed
-    more = PeriodicPressure(knots, whole.coefficients - without.coefficients, missed)
+    more = PeriodicPressure(whole.knots, whole.coefficients - without.coefficients, missed)
     return without, more
 
 
+def net_of(head: PeriodicPressure, crank_end: PeriodicPressure, share: float) -> PeriodicPressure:
+    """The pressure that pushes a whole piston as those of both its ends do: that of the head end
+    less that of the crank end on its share of the area, on the knots of both."""
+    above, below = _on_all_knots(head, crank_end)
+    net = above.coefficients - share * below.coefficients
+    return PeriodicPressure(above.knots, net, above.missed)
+
+
+def _on_all_knots(
+    one: PeriodicPressure, other: PeriodicPressure
+) -> tuple[PeriodicPressure, PeriodicPressure]:
+    """Both on the knots of both, over the least common multiple of their periods."""
+    turn = 2.0 * math.pi
+    period = math.lcm(*(round(each.period / turn) for each in (one, other))) * turn
+    first = float(one.knots[0])
+    inner = [repeat(p.knots[:-1], p.period, first, first + period) for p in (one, other)]
+    knots = apart(np.concatenate([[first], *inner]))
+    knots = np.append(knots[knots < first + period - KNOT], first + period)
+    return one.on(knots), other.on(knots)
+
+
 def pressures_of(scene: Scene) -> tuple[PeriodicPressure, ...] | None:
-    """The pressure difference across the piston of each cylinder of a scene; None without gas.
+    """The pressure of each head end of a scene less ambient; None without gas.
 
     A table's rows are joined as `crankmbs.scene.pressure_rows.interpolate` says. Cylinders of one
     table share one pressure; a sequence of cycles has them all for its period.
@@ -187,6 +204,18 @@ def motored_of(scene: Scene) -> tuple[PeriodicPressure, ...]:
         return _given(scene, gas, gas.motored)
     once = {each: _continued(scene, gas, gas.motored, each) for each in dict.fromkeys(fired)}
     return tuple(once[each] for each in fired)
+
+
+def crank_ends_of(scene: Scene) -> tuple[PeriodicPressure, ...] | None:
+    """The pressure of each crank end less ambient, read as that of `pressures_of`; None without.
+
+    >>> crank_ends_of(load_scene("propeller")) is None
+    True
+    """
+    gas = scene.gas
+    if gas is None or gas.crank_end is None:
+        return None
+    return _given(scene, gas, gas.crank_end)
 
 
 def _of_indicator(scene: Scene, gas: Gas, *, fires: bool) -> PeriodicPressure:
@@ -246,7 +275,7 @@ def remarks(scene: Scene) -> tuple[str, ...]:
         return ()
     return tuple(
         said
-        for table in dict.fromkeys(gas.tables + tables_of(gas.motored))
+        for table in dict.fromkeys(sum(map(tables_of, (gas.motored, gas.crank_end)), gas.tables))
         for said in _remarks(gas, table)
     )
 

@@ -14,7 +14,14 @@ from crankmbs.mechanics.firing import FuelLaw
 from crankmbs.mechanics.forces import OnCrank
 from crankmbs.mechanics.geometry import dead_centres
 from crankmbs.mechanics.knots import KNOT, apart
-from crankmbs.mechanics.pressure import PeriodicPressure, combustion_of, motored_of, pressures_of
+from crankmbs.mechanics.pressure import (
+    PeriodicPressure,
+    combustion_of,
+    crank_ends_of,
+    motored_of,
+    net_of,
+    pressures_of,
+)
 from crankmbs.mechanics.speed import speed_law
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.cycle import common_period
@@ -36,16 +43,20 @@ __all__ = [
 class CrankTrain:
     """The machine of a scene; data alone, so that formulations that share it share no mechanics.
 
-    pressure : difference across the piston of each cylinder over its cycle angle; None without gas
+    pressure : of the gas over the cycle angle of each cylinder, gas force over the piston's area;
+        None without gas
     combustion : what a firing of share 1 adds to it, on the same knots, where `pressure` is that
         without combustion; None without fuel
     law : the decisions on the shares; None without fuel
+    crank_end : of each crank end less ambient, which `pressure` holds on its share of the area; no
+        motion needs it, but who tells the ends apart; None where cylinders are single-acting
     """
 
     scene: Scene
     pressure: tuple[PeriodicPressure, ...] | None
     combustion: tuple[PeriodicPressure, ...] | None = None
     law: FuelLaw | None = None
+    crank_end: tuple[PeriodicPressure, ...] | None = None
 
     @cached_property
     def perturbed(self) -> CrankTrain:
@@ -118,16 +129,29 @@ def crank_train(scene: Scene) -> CrankTrain:
     >>> crank_train(load_scene("coasting")).pressure is None
     True
     """
-    fired = pressures_of(scene)
+    fired, ends = pressures_of(scene), crank_ends_of(scene)
+    if fired is not None and ends is not None:
+        fired = _net(scene, fired, ends)
     if scene.fuel is None or fired is None:
-        return CrankTrain(scene, fired)
+        return CrankTrain(scene, fired, crank_end=ends)
     motored = motored_of(scene)
+    if ends is not None:
+        motored = _net(scene, motored, ends)
     once = {pair: combustion_of(*pair) for pair in dict.fromkeys(zip(fired, motored, strict=True))}
     both = [once[pair] for pair in zip(fired, motored, strict=True)]
     without, more = (tuple(parts) for parts in zip(*both, strict=True))
     start = scene.start
     begun = (start.angle, start.speed) if start else _beginning(scene)
-    return CrankTrain(scene, without, more, FuelLaw(scene, scene.fuel, begun))
+    return CrankTrain(scene, without, more, FuelLaw(scene, scene.fuel, begun), ends)
+
+
+def _net(
+    scene: Scene, heads: tuple[PeriodicPressure, ...], ends: tuple[PeriodicPressure, ...]
+) -> tuple[PeriodicPressure, ...]:
+    """What pushes each piston; cylinders of one pair of pressures share it."""
+    share, pairs = scene.piston.crank_end_share, list(zip(heads, ends, strict=True))
+    once = {pair: net_of(*pair, share) for pair in dict.fromkeys(pairs)}
+    return tuple(once[pair] for pair in pairs)
 
 
 def _beginning(scene: Scene) -> tuple[float, float]:

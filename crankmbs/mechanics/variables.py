@@ -65,7 +65,8 @@ VARIABLES = {
     ),
     "piston_velocity": Variable("m/s", "piston velocity towards the crank", "cylinder"),
     "piston_acceleration": Variable("m/s^2", "piston acceleration towards the crank", "cylinder"),
-    "gas_pressure": Variable("Pa", "pressure difference across the piston", "cylinder"),
+    "gas_pressure": Variable("Pa", "pressure of the head end less ambient", "cylinder"),
+    "crank_end_pressure": Variable("Pa", "pressure of the crank end less ambient", "cylinder"),
     "gas_force": Variable("N", "gas force on the piston towards the crank", "cylinder"),
     "side_force": Variable("N", "cylinder wall on piston, cylinder's Y", "cylinder"),
     "piston_pin_force_x": Variable("N", "rod on piston, cylinder's X", "cylinder"),
@@ -106,14 +107,15 @@ COORDINATES = ("time", "crank_angle", "cylinder")
 
 def variables_of(scene: Scene) -> dict[str, Variable]:
     """The variables that a result of a scene has: rocking moments where the cylinders have places,
-    the shares of the combustion where there is fuel, friction and forces from outside where there
-    are, the forces of main journals where there are bearings, those of pins where two rods share
-    one.
+    the pressure of the crank end where cylinders are double-acting, the shares of the combustion
+    where there is fuel, friction and forces from outside where there are, the forces of main
+    journals where there are bearings, those of pins where two rods share one.
 
     >>> "rocking_moment_x" in variables_of(load_scene("propeller"))
     False
     """
     without = {"fuel"} if scene.fuel is None else set()
+    without |= set() if scene.double_acting else {"crank_end_pressure"}
     without |= {"friction_force"} if scene.friction is None else set()
     without |= set() if scene.force else {"applied_force"}
     without |= {"rocking_moment_x", "rocking_moment_y"} if scene.levers is None else set()

@@ -205,7 +205,7 @@ class Cycles:
         }
         if scene.gas is not None:
             work = self._gas.works(place, sense, before, after)
-            found |= {"gas_work": work, "imep": work / self._gas.swept}
+            found |= {"gas_work": work, **self._gas.pressures(work, place, sense)}
         if scene.fuel is not None:
             found["fuel"] = self._gas.shares(sense, before, after)
         if scene.torque:

@@ -31,14 +31,21 @@ class GasWork:
         self._area = scene.piston.gas_area or 0.0
         ahead = (math.pi - self._phases - start) % self._period
         self._decides = np.where(self._period - ahead < _SAME, 0.0, ahead)
-        self._without, self._below, self._above = self._integrals()
+        self._without, self._below, self._above, self._crank_end = self._integrals()
 
-    @property
-    def swept(self) -> float:
-        """Displaced volume of a cylinder [m3]."""
+    def pressures(self, work: Array, place: Index, sense: Array) -> dict[str, Array]:
+        """Mean effective pressures by name [Pa], shape (n, cylinders), of works of the gas [J] in
+        cycles as `works` takes them; of double-acting cylinders those of both ends."""
         r, l, e = self._shape
         top, bottom = close_loop(dead_centres(r, l, e), r, l, e).x
-        return self._area * float(top - bottom)
+        stroke, piston = float(top - bottom), self._train.scene.piston
+        if self._train.crank_end is None:
+            return {"imep": work / (self._area * stroke)}
+        below = sense[:, None] * self._crank_end[self._which(place, sense)]
+        return {
+            "imep": (work - below) / (self._area * stroke),
+            "imep_crank_end": below / (piston.crank_end_area * stroke),
+        }
 
     def works(self, place: Index, sense: Array, before: Array, after: Array) -> Array:
         """Work [J] in cycles, shape (n, cylinders): motored, and by both shares of the combustion.
@@ -46,13 +53,17 @@ class GasWork:
         place : shape (n,), how many periods from the start the cycle begins; sense : its sign
         before, after : shape (n, cylinders), shares up to the decision in the cycle and from it on
         """
-        which = np.where(sense > 0.0, place, -place - 1) % self._cycles
+        which = self._which(place, sense)
         work = self._without[which]
         if before.shape[1]:
             rises = sense[:, None] > 0.0
             below, above = np.where(rises, before, after), np.where(rises, after, before)
             work = work + below * self._below[which] + above * self._above[which]
         return np.asarray(sense[:, None] * work)
+
+    def _which(self, place: Index, sense: Array) -> Index:
+        """Which cycle of the whole period each is."""
+        return np.asarray(np.where(sense > 0.0, place, -place - 1) % self._cycles)
 
     def shares(self, sense: Array, before: Array, after: Array) -> Array:
         """The share of the firing whose dead centre a cycle holds, shape (n, cylinders)."""
@@ -61,9 +72,9 @@ class GasWork:
         falling = np.where(self._decides >= ahead - _SAME, after, before)
         return np.asarray(np.where(sense[:, None] > 0.0, rising, falling))
 
-    def _integrals(self) -> tuple[Array, Array, Array]:
-        """Of the pressure without combustion, and of a share of 1 below and above the decision, in
-        each cycle of the whole period, shape (cycles, cylinders)."""
+    def _integrals(self) -> Array:
+        """Of the pressure without combustion, of a share of 1 below and above the decision, and of
+        the crank ends alone, in each cycle of the whole period, shape (4, cycles, cylinders)."""
         train, whole = self._train, self._period * self._cycles
         count = round(whole / _PANEL)
         knots = (crank_angle_knots(train) - self._start) % whole
@@ -76,7 +87,7 @@ class GasWork:
         width = np.diff(edges)[:, None]
         ahead = edges[:-1, None] + 0.5 * width * (1.0 + nodes)
         of_panel = np.minimum(ahead[:, 0] // self._period, self._cycles - 1).astype(np.intp)
-        found = np.zeros((3, self._cycles, len(self._phases)))
+        found = np.zeros((4, self._cycles, len(self._phases)))
         for k, phase in enumerate(self._phases):
             phi = self._start + ahead + phase
             lever = -self._area * close_loop(phi, *self._shape).x_1 * 0.5 * width * weights
@@ -86,5 +97,9 @@ class GasWork:
             if train.combustion is not None:
                 work = (lever * train.combustion[k](phi)).sum(axis=1)
                 late = (ahead[:, 0] % self._period > self._decides[k]).astype(np.intp)
-                np.add.at(found[1:, :, k], (late, of_panel), work)
-        return found[0], found[1], found[2]
+                np.add.at(found[1:3, :, k], (late, of_panel), work)
+            if train.crank_end is not None:
+                share = train.scene.piston.crank_end_share
+                work = -(share * lever * train.crank_end[k](phi)).sum(axis=1)
+                np.add.at(found[3, :, k], of_panel, work)
+        return found

@@ -66,6 +66,7 @@ CYCLES = {
     "kinetic_energy_gained": Variable("J", "kinetic energy at its end less that at its beginning"),
     "gas_work": Variable("J", "work of the gas on the piston", "cylinder"),
     "imep": Variable("Pa", "work of the gas over the displaced volume", "cylinder"),
+    "imep_crank_end": Variable("Pa", "work of the crank end over its volume", "cylinder"),
     "fuel": Variable("1", "share of the firing whose dead centre it holds", "cylinder"),
     "friction_work": Variable("J", "work of the friction on the piston", "cylinder"),
     "load_work": Variable("J", "work of the load"),

@@ -25,8 +25,9 @@ _DIAGRAM = (
 
 
 def exported_gas(scene: Scene, train: CrankTrain) -> dict[str, Any] | None:
-    """Pressures and combustion of every cylinder, as cycles; their sources, and by number which is
-    that of which cylinder; the shape that the pressures belong to. None without gas.
+    """What pushes every piston over its area, what combustion adds, and the crank ends, as cycles;
+    the crank end's share of the area; the sources of the pressures, and by number which is that of
+    which cylinder, `below` of the crank ends; the shape that they belong to. None without gas.
 
     >>> scene = load_scene("v_twin")
     >>> exported_gas(scene, crank_train(scene))["fired"]
@@ -49,9 +50,12 @@ def exported_gas(scene: Scene, train: CrankTrain) -> dict[str, Any] | None:
         },
         "pressure": [_cycle(each) for each in train.pressure],
         "combustion": [_cycle(each) for each in train.combustion or ()],
+        "crank_end": [_cycle(each) for each in train.crank_end or ()],
+        "share": scene.piston.crank_end_share if scene.double_acting else 0.0,
         "sources": sources.found,
         "fired": fired,
         "motored": motored,
+        "below": [] if gas.crank_end is None else sources.numbers(gas.crank_end, fires=False),
         "period": gas.period,
         "ambient": gas.ambient or 0.0,
     }

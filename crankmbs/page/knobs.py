@@ -149,7 +149,8 @@ def _is_of_any_number(scene: Scene) -> bool:
     gas = scene.gas
     if scene.fuel is not None or gas is None:
         return scene.fuel is None
-    return not any(isinstance(each, CylinderTable | tuple) for each in (gas.pressure, gas.motored))
+    every = (gas.pressure, gas.motored, gas.crank_end)
+    return not any(isinstance(each, CylinderTable | tuple) for each in every)
 
 
 def _speed(scene: Scene) -> float:

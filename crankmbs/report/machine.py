@@ -9,12 +9,12 @@ import numpy as np
 from crankmbs.choose import Choice
 from crankmbs.measures.plausible import warnings
 from crankmbs.mechanics.geometry import close_loop, dead_centres
-from crankmbs.mechanics.pressure import PeriodicPressure, pressures_of, remarks
+from crankmbs.mechanics.pressure import PeriodicPressure, crank_ends_of, pressures_of, remarks
 from crankmbs.mechanics.speed import speed_remarks
 from crankmbs.scene.cycles import cycles_in
 from crankmbs.scene.drives import Oscillation, Ramp, SpeedFile
 from crankmbs.scene.force import PistonForce
-from crankmbs.scene.gas import Gas
+from crankmbs.scene.gas import Gas, PressureGiven, tables_of
 from crankmbs.scene.run import SETTLED, Extent
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.speed_rows import repeats
@@ -43,7 +43,8 @@ def machine_rows(scene: Scene) -> list[tuple[str, str]]:
     >>> [name for name, _ in machine_rows(load_scene("coasting"))][2:5]
     ['crank', 'rod', 'piston']
     """
-    pressures = dict.fromkeys(pressures_of(scene) or ())
+    heads, ends = (dict.fromkeys(of(scene) or ()) for of in (pressures_of, crank_ends_of))
+    at_head = "in the head end" if ends else "across the piston"
     rows = [
         ("title", scene.title),
         ("source", scene.source),
@@ -53,7 +54,8 @@ def machine_rows(scene: Scene) -> list[tuple[str, str]]:
         ("dead centres", _dead_centres(scene)),
         ("cylinders", _cylinders(scene)),
         ("gas", _gas(scene)),
-        *(("pressure", _pressure(scene, pressure)) for pressure in pressures),
+        *(("pressure", _pressure(scene, pressure, at_head)) for pressure in heads),
+        *(("", _pressure(scene, pressure, "in the crank end")) for pressure in ends),
         *(("", remark) for remark in remarks(scene)),
         ("friction", _friction(scene)),
         ("bearings", _shells(scene)),
@@ -98,7 +100,8 @@ def _piston(scene: Scene) -> str:
         across = math.sqrt(4.0 * area / math.pi)
         bore = f", bore {across * 1e3:.6g} mm, area {area * 1e4:.6g} cm^2"
     offset = f", offset {piston.offset * 1e3:.6g} mm" if piston.offset else ""
-    return f"mass {piston.mass:.6g} kg{bore}{offset}"
+    rod = f", piston rod {piston.rod_diameter * 1e3:.6g} mm" if piston.rod_diameter else ""
+    return f"mass {piston.mass:.6g} kg{bore}{offset}{rod}"
 
 
 def _dead_centres(scene: Scene) -> str:
@@ -131,35 +134,41 @@ def _gas(scene: Scene) -> str:
         return "none"
     if gas.indicator is not None:
         origin = f"indicator diagram, compression ratio {gas.indicator.compression_ratio:.6g}"
-    elif isinstance(gas.pressure, float):
-        origin = f"constant pressure of {gas.pressure / BAR:.6g} bar"
     else:
-        origin = f"{_tables(gas)}, {gas.interpolation}"
-    return f"{gas.stroke}-stroke, {origin}"
+        assert gas.pressure is not None
+        origin = _origin(gas, gas.pressure)
+    if gas.crank_end is not None:
+        origin += f"; crank end: {_origin(gas, gas.crank_end)}"
+    return f"{gas.stroke}-stroke, {'double-acting, ' * scene.double_acting}{origin}"
 
 
-def _tables(gas: Gas) -> str:
-    if isinstance(gas.pressure, CylinderTable):
+def _origin(gas: Gas, given: PressureGiven) -> str:
+    """What a pressure is made of."""
+    if isinstance(given, float):
+        return f"constant pressure of {given / BAR:.6g} bar"
+    return f"{_tables(gas, given)}, {gas.interpolation}"
+
+
+def _tables(gas: Gas, given: PressureGiven) -> str:
+    tables = tables_of(given)
+    if isinstance(given, CylinderTable):
         over = "its own cycle angle" if gas.aligned else "that of cylinder 1"
-        text = (
-            f"{len(gas.pressure.x)} rows of {gas.pressure.source}, {len(gas.pressure.y)} columns, "
-            f"each over {over}"
-        )
+        text = f"{len(given.x)} rows of {given.source}, {len(given.y)} columns, each over {over}"
     else:
-        text = " and ".join(f"{len(table.x)} rows of {table.source}" for table in gas.tables)
-    cycles = max(cycles_in(table, gas.period) for table in gas.tables)
+        text = " and ".join(f"{len(table.x)} rows of {table.source}" for table in tables)
+    cycles = max(cycles_in(table, gas.period) for table in tables)
     if cycles == 1:
         return text
     return f"{text}, {'the mean' if gas.cycles == 'mean' else 'a sequence'} of {cycles} cycles"
 
 
-def _pressure(scene: Scene, pressure: PeriodicPressure) -> str:
+def _pressure(scene: Scene, pressure: PeriodicPressure, where: str) -> str:
     assert scene.gas is not None
     ambient = scene.gas.ambient
     given = "gauge" if ambient is None else f"absolute, ambient {ambient / BAR:.6g} bar subtracted"
     angle, peak = pressure.peak
     return (
-        f"{given}; at most {peak / BAR:.6g} bar across the piston, at a cycle angle of "
+        f"{given}; at most {peak / BAR:.6g} bar {where}, at a cycle angle of "
         f"{math.degrees(angle):.6g} deg"
     )
 

@@ -52,11 +52,25 @@ def measure_rows(measures: Measures) -> list[list[str]]:
         rows.append(_value("mechanical efficiency [1]", measures.mechanical_efficiency))
     if measures.force_power is not None:
         rows.append(_value("power of the forces on the pistons [kW]", measures.force_power, 1e-3))
-    pressures = measures.imep or ()
-    for number, imep in enumerate(pressures, start=1):
-        whose = f", cylinder {number}" if len(pressures) > 1 else ""
-        rows.append(_value(f"indicated mean effective pressure{whose} [bar]", imep, 1e-5))
-    return rows
+    for end in ("head_end", "crank_end"):
+        power = getattr(measures, f"indicated_power_{end}")
+        if power is not None:
+            rows.append(_value(f"indicated power, {end.replace('_', ' ')} [kW]", power, 1e-3))
+    double = measures.imep_crank_end is not None
+    return [
+        *rows,
+        *_pressures(measures.imep or (), ", head end" if double else ""),
+        *_pressures(measures.imep_crank_end or (), ", crank end"),
+    ]
+
+
+def _pressures(pressures: tuple[Estimate, ...], end: str) -> list[list[str]]:
+    """The mean effective pressures of the cylinders."""
+    name, many = "indicated mean effective pressure", len(pressures) > 1
+    return [
+        _value(f"{name}{end}{f', cylinder {number}' if many else ''} [bar]", imep, 1e-5)
+        for number, imep in enumerate(pressures, start=1)
+    ]
 
 
 def force_rows(measures: Measures, period: float) -> list[list[str]]:

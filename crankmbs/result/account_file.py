@@ -112,6 +112,7 @@ def _has(scene: Scene, name: str) -> bool:
     return {
         "gas_work": scene.gas is not None,
         "imep": scene.gas is not None,
+        "imep_crank_end": scene.double_acting,
         "fuel": scene.fuel is not None,
         "friction_work": scene.friction is not None,
         "load_work": bool(scene.torque),

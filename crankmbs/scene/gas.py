@@ -181,7 +181,9 @@ class Gas:
     cycles: what is made of a file longer than a period, its mean cycle or the sequence of them;
     interpolation between the rows, two of which at one angle are a jump; closing [Pa]: a closing
     row so near the first is dropped, by default 1 % of the range; motored: the pressure without
-    combustion, given alike or as a Polytrope, of which a firing takes its share (`Fuel`).
+    combustion, given alike or as a Polytrope, of which a firing takes its share (`Fuel`);
+    crank_end: the pressure on the side of the piston towards the crank, given alike, which makes a
+    cylinder double-acting; pressure and motored are then those of the head end.
 
     columns, separator, decimal, skip: how a file is read that an indicating system wrote: the
     columns of its pressures by name, what separates them, the decimal sign, how many lines to
@@ -203,6 +205,7 @@ class Gas:
     cycles: Literal["mean", "sequence"] | None = None
     closing: Annotated[Float, Ge(0), si("pressure")] | None = None
     motored: MotoredSource | None = None
+    crank_end: PressureSource | None = None
 
     def __post_init__(self) -> None:
         if (self.pressure is None) == (self.indicator is None):
@@ -236,14 +239,14 @@ class Gas:
     def _forget_how_read(self) -> None:
         """What was said of a file is done, and does not hold of its rows."""
         given = [name for name in HowRead._fields if getattr(self, name) is not None]
-        if given and not self.tables:
+        if given and not self.tables + tables_of(self.crank_end):
             raise InputError(f"{', '.join(given)}: belongs to a pressure file; remove it")
         for name in given:
             object.__setattr__(self, name, None)
 
     def _check_files(self) -> None:
         absolute, closing = self.absolute, self.closing
-        for table in self.tables + tables_of(self.motored):
+        for table in self.tables + tables_of(self.motored) + tables_of(self.crank_end):
             check_rows(table, self.period, self.cycles, absolute=absolute, closing=closing)
             if self.cycles == "mean":
                 mean_cycle(table, self.period)
@@ -259,23 +262,33 @@ class Gas:
             )
         if isinstance(self.motored, Polytrope) and not self.tables:
             raise InputError("motored: a polytrope continues a pressure file; none came")
-        if self.aligned and not isinstance(self.pressure, CylinderTable):
+        by_column = (isinstance(each, CylinderTable) for each in (self.pressure, self.crank_end))
+        if self.aligned and not any(by_column):
             raise InputError(
                 "aligned belongs to a file with a pressure column for each cylinder; remove it"
             )
+        self._check_constants()
+
+    def _check_constants(self) -> None:
         if isinstance(self.pressure, float):
-            if (self.zero, self.interpolation, self.closing, self.cycles) != _NO_FILE:
-                raise InputError(f"{_OF_FILES} beside a constant")
-            if self.absolute and self.pressure < 0.0:
+            self._check_no_file("a constant")
+        for whose, given in (("", self.pressure), ("crank_end: ", self.crank_end)):
+            if self.absolute and isinstance(given, float) and given < 0.0:
                 raise InputError(
-                    f"an absolute pressure cannot be negative; {self.pressure:.6g} Pa came; give "
+                    f"{whose}an absolute pressure cannot be negative; {given:.6g} Pa came; give "
                     "absolute = false when it is gauge"
                 )
+
+    def _check_no_file(self, beside: str) -> None:
+        """Refuse what only a file has, unless one is given for the crank end."""
+        if tables_of(self.crank_end):
+            return
+        if (self.zero, self.interpolation, self.closing, self.cycles) != _NO_FILE:
+            raise InputError(f"{_OF_FILES} beside {beside}")
 
     def _check_indicator(self, indicator: Indicator) -> None:
         if not self.absolute:
             raise InputError("an indicator diagram is absolute; remove absolute = false")
-        if (self.zero, self.interpolation, self.closing, self.cycles) != _NO_FILE:
-            raise InputError(f"{_OF_FILES} beside an indicator")
+        self._check_no_file("an indicator")
         if self.stroke == 4 and indicator.exhaust_pressure is None:
             raise InputError("indicator: a four-stroke cycle needs its exhaust_pressure; none came")

@@ -89,21 +89,44 @@ class Rod:
 
 @part
 class Piston:
-    """mass [kg]; bore [m] or area [m2], needed with gas; offset [m] of the cylinder axis in +Y."""
+    """mass [kg]; bore [m] or area [m2], needed with gas; offset [m] of the cylinder axis in +Y;
+    rod_diameter [m] of a piston rod, on whose area a crank end does not press."""
 
     mass: Mass
     bore: Length | None = None
     area: Area | None = None
     offset: Distance = 0.0
+    rod_diameter: Length | None = None
 
     def __post_init__(self) -> None:
         if self.bore is not None and self.area is not None:
             raise InputError("give bore or area, not both; both came")
+        if self.gas_area is not None and self.rod_area >= self.gas_area:
+            bore = math.sqrt(4.0 * self.gas_area / math.pi)
+            raise InputError(
+                f"rod_diameter must be less than the bore, {bore:.6g} m; "
+                f"{self.rod_diameter:.6g} m came"
+            )
 
     @property
     def gas_area(self) -> float | None:
         """Piston area [m2], or None when neither bore nor area is given."""
         return self.area if self.bore is None else math.pi / 4.0 * self.bore**2
+
+    @property
+    def rod_area(self) -> float:
+        """Area of the piston rod [m2]; 0 without."""
+        return math.pi / 4.0 * (self.rod_diameter or 0.0) ** 2
+
+    @property
+    def crank_end_area(self) -> float:
+        """What the gas of a crank end presses on [m2]: the piston's area less the rod's."""
+        return (self.gas_area or 0.0) - self.rod_area
+
+    @property
+    def crank_end_share(self) -> float:
+        """The same of the piston's area [1]; 0 without bore and area."""
+        return self.crank_end_area / self.gas_area if self.gas_area else 0.0
 
 
 @part

@@ -24,7 +24,7 @@ from crankmbs.scene.cycles import cycles_in
 from crankmbs.scene.drives import Motion, Start
 from crankmbs.scene.force import AnyForce
 from crankmbs.scene.fuel import Fuel
-from crankmbs.scene.gas import Gas
+from crankmbs.scene.gas import Gas, tables_of
 from crankmbs.scene.parts import Crank, Cylinder, Friction, Gravity, Layout, Piston, Rod
 from crankmbs.scene.run import SETTLED, Run
 from crankmbs.scene.schema import part
@@ -67,6 +67,11 @@ class Scene:
         return 4.0 * math.pi if self.gas is None else self.gas.period
 
     @property
+    def double_acting(self) -> bool:
+        """Whether gas presses on both sides of the pistons."""
+        return self.gas is not None and self.gas.crank_end is not None
+
+    @property
     def settles(self) -> bool:
         """Whether the motion asked for is the one that the run comes to."""
         return self.run.until == SETTLED
@@ -91,7 +96,8 @@ class Scene:
         own = [self.load_period]
         if self.gas is not None and self.gas.cycles == "sequence":
             one = self.gas.period
-            own += [cycles_in(table, one) * one for table in self.gas.tables]
+            tables = self.gas.tables + tables_of(self.gas.crank_end)
+            own += [cycles_in(table, one) * one for table in tables]
         misfires = (self.fuel.misfire if self.fuel else None) or ()
         own += [self.period * one.every for one in misfires if one.every]
         return common_period(own)

@@ -98,7 +98,8 @@ def _check_loop(scene: Scene) -> None:
 def _check_gas(scene: Scene) -> None:
     """Refuse as many pressures as there are not cylinders, and fuel that cannot burn."""
     gas, cylinders = scene.gas, len(scene.cylinders)
-    for key, source in (("pressure", gas and gas.pressure), ("motored", gas and gas.motored)):
+    for key in ("pressure", "motored", "crank_end"):
+        source = gas and getattr(gas, key)
         if isinstance(source, CylinderTable | tuple):
             count = len(tables_of(source))
             given = "columns" if isinstance(source, CylinderTable) else "files"

@@ -26,11 +26,12 @@ _ANGULAR = {
     ),
 }
 _WORDS = ("title", "source")
+_PRESSURES = ("motored", "crank_end")  # beside that of the gas
 _UNITS = {
-    **dict.fromkeys(("radius", "length", "bore", "offset", "center_of_mass"), "m"),
+    **dict.fromkeys(("radius", "length", "bore", "rod_diameter", "offset", "center_of_mass"), "m"),
     **dict.fromkeys(("position", "spacing", "relaxed_at"), "m"),
     **dict.fromkeys(("intake_pressure", "exhaust_pressure", "peak_pressure"), "Pa"),
-    **dict.fromkeys(("ambient", "closing", "pressure"), "Pa"),
+    **dict.fromkeys(("ambient", "closing", "pressure", "crank_end"), "Pa"),
     "mass": "kg",
     "inertia": "kg m^2",
     "area": "m^2",
@@ -71,7 +72,7 @@ def scene_files(scene: Scene, stem: str) -> dict[str, str]:
         lines = ["", heading]
         for key, value in _values(part):
             table = getattr(value, "file", value)
-            name = f"{stem}_{use if key != 'motored' else key}"
+            name = f"{stem}_{key if key in _PRESSURES else use}"
             if isinstance(table, Table | CylinderTable):
                 assert header is not None
                 file = f"{name}.csv"

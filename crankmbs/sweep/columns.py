@@ -41,6 +41,9 @@ _MEASURES = {
     "external_torque": Column("N m", "mean torque from outside"),
     "indicated_power": Column("W", "indicated power"),
     "imep": Column("Pa", "indicated mean effective pressure", _CYLINDER),
+    "imep_crank_end": Column("Pa", "indicated mean effective pressure, crank end", _CYLINDER),
+    "indicated_power_head_end": Column("W", "indicated power of the head ends"),
+    "indicated_power_crank_end": Column("W", "indicated power of the crank ends"),
     "friction_power": Column("W", "friction power"),
     "mechanical_efficiency": Column("1", "mechanical efficiency"),
     "force_power": Column("W", "power of the forces on the pistons"),
@@ -54,13 +57,11 @@ def columns_of(scene: Scene, *, series: bool) -> dict[str, Column]:
     >>> "fluctuation_error" in columns_of(load_scene("propeller"), series=False)
     True
     """
-    found = {
-        name: column
-        for name, column in _MEASURES.items()
-        if (scene.gas is not None or name not in ("indicated_power", "imep"))
-        and (scene.friction is not None or name not in ("friction_power", "mechanical_efficiency"))
-        and (scene.force or name != "force_power")
-    }
+    without = set() if scene.gas is not None else {"indicated_power", "imep"}
+    without |= set() if scene.double_acting else {n for n in _MEASURES if n.endswith("_end")}
+    without |= set() if scene.friction is not None else {"friction_power", "mechanical_efficiency"}
+    without |= set() if scene.force else {"force_power"}
+    found = {name: column for name, column in _MEASURES.items() if name not in without}
     joints = _joints(scene)
     for joint, dims in joints.items():
         words = joint.replace("_", " ")

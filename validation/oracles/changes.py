@@ -94,6 +94,7 @@ class Changes:
 
     fired : pressure over the cycle angle of each cylinder, none without gas; cycle [rad] : after
     which a cylinder decides again; rings : ring force [N], share of the gas force, viscous [N s/m]
+    crank_ends : pressure of each crank end alike, none where cylinders are single-acting
     """
 
     machine: Machine
@@ -102,6 +103,7 @@ class Changes:
     firings: Firings | None = None
     cycle: float = 4.0 * math.pi
     rings: tuple[float, float, float] | None = field(default=None)
+    crank_ends: tuple[Curve, ...] = ()
 
 
 def curve_of(table: PressureTable | PressurePieces) -> Curve:

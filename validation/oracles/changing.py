@@ -168,11 +168,16 @@ class _Walk:
         phase, firings = self.phases[j], self.changes.firings
         fired, low, high = self.changes.fired[j].at(ahead + phase)
         edges.append((low - phase, high - phase))
+        piece = GasPiece(fired, low - phase, None, 0.0)
+        if self.changes.crank_ends:
+            below, under, high = self.changes.crank_ends[j].at(ahead + phase)
+            edges.append((under - phase, high - phase))
+            piece = piece._replace(below=below, under=under - phase)
         if firings is None:
-            return GasPiece(fired, low - phase, None, 0.0)
+            return piece
         motored, since, high = firings.motored[j].at(ahead + phase)
         edges.append((since - phase, high - phase))
-        return GasPiece(fired, low - phase, motored, since - phase)
+        return piece._replace(motored=motored, since=since - phase)
 
     def _load(
         self, pull: Pull, ahead: float, side: float, edges: list[tuple[float, float]]

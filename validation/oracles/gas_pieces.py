@@ -18,6 +18,7 @@ class AnglePieces:
 
     machine: Machine
     pieces: tuple[Pieces, ...]
+    crank_ends: tuple[Pieces, ...]
     tables: tuple[Pieces, ...]
     grid: Grid
     arithmetic: Arithmetic
@@ -29,7 +30,12 @@ class AnglePieces:
             return None
         phases = [phase for phase, _ in self.machine.cylinders]
         force, origin = self._cubics(index, self.pieces, phases)
-        return GasPiece(force * self.arithmetic.number(self.machine.piston_area), origin)
+        force = force * self.arithmetic.number(self.machine.piston_area)
+        if self.crank_ends:
+            below, behind = self._cubics(index, self.crank_ends, phases)
+            area = self.arithmetic.number(self.machine.crank_end_area)
+            force = force - area * _from(below, origin - behind)
+        return GasPiece(force, origin)
 
     def loads(self, index: int) -> tuple[Array, Array]:
         """What each angle table gives there, alike, and the origins of its angle."""
@@ -51,15 +57,25 @@ class AnglePieces:
         return np.concatenate(rows), np.concatenate(origins)
 
 
+def _from(cubics: Array, x: Array) -> Array:
+    """Cubics, shape (n, 4) by ascending power, about points farther on by x, shape (n,)."""
+    a, b, c, d = cubics.T
+    return np.stack(
+        [a + x * (b + x * (c + x * d)), b + x * (2 * c + 3 * d * x), c + 3 * d * x, d], axis=1
+    )
+
+
 def angle_pieces(machine: Machine, arithmetic: Arithmetic) -> AnglePieces:
     """The pieces of a machine's pressures and angle tables."""
     of_each = tuple(pressure_pieces(pressure, arithmetic) for pressure in machine.pressures)
+    ends = tuple(pressure_pieces(pressure, arithmetic) for pressure in machine.crank_ends)
     knots: list[Number] = []
     period = arithmetic.whole_turns(machine.period)
     tables = tuple(pressure_pieces(table, arithmetic) for table in machine.loads.angle_tables)
-    phases = [phase for phase, _ in machine.cylinders[: len(of_each)]] + [0] * len(tables)
-    for pieces, phase in zip((*of_each, *tables), phases, strict=True):
+    phases = [phase for of in (of_each, ends) for phase, _ in machine.cylinders[: len(of)]]
+    phases += [0] * len(tables)
+    for pieces, phase in zip((*of_each, *ends, *tables), phases, strict=True):
         for k in range(round(float(period / pieces.period))):
             knots.extend(pieces.knots + k * pieces.period - arithmetic.number(phase))
     grid = merge(knots, arithmetic, period if knots else None)
-    return AnglePieces(machine, of_each, tables, grid, arithmetic)
+    return AnglePieces(machine, of_each, ends, tables, grid, arithmetic)

@@ -89,6 +89,15 @@ KHURMI_15_3 = Machine(crank_radius="0.3", crank_inertia="1", rod_length="1", pis
 KHURMI_15_7 = replace(KHURMI_15_3, rod_length="1.2", piston_mass="250")
 """Khurmi's Example 15.7 without its pressure."""
 
+KHURMI_15_8 = Machine(
+    crank_radius="0.225",
+    crank_inertia="1",
+    rod_length="1.2",
+    piston_mass="225",
+    gravity=("-9.81", "0"),
+)
+"""Khurmi's Example 15.8 without its pressures."""
+
 TEST_SET_CRANK = Machine(
     crank_radius="0.15",
     crank_inertia="0.002727",

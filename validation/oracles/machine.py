@@ -12,7 +12,7 @@ Interpolation = Literal["linear", "step", "pchip", "cubic"]
 
 @dataclass(frozen=True)
 class PressureTable:
-    """Pressure difference across the piston over the cycle angle, periodic, no closing row.
+    """Pressure on a piston less ambient over the cycle angle, periodic, no closing row.
 
     angles increase [rad] and span less than `period` [rad]; a repeated angle is a jump from the
     first of its pressures to the second. pressures in Pa.
@@ -39,7 +39,7 @@ class PressureTable:
 
 @dataclass(frozen=True)
 class PressurePieces:
-    """Pressure difference across the piston as cubics that are given, periodic.
+    """Pressure on a piston less ambient as cubics that are given, periodic.
 
     coefficients[i][j] multiplies (angle - knots[i])**j from knot i to the next; the last piece
     ends one period [rad] behind the first knot.
@@ -93,6 +93,8 @@ class Machine:
     rod_center_of_mass is measured from the crank pin, rod_inertia about it. cylinders holds
     (phase, bank) [rad], pressure one for all of them or one for each; levers how far each stands
     beyond the middle of the crank [m], along X turned into Y, empty where that is not known.
+    crank_ends are the pressures on the sides towards the crank, of each cylinder or none, which
+    press on crank_end_area; only forces and motions by series know of them.
     gravity is (gx, gy) [m/s2] in the engine's frame. The time of the loads' time tables is that of
     the run, which starts at 0.
     """
@@ -113,6 +115,8 @@ class Machine:
     pressure: Pressure | tuple[Pressure, ...] | None = None
     gravity: tuple[Number, Number] = (0.0, 0.0)
     loads: Loads = Loads()
+    crank_ends: tuple[Pressure, ...] = ()
+    crank_end_area: Number = 0.0
 
     @property
     def pressures(self) -> tuple[Pressure, ...]:
@@ -126,7 +130,7 @@ class Machine:
     def period(self) -> Number:
         """Crank angle [rad] after which all pressures and angle tables come again; one turn without
         any."""
-        all_of = (*self.pressures, *self.loads.angle_tables)
+        all_of = (*self.pressures, *self.crank_ends, *self.loads.angle_tables)
         own = [each.period for each in all_of] or [2.0 * math.pi]
         if all(period == own[0] for period in own):
             return own[0]

@@ -7,7 +7,7 @@ import numpy as np
 from validation.oracles import bodies
 from validation.oracles.arithmetic import LONG, Arithmetic, Array
 from validation.oracles.linear import solve
-from validation.oracles.machine import Machine
+from validation.oracles.machine import Machine, Pressure
 from validation.oracles.pressure import evaluate_pressure
 
 
@@ -32,6 +32,7 @@ class Reactions:
     side_force: Array
     crank_torque: Array
     gas_pressure: Array
+    crank_end_pressure: Array
     gas_force: Array
     rod_angle: Array
     piston_position: Array
@@ -57,8 +58,11 @@ def newton_euler(
     angle, rate = bodies.pose(machine, theta, omega, arithmetic)
     cosine, sine = arithmetic.cos(angle), arithmetic.sin(angle)
     count = len(machine.cylinders)
-    pressure = _gas_pressure(machine, angle[:, 1 : 1 + count], arithmetic)
+    throws = angle[:, 1 : 1 + count]
+    pressure = _gas_pressure(machine.pressures, throws, arithmetic)
+    below = _gas_pressure(machine.crank_ends, throws, arithmetic)
     gas_force = pressure * arithmetic.number(machine.piston_area)
+    gas_force = gas_force - below * arithmetic.number(machine.crank_end_area)
 
     right = np.repeat(system.right[None], len(theta), axis=0)
     turning = system.turning(cosine * rate * rate, sine * rate * rate)
@@ -92,6 +96,7 @@ def newton_euler(
         side_force=per_cylinder(bodies.SIDE),
         crank_torque=torque,
         gas_pressure=pressure,
+        crank_end_pressure=below,
         gas_force=gas_force,
         rod_angle=-angle[:, 1 + count :],
         piston_position=position,
@@ -106,11 +111,11 @@ def newton_euler(
     )
 
 
-def _gas_pressure(machine: Machine, throws: Array, arithmetic: Arithmetic) -> Array:
-    if not machine.pressures:
+def _gas_pressure(pressures: tuple[Pressure, ...], throws: Array, arithmetic: Arithmetic) -> Array:
+    if not pressures:
         return throws * 0
     columns = [
         evaluate_pressure(pressure, throws[:, k], arithmetic)
-        for k, pressure in enumerate(machine.pressures)
+        for k, pressure in enumerate(pressures)
     ]
     return np.stack(columns, axis=1)

@@ -46,12 +46,15 @@ class Acting(NamedTuple):
 
 
 class GasPiece(NamedTuple):
-    """Of a cylinder, fired and motored, and the crank angles [rad] that they count from."""
+    """Of a cylinder, fired and motored, and the crank angles [rad] that they count from; below :
+    of its crank end, alike."""
 
     fired: Smooth
     low: float
     motored: Smooth | None
     since: float
+    below: Smooth | None = None
+    under: float = 0.0
 
 
 @dataclass
@@ -90,13 +93,16 @@ class Stretch:
 
     def forces(self, theta: float) -> list[float]:
         """Of the gas on every piston [N], towards the crank."""
-        area, forces = float(self.changes.machine.piston_area), []
+        machine, forces = self.changes.machine, []
         for piece, share in zip(self.gas, self.shares, strict=True):
             pressure = piece.fired(theta - piece.low)
             if piece.motored is not None:
                 without = piece.motored(theta - piece.since)
                 pressure = without + share * (pressure - without)
-            forces.append(area * pressure)
+            force = float(machine.piston_area) * pressure
+            if piece.below is not None:
+                force -= float(machine.crank_end_area) * piece.below(theta - piece.under)
+            forces.append(force)
         return forces or [0.0] * len(self.changes.machine.cylinders)
 
     def friction(self, theta: float, omega: float) -> list[float]:

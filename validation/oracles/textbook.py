@@ -3,7 +3,12 @@
 from dataclasses import replace
 
 from validation.oracles.arithmetic import Arithmetic, Number, multiprecision
-from validation.oracles.known_machines import KHURMI_15_3, KHURMI_15_7, TEST_SET_CRANK
+from validation.oracles.known_machines import (
+    KHURMI_15_3,
+    KHURMI_15_7,
+    KHURMI_15_8,
+    TEST_SET_CRANK,
+)
 from validation.oracles.machine import Machine, PressureTable
 from validation.oracles.newton_euler import Reactions, newton_euler
 
@@ -50,6 +55,27 @@ def _forces(arithmetic: Arithmetic) -> dict[tuple[str, str], Number]:
         "crank_torque": torque,
     }
     return {("khurmi_forces", name): value / 1000 for name, value in found.items()}
+
+
+def steam_engine(digits: int = 30) -> Number:
+    """Khurmi 15.8: the turning moment [N m] of the vertical steam engine 125 degrees after its top
+    dead centre, 30 kPa above and 1.5 kPa below the piston."""
+    arithmetic = multiprecision(digits)
+    turn, quarter_pi = 2 * arithmetic.pi, arithmetic.pi / 4
+    rows = (0, turn / 3, 2 * turn / 3)
+    above, below = (
+        PressureTable(rows, (pressure,) * 3, turn, "linear") for pressure in ("30e3", "1.5e3")
+    )
+    area, rod = (quarter_pi * arithmetic.number(d) ** 2 for d in ("0.3", "0.05"))
+    machine = replace(
+        KHURMI_15_8,
+        piston_area=area,
+        pressure=above,
+        crank_ends=(below,),
+        crank_end_area=area - rod,
+    )
+    angle, omega = 125 * turn / 360, 200 * arithmetic.pi / 30
+    return _state(machine, angle, omega, arithmetic).crank_torque[0, 0]
 
 
 def _rigid_crank(arithmetic: Arithmetic) -> dict[tuple[str, str], Number]:

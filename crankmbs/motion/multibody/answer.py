@@ -148,7 +148,7 @@ class Answers:
             found = self._model.states(theta, omega, along, torque)
         values = {"crank_angle": theta, "crank_speed": omega}
         values |= self._of_bodies(found) | self._of_joints(found)
-        values |= {"gas_force": gas, "gas_pressure": gas / (self._scene.piston.gas_area or 1.0)}
+        values |= {"gas_force": gas, **self._forces.pressures(theta, gas)}
         values |= {} if self._scene.friction is None else {"friction_force": friction}
         return values | ({"applied_force": applied} if self._scene.force else {})
 

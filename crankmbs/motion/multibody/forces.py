@@ -104,6 +104,17 @@ class Forces:
             forces[:, k] += shares[:, k] * self._area * more(theta + self._phases[k])
         return forces
 
+    def pressures(self, theta: Array, gas: Array) -> dict[str, Array]:
+        """The pressures [Pa] of the ends of the cylinders under gas forces [N], by variable, shape
+        (m, n) each."""
+        net, ends = gas / (self._area or 1.0), self.train.crank_end
+        if ends is None:
+            return {"gas_pressure": net}
+        below = [each(theta + phase) for each, phase in zip(ends, self._phases, strict=True)]
+        crank_end = np.array(below).T
+        head = (gas + self.train.scene.piston.crank_end_area * crank_end) / self._area
+        return {"gas_pressure": head, "crank_end_pressure": crank_end}
+
     def friction(self, theta: Array, omega: Array, gas: Array, sense: Array) -> Array:
         """Friction [N] towards the crank, shape (m, n), of pistons that slide in this sense of
         rotation; on a dead centre that after it."""

@@ -50,10 +50,11 @@ export class Engine {
     const loops = this.loops(shape, cylinders.length);
     const machine = { shape, loop: loops[0], loops, crank, rod, piston, cylinders, levers };
     const pressures = quick ? this.pressures.quick : this.pressures.fine;
-    const { pressure, combustion } = pressures(scene.gas, shape, quick ? SEEN : DIAGRAM);
+    const gas = pressures(scene.gas, shape, quick ? SEEN : DIAGRAM);
+    const { pressure, combustion, crank_end, share } = gas;
     const { gravity, friction, loads, fuel, period } = scene;
     const outside = { gravity, friction, loads, fuel, period };
-    return { ...machine, ...outside, pressure, combustion };
+    return { ...machine, ...outside, pressure, combustion, crank_end, share };
   }
 
   /** The motion of a scene; its cells are cut until they err by no more than a tolerance, relative,

@@ -1,5 +1,6 @@
-/** The gas: pressure difference across each piston over its cycle angle [Pa], and what becomes of
- * it when the geometry changes.
+/** The gas: what pushes each piston over its cycle angle, gas force over the piston's area [Pa],
+ * and what becomes of it when the geometry changes. Of a double-acting cylinder it is the pressure
+ * of the head end less that of the crank end on its share of the area.
  *
  * Python passes the cubics of the shape that a scene has, and what they were made of. With another
  * shape the rows of a table move, so that the pressure stays a function of the swept fraction
@@ -18,29 +19,36 @@ export const SEEN = 1e-5;
 const SUPPORT = [0, 0.25, 0.75, 1]; // Chebyshev's extrema: the ends are met exactly
 const BETWEEN = [0.1, 0.5, 0.9]; // where a cubic through the support errs most
 
-/** The cycles of the pressure without combustion, and of what combustion adds, of each cylinder.
+/** The cycles of the pressure without combustion, and of what combustion adds, of each cylinder;
+ * those of the crank ends, if there are any, and their share of the piston's area.
  *
  * gas : as Python passes it, or null; shape : may differ from that of the scene, gas.shape
  * closeness : of the absolute pressure, of cubics to a polytrope
  */
 export function pressuresOf(gas, shape, closeness = DIAGRAM) {
-  if (gas === null) return { pressure: [], combustion: [] };
+  if (gas === null) return { pressure: [], combustion: [], crank_end: [], share: 0 };
   const { radius, length, offset } = gas.shape;
   if (shape.radius === radius && shape.length === length && shape.offset === offset) {
     return gas;
   }
   const once = new Map();
   const close = { ...gas, closeness };
-  const fired = gas.fired.map((number) => {
+  const cycle = (number) => {
     if (!once.has(number)) once.set(number, cycleOf(close, gas.sources[number], shape));
     return once.get(number);
-  });
-  if (gas.motored === null) return { pressure: fired, combustion: [] };
+  };
+  const { share } = gas;
+  const fired = gas.fired.map(cycle);
+  const crankEnd = gas.below.map(cycle);
+  const net = (head, k) => (crankEnd.length ? netOf(head, crankEnd[k], share) : head);
+  const ends = { crank_end: crankEnd, share };
+  if (gas.motored === null) return { pressure: fired.map(net), combustion: [], ...ends };
   const both = gas.motored.map((number, k) => {
-    const source = gas.sources[number];
-    return combustionOf(fired[k], cycleOf(close, source, shape, fired[k]));
+    const motored = cycleOf(close, gas.sources[number], shape, fired[k]);
+    return combustionOf(net(fired[k], k), net(motored, k));
   });
-  return { pressure: both.map((each) => each[0]), combustion: both.map((each) => each[1]) };
+  const [pressure, combustion] = [0, 1].map((n) => both.map((each) => each[n]));
+  return { pressure, combustion, ...ends };
 }
 
 /** The pressure that a source stands for in a machine of this shape. */
@@ -234,14 +242,24 @@ function continued(gas, source, shape, fired) {
 
 /** The pressure without combustion, and what combustion adds to it, on the same knots. */
 function combustionOf(fired, motored) {
-  const ends = (cycle) => [cycle.knots[0], cycle.knots[cycle.knots.length - 1]];
-  const [first, last] = ends(fired);
+  const more = netOf(fired, motored, 1);
+  return [{ knots: more.knots, coefficients: flat(cubicsOn(motored, more.knots)) }, more];
+}
+
+/** A cycle less a share of another, on the knots of both over their least common period. */
+function netOf(one, other, share) {
+  const [first] = one.knots;
+  const turns = [one, other].map(({ knots }) => Math.round((knots.at(-1) - knots[0]) / TURN));
+  let common = turns[0];
+  while (common % turns[1]) common += turns[0];
+  const last = first + common * TURN;
   const inside = (cycle) => knotsOver(cycle, first, last - first).map((each) => first + each);
-  const marks = distinct([first, ...inside(fired), ...inside(motored)], KNOT);
+  const marks = distinct([first, ...inside(one), ...inside(other)], KNOT);
   const knots = Float64Array.from([...marks.filter((each) => each < last - KNOT), last]);
-  const without = cubicsOn(motored, knots);
-  const more = cubicsOn(fired, knots).map((cubic, k) => cubic.map((c, j) => c - without[k][j]));
-  return [{ knots, coefficients: flat(without) }, { knots, coefficients: flat(more) }];
+  const less = cubicsOn(other, knots);
+  const cubics = cubicsOn(one, knots).map((cubic, k) =>
+    cubic.map((c, j) => c - share * less[k][j]));
+  return { knots, coefficients: flat(cubics) };
 }
 
 function knotsBetween(cycle, low, high) {

@@ -60,8 +60,8 @@ export function measuresOf(motion, rule, span) {
   });
   const [fastest, slowest] = peaks.slice(-2).map((each) => each.peak);
   const [rods, outside, rubbed, ...gas] = means.slice(places.length);
-  const work = gas.map((each) => each * duration);
-  const { indicated_power: gained, imep } = indicated(train, span, work, duration);
+  const power = indicated(train, span, gas, duration);
+  const gained = power.indicated_power;
   return {
     window: span.kind,
     mean_speed: speed,
@@ -70,22 +70,33 @@ export function measuresOf(motion, rule, span) {
     joints,
     crank_torque: rods / speed,
     external_torque: outside / speed,
-    indicated_power: gained,
-    imep,
+    ...power,
     friction_power: train.friction === null ? null : -rubbed,
     mechanical_efficiency: train.friction === null ? null : efficiency(gained, -rubbed),
   };
 }
 
-/** Power and mean effective pressure of the gas, whose work on each piston is given [J]. */
-function indicated({ pressure, piston, shape, period }, { kind, from, to }, work, duration) {
+/** Powers and mean effective pressures of the gas, and of both its ends, from its mean powers on
+ * the pistons, and those of the crank ends, [W]. */
+function indicated(train, { kind, from, to }, powers, duration) {
+  const { pressure, crank_end: ends, share, piston, shape, period } = train;
   if (!pressure.length) return { indicated_power: null, imep: null };
-  const total = work.reduce((sum, each) => sum + each, 0);
+  const [all, below] = [powers.slice(0, pressure.length), powers.slice(pressure.length)];
+  const above = all.map((each, k) => each - (below[k] ?? 0));
+  const sum = (each) => each.reduce((total, one) => total + one, 0);
   const volume = piston.area * (topPosition(shape) - bottomPosition(shape));
   const cycles = Math.round(Math.abs(to - from) / period);
   const whole = ["last cycle", "last period", "settled period"].includes(kind);
-  const imep = whole ? work.map((each) => each / (cycles * volume)) : null;
-  return { indicated_power: total / duration, imep };
+  const imepOf = (each, swept) =>
+    whole ? each.map((one) => (one * duration) / (cycles * swept)) : null;
+  const found = { indicated_power: sum(all), imep: imepOf(above, volume) };
+  if (!ends.length) return found;
+  return {
+    ...found,
+    imep_crank_end: imepOf(below, share * volume),
+    indicated_power_head_end: sum(above),
+    indicated_power_crank_end: sum(below),
+  };
 }
 
 /** Of indicated power I and friction's R: (I - R) / I of an engine, I / (I - R) of a driven one. */
@@ -108,14 +119,17 @@ function placesOf({ cylinders }) {
 }
 
 /** The sizes of all places, the power of the rods, from outside and of friction, and that of the
- * gas by cylinder, at a sample. */
+ * gas and of the crank ends by cylinder, at a sample. */
 function rowOf(train, places, sample) {
   const v = reactionsAt(train, sample);
   const rods = v.cylinders.reduce((sum, each) => sum + each.crank_torque, 0);
   const gas = v.cylinders.map((each) => each.gas_force * each.piston_velocity);
+  const area = train.share * (train.piston.area ?? 0);
+  const below = train.crank_end.map((_, k) =>
+    -area * v.cylinders[k].crank_end_pressure * v.cylinders[k].piston_velocity);
   const rubs = v.cylinders.reduce(
     (sum, each) => sum + (each.friction_force ?? 0) * each.piston_velocity, 0);
-  const power = [rods * v.crank_speed, v.external_torque * v.crank_speed, rubs, ...gas];
+  const power = [rods * v.crank_speed, v.external_torque * v.crank_speed, rubs, ...gas, ...below];
   return [...places.map(({ size }) => size(v)), ...power];
 }
 

@@ -28,6 +28,7 @@ const QUANTITIES = {
   "piston velocity": own("m/s", 1, "piston_velocity", "piston velocity"),
   "piston acceleration": own("m/s²", 1, "piston_acceleration", "piston acceleration"),
   "gas pressure": own("bar", 1e5, "gas_pressure"),
+  "crank end pressure": own("bar", 1e5, "crank_end_pressure"),
   "side force on the piston": own("N", 1, "side_force", "side thrust"),
   "piston pin force, axial": own("N", 1, "piston_pin_force_x", "piston pin force x"),
   "crank pin force, axial": own("N", 1, "crank_pin_force_x", "crank pin force x"),
@@ -45,6 +46,10 @@ const DIAGRAMS = {
     right: ["swept volume", "cm³", 1e-6, (v, k, c) =>
       v.cylinders[k].piston_displacement * (c.train.piston.area ?? 0)],
     up: ["gas pressure", "bar", 1e5, (v, k) => v.cylinders[k].gas_pressure],
+    crankEnd: [
+      (v, k, c) => v.cylinders[k].piston_displacement * c.train.share * c.train.piston.area,
+      (v, k) => v.cylinders[k].crank_end_pressure,
+    ],
   },
   "main bearing, polar": polar("main bearing force", (v) => v, (f) => f),
   "crank pin, polar": {
@@ -83,7 +88,10 @@ function sum(list, part) {
 
 /** The names of what a plot can show of a scene: first curves, then diagrams. */
 export function choices(scene) {
-  const gassed = (name) => scene.gas !== null || !/pressure|p-V/.test(name);
+  const { gas } = scene;
+  const gassed = (name) => (/crank end/.test(name)
+    ? gas !== null && gas.crank_end.length > 0
+    : gas !== null || !/pressure|p-V/.test(name));
   const [curves, diagrams] = [QUANTITIES, DIAGRAMS].map((all) => Object.keys(all).filter(gassed));
   return { curves, diagrams };
 }
@@ -145,8 +153,11 @@ function differencesOf(curves) {
 }
 
 function diagram(name, cycle, k) {
-  const { right, up, equal = false, cylinder = false } = DIAGRAMS[name];
-  const pairs = [{ name: CURVES[0], ...along(cycle.samples, right[3], up[3], k, cycle) }];
+  const { right, up, crankEnd, equal = false, cylinder = false } = DIAGRAMS[name];
+  const double = crankEnd && cycle.train.crank_end.length > 0;
+  const own = double ? "head end" : CURVES[0];
+  const pairs = [{ name: own, ...along(cycle.samples, right[3], up[3], k, cycle) }];
+  if (double) pairs.push({ name: "crank end", ...along(cycle.samples, ...crankEnd, k, cycle) });
   if (right[4]) {
     const says = cycle.lectured(LECTURE, cylinder ? k : null);
     pairs.push({ name: CURVES[2], ...along(says, right[4], up[4], k, cycle) });

@@ -45,6 +45,7 @@ function cylinderAt(train, { theta, omega, alpha, shares }, number) {
   const g = rodCentre(at, rod.center_of_mass);
   const square = omega * omega;
   const pressure = pressureAt(train, shares, number, phi);
+  const below = train.crank_end.length ? valueAt(train.crank_end[number], phi) : 0;
   const gas = pressure * area;
   const rubs = friction === null ? 0 : frictionForce(friction, shape, at, omega, gas);
   const pistonX = at.x2 * square + at.x1 * alpha;
@@ -69,7 +70,7 @@ function cylinderAt(train, { theta, omega, alpha, shares }, number) {
     piston_displacement: topPosition(shape) - at.x,
     piston_velocity: -at.x1 * omega,
     piston_acceleration: -pistonX,
-    gas_pressure: pressure,
+    gas_pressure: pressure + train.share * below,
     gas_force: gas,
     side_force: side,
     piston_pin_force_x: pinX,
@@ -78,6 +79,7 @@ function cylinderAt(train, { theta, omega, alpha, shares }, number) {
     crank_pin_force_y: throwY,
     crank_torque: r * (at.sinPhi * throwX - at.cosPhi * throwY),
   };
+  if (train.crank_end.length) variables.crank_end_pressure = below;
   if (train.fuel !== null) variables.fuel = shares[number];
   if (friction !== null) variables.friction_force = rubs;
   return {
@@ -89,7 +91,7 @@ function cylinderAt(train, { theta, omega, alpha, shares }, number) {
   };
 }
 
-/** Pressure difference across a piston [Pa], with its share of the combustion. */
+/** What pushes a piston, over its area [Pa], with its share of the combustion. */
 export function pressureAt({ pressure, combustion }, shares, number, phi) {
   let found = pressure.length ? valueAt(pressure[number], phi) : 0;
   if (combustion.length) found += shares[number] * valueAt(combustion[number], phi);

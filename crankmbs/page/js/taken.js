@@ -70,6 +70,7 @@ function putGas({ toml, files, given, scene }, values) {
   if (same && !("pressure" in values)) return;
   const sources = { pressure: gas.fired };
   if (toml.get("[gas]", "motored") !== null) sources.motored = gas.motored;
+  if (gas.below.length) sources.crank_end = gas.below;
   for (const [key, numbers] of Object.entries(sources)) {
     const kind = gas.sources[numbers[0]].kind;
     if (kind === "rows") putRows({ toml, files, given, gas, shape }, key, numbers);

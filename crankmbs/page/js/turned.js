@@ -121,12 +121,15 @@ function pressed(gas, factor, count) {
   if (factor === 1 && same) return gas;
   const every = (list) => (same || !list.length ? list : Array(count).fill(list[0]));
   const gauge = gas.ambient * (factor - 1);
+  const across = gauge * (1 - gas.share); // of what both ends are less ambient
   return {
     ...gas,
-    pressure: every(gas.pressure.map((cycle) => scaledCycle(cycle, factor, gauge))),
+    pressure: every(gas.pressure.map((cycle) => scaledCycle(cycle, factor, across))),
     combustion: every(gas.combustion.map((cycle) => scaledCycle(cycle, factor, 0))),
+    crank_end: every(gas.crank_end.map((cycle) => scaledCycle(cycle, factor, gauge))),
     sources: gas.sources.map((source) => scaledSource(source, factor, gauge)),
     fired: every(gas.fired),
+    below: every(gas.below),
     motored: gas.motored && every(gas.motored),
   };
 }

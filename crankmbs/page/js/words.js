@@ -18,6 +18,10 @@ export function numbersOf(cycle, error) {
     if (measures.indicated_power !== null) {
       found.push(["indicated power", `${readable(measures.indicated_power / 1e3, 2)} kW`]);
     }
+    for (const end of ["head end", "crank end"]) {
+      const power = measures[`indicated_power_${end.replace(" ", "_")}`];
+      if (power !== undefined) found.push([`of the ${end}`, `${readable(power / 1e3, 2)} kW`]);
+    }
   }
   if (measures && measures.friction_power !== null) {
     found.push(["friction power", `${readable(measures.friction_power / 1e3, 2)} kW`]);
