@@ -136,7 +136,7 @@ MESSAGES = {
     ),
     "upside down": (
         "file a.csv: PCYL1 stands upside down: its largest excursion goes down, to -67.82 bar; "
-        "give invert=True, or choose another column"
+        'give invert=True, or the names of the pressures alone, such as columns="PCYL1..4"'
     ),
     "a peak beside the dead centre": (
         "file a.csv: the peak of the pressure lies at 77 degrees, beside no multiple of 360: "
@@ -149,11 +149,12 @@ MESSAGES = {
     ),
     "an odd lag": (
         "file a.csv: the cylinder of pressure column 2 fires 51 degrees behind the first one, "
-        "which no even firing has; give scene=..., whose layout says when it fires"
+        "which no even firing has; give scene=..., whose layout says when it fires or "
+        'columns="PCYL1" where the others are no pressures'
     ),
     "cycles or cylinders": (
         "file a.csv: the columns are named 1 to 2, and these may be cycles of one cylinder or "
-        'cylinders; give each="cycle" or each="cylinder"'
+        'cylinders; give each="cycle", each="cylinder" or columns="1" for a pressure alone'
     ),
     "two of one cylinder": (
         'file a.csv: "PCYL1" and "PCYL1_HP" may both be the pressure of cylinder 1; give '

@@ -119,7 +119,7 @@ def _numbered(
         raise UndecidedError(
             f"{where}: the columns are named {bare[0]} to {bare[-1]}, and these may be cycles of "
             "one cylinder or cylinders",
-            ('each="cycle"', 'each="cylinder"'),
+            ('each="cycle"', 'each="cylinder"', f'columns="{bare[0]}" for a pressure alone'),
         )
     as_cycles = each == "cycle" or (each is None and len(plain) > _MOST_CYLINDERS)
     columns = []

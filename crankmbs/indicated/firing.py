@@ -91,7 +91,10 @@ def places(
             raise UndecidedError(
                 f"{where}: the cylinder of pressure column {number} fires {each:.4g} degrees "
                 "behind the first one, which no even firing has",
-                ("scene=..., whose layout says when it fires",),
+                (
+                    "scene=..., whose layout says when it fires",
+                    'columns="PCYL1" where the others are no pressures',
+                ),
             )
         found.append(float(nominal))
     return found

@@ -218,7 +218,8 @@ def _check_sign(channel: Channel, mean: Array, where: str) -> None:
     if middle - np.min(mean) > 1.5 * (np.max(mean) - middle):
         raise InputError(
             f"{where}: {channel.name} stands upside down: its largest excursion goes down, to "
-            f"{np.min(mean) / BAR:.4g} bar; give invert=True, or choose another column"
+            f"{np.min(mean) / BAR:.4g} bar; give invert=True, or the names of the pressures alone, "
+            'such as columns="PCYL1..4"'
         )
 
 

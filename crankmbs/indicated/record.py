@@ -89,7 +89,8 @@ def record_of(sheet: Sheet, options: Options, stroke: int | None) -> Record:
         )
     record = _Axis(sheet, angle, columns, options.stroke or stroke).record()
     if nameless:
-        record.said.insert(0, "no column has a name: the first is read as the crank angle")
+        others = f", the others as PCYL1 to PCYL{width - 1}" if width > 2 else ""
+        record.said.insert(0, f"no column has a name: the first is read as the crank angle{others}")
     return record
 
 

@@ -33,7 +33,8 @@ def write_table(found: Indicated, path: Path) -> Path:
 
     Raises
     ------
-    InputError : larger than a scene reads, or an absolute pressure below zero; OutputError : the file cannot be written
+    InputError : larger than a scene reads, or an absolute pressure below zero
+    OutputError : the file cannot be written
     """
     table = found.table
     if found.absolute:

@@ -62,7 +62,7 @@ _ANGLE_NAME = re.compile(
     r"|theta|phi|φ|ca[ _]?deg|deg[ _]?ca|degca|x[ _]?axis)([ _][ab]?tdc\w*)?"
 )
 _TIME_NAME = re.compile(r"time|zeit|t|timestamp|time[ _]?stamp|abs(olute)?[ _]?time|temps")
-_BRACKETED = re.compile(r"(.*?)\s*[\[(]([^\])]*(?:\([ag]\))?)[\])]\s*")
+_BRACKETED = re.compile(r"(.*?)\s*[\[(]([^\])]*(?:\([ag]\))?)[\])]\s*([ _.#-].*)?")
 _AFTER = re.compile(r"(.+?)\s+/\s+(\S.*)|(.+?),\s*(\S+)")  # "p / bar", "p, bar"
 _OF_TDC = re.compile(r"\s*[ab]?tdcf?$")
 _NUMBERED_UNIT = re.compile(r"(.+?)_(bar|kPa|Pa|MPa|psi|kgf_cm2|deg|rad)((?:_[1-9][0-9]*)?)")
@@ -90,8 +90,8 @@ class Heading(NamedTuple):
 def headings_of(above: Sequence[Sequence[str]], width: int) -> tuple[Heading, ...]:
     """The headings of ``width`` columns, from the lines above their numbers.
 
-    Names stand in the row that has that of a crank angle, else above the units, else in the last;
-    a row of numbers of cycles below the names belongs to them.
+    Names stand in the row that has that of a crank angle, else above the units, else in the last
+    that has a word for every column; a row of numbers of cycles below the names belongs to them.
 
     >>> headings_of([["CA", "PCYL1"], ["deg", "bar"]], 2)[1]
     Heading(name='PCYL1', unit='bar', reference='')
@@ -107,6 +107,8 @@ def headings_of(above: Sequence[Sequence[str]], width: int) -> tuple[Heading, ..
     named = [k for k in full if k != under and _has_angle(rows[k], units)]
     at = named[-1] if named else (end if under is None else under) - 1
     if at not in full:
+        at = next((k for k in reversed(full) if k < at and _are_words(rows[k])), -1)
+    if at < 0:
         return tuple(_heading("", unit) for unit in units)
     names = rows[at]
     if width > 2 and at and _are_cycles(names) and _given(above[at - 1]) == width:
@@ -230,6 +232,10 @@ def _is_units(row: Sequence[str]) -> bool:
     return bool(named) and all(map(_is_unit, row))
 
 
+def _are_words(row: Sequence[str]) -> bool:
+    return all(re.search(r"[^\W\d]", cell) for cell in row)
+
+
 def _are_cycles(names: Sequence[str]) -> bool:
     """Whether all but the first cell count cycles."""
     return all(re.fullmatch(r"[0-9]+", name) for name in names[1:])
@@ -241,7 +247,7 @@ def _heading(name: str, unit: str) -> Heading:
     numbered = _NUMBERED_UNIT.fullmatch(text)
     after = _AFTER.fullmatch(text)
     if bracketed and bracketed[1] and _is_unit(bracketed[2]) and bracketed[2] != "1":
-        text, said = bracketed[1], said or bracketed[2]
+        text, said = bracketed[1] + (bracketed[3] or ""), said or bracketed[2]
     elif numbered and not unit:
         text, said = numbered[1] + numbered[3], numbered[2]
     elif not unit and after and _is_unit(after[2] or after[4]):
