@@ -8,19 +8,18 @@ from crankmbs import InputError, UndecidedError, read_pressure
 
 MESSAGES = {
     "MF4": (
-        "file a.mf4 is an MDF measurement file (MF4, MDF, DAT), and only text is read; what is "
-        "sampled in time is first resampled over the crank angle with the encoder's signal; "
-        "then save angle and pressures as CSV"
+        "file a.mf4 is an MDF measurement file (MF4, MDF, DAT), and only text is read; save its "
+        "channels as CSV, pressures over the crank angle, or over time beside the signal of a "
+        "wheel or an encoder"
     ),
     "TDMS": (
-        "file a.tdms is a TDMS file of LabVIEW, and only text is read; what is sampled in time "
-        "is first resampled over the crank angle with the encoder's signal; then save angle and"
-        " pressures as CSV"
+        "file a.tdms is a TDMS file of LabVIEW, and only text is read; save its channels as CSV, "
+        "pressures over the crank angle, or over time beside the signal of a wheel or an encoder"
     ),
     "HDF5": (
         "file a.h5 is an HDF5 file (also MATLAB's from 7.3 on, and NetCDF-4), and only text is "
-        "read; what is sampled in time is first resampled over the crank angle with the "
-        "encoder's signal; then save angle and pressures as CSV"
+        "read; save its channels as CSV, pressures over the crank angle, or over time beside the "
+        "signal of a wheel or an encoder"
     ),
     "iFile": (
         "file a.ifl is binary, by its name an iFile of an indicating system, and only text is "
@@ -59,8 +58,9 @@ MESSAGES = {
         "alone"
     ),
     "over time": (
-        'file a.csv: the pressures stand over time, column "Time", and a cycle is read over the'
-        " crank angle; export them over the angle, or resample them with the encoder's signal"
+        "file a.csv: the record stands over time, and no column is left for the signal of a wheel; "
+        'the columns are "Time", "PCYL1"; record the wheel beside the pressure, or export the '
+        "pressures over the crank angle"
     ),
     "no angle": (
         'file a.csv: no column is a crank angle by its name or its unit; the columns are "X", '

@@ -18,6 +18,7 @@ from crankmbs.scene.units import DEGREE
 
 __all__ = [
     "PRESSURE_UNITS",
+    "TIME_UNITS",
     "Heading",
     "angle_factor",
     "headings_of",
@@ -54,7 +55,7 @@ _REFERENCED = re.compile(r"(bar|psi|kpa|mpa|mbar)[ _]?\(?([ag])(?:bs|auge)?\)?")
 _DEGREES = {"deg", "°", "degca", "deg ca", "°ca", "ca", "cad", "°kw", "grad", "degree", "degrees"}
 _DEGREES |= {"°crk", "deg crk", "degcrk", "°ka", "kw", "deg crank", "dega", "ºca", "º"}
 _ANGULAR = {**dict.fromkeys(_DEGREES, DEGREE), "rad": 1.0, "rev": 2.0 * math.pi}
-_TIMES = {"s", "ms", "us", "µs", "sec"}
+TIME_UNITS = {"s": 1.0, "sec": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6}
 _NO_UNITS = {"", "-", "1", "%", "a", "v", "mv", "c", "°c", "k", "mm", "j/deg", "kj/m3deg", "j"}
 
 _ANGLE_NAME = re.compile(
@@ -123,7 +124,7 @@ def is_angle(heading: Heading) -> bool:
     >>> is_angle(Heading("Crank Angle", "deg")), is_angle(Heading("PCYL1", "bar"))
     (True, False)
     """
-    if heading.pressure is not None or heading.unit in _TIMES:
+    if heading.pressure is not None or heading.unit in TIME_UNITS:
         return False
     named = _ANGLE_NAME.fullmatch(heading.name.lower().strip("# ")) is not None
     return named or (heading.unit in _ANGULAR and heading.unit != "")
@@ -136,7 +137,7 @@ def is_time(heading: Heading) -> bool:
     True
     """
     named = _TIME_NAME.fullmatch(heading.name.lower().strip("# ")) is not None
-    return heading.unit in _TIMES or (named and heading.unit == "")
+    return heading.unit in TIME_UNITS or (named and heading.unit == "")
 
 
 def angle_factor(heading: Heading) -> float:
@@ -222,7 +223,7 @@ def _unit(text: str) -> tuple[str, str]:
 
 def _is_unit(text: str) -> bool:
     unit = _unit(text)[0]
-    return unit in PRESSURE_UNITS or unit in _ANGULAR or unit in _TIMES or unit in _NO_UNITS
+    return unit in PRESSURE_UNITS or unit in _ANGULAR or unit in TIME_UNITS or unit in _NO_UNITS
 
 
 def _is_units(row: Sequence[str]) -> bool:
