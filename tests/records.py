@@ -26,7 +26,7 @@ class Record:
     teeth: int = 60
     missing: int = 2
     uneven: float = 0.05
-    gap: tuple = (0.9, -0.5)
+    gap: tuple[float, float] = (0.9, -0.5)
     dead_centre: float = 385.0
     delay: float = 0.0
     noise: float = 0.0

@@ -294,8 +294,8 @@ def test_every_cycle_is_judged_and_no_table_goes_below_zero(tmp_path):
     with pytest.raises(InputError) as caught:
         every.save(tmp_path / "all.csv")
     assert str(caught.value) == (
-        f"{tmp_path / 'all.csv'}: the absolute pressure of the table's column 1 falls to -2 bar at "
-        "a crank angle of 2210 degrees, and none is below zero; where the signal has spikes take "
+        "all.csv: the absolute pressure of the table's column 1 falls to -2 bar at a crank "
+        "angle of 2210 degrees, and none is below zero; where the signal has spikes take "
         'cycles="mean", other cycles or smooth="3 deg", where its zero is off another reference, '
         'such as reference="inlet 1.0 bar"'
     )

@@ -72,7 +72,8 @@ MESSAGES = {
     ),
     "no unit": (
         'file a.csv: the pressures of column "PCYL1" have no unit, neither in the name nor in a'
-        ' row below the names; give unit="bar" or another of kPa, Pa, MPa, psi'
+        ' row below the names; give unit="bar" or another of kPa, Pa, MPa, psi, with reference='
+        '"absolute" or "gauge" unless the compression shows it'
     ),
     "no such column": (
         'file a.csv: no column is named "PCYL7"; the columns are CA, PCYL1; did you mean "PCYL1"?'

@@ -182,6 +182,12 @@ def _factor(heading: Heading, options: Options, where: str) -> float:
         raise UndecidedError(
             f"{where}: the pressures of column {shown(heading.name)} have no unit, neither in the "
             "name nor in a row below the names",
-            ('unit="bar"', "another of kPa, Pa, MPa, psi"),
+            ('unit="bar"', f"another of kPa, Pa, MPa, psi{_and_reference(options)}"),
         )
     return PRESSURE_UNITS[options.unit]
+
+
+def _and_reference(options: Options) -> str:
+    """What a pressure without a unit leaves open besides, so that both are asked for at once."""
+    ways = ', with reference="absolute" or "gauge" unless the compression shows it'
+    return "" if options.reference else ways

@@ -94,9 +94,13 @@ class Rotation(NamedTuple):
             "wheel does not show"
         ]
         if wheel.missing:
+            first, last = (
+                f"{abs(each):.2g} degrees {'late' if each > 0.0 else 'early'}"
+                for each in self.teeth[[0, -1]]
+            )
             said.append(
-                f"the first edge behind the gap comes {self.teeth[0]:.2g} degrees late, the last "
-                f"one before it {self.teeth[-1]:.2g}, as the other teeth have it"
+                f"by the other teeth the first edge behind the gap comes {first}, the last one "
+                f"before it {last}"
             )
         return said
 

@@ -68,7 +68,7 @@ def _refuse_negative(table: Table | CylinderTable, path: Path) -> None:
     if lowest >= 0.0:
         return
     raise InputError(
-        f"{path}: the absolute pressure of the table's column {cylinder + 1} falls to "
+        f"{path.name}: the absolute pressure of the table's column {cylinder + 1} falls to "
         f"{lowest / BAR:.3g} bar at a crank angle of {np.degrees(table.x[row]):.6g} degrees, and "
         'none is below zero; where the signal has spikes take cycles="mean", other cycles or '
         'smooth="3 deg", where its zero is off another reference, such as '
