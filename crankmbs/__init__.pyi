@@ -15,7 +15,7 @@ from .errors import (
     UndecidedError,
 )
 from .export import export
-from .indicated import CylinderPressure, Indicated, read_pressure
+from .indicated import CylinderPressure, Indicated, MeasuredSpeed, read_pressure, read_speed
 from .lecture.accumulated_torque import accumulated_torque
 from .measures import (
     EngineOrders,
@@ -103,6 +103,7 @@ __all__ = [
     "JointForce",
     "Layout",
     "Load",
+    "MeasuredSpeed",
     "Measures",
     "Minimum",
     "Misfire",
@@ -155,6 +156,7 @@ __all__ = [
     "minimize",
     "orders",
     "read_pressure",
+    "read_speed",
     "sensitivity",
     "shipped_scenes",
     "simulate",

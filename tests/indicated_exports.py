@@ -174,6 +174,16 @@ EXPORTS |= {
         "sep=;\n" + text([FULL, EXACT], ['"Kurbelwinkel / °KW"', '"p_Zyl1 / bar"']),
         "utf-16",
     ),
+    "a unit within the name": (
+        text([FULL, EXACT], ["Angle[deg]_Crank", "Pressure[bar]_Cyl01"], comma=False),
+        "utf-8",
+    ),
+    "a stray line below the names": (
+        text([FULL, EXACT], ["CrankPos [deg]", "Pcyl [bar]"], comma=False).replace(
+            "\n", "\nArrays\n", 1
+        ),
+        "utf-8",
+    ),
     "sections, and cycles under an index": (
         "[Measurement]\nTitle\tÖl 17\nBore [mm]\t85.25\n\n[Data]\n"
         + text(

@@ -44,7 +44,8 @@ def test_by_default_it_writes_into_results(export):
 def test_a_question_is_put_in_words_of_the_command_line(export):
     (export / "b.csv").write_text(text([ANGLE, ANGLE], ["CA", "PCYL1"]))
     assert refused("pressure", "b.csv").endswith(
-        'give --unit "bar" or another of kPa, Pa, MPa, psi'
+        'give --unit "bar" or another of kPa, Pa, MPa, psi, with --reference "absolute" or "gauge" '
+        "unless the compression shows it"
     )
     said = refused("pressure", "b.csv", "--loss-angle", "1 m")
     assert said == '--loss-angle: "1 m" is no angle here: use rad, deg or rev'

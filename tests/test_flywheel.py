@@ -41,8 +41,8 @@ def test_the_settled_cycle_with_it_fluctuates_as_wanted(wanted):
     mean = 4.0 * np.pi / float(result.data.time[-1])
     assert np.ptp(speed) / mean == pytest.approx(wanted, rel=1e-5)
     assert found.added == found.inertia.value - 0.15
-    assert abs(found.lecture_error) < 0.01
-    assert found.lecture == pytest.approx(found.inertia.value, rel=0.01)
+    assert abs(found.lecture_error.value) < 0.01
+    assert found.lecture.value == pytest.approx(found.inertia.value, rel=0.01)
 
 
 def test_its_error_is_honest():
@@ -87,7 +87,7 @@ def test_a_turning_moment_alone_is_balanced(balance, sense):
         work += (a + b) / 2.0 * (high - low)
     beyond = np.concatenate(gained)
     beyond -= work * fine[: len(beyond)] / (2.0 * np.pi)
-    assert found.work == pytest.approx(np.ptp(beyond), rel=2e-4)
+    assert abs(found.work.value - np.ptp(beyond)) <= found.work.error < 1e-3 * np.ptp(beyond)
     energy, inertia = beyond - beyond.min(), found.inertia.value
 
     def late(least):
@@ -104,8 +104,8 @@ def test_a_turning_moment_is_in_the_lectures_work():
         for loads in ((*DIESEL.torque, TURNS), DIESEL.torque)
     )
     assert found.status == 0
-    assert abs(found.lecture_error) < 0.03
-    assert abs(found.work / alone.work - 1.0) > 0.01
+    assert abs(found.lecture_error.value) < 0.03
+    assert abs(found.work.value / alone.work.value - 1.0) > 0.01
 
 
 def test_settled_under_a_turning_moment_is_the_run_of_many_cycles():
@@ -177,7 +177,7 @@ def test_the_command():
     shown = crankmbs_("flywheel", "yi_diesel_free", "--fluctuation", "1 %")
     assert shown.exit_code == 0, shown.output
     assert "inertia of crank and flywheel [kg m^2]                      0.439724" in shown.output
-    assert "which is off by [%]                                           0.0859" in shown.output
+    assert "which is off by [%]                                           0.0880" in shown.output
     balanced = crankmbs_("flywheel", "yi_diesel")
     assert "a constant -21.8274 N m balances gas and gravity" in balanced.output
     far = crankmbs_("flywheel", "yi_diesel_free", "--fluctuation", "150 %")

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from exports import FIRED, HEADER, MOTORED, columns_of_cycles, cycles, text
 
-from crankmbs import CylinderTable, Gas, load_scene, read_pressure
+from crankmbs import CylinderTable, Gas, InputError, load_scene, read_pressure
 from validation.oracles.measured import (
     Engine,
     loss_angle,
@@ -272,9 +272,34 @@ def test_what_cannot_be_is_warned_of(tmp_path):
     low = cycles(FIRED, ANGLE, 1) - 3.0
     there = found(tmp_path, columns_of_cycles(ANGLE, low), reference="absolute")
     assert any("an absolute pressure falls to -1.98" in w for w in there.warnings)
+    with pytest.raises(InputError, match=r"the table's column 1 falls to -1\.98 bar"):
+        there.save(tmp_path / "table.csv")
     drifting = cycles(FIRED, ANGLE, 1) + 0.01 * ANGLE
     there = found(tmp_path, columns_of_cycles(ANGLE, drifting), reference="gauge")
     assert any("the signal drifts" in w for w in there.warnings)
+
+
+def test_every_cycle_is_judged_and_no_table_goes_below_zero(tmp_path):
+    values = cycles(FIRED, ANGLE, 5)
+    values[3, 100] = -2.0  # a spike that the mean hides
+    content = columns_of_cycles(ANGLE, values)
+    mean = found(tmp_path, content, reference="absolute")
+    assert (
+        "warning: cylinder 1: an absolute pressure falls to -2 bar, -310 degrees from the dead "
+        "centre in cycle 4, below zero in 1 of 5 cycles: check the reference, and the signal for "
+        "spikes"
+    ) in mean.warnings
+    mean.save(tmp_path / "mean.csv")
+    every = found(tmp_path, content, reference="absolute", cycles="all")
+    with pytest.raises(InputError) as caught:
+        every.save(tmp_path / "all.csv")
+    assert str(caught.value) == (
+        "all.csv: the absolute pressure of the table's column 1 falls to -2 bar at a crank "
+        "angle of 2210 degrees, and none is below zero; where the signal has spikes take "
+        'cycles="mean", other cycles or smooth="3 deg", where its zero is off another reference, '
+        'such as reference="inlet 1.0 bar"'
+    )
+    assert not (tmp_path / "all.csv").exists()
 
 
 def test_an_inverted_signal_is_turned_over_on_request(tmp_path):

@@ -157,3 +157,15 @@ def test_short_names_are_cylinders(tmp_path, names):
     content = rows(values, [*names, "Cyl 1 inlet"], ["bar(a)"] * 4)
     found = read_pressure(export(tmp_path, content))
     assert [each.name for each in found.cylinders] == names
+
+
+def test_columns_that_are_no_pressures_are_left_out_by_name(tmp_path):
+    """A speed beside the pressure, once under names and once without any."""
+    speed = 2000.0 + 10.0 * np.cos(np.radians(FULL))
+    named = export(tmp_path, text([FULL, EXACT, speed], ["CA", "1", "2"], ["deg", "bar", "bar"]))
+    one = read_pressure(named, columns="1", reference="absolute")
+    assert one.cylinders[0].peaks[0] == pytest.approx(1e5 * EXACT.max(), abs=10.0)
+    bare = export(tmp_path, text([EXACT * 0.0 + FULL, EXACT, speed], ["x"])[2:])
+    one = read_pressure(bare, columns="PCYL1", unit="bar", reference="absolute")
+    assert [each.number for each in one.cylinders] == [1]
+    assert "the first is read as the crank angle, the others as PCYL1 to PCYL2" in str(one)

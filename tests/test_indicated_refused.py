@@ -8,19 +8,18 @@ from crankmbs import InputError, UndecidedError, read_pressure
 
 MESSAGES = {
     "MF4": (
-        "file a.mf4 is an MDF measurement file (MF4, MDF, DAT), and only text is read; what is "
-        "sampled in time is first resampled over the crank angle with the encoder's signal; "
-        "then save angle and pressures as CSV"
+        "file a.mf4 is an MDF measurement file (MF4, MDF, DAT), and only text is read; save its "
+        "channels as CSV, pressures over the crank angle, or over time beside the signal of a "
+        "wheel or an encoder"
     ),
     "TDMS": (
-        "file a.tdms is a TDMS file of LabVIEW, and only text is read; what is sampled in time "
-        "is first resampled over the crank angle with the encoder's signal; then save angle and"
-        " pressures as CSV"
+        "file a.tdms is a TDMS file of LabVIEW, and only text is read; save its channels as CSV, "
+        "pressures over the crank angle, or over time beside the signal of a wheel or an encoder"
     ),
     "HDF5": (
         "file a.h5 is an HDF5 file (also MATLAB's from 7.3 on, and NetCDF-4), and only text is "
-        "read; what is sampled in time is first resampled over the crank angle with the "
-        "encoder's signal; then save angle and pressures as CSV"
+        "read; save its channels as CSV, pressures over the crank angle, or over time beside the "
+        "signal of a wheel or an encoder"
     ),
     "iFile": (
         "file a.ifl is binary, by its name an iFile of an indicating system, and only text is "
@@ -59,8 +58,9 @@ MESSAGES = {
         "alone"
     ),
     "over time": (
-        'file a.csv: the pressures stand over time, column "Time", and a cycle is read over the'
-        " crank angle; export them over the angle, or resample them with the encoder's signal"
+        "file a.csv: the record stands over time, and no column is left for the signal of a wheel; "
+        'the columns are "Time", "PCYL1"; record the wheel beside the pressure, or export the '
+        "pressures over the crank angle"
     ),
     "no angle": (
         'file a.csv: no column is a crank angle by its name or its unit; the columns are "X", '
@@ -72,7 +72,8 @@ MESSAGES = {
     ),
     "no unit": (
         'file a.csv: the pressures of column "PCYL1" have no unit, neither in the name nor in a'
-        ' row below the names; give unit="bar" or another of kPa, Pa, MPa, psi'
+        ' row below the names; give unit="bar" or another of kPa, Pa, MPa, psi, with reference='
+        '"absolute" or "gauge" unless the compression shows it'
     ),
     "no such column": (
         'file a.csv: no column is named "PCYL7"; the columns are CA, PCYL1; did you mean "PCYL1"?'
@@ -136,7 +137,7 @@ MESSAGES = {
     ),
     "upside down": (
         "file a.csv: PCYL1 stands upside down: its largest excursion goes down, to -67.82 bar; "
-        "give invert=True, or choose another column"
+        'give invert=True, or the names of the pressures alone, such as columns="PCYL1..4"'
     ),
     "a peak beside the dead centre": (
         "file a.csv: the peak of the pressure lies at 77 degrees, beside no multiple of 360: "
@@ -149,11 +150,12 @@ MESSAGES = {
     ),
     "an odd lag": (
         "file a.csv: the cylinder of pressure column 2 fires 51 degrees behind the first one, "
-        "which no even firing has; give scene=..., whose layout says when it fires"
+        "which no even firing has; give scene=..., whose layout says when it fires or "
+        'columns="PCYL1" where the others are no pressures'
     ),
     "cycles or cylinders": (
         "file a.csv: the columns are named 1 to 2, and these may be cycles of one cylinder or "
-        'cylinders; give each="cycle" or each="cylinder"'
+        'cylinders; give each="cycle", each="cylinder" or columns="1" for a pressure alone'
     ),
     "two of one cylinder": (
         'file a.csv: "PCYL1" and "PCYL1_HP" may both be the pressure of cylinder 1; give '

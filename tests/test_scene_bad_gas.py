@@ -147,8 +147,9 @@ def test_an_absolute_pressure_cannot_be_negative(read, tmp_path):
     (tmp_path / "bad.csv").write_text(GAS.replace("240,2", "240,-2"))
     absolute = edited(edited(FREE, "gas.csv", "bad.csv"), "absolute = false", 'ambient = "1 bar"')
     assert refusal(read, absolute) == (
-        "gas: bad.csv: an absolute pressure cannot be negative; -200000 Pa came; give absolute = "
-        "false when the file is gauge"
+        "gas: bad.csv: an absolute pressure cannot be negative; -200000 Pa came at 240 degrees; "
+        "correct what the pressures are measured from, or give absolute = false when the file is "
+        "gauge"
     )
 
 

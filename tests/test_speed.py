@@ -98,3 +98,12 @@ def test_a_table_that_starts_before_the_run():
 )
 def test_where_a_law_reverses_or_rests(speed, turns):
     np.testing.assert_allclose(speed_law(Motion(speed=speed)).turning_times, turns)
+
+
+def test_a_record_that_begins_later_is_counted_from_its_first_row():
+    later = Table(tuple(64.0 + t for t in TABLE.x), TABLE.y, "speed.csv")
+    moved = Motion(speed=SpeedFile(file=later), angle=2.0)
+    assert moved.speed.file.source == "speed.csv from 64 s on"
+    np.testing.assert_allclose(
+        speed_law(moved).at_time(TIMES), speed_law(MOTIONS["table"]).at_time(TIMES), rtol=1e-12
+    )

@@ -19,6 +19,7 @@ from crankmbs.cli.plot import plot
 from crankmbs.cli.pressure import pressure
 from crankmbs.cli.sensitivity import sensitivity
 from crankmbs.cli.solve import solve
+from crankmbs.cli.speed import speed
 from crankmbs.cli.sweep import sweep
 from crankmbs.cli.validate import validate
 from crankmbs.scene.shipped import shipped_scenes
@@ -174,7 +175,7 @@ def page(
     write_page(scene, out=out)
 
 
-for command in (pressure, sweep, plot, solve, sensitivity):
+for command in (pressure, speed, sweep, plot, solve, sensitivity):
     app.command()(command)
 
 

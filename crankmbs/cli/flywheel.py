@@ -62,9 +62,11 @@ def _report(name: str, scene: Scene, found: Flywheel) -> str:
         _row("of which beyond the scene's [kg m^2]", Estimate(found.added, found.inertia.error)),
         _row("coefficient of fluctuation, (max - min)/mean [1]", found.fluctuation),
         _row("mean speed [rpm]", Estimate(*(part / RPM for part in found.mean_speed))),
-        ["W, excess of work at that constant speed [J]", digits(found.work), ""],
-        ["inertia by W / (fluctuation omega^2) [kg m^2]", digits(found.lecture), ""],
-        ["which is off by [%]", digits(100.0 * found.lecture_error, most=3), ""],
+        _row("W, excess of work at that constant speed [J]", found.work),
+        _row("inertia by W / (fluctuation omega^2) [kg m^2]", found.lecture),
+        _row(
+            "which is off by [%]", Estimate(*(100.0 * part for part in found.lecture_error)), most=3
+        ),
     ]
     heading = ["over the settled cycle", "value, to 6 digits", "error"]
     return "\n".join([*lines, "", table(heading, rows)])
@@ -77,5 +79,5 @@ def _load(scene: Scene, found: Flywheel) -> str:
     return f"none in the scene; a constant {digits(balance)} N m balances gas and gravity"
 
 
-def _row(name: str, estimate: Estimate) -> list[str]:
-    return [name, digits(*estimate), error_digits(estimate.error)]
+def _row(name: str, estimate: Estimate, most: int = 6) -> list[str]:
+    return [name, digits(*estimate, most), error_digits(estimate.error)]

@@ -17,18 +17,21 @@ from crankmbs.storage.files import together
 if TYPE_CHECKING:
     from crankmbs.indicated import Indicated
 
-__all__ = ["pressure"]
+__all__ = ["as_options", "pressure"]
 
 _NAMES = (
     "columns|reference|unit|each|stroke|firing_tdc|loss_angle|compression_ratio|invert|smooth"
-    "|cycles|separator|decimal|skip|scene"
+    "|cycles|separator|decimal|skip|scene|wheel|index|sensor|delay"
 )
 _GIVEN = re.compile(rf'\b({_NAMES})=(True\b|"[^"]*"|\.\.\.|[\w.]+)')
 _BARE = re.compile(r"\b(loss_angle|compression_ratio|firing_tdc)\b(?!=)")
 
 
 def pressure(
-    file: Annotated[Path, typer.Argument(metavar="FILE", help="Text of an indicating system.")],
+    file: Annotated[
+        Path,
+        typer.Argument(metavar="FILE", help="Text of an indicating system, or a record over time."),
+    ],
     out: Annotated[
         Path | None,
         typer.Option("-o", "--out", help="The table; default results/FILE/pressure.csv."),
@@ -55,6 +58,20 @@ def pressure(
         str | None, typer.Option(help="By which a motored peak comes before it.")
     ] = None,
     compression_ratio: Annotated[float | None, typer.Option(help="Of the cylinder.")] = None,
+    wheel: Annotated[
+        str | None,
+        typer.Option(help='Of a record over time: "60-2", teeth less missing; "60-2 falling".'),
+    ] = None,
+    index: Annotated[
+        str | None, typer.Option(help="The column of an encoder's mark; its pulses: --wheel 360.")
+    ] = None,
+    sensor: Annotated[
+        str | None,
+        typer.Option(help='"(V/5 - 0.115)/0.00385 bar", or "0.5 V = 0 bar, 4.5 V = 100 bar".'),
+    ] = None,
+    delay: Annotated[
+        str | None, typer.Option(help='By which the sensor shows a pressure late, "0.8 ms".')
+    ] = None,
     invert: Annotated[bool, typer.Option("--invert", help="Turn the signal over.")] = False,
     smooth: Annotated[str | None, typer.Option(help='Width of a sliding cubic, "3 deg".')] = None,
     cycles: Annotated[str, typer.Option(help='In the table: mean, all, 7 or "1-50".')] = "mean",
@@ -75,6 +92,10 @@ def pressure(
         "firing_tdc": firing_tdc,
         "loss_angle": loss_angle,
         "compression_ratio": compression_ratio,
+        "wheel": wheel,
+        "index": index,
+        "sensor": sensor,
+        "delay": delay,
         "smooth": smooth,
         "separator": separator,
         "decimal": decimal,
@@ -96,6 +117,7 @@ def _measured(
     CrankmbsError : what cannot be read, or is left open, in words of the command line
     """
     from crankmbs.indicated import read_pressure
+    from crankmbs.indicated.speed import motion_line
     from crankmbs.indicated.write import gas_lines
     from crankmbs.scene.read import load_scene, scene_path
 
@@ -110,13 +132,17 @@ def _measured(
         with together(folder) as part:
             found.save(part / target.name)
             names = [target.name]
+            if found.speed is not None:
+                names.append(found.speed.save(part / f"{target.stem}_speed.csv").name)
             if figures:
                 names += _draw(found, part, target.stem)
     except InputError as error:
-        raise InputError(_as_options(str(error))) from None
-    lines = [_as_options(sentence) for sentence in found.sentences]
+        raise InputError(as_options(str(error))) from None
+    lines = [as_options(sentence) for sentence in found.sentences]
     lines += ["", f"wrote {folder}: {', '.join(names)}", "as [gas] of a scene:"]
     lines += [f"  {line}" for line in gas_lines(found, target.name)]
+    if found.speed is not None:
+        lines += ["as [motion] of a scene:", f"  {motion_line(names[1])}"]
     typer.echo("\n".join(lines))
 
 
@@ -126,10 +152,10 @@ def _draw(found: Indicated, folder: Path, stem: str) -> list[str]:
     return [file.name for file in save_indicated_figures(found, folder, stem)]
 
 
-def _as_options(text: str) -> str:
+def as_options(text: str) -> str:
     """A sentence for a caller in Python, in words of the command line.
 
-    >>> _as_options('give loss_angle, or invert=True, or reference="inlet 1 bar"')
+    >>> as_options('give loss_angle, or invert=True, or reference="inlet 1 bar"')
     'give --loss-angle, or --invert, or --reference "inlet 1 bar"'
     """
     first = re.match(rf"({_NAMES}): ", text)

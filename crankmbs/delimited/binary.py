@@ -9,18 +9,18 @@ from crankmbs.errors import InputError
 __all__ = ["refuse_binary"]
 
 _EXPORT = "export it from the indicating system as text (CSV, ASCII) over the crank angle"
-_RESAMPLE = (
-    "what is sampled in time is first resampled over the crank angle with the encoder's signal; "
-    "then save angle and pressures as CSV"
+_CHANNELS = (
+    "save its channels as CSV, pressures over the crank angle, or over time beside the signal of a "
+    "wheel or an encoder"
 )
 _SAVE = "save its sheet as CSV"
 _UNPACK = "unpack it first"
 _KINDS = (  # first bytes, what it is, the way out
-    (b"MDF     ", "an MDF measurement file (MF4, MDF, DAT)", _RESAMPLE),
-    (b"UnFinMF ", "an MDF measurement file (MF4) that was not finished", _RESAMPLE),
-    (b"TDSm", "a TDMS file of LabVIEW", _RESAMPLE),
-    (b"TDSh", "the index of a TDMS file of LabVIEW", _RESAMPLE),
-    (b"\x89HDF\r\n\x1a\n", "an HDF5 file (also MATLAB's from 7.3 on, and NetCDF-4)", _RESAMPLE),
+    (b"MDF     ", "an MDF measurement file (MF4, MDF, DAT)", _CHANNELS),
+    (b"UnFinMF ", "an MDF measurement file (MF4) that was not finished", _CHANNELS),
+    (b"TDSm", "a TDMS file of LabVIEW", _CHANNELS),
+    (b"TDSh", "the index of a TDMS file of LabVIEW", _CHANNELS),
+    (b"\x89HDF\r\n\x1a\n", "an HDF5 file (also MATLAB's from 7.3 on, and NetCDF-4)", _CHANNELS),
     (b"MATLAB 5.0", "a MATLAB file", 'save angle and pressures with writematrix(data, "a.csv")'),
     (b"CDF\x01", "a NetCDF file", "save angle and pressures as CSV"),
     (b"CDF\x02", "a NetCDF file", "save angle and pressures as CSV"),

@@ -55,23 +55,26 @@ def is_number(cell: str, decimal: str) -> bool:
     return _NUMBER[decimal].fullmatch(cell) is not None
 
 
-def is_row(cells: Sequence[str], decimal: str) -> bool:
-    """Whether the cells are numbers, or stand for missing ones; two at least are numbers."""
+def is_row(cells: Sequence[str], decimal: str, least: int = 2) -> bool:
+    """Whether the cells are numbers, or stand for missing ones; so many at least are numbers."""
     numbers = 0
     for cell in cells:
         if is_number(cell, decimal):
             numbers += 1
         elif cell.lower() not in MISSING:
             return False
-    return numbers >= 2
+    return numbers >= least
 
 
 def find_dialect(
-    lines: Sequence[str], separator: str | None = None, decimal: str | None = None
+    lines: Sequence[str],
+    separator: str | None = None,
+    decimal: str | None = None,
+    least: int = 2,
 ) -> Dialect | None:
     """The dialect in which most lines are rows of numbers, of equals that of more cells.
 
-    separator, decimal : what is known already; None where no line is a row
+    separator, decimal : what is known already; least : numbers of a row; None where no line is one
 
     >>> find_dialect(["angle;p", "0,5;1,02", "1;1,03"])
     Dialect(separator=';', decimal=',')
@@ -80,7 +83,7 @@ def find_dialect(
     for sign in _SEPARATORS if separator is None else (separator,):
         for point in (".", ",") if decimal is None else (decimal,):
             rows = [split(line, sign) for line in lines]
-            good = [cells for cells in rows if is_row(cells, point)]
+            good = [cells for cells in rows if is_row(cells, point, least)]
             if decimal is None and separator is None and sign == point == ",":
                 good = [cells for cells in good if any("," in cell for cell in cells)]
             score = (len(good), min(map(len, good), default=0))

@@ -62,6 +62,7 @@ def read_sheet(
     separator: str | None = None,
     decimal: str | None = None,
     skip: int = 0,
+    least: int = 2,
 ) -> Sheet:
     r"""Find the table in a text and read its numbers.
 
@@ -69,7 +70,7 @@ def read_sheet(
     ----------
     separator : ";", ",", "|", a tab or a blank; None: found
     decimal : "." or ","; None: found
-    skip : lines at the beginning that are left out
+    skip : lines at the beginning that are left out; least : numbers of a row
 
     Raises
     ------
@@ -80,8 +81,8 @@ def read_sheet(
     [[0.0, 1.5], [1.0, 1.6]]
     """
     head, offset = _lines(source.text, _LONGEST_HEAD + _PROBE)
-    dialect = find_dialect(_probe(head[skip:]), separator, decimal)
-    begin = None if dialect is None else _begin(head, skip, dialect)
+    dialect = find_dialect(_probe(head[skip:]), separator, decimal, least)
+    begin = None if dialect is None else _begin(head, skip, dialect, least)
     if dialect is None or begin is None:
         raise InputError(_no_rows(name, head, skip, separator, decimal))
     width = len(split(head[begin], dialect.separator))
@@ -120,12 +121,12 @@ def _probe(lines: list[str]) -> list[str]:
     return written[-_PROBE:]
 
 
-def _begin(lines: list[str], skip: int, dialect: Dialect) -> int | None:
+def _begin(lines: list[str], skip: int, dialect: Dialect, least: int) -> int | None:
     """The index of the first of several rows of equally many cells."""
     widths = []
     for line in lines[skip:]:
         cells = split(line, dialect.separator)
-        widths.append(len(cells) if is_row(cells, dialect.decimal) else 0)
+        widths.append(len(cells) if is_row(cells, dialect.decimal, least) else 0)
     counted = Counter(width for width in widths if width)
     usual = max(counted, key=lambda width: (counted[width], width), default=0)
     for k, width in enumerate(widths):

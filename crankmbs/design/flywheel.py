@@ -19,6 +19,7 @@ from crankmbs.scene.drives import Motion, Start
 from crankmbs.scene.run import SETTLED, Extent, Run
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.torque import Torque
+from crankmbs.scene.units import DEGREE
 from crankmbs.simulate import simulate
 
 __all__ = ["Flywheel", "excess", "excess_at", "flywheel"]
@@ -27,6 +28,7 @@ _CLOSE = 1e-7  # of the fluctuation: as near the target is on it,
 _LEFT = 0.1  # or within so much of its error, which hardly grows by that
 _MOST = 40  # runs
 _WIDE = 1e4  # times the lecture's inertia: the search goes no farther
+_STEP = 0.1 * DEGREE
 _NARROW = 1e-6  # of the lecture's inertia: a crank so light is none
 
 
@@ -38,7 +40,8 @@ class Flywheel:
         what the fluctuation's is worth
     added [kg m2] : of that beyond the scene's own
     fluctuation, mean_speed [1, rad/s] : of the settled cycle with it
-    work [J] : W, greatest excess of work in a cycle at that constant speed
+    work [J] : W, greatest excess of work in a cycle at that constant speed; its error is the
+        difference from twice the spacing and what may lie between samples
     lecture [kg m2] : crank inertia by the lecture's J = W / (fluctuation omega^2), the mean of rods
         and pistons taken off
     result : the settled cycle with the inertia, or the last one tried
@@ -49,16 +52,18 @@ class Flywheel:
     added: float
     fluctuation: Estimate
     mean_speed: Estimate
-    work: float
-    lecture: float
+    work: Estimate
+    lecture: Estimate
     result: Result
     status: int
     message: str
 
     @property
-    def lecture_error(self) -> float:
+    def lecture_error(self) -> Estimate:
         """Relative error of the lecture's inertia."""
-        return self.lecture / self.inertia.value - 1.0
+        ratio = self.lecture.value / self.inertia.value
+        spread = self.lecture.error + abs(ratio) * self.inertia.error
+        return Estimate(ratio - 1.0, spread / self.inertia.value)
 
 
 def flywheel(scene: Scene, fluctuation: float = 0.01) -> Flywheel:
@@ -110,12 +115,17 @@ def excess_at(scene: Scene, speed: float) -> tuple[float, float]:
     >>> excess_at(load_scene("propeller"), 300.0)[0] > 0.0
     True
     """
+    return excess(_even(scene, speed), scene.torque)
+
+
+def _even(scene: Scene, speed: float) -> Result:
+    """A period at a constant speed [rad/s], at steps so fine that W is right to some 1e-7."""
     drive = scene.start or scene.motion
     assert drive is not None
-    run = Run(until=Extent(value=scene.settled_period, unit="rad"), rtol=scene.run.rtol)
+    until = Extent(value=scene.settled_period, unit="rad")
+    run = Run(until=until, every=Extent(value=_STEP, unit="rad"), rtol=scene.run.rtol)
     motion = Motion(speed=speed, angle=drive.angle)
-    even = simulate(replace(scene, start=None, torque=(), motion=motion, run=run))
-    return excess(even, scene.torque)
+    return simulate(replace(scene, start=None, torque=(), motion=motion, run=run))
 
 
 def excess(even: Result, loads: tuple[Torque, ...] = ()) -> tuple[float, float]:
@@ -126,11 +136,18 @@ def excess(even: Result, loads: tuple[Torque, ...] = ()) -> tuple[float, float]:
     >>> excess(simulate(load_scene("yi_diesel")))[0] > 0.0
     True
     """
-    angle = even.data["crank_angle"].values
+    return _range(even, loads, 1)[0], 2.0 * float(even.data["kinetic_energy"].values.mean())
+
+
+def _range(even: Result, loads: tuple[Torque, ...], stride: int) -> tuple[float, float]:
+    """W [J] from every so-many-th sample, and how far its two ends, if parabolas, may lie beyond
+    the samples."""
+    angle = even.data["crank_angle"].values[::stride]
     turned = np.abs(angle - angle[0])
-    work = cumulative_simpson(even.data["crank_torque"].values.sum(axis=1), x=turned, initial=0.0)
+    rods = even.data["crank_torque"].values[::stride].sum(axis=1)
+    work = cumulative_simpson(rods, x=turned, initial=0.0)
     sense = math.copysign(1.0, angle[-1] - angle[0])
-    speed = even.data["crank_speed"].values
+    speed = even.data["crank_speed"].values[::stride]
     for load in loads:
         if load.parts.over_angle is not None:
             done = load.parts.over_angle.integral(angle)
@@ -138,7 +155,9 @@ def excess(even: Result, loads: tuple[Torque, ...] = ()) -> tuple[float, float]:
         elif load.parts.function is not None:
             work += cumulative_simpson(load(0.0, angle, speed), x=turned, initial=0.0)
     surplus = work - work[-1] * turned / turned[-1]
-    return float(np.ptp(surplus)), 2.0 * float(even.data["kinetic_energy"].values.mean())
+    bends = np.diff(surplus, n=2, prepend=surplus[-2], append=surplus[1])
+    ends = [int(np.argmax(surplus)), int(np.argmin(surplus))]
+    return float(np.ptp(surplus)), float(np.abs(bends[ends]).sum()) / 8.0
 
 
 def _freed(scene: Scene) -> Scene:
@@ -174,7 +193,8 @@ class _Search:
     def found(self, own: float) -> Flywheel:
         """What is found, beside the scene's own inertia [kg m2]."""
         assert self._scene.start is not None
-        _, whole, rest = self._lecture(self._scene.start.speed)
+        work, rest = self._lecture(self._scene.start.speed)
+        whole = work.value / (self._wanted * self._scene.start.speed**2)
         floor = max(self._scene.crank.mass * self._scene.crank.center_of_mass**2, _NARROW * whole)
         low, high = floor, _WIDE * whole
         trial, before = self._tried(max(whole - rest, floor)), None
@@ -213,12 +233,13 @@ class _Search:
         apart = trial.inertia - before.inertia
         return missing * apart / rise if rise * apart > 0.0 else math.inf
 
-    def _lecture(self, speed: float) -> tuple[float, float, float]:
-        """W [J] at a constant speed [rad/s]; the inertia that the lecture finds, and the mean one
-        of rods and pistons in it [kg m2]."""
-        scene, inertia = self._scene, self._scene.crank.moment_of_inertia
-        work, doubled = excess_at(scene, speed)
-        return work, work / (self._wanted * speed**2), doubled / speed**2 - inertia
+    def _lecture(self, speed: float) -> tuple[Estimate, float]:
+        """W [J] at a constant speed [rad/s], and the mean inertia of rods and pistons [kg m2]."""
+        loads, even = self._scene.torque, _even(self._scene, speed)
+        work, doubled = excess(even, loads)
+        beyond, coarse = _range(even, loads, 1)[1], _range(even, loads, 2)[0]
+        error = abs(work - coarse) + beyond
+        return Estimate(work, error), doubled / speed**2 - self._scene.crank.moment_of_inertia
 
     def _answer(self, trial: _Trial, own: float, rest: float, off: float) -> Flywheel:
         """The answer from the last trial; ``off`` its relative error, NaN where it is none."""
@@ -228,7 +249,9 @@ class _Search:
         mean = measures.mean_speed if measures else none
         error = (abs(off) + found.error / found.value) * (inertia + rest)
         assert self._scene.start is not None
-        work, whole, rest = self._lecture(mean.value if measures else self._scene.start.speed)
+        speed = mean.value if measures else self._scene.start.speed
+        work, rest = self._lecture(speed)
+        whole = Estimate(*(part / (self._wanted * speed**2) for part in work))
         status, said = 0, f"the speed fluctuates by {100.0 * self._wanted:.6g} % of its mean"
         if math.isnan(off):
             status = result.status or 1
@@ -245,7 +268,7 @@ class _Search:
             fluctuation=found,
             mean_speed=mean,
             work=work,
-            lecture=whole - rest,
+            lecture=Estimate(whole.value - rest, whole.error),
             result=result,
             status=status,
             message=said,

@@ -5,5 +5,6 @@ Reading, checking and referencing a signal belong here; what a run makes of it d
 
 from crankmbs.indicated.found import CylinderPressure, Indicated
 from crankmbs.indicated.read import read_pressure
+from crankmbs.indicated.speed import MeasuredSpeed, read_speed
 
-__all__ = ["CylinderPressure", "Indicated", "read_pressure"]
+__all__ = ["CylinderPressure", "Indicated", "MeasuredSpeed", "read_pressure", "read_speed"]

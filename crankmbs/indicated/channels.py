@@ -8,9 +8,9 @@ from typing import NamedTuple
 
 from crankmbs.errors import InputError, UndecidedError, shown
 from crankmbs.indicated.options import Options
-from crankmbs.scene.headings import PRESSURE_UNITS, Heading, is_angle, is_time, pick
+from crankmbs.scene.headings import PRESSURE_UNITS, Heading, is_angle, pick
 
-__all__ = ["Column", "angle_column", "columns_of"]
+__all__ = ["Column", "angle_column", "columns_of", "is_pressure"]
 
 _KINDS = {
     "intake": r"^p?[ _.-]*(int|inl|ein|saug|man(?!o)|map$|boost|lade)|intake|inlet|ansaug",
@@ -48,18 +48,11 @@ def angle_column(headings: Sequence[Heading], where: str) -> int:
 
     Raises
     ------
-    InputError : pressures over time; UndecidedError : no column is an angle by its name or unit
+    UndecidedError : no column is an angle by its name or unit
     """
     angles = [k for k, heading in enumerate(headings) if is_angle(heading)]
     if angles:
         return angles[0]
-    times = [heading.name for heading in headings if is_time(heading)]
-    if times:
-        raise InputError(
-            f"{where}: the pressures stand over time, column {shown(times[0])}, and a cycle is "
-            "read over the crank angle; export them over the angle, or resample them with the "
-            "encoder's signal"
-        )
     listed = ", ".join(shown(heading.name) for heading in headings[:8])
     raise UndecidedError(
         f"{where}: no column is a crank angle by its name or its unit; the columns are {listed}",
@@ -79,7 +72,7 @@ def columns_of(
     chosen = None
     if options.columns is not None:
         chosen = [k for k in pick(headings, options.columns, where) if k != angle]
-    others = [k for k, heading in enumerate(headings) if k != angle and _is_pressure(heading)]
+    others = [k for k, heading in enumerate(headings) if k != angle and is_pressure(heading)]
     rest = list(dict.fromkeys([*(chosen or ()), *others]))
     if not rest or (chosen is not None and not chosen):
         listed = ", ".join(shown(heading.name) for heading in headings[:8])
@@ -92,11 +85,16 @@ def columns_of(
     return _apart(_numbered(headings, read, options, where), chosen is not None, where)
 
 
-def _is_pressure(heading: Heading) -> bool:
+def is_pressure(heading: Heading, units: Sequence[str] = ("",)) -> bool:
+    """Whether the column is a pressure by its unit, or by its name under one of some units.
+
+    >>> is_pressure(Heading("PCYL1", "")), is_pressure(Heading("PCYL1", "v"), ("v",))
+    (True, True)
+    """
     if heading.pressure is not None:
         return True
     plain = _PRESSURE_NAME.fullmatch(heading.name) is not None or heading.name.isdigit()
-    return heading.unit == "" and plain and _COUNTER.fullmatch(heading.name) is None
+    return heading.unit in units and plain and _COUNTER.fullmatch(heading.name) is None
 
 
 def _kind(name: str) -> str:
@@ -119,7 +117,7 @@ def _numbered(
         raise UndecidedError(
             f"{where}: the columns are named {bare[0]} to {bare[-1]}, and these may be cycles of "
             "one cylinder or cylinders",
-            ('each="cycle"', 'each="cylinder"'),
+            ('each="cycle"', 'each="cylinder"', f'columns="{bare[0]}" for a pressure alone'),
         )
     as_cycles = each == "cycle" or (each is None and len(plain) > _MOST_CYLINDERS)
     columns = []
@@ -184,6 +182,12 @@ def _factor(heading: Heading, options: Options, where: str) -> float:
         raise UndecidedError(
             f"{where}: the pressures of column {shown(heading.name)} have no unit, neither in the "
             "name nor in a row below the names",
-            ('unit="bar"', "another of kPa, Pa, MPa, psi"),
+            ('unit="bar"', f"another of kPa, Pa, MPa, psi{_and_reference(options)}"),
         )
     return PRESSURE_UNITS[options.unit]
+
+
+def _and_reference(options: Options) -> str:
+    """What a pressure without a unit leaves open besides, so that both are asked for at once."""
+    ways = ', with reference="absolute" or "gauge" unless the compression shows it'
+    return "" if options.reference else ways

@@ -9,12 +9,15 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from crankmbs.errors import UndecidedError
+from crankmbs.errors import InputError, UndecidedError
+from crankmbs.indicated.options import Options
+from crankmbs.indicated.record import Record
 from crankmbs.numerics.arrays import Array
 
-__all__ = ["cut_cycles", "firing_angle", "flank", "lags", "places"]
+__all__ = ["cut_cycles", "firing_angle", "flank", "lags", "peak_or_given", "places"]
 
 _BEFORE, _BEHIND = 25.0, 60.0  # degrees about a dead centre where the peak of a cycle may lie
+_USUAL = 8.0  # degrees behind it
 _FLANK = 0.1  # of the range: still compression, before any combustion
 _APART = 4.0  # degrees: how well a flank tells a dead centre
 _GRID = sorted({*range(0, 720, 30), *range(0, 720, 72), *range(0, 720, 45)})
@@ -36,14 +39,45 @@ def firing_angle(angle: Array, mean: Array, period: float, where: str) -> float:
             "360: the angles do not count from a dead centre of this cylinder",
             ('firing_tdc="... deg", the file\'s angle of the firing dead centre',),
         )
-    if period > 700.0:
-        other = np.interp(nominal + 360.0, angle, mean, period=period)
-        if other - np.min(mean) > 0.5 * (np.max(mean) - np.min(mean)):
-            raise UndecidedError(
-                f"{where}: the pressure is as high at {nominal:.4g} degrees as 360 degrees behind",
-                ("stroke=2", "stroke=4 with firing_tdc"),
-            )
+    _check_alone(angle, mean, period, nominal, where)
     return nominal
+
+
+def peak_or_given(record: Record, options: Options, where: str) -> float:
+    """The angle [deg] of the firing dead centre of a record over time: the one given modulo 360
+    that is next to the peak of the first cylinder, else the peak, next to which it lies.
+
+    Raises
+    ------
+    InputError : the peak is not near it; UndecidedError : two peaks a cycle
+    """
+    sign = -1.0 if options.invert else 1.0
+    mean = sign * np.mean(record.channels[0].values, axis=0)
+    peak = float(record.angle[np.argmax(mean)])
+    _check_alone(record.angle, mean, record.period, peak, where)
+    if options.firing_tdc is None:
+        return peak
+    given = float(np.degrees(options.firing_tdc))
+    before = _off_by(peak - given - _USUAL, 360.0) + _USUAL
+    if not -_BEFORE < before < _BEHIND:
+        raise InputError(
+            f"{where}: the peak of the pressure lies {peak % 360.0:.4g} degrees behind the first "
+            f"edge of a revolution, {before:.4g} degrees from the dead centre given, {given:g}; "
+            "correct firing_tdc, or leave it out"
+        )
+    return (peak - before) % record.period
+
+
+def _check_alone(angle: Array, mean: Array, period: float, at: float, where: str) -> None:
+    """Refuse a four-stroke cycle with a second peak 360 degrees behind."""
+    if period < 700.0:
+        return
+    other = np.interp(at + 360.0, angle, mean, period=period)
+    if other - np.min(mean) > 0.5 * (np.max(mean) - np.min(mean)):
+        raise UndecidedError(
+            f"{where}: the pressure is as high at {at:.4g} degrees as 360 degrees behind",
+            ("stroke=2", "stroke=4 with firing_tdc"),
+        )
 
 
 def flank(angle: Array, mean: Array, period: float, level: float) -> float:
@@ -91,7 +125,10 @@ def places(
             raise UndecidedError(
                 f"{where}: the cylinder of pressure column {number} fires {each:.4g} degrees "
                 "behind the first one, which no even firing has",
-                ("scene=..., whose layout says when it fires",),
+                (
+                    "scene=..., whose layout says when it fires",
+                    'columns="PCYL1" where the others are no pressures',
+                ),
             )
         found.append(float(nominal))
     return found
@@ -123,4 +160,8 @@ def cut_cycles(
 
 
 def _off(a: float, b: float, period: float) -> float:
-    return abs((a - b + 0.5 * period) % period - 0.5 * period)
+    return abs(_off_by(a - b, period))
+
+
+def _off_by(angle: float, period: float) -> float:
+    return (angle + 0.5 * period) % period - 0.5 * period

@@ -9,6 +9,7 @@ import numpy as np
 
 from crankmbs.indicated.dead_centre import DeadCentre
 from crankmbs.indicated.shape import Shape
+from crankmbs.indicated.speed import MeasuredSpeed
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.tables import CylinderTable, Table
 
@@ -68,6 +69,7 @@ class Indicated:
     aligned : whether the table's columns run each over its own cylinder's cycle angle
     table : crank angle [rad] and pressure [Pa], as `Gas.pressure` takes it
     cycles : what it holds, "mean" or "sequence"
+    speed : over the crank angle, of a record over time; None otherwise
     sentences : all that was read, found and done; those that need a look begin with "warning:"
     """
 
@@ -80,6 +82,7 @@ class Indicated:
     shape: Shape | None
     table: Table | CylinderTable
     sentences: tuple[str, ...]
+    speed: MeasuredSpeed | None = None
 
     def __str__(self) -> str:
         return "\n".join(self.sentences)

@@ -9,6 +9,8 @@ from annotated_types import Ge, Gt, Le
 from pydantic import AfterValidator, BeforeValidator, Strict
 
 from crankmbs.errors import InputError, shown
+from crankmbs.indicated.sensor import Sensor, sensor_of
+from crankmbs.indicated.wheel import Wheel, wheel_of
 from crankmbs.scene.headings import PRESSURE_UNITS
 from crankmbs.scene.measured_rows import sign_of
 from crankmbs.scene.schema import Float, part, si
@@ -82,6 +84,8 @@ class Options:
     each : whether numbered columns are cycles or cylinders; stroke : 2 or 4
     reference : absolute, gauge, inlet or polytrope; firing_tdc [rad] : the file's angle of the
         firing dead centre; loss_angle [rad] : by which a motored peak comes before it
+    wheel : teeth of the wheel over time; index : column of an encoder's mark; sensor : from volts
+        to Pa; delay [s] : by which the sensor shows a pressure late
     compression_ratio [1]; invert : turn the signal over; smooth [rad] : width of the smoothing
     cycles : what the table holds
     """
@@ -97,6 +101,10 @@ class Options:
     firing_tdc: Annotated[Float, si("angle")] | None = None
     loss_angle: Annotated[Float, Ge(0), Le(0.05), si("angle")] | None = None
     compression_ratio: Annotated[Float, Gt(1), Le(100)] | None = None
+    wheel: Annotated[Wheel, BeforeValidator(wheel_of)] | None = None
+    index: Annotated[str, Strict()] | None = None
+    sensor: Annotated[Sensor, BeforeValidator(sensor_of)] | None = None
+    delay: Annotated[Float, Ge(-0.1), Le(0.1), si("time")] | None = None
     invert: Annotated[bool, Strict()] = False
     smooth: Annotated[Float, Gt(0), Le(0.5), si("angle")] | None = None
     cycles: Annotated[str, BeforeValidator(_cycles)] = "mean"

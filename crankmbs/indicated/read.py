@@ -5,31 +5,40 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from crankmbs.delimited import Sheet, decode, read_sheet
 from crankmbs.delimited.dialect import named
-from crankmbs.errors import InputError
+from crankmbs.errors import InputError, UndecidedError
 from crankmbs.indicated.cylinders import cylinder_of
-from crankmbs.indicated.firing import cut_cycles, firing_angle, lags, places
-from crankmbs.indicated.found import Indicated
+from crankmbs.indicated.dead_centre import DeadCentre, fired_dead_centre
+from crankmbs.indicated.firing import cut_cycles, firing_angle, lags, peak_or_given, places
+from crankmbs.indicated.found import CylinderPressure, Indicated
 from crankmbs.indicated.gaps import without_gaps
 from crankmbs.indicated.options import Options
+from crankmbs.indicated.over_time import record_over_time, time_column
 from crankmbs.indicated.record import Channel, Record, record_of
 from crankmbs.indicated.referencing import Raw, decide, refer
 from crankmbs.indicated.report import said_of
 from crankmbs.indicated.shape import Shape, differences, of_header, shape_of
+from crankmbs.indicated.speed import MeasuredSpeed, speed_of
 from crankmbs.indicated.tabulate import table_of
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.content import content_of
+from crankmbs.scene.headings import headings_of, is_angle
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.units import BAR
 
 __all__ = ["read_pressure"]
 
 _MOST = 400_000_000  # bytes
+_ROUNDS = 20  # towards the dead centre
+_SETTLED = 0.01  # degrees
+_PEAKS = (-10.0, 60.0)  # degrees from the dead centre where a peak may lie
+_ALIKE = 0.03  # of the mean peak: what those of motored cycles scatter by
+_SYMMETRIC = 1.0  # degree between the peak and the middle of its chord
 
 
 def read_pressure(file: str | Path, scene: Scene | None = None, **options: Any) -> Indicated:
@@ -39,7 +48,7 @@ def read_pressure(file: str | Path, scene: Scene | None = None, **options: Any) 
 
     Parameters
     ----------
-    file : a text file of pressures over the crank angle
+    file : a text file of pressures over the crank angle, or over time with the signal of a wheel
     scene : its geometry gives volumes, hence imep, the dead centre and references by polytrope;
         its layout the cylinders' firing; else a header's stroke and rod length are used
     columns : names of the pressures, "PCYL1..4"; separator, decimal, skip : as in `Gas`
@@ -47,7 +56,12 @@ def read_pressure(file: str | Path, scene: Scene | None = None, **options: Any) 
     stroke : 2 or 4; invert : True turns the signal over
     reference : "absolute"; "gauge", with the ambient "gauge 1 bar" made absolute; "inlet 1 bar", or
         "inlet" with an intake's column; "polytrope 1.32"
-    firing_tdc : the file's angle of the (first cylinder's) firing dead centre, "0.35 deg"
+    firing_tdc : the file's angle of the (first cylinder's) firing dead centre, "0.35 deg"; over
+        time, modulo 360 degrees, from the wheel's first edge behind the gap
+    wheel : of a record over time, "60-2", teeth less the missing ones, or "60-2 falling"; of an
+        encoder "360", with index : the column of its mark
+    sensor : from volts to pressure, "(V/5 - 0.115)/0.00385 bar" or "0.5 V = 0 bar, 4.5 V = 100 bar"
+    delay : by which the sensor shows a pressure late, "0.8 ms"
     loss_angle : by which a motored peak comes before the dead centre, "0.7 deg"
     compression_ratio : where neither scene nor header has it
     smooth : width of a sliding cubic, "3 deg"; cycles : in the table, "mean", "all", "7" or "1-50"
@@ -70,31 +84,23 @@ def read_pressure(file: str | Path, scene: Scene | None = None, **options: Any) 
     sheet = _sheet(Path(file), wanted)
     where = f"file {sheet.name}"
     known = scene.gas.stroke if scene is not None and scene.gas is not None else None
-    record = record_of(sheet, wanted, known)
     header = of_header(sheet.above, sheet.dialect.decimal)
     shape = shape_of(scene, header, wanted.compression_ratio)
+    record = _record(sheet, wanted, known, shape)
     said = [_read_as(sheet, record), *record.said]
     if header:
         said += [_header_words(header)]
     if scene is not None:
         said += differences(header, scene)
-    raws, firsts, measured, more = _cut(record, wanted, scene, where)
+    given = _Given(record, wanted, scene, shape, where)
+    first = None if record.rotation is None else peak_or_given(record, wanted, where)
+    cylinders, firsts, absolute, more = _cylinders(given, first)
+    if first is not None and wanted.firing_tdc is None:
+        cylinders, firsts, absolute, more = _by_pressure(given, first)
     said += more
-    reference, why = decide([raw for raw, _ in raws], wanted, shape, record.period, where)
-    cylinders, absolute = [], True
-    for (raw, firing), lag in zip(raws, measured, strict=True):
-        added, absolute, words = refer(raw, reference, shape, record.period, where)
-        look = "warning: " if "though" in why else ""
-        said.append(f"{look}cylinder {raw.number}: {words} ({why})")
-        cylinders.append(
-            replace(
-                cylinder_of(raw, added, shape, record.period, wanted, absolute),
-                firing=firing,
-                lag=lag,
-            )
-        )
     aligned = len(cylinders) > 1 and len({each.firing for each in cylinders}) == 1
     table, words = table_of(record, cylinders, firsts, shape, wanted.cycles, where)
+    speed = _speed(record, cylinders[0].firing, shape, sheet.name)
     for cylinder in cylinders:
         said += said_of(cylinder, shape, absolute)
     return Indicated(
@@ -106,8 +112,102 @@ def read_pressure(file: str | Path, scene: Scene | None = None, **options: Any) 
         cylinders=tuple(cylinders),
         shape=shape,
         table=table,
-        sentences=(*said, *_no_geometry(shape), words),
+        sentences=(*said, *_no_geometry(shape), *(speed.sentences if speed else ()), words),
+        speed=speed,
     )
+
+
+class _Given(NamedTuple):
+    """What a file's cylinders are found from."""
+
+    record: Record
+    options: Options
+    scene: Scene | None
+    shape: Shape | None
+    where: str
+
+
+def _record(sheet: Sheet, options: Options, stroke: int | None, shape: Shape | None) -> Record:
+    headings = headings_of(sheet.above, sheet.values.shape[1])
+    at = None if any(map(is_angle, headings)) else time_column(headings, sheet, options)
+    if at is None:
+        return record_of(sheet, options, stroke)
+    geometry = shape is not None and shape.ratio is not None
+    return record_over_time(sheet, headings, at, options, stroke, geometry=geometry)
+
+
+def _cylinders(
+    given: _Given, first: float | None
+) -> tuple[list[CylinderPressure], list[int], bool, list[str]]:
+    """The cylinders, the row at which the cycles of each begin, whether they are absolute, and what
+    was done.
+
+    first : the file's angle [deg] of the first cylinder's firing dead centre; None: as the options
+        or the peak have it
+    """
+    record, options, scene, shape, where = given
+    raws, firsts, measured, said = _cut(record, options, scene, where, first)
+    reference, why = decide([raw for raw, _ in raws], options, shape, record.period, where)
+    cylinders, absolute = [], True
+    for (raw, firing), lag in zip(raws, measured, strict=True):
+        added, absolute, words = refer(raw, reference, shape, record.period, where)
+        look = "warning: " if "though" in why else ""
+        said.append(f"{look}cylinder {raw.number}: {words} ({why})")
+        found = cylinder_of(raw, added, shape, record.period, options, absolute)
+        cylinders.append(replace(found, firing=firing, lag=lag))
+    return cylinders, firsts, absolute, said
+
+
+def _by_pressure(
+    given: _Given, first: float
+) -> tuple[list[CylinderPressure], list[int], bool, list[str]]:
+    """The same with the dead centre where the pressure has it, from a guess [deg].
+
+    Raises
+    ------
+    UndecidedError : the pressure does not show it
+    """
+    for _ in range(_ROUNDS):
+        found = _cylinders(given, first)
+        centre = _centre(found[0][0], given.shape if found[2] else None)
+        if centre is None or not _PEAKS[0] < centre.peak < _PEAKS[1]:
+            break
+        if abs(centre.middle) < _SETTLED:
+            found[3].append(
+                f"the dead centre is taken where the pressure shows it, {first % 360.0:.2f} +- "
+                f"{centre.half:.2f} degrees behind the first edge of a revolution, by "
+                f"{'its motored peak' if centre.how.startswith('motored') else 'its compression'};"
+                " firing_tdc says where it is known"
+            )
+            return found
+        first = (first + centre.middle) % given.record.period
+    raise UndecidedError(
+        f"{given.where}: where the dead centre lies is not said, and the pressure does not show "
+        "it: a fired cycle has it in its compression alone, which must be a polytrope",
+        ('firing_tdc="25 deg"', "a scene, compression_ratio and another reference"),
+    )
+
+
+def _centre(cylinder: CylinderPressure, shape: Shape | None) -> DeadCentre | None:
+    """The dead centre by a peak that is surely motored, symmetric and alike in every cycle, else by
+    the compression."""
+    found = cylinder.dead_centre
+    alike = np.std(cylinder.peaks) < _ALIKE * np.mean(cylinder.peaks)
+    motored = found is not None and found.how.startswith("motored")
+    if found is not None and motored and alike and abs(found.skew) < _SYMMETRIC:
+        return found
+    if shape is None or shape.ratio is None:
+        return None
+    return fired_dead_centre(cylinder.angle, cylinder.mean, shape)
+
+
+def _speed(record: Record, firing: float, shape: Shape | None, name: str) -> MeasuredSpeed | None:
+    """The speed over the first cylinder's cycle angle."""
+    if record.rotation is None:
+        return None
+    top = 0.0 if shape is None else float(np.degrees(shape.top))
+    zero = firing - top - (360.0 if record.stroke == 4 else 0.0)
+    return speed_of(record.rotation, zero, name)
 
 
 def _sheet(path: Path, options: Options) -> Sheet:
@@ -147,7 +247,7 @@ def _no_geometry(shape: Shape | None) -> list[str]:
 
 
 def _cut(
-    record: Record, options: Options, scene: Scene | None, where: str
+    record: Record, options: Options, scene: Scene | None, where: str, first: float | None
 ) -> tuple[list[tuple[Raw, float]], list[int], list[float], list[str]]:
     """Each cylinder's cycles from gas exchange to gas exchange, with its firing angle; the row at
     which each begins; measured lags; what was done."""
@@ -162,11 +262,12 @@ def _cut(
     means = [np.mean(values, axis=0) for values in filled]
     for channel, mean in zip(channels, means, strict=True):
         _check_sign(channel, mean, where)
-    first = (
-        firing_angle(record.angle, means[0], record.period, where)
-        if options.firing_tdc is None
-        else float(np.degrees(options.firing_tdc))
-    )
+    if first is None:
+        first = (
+            firing_angle(record.angle, means[0], record.period, where)
+            if options.firing_tdc is None
+            else float(np.degrees(options.firing_tdc))
+        )
     measured = lags(record.angle, means, record.period)
     known = _of_layout(channels, scene, record.period)
     nominal = places(measured, record.period, known, where)
@@ -218,7 +319,8 @@ def _check_sign(channel: Channel, mean: Array, where: str) -> None:
     if middle - np.min(mean) > 1.5 * (np.max(mean) - middle):
         raise InputError(
             f"{where}: {channel.name} stands upside down: its largest excursion goes down, to "
-            f"{np.min(mean) / BAR:.4g} bar; give invert=True, or choose another column"
+            f"{np.min(mean) / BAR:.4g} bar; give invert=True, or the names of the pressures alone, "
+            'such as columns="PCYL1..4"'
         )
 
 

@@ -17,6 +17,7 @@ from crankmbs.delimited.dialect import is_number
 from crankmbs.errors import InputError, UndecidedError
 from crankmbs.indicated.channels import Column, angle_column, columns_of
 from crankmbs.indicated.options import Options
+from crankmbs.indicated.rotation import Rotation
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.headings import PRESSURE_UNITS, Heading, angle_factor, headings_of
 from crankmbs.scene.units import BAR
@@ -45,6 +46,7 @@ class Record:
     angle : shape (n,) [deg], the file's, rising, less than a period from first to last
     consecutive : whether a cycle begins where the one before ends
     said : what was made of the rows, in sentences
+    rotation : the crank's turning, of a record over time
     """
 
     angle: Array
@@ -52,6 +54,7 @@ class Record:
     channels: tuple[Channel, ...]
     consecutive: bool
     said: list[str] = field(default_factory=list)
+    rotation: Rotation | None = None
 
     @property
     def period(self) -> float:
@@ -89,7 +92,8 @@ def record_of(sheet: Sheet, options: Options, stroke: int | None) -> Record:
         )
     record = _Axis(sheet, angle, columns, options.stroke or stroke).record()
     if nameless:
-        record.said.insert(0, "no column has a name: the first is read as the crank angle")
+        others = f", the others as PCYL1 to PCYL{width - 1}" if width > 2 else ""
+        record.said.insert(0, f"no column has a name: the first is read as the crank angle{others}")
     return record
 
 

@@ -127,10 +127,14 @@ def _suspicions(cylinder: CylinderPressure, who: str, referenced: bool) -> Itera
                 f"warning: {who}: {sense} the piston, imep {work / BAR:.3g} bar: check the dead "
                 "centre, and the sense in which the angle counts"
             )
-    if referenced and np.min(mean) < 0.0:
+    below = int(np.sum(np.min(cylinder.pressure, axis=1) < 0.0))
+    if referenced and below:
+        cycle, row = np.unravel_index(np.argmin(cylinder.pressure), cylinder.pressure.shape)
+        low, deg = cylinder.pressure[cycle, row], cylinder.angle[row]
         yield (
-            f"warning: {who}: an absolute pressure falls to {np.min(mean) / BAR:.3g} bar: check "
-            "the reference"
+            f"warning: {who}: an absolute pressure falls to {low / BAR:.3g} bar, {deg:.4g} degrees "
+            f"from the dead centre in cycle {cycle + 1}, below zero in {below} of "
+            f"{len(cylinder.pressure)} cycles: check the reference, and the signal for spikes"
         )
     if abs(cylinder.closure) > _MOVED * np.ptp(mean) + 5.0 * cylinder.noise:
         yield (

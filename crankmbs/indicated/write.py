@@ -10,7 +10,7 @@ import numpy as np
 
 from crankmbs.errors import InputError
 from crankmbs.indicated.found import Indicated
-from crankmbs.scene.tables import CylinderTable
+from crankmbs.scene.tables import CylinderTable, Table
 from crankmbs.scene.units import BAR
 from crankmbs.storage.files import text_in_one_move
 
@@ -33,9 +33,12 @@ def write_table(found: Indicated, path: Path) -> Path:
 
     Raises
     ------
-    InputError : larger than a scene reads; OutputError : the file cannot be written
+    InputError : larger than a scene reads, or an absolute pressure below zero
+    OutputError : the file cannot be written
     """
     table = found.table
+    if found.absolute:
+        _refuse_negative(table, path)
     columns = [np.degrees(table.x)]
     if isinstance(table, CylinderTable):
         names = [f"pressure_bar_{k}" for k in range(1, len(table.y) + 1)]
@@ -56,6 +59,21 @@ def write_table(found: Indicated, path: Path) -> Path:
         )
     text_in_one_move(path, text)
     return path
+
+
+def _refuse_negative(table: Table | CylinderTable, path: Path) -> None:
+    values = np.atleast_2d(table.y)
+    cylinder, row = np.unravel_index(np.argmin(values), values.shape)
+    lowest = values[cylinder, row]
+    if lowest >= 0.0:
+        return
+    raise InputError(
+        f"{path.name}: the absolute pressure of the table's column {cylinder + 1} falls to "
+        f"{lowest / BAR:.3g} bar at a crank angle of {np.degrees(table.x[row]):.6g} degrees, and "
+        'none is below zero; where the signal has spikes take cycles="mean", other cycles or '
+        'smooth="3 deg", where its zero is off another reference, such as '
+        'reference="inlet 1.0 bar"'
+    )
 
 
 def _wrapped(found: Indicated) -> list[str]:

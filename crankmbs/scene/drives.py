@@ -10,7 +10,7 @@ from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationInfo
 
 from crankmbs.errors import InputError, shown
 from crankmbs.scene.schema import Float, folder_of, from_file, of_file, part, si
-from crankmbs.scene.speed_rows import check_over_angle
+from crankmbs.scene.speed_rows import check_over_angle, from_first_row
 from crankmbs.scene.tables import Header, Table, check_abscissae, headings
 from crankmbs.scene.units import DEGREE, RPM
 
@@ -66,7 +66,8 @@ class SpeedFile:
     """Speed over time or over the crank angle, as measured: pchip or cubic between the rows.
 
     kind : "time_table", of time [s] and speed [rad/s], or "angle_table", of crank angle [rad] and
-        speed, which never comes to 0; from a file its columns say it. Over the angle rows that span
+        speed, which never comes to 0; from a file its columns say it. A time that begins later than
+        0 is counted from the first row, where the run begins. Over the angle rows that span
         one or two revolutions and close repeat, all others cover the run
     interpolation : "pchip" keeps monotone stretches monotone; "cubic", the spline with two
         continuous derivatives, is for smooth rows: pchip's acceleration errs there by 2 %
@@ -88,6 +89,8 @@ class SpeedFile:
         check_abscissae(self.file, what, jumps=False)
         if self.kind == "angle_table":
             check_over_angle(self.file, self.interpolation)
+        elif self.file.x[0] > 0.0:
+            object.__setattr__(self, "file", from_first_row(self.file))
 
     @property
     def header(self) -> Header:

@@ -18,6 +18,7 @@ from crankmbs.scene.units import DEGREE
 
 __all__ = [
     "PRESSURE_UNITS",
+    "TIME_UNITS",
     "Heading",
     "angle_factor",
     "headings_of",
@@ -54,7 +55,7 @@ _REFERENCED = re.compile(r"(bar|psi|kpa|mpa|mbar)[ _]?\(?([ag])(?:bs|auge)?\)?")
 _DEGREES = {"deg", "°", "degca", "deg ca", "°ca", "ca", "cad", "°kw", "grad", "degree", "degrees"}
 _DEGREES |= {"°crk", "deg crk", "degcrk", "°ka", "kw", "deg crank", "dega", "ºca", "º"}
 _ANGULAR = {**dict.fromkeys(_DEGREES, DEGREE), "rad": 1.0, "rev": 2.0 * math.pi}
-_TIMES = {"s", "ms", "us", "µs", "sec"}
+TIME_UNITS = {"s": 1.0, "sec": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6}
 _NO_UNITS = {"", "-", "1", "%", "a", "v", "mv", "c", "°c", "k", "mm", "j/deg", "kj/m3deg", "j"}
 
 _ANGLE_NAME = re.compile(
@@ -62,7 +63,7 @@ _ANGLE_NAME = re.compile(
     r"|theta|phi|φ|ca[ _]?deg|deg[ _]?ca|degca|x[ _]?axis)([ _][ab]?tdc\w*)?"
 )
 _TIME_NAME = re.compile(r"time|zeit|t|timestamp|time[ _]?stamp|abs(olute)?[ _]?time|temps")
-_BRACKETED = re.compile(r"(.*?)\s*[\[(]([^\])]*(?:\([ag]\))?)[\])]\s*")
+_BRACKETED = re.compile(r"(.*?)\s*[\[(]([^\])]*(?:\([ag]\))?)[\])]\s*([ _.#-].*)?")
 _AFTER = re.compile(r"(.+?)\s+/\s+(\S.*)|(.+?),\s*(\S+)")  # "p / bar", "p, bar"
 _OF_TDC = re.compile(r"\s*[ab]?tdcf?$")
 _NUMBERED_UNIT = re.compile(r"(.+?)_(bar|kPa|Pa|MPa|psi|kgf_cm2|deg|rad)((?:_[1-9][0-9]*)?)")
@@ -90,8 +91,8 @@ class Heading(NamedTuple):
 def headings_of(above: Sequence[Sequence[str]], width: int) -> tuple[Heading, ...]:
     """The headings of ``width`` columns, from the lines above their numbers.
 
-    Names stand in the row that has that of a crank angle, else above the units, else in the last;
-    a row of numbers of cycles below the names belongs to them.
+    Names stand in the row that has that of a crank angle, else above the units, else in the last
+    that has a word for every column; a row of numbers of cycles below the names belongs to them.
 
     >>> headings_of([["CA", "PCYL1"], ["deg", "bar"]], 2)[1]
     Heading(name='PCYL1', unit='bar', reference='')
@@ -107,6 +108,8 @@ def headings_of(above: Sequence[Sequence[str]], width: int) -> tuple[Heading, ..
     named = [k for k in full if k != under and _has_angle(rows[k], units)]
     at = named[-1] if named else (end if under is None else under) - 1
     if at not in full:
+        at = next((k for k in reversed(full) if k < at and _are_words(rows[k])), -1)
+    if at < 0:
         return tuple(_heading("", unit) for unit in units)
     names = rows[at]
     if width > 2 and at and _are_cycles(names) and _given(above[at - 1]) == width:
@@ -121,7 +124,7 @@ def is_angle(heading: Heading) -> bool:
     >>> is_angle(Heading("Crank Angle", "deg")), is_angle(Heading("PCYL1", "bar"))
     (True, False)
     """
-    if heading.pressure is not None or heading.unit in _TIMES:
+    if heading.pressure is not None or heading.unit in TIME_UNITS:
         return False
     named = _ANGLE_NAME.fullmatch(heading.name.lower().strip("# ")) is not None
     return named or (heading.unit in _ANGULAR and heading.unit != "")
@@ -134,7 +137,7 @@ def is_time(heading: Heading) -> bool:
     True
     """
     named = _TIME_NAME.fullmatch(heading.name.lower().strip("# ")) is not None
-    return heading.unit in _TIMES or (named and heading.unit == "")
+    return heading.unit in TIME_UNITS or (named and heading.unit == "")
 
 
 def angle_factor(heading: Heading) -> float:
@@ -220,7 +223,7 @@ def _unit(text: str) -> tuple[str, str]:
 
 def _is_unit(text: str) -> bool:
     unit = _unit(text)[0]
-    return unit in PRESSURE_UNITS or unit in _ANGULAR or unit in _TIMES or unit in _NO_UNITS
+    return unit in PRESSURE_UNITS or unit in _ANGULAR or unit in TIME_UNITS or unit in _NO_UNITS
 
 
 def _is_units(row: Sequence[str]) -> bool:
@@ -228,6 +231,10 @@ def _is_units(row: Sequence[str]) -> bool:
     telling = [cell for cell in row if _unit(cell)[0] not in _NO_UNITS]
     named = [cell for cell in telling if cell not in ("CA", "KW", "Grad")]
     return bool(named) and all(map(_is_unit, row))
+
+
+def _are_words(row: Sequence[str]) -> bool:
+    return all(re.search(r"[^\W\d]", cell) for cell in row)
 
 
 def _are_cycles(names: Sequence[str]) -> bool:
@@ -241,7 +248,7 @@ def _heading(name: str, unit: str) -> Heading:
     numbered = _NUMBERED_UNIT.fullmatch(text)
     after = _AFTER.fullmatch(text)
     if bracketed and bracketed[1] and _is_unit(bracketed[2]) and bracketed[2] != "1":
-        text, said = bracketed[1], said or bracketed[2]
+        text, said = bracketed[1] + (bracketed[3] or ""), said or bracketed[2]
     elif numbered and not unit:
         text, said = numbered[1] + numbered[3], numbered[2]
     elif not unit and after and _is_unit(after[2] or after[4]):

@@ -79,8 +79,9 @@ def check_rows(
     lowest = min(table.y)
     if absolute and lowest < 0.0:
         raise InputError(
-            f"{where}: an absolute pressure cannot be negative; {lowest:.6g} Pa came; "
-            "give absolute = false when the file is gauge"
+            f"{where}: an absolute pressure cannot be negative; {lowest:.6g} Pa came at "
+            f"{angle[table.y.index(lowest)] / DEGREE:g} degrees; correct what the pressures are "
+            "measured from, or give absolute = false when the file is gauge"
         )
 
 

@@ -14,11 +14,22 @@ from crankmbs.scene.pressure_rows import close, closing_row, interpolate
 from crankmbs.scene.tables import Table
 from crankmbs.scene.units import DEGREE, RPM
 
-__all__ = ["check_over_angle", "over_angle", "remarks_on", "repeats"]
+__all__ = ["check_over_angle", "from_first_row", "over_angle", "remarks_on", "repeats"]
 
 _TURN = 2.0 * math.pi
 _CLOSING = 0.01  # of the range of the speeds: so far a measured cycle may miss its beginning
 _STANDS = 1e-9  # of the largest speed: as slow a crank stands
+
+
+def from_first_row(table: Table) -> Table:
+    """The rows over the time since the first one; their source says so.
+
+    >>> from_first_row(Table([5.0, 6.0], [9.0, 8.0], "a.csv"))
+    Table(x=(0.0, 1.0), y=(9.0, 8.0), source='a.csv from 5 s on')
+    """
+    begin = table.x[0]
+    x = tuple(time - begin for time in table.x)
+    return Table(x, table.y, f"{table.source} from {begin:.9g} s on")
 
 
 def repeats(table: Table) -> bool:

@@ -21,7 +21,7 @@ def greatest_excess(case: Case) -> Outcome:
     found = flywheel(case.theirs(), wanted)
     if found.status != 0:
         raise RuntimeError(found.message)
-    errors = {"run": abs(swing / area - 1.0), "W": abs(found.work / area - 1.0)}
+    errors = {"run": abs(swing / area - 1.0), "W": abs(found.work.value / area - 1.0)}
     return Outcome(
         max(errors.values()),
         ", ".join(f"{name} off by {error:.1e}" for name, error in errors.items())

@@ -1,0 +1,191 @@
+"""How the crank turned, from the edges of a wheel whose teeth stand unevenly.
+
+Over the mean cycle the time of an edge, as an angle at the mean speed, is that of its place plus a
+Fourier series of low orders; what is left over, alike in every revolution, is where its tooth
+stands. The half orders, the differences of the two revolutions of a four-stroke cycle, are free of
+the teeth's errors; of whole orders they take some part, which the spread of what is left over
+tells. The edges beside the gap, which a magnetic sensor shows late and early, are not fitted.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from crankmbs.errors import InputError
+from crankmbs.indicated.wheel import Wheel
+from crankmbs.numerics.arrays import Array, Index
+
+__all__ = ["Rotation", "rotation_of"]
+
+_SIGMAS = 3.0  # standard deviations in a stated error
+_FINEST = 12  # orders: a crank train's speed hardly has higher ones
+_TEETH = 8  # an order takes so many teeth, or their errors would pass for speed
+_GRID = np.arange(0.0, 720.0, 3.0)  # degrees
+
+
+class _Series(NamedTuple):
+    """sum of coefficients times basis; covariance of the coefficients."""
+
+    orders: Array
+    constant: bool
+    coefficients: Array
+    covariance: Array
+
+    def basis(self, angle: Array, slope: bool = False) -> Array:
+        """Constant, cosines and sines, or their slopes [1/rad], shape (n, m)."""
+        turned = np.radians(angle)[:, None] * self.orders
+        parts = [np.cos(turned), np.sin(turned)]
+        if slope:
+            parts = [-self.orders * parts[1], self.orders * parts[0]]
+        ones = np.full((len(angle), int(self.constant)), 0.0 if slope else 1.0)
+        return np.hstack([ones, *parts])
+
+    def at(self, angle: Array, slope: bool = False) -> Array:
+        return np.asarray(self.basis(angle, slope) @ self.coefficients)
+
+    def variance(self, basis: Array) -> Array:
+        return np.asarray(np.einsum("ij,jk,ik->i", basis, self.covariance, basis))
+
+    @property
+    def tail(self) -> float:
+        """Amplitude of the slope at the highest order: about what higher ones may have."""
+        n = len(self.orders)
+        pair = self.coefficients[int(self.constant) :][[n - 1, 2 * n - 1]]
+        return float(self.orders[-1] * np.hypot(*pair))
+
+
+class Rotation(NamedTuple):
+    """The crank's turning over a record.
+
+    wheel; period : of the cycle [deg]; cycles : whole ones; begin, end : their times [s]
+    teeth : shape (edges,) [deg]: by how much each tooth stands behind its place, as far as that
+        shows beyond the fitted orders; angles count from where the first edge is seen
+    orders : highest one that is fitted; angle_error : three standard deviations, largest [deg]
+    angle, time : of all edges, shape (n,) [deg, s]
+    """
+
+    wheel: Wheel
+    period: float
+    cycles: int
+    begin: float
+    end: float
+    teeth: Array
+    orders: int
+    angle_error: float
+    angle: Array
+    time: Array
+    series: tuple[_Series, ...]
+
+    def time_at(self, angle: Array) -> Array:
+        """Times [s] at angles [deg] from the first edge, by a cubic spline through all edges."""
+        return np.asarray(CubicSpline(self.angle, self.time)(angle))
+
+    def words(self) -> list[str]:
+        """What was found, in sentences."""
+        wheel, inner = self.wheel, self.teeth[1:-1] if self.wheel.missing else self.teeth
+        said = [
+            f"{self.cycles} whole cycles from {self.begin:.6g} to {self.end:.6g} s, at a mean of "
+            f"{self.mean_speed / 6.0:.5g} rpm; beyond order {self.orders} the teeth stand up to "
+            f"{np.max(np.abs(inner)):.2g} degrees off their places, which is taken off; angles of "
+            f"the mean cycle are right to {self.angle_error:.2g} degrees by that, and an eccentric "
+            "wheel does not show"
+        ]
+        if wheel.missing:
+            first, last = (
+                f"{abs(each):.2g} degrees {'late' if each > 0.0 else 'early'}"
+                for each in self.teeth[[0, -1]]
+            )
+            said.append(
+                f"by the other teeth the first edge behind the gap comes {first}, the last one "
+                f"before it {last}"
+            )
+        return said
+
+    @property
+    def mean_speed(self) -> float:
+        """Degrees per second over the whole cycles."""
+        return self.cycles * self.period / (self.end - self.begin)
+
+    def speed(self, angle: Array) -> Array:
+        """Of the mean cycle, over the angle [deg] from the first edge, in degrees per second."""
+        place = angle + self.teeth[0]
+        slope = sum(np.asarray(each.at(place, slope=True)) for each in self.series)
+        return np.asarray(self.mean_speed / (1.0 + np.radians(slope)))
+
+    def speed_error(self, half: bool = False) -> float:
+        """Largest error of `speed`, in degrees per second; of its half orders alone."""
+        parts = self.series[1:] if half else self.series
+        variance = sum(each.variance(each.basis(_GRID, slope=True)) for each in parts)
+        relative = _SIGMAS * np.sqrt(np.max(variance)) + sum(each.tail for each in parts)
+        return float(self.mean_speed * np.radians(relative))
+
+
+def rotation_of(time: Array, first: Index, wheel: Wheel, stroke: int, where: str) -> Rotation:
+    """The rotation from the times [s] of a wheel's edges.
+
+    first : the places of the first edges behind the gaps; stroke : 2 or 4
+
+    Raises
+    ------
+    InputError : less than two cycles
+    """
+    turns = stroke // 2
+    cycles = (len(first) - 1) // turns
+    if cycles < 2:
+        raise InputError(
+            f"{where}: {len(first) - 1} whole revolutions are less than two cycles of a "
+            f"{stroke}-stroke engine, {2 * turns} revolutions; record longer"
+            + (", or give stroke=2" if stroke == 4 else "")
+        )
+    m = wheel.edges
+    place = np.arange(0.0, m) * wheel.pitch
+    begins = time[first[: cycles * turns + 1 : turns]]
+    rows = time[first[: cycles * turns, None] + np.arange(m)].reshape(cycles, turns * m)
+    period = 360.0 * turns
+    shares = (rows - begins[:-1, None]) / np.diff(begins)[:, None]
+    late = (
+        np.mean(shares * period, axis=0).reshape(turns, m)
+        - place
+        - 360.0 * np.arange(turns)[:, None]
+    )
+    good = np.full(m, True)
+    if wheel.missing:
+        good[[0, -1]] = False
+    most = min(_FINEST, m // _TEETH)
+    whole = _fit(place, late.mean(axis=0), np.arange(1.0, most + 1.0), good, constant=True)
+    series = [whole]
+    if turns == 2:
+        series.append(_fit(place, 0.5 * (late[0] - late[1]), np.arange(0.5, most), good))
+    teeth = late.mean(axis=0) - whole.at(place)
+    every = np.arange(first[0], first[-1] + 1)
+    number, turn = (every - first[0]) % m, (every - first[0]) // m
+    bases = [each.basis(_GRID) - each.basis(np.zeros(1)) for each in series]
+    variance = sum(each.variance(basis) for each, basis in zip(series, bases, strict=True))
+    return Rotation(
+        wheel=wheel,
+        period=period,
+        cycles=cycles,
+        begin=float(begins[0]),
+        end=float(begins[-1]),
+        teeth=teeth,
+        orders=most,
+        angle_error=float(_SIGMAS * np.sqrt(np.max(variance))),
+        angle=place[number] + teeth[number] - teeth[0] + 360.0 * turn,
+        time=time[every],
+        series=tuple(series),
+    )
+
+
+def _fit(
+    place: Array, values: Array, orders: Array, good: np.ndarray, *, constant: bool = False
+) -> _Series:
+    """Least squares over one revolution; what is left over is taken for independent errors."""
+    empty = _Series(orders, constant, np.empty(0), np.empty(0))
+    basis = empty.basis(place[good])
+    found, *_ = np.linalg.lstsq(basis, values[good], rcond=None)
+    left = values[good] - basis @ found
+    variance = float(left @ left) / max(len(left) - basis.shape[1], 1)
+    return empty._replace(coefficients=found, covariance=variance * np.linalg.inv(basis.T @ basis))

@@ -1,0 +1,190 @@
+"""The speed over the crank angle that a wheel shows, for `[motion]` and to compare a run with."""
+
+from __future__ import annotations
+
+import io
+import textwrap
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from crankmbs.delimited import Sheet, decode, read_sheet
+from crankmbs.errors import InputError, UndecidedError, shown
+from crankmbs.indicated.options import Options
+from crankmbs.indicated.over_time import clock, time_column, turned
+from crankmbs.indicated.rotation import Rotation, rotation_of
+from crankmbs.indicated.wheel import Wheel, edges, first_edges, wheel_of
+from crankmbs.numerics.arrays import Array
+from crankmbs.scene.content import content_of
+from crankmbs.scene.headings import TIME_UNITS, Heading, headings_of, pick
+from crankmbs.scene.tables import Table
+from crankmbs.scene.units import DEGREE, RPM
+from crankmbs.storage.files import text_in_one_move
+
+__all__ = ["MeasuredSpeed", "motion_line", "read_speed", "speed_of"]
+
+_STEP = 3.0  # degrees: ten rows for the shortest wave that is fitted
+_MOST = 400_000_000  # bytes
+_EVEN = 1.3  # times the median step: a record's samples, and no teeth with a gap
+
+
+@dataclass(frozen=True, eq=False)
+class MeasuredSpeed:
+    """The mean cycle's speed.
+
+    table : crank angle [rad] over one period, its last row the first again, and speed [rad/s], as
+        `SpeedFile` takes it with kind="angle_table"
+    error, half_order_error [rad/s] : three standard deviations where they are largest, by what the
+        teeth are off and the highest fitted order; of the half orders alone, which no error of the
+        wheel touches
+    source : the file; sentences : what was found and done
+    """
+
+    table: Table
+    error: float
+    half_order_error: float
+    source: str
+    sentences: tuple[str, ...]
+
+    def __str__(self) -> str:
+        return "\n".join(self.sentences)
+
+    def __repr__(self) -> str:
+        return f"<MeasuredSpeed {self.source}: {len(self.table.x)} rows>"
+
+    def save(self, path: str | Path) -> Path:
+        """Write the file that `[motion]` reads, with its source and what was done in its header.
+
+        Raises
+        ------
+        OutputError : the file cannot be written
+        """
+        stream = io.StringIO()
+        lines = [f"speed over the crank angle from {self.source}"]
+        for sentence in self.sentences:
+            lines += textwrap.wrap(sentence, 96)
+        lines += ["as [motion] of a scene:", motion_line(Path(path).name)]
+        stream.writelines(f"# {line}\n" for line in lines)
+        stream.write("crank_angle_deg,speed_rpm\n")
+        rows = np.column_stack([np.divide(self.table.x, DEGREE), np.divide(self.table.y, RPM)])
+        np.savetxt(stream, rows, fmt="%.10g", delimiter=",")
+        text_in_one_move(Path(path), stream.getvalue())
+        return Path(path)
+
+
+def motion_line(name: str) -> str:
+    """What [motion] of a scene says of the file."""
+    return f'speed = {{ file = "{name}", interpolation = "cubic" }}'
+
+
+def speed_of(rotation: Rotation, zero: float, source: str) -> MeasuredSpeed:
+    """The speed of the mean cycle over one period.
+
+    zero : the wheel's angle [deg] at crank angle 0
+    """
+    angle = np.arange(0.0, rotation.period + 0.5 * _STEP, _STEP)
+    speed = rotation.speed(angle + zero) * DEGREE
+    error, half = (rotation.speed_error(half) * DEGREE for half in (False, True))
+    table = Table(tuple(np.radians(angle).tolist()), tuple(speed.tolist()), source)
+    return MeasuredSpeed(table, error, half, source, tuple(_words(rotation, speed, error, half)))
+
+
+def _words(rotation: Rotation, speed: Array, error: float, half: float) -> Iterator[str]:
+    yield (
+        f"the speed of the mean cycle goes from {np.min(speed) / RPM:.5g} to "
+        f"{np.max(speed) / RPM:.5g} rpm, by orders up to {rotation.orders} of a revolution, right "
+        f"to {error / RPM:.2g} rpm by the errors of the teeth"
+    )
+    if rotation.period > 700.0:
+        swing = np.ptp(speed[: len(speed) // 2] - speed[len(speed) // 2 : -1]) / 2.0
+        yield (
+            f"its half orders, half the difference of the two revolutions, swing by "
+            f"{swing / RPM:.4g} rpm, right to {half / RPM:.2g} rpm: the teeth's errors cancel there"
+        )
+
+
+def read_speed(file: str | Path, wheel: Any = None, **options: Any) -> MeasuredSpeed:
+    r"""Read the speed over the crank angle from a wheel's teeth.
+
+    Parameters
+    ----------
+    file : text with the times of the teeth in one column, or a record of the wheel's signal over
+        time
+    wheel : "60-2", the teeth less the missing ones; "60-2 falling" for the falling edges
+    stroke : 2 or 4, default 4: the speed comes again after one revolution or two
+    firing_tdc : where crank angle 0 lies, behind the first edge after the first gap, "25 deg";
+        default 0
+    columns : the column of the wheel, where others are beside it; index : of an encoder's mark;
+        separator, decimal, skip : as in `Gas`
+
+    Returns
+    -------
+    MeasuredSpeed : the table [rad, rad/s], its errors, and sentences
+
+    Raises
+    ------
+    InputError : a wheel without a gap, teeth missing or doubled, less than two cycles, a clock that
+        jumps; UndecidedError : no wheel
+
+    >>> teeth = np.arange(36 * 9)[np.arange(36 * 9) % 36 < 35]
+    >>> _ = Path("teeth.csv").write_text("".join(f"{k / 1800:.9f}\n" for k in teeth))
+    >>> round(read_speed("teeth.csv", "36-1").table.y[0] * 30 / np.pi)
+    3000
+    """
+    given = {"wheel": wheel, "stroke": 4, **options}
+    wanted = Options(**given)
+    name = str(file)
+    sheet = read_sheet(
+        name,
+        decode(content_of(Path(file), _MOST), name),
+        separator=wanted.separator,
+        decimal=wanted.decimal,
+        skip=wanted.skip,
+        least=1,
+    )
+    if wanted.wheel is None:
+        raise UndecidedError(
+            f"file {name}: which wheel has these teeth is not said",
+            ('wheel="60-2", the teeth less the missing ones',),
+        )
+    rotation = _rotation(sheet, wanted, wheel_of(wanted.wheel))
+    zero = 0.0 if wanted.firing_tdc is None else float(np.degrees(wanted.firing_tdc))
+    found = speed_of(rotation, zero, name)
+    about = f"crank angle 0 lies {zero:g} degrees behind the first {rotation.wheel.edge} edge"
+    said = (*rotation.words(), *found.sentences, about)
+    return MeasuredSpeed(found.table, found.error, found.half_order_error, name, said)
+
+
+def _rotation(sheet: Sheet, options: Options, wheel: Wheel) -> Rotation:
+    where, width, stroke = f"file {sheet.name}", sheet.values.shape[1], options.stroke or 4
+    headings = headings_of(sheet.above, width)
+    at = time_column(headings, sheet, options) or 0
+    steps = np.diff(sheet.values[:, at])
+    if width == 1 or np.nanmax(steps) > _EVEN * np.nanmedian(steps):
+        time = _teeth_times(sheet, headings[at], at)
+        return rotation_of(time, first_edges(time, wheel, where), wheel, stroke, where)
+    time = clock(sheet, headings[at], at)
+    index = None if options.index is None else pick(headings, options.index, where)[0]
+    rest = [k for k in range(width) if k not in (at, index)]
+    if options.columns is not None:
+        rest = pick(headings, options.columns, where)
+    counts = [len(edges(time, sheet.values[:, k])) for k in rest]
+    signal = sheet.values[:, rest[int(np.argmax(counts))]]
+    marks = None if index is None else sheet.values[:, index]
+    return turned(time, signal, marks, wheel, stroke, where)
+
+
+def _teeth_times(sheet: Sheet, heading: Heading, at: int) -> Array:
+    time = sheet.values[:, at] * TIME_UNITS.get(heading.unit, 1.0)
+    bad = np.flatnonzero(~(np.diff(time) > 0.0))
+    if len(bad):
+        k = int(bad[0])
+        raise InputError(
+            f"file {sheet.name}, line {sheet.first + k + 1}: the times of the teeth must rise; "
+            f"{shown(float(time[k + 1]))} s came behind {shown(float(time[k]))} s; cut the record "
+            "there"
+        )
+    return np.asarray(time)
