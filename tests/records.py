@@ -22,7 +22,7 @@ class Record:
     gap by more; dead_centre [deg]: behind the place of the first tooth, of the first revolution."""
 
     engine: object
-    cycles: int = 6
+    cycles: int = 5
     teeth: int = 60
     missing: int = 2
     uneven: float = 0.05
@@ -30,7 +30,7 @@ class Record:
     dead_centre: float = 385.0
     delay: float = 0.0
     noise: float = 0.0
-    step: float = 1e-5
+    step: float = 2e-5
     seed: int = 1
     errors: np.ndarray = field(init=False)
 
@@ -73,11 +73,11 @@ class Record:
         return time, 5.0 * (0.115 + 0.00385 * bar), self._wheel(time)
 
     def _wheel(self, time):
-        """High for half a pitch behind each edge, with flanks of a quarter of a degree."""
+        """High for half a pitch behind each edge, with flanks of 0.6 degrees."""
         angle, edges = self.angle_at(time), self.angle_at(self.edges)
-        behind = angle - edges[np.clip(np.searchsorted(edges, angle + 0.25) - 1, 0, None)]
-        rise = np.clip((behind + 0.125) / 0.25, 0.0, 1.0)
-        fall = np.clip((behind - 180.0 / self.teeth + 0.125) / 0.25, 0.0, 1.0)
+        behind = angle - edges[np.clip(np.searchsorted(edges, angle + 0.3) - 1, 0, None)]
+        rise = np.clip((behind + 0.3) / 0.6, 0.0, 1.0)
+        fall = np.clip((behind - 180.0 / self.teeth + 0.3) / 0.6, 0.0, 1.0)
         return -0.7 + 4.7 * (rise - fall)
 
     def text(self, names=None):

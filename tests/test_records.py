@@ -64,7 +64,7 @@ def test_table_and_speed_are_those_put_in(tmp_path, options):
     assert right < 0.5
     steepest = np.abs(np.gradient(exact, angle)).max()
     apart = np.abs(np.array(found.table.y) / BAR - exact).max()
-    assert apart <= steepest * (right + 0.01) + 4.0 * record.noise
+    assert apart <= steepest * (right + 0.02) + 4.0 * record.noise  # samples are 0.36 degrees
     check_speed(found.speed, record)
 
 
@@ -153,7 +153,7 @@ def between(time, begin, end, values, new):
 
 def doubled(t, v, w):
     k = np.flatnonzero((w > 3.9) & (t > 0.1))[0]
-    w[k + 8 : k + 12] = -0.7
+    w[k + 3 : k + 6] = -0.7
     return t, v, w
 
 
@@ -161,7 +161,7 @@ WRONG = {
     "a clock that jumps": (
         lambda t, v, w: (np.where(t > 0.1, t + 0.01, t), v, w),
         {},
-        "line 10002: the clock goes from 0.1 to 0.11001 s, and its steps are 1e-05 s",
+        "line 5002: the clock goes from 0.1 to 0.11002 s, and its steps are 2e-05 s",
     ),
     "a tooth missing": (
         lambda t, v, w: (t, v, between(t, 0.10012, 0.10032, w, -0.7)),
@@ -180,7 +180,7 @@ WRONG = {
     ),
     "another wheel": (lambda *c: c, {"wheel": "36-1"}, "58 rising edges, and 36-1 has 35"),
     "less than two cycles": (
-        lambda t, v, w: (t[:8000], v[:8000], w[:8000]),
+        lambda t, v, w: (t[:4000], v[:4000], w[:4000]),
         {},
         "3 whole revolutions are less than two cycles of a 4-stroke engine",
     ),
@@ -200,9 +200,9 @@ WRONG = {
         "degrees from the dead centre given, 200; correct firing_tdc, or leave it out",
     ),
     "no number": (
-        lambda t, v, w: (t, between(t, 0.1, 0.10002, v, np.nan), w),
+        lambda t, v, w: (t, between(t, 0.1, 0.10003, v, np.nan), w),
         {},
-        'line 10002: column "column 2" has no number',
+        'line 5002: column "column 2" has no number',
     ),
 }
 
@@ -261,6 +261,7 @@ def test_bad_times_of_teeth(tmp_path):
         read_speed(even, "60-2")
 
 
+@pytest.mark.slow
 def test_the_commands(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     record = Record(engine=FIRED)

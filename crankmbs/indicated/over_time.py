@@ -19,7 +19,7 @@ from crankmbs.numerics.arrays import Array
 from crankmbs.scene.headings import PRESSURE_UNITS, TIME_UNITS, Heading, is_time, pick
 from crankmbs.scene.units import BAR
 
-__all__ = ["clock", "record_over_time", "time_column", "turned"]
+__all__ = ["clock", "edges_in", "record_over_time", "time_column", "turned"]
 
 _JUMP = 1.5  # times the usual step: a clock that jumps
 _STEPS = (0.05, 0.1, 0.2, 0.25, 0.5, 1.0, 2.0)  # degrees
@@ -128,6 +128,12 @@ def clock(sheet: Sheet, heading: Heading, at: int) -> Array:
     return np.asarray(time)
 
 
+def edges_in(signal: Array) -> int:
+    """How many rising edges a column has, missing cells left out."""
+    present = signal[~np.isnan(signal)]
+    return len(edges(np.arange(1.0 * len(present)), present)) if len(present) else 0
+
+
 def _columns(
     sheet: Sheet, headings: Sequence[Heading], at: int, options: Options, where: str
 ) -> _Columns:
@@ -147,7 +153,7 @@ def _columns(
             f"wheel; the columns are {listed}; record the wheel beside the pressure, or export the "
             "pressures over the crank angle"
         )
-    counts = [len(edges(np.arange(1.0 * len(sheet.values)), sheet.values[:, k])) for k in others]
+    counts = [edges_in(sheet.values[:, k]) for k in others]
     wheel = others[int(np.argmax(counts))]
     pressures = named or [k for k in others if k != wheel]
     if not pressures or (not named and len(pressures) > 1):

@@ -116,11 +116,18 @@ class Rotation(NamedTuple):
         return np.asarray(self.mean_speed / (1.0 + np.radians(slope)))
 
     def speed_error(self, half: bool = False) -> float:
-        """Largest error of `speed`, in degrees per second; of its half orders alone."""
+        """Largest error of `speed`, in degrees per second; of its half orders alone: that of the
+        slopes, what higher orders may have, and the angle's error on the steepest part; in the
+        half orders of 1 / (1 + slope) that of the whole ones, too, times twice their swing."""
         parts = self.series[1:] if half else self.series
         variance = sum(each.variance(each.basis(_GRID, slope=True)) for each in parts)
         relative = _SIGMAS * np.sqrt(np.max(variance)) + sum(each.tail for each in parts)
-        return float(self.mean_speed * np.radians(relative))
+        swing, mixed = self.speed(_GRID), 0.0
+        if half:
+            swing = 0.5 * (swing - np.roll(swing, len(_GRID) // 2))
+            mixed = 2.0 * np.max(np.abs(swing)) / self.mean_speed * self.speed_error()
+        steepest = np.max(np.abs(np.gradient(swing, _GRID)))
+        return float(self.mean_speed * np.radians(relative) + steepest * self.angle_error + mixed)
 
 
 def rotation_of(time: Array, first: Index, wheel: Wheel, stroke: int, where: str) -> Rotation:

@@ -14,9 +14,9 @@ import numpy as np
 from crankmbs.delimited import Sheet, decode, read_sheet
 from crankmbs.errors import InputError, UndecidedError, shown
 from crankmbs.indicated.options import Options
-from crankmbs.indicated.over_time import clock, time_column, turned
+from crankmbs.indicated.over_time import clock, edges_in, time_column, turned
 from crankmbs.indicated.rotation import Rotation, rotation_of
-from crankmbs.indicated.wheel import Wheel, edges, first_edges, wheel_of
+from crankmbs.indicated.wheel import Wheel, first_edges, wheel_of
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.content import content_of
 from crankmbs.scene.headings import TIME_UNITS, Heading, headings_of, pick
@@ -171,7 +171,7 @@ def _rotation(sheet: Sheet, options: Options, wheel: Wheel) -> Rotation:
     rest = [k for k in range(width) if k not in (at, index)]
     if options.columns is not None:
         rest = pick(headings, options.columns, where)
-    counts = [len(edges(time, sheet.values[:, k])) for k in rest]
+    counts = [edges_in(sheet.values[:, k]) for k in rest]
     signal = sheet.values[:, rest[int(np.argmax(counts))]]
     marks = None if index is None else sheet.values[:, index]
     return turned(time, signal, marks, wheel, stroke, where)
