@@ -113,6 +113,9 @@ def test_order_two_is_clean_from_the_first_step_over_bends_and_jumps(scene: Scen
     for row in (0, 1):
         np.testing.assert_allclose(first[row] / second[row], 4.0, atol=0.25)
         np.testing.assert_allclose(second[row] / third[row], 4.0, atol=0.15)
+    inside = np.array([run.at(np.array([5e-5]))[1] for run in runs])  # the first step
+    first, second, third = np.diff(inside, axis=0)
+    np.testing.assert_allclose([first / second, second / third], 4.0, atol=0.2)
 
 
 def test_stretches_meet_at_the_speed_of_a_row() -> None:

@@ -9,6 +9,7 @@ from references import worst_ratio
 from crankmbs import Gravity, Run, Viscous, load_scene, simulate
 from crankmbs.motion.base import Samples
 from crankmbs.motion.free.matching import match, stays
+from validation.random_periods import random_periods
 from validation.random_scenes import random_scene
 
 BOTH = pytest.mark.parametrize("formulation", ["crank_angle", "minimal"])
@@ -28,6 +29,13 @@ def test_a_motion_that_creeps_or_swings_to_rest(seed, formulation):
     assert result.status == 1
     assert result.message.startswith("came to rest at")
     assert worst_ratio(result) <= 2.0
+
+
+def test_passes_that_turn_back_within_a_step_do_not_err_alike():
+    """The error control of either pass shortens the step there, by itself to the same length."""
+    scene = random_periods(108)
+    speed, exact = (simulate(scene, **asked).data["crank_speed"] for asked in ({}, {"rtol": 1e-8}))
+    assert np.abs(speed.values - exact.values).max() <= 2.0 * speed.error_estimate
 
 
 @BOTH

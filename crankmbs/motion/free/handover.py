@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Generator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from crankmbs.mechanics.torque import Branch
@@ -18,11 +18,10 @@ from crankmbs.motion.ending import Ending
 from crankmbs.motion.minimal import advance as minimal
 from crankmbs.motion.minimal.reduced import Reduced
 from crankmbs.motion.minimal.segment import TimeSegment
+from crankmbs.motion.minimal.step_sizes import StepSizes
 from crankmbs.motion.plan import Plan
 
-__all__ = ["FINEST_STEP", "Handover", "Spans"]
-
-Spans = tuple[tuple[float, float], ...]
+__all__ = ["FINEST_STEP", "Handover"]
 
 _VAIN = 8  # after as many vain hand-overs the crank must turn through a period before the next
 _FAST = (2.0, 8.0)  # as many times as fast as need be either pass takes over: the better one later
@@ -39,14 +38,17 @@ class Handover:
     grid : cells of the crank angle; reduced : the crank train over time
     local : what may be erred locally
     by_angle : the crank angle is the variable wherever it can be; else time throughout
-    usable : spans of time [s] in which it can be; None: all
+    before : the steps of a first pass, which this one betters: the crank angle carries it only
+        where it did then, and its steps over time are at most half as long
+    taken : the steps of this pass
     """
 
     grid: Grid
     reduced: Reduced
     local: float
     by_angle: bool = True
-    usable: Spans | None = None
+    before: StepSizes | None = None
+    taken: StepSizes = field(default_factory=StepSizes)
 
     def segments(
         self, state: State, plan: Plan, allowed: int
@@ -57,7 +59,7 @@ class Handover:
         """
         grid, period = self.grid, self.grid.train.scene.period
         kinks = max(min(_KINKS * self.local, _MOST_MISSED[grid.checks]), FINEST_STEP)
-        tolerance, parts = max(0.01 * self.local, FINEST_STEP), 2 if grid.checks else 1
+        tolerance = max(0.01 * self.local, FINEST_STEP)
         turned_back, vain = plan.start, 0  # hand-overs that did not carry it through a period
 
         def is_fast(at: State, branch: Branch) -> bool:
@@ -67,7 +69,7 @@ class Handover:
         over_time, slow = not self.by_angle or state.omega == 0.0, False
         while True:
             begin = state
-            effort = minimal.Effort(tolerance, parts, allowed)
+            effort = minimal.Effort(tolerance, allowed, self.before)
             found: Any = (
                 minimal.advance(self.reduced, state, plan, effort, is_fast)
                 if over_time
@@ -81,6 +83,7 @@ class Handover:
                     break
                 state = segment.end
                 turned_back = state.theta if state.omega == 0.0 else turned_back
+                self._note(segment)
                 allowed -= segment.evaluations if over_time else 0
                 yield segment
             if ending is not None:
@@ -88,12 +91,19 @@ class Handover:
             vain += not over_time and slow and abs(state.theta - begin.theta) < period
             over_time, slow = not over_time, slow or over_time
 
+    def _note(self, segment: AngleSegment | TimeSegment) -> None:
+        """Add the steps of a segment to those taken."""
+        if isinstance(segment, TimeSegment):
+            self.taken.add(segment.track.begins, segment.track.widths)
+        else:
+            self.taken.add([segment.begin.time], [math.inf])
+
     def _may(self, at: State) -> bool:
         """Whether the crank angle may carry it here."""
         if not self.by_angle or at.omega == 0.0:
             return False
         # the grid is as fine as it must be where the first pass used it, and only there
-        return self.usable is None or any(low <= at.time < high for low, high in self.usable)
+        return self.before is None or math.isinf(self.before.at(at.time))
 
     def _is_fast(self, at: State, branch: Branch) -> bool:
-        return crank_angle.is_fast(self.grid, at, branch, _FAST[self.usable is not None])
+        return crank_angle.is_fast(self.grid, at, branch, _FAST[self.before is not None])

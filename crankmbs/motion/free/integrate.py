@@ -14,9 +14,10 @@ from crankmbs.motion.base import Samples, State
 from crankmbs.motion.crank_angle.grid import Grid
 from crankmbs.motion.crank_angle.segment import AngleSegment
 from crankmbs.motion.ending import Ending
-from crankmbs.motion.free.handover import Handover, Spans
+from crankmbs.motion.free.handover import Handover
 from crankmbs.motion.free.recorder import Recorder, Watch
 from crankmbs.motion.minimal.reduced import Reduced
+from crankmbs.motion.minimal.step_sizes import StepSizes
 from crankmbs.motion.mode import begun
 from crankmbs.motion.plan import Plan
 from crankmbs.motion.states import first_sample
@@ -40,12 +41,11 @@ class Setup(NamedTuple):
 
 
 class Origin(NamedTuple):
-    """Where a pass begins, the one sample there, and the spans of time [s] that the crank angle
-    carries."""
+    """Where a pass begins, the one sample there, and the steps that it took over time."""
 
     state: State
     begin: Samples
-    fast: Spans
+    taken: StepSizes
 
 
 class Pass(NamedTuple):
@@ -90,15 +90,15 @@ def integrate(
     if first:  # it begins a rounding ahead: so the difference knows what the motion makes of one
         ahead = math.copysign(ANGLE_ROUNDING * state.theta, state.omega or float(begin.alpha[0]))
         state = state._replace(theta=state.theta + ahead)
-    reduced, usable = Reduced(grid.train, grid.checks), None if first is None else first.fast
-    hand = Handover(grid, reduced, local, by_angle, usable)
+    reduced = Reduced(grid.train, grid.checks)
+    hand = Handover(grid, reduced, local, by_angle, first and first.taken)
     worst = np.zeros((2, len(grid.edges) - 1))
     note = partial(_note, worst) if first is None else None
     ending = path.follow(hand.segments(state, plan, setup.allowed), note)
     if ending is Ending.COMPLETE and plan.folds_at((path.state or state).theta):
         ending = Ending.FOLD
     path.log.close(ending, path.state or begun_in)
-    origin = Origin(begun_in, begin, tuple(path.fast))
+    origin = Origin(begun_in, begin, hand.taken)
     return Pass(origin, path.samples(), ending, path, worst, path.slow if by_angle else [])
 
 

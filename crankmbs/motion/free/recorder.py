@@ -57,7 +57,7 @@ class Recorder:
     can_swing : whether a swing that reaches no farther is known to go on so for ever
     allowed : evaluations over time
     log : of the events; watch : is shown every segment
-    fast : spans of time [s] that the crank angle carries; slow : times at which time takes over
+    slow : times [s] at which time takes over
     dropped : whether segments were given up, as memory would not hold all
     """
 
@@ -74,8 +74,7 @@ class Recorder:
         self._train, self._watch, self.dropped, self._held = train, watch, False, 0
         self._plan, self._can_swing, self._left, self.log = plan, can_swing, allowed, Log(train)
         self._farthest, self._since = 0.0, 0  # reach [rad], and reversals that reached no farther
-        self._over_time: bool | None = None
-        self.fast, self.slow = list[tuple[float, float]](), list[float]()
+        self.slow = list[float]()
         self._blocks, self._count = [first], 1
         self.segments: deque[Segment] = deque()
         self.reversals = self.steps = self.evaluations = 0
@@ -89,16 +88,17 @@ class Recorder:
 
         note : is shown every segment before
         """
+        over_time = False
         while True:
             try:
                 segment = next(segments)
             except StopIteration as stop:
                 ending: Ending = stop.value
                 return ending
-            over_time = isinstance(segment, TimeSegment)
+            went_on, over_time = over_time, isinstance(segment, TimeSegment)
             if note is not None and isinstance(segment, AngleSegment):
                 note(segment)
-            self._span(segment.begin.time, segment.end.time, over_time=over_time)
+            self.slow += [segment.begin.time] if over_time and not went_on else []
             count = self._count
             self._add(segment)
             self._left -= segment.evaluations if over_time else 0
@@ -108,15 +108,6 @@ class Recorder:
                 self._left -= _SAMPLE * (self._count - count)
                 if self._left <= 0:
                     return Ending.COSTLY
-
-    def _span(self, begin: float, end: float, *, over_time: bool) -> None:
-        """Note from when to when [s] what carries the motion."""
-        goes_on, self._over_time = over_time is self._over_time, over_time
-        if not goes_on:
-            self.slow += [begin] if over_time else []
-            self.fast += [] if over_time else [(begin, end)]
-        elif not over_time:
-            self.fast[-1] = self.fast[-1][0], end
 
     def _add(self, segment: Segment) -> None:
         self.log.add(segment)

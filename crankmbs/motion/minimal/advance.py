@@ -26,6 +26,7 @@ from crankmbs.motion.minimal.equation import Equation
 from crankmbs.motion.minimal.exits import first_exit, interpolant, value
 from crankmbs.motion.minimal.reduced import Reduced
 from crankmbs.motion.minimal.segment import TimeSegment, Track
+from crankmbs.motion.minimal.step_sizes import StepSizes
 from crankmbs.motion.plan import Plan
 from crankmbs.numerics.arrays import Array
 
@@ -38,12 +39,12 @@ _LEAVES = 1e-12  # of a step: a motion that leaves a limit before has not set ou
 
 
 class Effort(NamedTuple):
-    """Relative tolerance of each step, into how many it is divided then, the evaluations that are
-    allowed, and how many steps the first segment may have."""
+    """Relative tolerance of each step, the evaluations that are allowed, the steps of a first pass,
+    which are halved here, and how many the first segment may have."""
 
     tolerance: float
-    parts: int
     allowed: int
+    before: StepSizes | None = None
     room: int = 1
 
 
@@ -62,7 +63,7 @@ def advance(
     -------
     how the motion ends; None where the crank angle takes over
     """
-    tolerance, parts, allowed, room = effort
+    tolerance, allowed, before, room = effort
     scale = reduced.torque_scale + abs(state.mode.held)
     evaluations, most, h = 0, 0.0, math.inf
     while evaluations < allowed:
@@ -88,7 +89,7 @@ def advance(
             min(plan.time_bound, equation.branch.t_end),
             (max(low, state.mode.low), min(high, state.mode.high)),
             room,
-            parts,
+            before,
         )
         walk = _Walk(equation, control, state, h, most)
         with np.errstate(all="ignore"):
@@ -117,15 +118,14 @@ def advance(
 @dataclass(frozen=True)
 class _Control:
     """Tolerance of a step, speed [rad/s] to which it is relative, end in time [s], crank angles
-    [rad] at which a segment ends, most steps, and into how many each is divided: of a second answer
-    none is as long as of the first."""
+    [rad] at which a segment ends, most steps, and the steps that are halved."""
 
     tolerance: float
     speed: float
     bound: float
     angles: tuple[float, float]
     room: int
-    parts: int
+    before: StepSizes | None
 
 
 class _Step(NamedTuple):
@@ -153,7 +153,6 @@ class _Walk:
         self._steps: list[tuple[float, float, Array]] = []
         branch = equation.branch
         self._speeds = 0.0, branch.omega_low, branch.omega_high
-        self._inside = 0  # steps in this piece
 
     def track(self) -> Track:
         """The steps, up to the end of the segment."""
@@ -179,7 +178,6 @@ class _Walk:
         if step is None:
             return False
         self._h, begin = step.h, self._time
-        self._inside += 1
         if step.x > _LEAVES:
             self._steps.append((begin, step.width, step.row))
             self._time = begin + step.x * step.width
@@ -197,7 +195,7 @@ class _Walk:
         begin = State(time, float(self._y[0]), float(self._y[1]), 0.0)
         stiff = equation.is_stiff(begin, control.tolerance * control.speed)
         method: Any = Radau if stiff else DOP853
-        tolerance = max(control.tolerance, _RADAU / control.parts if stiff else _FINEST)
+        tolerance = max(control.tolerance, _RADAU if stiff else _FINEST)
         absolute = tolerance if stiff else control.tolerance
         solver = method(  # of what a step adds: relative to the values SciPy asks for 100 roundings
             lambda t, gained: equation.slopes(time + t, y + gained),
@@ -230,10 +228,9 @@ class _Walk:
         square = omega * omega + 2.0 * sense * alpha * distance
         reach = math.inf
         if square > 0.0:
-            reach = 2.0 * distance / (abs(omega) + math.sqrt(square))
-            parted = self._inside + 1 < control.parts
-            reach *= 1.0 / control.parts if parted else _BEYOND
-        return min(self._h / control.parts, reach, control.bound - self._time)
+            reach = _BEYOND * 2.0 * distance / (abs(omega) + math.sqrt(square))
+        width = min(self._h, reach, control.bound - self._time)
+        return control.before.halved(self._time, width) if control.before else width
 
     def _landed(self, step: _Step) -> bool:
         """Put the motion on the limit that it has come to; whether it goes on there."""
@@ -246,5 +243,5 @@ class _Walk:
             return False
         sense = math.copysign(1.0, self._y[1])
         piece = self._equation.pieces.around(step.limit, sense)
-        self._equation, self._inside = replace(self._equation, piece=piece), 0
+        self._equation = replace(self._equation, piece=piece)
         return True

@@ -15,10 +15,11 @@ from crankmbs.motion.base import Samples, Solution, State
 from crankmbs.motion.crank_angle.grid import FINEST_CELL, Grid
 from crankmbs.motion.crank_angle.segment import AngleSegment
 from crankmbs.motion.ending import Ending
-from crankmbs.motion.free.handover import Handover, Spans
+from crankmbs.motion.free.handover import Handover
 from crankmbs.motion.free.passes import first_grid, has_functions, staggered
 from crankmbs.motion.minimal.entering import enter
 from crankmbs.motion.minimal.reduced import Reduced
+from crankmbs.motion.minimal.step_sizes import StepSizes
 from crankmbs.motion.mode import begun
 from crankmbs.motion.plan import Plan, folds_of
 from crankmbs.motion.states import first_sample
@@ -35,12 +36,12 @@ _ROUNDING = 64 * float(np.finfo(float).eps)  # as in `assemble`
 
 
 class _Carried(NamedTuple):
-    """A pass carried on: the state, how it ended, spans of time [s] that the crank angle carried,
-    and the largest errors so far at ends and inside of each cell, shape (2, cells)."""
+    """A pass carried on: the state, how it ended, the steps that it took over time, and the largest
+    errors so far at ends and inside of each cell, shape (2, cells)."""
 
     state: State
     ending: Ending
-    spans: Spans
+    taken: StepSizes
     worst: Array
 
 
@@ -89,7 +90,7 @@ class Free:
         if self._functions:
             ways.append((staggered(grid), self._reduced[0], _LOCAL * self._local))
         others = [
-            self._carried(Handover(*way, self._by_angle, answer.spans), begin, until)
+            self._carried(Handover(*way, self._by_angle, answer.taken), begin, until)
             for way, begin in zip(ways, begins[1:], strict=True)
         ]
         for each in (answer, *others):
@@ -114,11 +115,11 @@ class Free:
 
     def _carried(self, hand: Handover, state: State, until: float) -> _Carried:
         """A pass carried on to a time [s]; a crank at rest for good stays there."""
-        worst, spans = np.zeros((2, len(hand.grid.edges) - 1)), list[tuple[float, float]]()
+        worst = np.zeros((2, len(hand.grid.edges) - 1))
         if state.time >= until:
-            return _Carried(state, Ending.COMPLETE, (), worst)
+            return _Carried(state, Ending.COMPLETE, hand.taken, worst)
         if self._plan.folds_at(state.theta):
-            return _Carried(state, Ending.FOLD, (), worst)
+            return _Carried(state, Ending.FOLD, hand.taken, worst)
         segments = hand.segments(state, replace(self._plan, until=until), _ALLOWED)
         ending: Ending | None = None
         while ending is None:
@@ -128,16 +129,14 @@ class Free:
                 ending = stop.value
                 continue
             state = segment.end
-            if isinstance(segment, AngleSegment):
-                spans.append((segment.begin.time, state.time))
-                if not hand.grid.checks:
-                    segment.errors.raised(worst, segment.terms.cell)
+            if isinstance(segment, AngleSegment) and not hand.grid.checks:
+                segment.errors.raised(worst, segment.terms.cell)
         if ending is Ending.REST or (ending in AT_REST and state.omega == 0.0):
             state = state._replace(time=until, omega=0.0)
         elif ending is Ending.COMPLETE and state.time < until:
             ending = Ending.FOLD
         ending = Ending.LABOURS if ending is Ending.COSTLY else ending
-        return _Carried(state, ending, tuple(spans), worst)
+        return _Carried(state, ending, hand.taken, worst)
 
     def moving(self, standing: Standing) -> Moving:
         """The motion of the answer, with the most that the passes have differed by."""
