@@ -50,7 +50,7 @@ KINDS = (
     Kind(
         "Random scenes",
         "Nothing but the scene, drawn from a seed: stated errors against the oracles.",
-        "changing.stated_scenes drawn.stated_scenes friction.random_errors periods stepped",
+        "changing.stated_scenes drawn.stated_scenes friction.random_errors periods pushed stepped",
     ),
     Kind(
         "Another formulation that shares no mechanics",

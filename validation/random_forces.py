@@ -77,7 +77,9 @@ class _Draw:
     def over_travel(self, most: float) -> TravelTable:
         """Rows over the stroke, one force or two, perhaps with a jump."""
         count = int(self.rng.integers(2, 7))
-        at = self.stroke * np.linspace(-0.1 * self.rng.random(), 1.0 + 0.1 * self.rng.random(), count)
+        at = self.stroke * np.linspace(
+            -0.1 * self.rng.random(), 1.0 + 0.1 * self.rng.random(), count
+        )
         at[1:-1] += self.stroke / count * self.rng.uniform(-0.3, 0.3, count - 2)
         if self.chance(0.4) and count > 2:
             at = np.insert(at, 1, at[1])

@@ -2,7 +2,8 @@
 between which every formula is smooth.
 
 Events are knots over angle, displacement, speed and time, dead centres where pistons rub or are
-pushed otherwise on the way back, decisions on the fuel, ends of windows, and rest. The error is DOP853's at 1e-13, some 1e-11 after a few turns.
+pushed otherwise on the way back, decisions on the fuel, ends of windows, and rest. The error is
+DOP853's at 1e-13, some 1e-11 after a few turns.
 """
 
 from __future__ import annotations
@@ -170,9 +171,7 @@ class _Walk:
         acting = [
             load for load, stage in zip(self.loads, self.stage, strict=True) if stage == "acting"
         ]
-        loads = [
-            self._load(load, ahead, side, edges) for load in acting if isinstance(load, Pull)
-        ]
+        loads = [self._load(load, ahead, side, edges) for load in acting if isinstance(load, Pull)]
         pushes = [load for load in acting if isinstance(load, Push)]
         for push in pushes:
             if push.over_angle is not None:

@@ -26,7 +26,7 @@ def angles_at(machine: Machine, displacement: float) -> list[float]:
     x = math.sqrt((l + r) ** 2 - e * e) - displacement
     far = math.hypot(x, e)
     cosine = (r * r + far * far - l * l) / (2.0 * r * far)
-    if not (0.0 < displacement and abs(cosine) < 1.0):
+    if not (displacement > 0.0 and abs(cosine) < 1.0):
         return []
     return [math.atan2(e, x) - math.acos(cosine), math.atan2(e, x) + math.acos(cosine)]
 
