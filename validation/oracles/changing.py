@@ -106,7 +106,9 @@ class _Walk:
                     raise ArithmeticError("events without end")
             rows.append(self._row())
         columns = [np.array(column) for column in zip(*rows, strict=True)]
-        return Changed(*columns, events=tuple(self.events))
+        theta, omega, alpha, external, gas, friction, applied, shares, clear = columns
+        events = tuple(self.events)
+        return Changed(theta, omega, alpha, external, gas, friction, applied, shares, clear, events)
 
     def _marks(self) -> list[Curve]:
         """Angles at which pistons turn back, and those of knots over their displacement."""
