@@ -8,15 +8,28 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 
+from crankmbs.scene.force import PistonForce
+from crankmbs.scene.forces import (
+    ConstantForce,
+    Damper,
+    ForceAngleTable,
+    ForceTimeTable,
+    Spring,
+    TravelTable,
+)
 from crankmbs.scene.fuel import Fuel
 from crankmbs.scene.gas import Gas, Polytrope
 from crankmbs.scene.loads import AngleTable, Constant, Quadratic, SpeedTable, TimeTable, Viscous
+from crankmbs.scene.python_force import Force
 from crankmbs.scene.python_load import Load
 from crankmbs.scene.scene import Scene
+from crankmbs.scene.tables import Table
 from crankmbs.scene.torque import Torque
+from crankmbs.scene.windowed import Windowed
 from validation.adapter import machine_of
 from validation.oracles.changes import (
     Changes,
@@ -24,6 +37,7 @@ from validation.oracles.changes import (
     Firings,
     Line,
     Pull,
+    Push,
     continued,
     curve_of,
     line_through,
@@ -42,12 +56,13 @@ def changes_of(scene: Scene) -> Changes:
     firings = _firings(scene, gas, fuel, fired) if gas and fuel else None
     return Changes(
         machine,
-        tuple(_pull(load) for load in scene.torque),
+        tuple(replace(_always(load), **_window(load)) for load in scene.torque),
         fired,
         firings,
         gas.period if gas else 4.0 * math.pi,
         (rings.ring_force, rings.ring_pressure, rings.viscous) if rings else None,
         tuple(curve_of(pressure) for pressure in machine.crank_ends),
+        tuple(_push(force) for force in scene.force),
     )
 
 
@@ -91,14 +106,45 @@ def _part(fuel: Fuel, cylinder: int, cycle: int) -> float:
     return max(0.0, 1.0 + fuel.scatter * z)
 
 
-def _pull(load: Torque) -> Pull:
-    window = {
+def _window(load: Windowed) -> dict[str, Any]:
+    return {
         "after": load.after or 0.0,
         "until": math.inf if load.until is None else load.until,
         "from_speed": load.from_speed,
         "until_speed": load.until_speed,
     }
-    return replace(_always(load), **window)  # type: ignore[arg-type]
+
+
+def _push(force: PistonForce) -> Push:
+    cylinder = None if force.cylinder is None else force.cylinder - 1
+    return replace(_pushes(force), cylinder=cylinder, **_window(force))
+
+
+def _pushes(force: PistonForce) -> Push:
+    match force:
+        case ConstantForce():
+            given = force.force
+            return Push(smooth=lambda t, angle, s, v: given)
+        case Spring():
+            k, s_0 = force.stiffness, force.relaxed_at
+            return Push(smooth=lambda t, angle, s, v: -k * (s - s_0))
+        case Damper():
+            c = force.coefficient
+            return Push(smooth=lambda t, angle, s, v: -c * v)
+        case TravelTable():
+            ways = (force.file,) if isinstance(force.file, Table) else force.file.tables
+            lines = [line_through(way.x, way.y, held=True) for way in ways]
+            return Push(forward=lines[0], back=lines[-1])
+        case ForceAngleTable():
+            rows = AngleTable(file=force.file, interpolation=force.interpolation)
+            return Push(over_angle=curve_of(turns_of(rows)))
+        case ForceTimeTable():
+            return Push(over_time=line_through(force.file.x, force.file.y, held=False))
+        case Force():
+            pieces: Push = force.function.pieces
+            return pieces
+        case _:
+            raise TypeError(f"no oracle for {force.kind}")
 
 
 def _always(load: Torque) -> Pull:

@@ -1,5 +1,5 @@
 """What a free crank meets on its way, as the oracle `changing` takes it: loads that set in and end,
-functions with kinks, pressures with and without combustion, decisions.
+functions with kinks, forces on pistons, pressures with and without combustion, decisions.
 
 Everything is made of smooth pieces: functions of one float that go on smoothly beyond their ends.
 """
@@ -21,6 +21,7 @@ __all__ = [
     "Firings",
     "Line",
     "Pull",
+    "Push",
     "continued",
     "curve_of",
     "line_through",
@@ -49,7 +50,8 @@ class Curve:
 
 @dataclass(frozen=True)
 class Line:
-    """Over time [s] or speed [rad/s]: one piece more than knots, functions of the abscissa."""
+    """Over time [s], speed [rad/s] or displacement [m]: one piece more than knots, functions of the
+    abscissa."""
 
     knots: tuple[float, ...]
     pieces: tuple[Smooth, ...]
@@ -68,6 +70,28 @@ class Pull:
     over_speed: Line | None = None
     over_angle: Curve | None = None
     smooth: Callable[[float, float, float], float] | None = None
+    after: float = 0.0
+    until: float = math.inf
+    from_speed: float | None = None
+    until_speed: float | None = None
+
+
+@dataclass(frozen=True)
+class Push:
+    """A force [N] on pistons, towards the crank: the product of what it is over time, cycle angle
+    and displacement from the top dead centre, and of a smooth function of all three and velocity
+    towards the crank.
+
+    forward, back : over the displacement, where the piston moves towards the crank and where it
+    moves back; cylinder : from 0, None for each; window as that of a `Pull`
+    """
+
+    cylinder: int | None = None
+    forward: Line | None = None
+    back: Line | None = None
+    over_angle: Curve | None = None
+    over_time: Line | None = None
+    smooth: Callable[[float, float, float, float], float] | None = None
     after: float = 0.0
     until: float = math.inf
     from_speed: float | None = None
@@ -104,6 +128,7 @@ class Changes:
     cycle: float = 4.0 * math.pi
     rings: tuple[float, float, float] | None = field(default=None)
     crank_ends: tuple[Curve, ...] = ()
+    pushes: tuple[Push, ...] = ()
 
 
 def curve_of(table: PressureTable | PressurePieces) -> Curve:

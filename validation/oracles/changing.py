@@ -1,8 +1,9 @@
 """A free crank under all that changes on its way, over time, by SciPy: from one event to the next,
 between which every formula is smooth.
 
-Events are knots over angle, speed and time, dead centres where pistons rub, decisions on the fuel,
-ends of windows, and rest. The error is DOP853's at 1e-13, some 1e-11 after a few turns.
+Events are knots over angle, displacement, speed and time, dead centres where pistons rub or are
+pushed otherwise on the way back, decisions on the fuel, ends of windows, and rest. The error is
+DOP853's at 1e-13, some 1e-11 after a few turns.
 """
 
 from __future__ import annotations
@@ -16,9 +17,19 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from validation.oracles.changes import Changes, Curve, Pull, marks
+from validation.oracles.changes import Changes, Curve, Pull, Push, marks
 from validation.oracles.deciding import Decider
-from validation.oracles.stretch import NEAR, Acting, GasPiece, Stretch, meets, piece_at, press
+from validation.oracles.stretch import (
+    NEAR,
+    Acting,
+    GasPiece,
+    Pushing,
+    Stretch,
+    meets,
+    piece_at,
+    press,
+)
+from validation.oracles.travel import angles_at, dead_centres, displacement_at
 
 __all__ = ["Changed", "changing_motion"]
 
@@ -34,7 +45,8 @@ _BESIDE = 1e-6  # of an angle [rad] or a speed: so near a knot either value is r
 @dataclass(frozen=True)
 class Changed:
     """Samples: shape (n,) [rad], [rad/s], [rad/s2], [N m]; of each cylinder shape (n, cylinders):
-    gas force and friction [N] towards the crank, share; clear : not beside a knot, shape (n,);
+    gas force, friction and force from outside [N] towards the crank, share; clear : not beside a
+    knot, shape (n,);
     events : (time, angle, speed, kind), "fuel", "load on", "load off" or "reversal"."""
 
     theta: Floats
@@ -43,6 +55,7 @@ class Changed:
     external: Floats
     gas: Floats
     friction: Floats
+    applied: Floats
     shares: Floats
     clear: NDArray[np.bool_]
     events: tuple[tuple[float, float, float, str], ...]
@@ -72,7 +85,11 @@ class _Walk:
         machine = changes.machine
         self.phases = [float(phase) for phase, _ in machine.cylinders]
         self.decider = Decider(changes, theta, omega) if changes.firings is not None else None
-        self.stage = ["waiting"] * len(changes.pulls)
+        self.loads: tuple[Pull | Push, ...] = (*changes.pulls, *changes.pushes)
+        self.stage = ["waiting"] * len(self.loads)
+        self.holds = changes.rings is not None or any(
+            push.back is not push.forward for push in changes.pushes
+        )
         self.side = self.came = 0.0  # how the speed grows; in which sense the crank came to rest
         self.marks = self._marks()
         self._settle_windows()
@@ -89,23 +106,29 @@ class _Walk:
                     raise ArithmeticError("events without end")
             rows.append(self._row())
         columns = [np.array(column) for column in zip(*rows, strict=True)]
-        theta, omega, alpha, external, gas, friction, shares, clear = columns
+        theta, omega, alpha, external, gas, friction, applied, shares, clear = columns
         events = tuple(self.events)
-        return Changed(theta, omega, alpha, external, gas, friction, shares, clear, events)
+        return Changed(theta, omega, alpha, external, gas, friction, applied, shares, clear, events)
 
     def _marks(self) -> list[Curve]:
-        """Angles at which pistons turn back."""
-        if self.changes.rings is None:
-            return []
-        m = self.changes.machine
-        r, l, e = float(m.crank_radius), float(m.rod_length), float(m.offset)
-        centres = math.asin(e / (l + r)), math.pi + math.asin(e / (l - r))
-        return [marks([c - p for p in self.phases for c in centres], 2.0 * math.pi)]
+        """Angles at which pistons turn back, and those of knots over their displacement."""
+        machine, found = self.changes.machine, []
+        if self.holds:
+            found += [c - p for p in self.phases for c in dead_centres(machine)]
+        for push in self.changes.pushes:
+            knots = {x for way in (push.forward, push.back) if way for x in way.knots}
+            angles = [angle for x in knots for angle in angles_at(machine, x)]
+            found += [angle - self.phases[k] for k in self._pistons(push) for angle in angles]
+        return [marks(found, 2.0 * math.pi)] if found else []
+
+    def _pistons(self, push: Push) -> list[int]:
+        """On which a force acts, from 0."""
+        return list(range(len(self.phases))) if push.cylinder is None else [push.cylinder]
 
     def _settle_windows(self) -> None:
         """Loads that set in or end at this time and speed, met exactly."""
         t, theta, omega = self.state
-        for k, pull in enumerate(self.changes.pulls):
+        for k, pull in enumerate(self.loads):
             before = self.stage[k]
             if t >= pull.until:
                 self.stage[k] = "over"
@@ -123,15 +146,16 @@ class _Walk:
     def _bounds(self) -> tuple[list[float], list[float]]:
         """Times and speeds at which a window of a load may open or close, or a piece ends."""
         times, speeds = [math.inf], [-math.inf, math.inf]
-        for pull, stage in zip(self.changes.pulls, self.stage, strict=True):
+        for pull, stage in zip(self.loads, self.stage, strict=True):
             if stage == "waiting" and pull.from_speed is not None:
                 speeds.append(pull.from_speed)
             times += [pull.after] if stage == "due" else []
             times += [pull.until] if stage != "over" else []
             if stage == "acting":
                 speeds += [] if pull.until_speed is None else [pull.until_speed]
-                speeds += pull.over_speed.knots if pull.over_speed else ()
                 times += pull.over_time.knots if pull.over_time else ()
+                if isinstance(pull, Pull) and pull.over_speed:
+                    speeds += pull.over_speed.knots
         return times, speeds
 
     def _stretch(self, sense: float, side: float) -> Stretch:
@@ -146,20 +170,32 @@ class _Walk:
         ahead = theta + sense * NEAR
         edges: list[tuple[float, float]] = [mark.at(ahead)[1:] for mark in self.marks]
         gas = [self._gas(j, ahead, edges) for j in range(len(self.changes.fired))]
-        acting = zip(self.changes.pulls, self.stage, strict=True)
-        loads = [
-            self._load(pull, ahead, side, edges) for pull, stage in acting if stage == "acting"
+        acting = [
+            load for load, stage in zip(self.loads, self.stage, strict=True) if stage == "acting"
         ]
+        loads = [self._load(load, ahead, side, edges) for load in acting if isinstance(load, Pull)]
+        pushes = [load for load in acting if isinstance(load, Push)]
+        for push in pushes:
+            if push.over_angle is not None:
+                for p in (self.phases[k] for k in self._pistons(push)):
+                    since, until = push.over_angle.at(ahead + p)[1:]
+                    edges.append((since - p, until - p))
         if self.decider is not None:
             edges.append(self.decider.bounds)
         low = max([theta - 1.0, *(edge[0] for edge in edges)])
         high = min([theta + 1.0, *(edge[1] for edge in edges)])
         shares = tuple(self.decider.shares) if self.decider else (1.0,) * len(gas)
         at = Stretch(
-            self.changes, shares, low, high, slow, fast, end, gas, loads, [], [1.0] * len(gas)
+            self.changes, shares, low, high, slow, fast, end, gas, loads, [], [1.0] * len(gas), []
         )
         middle = theta + sense * min(1e-7, 0.5 * (high - low))
         at.slides = [-sense * math.copysign(1.0, place.x_1) for place in at.places(middle)]
+        amid = 0.5 * (theta + (high if sense > 0.0 else low))
+        at.pushed = [
+            self._push(push, k, ahead, amid, at.slides[k])
+            for push in pushes
+            for k in self._pistons(push)
+        ]
         if self.changes.rings is not None and self.changes.rings[1] > 0.0:
             press(at, ahead, sense)
         return at
@@ -191,6 +227,17 @@ class _Walk:
         over_time = piece_at(pull.over_time, t, 1.0)
         return Acting(pull, over_time, over_speed, over_angle, origin)
 
+    def _push(self, push: Push, k: int, ahead: float, amid: float, slides: float) -> Pushing:
+        """A force on the piston of a cylinder, in a stretch with an angle amid it."""
+        phase, over_angle, origin = self.phases[k], None, 0.0
+        if push.over_angle is not None:
+            over_angle, origin, _ = push.over_angle.at(ahead + phase)
+        over_time = piece_at(push.over_time, self.state.time, 1.0)
+        way = push.forward if slides > 0.0 else push.back
+        displacement = displacement_at(self.changes.machine, amid + phase)
+        over_travel = piece_at(way, displacement, 1.0)
+        return Pushing(push, k, phase, over_time, over_travel, over_angle, origin)
+
     def _ahead(self) -> tuple[float, Stretch | None]:
         """The sense in which the crank turns on and the stretch; 0 and None where it is held."""
         t, theta, omega = self.state
@@ -214,7 +261,7 @@ class _Walk:
         sense, at = self._ahead()
         t, theta, _ = self.state
         if at is None:  # held: until something changes over time
-            if self.changes.rings is None:
+            if not self.holds:
                 raise ArithmeticError("in balance at rest")
             end = min(time for time in (*self._bounds()[0], until) if time > t)
             self.state = _State(end, theta, 0.0)
@@ -295,4 +342,5 @@ class _Walk:
         shares = list(self.decider.shares) if self.decider else [1.0] * len(self.phases)
         clear = clear and edges and speeds and min(times) > _AT_ONCE
         forces, rubbed = at.forces(theta), at.friction(theta, omega)
-        return theta, omega, alpha, at.external(*self.state), forces, rubbed, shares, clear
+        applied, external = at.applied(*self.state), at.external(*self.state)
+        return theta, omega, alpha, external, forces, rubbed, applied, shares, clear

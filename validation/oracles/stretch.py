@@ -11,10 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from validation.oracles.changes import Changes, Line, Pull, Smooth
+from validation.oracles.changes import Changes, Line, Pull, Push, Smooth
 from validation.oracles.pythagoras import Place, cylinder_at, inertia_and_torque
+from validation.oracles.travel import displacement_at
 
-__all__ = ["NEAR", "Acting", "GasPiece", "Stretch", "meets", "piece_at", "press"]
+__all__ = ["NEAR", "Acting", "GasPiece", "Pushing", "Stretch", "meets", "piece_at", "press"]
 
 Floats = NDArray[np.float64]
 
@@ -42,6 +43,32 @@ class Acting(NamedTuple):
             value *= self.over_angle(theta - self.origin)
         if self.pull.smooth is not None:
             value *= self.pull.smooth(t, theta, omega)
+        return value
+
+
+class Pushing(NamedTuple):
+    """A force's pieces on the piston of the cylinder k amid their knots; phase [rad] : of the
+    cylinder; origin [rad] : cycle angle that what is over it counts from."""
+
+    push: Push
+    k: int
+    phase: float
+    over_time: Smooth | None
+    over_travel: Smooth | None
+    over_angle: Smooth | None
+    origin: float
+
+    def at(self, t: float, theta: float, displacement: float, velocity: float) -> float:
+        """The force [N], towards the crank."""
+        value, angle = 1.0, theta + self.phase
+        if self.over_time is not None:
+            value *= self.over_time(t)
+        if self.over_travel is not None:
+            value *= self.over_travel(displacement)
+        if self.over_angle is not None:
+            value *= self.over_angle(angle - self.origin)
+        if self.push.smooth is not None:
+            value *= self.push.smooth(t, angle, displacement, velocity)
         return value
 
 
@@ -76,6 +103,7 @@ class Stretch:
     loads: list[Acting]
     slides: list[float]
     pressed: list[float]
+    pushed: list[Pushing]
 
     def may_touch(self, t: Floats, y: Floats) -> bool:
         """Whether in a step of a solution, states of shape (2, n) at times (n,), the speed turns so
@@ -125,11 +153,25 @@ class Stretch:
         """The torque of the loads [N m]."""
         return sum(load.at(t, theta, omega) for load in self.loads)
 
+    def applied(self, t: float, theta: float, omega: float) -> list[float]:
+        """From outside on every piston [N], towards the crank."""
+        return self._applied(t, theta, omega, self.places(theta))
+
+    def _applied(self, t: float, theta: float, omega: float, places: list[Place]) -> list[float]:
+        found = [0.0] * len(places)
+        for one in self.pushed:
+            displacement = displacement_at(self.changes.machine, theta + one.phase)
+            found[one.k] += one.at(t, theta, displacement, -places[one.k].x_1 * omega)
+        return found
+
     def alpha(self, t: float, theta: float, omega: float) -> float:
         """The acceleration [rad/s2]."""
         places, both = self.places(theta), self.forces(theta)
+        if self.pushed:
+            applied = self._applied(t, theta, omega, places)
+            both = [a + b for a, b in zip(both, applied, strict=True)]
         if self.changes.rings is not None:
-            rubbed = self._rubbed(omega, places, both)
+            rubbed = self._rubbed(omega, places, self.forces(theta))
             both = [a + b for a, b in zip(both, rubbed, strict=True)]
         inertia, slope, torque = inertia_and_torque(self.changes.machine, theta, places, both)
         return (torque + self.external(t, theta, omega) - 0.5 * slope * omega * omega) / inertia
