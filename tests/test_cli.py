@@ -18,7 +18,7 @@ from crankmbs.scene.shipped import models_folder
 
 COMES_TO_REST = SCENE.replace('"3000 rpm"', '{ from = "900 rpm", to = "0 rpm", over = "0.1 s" }')
 DRAWN = ["speed", "piston_motion", "gas_and_side_force", "main_bearing", "crank_pin", "piston_pin"]
-FIGURES = {f"{name}.png" for name in [*DRAWN, "torque"]}
+FIGURES = {f"{name}.png" for name in [*DRAWN, "torque", "pressure"]}
 
 
 @pytest.fixture(autouse=True)

@@ -36,7 +36,8 @@ def wrote(folder: Path, names: Sequence[str]) -> str:
     """What a command has written, and the figures and data beside it that it has not: those of
     another run may contradict the new ones."""
     others = {file.name for file in folder.iterdir() if file.suffix in _OURS} - set(names)
-    lines = [f"wrote {folder}: {', '.join(names)}"]
+    here = "" if folder == Path() else f"{folder}: "
+    lines = [f"wrote {here}{', '.join(names)}"]
     if others:
         lines.append(f"also there, but not of this command: {', '.join(sorted(others))}")
     return "\n".join(lines)

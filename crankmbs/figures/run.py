@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from crankmbs.errors import InputError, shown
 from crankmbs.figures.bearings import bearings_figure
 from crankmbs.figures.cycles import FEWEST_CYCLES, cycles_figure
+from crankmbs.figures.indicator import indicator_figure
 from crankmbs.figures.orders import orders_figure
 from crankmbs.figures.polar import crank_pin_figure, main_bearing_figure, piston_pin_figure
 from crankmbs.figures.strips import (
@@ -19,6 +20,7 @@ from crankmbs.figures.strips import (
     torque_figure,
 )
 from crankmbs.figures.style import save
+from crankmbs.figures.transient import transient_figure, varies_strongly
 from crankmbs.figures.view import View, last_view
 from crankmbs.measures import engine_orders
 from crankmbs.result import Result
@@ -45,6 +47,8 @@ _KINDS: dict[str, Callable[[Result], Figure]] = {
     "orders": lambda result: orders_figure(result, engine_orders(result)),
     "cycles": lambda result: _cycles(result),
     "bearings": lambda result: _bearings(result),
+    "pressure": lambda result: _pressure(result),
+    "transient": transient_figure,
 }
 _POLAR = {name: _FIGURES[name] for name in ("main_bearing", "crank_pin", "piston_pin")}
 
@@ -55,13 +59,14 @@ def plot(result: Result, kind: str = "speed", joint: str = "crank_pin") -> Figur
     Parameters
     ----------
     kind : "speed", "motion" of the pistons, "forces" along and across the cylinders, "polar" load,
-        "torque", "orders" of torque and frame force, "cycles", or "bearings"
+        "torque", "orders" of torque and frame force, "cycles", "bearings", "pressure" over angle
+        and volume, or the whole run over time as "transient"
     joint : of a "polar" load: "main_bearing", "crank_pin" or "piston_pin"
 
     Raises
     ------
     InputError : another kind or joint; no orders without a whole cycle, no cycles kept, no
-        journals
+        journals, no gas
 
     >>> len(plot(simulate(load_scene("propeller")), "motion").axes)
     3
@@ -98,9 +103,16 @@ def _bearings(result: Result) -> Figure:
     return bearings_figure(last_view(result))
 
 
+def _pressure(result: Result) -> Figure:
+    if result.scene.gas is None:
+        raise InputError("a pressure is drawn of a scene with [gas]; this one has none")
+    return indicator_figure(last_view(result))
+
+
 def save_figures(result: Result, folder: Path) -> list[Path]:
     """Draw every figure of a result into PNG files, which appear together; the cycles where there
-    are more than three, or several in a settled period, the bearings where a scene has them.
+    are more than three, or several in a settled period, the bearings and the pressure where a scene
+    has them, the whole run over time where its speed varies strongly.
 
     Raises
     ------
@@ -111,6 +123,12 @@ def save_figures(result: Result, folder: Path) -> list[Path]:
         for name, draw in _FIGURES.items():
             save(draw(view), part / f"{name}.png")
         names = list(_FIGURES)
+        if result.scene.gas is not None:
+            save(indicator_figure(view), part / "pressure.png")
+            names.append("pressure")
+        if varies_strongly(result):
+            save(transient_figure(result), part / "transient.png")
+            names.append("transient")
         if result.scene.throws is not None:
             save(bearings_figure(view), part / "bearings.png")
             names.append("bearings")
