@@ -10,8 +10,8 @@ import numpy as np
 from crankmbs.cli.text import table
 from crankmbs.compare import AtAngle, Reading
 from crankmbs.digits import digits, error_digits
+from crankmbs.display import displayed
 from crankmbs.measures import EngineOrder, EngineOrders
-from crankmbs.measures.display import displayed
 from crankmbs.scene.units import RPM
 
 __all__ = ["orders_report", "reading_report", "save_orders"]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from crankmbs.cli.folder import writable
+from crankmbs.cli.folder import writable, wrote_into
 from crankmbs.cli.progress import progress
 from crankmbs.errors import InputError
 from crankmbs.storage.files import together
@@ -115,7 +115,7 @@ def _measured(
     except InputError as error:
         raise InputError(_as_options(str(error))) from None
     lines = [_as_options(sentence) for sentence in found.sentences]
-    lines += ["", f"wrote {folder}: {', '.join(names)}", "as [gas] of a scene:"]
+    lines += ["", wrote_into(folder, names), "as [gas] of a scene:"]
     lines += [f"  {line}" for line in gas_lines(found, target.name)]
     typer.echo("\n".join(lines))
 

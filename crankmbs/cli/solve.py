@@ -9,9 +9,8 @@ import typer
 from crankmbs.cli.progress import progress
 from crankmbs.cli.sweep import varied
 from crankmbs.cli.text import cells, table, with_unit
+from crankmbs.display import displayed
 from crankmbs.errors import InputError
-from crankmbs.measures import Estimate
-from crankmbs.measures.display import displayed
 
 if TYPE_CHECKING:
     from crankmbs.sweep.minimize import Minimum
@@ -77,7 +76,7 @@ def _roots(found: Solved) -> str:
 
 def _minimum(found: Minimum) -> str:
     rows = [
-        [with_unit(name, of), cells(Estimate(value, 0.0), of)[0], "", ""]
+        [with_unit(name, of), cells((value, 0.0), of)[0], "", ""]
         for name, value in found.values.items()
         for of in (found.units[name],)
     ]

@@ -14,7 +14,6 @@ import typer
 
 from crankmbs.cli.text import cells, table, with_unit
 from crankmbs.errors import InputError, shown
-from crankmbs.measures import Estimate
 
 if TYPE_CHECKING:
     from crankmbs.sweep.plan import Plan
@@ -216,7 +215,7 @@ def _report(plan: Plan, found: Summary) -> str:
 
 
 def _bounds(one: Bounds) -> list[str]:
-    least, largest = (cells(Estimate(x, one.error), one.units) for x in (one.least, one.largest))
+    least, largest = (cells((x, one.error), one.units) for x in (one.least, one.largest))
     return [with_unit(one.long_name, one.units), least[0], *largest]
 
 

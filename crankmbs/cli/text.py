@@ -3,13 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 from crankmbs.digits import digits, error_digits
-from crankmbs.measures.display import displayed
-
-if TYPE_CHECKING:
-    from crankmbs.measures import Estimate
+from crankmbs.display import displayed
 
 __all__ = ["cells", "table", "with_unit"]
 
@@ -28,13 +24,14 @@ def table(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     )
 
 
-def cells(one: Estimate, units: str = "1", per: str = "1") -> list[str]:
-    """A value to the digits that its error leaves, and the error, in the units people read.
+def cells(one: tuple[float, float], units: str = "1", per: str = "1") -> list[str]:
+    """A value with its error, to the digits that this leaves, and the error, in the units that
+    people read.
 
     units, per : SI, of the value, or of it and what it is divided by
     """
     scale = displayed(units)[0] / displayed(per)[0]
-    value, error = one.value / scale, one.error / scale
+    value, error = (part / scale for part in one)
     return [digits(value, error), error_digits(error)]
 
 

@@ -13,9 +13,9 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from crankmbs.digits import error_digits
+from crankmbs.display import displayed
 from crankmbs.errors import InputError
 from crankmbs.figures.style import COLOURS, STYLE, caption, logarithmic, panels
-from crankmbs.measures.display import displayed
 from crankmbs.numerics.arrays import Array
 from crankmbs.sweep.columns import Column
 from crankmbs.sweep.reading import Reading, amount_of, reading_of

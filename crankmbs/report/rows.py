@@ -12,8 +12,8 @@ from collections import Counter
 from typing import NamedTuple
 
 from crankmbs.digits import digits, error_digits
+from crankmbs.display import displayed
 from crankmbs.measures import Estimate, JointForce, Measures
-from crankmbs.measures.display import displayed
 from crankmbs.measures.peaks import Peak, run_peaks
 from crankmbs.measures.span import TURNS_BACK
 from crankmbs.mechanics.geometry import close_loop, dead_centres
