@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import dataclasses
+import math
 import time as clock
+
+import numpy as np
 
 from crankmbs.choose import choose, chosen
 from crankmbs.errors import InputError, shown
@@ -11,11 +15,15 @@ from crankmbs.mechanics.speed import speed_remarks
 from crankmbs.mechanics.train import crank_train
 from crankmbs.mechanics.windows import place_of
 from crankmbs.motion.assemble import labelled
+from crankmbs.motion.ending import Ending
 from crankmbs.numerics.function import Function
 from crankmbs.result import Cost, Error, Result
+from crankmbs.scene.run import Extent
 from crankmbs.scene.scene import Scene
 
 __all__ = ["functions_of", "simulate", "why"]
+
+_MOST_CYCLES = 10_000  # of a run that is followed to its stop
 
 
 def simulate(
@@ -60,7 +68,7 @@ def simulate(
     asked = max(scene.run.rtol, one.least_rtol) if rtol is None else rtol
     assembled = one.run(crank_train(scene), asked, cost_cap)
     solution = assembled.solution
-    return Result.unlabelled(
+    found = Result.unlabelled(
         labelled(assembled),
         scene=scene,
         formulation=choice.formulation,
@@ -73,6 +81,50 @@ def simulate(
         keep=solution.keep,
         motion=assembled.motion,
     )
+    if scene.settles and found.status == 1:
+        found = dataclasses.replace(found, message=_slowing(found) or found.message)
+    return found
+
+
+def _slowing(found: Result) -> str:
+    """Of a motion that does not settle, as it slows down: where and when the crank stops, and
+    whether it turns back there, in a sentence; empty where it does not slow down.
+
+    The scene is run on from its start, for twice the cycles that its drift lets expect, and for
+    twice as many again, until it stops.
+    """
+    speed = found.sampled("crank_speed")
+    begin, end = abs(float(speed[0])), float(speed[-1] * np.sign(speed[0]))
+    stop, scene, status = _stop(found), found.scene, 0
+    count = 2.0 * math.ceil(begin / (begin - end)) if 0.0 < end < begin else math.inf
+    while stop is None and status == 0 and count < _MOST_CYCLES:
+        until, every = (Extent(value=size, unit="cycle") for size in (count, 1.0))
+        run = dataclasses.replace(scene.run, until=until, every=every)
+        on = simulate(dataclasses.replace(scene, run=run), formulation=found.formulation)
+        stop, status, count = _stop(on), on.status, 2.0 * count
+    if stop is None:
+        return ""
+    time, angle, turns_back = stop
+    then = "turns back" if turns_back else "comes to rest"
+    return Ending.SLOWS_DOWN.said(angle, time=time, then=then)[1]
+
+
+def _stop(found: Result) -> tuple[float, float, bool] | None:
+    """Time [s] and crank angle [rad] at which a crank that turns first stops, to rest there or to
+    turn back, and whether it does; None where it goes on."""
+    before, stop = 0.0, None
+    for cells in found.passes.answer.cells:
+        sense = cells.acting.sense
+        if stop is None and before and sense != before:
+            stop = float(cells.time[0, 0]), float(cells.angle[0, 0])
+        if stop is not None and sense == -before:
+            return *stop, True
+        if sense:
+            before, stop = sense, None
+    last = found.passes.answer.cells[-1]
+    if stop is None and before and found.status == 1 and last.speed[-1, -1] == 0.0:
+        stop = float(last.time[-1, -1]), float(last.angle[-1, -1])
+    return None if stop is None else (*stop, False)
 
 
 def functions_of(scene: Scene) -> list[tuple[str, Function]]:

@@ -102,9 +102,17 @@ def test_what_cannot_be_looked_up_is_refused():
     with pytest.raises(InputError, match="last whole cycle"):
         at_angle(short, 0.0)
     result = simulate(DIESEL)
-    for angle, said in ((math.nan, "finite"), ("60 mm", "angle"), ("60", "unit")):
+    rounded = "rounded away"
+    refusals = {math.nan: rounded, "1e300 deg": rounded, "60 mm": "angle", "60": "unit"}
+    for angle, said in refusals.items():
         with pytest.raises(InputError, match=said):
             at_angle(result, angle)
+
+
+@pytest.mark.slow
+def test_where_the_crank_turns_back_an_angle_has_no_one_time():
+    with pytest.raises(InputError, match="rests or turns back"):
+        at_angle(simulate(load_scene("run_down")), "60 deg")
 
 
 @pytest.mark.slow
@@ -113,9 +121,16 @@ def test_on_the_command_line(tmp_path, monkeypatch):
     options = ("--no-figures", "--orders", "--at", "60 deg", "--at", "1 rad")
     done = crankmbs_("run", "yi_diesel", *options)
     assert done.exit_code == 0
-    for text in ("at 60 deg of the", "at 57.2957795 deg", "F_oj", "deg/s^2", "orders over"):
+    for text in (
+        "at 60 deg of the",
+        "at 57.2957795 deg",
+        "F_oj",
+        "crank speed [rpm]",
+        "orders over",
+    ):
         assert text in done.stdout
     written = tmp_path / "results" / "yi_diesel" / "orders.csv"
     rows = np.genfromtxt(written, delimiter=",", skip_header=1)
     assert rows.shape == (24, 19)
     assert "--at: " in refused("run", "yi_diesel", "--at", "60 mm")
+    assert "--at: the crank angle" in refused("run", "yi_diesel", "--at", "1e300 deg")

@@ -18,7 +18,7 @@ from crankmbs.scene.shipped import models_folder
 
 COMES_TO_REST = SCENE.replace('"3000 rpm"', '{ from = "900 rpm", to = "0 rpm", over = "0.1 s" }')
 DRAWN = ["speed", "piston_motion", "gas_and_side_force", "main_bearing", "crank_pin", "piston_pin"]
-FIGURES = {f"{name}.png" for name in [*DRAWN, "torque"]}
+FIGURES = {f"{name}.png" for name in [*DRAWN, "torque", "pressure"]}
 
 
 @pytest.fixture(autouse=True)
@@ -41,9 +41,11 @@ def test_run_writes_into_results_by_name_and_reports():
         "over the last cycle",
         "mean speed [rpm]",
         "coefficient of fluctuation",
-        "speed at its end less that at its beginning [rpm]",
+        "drift of the speed over the last cycle [rpm]",
+        "mean piston speed [m/s]",
+        "brake power [kW]",
         "indicated power [kW]",
-        "mean torque from outside [N m]",
+        "mean load torque (drive, where positive) [N m]",
         "peak kinetic energy",
         "asked for",
         "evaluations",
@@ -58,7 +60,7 @@ def test_run_writes_into_results_by_name_and_reports():
 def test_report_carries_the_numbers_of_the_result():
     out = crankmbs_("run", "engine.toml", "--no-figures").stdout
     data = Result.load("results/engine").data
-    (row,) = re.findall(r"^side force +(.*)$", out, re.MULTILINE)
+    (row,) = re.findall(r"^\|side force\| \[N\] +(.*)$", out, re.MULTILINE)
     peak, error, crank_angle, cycle_angle, *_ = map(float, row.split())
     side = np.abs(data["side_force"].values[720:, 0])
     assert side.max() <= peak + error

@@ -1,6 +1,7 @@
 """Numbers and tables as text, and the sign of life of a long run."""
 
 import io
+import math
 import sys
 import time
 
@@ -8,8 +9,9 @@ import pytest
 
 import crankmbs.cli.progress
 from crankmbs.cli.progress import progress
-from crankmbs.cli.text import table
+from crankmbs.cli.text import cells, table, with_unit
 from crankmbs.digits import digits, error_digits
+from crankmbs.measures import Estimate
 
 
 class Terminal(io.StringIO):
@@ -84,3 +86,20 @@ def test_tables_are_aligned():
 def test_what_is_printed_does_not_exclude_the_truth(value, error):
     truth = value + 0.95 * error
     assert abs(float(digits(value, error)) - truth) <= float(error_digits(error))
+
+
+@pytest.mark.parametrize(
+    ("units", "per", "heading", "value"),
+    [
+        ("rad/s", "1", "x [rpm]", "30.0000"),
+        ("W", "1", "x [kW]", "0.00314159"),
+        ("Pa", "1", "x [bar]", "3.14159e-05"),
+        ("rad", "1", "x [deg]", "180.000"),
+        ("N m", "1", "x [N m]", "3.14159"),
+        ("1", "1", "x", "3.14159"),
+        ("rad/s", "m", "x [rpm]", "0.0300000"),
+    ],
+)
+def test_numbers_are_printed_in_the_units_that_people_read(units, per, heading, value):
+    assert with_unit("x", units) == heading
+    assert cells(Estimate(math.pi, 0.0), units, per)[0] == value

@@ -269,8 +269,8 @@ def test_a_result_is_saved_and_read_again(tmp_path):
 
 def test_the_figures_show_both_ends(tmp_path):
     result = simulate(STEAM)
-    assert tmp_path / "pressures.png" in save_figures(result, tmp_path)
-    (axes,) = result.plot("pressures").axes
+    assert tmp_path / "pressure.png" in save_figures(result, tmp_path)
+    along, axes = result.plot("pressure").axes
     head, crank = axes.lines
     data = result.data.isel(time=slice(360, None))
     displacement = data["piston_displacement"].values[:, 0]
@@ -280,8 +280,8 @@ def test_the_figures_show_both_ends(tmp_path):
     ):
         np.testing.assert_allclose(line.get_xdata(), 1e6 * area * displacement, atol=1e-6)
         np.testing.assert_allclose(line.get_ydata(), 1e-5 * data[name].values[:, 0], atol=1e-9)
-    assert [line.get_label() for line in axes.lines] == ["head end", "crank end"]
-    assert len(simulate(load_scene("propeller")).plot("pressures").axes[0].lines) == 1
+    assert [line.get_label() for line in along.lines] == ["head end", "crank end"]
+    assert len(simulate(load_scene("propeller")).plot("pressure").axes[1].lines) == 1
 
 
 def test_the_machine_is_described_by_both_ends():

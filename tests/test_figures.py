@@ -26,6 +26,7 @@ from crankmbs.figures import (
     crank_pin_figure,
     difference_figure,
     forces_figure,
+    indicator_figure,
     last_view,
     main_bearing_figure,
     piston_motion_figure,
@@ -47,6 +48,7 @@ FIGURES = [
     crank_pin_figure,
     piston_pin_figure,
     torque_figure,
+    indicator_figure,
 ]
 
 

@@ -106,6 +106,11 @@ ODD = {
         "piston.bore: a piston 9.4 mm wide with a stroke of 72 mm has a bore 0.131 times the "
         "stroke; machines have 0.15 to 3.5 times; check its unit",
     ),
+    "rod in mm": (
+        reroded(FOUR, length=153.3),
+        "rod.length: a rod of 153.3 m is 3333 times as long as the crank's radius, and machines "
+        "have up to 50; a bare number is in metres",
+    ),
     "rod in grams": (
         reroded(FOUR, mass=1602.847, inertia=5.8422),
         "rod.mass: 1603 kg is more than solid steel 85.25 mm wide and 153.3 mm long, 6.87 kg; a "

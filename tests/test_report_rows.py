@@ -1,4 +1,4 @@
-"""The table of joint forces that `run` prints: which angle stands in which column."""
+"""The tables that `run` prints: which angle stands in which column, which window a table names."""
 
 import math
 
@@ -14,9 +14,10 @@ from crankmbs import (
     Run,
     Scene,
     Table,
+    load_scene,
     simulate,
 )
-from crankmbs.report.rows import FORCE_HEADINGS, force_rows
+from crankmbs.report.rows import FORCE_HEADINGS, measure_rows, peak_rows, tables, unsteady
 
 PEAK = 370.0  # deg, of the pressure, in the cycle of each cylinder
 ORDER = (1, 3, 4, 2)
@@ -41,19 +42,73 @@ def rows():
         motion=Motion(speed=100.0),
         run=Run(until="2 cycles"),
     )
-    table = force_rows(simulate(scene).measures(), scene.period)
-    return {name: dict(zip(FORCE_HEADINGS[1:], cells, strict=True)) for name, *cells in table}
+    table = peak_rows(simulate(scene).measures(), scene.period)
+    return {name: dict(zip(FORCE_HEADINGS, cells, strict=True)) for name, *cells in table}
 
 
 @pytest.mark.parametrize("joint", ["crank pin", "piston pin"])
 @pytest.mark.parametrize("number", [1, 2, 3, 4])
 def test_a_peak_has_its_crank_angle_and_its_own_cycle_angle(rows, joint, number):
     """Cylinder k of the order fires 180 degrees after the one before it."""
-    row = rows[f"{joint} {number}"]
+    row = rows[f"{joint} {number} [N]"]
     assert float(row["cycle angle [deg]"]) == pytest.approx(PEAK, abs=2e-3)
     at_crank = (PEAK + 180.0 * ORDER.index(number)) % 720.0
-    assert float(row["at crank angle [deg]"]) == pytest.approx(at_crank, abs=2e-3)
+    assert float(row["crank angle [deg]"]) == pytest.approx(at_crank, abs=2e-3)
 
 
 def test_the_main_bearing_has_no_cycle_angle(rows):
-    assert rows["main bearing"]["cycle angle [deg]"] == ""
+    assert rows["main bearing [N]"]["cycle angle [deg]"] == ""
+
+
+def test_pressure_and_torque_stand_below_the_forces(rows):
+    assert float(rows["gauge pressure 2 [bar]"]["peak"]) == pytest.approx(50.0)
+    assert float(rows["gauge pressure 2 [bar]"]["cycle angle [deg]"]) == pytest.approx(
+        PEAK, abs=2e-3
+    )
+    assert float(rows["gas and inertia torque, max [N m]"]["peak"]) > 0.0
+
+
+def test_a_periodic_run_has_peaks_of_its_last_cycle():
+    result = simulate(load_scene("propeller"))
+    found = result.measures()
+    names = [table.headings[0] for table in tables(result, found)]
+    assert names == ["over the last cycle", "over the last cycle"]
+    assert unsteady(found) == ""
+    rows = {name: float(value) for name, value, _ in measure_rows(found, result.scene)}
+    # power is torque times speed, and the piston passes the stroke twice a revolution
+    speed = rows["mean speed [rpm]"]
+    torque = rows["mean load torque (drive, where positive) [N m]"]
+    assert rows["brake power [kW]"] == pytest.approx(-torque * speed * math.pi / 30e3, rel=1e-5)
+    stroke = 2.0 * result.scene.crank.radius
+    assert rows["mean piston speed [m/s]"] == pytest.approx(stroke * speed / 30.0, rel=1e-5)
+
+
+def test_a_machine_that_is_driven_takes_drive_power():
+    result = simulate(load_scene("compressor"))
+    names = [name for name, *_ in measure_rows(result.measures(), result.scene)]
+    assert "drive power [kW]" in names
+
+
+def test_a_run_that_speeds_up_has_peaks_of_the_whole_run():
+    """It is driven from rest, so its last cycle says nothing of the run."""
+    result = simulate(load_scene("torque_driven"))
+    found = result.measures()
+    cycle, run = tables(result, found)
+    assert cycle.headings[0] == "over the last cycle"
+    assert not any("fluctuation" in name for name, *_ in cycle.rows)
+    assert run.headings[0] == "over the whole run, 0 to 1 s"
+    speed = dict(zip(run.headings, run.rows[0], strict=True))
+    assert speed["over the whole run, 0 to 1 s"] == "highest speed [rpm]"
+    assert speed["cycle"] == "2"
+    assert float(speed["at time [s]"]) == pytest.approx(0.936, abs=1e-3)
+    assert "changes by +131 rpm over the last cycle" in unsteady(found)
+
+
+@pytest.mark.slow
+def test_a_run_that_turns_back_has_no_cycle():
+    result = simulate(load_scene("run_down"))
+    found = result.measures()
+    assert found.imep is None
+    (run,) = tables(result, found)
+    assert run.headings[0] == "over the whole run, 0 to 1.48631 s"
+    assert "turns back" in unsteady(found)

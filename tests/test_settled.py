@@ -1,12 +1,16 @@
 """The settled motion: the limit of the run from the start, or the sentence why there is none."""
 
+import math
+import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from crankmbs import (
+    AngleTable,
     Constant,
+    Crank,
     FormulationError,
     InputError,
     Quadratic,
@@ -198,3 +202,28 @@ def test_it_is_kept_and_written(tmp_path) -> None:
     for name, text in scene_files(found.scene, "mine").items():
         (tmp_path / name).write_text(text)
     assert read_scene(tmp_path / "mine.toml").run == found.scene.run
+
+
+@pytest.mark.parametrize("inertia", [3.0, 300.0])
+def test_of_a_motor_too_weak_it_is_said_when_the_crank_stops(inertia: float) -> None:
+    """The press takes more in a turn than the motor gives; with the heavier wheel it stops some
+    cycles later. The load over the angle then drives it backwards, faster and faster, and that is
+    not what happens to the press."""
+    press = AngleTable(file=Table((0.0, 2.0, 2.02, 3.14, 3.16, 6.28), (0, 0, -900.0, -900.0, 0, 0)))
+    scene = replace(
+        load_scene("coasting"),
+        gravity=None,
+        crank=Crank(radius=0.05, inertia=inertia),
+        start=Start(angle=0.0, speed=6.0),
+        torque=(Constant(torque=100.0), press),
+    )
+    found = settled(scene)
+    assert found.status == 1
+    said = re.search(r"it stops at (\S+) s, at (\S+) degrees, where it turns back", found.message)
+    assert said, found.message
+    cycles = Run(until="200 cycles", every="5 deg")
+    speed = simulate(replace(scene, run=cycles)).data.crank_speed
+    stop = int(np.argmax(speed.values < 0.0))
+    times = speed.time.values[stop - 1 : stop + 1]
+    assert times[0] <= float(said[1]) <= times[1]
+    assert math.degrees(speed.crank_angle.values[stop - 1]) <= float(said[2]) + 0.01

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from crankmbs.errors import OutputError
 
-__all__ = ["writable", "wrote"]
+__all__ = ["writable", "wrote", "wrote_into"]
 
 _OURS = {".png", ".csv", ".nc"}
 
@@ -32,11 +32,21 @@ def writable(folder: Path) -> Path:
                 each.rmdir()
 
 
+def wrote_into(folder: Path, names: Sequence[str]) -> str:
+    """What a command has written into a folder, which is named unless it is the present one.
+
+    >>> wrote_into(Path("."), ["a.png", "b.png"])
+    'wrote a.png, b.png'
+    """
+    here = "" if folder == Path() else f"{folder}: "
+    return f"wrote {here}{', '.join(names)}"
+
+
 def wrote(folder: Path, names: Sequence[str]) -> str:
     """What a command has written, and the figures and data beside it that it has not: those of
     another run may contradict the new ones."""
     others = {file.name for file in folder.iterdir() if file.suffix in _OURS} - set(names)
-    lines = [f"wrote {folder}: {', '.join(names)}"]
+    lines = [wrote_into(folder, names)]
     if others:
         lines.append(f"also there, but not of this command: {', '.join(sorted(others))}")
     return "\n".join(lines)

@@ -10,6 +10,7 @@ import numpy as np
 from crankmbs.cli.text import table
 from crankmbs.compare import AtAngle, Reading
 from crankmbs.digits import digits, error_digits
+from crankmbs.display import displayed
 from crankmbs.measures import EngineOrder, EngineOrders
 from crankmbs.scene.units import RPM
 
@@ -72,9 +73,9 @@ def reading_report(found: AtAngle, period: float) -> str:
     return "\n".join(
         [
             "",
-            table([place, "symbol", "value", "error"], engine),
+            table([place, "symbol", "value", "num. error"], engine),
             "",
-            table([place, "symbol", *columns, "error"], cylinders),
+            table([place, "symbol", *columns, "num. error"], cylinders),
             f"passed at {digits(found.time, most=10)} s, at a crank angle of {degrees:.9g} deg",
         ]
     )
@@ -106,8 +107,6 @@ def _degrees(phase: float, size: float, error: float) -> str:
 
 
 def _reading(name: str, symbol: str, row: list[Reading]) -> list[str]:
-    units, per = row[0].units, 1.0
-    if units.startswith("rad"):
-        units, per = f"deg{units[3:]}", math.degrees(1.0)
-    values = [digits(one.value * per, one.error * per, most=9) for one in row]
-    return [f"{name} [{units}]", symbol, *values, error_digits(row[0].error * per)]
+    scale, units = displayed(row[0].units)
+    values = [digits(one.value / scale, one.error / scale, most=9) for one in row]
+    return [f"{name} [{units}]", symbol, *values, error_digits(row[0].error / scale)]

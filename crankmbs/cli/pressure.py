@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from crankmbs.cli.folder import writable
+from crankmbs.cli.folder import writable, wrote_into
 from crankmbs.cli.progress import progress
 from crankmbs.errors import InputError
 from crankmbs.storage.files import together
@@ -139,7 +139,7 @@ def _measured(
     except InputError as error:
         raise InputError(as_options(str(error))) from None
     lines = [as_options(sentence) for sentence in found.sentences]
-    lines += ["", f"wrote {folder}: {', '.join(names)}", "as [gas] of a scene:"]
+    lines += ["", wrote_into(folder, names), "as [gas] of a scene:"]
     lines += [f"  {line}" for line in gas_lines(found, target.name)]
     if found.speed is not None:
         lines += ["as [motion] of a scene:", f"  {motion_line(names[1])}"]

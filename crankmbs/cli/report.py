@@ -13,14 +13,7 @@ from crankmbs.digits import digits, error_digits
 from crankmbs.measures import Measures
 from crankmbs.measures.plausible import warnings
 from crankmbs.report.machine import journal_remarks
-from crankmbs.report.rows import (
-    FORCE_HEADINGS,
-    SPECIFIC_HEADINGS,
-    degrees_within,
-    force_rows,
-    measure_rows,
-    specific_rows,
-)
+from crankmbs.report.rows import degrees_within, tables, unsteady
 from crankmbs.result import Result
 from crankmbs.scene.units import RPM
 
@@ -31,24 +24,16 @@ __all__ = ["comparison", "report"]
 
 
 def report(name: str, result: Result, measures: Measures) -> str:
-    """The run in words, its measures and its joint forces, as two tables."""
+    """The run in words, then its measures, peaks and specific loads as tables."""
     title = f"{name}: {result.scene.title}" if result.scene.title else name
     parts = [
         f"{title}\n",
         _about(result, measures),
         *(f"{'warning':<12} {said}" for said in warnings(result.scene)),
-        "",
-        table(
-            [f"over the {measures.window.kind}", "value, to 6 digits", "error"],
-            measure_rows(measures),
-        ),
-        "",
-        table(FORCE_HEADINGS, force_rows(measures, result.scene.period)),
-        *(textwrap.fill(said, 100) for said in journal_remarks(result.scene)),
     ]
-    specific = specific_rows(measures)
-    if specific:
-        parts += ["", table(SPECIFIC_HEADINGS, specific)]
+    for one in tables(result, measures):
+        parts += ["", table(*one)]
+    parts += [textwrap.fill(said, 100) for said in journal_remarks(result.scene)]
     return "\n".join(parts)
 
 
@@ -101,6 +86,7 @@ def _about(result: Result, measures: Measures) -> str:
             f"{'end':<12} {result.message}",
             f"{'samples':<12} {samples}",
             f"{'last sample':<12} {math.degrees(angle[-1]):.6g} deg, {speed[-1] / RPM:.6g} rpm",
+            *([f"{'speed':<12} {said}"] if (said := unsteady(measures)) else []),
             *_events(result),
             _error_line(result),
             f"{'energy':<12} closes to {measures.energy_closure:.1e} of the peak kinetic energy",
@@ -131,8 +117,10 @@ def _events(result: Result) -> list[str]:
 
 
 def _error_line(result: Result) -> str:
-    error = result.error
-    return f"{'error':<12} {error.estimated:.1e} relative, {error.asked:.0e} asked for"
+    error, gas = result.error, result.scene.gas
+    given = gas is not None and bool(gas.tables)
+    alone = "; errors of the given pressures are not in it" if given else ""
+    return f"{'num. error':<12} {error.estimated:.1e} relative, {error.asked:.0e} asked for{alone}"
 
 
 def _cost_line(result: Result) -> str:

@@ -19,7 +19,6 @@ from crankmbs.measures import EngineOrders, engine_orders, measure
 from crankmbs.result import Result
 from crankmbs.scene.read import load_scene, scene_path
 from crankmbs.scene.scene import Scene
-from crankmbs.scene.units import quantity
 from crankmbs.simulate import simulate
 from crankmbs.storage.files import together
 
@@ -143,8 +142,10 @@ def _draw(made: _Made, folder: Path) -> list[str]:
 
 def _angle(text: str) -> float:
     """A crank angle of the option --at [rad]."""
+    from crankmbs.compare.at import angle_of
+
     try:
-        return quantity(text, "angle")
+        return angle_of(text)
     except InputError as error:
         raise InputError(f"--at: {error}") from None
 

@@ -74,13 +74,13 @@ def _derivatives(scene: Scene, names: list[str], measures: list[str]) -> str:
                 [
                     with_unit(one.measure.words, one.measure.about.units),
                     with_unit(one.knob, one.units),
-                    *cells(one.derivative),
+                    *cells(one.derivative, one.measure.about.units, one.units),
                     digits(
                         one.elasticity, one.derivative.error * abs(one.value / one.reached.value)
                     ),
                 ]
             )
-    return table(["measure", "knob", "derivative", "error", "% for 1 %"], rows)
+    return table(["measure", "knob", "derivative", "num. error", "% for 1 %"], rows)
 
 
 def _indices(found: SobolIndices) -> str:
@@ -90,5 +90,5 @@ def _indices(found: SobolIndices) -> str:
         [name, *cells(first), *cells(total)]
         for name, first, total in zip(found.knobs, found.first, found.total, strict=True)
     ]
-    heading = ["knob", "first order", "error", "total", "error"]
+    heading = ["knob", "first order", "num. error", "total", "num. error"]
     return f"{found.measure.words}, {found.message}\n\n{table(heading, rows)}"

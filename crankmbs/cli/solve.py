@@ -9,7 +9,7 @@ import typer
 from crankmbs.cli.progress import progress
 from crankmbs.cli.sweep import varied
 from crankmbs.cli.text import cells, table, with_unit
-from crankmbs.digits import digits
+from crankmbs.display import displayed
 from crankmbs.errors import InputError
 
 if TYPE_CHECKING:
@@ -65,25 +65,34 @@ def solve(
 
 
 def _roots(found: Solved) -> str:
-    heading = [with_unit(found.knob, found.units), "error", found.measure.words, "error"]
+    measure = _named(found.measure)
+    heading = [with_unit(found.knob, found.units), "num. error", measure, "num. error"]
     roots = found.roots or ((found.nearest,) if found.nearest else ())
-    rows = [[*cells(root.value), *cells(root.reached)] for root in roots]
+    of = found.measure.about.units
+    rows = [[*cells(root.value, found.units), *cells(root.reached, of)] for root in roots]
     said = found.message if found.roots else f"{found.message}; the nearest in the scan"
     return f"{said}\n\n{table(heading, rows)}" if rows else found.message
 
 
 def _minimum(found: Minimum) -> str:
     rows = [
-        [with_unit(name, found.units[name]), digits(value), "", ""]
+        [with_unit(name, of), cells((value, 0.0), of)[0], "", ""]
         for name, value in found.values.items()
+        for of in (found.units[name],)
     ]
-    rows.append([_named(found.measure), *cells(found.reached), ""])
+    rows.append([_named(found.measure), *cells(found.reached, found.measure.about.units), ""])
     rows += [
-        [_named(one.measure), *cells(one.reached), f"{one.sign} {one.bound:.6g}"]
+        [
+            _named(one.measure),
+            *cells(one.reached, of),
+            f"{one.sign} {one.bound / displayed(of)[0]:.6g}",
+        ]
         for one in found.conditions
+        for of in (one.measure.about.units,)
     ]
     said = f"{found.message}, in {found.evaluations} runs"
-    return f"{said}\n\n{table(['least of ' + found.measure.words, 'value', 'error', ''], rows)}"
+    headings = [f"least of {found.measure.words}", "value", "num. error", ""]
+    return f"{said}\n\n{table(headings, rows)}"
 
 
 def _named(reading: Reading) -> str:

@@ -12,13 +12,12 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from crankmbs.cli.text import table
-from crankmbs.digits import digits, error_digits
+from crankmbs.cli.text import cells, table, with_unit
 from crankmbs.errors import InputError, shown
 
 if TYPE_CHECKING:
     from crankmbs.sweep.plan import Plan
-    from crankmbs.sweep.summary import Summary
+    from crankmbs.sweep.summary import Bounds, Summary
 
 __all__ = ["sweep", "varied"]
 
@@ -209,17 +208,15 @@ def _report(plan: Plan, found: Summary) -> str:
     for status, (count, said) in sorted(found.ended.items(), key=lambda one: one[0] != 0):
         first = "" if status == 0 else f"; the first: {said}"
         lines.append(f"{count} {_ENDED[status]}{first}")
-    rows = [
-        [
-            f"{one.long_name} [{one.units}]",
-            *(digits(size, one.error) for size in (one.least, one.largest)),
-            error_digits(one.error),
-        ]
-        for one in found.bounds
-    ]
-    if rows:
-        lines += ["", table(["over all cases", "least", "largest", "error at most"], rows)]
+    if found.bounds:
+        headings = ["over all cases", "least", "largest", "num. error at most"]
+        lines += ["", table(headings, [_bounds(one) for one in found.bounds])]
     return "\n".join(lines)
+
+
+def _bounds(one: Bounds) -> list[str]:
+    least, largest = (cells((x, one.error), one.units) for x in (one.least, one.largest))
+    return [with_unit(one.long_name, one.units), least[0], *largest]
 
 
 def _bytes(size: float) -> str:

@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 from crankmbs.digits import digits, error_digits
-
-if TYPE_CHECKING:
-    from crankmbs.measures import Estimate
+from crankmbs.display import displayed
 
 __all__ = ["cells", "table", "with_unit"]
 
@@ -27,11 +24,17 @@ def table(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     )
 
 
-def cells(one: Estimate) -> list[str]:
-    """A value to the digits that its error leaves, and the error."""
-    return [digits(*one), error_digits(one.error)]
+def cells(one: tuple[float, float], units: str = "1", per: str = "1") -> list[str]:
+    """A value with its error, to the digits that this leaves, and the error, in the units that
+    people read.
+
+    units, per : SI, of the value, or of it and what it is divided by
+    """
+    scale = displayed(units)[0] / displayed(per)[0]
+    value, error = (part / scale for part in one)
+    return [digits(value, error), error_digits(error)]
 
 
 def with_unit(name: str, units: str) -> str:
-    """A name as a heading, its unit in brackets where it has one."""
-    return f"{name} [{units}]" if units else name
+    """A name as a heading; in brackets the unit that people read for these SI units, if any."""
+    return f"{name} [{displayed(units)[1]}]" if units not in ("", "1") else name

@@ -21,9 +21,10 @@ from crankmbs.scene.units import quantity
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["AtAngle", "Reading", "at_angle"]
+__all__ = ["AtAngle", "Reading", "angle_of", "at_angle"]
 
 _SAME = 1e-9  # rad
+_FARTHEST = 1e6  # rad: the next number after it is 1e-10 rad away
 _LECTURED = ("net force", "side thrust", "rod force", "tangential force", "radial force", "torque")
 _OF_MOTION = {"piston displacement": "s", "piston velocity": "v", "piston acceleration": "a"}
 
@@ -69,21 +70,36 @@ def at_angle(result: Result, angle: float | str) -> AtAngle:
     >>> print(round(math.degrees(found.crank_angle)))
     60
     """
-    wanted = quantity(angle, "angle") if isinstance(angle, str) else float(angle)
-    if not math.isfinite(wanted):
-        raise InputError(f"the crank angle must be finite; {angle!r} came")
+    wanted = angle_of(angle)
     window = last_span(result)
     if window.kind != "last cycle":
-        raise InputError("a crank angle is looked up in the last whole cycle; let the run last one")
-    there, passes = _in_window(result, wanted), passes_over(result, window)
-    if not passes.answer.turns_one_way:
         raise InputError(
-            f"the crank passes {math.degrees(there):.6g} degrees more than once: it reverses in "
-            "the last cycle; look in the samples"
+            "a crank angle is looked up in the last whole cycle, and this run ends with none: it "
+            "is shorter, or the crank rests or turns back in it; look in the samples"
         )
+    there, passes = _in_window(result, wanted), passes_over(result, window)
     data = read_at(result, passes, np.array([there]), in_time=False)
     time = float(data["time"].values[0])
     return AtAngle(there, time, (*_variables(data), *_lectured(result.scene, data)))
+
+
+def angle_of(given: float | str) -> float:
+    """A crank angle [rad] from a number, or from text with its unit.
+
+    Raises
+    ------
+    InputError : it is no angle, or so large that its place in a cycle is rounded away
+
+    >>> round(angle_of("60 deg"), 3)
+    1.047
+    """
+    angle = quantity(given, "angle") if isinstance(given, str) else float(given)
+    if not abs(angle) <= _FARTHEST:
+        raise InputError(
+            f"the crank angle must be within {_FARTHEST:g} rad, or its place in a cycle is rounded "
+            f"away; {given!r} came"
+        )
+    return angle
 
 
 def _in_window(result: Result, angle: float) -> float:

@@ -6,6 +6,7 @@ from .compare import budget_figure, comparison_figure, save_validation
 from .cycles import cycles_figure
 from .difference import difference_figure, save_differences
 from .indicated import pressure_figure, save_indicated_figures, scatter_figure, volume_figure
+from .indicator import indicator_figure
 from .machine import machine_figure
 from .orders import orders_figure, save_orders_figure
 from .polar import crank_pin_figure, main_bearing_figure, piston_pin_figure
@@ -13,6 +14,7 @@ from .run import plot, save_figures
 from .strips import forces_figure, piston_motion_figure, speed_figure, torque_figure
 from .style import png
 from .sweep import sweep_figure
+from .transient import transient_figure
 from .view import last_view
 
 __all__ = [
@@ -24,6 +26,7 @@ __all__ = [
     "cycles_figure",
     "difference_figure",
     "forces_figure",
+    "indicator_figure",
     "last_view",
     "machine_figure",
     "main_bearing_figure",
@@ -43,5 +46,6 @@ __all__ = [
     "speed_figure",
     "sweep_figure",
     "torque_figure",
+    "transient_figure",
     "volume_figure",
 ]

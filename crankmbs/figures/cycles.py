@@ -60,26 +60,28 @@ def cycles_figure(result: Result) -> Figure:
 
 
 def mark_events(ax: Axes, result: Result, at: Array) -> None:
-    """Thin labelled lines at the first events of a run but the decisions on the fuel; events of one
-    kind so close that their words would cover one another are named once.
+    """Thin labelled lines at the first events of a run: of decisions on the fuel the first that
+    fires and the one that cuts it; events of one kind so close that their words would cover one
+    another are named once.
 
     at : shape (events,), where each stands on the panel's axis
     """
     low, high = ax.get_xlim()
-    kinds, loads = map(result.event_table.values, ("kind", "load"))
-    shown = np.flatnonzero((kinds != "fuel") & (at >= low) & (at <= high))[:_MOST_MARKS]
-    if len(shown):
+    words = _words(result)
+    inside = [k for k, word in enumerate(words) if word and low <= at[k] <= high]
+    often = {k: [words[j] for j in inside if j < k].count(words[k]) for k in inside}
+    shown = sorted(sorted(inside, key=often.__getitem__)[:_MOST_MARKS])  # each word at least once
+    if shown:
         bottom, top = ax.get_ylim()
         ax.set_ylim(bottom, top + _HEAD * (top - bottom))
     named: dict[str, float] = {}
-    for k in shown.tolist():
+    for k in shown:
         ax.axvline(at[k], color="0.35", linewidth=0.9, linestyle=":", zorder=1)
-        words = str(kinds[k]).replace("load", f"load {loads[k]}")
-        if abs(named.get(words, np.inf) - at[k]) < _LABEL * (high - low):
+        if abs(named.get(words[k], np.inf) - at[k]) < _LABEL * (high - low):
             continue
         left = at[k] > high - _LABEL * (high - low)
         ax.annotate(
-            words,
+            words[k],
             (at[k], 1.0),
             xycoords=("data", "axes fraction"),
             xytext=(-2 if left else 2, -12 * (1 + len(named) % 4)),
@@ -89,4 +91,29 @@ def mark_events(ax: Axes, result: Result, at: Array) -> None:
             color="0.35",
             bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5, "alpha": 0.8},
         )
-        named[words] = float(at[k])
+        named[words[k]] = float(at[k])
+
+
+def _words(result: Result) -> list[str]:
+    """What stands beside each event; nothing at decisions on the fuel but the first that fires of a
+    fuel that is waited for and the first that does not after it is cut."""
+    kinds, loads, shares = map(result.event_table.values, ("kind", "load", "share"))
+    scene, fired_from, cut = result.scene, False, False
+    if scene.fuel is not None:
+        fired_from = scene.fuel.after > 0.0 or scene.fuel.from_speed is not None
+        cut = scene.fuel.until is not None or scene.fuel.until_speed is not None
+    names = [load.name for load in scene.torque]
+    names = [f"{name} {k}" if names.count(name) > 1 else name for k, name in enumerate(names, 1)]
+    words = [
+        f"{names[load - 1]} {kind.removeprefix('load ')}" if load else kind
+        for kind, load in zip(kinds.tolist(), loads.tolist(), strict=True)
+    ]
+    fuel = np.flatnonzero(kinds == "fuel")
+    fired = fuel[shares[fuel] > 0.0]
+    for k in fuel.tolist():
+        words[k] = ""
+    if fired_from and len(fired):
+        words[fired[0]] = "first firing"
+    if cut and len(fired) and fired[-1] < fuel[-1]:
+        words[fuel[fuel > fired[-1]][0]] = "fuel cut"
+    return words

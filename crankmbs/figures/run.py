@@ -10,9 +10,9 @@ from matplotlib.figure import Figure
 from crankmbs.errors import InputError, shown
 from crankmbs.figures.bearings import bearings_figure
 from crankmbs.figures.cycles import FEWEST_CYCLES, cycles_figure
+from crankmbs.figures.indicator import indicator_figure
 from crankmbs.figures.orders import orders_figure
 from crankmbs.figures.polar import crank_pin_figure, main_bearing_figure, piston_pin_figure
-from crankmbs.figures.pressures import pressures_figure
 from crankmbs.figures.strips import (
     forces_figure,
     piston_motion_figure,
@@ -20,6 +20,7 @@ from crankmbs.figures.strips import (
     torque_figure,
 )
 from crankmbs.figures.style import save
+from crankmbs.figures.transient import transient_figure, varies_strongly
 from crankmbs.figures.view import View, last_view
 from crankmbs.measures import engine_orders
 from crankmbs.result import Result
@@ -46,7 +47,8 @@ _KINDS: dict[str, Callable[[Result], Figure]] = {
     "orders": lambda result: orders_figure(result, engine_orders(result)),
     "cycles": lambda result: _cycles(result),
     "bearings": lambda result: _bearings(result),
-    "pressures": lambda result: _pressures(result),
+    "pressure": lambda result: _pressure(result),
+    "transient": transient_figure,
 }
 _POLAR = {name: _FIGURES[name] for name in ("main_bearing", "crank_pin", "piston_pin")}
 
@@ -57,8 +59,8 @@ def plot(result: Result, kind: str = "speed", joint: str = "crank_pin") -> Figur
     Parameters
     ----------
     kind : "speed", "motion" of the pistons, "forces" along and across the cylinders, "polar" load,
-        "torque", "orders" of torque and frame force, "cycles", "bearings", or "pressures" over the
-        swept volume
+        "torque", "orders" of torque and frame force, "cycles", "bearings", "pressure" over angle
+        and volume, or the whole run over time as "transient"
     joint : of a "polar" load: "main_bearing", "crank_pin" or "piston_pin"
 
     Raises
@@ -101,16 +103,16 @@ def _bearings(result: Result) -> Figure:
     return bearings_figure(last_view(result))
 
 
-def _pressures(result: Result) -> Figure:
+def _pressure(result: Result) -> Figure:
     if result.scene.gas is None:
-        raise InputError("pressures are drawn of a scene with [gas]; add it, or draw another kind")
-    return pressures_figure(last_view(result))
+        raise InputError("a pressure is drawn of a scene with [gas]; this one has none")
+    return indicator_figure(last_view(result))
 
 
 def save_figures(result: Result, folder: Path) -> list[Path]:
     """Draw every figure of a result into PNG files, which appear together; the cycles where there
-    are more than three, or several in a settled period, the bearings where a scene has them, the
-    pressures of both ends over the volume where it is double-acting.
+    are more than three, or several in a settled period, the bearings and the pressure where a scene
+    has them, the whole run over time where its speed varies strongly.
 
     Raises
     ------
@@ -121,12 +123,15 @@ def save_figures(result: Result, folder: Path) -> list[Path]:
         for name, draw in _FIGURES.items():
             save(draw(view), part / f"{name}.png")
         names = list(_FIGURES)
+        if result.scene.gas is not None:
+            save(indicator_figure(view), part / "pressure.png")
+            names.append("pressure")
+        if varies_strongly(result):
+            save(transient_figure(result), part / "transient.png")
+            names.append("transient")
         if result.scene.throws is not None:
             save(bearings_figure(view), part / "bearings.png")
             names.append("bearings")
-        if result.scene.double_acting:
-            save(pressures_figure(view), part / "pressures.png")
-            names.append("pressures")
         fewest = 2 if result.scene.settles else FEWEST_CYCLES  # what differs in a settled period
         if result.keep is not None and result.cycle_table.length >= fewest:
             save(cycles_figure(result), part / "cycles.png")

@@ -31,10 +31,11 @@ __all__ = ["forces_figure", "piston_motion_figure", "speed_figure", "torque_figu
 def speed_figure(view: View) -> Figure:
     """Crank speed over the crank angle in the last cycle; above it the whole run.
 
-    The whole run is shown if it is longer, and over time if that is how it was sampled.
+    The whole run is shown if it is longer, and over time if that is how it was sampled or the crank
+    turns back.
     """
     every = view.scene.run.every
-    in_time = every is not None and every.unit == "s"
+    in_time = view.over_time or (every is not None and every.unit == "s")
     whole = in_time or view.window.first > 0
     figure, axes = panels(1 + whole, 1, 10.0, 7.0 if whole else 5.0)
     if whole:
@@ -46,7 +47,7 @@ def speed_figure(view: View) -> Figure:
             turned = np.degrees(events.values("crank_angle")) / 360.0
             mark_events(axes[0], view.result, events.values("time") if in_time else turned)
         mark_points(axes[0])
-    _speed(axes[-1], *view.drawn(view.degrees, view.values("crank_speed")))
+    _speed(axes[-1], *view.drawn(view.along, view.values("crank_speed")))
     crank_axis(axes[-1:], view)
     footer(figure, view.result, "crank speed")
     return figure
@@ -100,14 +101,14 @@ def torque_figure(view: View) -> Figure:
     figure, (ax,) = panels(1, 1, 10.0, 6.0)
     torque = view.values("crank_torque")
     several = torque.shape[1] > 1
-    degrees, drawn = view.drawn(view.degrees, torque)
+    degrees, drawn = view.drawn(view.along, torque)
     for group in one_curve_each(torque):
         label = whose(group) if several else "rod on crank"
         width = 1.2 if several else 2.0
         ax.plot(degrees, drawn[:, group[0]], **line_of(group[0]), linewidth=width, label=label)
     if several:
         ax.plot(degrees, drawn.sum(axis=1), color="black", linewidth=2.5, label="all rods")
-    _, outside = view.drawn(view.degrees, view.values("external_torque"))
+    _, outside = view.drawn(view.along, view.values("external_torque"))
     ax.plot(degrees, outside, color="0.45", linestyle=(0, (5, 2)), label="from outside")
     ax.set_ylabel("torque, positive in the\nsense of rotation +theta [N m]")
     crank_axis([ax], view)
@@ -118,7 +119,7 @@ def torque_figure(view: View) -> Figure:
 
 def _per_cylinder(ax: Axes, view: View, values: Array, groups: list[list[int]]) -> None:
     ax.axhline(0.0, color="0.55", linewidth=1.0)
-    degrees, drawn = view.drawn(view.degrees, values)
+    degrees, drawn = view.drawn(view.along, values)
     for group in groups:
         label = whose(group) if values.shape[1] > 1 else None
         ax.plot(degrees, drawn[:, group[0]], **line_of(group[0]), label=label)

@@ -133,12 +133,20 @@ def force_scale(*forces: NDArray[np.float64]) -> tuple[float, str]:
 
 
 def crank_axis(axes: list[Axes], view: View) -> int:
-    """Give stacked panels one crank-angle axis, with the dead centres marked.
+    """Give stacked panels one crank-angle axis, with the dead centres marked; a time axis where the
+    crank turns back.
 
     Returns
     -------
     how many lines of text stand above the panels
     """
+    if view.over_time:
+        for ax in axes:
+            mark_points(ax)
+            ax.set_xlim(view.low, view.high)
+            ax.tick_params(labelbottom=ax is axes[-1])
+        axes[-1].set_xlabel(f"time [s], {view.window.kind}")
+        return 0
     span = view.high - view.low
     step = next((s for s in (1, 5, 15, 30, 90, 180) if span <= 8.5 * s), 360)
     ticks = np.arange(math.ceil(view.low / step) * step, view.high + 1e-6, step)

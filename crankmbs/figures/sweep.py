@@ -13,10 +13,10 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from crankmbs.digits import error_digits
+from crankmbs.display import displayed
 from crankmbs.errors import InputError
 from crankmbs.figures.style import COLOURS, STYLE, caption, logarithmic, panels
 from crankmbs.numerics.arrays import Array
-from crankmbs.scene.units import BAR, DEGREE, RPM
 from crankmbs.sweep.columns import Column
 from crankmbs.sweep.reading import Reading, amount_of, reading_of
 
@@ -25,15 +25,7 @@ if TYPE_CHECKING:
 
 __all__ = ["sweep_figure"]
 
-_SHOWN = {
-    "rad/s": (RPM, "rpm"),
-    "rad": (DEGREE, "deg"),
-    "Pa": (BAR, "bar"),
-    "1": (0.01, "%"),
-    "N": (1e3, "kN"),
-    "W": (1e3, "kW"),
-    "m": (1e-3, "mm"),
-}
+_ON_AXES = {"1": (0.01, "%"), "N": (1e3, "kN")}  # else as in text
 _MOST = 12  # panels
 _COLUMNS = 3
 _LEVELS = 12
@@ -111,7 +103,7 @@ def sweep_figure(data: xr.Dataset, show: str, limit: str | None = None) -> Figur
     values, error = reading.of_sweep(data)
     if not np.isfinite(values.values).any():
         raise InputError(f"{show}: no case of this sweep has it")
-    scale, unit = _SHOWN.get(reading.about.units, (1.0, reading.about.units))
+    scale, unit = _on_axis(reading.about.units)
     at = None if limit is None else _limit(limit, reading) / scale
     drawn = _Drawn(values / scale, reading.words, unit, at)
     knobs = [str(name) for name in values.dims if name in data.coords]
@@ -242,8 +234,7 @@ def _apart(x: Array, y: Array) -> tuple[Array, Array]:
 
 def _axis(data: xr.Dataset, name: str) -> _Axis:
     values = data[name].values
-    scale, unit = _SHOWN.get(str(data[name].attrs.get("units", "")), (1.0, ""))
-    unit = unit or str(data[name].attrs.get("units", ""))
+    scale, unit = _on_axis(str(data[name].attrs.get("units", "")))
     if values.dtype.kind != "f":
         words, at = np.unique(values, return_inverse=True)
         return _Axis(name, at.astype(np.float64), [str(w) for w in words], log=False)
@@ -268,6 +259,11 @@ def _levels(values: Array) -> Array:
     return np.asarray(MaxNLocator(_LEVELS).tick_values(low, high))
 
 
+def _on_axis(units: str) -> tuple[float, str]:
+    """By what an SI value is divided on an axis, and the unit there."""
+    return _ON_AXES.get(units) or displayed(units)
+
+
 def _where(data: xr.Dataset, names: list[str], values: Any) -> str:
     several = values if isinstance(values, tuple) else (values,)
     return ", ".join(_said(data, *pair) for pair in zip(names, several, strict=True))
@@ -277,7 +273,7 @@ def _said(data: xr.Dataset, name: str, value: Any) -> str:
     units = str(data[name].attrs.get("units", ""))
     if isinstance(value, str):
         return f"{name} {value}"
-    scale, unit = _SHOWN.get(units, (1.0, units))
+    scale, unit = _on_axis(units)
     return f"{name} {float(value) / scale:.4g} {_typeset(unit)}".rstrip()
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from crankmbs.measures import Span, last_span
+from crankmbs.measures.span import TURNS_BACK
 from crankmbs.mechanics.geometry import dead_centres
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
@@ -26,10 +27,13 @@ class View:
     """The last cycle of a result.
 
     A whole cycle is shown from the cycle angle 0 of cylinder 1, the gas-exchange dead centre of a
-    four-stroke, wherever the run ends.
+    four-stroke, wherever the run ends. Where the crank turns back, curves are over time, as angles
+    come again.
 
     degrees : shape (n,), at its samples: crank angle less whole periods
-    low, high [deg] : the stretch of crank angle shown
+    along : shape (n,), what curves are drawn over: degrees, or time [s]
+    low, high [deg, or s] : the stretch of it shown
+    over_time : whether curves are drawn over time
     whole : a last cycle, turned through in one sense
     begun [deg] : where such a cycle begins if it is cut at ``low``; None: nothing is cut
     """
@@ -37,8 +41,10 @@ class View:
     result: Result
     window: Span
     degrees: Array
+    along: Array
     low: float
     high: float
+    over_time: bool
     whole: bool
     begun: float | None
 
@@ -84,8 +90,11 @@ class View:
         """Crank angles [deg] of the dead centres that are shown, and what they are.
 
         A single cylinder shows both; several show the top ones, named by cylinder number, and which
-        of a four-stroke's fires; one that misfires, or gets no fuel, does not.
+        of a four-stroke's fires; one that misfires, or gets no fuel, does not. Over time they are
+        left out.
         """
+        if self.over_time:
+            return {}
         crank, rod, piston = self.scene.crank, self.scene.rod, self.scene.piston
         top, bottom = dead_centres(crank.radius, rod.length, piston.offset)
         cylinders = self.scene.cylinders
@@ -152,12 +161,20 @@ def last_view(result: Result) -> View:
     shift = math.floor(low / period + 1e-9) * period
     if low == high:  # the crank stands still
         low, high = low - DEGREE, high + DEGREE
+    degrees, bounds = np.degrees(angle - shift), (low - shift, high - shift)
+    along, (low, high) = degrees, map(math.degrees, bounds)
+    over_time = window.kind == TURNS_BACK
+    if over_time:
+        along = result.sampled("time")[window.first :]
+        low, high = float(along[0]), float(along[-1])
     return View(
         result=result,
         window=window,
-        degrees=np.degrees(angle - shift),
-        low=math.degrees(low - shift),
-        high=math.degrees(high - shift),
+        degrees=degrees,
+        along=along,
+        low=low,
+        high=high,
+        over_time=over_time,
         whole=whole,
         begun=begun,
     )

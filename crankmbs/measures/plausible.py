@@ -98,6 +98,20 @@ def _masses(machine: _Sized) -> Iterator[str]:
             )
 
 
+# Rods are 3 to 5 crank radii long, in steam engines up to 8, in presses of a short stroke some 30.
+_ROD_OVER_RADIUS = 50.0
+
+
+def _rod_length(machine: _Sized) -> Iterator[str]:
+    length, radius = machine.scene.rod.length, machine.scene.crank.radius
+    if machine.stroke >= _STROKES[0] and length > _ROD_OVER_RADIUS * radius:
+        yield (
+            f"rod.length: a rod of {length:.4g} m is {length / radius:.4g} times as long as the "
+            f"crank's radius, and machines have up to {_ROD_OVER_RADIUS:g}; a bare number is in "
+            "metres"
+        )
+
+
 # Radius of gyration over length: 0.29 for a uniform bar, at most 0.5 for two masses at the pins.
 _GYRATION = 0.7
 
@@ -214,6 +228,7 @@ _RULES: tuple[Callable[[_Sized], Iterator[str]], ...] = (
     _stroke,
     _bore,
     _masses,
+    _rod_length,
     _rod,
     _ambient,
     _peak,

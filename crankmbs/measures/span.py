@@ -10,10 +10,12 @@ import numpy as np
 from crankmbs.motion.motion import Motion, Passes
 from crankmbs.result import Result
 
-__all__ = ["CYCLES", "Span", "last_span", "measured_span", "passes_over"]
+__all__ = ["CYCLES", "TURNS_BACK", "Span", "last_span", "measured_span", "passes_over"]
 
 CYCLES = "last cycle", "last period", "settled period"
 """Kinds of spans that are whole cycles."""
+TURNS_BACK = "last swings"
+"""The kind in which the crank rests or turns back."""
 
 _SAME_ANGLE = 1e-9  # rad: rounding of start + k * every must not lose a cycle
 
@@ -23,7 +25,8 @@ class Span:
     """A stretch of a run up to its end.
 
     kind : "last cycle", "last revolution" or "whole run"; of several cycles "settled period", or
-        "last period" under loads over the angle that come again after them
+        "last period" under loads over the angle that come again after them; "last swings" where the
+        crank rests or turns back in it: from where it last was so far from where it ends
     begin, end [s]; angle : crank angle turned between them [rad], negative backwards
     first : number of the last sample at or before ``begin``
     inside : number of the first sample at or after ``begin``
@@ -90,9 +93,11 @@ def _ending(result: Result, kind: str, wanted: float) -> Span | None:
         return None
     k = int(before[-1])
     sense = math.copysign(1.0, angle[-1] - angle[k])
+    part: Motion | None = result.passes.answer.last(wanted)
+    if part is not None and not part.turns_one_way:
+        kind = TURNS_BACK
     if turned[k] <= wanted + _SAME_ANGLE:
         return Span(kind, float(time[k]), float(time[-1]), sense * wanted, k, k)
-    part: Motion | None = result.passes.answer.last(wanted)
     begin = float(time[k]) if part is None else part.begin
     inside = int(np.searchsorted(time, begin))
     return Span(kind, begin, float(time[-1]), sense * wanted, inside - 1, inside)

@@ -13,7 +13,8 @@ import numpy as np
 from crankmbs.measures.estimate import Estimate, Number, Numbers, estimates
 from crankmbs.measures.joints import JointForce, joints_of
 from crankmbs.measures.nodes import Nodes, nodes_of
-from crankmbs.measures.span import CYCLES, Span, measured_span, passes_over
+from crankmbs.measures.peaks import Peak, extremes_of
+from crankmbs.measures.span import CYCLES, TURNS_BACK, Span, measured_span, passes_over
 from crankmbs.mechanics.geometry import close_loop, dead_centres
 from crankmbs.motion.motion import Motion
 from crankmbs.motion.states import samples_in
@@ -32,13 +33,17 @@ __all__ = [
     "powers",
 ]
 
+_PLACES = "peaks", "times", "angles"
+_DRIFT, _OF_SWING = 0.01, 0.25  # what may change from a cycle to the next and be called periodic
+
 
 @dataclass(frozen=True)
 class Measures:
     """What a run amounts to over its window. Means of forces are over time.
 
     mean_speed [rad/s]; fluctuation : (max - min) / |mean speed|
-    speed_gain [rad/s] : speed at the end less that at the beginning; 0 once a motion is periodic
+    speed_gain [rad/s] : drift, the speed at the end less that at the beginning; 0 once a motion is
+        periodic
     crank_torque [N m] : moment of all rods on the crank, external_torque [N m] : from outside;
         both means are work per angle turned, so that torque times mean speed is power
     indicated_power [W] : work of the gas on all pistons per time; None without gas
@@ -55,6 +60,7 @@ class Measures:
         friction or gas
     force_power [W] : what the forces from outside on all pistons give per time, negative where they
         take; None without
+    peaks : of torque and pressures, as `crankmbs.measures.peaks.extremes_of` lists them
     energy_closure : max |energy residual| / peak kinetic energy over the whole run
     """
 
@@ -73,7 +79,25 @@ class Measures:
     friction_power: Estimate | None
     mechanical_efficiency: Estimate | None
     force_power: Estimate | None
+    peaks: tuple[Peak, ...]
     energy_closure: float
+
+    @property
+    def steady(self) -> bool:
+        """Whether the motion over the window is periodic enough to stand for the cycles after it:
+        its speed drifts by no more than 1 % of its mean and a quarter of its swing."""
+        mean = abs(self.mean_speed.value)
+        most = min(_DRIFT * mean, _OF_SWING * self.fluctuation.value * mean)
+        drift = abs(self.speed_gain.value) - self.speed_gain.error
+        return self.window.kind != TURNS_BACK and drift <= most
+
+    @property
+    def power(self) -> Estimate:
+        """Of drive and loads together [W], negative where these take more: mean torque from outside
+        times mean speed."""
+        (torque, of_torque), (speed, of_speed) = self.external_torque, self.mean_speed
+        error = abs(torque) * of_speed + abs(speed) * of_torque
+        return Estimate(torque * speed, error)
 
 
 def measure(result: Result) -> Measures:
@@ -113,6 +137,12 @@ def measure(result: Result) -> Measures:
         friction_power=single("friction_power"),
         mechanical_efficiency=single("mechanical_efficiency"),
         force_power=single("force_power"),
+        peaks=tuple(
+            one.peak(value, time.value, angle.value, scene)
+            for one, value, time, angle in zip(
+                extremes_of(scene), *(found[f"other {name}"] for name in _PLACES), strict=True
+            )
+        ),
         energy_closure=_energy_closure(result),
     )
 
@@ -188,6 +218,9 @@ def _numbers(scene: Scene, window: Span, motion: Motion) -> Numbers:
         "angles": Number(found.angle[: len(forces)], np.abs(found.angle[: len(forces)])),
         "means": Number(over, late * sizes),
     }
+    others = slice(len(forces), -2)
+    for name, values in zip(_PLACES, (tops, found.time, found.angle), strict=True):
+        numbers[f"other {name}"] = Number(values[others], found.sizes[others])
     turned = motion.turned
     for name, values in torque.items():
         if turned and duration:
@@ -295,9 +328,11 @@ def _speeds(variables: dict[str, Array]) -> Array:
 
 
 def _sought(scene: Scene, variables: dict[str, Array]) -> Array:
-    """Whose largest values are measured: the force of every joint and the speeds."""
-    forces = _forces(scene, variables)
-    return np.concatenate([_magnitudes(forces), _speeds(variables)])
+    """Whose largest values are measured: the force of every joint, torque and pressures, and the
+    speeds."""
+    others = [one.sign * one.of(variables) for one in extremes_of(scene)]
+    forces = _magnitudes(_forces(scene, variables))
+    return np.concatenate([forces, others, _speeds(variables)])
 
 
 def _magnitudes(forces: Array) -> Array:

@@ -41,6 +41,11 @@ class Ending(Enum):
         "does not settle: what the crank gets in a period is less than what its loads take at any "
         "lower speed, and it comes to a stop",
     )
+    SLOWS_DOWN = (
+        1,
+        "does not settle: the loads take more in a period than the crank gets, and it stops at "
+        "{time:.6g} s, at {angle:.6g} degrees, where it {then}",
+    )
     RUNS_AWAY = (
         1,
         "does not settle: what the crank gets in a period is more than what its loads take at any "
@@ -88,7 +93,9 @@ class Ending(Enum):
         "s, above the cost cap of {cap:g} s",
     )
 
-    def said(self, angle: float, speed: float = math.nan, **numbers: float) -> tuple[int, str]:
+    def said(
+        self, angle: float, speed: float = math.nan, **numbers: float | str
+    ) -> tuple[int, str]:
         """Status and sentence.
 
         Parameters

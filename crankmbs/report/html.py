@@ -13,7 +13,7 @@ from crankmbs.figures import last_view, machine_figure, png, speed_figure
 from crankmbs.measures import measure
 from crankmbs.measures.plausible import warnings
 from crankmbs.report.machine import machine_rows
-from crankmbs.report.rows import FORCE_HEADINGS, force_rows, measure_rows
+from crankmbs.report.rows import tables, unsteady
 from crankmbs.result import Result
 from crankmbs.scene.scene import Scene
 
@@ -35,15 +35,14 @@ def result_html(result: Result) -> str:
         ("formulation", result.formulation),
         *(("", reason) for reason in result.reasons),
         ("end", result.message),
-        ("error", f"{error.estimated:.1e} relative, {error.asked:.0e} asked for"),
+        *([("speed", said)] if (said := unsteady(measures)) else []),
+        ("num. error", f"{error.estimated:.1e} relative, {error.asked:.0e} asked for"),
         *(("warning", said) for said in warnings(result.scene)),
     ]
-    headings = [f"over the {measures.window.kind}", "value", "error"]
     parts = [
         _head(result.scene, f"status {result.status}"),
         _table([], about),
-        _table(headings, measure_rows(measures)),
-        _table(FORCE_HEADINGS, force_rows(measures, result.scene.period)),
+        *(_table(*one) for one in tables(result, measures)),
         _picture(png(speed_figure(last_view(result)), _DPI), "crank speed over the crank angle"),
     ]
     return str(Markup("<div>{}</div>").format(Markup("\n").join(parts)))

@@ -1,61 +1,141 @@
-"""The measures of a run as rows of words and numbers, each with its error."""
+"""The measures of a run as tables of words and numbers, each with its error.
+
+One rule for all of them: over a window in which the speed is periodic stand measures and peaks of
+that window. Where it is not, what needs a periodic speed is left out, and peaks are those of the
+whole run, with their time.
+"""
 
 from __future__ import annotations
 
 import math
 from collections import Counter
+from typing import NamedTuple
 
 from crankmbs.digits import digits, error_digits
+from crankmbs.display import displayed
 from crankmbs.measures import Estimate, JointForce, Measures
-from crankmbs.scene.units import RPM
+from crankmbs.measures.peaks import Peak, run_peaks
+from crankmbs.measures.span import TURNS_BACK
+from crankmbs.mechanics.geometry import close_loop, dead_centres
+from crankmbs.result import Result
+from crankmbs.scene.scene import Scene
 
 __all__ = [
     "FORCE_HEADINGS",
-    "SPECIFIC_HEADINGS",
+    "Table",
     "degrees_within",
-    "force_rows",
     "measure_rows",
-    "specific_rows",
+    "peak_rows",
+    "tables",
+    "unsteady",
 ]
 
+_ERROR = "num. error"
 FORCE_HEADINGS = [
-    "joint force [N]",
     "peak",
-    "error",
-    "at crank angle [deg]",
+    _ERROR,
+    "crank angle [deg]",
     "cycle angle [deg]",
     "mean",
-    "error",
+    _ERROR,
 ]
-SPECIFIC_HEADINGS = ["specific load [N/mm2]", "peak", "error", "mean", "error"]
+_WHOLE_RUN = [
+    "largest",
+    _ERROR,
+    "at time [s]",
+    "crank angle [deg]",
+    "cycle angle [deg]",
+    "cycle",
+]
 _MPA = 1e6  # Pa in N/mm2
 
 
-def measure_rows(measures: Measures) -> list[list[str]]:
-    """Name with unit, value, error, of each measure but the joint forces.
+class Table(NamedTuple):
+    """Headings and rows of words."""
 
-    >>> measure_rows(simulate(load_scene("yi_diesel")).measures())[0][:2]
+    headings: list[str]
+    rows: list[list[str]]
+
+
+def tables(result: Result, measures: Measures) -> list[Table]:
+    """The tables of a run: measures, peaks, and specific loads of bearings with shells.
+
+    >>> result = simulate(load_scene("torque_driven"))
+    >>> [table.headings[0] for table in tables(result, result.measures())]
+    ['over the last cycle', 'over the whole run, 0 to 1 s']
+    """
+    window, scene, found = measures.window.kind, result.scene, []
+    if window != TURNS_BACK:
+        rows = measure_rows(measures, scene)
+        found.append(Table([f"over the {window}", "value, to 6 digits", _ERROR], rows))
+    if not measures.steady:
+        motion, of = result.passes.answer, "whole run"
+        if result.scene.run.every is None:
+            of = "what is kept of the run"
+        name = f"over the {of}, {motion.begin:.6g} to {motion.end:.6g} s"
+        return [*found, Table([name, *_WHOLE_RUN], _of_run(run_peaks(result), scene))]
+    found.append(Table([f"over the {window}", *FORCE_HEADINGS], peak_rows(measures, scene.period)))
+    specific = _specific(measures)
+    if specific:
+        name = f"specific load over the {window} [N/mm2]"
+        found.append(Table([name, "peak", _ERROR, "mean", _ERROR], specific))
+    return found
+
+
+def unsteady(measures: Measures) -> str:
+    """Why peaks are those of the whole run, in a sentence; nothing where they are not.
+
+    >>> unsteady(simulate(load_scene("propeller")).measures())
+    ''
+    """
+    if measures.steady:
+        return ""
+    if measures.window.kind == TURNS_BACK:
+        return "not periodic: the crank rests or turns back; peaks are of the whole run"
+    scale, unit = displayed("rad/s")
+    drift = measures.speed_gain.value / scale
+    return (
+        f"not periodic: the speed changes by {drift:+.3g} {unit} over the {measures.window.kind}; "
+        "peaks are of the whole run"
+    )
+
+
+def measure_rows(measures: Measures, scene: Scene) -> list[list[str]]:
+    """Name with unit, value, error, of each measure over the window but peaks; what means nothing
+    where the speed is not periodic is left out.
+
+    >>> scene = load_scene("yi_diesel")
+    >>> measure_rows(simulate(scene).measures(), scene)[0][:2]
     ['mean speed [rpm]', '3200.00']
     """
     rows = [
-        _value("mean speed [rpm]", measures.mean_speed, 1.0 / RPM),
-        _value("coefficient of fluctuation, (max - min)/mean [1]", measures.fluctuation),
-        _value("speed at its end less that at its beginning [rpm]", measures.speed_gain, 1.0 / RPM),
-        _value("mean torque of the rods on the crank [N m]", measures.crank_torque),
-        _value("mean torque from outside [N m]", measures.external_torque),
+        _row("mean speed", "rad/s", measures.mean_speed),
+        _row("mean piston speed", "m/s", _piston_speed(measures.mean_speed, scene)),
+    ]
+    if measures.steady:
+        rows.append(_row("coefficient of fluctuation, (max - min)/mean", "1", measures.fluctuation))
+    rows += [
+        _row(f"drift of the speed over the {measures.window.kind}", "rad/s", measures.speed_gain),
+        _row("mean gas and inertia torque", "N m", measures.crank_torque),
+        _row("mean load torque (drive, where positive)", "N m", measures.external_torque),
     ]
     if measures.indicated_power is not None:
-        rows.append(_value("indicated power [kW]", measures.indicated_power, 1e-3))
+        rows.append(_row("indicated power", "W", measures.indicated_power))
     if measures.friction_power is not None:
-        rows.append(_value("power of the pistons' friction [kW]", measures.friction_power, 1e-3))
-    if measures.mechanical_efficiency is not None:
-        rows.append(_value("mechanical efficiency [1]", measures.mechanical_efficiency))
+        rows.append(_row("mechanical losses, friction of pistons", "W", measures.friction_power))
     if measures.force_power is not None:
-        rows.append(_value("power of the forces on the pistons [kW]", measures.force_power, 1e-3))
+        rows.append(_row("power of the forces on the pistons", "W", measures.force_power))
     for end in ("head_end", "crank_end"):
         power = getattr(measures, f"indicated_power_{end}")
         if power is not None:
-            rows.append(_value(f"indicated power, {end.replace('_', ' ')} [kW]", power, 1e-3))
+            rows.append(_row(f"indicated power, {end.replace('_', ' ')}", "W", power))
+    if scene.gas is not None:
+        power = measures.power
+        brakes = power.value < 0.0
+        name = "brake power" if brakes else "drive power"
+        rows.append(_row(name, "W", Estimate(abs(power.value), power.error)))
+    if measures.mechanical_efficiency is not None and measures.steady:
+        rows.append(_row("mechanical efficiency", "1", measures.mechanical_efficiency))
     double = measures.imep_crank_end is not None
     return [
         *rows,
@@ -68,36 +148,30 @@ def _pressures(pressures: tuple[Estimate, ...], end: str) -> list[list[str]]:
     """The mean effective pressures of the cylinders."""
     name, many = "indicated mean effective pressure", len(pressures) > 1
     return [
-        _value(f"{name}{end}{f', cylinder {number}' if many else ''} [bar]", imep, 1e-5)
+        _row(f"{name}{end}{f', cylinder {number}' if many else ''}", "Pa", imep)
         for number, imep in enumerate(pressures, start=1)
     ]
 
 
-def force_rows(measures: Measures, period: float) -> list[list[str]]:
-    """The cells under `FORCE_HEADINGS` for each joint; period [rad] : the engine's."""
-    counts = Counter(joint.joint for joint in measures.joints)
-    return [_force(joint, period, counts[joint.joint] > 1) for joint in measures.joints]
-
-
-def specific_rows(measures: Measures) -> list[list[str]]:
-    """The cells under `SPECIFIC_HEADINGS` for each joint with a shell."""
-    counts = Counter(joint.joint for joint in measures.joints)
-    return [
+def peak_rows(measures: Measures, period: float) -> list[list[str]]:
+    """Name and the cells under `FORCE_HEADINGS` of each joint's force, then of torque and
+    pressures; period [rad] : the engine's."""
+    joints = Counter(joint.joint for joint in measures.joints)
+    peaks = Counter(peak.name for peak in measures.peaks)
+    rows = [
         [
-            _name(joint, counts[joint.joint] > 1),
-            *(
-                cell
-                for one in (joint.specific_peak, joint.specific_mean)
-                if one is not None
-                for cell in (
-                    digits(one.value / _MPA, one.error / _MPA),
-                    error_digits(one.error / _MPA),
-                )
-            ),
+            _named(_words(joint), joint.number, joints[joint.joint], "N"),
+            *_cells("N", joint.peak),
+            *_angles(joint.crank_angle, joint.cycle_angle, period),
+            *_cells("N", joint.mean),
         ]
         for joint in measures.joints
-        if joint.area is not None
     ]
+    for one in measures.peaks:
+        name = _named(one.name, one.number, peaks[one.name], one.units)
+        angles = _angles(one.crank_angle, one.cycle_angle, period)
+        rows.append([name, *_cells(one.units, one.value), *angles, "", ""])
+    return rows
 
 
 def degrees_within(angle: float, period: float) -> str:
@@ -105,23 +179,72 @@ def degrees_within(angle: float, period: float) -> str:
     return f"{round(math.degrees(angle), 3) % round(math.degrees(period)):.6g}"
 
 
-def _name(joint: JointForce, several: bool) -> str:
-    return f"{joint.joint} {joint.number}" if several else joint.joint
-
-
-def _value(name: str, estimate: Estimate, scale: float = 1.0) -> list[str]:
-    value, error = estimate.value * scale, estimate.error * scale
-    return [name, digits(value, error), error_digits(error)]
-
-
-def _force(joint: JointForce, period: float, several: bool) -> list[str]:
-    cycle = "" if joint.cycle_angle is None else degrees_within(joint.cycle_angle, period)
+def _of_run(peaks: tuple[Peak, ...], scene: Scene) -> list[list[str]]:
+    """The cells under `_WHOLE_RUN`; cycles count from 1 at the start, in either sense."""
+    counts = Counter(peak.name for peak in peaks)
+    start = scene.start or scene.motion
+    assert start is not None
     return [
-        _name(joint, several),
-        digits(*joint.peak),
-        error_digits(joint.peak.error),
-        degrees_within(joint.crank_angle, period),
-        cycle,
-        digits(*joint.mean),
-        error_digits(joint.mean.error),
+        [
+            _named(_words(one), one.number, counts[one.name], one.units),
+            *_cells(one.units, one.value),
+            f"{one.time:.6g}",
+            *_angles(one.crank_angle, one.cycle_angle, scene.period),
+            str(int(abs(one.crank_angle - start.angle) / scene.period) + 1),
+        ]
+        for one in peaks
     ]
+
+
+def _specific(measures: Measures) -> list[list[str]]:
+    """Of each joint with a shell: name, peak and mean with their errors."""
+    counts = Counter(joint.joint for joint in measures.joints)
+    return [
+        [
+            _named(joint.joint, joint.number, counts[joint.joint], "1"),
+            *(
+                cell
+                for one in (joint.specific_peak, joint.specific_mean)
+                if one is not None
+                for cell in _both(one, _MPA)
+            ),
+        ]
+        for joint in measures.joints
+        if joint.area is not None
+    ]
+
+
+def _piston_speed(speed: Estimate, scene: Scene) -> Estimate:
+    """Twice the stroke a revolution [m/s]."""
+    shape = scene.crank.radius, scene.rod.length, scene.piston.offset
+    top, bottom = close_loop(dead_centres(*shape), *shape).x
+    per_radian = float(top - bottom) / math.pi
+    return Estimate(abs(speed.value) * per_radian, speed.error * per_radian)
+
+
+def _words(one: JointForce | Peak) -> str:
+    name = one.joint if isinstance(one, JointForce) else one.name
+    return "|side force|" if name == "side force" else name
+
+
+def _named(name: str, number: int | None, count: int, units: str) -> str:
+    number_of = f" {number}" if number is not None and count > 1 else ""
+    unit = f" [{displayed(units)[1]}]" if units != "1" else ""
+    return f"{name}{number_of}{unit}"
+
+
+def _row(name: str, units: str, estimate: Estimate) -> list[str]:
+    return [_named(name, None, 1, units), *_cells(units, estimate)]
+
+
+def _cells(units: str, estimate: Estimate) -> list[str]:
+    return _both(estimate, displayed(units)[0])
+
+
+def _both(estimate: Estimate, scale: float) -> list[str]:
+    value, error = estimate.value / scale, estimate.error / scale
+    return [digits(value, error), error_digits(error)]
+
+
+def _angles(crank: float, cycle: float | None, period: float) -> list[str]:
+    return [degrees_within(crank, period), "" if cycle is None else degrees_within(cycle, period)]

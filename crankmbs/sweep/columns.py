@@ -36,9 +36,9 @@ class Column(NamedTuple):
 _MEASURES = {
     "mean_speed": Column("rad/s", "mean speed"),
     "fluctuation": Column("1", "coefficient of fluctuation, (max - min) / mean speed"),
-    "speed_gain": Column("rad/s", "speed at the end less that at the beginning of the window"),
-    "crank_torque": Column("N m", "mean moment of all rods on the crank"),
-    "external_torque": Column("N m", "mean torque from outside"),
+    "speed_gain": Column("rad/s", "drift of the speed over the window"),
+    "crank_torque": Column("N m", "mean gas and inertia torque"),
+    "external_torque": Column("N m", "mean load torque (drive, where positive)"),
     "indicated_power": Column("W", "indicated power"),
     "imep": Column("Pa", "indicated mean effective pressure", _CYLINDER),
     "imep_crank_end": Column("Pa", "indicated mean effective pressure, crank end", _CYLINDER),

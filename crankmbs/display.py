@@ -1,0 +1,24 @@
+"""The units in which people read numbers; data files stay in SI."""
+
+from __future__ import annotations
+
+from crankmbs.scene.units import BAR, DEGREE, RPM
+
+__all__ = ["displayed"]
+
+_DISPLAYED = {
+    "rad/s": (RPM, "rpm"),
+    "rad": (DEGREE, "deg"),
+    "Pa": (BAR, "bar"),
+    "W": (1e3, "kW"),
+    "m": (1e-3, "mm"),
+}
+
+
+def displayed(units: str) -> tuple[float, str]:
+    """By what an SI value is divided to be read, and the unit it is read in.
+
+    >>> displayed("W")
+    (1000.0, 'kW')
+    """
+    return _DISPLAYED.get(units, (1.0, units))

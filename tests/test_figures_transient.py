@@ -1,0 +1,93 @@
+"""The figure of a whole run over time: what varies strongly, and what is marked in it."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from crankmbs import Constant, InputError, Run, load_scene, simulate
+from crankmbs.figures import plot, save_figures
+from crankmbs.figures.transient import varies_strongly
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture(scope="module")
+def start():
+    scene = load_scene("run_up")
+    fuel = replace(scene.fuel, until=0.5)
+    return simulate(replace(scene, fuel=fuel, run=Run(until="0.8 s", every="2 deg")))
+
+
+def words(ax):
+    return [text.get_text() for text in ax.texts]
+
+
+def test_a_start_is_marked_where_it_happens(start):
+    speed, torque = plot(start, "transient").axes
+    assert words(speed) == ["speed table on", "first firing", "speed table off", "fuel cut"]
+    events = start.event_table
+    times, shares = events.values("time"), events.values("share")
+    fired = times[shares > 0.0]
+    at = {text.get_text(): text.xy[0] for text in speed.texts}
+    assert at["first firing"] == fired[0]
+    assert at["fuel cut"] == times[(shares == 0.0) & (times > fired[-1])][0]
+    assert 0.5 < at["fuel cut"] < 0.6
+    gas, loads = torque.lines[:2]
+    assert np.array_equal(gas.get_xdata(), start.sampled("time"))
+    assert np.array_equal(gas.get_ydata(), start.sampled("crank_torque").sum(axis=1))
+    assert np.array_equal(loads.get_ydata(), start.sampled("external_torque"))
+
+
+def test_what_happens_after_many_reversals_is_marked():
+    """The crank swings under its weight, and is then driven."""
+    scene = load_scene("coasting")
+    late = replace(
+        scene,
+        start=replace(scene.start, speed=1.0),
+        torque=(Constant(torque=0.5, after=10.0),),
+        run=Run(until="10.2 s", every="10 deg"),
+    )
+    result = simulate(late)
+    assert np.count_nonzero(result.event_table.values("kind") == "reversal") > 8
+    speed, _ = plot(result, "transient").axes
+    assert "constant on" in words(speed)
+    assert len(speed.lines) == 2 + 8  # the speed, its zero, and the marks
+
+
+def test_a_crank_that_turns_back_has_its_fuel_cut_marked():
+    speed, _ = plot(simulate(load_scene("run_down")), "transient").axes
+    assert {"fuel cut", "reversal"} == set(words(speed))
+
+
+def test_it_is_drawn_where_the_speed_varies_strongly(start, tmp_path):
+    steady = simulate(load_scene("coasting"))
+    assert varies_strongly(start)
+    assert not varies_strongly(steady)
+    assert "transient.png" in [file.name for file in save_figures(start, tmp_path / "start")]
+    assert "transient.png" not in [file.name for file in save_figures(steady, tmp_path / "steady")]
+
+
+def test_misfires_are_no_fuel_cut():
+    speed, _ = plot(simulate(load_scene("misfire")), "transient").axes
+    assert words(speed) == []
+
+
+def test_two_loads_of_one_kind_have_their_numbers():
+    scene = load_scene("coasting")
+    loads = (Constant(torque=0.1, until=0.2), Constant(torque=-0.1, after=0.3))
+    speed, _ = plot(simulate(replace(scene, torque=loads)), "transient").axes
+    assert words(speed) == ["constant 1 on", "constant 1 off", "constant 2 on"]
+
+
+def test_the_indicator_diagram_encloses_the_work_of_the_gas():
+    result = simulate(replace(load_scene("propeller"), run=Run(until="2 cycles")))
+    _, diagram = plot(result, "pressure").axes
+    volume, pressure = diagram.lines[0].get_xydata().T
+    work = np.trapezoid(pressure, volume) * 0.1  # bar cm^3 in J
+    assert work == pytest.approx(float(result.cycles["gas_work"].values[-1, 0]), rel=1e-3)
+
+
+def test_without_gas_there_is_no_indicator_diagram():
+    with pytest.raises(InputError, match=r"this one has none"):
+        plot(simulate(load_scene("coasting")), "pressure")
