@@ -28,8 +28,7 @@ from crankmbs import (
     simulate,
 )
 from crankmbs.measures import measure
-from crankmbs.mechanics.torque import knots_over_angle
-from crankmbs.mechanics.train import crank_train
+from crankmbs.mechanics.train import crank_train, knots_over_angle
 from crankmbs.page import refusals
 from crankmbs.scene.read import parse_scene
 from crankmbs.scene.units import DEGREE

@@ -15,8 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from crankmbs.mechanics.torque import knots_over_angle
-from crankmbs.mechanics.train import CrankTrain, crank_angle_knots, friction_knots
+from crankmbs.mechanics.train import CrankTrain, crank_angle_knots, friction_knots, knots_over_angle
 from crankmbs.motion.base import Samples
 from crankmbs.motion.cells import Cells
 from crankmbs.motion.motion import Motion

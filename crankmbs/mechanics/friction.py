@@ -26,8 +26,9 @@ from crankmbs.mechanics.axes import axes_of, closed_loops
 from crankmbs.mechanics.geometry import slides as slides_of
 from crankmbs.mechanics.inertia import fired_torque, gas_at
 from crankmbs.mechanics.pressure import pressures_at
+from crankmbs.mechanics.torque import pushing
 from crankmbs.mechanics.train import CrankTrain
-from crankmbs.mechanics.windows import Phases, pushing
+from crankmbs.mechanics.windows import Phases
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.periodic import period_of
 from crankmbs.scene.parts import Friction

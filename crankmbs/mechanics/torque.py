@@ -20,10 +20,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from crankmbs.errors import InputError
+from crankmbs.mechanics.forces import OnCrank
 from crankmbs.mechanics.train import CrankTrain
-from crankmbs.mechanics.windows import Phases, acting, phase_ends, place_of
+from crankmbs.mechanics.windows import Phase, Phases, acting, phase_ends, place_of
 from crankmbs.numerics.arrays import Array
-from crankmbs.numerics.cycle import Cycle, common_period, summed, tiled
+from crankmbs.numerics.cycle import Cycle, common_period, summed
 from crankmbs.numerics.function import Function
 from crankmbs.numerics.piecewise import total
 from crankmbs.scene.torque import Acting
@@ -35,9 +36,8 @@ __all__ = [
     "branch_at",
     "branch_of",
     "course_of",
-    "knots_over_angle",
     "over_angle",
-    "times_of",
+    "pushing",
 ]
 
 Tables = tuple[Array, Array, Array, Array]  # times, in_time, speeds and in_speed of `Course`
@@ -261,16 +261,6 @@ def _outside(ends: list[float], low: float, high: float) -> tuple[float, float]:
     return below, min((end for end in ends if end >= high), default=math.inf)
 
 
-def times_of(loads: tuple[Acting, ...]) -> list[float]:
-    """Times [s] at which functions of time bend or jump.
-
-    >>> times_of((Constant(torque=2.0),))
-    []
-    """
-    functions = (load.parts.function for load in loads)
-    return [time for function in functions if function is not None for time in function.times]
-
-
 def over_angle(train: CrankTrain, phases: Phases = ()) -> Callable[[ArrayLike], Array] | None:
     """What the loads that act give over the crank angle [N m], at angles [rad] of any shape."""
     parts = [load.parts.over_angle for _, load in acting(train.loads, phases)]
@@ -281,11 +271,15 @@ def over_angle(train: CrankTrain, phases: Phases = ()) -> Callable[[ArrayLike], 
     return lambda angle: np.asarray(sum(part(angle) for part in found))
 
 
-def knots_over_angle(train: CrankTrain) -> Array:
-    """Crank angles in [0, period) at which loads bend or jump, acting or not [rad]."""
-    period = train.period
-    parts = [load.parts for load in train.loads]
-    cycles = [part.over_angle for part in parts if part.over_angle is not None]
-    knots = [np.mod(tiled(cycle, period), period) for cycle in cycles]
-    knots += [part.function.angles_in(period) for part in parts if part.function is not None]
-    return np.unique(np.concatenate([np.empty(0), *knots]))
+def pushing(train: CrankTrain, phases: Phases) -> tuple[OnCrank, ...]:
+    """The forces on the pistons that act.
+
+    >>> pushing(crank_train(load_scene("coasting")), ())
+    ()
+    """
+    first = len(train.loads) - len(train.pushes)
+    return tuple(
+        push
+        for number, push in enumerate(train.pushes, start=first)
+        if not phases or phases[number] is Phase.ACTING
+    )

@@ -24,7 +24,7 @@ from crankmbs.mechanics.pressure import (
 )
 from crankmbs.mechanics.speed import speed_law
 from crankmbs.numerics.arrays import Array
-from crankmbs.numerics.cycle import common_period
+from crankmbs.numerics.cycle import common_period, tiled
 from crankmbs.numerics.once import once
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.torque import Acting
@@ -34,8 +34,10 @@ __all__ = [
     "crank_angle_knots",
     "crank_train",
     "friction_knots",
+    "knots_over_angle",
     "merged_knots",
     "sign_changes",
+    "times_of",
 ]
 
 
@@ -169,6 +171,26 @@ def crank_angle_knots(train: CrankTrain) -> Array:
     shape (n,) [rad], increasing, cylinders merged; empty without gas
     """
     return merged_knots(train, [pressure.knots[:-1] for pressure in train.pressure or ()])
+
+
+def knots_over_angle(train: CrankTrain) -> Array:
+    """Crank angles in [0, period) at which loads bend or jump, acting or not [rad]."""
+    period = train.period
+    parts = [load.parts for load in train.loads]
+    cycles = [part.over_angle for part in parts if part.over_angle is not None]
+    knots = [np.mod(tiled(cycle, period), period) for cycle in cycles]
+    knots += [part.function.angles_in(period) for part in parts if part.function is not None]
+    return np.unique(np.concatenate([np.empty(0), *knots]))
+
+
+def times_of(loads: tuple[Acting, ...]) -> list[float]:
+    """Times [s] at which functions of time bend or jump.
+
+    >>> times_of((Constant(torque=2.0),))
+    []
+    """
+    functions = (load.parts.function for load in loads)
+    return [time for function in functions if function is not None for time in function.times]
 
 
 def merged_knots(train: CrankTrain, knots: Sequence[Array]) -> Array:

@@ -15,8 +15,6 @@ from enum import IntEnum
 import numpy as np
 from numpy.typing import NDArray
 
-from crankmbs.mechanics.forces import OnCrank
-from crankmbs.mechanics.train import CrankTrain
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.torque import Acting
 
@@ -28,7 +26,6 @@ __all__ = [
     "later_phases",
     "phase_ends",
     "place_of",
-    "pushing",
     "span",
 ]
 
@@ -80,20 +77,6 @@ def acting(torques: tuple[Acting, ...], phases: Phases) -> tuple[tuple[int, Acti
     """The loads that act, each with its number from 1."""
     numbered = tuple(enumerate(torques, start=1))
     return tuple(one for one in numbered if not phases or phases[one[0] - 1] is Phase.ACTING)
-
-
-def pushing(train: CrankTrain, phases: Phases) -> tuple[OnCrank, ...]:
-    """The forces on the pistons that act.
-
-    >>> pushing(crank_train(load_scene("coasting")), ())
-    ()
-    """
-    first = len(train.loads) - len(train.pushes)
-    return tuple(
-        push
-        for number, push in enumerate(train.pushes, start=first)
-        if not phases or phases[number] is Phase.ACTING
-    )
 
 
 def place_of(loads: tuple[Acting, ...], number: int) -> str:

@@ -13,8 +13,14 @@ import numpy as np
 
 from crankmbs.mechanics.knots import KNOT, apart, repeat
 from crankmbs.mechanics.speed import SpeedLaw
-from crankmbs.mechanics.torque import knots_over_angle, times_of
-from crankmbs.mechanics.train import CrankTrain, crank_angle_knots, friction_knots, sign_changes
+from crankmbs.mechanics.train import (
+    CrankTrain,
+    crank_angle_knots,
+    friction_knots,
+    knots_over_angle,
+    sign_changes,
+    times_of,
+)
 from crankmbs.mechanics.windows import later_phases
 from crankmbs.motion.base import State
 from crankmbs.motion.cells import Acting, Cells

@@ -16,9 +16,8 @@ from crankmbs.mechanics.forces import OnCrank
 from crankmbs.mechanics.friction import friction_forces, friction_torque, held_share
 from crankmbs.mechanics.inertia import fired_torque, reduce
 from crankmbs.mechanics.reactions import Balances, Table, balances
-from crankmbs.mechanics.torque import branch_at, branch_of, over_angle
+from crankmbs.mechanics.torque import branch_at, branch_of, over_angle, pushing
 from crankmbs.mechanics.train import CrankTrain
-from crankmbs.mechanics.windows import pushing
 from crankmbs.motion.base import Samples, State
 from crankmbs.motion.cells import Cells
 from crankmbs.numerics.arrays import Array, Index

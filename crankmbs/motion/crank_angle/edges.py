@@ -6,8 +6,7 @@ import math
 
 import numpy as np
 
-from crankmbs.mechanics.torque import knots_over_angle
-from crankmbs.mechanics.train import CrankTrain, crank_angle_knots, friction_knots
+from crankmbs.mechanics.train import CrankTrain, crank_angle_knots, friction_knots, knots_over_angle
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.units import DEGREE
 

@@ -18,9 +18,15 @@ from crankmbs.mechanics.axes import closed_loops
 from crankmbs.mechanics.friction import friction_torque, rubbing
 from crankmbs.mechanics.inertia import fired_torque, reduce
 from crankmbs.mechanics.knots import KNOT, apart
-from crankmbs.mechanics.torque import knots_over_angle, over_angle
-from crankmbs.mechanics.train import CrankTrain, crank_angle_knots, friction_knots, sign_changes
-from crankmbs.mechanics.windows import Phases, pushing
+from crankmbs.mechanics.torque import over_angle, pushing
+from crankmbs.mechanics.train import (
+    CrankTrain,
+    crank_angle_knots,
+    friction_knots,
+    knots_over_angle,
+    sign_changes,
+)
+from crankmbs.mechanics.windows import Phases
 from crankmbs.motion.mode import Mode
 from crankmbs.numerics.arrays import Array, Index
 

@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from crankmbs.mechanics.speed import SpeedLaw, speed_law
+from crankmbs.mechanics.torque import pushing
 from crankmbs.mechanics.train import CrankTrain
-from crankmbs.mechanics.windows import pushing
 from crankmbs.motion.assemble import Assembled, assemble
 from crankmbs.motion.base import Samples, Solution, State
 from crankmbs.motion.driven import decisions, windows_at
