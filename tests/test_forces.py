@@ -76,7 +76,7 @@ KINDS = {
         lambda t, phi, s, v: np.interp(t, (0.0, 0.1, 0.4), (0.0, 90.0, -50.0)),
     ),
     "function": (
-        Force(lambda t, phi, s, v: 800.0 * s - 10.0 * v + 30.0 * math.sin(phi + 5.0 * t)),
+        Force(function=lambda t, phi, s, v: 800.0 * s - 10.0 * v + 30.0 * math.sin(phi + 5.0 * t)),
         lambda t, phi, s, v: 800.0 * s - 10.0 * v + 30.0 * np.sin(phi + 5.0 * t),
     ),
 }
