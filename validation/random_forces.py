@@ -112,16 +112,16 @@ class _Draw:
         share = float(self.rng.uniform(0.2, 0.8))
         if over == 0:
             at = share * self.duration
-            return Force(_bent_in_time(most, at), kink_times=(at,))
+            return Force(function=_bent_in_time(most, at), kink_times=(at,))
         if over == 1:
             at = 2.0 * math.pi * share
-            return Force(_jumps_at_angle(most, at), kink_angles=(at,))
+            return Force(function=_jumps_at_angle(most, at), kink_angles=(at,))
         if over == 2:
             at = share * self.stroke
-            return Force(_bent_in_travel(most, at), kink_displacements=(at,))
+            return Force(function=_bent_in_travel(most, at), kink_displacements=(at,))
         if over == 3:
-            return Force(_against(most, self.stroke))
-        return Force(_smooth(most, self.stroke, self.speed, self.duration))
+            return Force(function=_against(most, self.stroke))
+        return Force(function=_smooth(most, self.stroke, self.speed, self.duration))
 
     def window(self) -> dict[str, float]:
         """When it acts: some of its four ends."""

@@ -37,6 +37,7 @@ _OF_EVENTS = ("time", "crank_angle", "crank_speed")
 _KINDS = ("fuel", "load off", "load on", "reversal")
 
 Floats = NDArray[np.float64]
+Where = NDArray[np.bool_]
 
 
 def stated_scenes(case: Case) -> Outcome:
@@ -79,7 +80,8 @@ def worst_ratio(result: Result, scene: Scene) -> tuple[float, str]:
     if kept < 2:
         raise ArithmeticError(f"nothing to judge: {result.message}")
     ours = _of_result(result, kept, events=result.status == 0 or held)
-    once, again = (_motion(scene, result.data["time"].values[:kept], n) for n in _PARTS)
+    times = result.data["time"].values[:kept]
+    (once, clear), (again, also_clear) = (_motion(scene, times, parts) for parts in _PARTS)
     asked = max(result.error.asked, result.error.estimated)
     worst, said = 0.0, ""
     for name, (values, stated, peak) in ours.items():
@@ -87,11 +89,9 @@ def worst_ratio(result: Result, scene: Scene) -> tuple[float, str]:
             return math.inf, f"{name}: {len(values)}, of the oracle {len(again[name])}"
         if len(values) == 0:
             continue
-        clear = (
-            once["clear"] & again["clear"] if len(values) == kept else np.ones(len(values), bool)
-        )
+        where = clear & also_clear if len(values) == kept else np.ones(len(values), dtype=bool)
         true, unsure = (
-            float(np.max(np.abs(one - again[name])[clear], initial=0.0))
+            float(np.max(np.abs(one - again[name])[where], initial=0.0))
             for one in (values, once[name])
         )
         low = true / (_TOO_SMALL * (stated + unsure + _ROUNDING * peak) or 1e-300)
@@ -131,8 +131,8 @@ def _of_result(
     return found
 
 
-def _motion(scene: Scene, times: Floats, parts: int) -> dict[str, Floats]:
-    """What the oracle finds, by the same names, and where it is clear."""
+def _motion(scene: Scene, times: Floats, parts: int) -> tuple[dict[str, Floats], Where]:
+    """What the oracle finds, by the same names, and which samples are clear."""
     assert scene.start is not None
     fine = np.interp(np.arange(parts * (len(times) - 1) + 1) / parts, range(len(times)), times)
     motion = changing_motion(changes_of(scene), scene.start.angle, scene.start.speed, fine)
@@ -141,4 +141,4 @@ def _motion(scene: Scene, times: Floats, parts: int) -> dict[str, Floats]:
         rows = [row[:3] for row in motion.events if row[3] == kind and row[0] > 0.0]
         for name, column in zip(_OF_EVENTS, np.array(rows).reshape(-1, 3).T, strict=True):
             found[f"{name} of {kind}"] = column
-    return found | {"clear": motion.clear[::parts]}
+    return found, motion.clear[::parts]
