@@ -177,19 +177,19 @@ def polars_hold(said, scene, data, k):
     if scene.gas is None:
         return True
     volume = area(scene) * 1e6 * of_cylinder(data["piston_displacement"].values, k)
-    wanted = {"simulated": (volume, data["gas_pressure"])}
+    loops = {"simulated": (volume, data["gas_pressure"])}
     if scene.double_acting:
         share = 1.0 - 0.25 * math.pi * scene.piston.rod_diameter**2 / area(scene)
-        wanted = {
+        loops = {
             "head end": (volume, data["gas_pressure"]),
             "crank end": (share * volume, data["crank_end_pressure"]),
         }
-    if [curve["name"] for curve in found["curves"]] != list(wanted):
+    if [curve["name"] for curve in found["curves"]] != list(loops):
         return False
     shown = [found[axis]["unit"] for axis in ("right", "up")]
     return shown == ["cm³", "bar"] and all(
         same(curve["x"], x) and same(curve["y"], 1e-5 * of_cylinder(y.values, k), near=1e-8)
-        for curve, (x, y) in zip(found["curves"], wanted.values(), strict=True)
+        for curve, (x, y) in zip(found["curves"], loops.values(), strict=True)
     )
 
 
