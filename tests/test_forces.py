@@ -331,3 +331,10 @@ def test_rigid_bodies_feel_the_same():
     for name in ("applied_force", "piston_pin_force_x", "external_torque"):
         peak = np.max(np.abs(exact[name].values))
         np.testing.assert_allclose(bodies[name].values, exact[name].values, atol=1e-3 * peak)
+
+
+def test_free_rigid_bodies_feel_the_same():
+    forces = [replace(KINDS[kind][0], cylinder=2) for kind in ("damper", "angle", "travel")]
+    scene = machine(*forces, until="0.1 s", layout=TWO)
+    bodies, exact = (simulate(scene, formulation=name).data for name in ("multibody", "minimal"))
+    np.testing.assert_allclose(bodies["crank_angle"].values, exact["crank_angle"].values, atol=1e-4)
