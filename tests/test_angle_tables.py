@@ -152,7 +152,7 @@ def test_the_sum_of_tables_is_the_sum_of_their_values(kind, rows):
     scene = wheel(*loads)
     theta = np.linspace(-20.0, 20.0, 4001)
     exact = sum(load(0.0, theta, 0.0) for load in loads)
-    np.testing.assert_allclose(over_angle(scene)(theta), exact, rtol=1e-10, atol=1e-10)
+    np.testing.assert_allclose(over_angle(crank_train(scene))(theta), exact, rtol=1e-10, atol=1e-10)
 
 
 def test_a_closing_row_unlike_the_first_is_a_jump():

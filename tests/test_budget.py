@@ -25,7 +25,7 @@ from crankmbs.scene.shipped import shipped_scenes
 ROUNDING = 1e-12  # of the peak
 S1 = list(LECTURES)[-1]
 
-WITHOUT_FRICTION = [name for name in CAUSES if name != "friction"]
+ALWAYS = [name for name in CAUSES if name not in ("friction", "forces")]
 
 
 def short(name):
@@ -64,7 +64,8 @@ def test_the_causes_add_up_to_the_lecture_minus_the_run(name):
         for quantity in QUANTITIES
         if quantity not in {entry.quantity for entry in found.left_out}
     ]
-    expected = list(CAUSES) if load_scene(name).friction else WITHOUT_FRICTION
+    rubs = load_scene(name).friction is not None
+    expected = [cause for cause in CAUSES if cause in ALWAYS or (cause == "friction" and rubs)]
     for split in found.splits:
         assert [cause.name for cause in split.causes] == expected
         total = sum(cause.curve for cause in split.causes)
@@ -202,7 +203,7 @@ def test_without_a_series_the_budget_starts_from_the_closed_form():
     )
     found = budget(simulate(scene))
     split = found.split("side thrust")
-    assert [cause.name for cause in split.causes] == WITHOUT_FRICTION[1:]
+    assert [cause.name for cause in split.causes] == ALWAYS[1:]
     assert np.max(np.abs(sum(c.curve for c in split.causes) - split.total.curve)) < 1e-15
     assert worth(split, "two-mass rod") > 0.01
     missing = [entry for entry in found.left_out if entry.what == "series"]
@@ -220,7 +221,7 @@ def test_a_quantity_that_was_left_out_is_named():
 def test_the_file_says_what_the_budget_says(yi, tmp_path):
     with save_budget_peaks(yi, tmp_path).open(newline="") as stream:
         lines = list(csv.DictReader(stream))
-    assert len(lines) == len(QUANTITIES) * (len(WITHOUT_FRICTION) + 1)
+    assert len(lines) == len(QUANTITIES) * (len(ALWAYS) + 1)
     (line,) = (
         line
         for line in lines
@@ -242,11 +243,8 @@ def curves(swinging, tmp_path_factory):
 @pytest.mark.parametrize("quantity", QUANTITIES)
 def test_the_causes_in_the_file_add_up(curves, quantity, swinging):
     here = curves["quantity"] == quantity
-    part = {
-        name: curves[name][here].astype(float)
-        for name in (*WITHOUT_FRICTION, "run", "formula", "total")
-    }
-    added = sum(part[name] for name in WITHOUT_FRICTION)
+    part = {name: curves[name][here].astype(float) for name in (*ALWAYS, "run", "formula", "total")}
+    added = sum(part[name] for name in ALWAYS)
     peak = np.max(np.abs(part["run"]))
     assert np.max(np.abs(added - part["total"])) <= 1e-13 * peak
     assert np.max(np.abs(part["formula"] - part["run"] - part["total"])) <= 1e-13 * peak

@@ -117,7 +117,7 @@ def test_the_rest_is_what_is_not_named(swinging):
     whole, part = budget(swinging), budget(swinging, chain=["series", "datum", "constant speed"])
     for split in part.splits:
         full = whole.split(split.quantity)
-        unnamed = sum(full.cause(n).curve for n in list(CAUSES)[3:])
+        unnamed = sum(cause.curve for cause in full.causes[3:])
         assert split.cause(REST).curve == pytest.approx(unnamed, abs=1e-13 * split.peak)
         for name in list(CAUSES)[:3]:
             assert np.array_equal(split.cause(name).curve, full.cause(name).curve)

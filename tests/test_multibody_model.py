@@ -154,12 +154,16 @@ def test_forces_go_on_straight_beyond_what_they_are_cut_at() -> None:
     assert bounds.angles == pytest.approx((math.radians(-160.0), math.radians(60.0)))
     (push,) = forces.pushes(bounds, Mode(), 1.0, 1.0)
     edge, slope = math.radians(60.0), 100.0 / math.radians(60.0)
-    assert push(edge + 0.1, 0.0) == pytest.approx(200.0 + 0.1 * slope, rel=1e-6)
+    assert push(0.0, edge + 0.1, 0.0, 0.0) == pytest.approx(200.0 + 0.1 * slope, rel=1e-6)
     backwards = forces.bounds(0.0, edge, -5.0, Mode(), (-1.0, -1.0))
     forwards = forces.bounds(0.0, edge, 5.0, Mode(), (1.0, 1.0))
     assert backwards.angles[1] == forwards.angles[0] == pytest.approx(edge)
-    assert forces.pushes(forwards, Mode(), edge, 1.0)[0](edge, 0.0) == pytest.approx(-100.0)
-    assert forces.pushes(backwards, Mode(), edge, -1.0)[0](edge, 0.0) == pytest.approx(200.0)
+    assert forces.pushes(forwards, Mode(), edge, 1.0)[0](0.0, edge, 0.0, 0.0) == pytest.approx(
+        -100.0
+    )
+    assert forces.pushes(backwards, Mode(), edge, -1.0)[0](0.0, edge, 0.0, 0.0) == pytest.approx(
+        200.0
+    )
 
 
 def run_of(change: Array, *, whole: bool = True) -> Path:

@@ -5,7 +5,7 @@ from scene_texts import FREE, edited, refusal
 
 KEYS = (
     "crank, rod, piston, run, layout, gas, fuel, gravity, friction, bearings, motion, start, "
-    "torque, title, source"
+    "torque, force, title, source"
 )
 
 
