@@ -322,7 +322,7 @@ def test_saved_and_loaded(tmp_path):
 
 
 def test_rigid_bodies_feel_the_same():
-    """At a prescribed speed: free, a force that switches may hold the crank at rest."""
+    """Every kind at a prescribed speed."""
     forces = [replace(force, cylinder=2) for force, _ in KINDS.values()]
     scene = driven(*forces, until="0.1 s", layout=TWO)
     bodies, exact = (
@@ -334,7 +334,7 @@ def test_rigid_bodies_feel_the_same():
 
 
 def test_free_rigid_bodies_feel_the_same():
-    forces = [replace(KINDS[kind][0], cylinder=2) for kind in ("damper", "angle", "travel")]
+    forces = [replace(KINDS[kind][0], cylinder=2) for kind in ("damper", "angle", "both ways")]
     scene = machine(*forces, until="0.1 s", layout=TWO)
     bodies, exact = (simulate(scene, formulation=name).data for name in ("multibody", "minimal"))
     np.testing.assert_allclose(bodies["crank_angle"].values, exact["crank_angle"].values, atol=1e-4)
