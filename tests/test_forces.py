@@ -338,3 +338,14 @@ def test_free_rigid_bodies_feel_the_same():
     scene = machine(*forces, until="0.1 s", layout=TWO)
     bodies, exact = (simulate(scene, formulation=name).data for name in ("multibody", "minimal"))
     np.testing.assert_allclose(bodies["crank_angle"].values, exact["crank_angle"].values, atol=1e-4)
+
+
+def test_a_figure_shows_the_force_over_the_angle():
+    result = simulate(driven(KINDS["both ways"][0], until="2 rev", every="1 deg"))
+    above, below = result.plot("forces").axes
+    assert "from outside" in above.get_ylabel()
+    assert "wall" in below.get_ylabel()
+    curve = max(above.lines, key=lambda line: len(line.get_ydata())).get_ydata()
+    size = 1e3 if "[kN]" in above.get_ylabel() else 1.0
+    peak = np.max(np.abs(result.data["applied_force"].values))
+    assert size * np.nanmax(np.abs(curve)) == pytest.approx(peak, rel=1e-9)

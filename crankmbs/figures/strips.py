@@ -75,13 +75,16 @@ def piston_motion_figure(view: View) -> Figure:
 
 @rc_context(STYLE)
 def forces_figure(view: View) -> Figure:
-    """Gas force and side force over the crank angle; without gas the side force alone."""
+    """Gas force, force from outside and side force over the crank angle, those that there are."""
     names = {
         "gas_force": "gas on piston,\ntowards the crank",
+        "applied_force": "from outside on piston,\ntowards the crank",
         "side_force": "cylinder wall on\npiston, along Y",
     }
     if view.scene.gas is None:
         del names["gas_force"]
+    if not view.scene.force:
+        del names["applied_force"]
     figure, axes = panels(len(names), 1, 10.0, 3.5 * len(names))
     groups = one_curve_each(*map(view.values, names))
     for ax, (name, label) in zip(axes, names.items(), strict=True):
@@ -91,7 +94,8 @@ def forces_figure(view: View) -> Figure:
     crank_axis(axes, view)
     legend(figure, axes[0])
     figure.align_ylabels(axes)
-    footer(figure, view.result, "gas and side force" if len(axes) > 1 else "side force")
+    said = {"gas_force": "gas", "applied_force": "from outside", "side_force": "side force"}
+    footer(figure, view.result, " and ".join(word for name, word in said.items() if name in names))
     return figure
 
 
