@@ -16,7 +16,7 @@ class StepSizes:
 
     >>> steps = StepSizes()
     >>> steps.add([0.0, 1.0, 1.5], [1.0, 0.5, math.inf])
-    >>> steps.halved(0.0, 1.0), steps.halved(1.0, 1.0), steps.halved(1.5, 1.0)
+    >>> steps.halved(0.0, 1.0), steps.halved(1.0, 0.8), steps.halved(1.5, 1.0)
     (0.5, 0.25, 1.0)
     """
 
