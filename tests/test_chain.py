@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from crankmbs import InputError, Motion, Run, budget, lecture, load_scene, simulate
+from crankmbs import InputError, Motion, Run, Spring, budget, lecture, load_scene, simulate
 from crankmbs.compare import CAUSES, LECTURES, REST, compare, save_budget, save_budget_peaks
 from crankmbs.figures import budget_figure
 from crankmbs.scene.parts import Friction
@@ -44,6 +44,7 @@ def swinging():
         motion=motion,
         gravity=load_scene("coasting").gravity,
         friction=Friction(ring_force=40.0, ring_pressure=0.02, viscous=30.0),
+        force=(Spring(stiffness=4e3),),
     )
     result = simulate(scene)
     off = result.data.copy()
@@ -137,7 +138,7 @@ def test_a_formula_idealizes_what_it_does_not_ask_for(swinging):
     found = budget(swinging, OWN)
     thrust, velocity = found.split("side thrust", "N"), found.split("piston velocity", "v")
     named = {cause.name for cause in thrust.causes if thrust.share(cause) > 0.0}
-    assert named == {"two-mass rod", "friction", "gravity", "solver"}
+    assert named == {"two-mass rod", "friction", "forces", "gravity", "solver"}
     for name in ("two-mass rod", "friction"):
         theirs = found.split("side thrust").cause(name).curve
         assert thrust.cause(name).curve == pytest.approx(theirs, abs=1e-12 * thrust.peak)
@@ -256,6 +257,6 @@ def test_a_figure_of_a_formula_has_its_causes(swinging):
     ]
     assert drawn == [
         ["run", "N"],
-        ["sum of the causes", "two-mass rod", "gravity", "friction", "solver"],
+        ["sum of the causes", "two-mass rod", "gravity", "friction", "forces", "solver"],
     ]
     assert "error: formula minus run, and its causes (too small" in figure.get_supxlabel()

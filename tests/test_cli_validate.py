@@ -18,7 +18,7 @@ from crankmbs.figures import budget_figure, comparison_figure
 
 pytestmark = pytest.mark.slow
 
-WITHOUT_FRICTION = [name for name in CAUSES if name != "friction"]
+ALWAYS = [name for name in CAUSES if name not in ("friction", "forces")]
 FOLDING = """
 [crank]
 radius = "100 mm"
@@ -38,7 +38,7 @@ speed = "100 rpm"
 until = "1 rev"
 """
 
-WITHOUT_FRICTION = [name for name in CAUSES if name != "friction"]
+ALWAYS = [name for name in CAUSES if name not in ("friction", "forces")]
 
 
 def validate(*arguments):
@@ -100,7 +100,7 @@ def test_the_total_is_the_same_in_both_tables(diesel, quantity):
 def test_the_budget_table_has_the_causes_in_their_order(diesel):
     lines = diesel[0].splitlines()
     heading = next(line for line in lines if line.startswith("error budget"))
-    assert re.split(r"\s{2,}", heading) == ["error budget, peaks in %", *WITHOUT_FRICTION, "total"]
+    assert re.split(r"\s{2,}", heading) == ["error budget, peaks in %", *ALWAYS, "total"]
     (row,) = (line for line in lines if re.match(r"side thrust +\d", line))
     assert row.split()[2:] == ["5.68", "0", "0", "17.7", "0", "0", "16.3"]
 
@@ -111,7 +111,7 @@ def test_it_writes_both_tables(diesel):
     assert sorted(file.name for file in folder.iterdir()) == files
     assert len(lines_of(folder / "comparison.csv")) == len(QUANTITIES) * (1 + len(LECTURES))
     causes = [line["cause"] for line in lines_of(folder / "budget_peaks.csv")]
-    assert causes == [*WITHOUT_FRICTION, "total"] * len(QUANTITIES)
+    assert causes == [*ALWAYS, "total"] * len(QUANTITIES)
 
 
 def test_multibody_is_compared_unless_told_otherwise(tmp_path):

@@ -27,6 +27,7 @@ from crankmbs.mechanics.train import crank_train
 from crankmbs.motion.base import State
 from crankmbs.motion.minimal.advance import Effort, advance
 from crankmbs.motion.minimal.reduced import Reduced
+from crankmbs.motion.minimal.step_sizes import StepSizes
 from crankmbs.motion.mode import begun
 from crankmbs.motion.plan import Plan
 from crankmbs.numerics.function import Function
@@ -64,14 +65,17 @@ def test_a_knot_is_met_as_soon_whatever_the_time(tolerance):
     """Halves of a step that rounding leaves short of a knot by one more, of 1e-18 s, put the angle
     on the knot and left the time: a jump of an angle that both passes may share."""
     steady = replace(PROPELLER, torque=(Load(lambda t, theta, omega: -20.0),))
-    train, effort, elapsed = crank_train(steady), Effort(tolerance, 2, 10**6, 64), []
+    train, elapsed = crank_train(steady), []
     reduced = Reduced(train)
     for begin in np.linspace(0.0, 10.0, 201):
         state = State(float(begin), 0.3, 50.0, 0.0, begun(train))
-        plan = Plan(0.3, 1.0, True, begin + 1.0, True)
-        first = next(advance(reduced, state, plan, effort, lambda *_: False))
-        elapsed.append(first.end.time - begin)
-        assert np.min(np.diff([*first.track.begins, first.end.time])) > 1e-5
+        plan, taken = Plan(0.3, 1.0, True, begin + 1.0, True), StepSizes()
+        for before in (None, taken):
+            effort = Effort(tolerance, 10**6, before, 64)
+            passed = next(advance(reduced, state, plan, effort, lambda *_: False))
+            taken.add(passed.track.begins, passed.track.widths)
+        elapsed.append(passed.end.time - begin)
+        assert np.min(np.diff([*passed.track.begins, passed.end.time])) > 1e-5
     assert np.ptp(elapsed) < 1e-14
 
 
