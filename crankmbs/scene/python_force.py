@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from functools import cached_property
 from typing import Annotated, Any, ClassVar, Literal
 
@@ -11,7 +10,7 @@ from pydantic import PlainSerializer, PlainValidator
 
 from crankmbs.numerics.function import named
 from crankmbs.scene.force import Given, Law, PistonForce
-from crankmbs.scene.python_load import KeptName, check_period, function_of, whole_period
+from crankmbs.scene.python_load import KeptName, check_period, function_of, within_period
 from crankmbs.scene.schema import Float, part, si
 
 __all__ = ["Force"]
@@ -57,12 +56,9 @@ class Force(PistonForce):
     def law(self) -> Law:
         if isinstance(self.function, KeptName):
             return Law()
-        every = self.period or 2.0 * math.pi
-        whole = whole_period(every)
-        turns = range(round(whole / every))
-        angles = tuple((angle + k * every) % whole for angle in self.kink_angles for k in turns)
+        angles, period = within_period(self.kink_angles, self.period)
         declared = self.kink_times, angles, self.kink_displacements
-        return Law(given=Given(self.function, *declared, whole if self.period else None))
+        return Law(given=Given(self.function, *declared, period))
 
     @property
     def words(self) -> str:

@@ -17,7 +17,7 @@ from crankmbs.scene.angle_rows import is_of_halves
 from crankmbs.scene.schema import SAVED, Float, part, si
 from crankmbs.scene.torque import Parts, Torque
 
-__all__ = ["KeptName", "Load", "check_period", "function_of", "whole_period"]
+__all__ = ["KeptName", "Load", "check_period", "function_of", "within_period"]
 
 Numbers = tuple[Float, ...]
 
@@ -68,13 +68,20 @@ def check_period(period: float | None) -> None:
         )
 
 
-def whole_period(every: float) -> float:
-    """The multiple of half a revolution [rad] after which what comes again every so often does.
+def within_period(
+    angles: tuple[float, ...], given: float | None
+) -> tuple[tuple[float, ...], float | None]:
+    """Angles [rad] that come again every period given, or every revolution, within the multiple of
+    half a revolution after which all do; and that, where a period is given.
 
-    >>> whole_period(4.0 * math.pi / 3.0) / math.pi
-    4.0
+    >>> within_period((1.0,), 4.0 * math.pi / 2.0)[0]
+    (1.0,)
     """
-    return every if is_of_halves(every) else 4.0 * math.pi
+    every = given or 2.0 * math.pi
+    whole = every if is_of_halves(every) else 4.0 * math.pi
+    turns = range(round(whole / every))
+    inside = tuple((angle + k * every) % whole for angle in angles for k in turns)
+    return inside, whole if given else None
 
 
 @part
@@ -112,12 +119,9 @@ class Load(Torque):
     def parts(self) -> Parts[Cycle]:
         if isinstance(self.function, KeptName):
             return Parts()
-        every = self.period or 2.0 * math.pi
-        whole = whole_period(every)
-        turns = range(round(whole / every))
-        angles = tuple((angle + k * every) % whole for angle in self.kink_angles for k in turns)
+        angles, period = within_period(self.kink_angles, self.period)
         known = self.kink_times, angles, self.kink_speeds
-        return Parts(function=Function(self.function, *known, whole if self.period else None))
+        return Parts(function=Function(self.function, *known, period))
 
     @property
     def words(self) -> str:
