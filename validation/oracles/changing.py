@@ -38,6 +38,7 @@ Floats = NDArray[np.float64]
 _STUCK = 40  # events at one time
 _AT_ONCE = 1e-9  # s: so near a change over time either value is right
 _FINER = 50.0  # steps in a stretch in which the speed turns beside a bound
+_TURN = 0.05  # rad in the first steps: in a wider one a bound of the speed may be met twice
 _FAR = 9.0  # rad: beyond any stretch
 _BESIDE = 1e-6  # of an angle [rad] or a speed: so near a knot either value is right
 
@@ -296,6 +297,8 @@ class _Walk:
         scale = abs(float(y[1])) + abs(slopes(start, y)[1]) * (end - start) + 1e-9
         options: dict[str, Any] = {"method": "DOP853", "rtol": 1e-13}
         options["atol"] = [1e-15, 1e-14 * scale]
+        if y[1] != 0.0:
+            options["max_step"] = _TURN / abs(float(y[1]))
         found = solve_ivp(slopes, (start, end), y, events=events, **options)
         if at.may_touch(found.t, found.y):
             options["max_step"] = (float(found.t[-1]) - start) / _FINER
