@@ -122,7 +122,7 @@ def test_the_rest_is_what_is_not_named(swinging):
         assert split.cause(REST).curve == pytest.approx(unnamed, abs=1e-13 * split.peak)
         for name in list(CAUSES)[:3]:
             assert np.array_equal(split.cause(name).curve, full.cause(name).curve)
-    assert ": the rest is worth up to " in part.split("side thrust").sentence()
+    assert ": the rest costs up to " in part.split("side thrust").sentence()
 
 
 def test_the_solver_s_part_is_the_run_s_error_wherever_it_is_lifted(swinging):

@@ -159,7 +159,9 @@ def test_the_error_is_formula_minus_run_and_the_angle_is_the_cylinders_own():
     first, third = (compare(result, cylinder=number).row("side thrust", S1) for number in (1, 3))
     comparison = compare(result, cylinder=3)
     assert np.array_equal(third.error, third.values - comparison.simulated["side thrust"])
-    assert third.size == pytest.approx(first.size, rel=1e-9)  # cylinders differ in phase alone
+    assert third.size[:3] == pytest.approx(
+        first.size[:3], rel=1e-9
+    )  # cylinders differ in phase alone
     assert int(np.argmax(np.abs(first.error))) != int(np.argmax(np.abs(third.error)))
 
 
@@ -256,5 +258,5 @@ def test_of_equal_maxima_the_first_in_the_cycle_counts():
 
 def test_a_curve_of_zeros_and_a_single_sample_have_sizes():
     assert size_of(np.zeros(3), np.arange(3.0), 1.0)[:2] == (0.0, 0.0)
-    assert size_of(np.array([-2.0]), np.array([7.0]), 4.0) == (2.0, 2.0, 3.0)
+    assert size_of(np.array([-2.0]), np.array([7.0]), 4.0) == (2.0, 2.0, 3.0, 0)
     assert math.isnan(percent(1.0, 0.0))

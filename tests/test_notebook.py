@@ -48,12 +48,22 @@ class Markup(HTMLParser):
 ALLOWED = {"div", "p", "b", "table", "tr", "th", "td", "img"}
 
 
-def shown(thing):
+def shown(thing, pictures=1):
     found = Markup(thing._repr_html_())
     assert not found.open
     assert set(found.tags) <= ALLOWED
-    assert found.tags.count("img") == 1
+    assert found.tags.count("img") == pictures
     return " ".join(found.text)
+
+
+def test_a_comparison_and_a_budget_show_themselves_as_tables(short):
+    text = shown(crankmbs.compare(short), pictures=0)
+    row = crankmbs.compare(short).row("side thrust", "S1 (motion and forces truncated)")
+    assert digits(100.0 * row.size.largest / row.peak, most=3) in text
+    assert "closed form [%]" in text
+    text = shown(crankmbs.budget(short), pictures=0)
+    assert "constant speed" in text
+    assert "the error of the side thrust falls from" in text
 
 
 def test_a_result_shows_its_measures_with_errors_and_a_figure(short):

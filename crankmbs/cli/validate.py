@@ -1,5 +1,4 @@
-"""The command ``validate``: a run against closed form, lectures and one's own formulas, and the
-error budget."""
+"""The command ``validate``: how far formulas are off a run, and why."""
 
 from __future__ import annotations
 
@@ -9,12 +8,13 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from crankmbs.cli.folder import writable, wrote
-from crankmbs.cli.options import CostCap, NoFigures, Out, Rtol, SceneName, Until
+from crankmbs.cli.options import CostCap, NoFigures, Rtol, SceneName, Until
 from crankmbs.cli.progress import progress
 from crankmbs.storage.files import together
 
 if TYPE_CHECKING:
     from crankmbs.compare import Budget, Comparison
+    from crankmbs.scene.scene import Scene
 
 __all__ = ["validate"]
 
@@ -22,8 +22,9 @@ __all__ = ["validate"]
 def validate(
     scene: SceneName,
     formulation: Annotated[
-        str, typer.Option(help="Which run is compared; only multibody is independent.")
-    ] = "multibody",
+        str | None,
+        typer.Option(help="Which run is compared; default multibody, where it serves the scene."),
+    ] = None,
     rtol: Rtol = None,
     until: Until = None,
     cost_cap: CostCap = 10.0,
@@ -39,39 +40,56 @@ def validate(
         str | None,
         typer.Option(help='Order of the causes, "series, constant speed, solver"; the rest last.'),
     ] = None,
-    out: Out = None,
+    verbose: Annotated[
+        bool, typer.Option("--verbose", help="Print every reference and every cause.")
+    ] = False,
+    out: Annotated[
+        Path | None, typer.Option(help="Write tables and figures into this folder.")
+    ] = None,
     no_figures: NoFigures = False,
 ) -> None:
-    """Compare a run with closed form, lectures and your formulas; split errors into causes."""
+    """Show how far lecture formulas and your own are off a run, and why."""
     from crankmbs.cli.formulas import named_formulas
     from crankmbs.cli.run import override
-    from crankmbs.cli.validate_report import validation_report
-    from crankmbs.compare import budget, check_cylinder, checked_chain, compare
+    from crankmbs.cli.validate_report import full_report, validation_report
+    from crankmbs.compare import budget, check_comparable, checked_chain, compare
     from crankmbs.scene.read import load_scene, scene_path
     from crankmbs.simulate import simulate
 
-    path = scene_path(scene)
     given = {"rtol": rtol, "until": until}
     options = {name: value for name, value in given.items() if value is not None}
-    loaded = override(load_scene(path), options)
-    check_cylinder(loaded, cylinder)
+    loaded = override(load_scene(scene_path(scene)), options)
+    check_comparable(loaded, cylinder)
     chain = None if causes is None else [name.strip() for name in causes.split(",")]
     checked_chain(chain, loaded)
     formulas = named_formulas(formula or ())
-    folder = writable(Path("results", path.stem) if out is None else out)
-    with progress(formulation):  # rtol is also asked of multibody, which else is content with 1e-5
-        result = simulate(loaded, formulation=formulation, rtol=rtol, cost_cap=cost_cap)
+    folder = None if out is None else writable(out)
+    chosen = formulation or _independent(loaded)
+    with progress(chosen):  # rtol is also asked of multibody, which else is content with 1e-5
+        result = simulate(loaded, formulation=chosen, rtol=rtol, cost_cap=cost_cap)
     comparison = compare(result, formulas, cylinder=cylinder)
     split = budget(result, formulas, cylinder=cylinder, chain=chain)
-    written = _written(comparison, split, folder, figures=not no_figures)
-    typer.echo(validation_report(comparison, split))
-    typer.echo(f"\n{wrote(folder, [file.name for file in written])}")
+    last = "--verbose prints every reference and cause, --out DIR writes tables and figures"
+    if folder is not None:  # before anything is printed: a screen may fail
+        written = _written(comparison, split, folder, figures=not no_figures)
+        last = wrote(folder, [file.name for file in written])
+    said = [validation_report(comparison, split)]
+    said += [full_report(comparison, split)] if verbose else []
+    typer.echo("\n\n".join([*said, last]))
     if result.status != 0:
         raise typer.Exit(3)
 
 
+def _independent(scene: Scene) -> str:
+    """The formulation with joint forces of its own, where it serves the scene."""
+    from crankmbs.motion.formulations import serving
+
+    names = [one.name for one in serving(scene)]
+    return "multibody" if "multibody" in names else names[0]
+
+
 def _written(comparison: Comparison, split: Budget, folder: Path, *, figures: bool) -> list[Path]:
-    """The files, before anything is printed: a screen may fail."""
+    """Write tables and figures, which appear together."""
     from crankmbs.compare import save_budget, save_budget_peaks, save_comparison, save_numbers
 
     with together(folder) as part:

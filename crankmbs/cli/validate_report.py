@@ -3,136 +3,158 @@
 from __future__ import annotations
 
 import math
+import textwrap
 from collections.abc import Sequence
 
 from crankmbs.cli.text import table
-from crankmbs.compare import (
-    CLOSED_FORM,
-    OBSERVABLES,
-    Budget,
-    Comparison,
-    Excerpt,
-    LeftOut,
-    percent,
-)
+from crankmbs.compare import CLOSED_FORM, LECTURES, OBSERVABLES, Budget, Comparison, Split, percent
 from crankmbs.digits import digits, error_digits
+from crankmbs.report.compared import (
+    advice,
+    budget_table,
+    comparison_table,
+    exact_words,
+    left_out_lines,
+    worst_variable,
+)
 from crankmbs.scene.units import RPM
 
-__all__ = ["validation_report"]
+__all__ = ["full_report", "validation_report"]
 
-_ADDED = (
-    "The peaks of the causes lie at different angles and do not add; at each angle the causes do:\n"
-    "budget.csv has them all, budget_peaks.csv this table."
-)
+_WIDTH = 100
+_, _S0, _ = LECTURES
 
 
 def validation_report(comparison: Comparison, split: Budget) -> str:
-    """A comparison and its budget, what matters most first."""
+    """The largest error of each formula with its causes, and how far to believe the run."""
     parts = [
-        _first(comparison, split),
-        str(comparison.excerpt.result),
-        _about(comparison.excerpt),
-        *([_numbers(comparison)] if comparison.numbers else []),
-        _causes(split),
-        _ADDED,
-        "\n".join(row.sentence() for row in split.ranked),
-        *(_against(comparison, reference) for reference in comparison.references),
-        "\n".join(_left_out((*comparison.left_out, *split.left_out))),
+        _about(comparison),
+        _own(comparison, split),
+        _numbers(comparison),
+        _lectures(comparison, split),
+        textwrap.fill(f"advice: {advice(split)}", _WIDTH) if split.splits else "",
+        "\n".join(
+            textwrap.fill(line, _WIDTH)
+            for line in left_out_lines((*comparison.left_out, *split.left_out))
+        ),
     ]
     return "\n\n".join(part for part in parts if part)
 
 
-def _about(excerpt: Excerpt) -> str:
-    count = len(excerpt.result.scene.cylinders)
-    rpm = excerpt.mean_speed / RPM
-    inside = excerpt.result.data.sizes["time"] - excerpt.window.inside
-    folded = len(excerpt.samples) < inside
-    return (
-        f"over the {excerpt.window.kind}"
-        f"{' but for where the rod folds onto the crank' if folded else ''}, "
-        f"cylinder {excerpt.cylinder} of {count}, mean speed {digits(rpm)} rpm\n"
-        "angles: cycle angle of the cylinder, for the main bearing the crank angle\n"
-        "peak: the largest magnitude in the run\n"
-        "lectures: S0 is Grega's, S1 that of Yi, Win and Htay; the budget splits the error of S1"
+def full_report(comparison: Comparison, split: Budget) -> str:
+    """Every reference, and every formula's causes wherever they are largest."""
+    return "\n\n".join(
+        [
+            "each reference: largest difference from the run, in % of its peak; at: of the last\n"
+            + table(*comparison_table(comparison)),
+            "each cause at its largest; these lie at different angles and do not add:",
+            *(textwrap.fill(row.sentence(), _WIDTH) for row in split.ranked),
+        ]
     )
 
 
-def _first(comparison: Comparison, split: Budget) -> str:
-    """What matters most: the lecture's largest error, and how far to believe the run."""
-    lines = []
-    lectures = [row for row in split.ranked if row.is_lecture]
-    lines += [row.sentence() for row in split.ranked if not row.is_lecture]
-    if lectures:
-        lines.append(f"the lecture is most wrong about the {lectures[0].sentence()}")
+def _about(comparison: Comparison) -> str:
+    excerpt = comparison.excerpt
+    result, count = excerpt.result, len(excerpt.result.scene.cylinders)
+    inside = result.data.sizes["time"] - excerpt.window.inside
+    folded = len(excerpt.samples) < inside
+    lines = {
+        "run": f"{result.formulation}, {result.message}",
+        "compared": f"{excerpt.window.kind}"
+        f"{' but for where the rod folds onto the crank' if folded else ''}, "
+        f"cylinder {excerpt.cylinder} of {count}, "
+        f"mean speed {digits(excerpt.mean_speed / RPM)} rpm",
+        "num. error": _numerical(comparison),
+        "closed form": _believed(comparison),
+    }
+    head = [result.scene.title, ""] if result.scene.title else []
+    indent = " " * 13
+    rows = [
+        textwrap.fill(text, _WIDTH, initial_indent=f"{name:<13}", subsequent_indent=indent)
+        for name, text in lines.items()
+    ]
+    return "\n".join([*head, *rows])
+
+
+def _numerical(comparison: Comparison) -> str:
+    result = comparison.excerpt.result
+    size = error_digits(100.0 * result.error.estimated)
+    return f"{size} % of the peak at most ({worst_variable(result)} of {result.formulation})"
+
+
+def _believed(comparison: Comparison) -> str:
+    """What the closed form is evaluated at, and how near a run with its own forces is to it."""
+    at = "at the run's own angle, speed and acceleration"
+    if comparison.excerpt.result.formulation != "multibody":
+        return f"Newton-Euler {at}; gives this run its joint forces, multibody has its own"
     shares = [
         (percent(row.size.largest, row.peak), row.quantity)
         for row in comparison.rows
         if row.reference == CLOSED_FORM and row.peak > 0.0
     ]
-    if comparison.excerpt.result.formulation != "multibody":
-        lines.append("the run takes its forces from the closed form; multibody has its own")
-    elif shares:
-        share, quantity = max(shares)
-        lines.append(f"the run itself is within {_share(share)} % of the closed form ({quantity})")
-    return "\n".join(lines)
+    share, quantity = max(shares)
+    return f"Newton-Euler {at}: the run is within {error_digits(share)} % of it ({quantity})"
 
 
-def _against(comparison: Comparison, reference: str) -> str:
-    headings = [f"against: {reference}", "peak", "max", "% of peak", "at [deg]", "rms", "% of peak"]
-    rows = [
-        [
-            f"{row.quantity} [{OBSERVABLES[row.quantity].units}]",
-            digits(row.peak),
-            digits(row.size.largest, most=4),
-            _share(percent(row.size.largest, row.peak)),
-            f"{math.degrees(row.size.angle):.1f}",
-            digits(row.size.rms, most=4),
-            _share(percent(row.size.rms, row.peak)),
+def _own(comparison: Comparison, split: Budget) -> str:
+    """Each formula of one's own, with its causes where it has a budget."""
+    own = [row for row in split.ranked if not row.is_lecture]
+    by = dict.fromkeys(row.reference for row in own)
+    parts = []
+    for label in by:
+        rows = [row for row in own if row.reference == label]
+        parts += [
+            f"{label} less run, in % of the run's peak, at its largest",
+            *_rows(rows),
+            "",
         ]
-        for row in comparison.rows
-        if row.reference == reference
+    for row in comparison.rows:
+        if row.reference not in {CLOSED_FORM, *LECTURES, *by}:
+            share = digits(percent(row.size.largest, row.peak), most=3)
+            where = f"of the peak, at {math.degrees(row.size.angle):.0f} degrees"
+            parts.append(f"{row.quantity} by {row.reference}: off by up to {share} % {where}")
+    return "\n".join(parts).rstrip()
+
+
+def _lectures(comparison: Comparison, split: Budget) -> str:
+    rows = [row for row in split.ranked if row.is_lecture]
+    if not rows:
+        return ""
+    beside = comparison if _S0 in comparison.references else None
+    lines = [
+        "error: formula less run, in % of the run's peak, at its largest; the causes add up to it",
+        "formulas: those of Yi, Win and Htay (S1)"
+        + ("; last column: the largest error of Grega's (S0)" if beside else ""),
+        "angles: cycle angle of the cylinder"
+        + (", of the main bearing the crank angle" if _of_engine(rows) else ""),
     ]
-    return table(headings, rows)
+    return "\n".join([*lines, "", *_rows(rows, beside)])
+
+
+def _of_engine(splits: Sequence[Split]) -> bool:
+    return any(not OBSERVABLES[split.quantity].per_cylinder for split in splits)
+
+
+def _rows(splits: Sequence[Split], beside: Comparison | None = None) -> list[str]:
+    """The table of these formulas, and what it leaves out."""
+    found = budget_table(splits, beside)
+    lines = [table(*found)] if found.rows else []
+    return [*lines, *([textwrap.fill(said, _WIDTH)] if (said := exact_words(splits)) else [])]
 
 
 def _numbers(comparison: Comparison) -> str:
     """The formulas that stand for one number of the run, beside it."""
-    headings = ["single numbers", "formula", "run", "error of the run", "off by [%]"]
+    if not comparison.numbers:
+        return ""
+    headings = ["single numbers", "formula", "run", "num. error", "formula less run [%]"]
     rows = [
         [
             f"{row.quantity} by {row.reference} [{row.units}]",
             digits(row.value),
             digits(row.simulated.value),
             error_digits(row.simulated.error),
-            _share(row.percent),
+            digits(row.percent, most=3),
         ]
         for row in comparison.numbers
     ]
     return table(headings, rows)
-
-
-def _causes(split: Budget) -> str:
-    """Every cause's peak in percent of the quantity's in the run."""
-    named = [*split.chain, "total"]
-    headings = ["error budget, peaks in %", *named]
-    rows = []
-    for row in split.splits:
-        shares = {cause.name: row.share(cause) for cause in (*row.causes, row.total)}
-        about = row.quantity if row.is_lecture else f"{row.quantity} by {row.reference}"
-        rows.append([about, *(_share(shares.get(name, math.nan)) for name in named)])
-    return table(headings, rows)
-
-
-def _left_out(entries: Sequence[LeftOut]) -> list[str]:
-    """One line for each reason, naming its quantities."""
-    grouped: dict[tuple[str, str], list[str]] = {}
-    for entry in dict.fromkeys(entries):
-        grouped.setdefault((entry.what, entry.reason), []).append(entry.quantity)
-    return [
-        f"left out{f' of {what!r}' if what else ''}: {', '.join(quantities)}: {reason}"
-        for (what, reason), quantities in grouped.items()
-    ]
-
-
-def _share(percentage: float) -> str:
-    return digits(percentage, most=3)

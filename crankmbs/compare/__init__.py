@@ -8,7 +8,7 @@ from crankmbs.compare.against import Comparison, Deviation, compare
 from crankmbs.compare.at import AtAngle, Reading, at_angle
 from crankmbs.compare.causes import budget
 from crankmbs.compare.chain import CAUSES, REST, checked_chain
-from crankmbs.compare.excerpt import Excerpt, LeftOut, check_cylinder
+from crankmbs.compare.excerpt import Excerpt, LeftOut, check_comparable
 from crankmbs.compare.files import save_budget, save_budget_peaks, save_comparison, save_numbers
 from crankmbs.compare.formula import CLOSED_FORM, Formula, formulas_of
 from crankmbs.compare.largest import largest_deviations
@@ -44,7 +44,7 @@ __all__ = [
     "Word",
     "at_angle",
     "budget",
-    "check_cylinder",
+    "check_comparable",
     "checked_chain",
     "compare",
     "formulas_of",

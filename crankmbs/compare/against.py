@@ -59,6 +59,11 @@ class Comparison:
         """The references that could be had, in their order."""
         return tuple(dict.fromkeys(row.reference for row in self.rows))
 
+    def _repr_html_(self) -> str:
+        from crankmbs.report.html import comparison_html
+
+        return comparison_html(self)
+
     def row(self, quantity: str, reference: str = CLOSED_FORM) -> Deviation:
         """The deviation of one quantity from one reference.
 

@@ -20,11 +20,11 @@ __all__ = ["CAUSES", "REST", "Idealized", "checked_chain", "steps"]
 CAUSES = {
     "series": "the truncated series",
     "datum": "the datum",
-    "constant speed": "the constant speed",
+    "constant speed": "assuming constant speed",
     "two-mass rod": "the two-mass rod",
-    "gravity": "gravity",
-    "friction": "friction",
-    "forces": "the forces from outside on the pistons",
+    "gravity": "neglecting gravity",
+    "friction": "neglecting friction",
+    "forces": "neglecting the forces on the pistons",
     "solver": "the solver",
 }
 """The causes in their order unless told otherwise, and how a sentence names them."""

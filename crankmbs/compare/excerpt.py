@@ -22,7 +22,7 @@ from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 from crankmbs.scene.scene import Scene
 
-__all__ = ["FOLD", "Answer", "Excerpt", "LeftOut", "check_cylinder", "excerpt_of", "vanishing"]
+__all__ = ["FOLD", "Answer", "Excerpt", "LeftOut", "check_comparable", "excerpt_of", "vanishing"]
 
 Answer = dict[str, Array]
 
@@ -130,11 +130,17 @@ def vanishing(answers: Iterable[Answer]) -> dict[str, str]:
     return dict.fromkeys(negligible(peaks, units), "it is zero but for rounding")
 
 
-def check_cylinder(scene: Scene, cylinder: int) -> None:
-    """Raise InputError unless the scene has a cylinder of this number, counted from 1."""
+def check_comparable(scene: Scene, cylinder: int) -> None:
+    """Raise InputError where formulas cannot be compared: the scene has no cylinder of this number,
+    counted from 1, or it has [fuel]."""
     count = len(scene.cylinders)
     if not 1 <= cylinder <= count:
         raise InputError(f"cylinder must be from 1 to {count}; {cylinder} came")
+    if scene.fuel is not None:
+        raise InputError(
+            "fuel: the formulas of the lectures know one pressure for all firings; remove [fuel] "
+            "to compare with them"
+        )
 
 
 def excerpt_of(result: Result, cylinder: int, others: tuple[str, ...] = ()) -> Excerpt:
@@ -144,12 +150,7 @@ def excerpt_of(result: Result, cylinder: int, others: tuple[str, ...] = ()) -> E
     ------
     InputError : no such cylinder, a scene with fuel, or no sample but at a fold
     """
-    check_cylinder(result.scene, cylinder)
-    if result.scene.fuel is not None:
-        raise InputError(
-            "fuel: the formulas of the lectures know one pressure for all firings; remove [fuel] "
-            "to compare with them"
-        )
+    check_comparable(result.scene, cylinder)
     window = last_span(result)
     folded = np.min(np.cos(result.data["rod_angle"].values), axis=1) < FOLD
     samples = np.flatnonzero(~folded[window.inside :]) + window.inside

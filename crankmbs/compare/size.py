@@ -16,7 +16,8 @@ _TIE = 1e-9  # relative: the same peak in two turns differs by rounding, the fir
 
 
 class Size(NamedTuple):
-    """largest, rms [unit of the curve]; angle [rad], within one period, of the largest.
+    """largest, rms [unit of the curve]; angle [rad], within one period, and number of the sample of
+    the largest.
 
     The RMS is taken over the crank angle.
     """
@@ -24,13 +25,16 @@ class Size(NamedTuple):
     largest: float
     rms: float
     angle: float
+    sample: int
 
 
 def size_of(curve: Array, angle: Array, period: float) -> Size:
     """Measure a curve over angles, both of shape (n,), [unit] and [rad]."""
     size = np.abs(curve)
     largest = float(np.max(size))
-    at = float(np.min(within(angle, period)[size >= largest * (1.0 - _TIE)]))
+    places = within(angle, period)
+    ties = np.flatnonzero(size >= largest * (1.0 - _TIE))
+    sample = int(ties[np.argmin(places[ties])])
     widths = np.abs(np.diff(angle))
     turned = float(np.sum(widths))
     scaled = (size / largest) ** 2 if largest > 0.0 else size  # no overflow, no underflow
@@ -38,7 +42,7 @@ def size_of(curve: Array, angle: Array, period: float) -> Size:
         mean = float(np.sum(widths * (scaled[1:] + scaled[:-1]))) / (2.0 * turned)
     else:
         mean = float(np.mean(scaled))
-    return Size(largest, largest * math.sqrt(mean), at)
+    return Size(largest, largest * math.sqrt(mean), float(places[sample]), sample)
 
 
 def percent(part: float, peak: float) -> float:

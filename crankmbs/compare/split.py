@@ -84,15 +84,32 @@ class Split:
         worth.sort(key=self.share, reverse=True)
         parts: list[str] = []
         for cause in worth:
-            up_to = "" if parts else "is worth up to "
+            up_to = "" if parts else "costs up to "
             parts.append(
                 f"{self.named(cause)} {up_to}{_readable(self.share(cause))} %, {_where(cause)}"
             )
+        if not total:
+            return f"{about}: right but for rounding"
         if len(worth) < len(self.causes):
-            nothing = [self.named(c) for c in self.causes if self.share(c) == 0.0]
-            parts.append(f"nothing comes from {_listed(nothing)}")
+            parts.append("no other cause contributes")
         off = f"off by up to {_readable(total)} % of the peak, {_where(self.total)}"
-        return f"{about}: {off if total else 'right but for rounding'}: {'; '.join(parts)}"
+        return f"{about}: {off}: {'; '.join(parts)}"
+
+    def at_largest(self) -> dict[str, float]:
+        """What each cause adds where the error is largest, in percent of the run's peak, signed:
+        together the error there.
+
+        >>> split = budget(simulate(load_scene("yi_diesel"))).split("side thrust")
+        >>> f"{split.at_largest()['two-mass rod']:.2f} of {sum(split.at_largest().values()):.2f} %"
+        '-14.95 of -16.31 %'
+        """
+        sample = self.total.size.sample
+        scale = 100.0 / self.peak if self.peak > 0.0 else math.nan
+        return {cause.name: scale * float(cause.curve[sample]) for cause in self.causes}
+
+    def without(self, cause: Cause) -> float:
+        """The largest error that is left without one cause, in percent of the run's peak."""
+        return percent(float(np.max(np.abs(self.total.curve - cause.curve))), self.peak)
 
     @property
     def is_lecture(self) -> bool:
@@ -121,6 +138,11 @@ class Budget:
         """The splits, the largest error in percent of its quantity's peak first."""
         return tuple(sorted(self.splits, key=lambda split: -(split.share(split.total) or 0.0)))
 
+    def _repr_html_(self) -> str:
+        from crankmbs.report.html import budget_html
+
+        return budget_html(self)
+
     def split(self, quantity: str, reference: str | None = None) -> Split:
         """The split of one quantity by the lectures' formulas, or by that of a label.
 
@@ -147,8 +169,3 @@ def _where(cause: Cause) -> str:
 
 def _readable(share: float) -> str:
     return digits(share, most=3) if share >= 1e-3 else f"{share:.0e}"
-
-
-def _listed(words: list[str]) -> str:
-    *most, last = words
-    return f"{', '.join(most)} or {last}" if most else last

@@ -44,7 +44,7 @@ def budget_headline(splits: Sequence[Split]) -> tuple[str, str]:
     if share == 0.0:
         return f"{quantity}: {whose} is right but for rounding", ""
     cause = max(split.causes, key=split.share)
-    worth = f"{split.named(cause)} is worth up to {_percent(split.share(cause))}"
+    worth = f"{split.named(cause)} costs up to {_percent(split.share(cause))}"
     first = f"{quantity}: {whose} is off by up to {_percent(share)}"
     return first, f"{_where(split.total.size.angle)}; {worth}"
 

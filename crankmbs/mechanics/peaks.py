@@ -9,7 +9,7 @@ import numpy as np
 from crankmbs.mechanics.variables import EVERY, SUMS
 from crankmbs.numerics.arrays import Array
 
-__all__ = ["negligible", "peak", "relative_error"]
+__all__ = ["negligible", "peak", "relative_error", "relative_errors"]
 
 _UNITS = {name: about.units for name, about in EVERY.items()}
 _NOTHING = 1e-10  # of the largest of the same unit; multibody's Newton iterations leave more rarely
@@ -37,17 +37,24 @@ def negligible(peaks: Mapping[str, float], units: Mapping[str, str]) -> set[str]
 
 
 def relative_error(peaks: Mapping[str, float], errors: Mapping[str, float], turned: float) -> float:
-    """The worst relative error: of the crank angle per radian turned, of each other variable of a
-    result relative to its peak.
-
-    The energy residual is a check and does not count, nor do sums in which the cylinders may
-    cancel; nor does what is `negligible`.
+    """The worst of the `relative_errors`.
 
     >>> relative_error({"crank_speed": 100.0}, {"crank_speed": 1e-4, "crank_angle": 2e-6}, 1.0)
     2e-06
     """
+    return max(relative_errors(peaks, errors, turned).values(), default=0.0)
+
+
+def relative_errors(
+    peaks: Mapping[str, float], errors: Mapping[str, float], turned: float
+) -> dict[str, float]:
+    """Relative errors: of the crank angle per radian turned, of each other variable of a result
+    relative to its peak.
+
+    The energy residual is a check and does not count, nor do sums in which the cylinders may
+    cancel; nor does what is `negligible`.
+    """
     sizes = {**peaks, "crank_angle": turned}
     ignored = negligible(sizes, _UNITS)
     ignored |= SUMS | {"energy_residual"}
-    ratios = [errors[name] / size for name, size in sizes.items() if name not in ignored]
-    return max(ratios, default=0.0)
+    return {name: errors[name] / size for name, size in sizes.items() if name not in ignored}

@@ -1,4 +1,5 @@
-"""A result and a scene as HTML, for a notebook: tables and a figure. Text is never markup."""
+"""A result, a scene and a comparison as HTML, for a notebook: tables and a figure. Text is never
+markup."""
 
 from __future__ import annotations
 
@@ -8,16 +9,18 @@ from collections.abc import Sequence
 from markupsafe import Markup
 
 from crankmbs.choose import choose
+from crankmbs.compare import Budget, Comparison, Excerpt
 from crankmbs.errors import CrankmbsError
 from crankmbs.figures import last_view, machine_figure, png, speed_figure
 from crankmbs.measures import measure
 from crankmbs.measures.plausible import warnings
+from crankmbs.report.compared import advice, budget_table, comparison_table, left_out_lines
 from crankmbs.report.machine import machine_rows
 from crankmbs.report.rows import tables, unsteady
 from crankmbs.result import Result
 from crankmbs.scene.scene import Scene
 
-__all__ = ["result_html", "scene_html"]
+__all__ = ["budget_html", "comparison_html", "result_html", "scene_html"]
 
 _LEFT, _RIGHT = (Markup(f' style="text-align: {side}"') for side in ("left", "right"))
 _DPI = 100  # enough on a screen, and a notebook that is saved stays small
@@ -67,6 +70,42 @@ def scene_html(scene: Scene) -> str:
     picture = _picture(png(machine_figure(scene), _DPI), "the machine, to scale")
     parts = [_head(scene, "scene"), _table([], rows), picture]
     return str(Markup("<div>{}</div>").format(Markup("\n").join(parts)))
+
+
+def comparison_html(comparison: Comparison) -> str:
+    """The largest difference of each reference from the run, in percent of its peak.
+
+    >>> comparison_html(compare(simulate(load_scene("propeller")))).count("<table>")
+    1
+    """
+    said = "largest difference from the run, in % of its peak; the angle is the last reference's"
+    parts = [
+        _head(comparison.excerpt.result.scene, f"{_stretch(comparison.excerpt)}: {said}"),
+        _table(*comparison_table(comparison)),
+        *(Markup("<p>{}</p>").format(line) for line in left_out_lines(comparison.left_out)),
+    ]
+    return str(Markup("<div>{}</div>").format(Markup("\n").join(parts)))
+
+
+def budget_html(budget: Budget) -> str:
+    """The largest error of each formula and the causes that add up to it, in percent of the peak.
+
+    >>> budget_html(budget(simulate(load_scene("propeller")))).count("<table>")
+    1
+    """
+    said = "formula less run, in % of its peak, where it is largest; the causes add up to it there"
+    parts = [_head(budget.excerpt.result.scene, f"{_stretch(budget.excerpt)}: {said}")]
+    for reference in dict.fromkeys(split.reference for split in budget.ranked):
+        splits = [split for split in budget.ranked if split.reference == reference]
+        parts += [Markup("<p>{}</p>").format(reference), _table(*budget_table(splits))]
+    lines = [*([advice(budget)] if budget.splits else []), *left_out_lines(budget.left_out)]
+    parts += [Markup("<p>{}</p>").format(line) for line in lines]
+    return str(Markup("<div>{}</div>").format(Markup("\n").join(parts)))
+
+
+def _stretch(excerpt: Excerpt) -> str:
+    count = len(excerpt.result.scene.cylinders)
+    return f"{excerpt.window.kind}, cylinder {excerpt.cylinder} of {count}"
 
 
 def _head(scene: Scene, what: str) -> Markup:
