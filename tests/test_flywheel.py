@@ -194,5 +194,5 @@ def test_a_settled_run_is_confirmed(tmp_path):
         "--no-figures", "--out", str(tmp_path),
     )  # fmt: skip
     assert shown.exit_code == 0, shown.output
-    assert "settled: a period leaves 0.9042 of a disturbance" in shown.output
+    assert "settled: a disturbance decays to 90.42 % per period" in shown.output
     assert "exudyn's rigid bodies agree to" in shown.output

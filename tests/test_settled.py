@@ -57,7 +57,7 @@ def test_it_is_the_last_cycle_of_a_run_that_has_settled(loads: str, formulation:
     scene = replace(DIESEL, torque=BRAKED[loads])
     found = settled(scene, formulation=formulation)
     assert found.status == 0, found.message
-    assert found.message.startswith("settled: a period leaves 0.")
+    assert found.message.startswith("settled: a disturbance decays to ")
     assert found.decay is not None
     cycles = int(np.ceil(np.log(1e-13) / np.log(found.decay.factor)))
     run = Run(until=f"{cycles} cycles", every="none", rtol=1e-11)

@@ -209,7 +209,13 @@ def test_one_knob_is_a_curve(grid):
 
 def test_two_knobs_are_contours_with_the_line_of_the_limit(grid):
     figure = sweep_figure(grid, "side thrust by S1", "25 %")
-    filled, line = (c for c in figure.axes[0].collections if isinstance(c, QuadContourSet))
+    labels = [text.get_text() for text in figure.axes[0].texts]
+    ticks = figure.axes[-1].get_yticks()
+    assert labels
+    assert {float(label) for label in labels} <= {float(f"{tick:.6g}") for tick in ticks}
+    step = float(f"{np.diff(ticks)[0]:e}".partition("e")[0])
+    assert step == pytest.approx(round(step))  # 1, 2 or 5 of a power of ten
+    filled, _, line = (c for c in figure.axes[0].collections if isinstance(c, QuadContourSet))
     assert line.levels.tolist() == [25.0]
     assert filled.levels[0] <= 100.0 * float(
         grid["lecture_deviation"].sel(quantity="side thrust")[..., 2].min()

@@ -74,7 +74,9 @@ def _messages(group: Group) -> tuple[str, ...]:
     if not group.machine.scene.settles:
         return (Ending.COMPLETE.said(0.0)[1],) * len(group.which)
     factors = (1.0 + group.numbers["growth"]) ** group.machine.shares
-    return tuple(f"settled: a period leaves {factor:.4g} of a disturbance" for factor in factors)
+    return tuple(
+        f"settled: a disturbance decays to {100.0 * factor:.4g} % per period" for factor in factors
+    )
 
 
 def _of_joints(group: Group, pairs: dict[str, tuple[Array, Array]]) -> dict[str, Array]:

@@ -68,7 +68,7 @@ def _report(name: str, scene: Scene, found: Flywheel) -> str:
             "which is off by [%]", Estimate(*(100.0 * part for part in found.lecture_error)), most=3
         ),
     ]
-    heading = ["over the settled cycle", "value, to 6 digits", "error"]
+    heading = ["over the settled cycle", "value, to 6 digits", "num. error"]
     return "\n".join([*lines, "", table(heading, rows)])
 
 

@@ -26,7 +26,7 @@ def orders_report(found: EngineOrders) -> str:
         f"orders over the {found.window.kind}",
         "order",
         "amplitude",
-        "error",
+        "num. error",
         "phase [deg]",
     ]
     speed = digits(found.speed.value / RPM, found.speed.error / RPM, most=8)

@@ -44,8 +44,8 @@ def comparison(result: Result, found: Confirmation) -> str:
         "over the last cycle",
         "largest",
         "at crank angle [deg]",
-        "error run",
-        "error exudyn",
+        "num. error run",
+        "num. error exudyn",
     ]
     lines = []
     for row in found.period:

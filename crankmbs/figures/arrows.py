@@ -69,7 +69,7 @@ def _on_piston(k: int, scene: Scene, parts: Mechanism, data: dict[str, Array]) -
         found.append(Force("friction on piston", "bearing", k, at, rubs))
     if "applied_force" in data:
         given = in_engine_frame(scene, -data["applied_force"], none)[:, k]
-        found.append(Force("force from outside on piston", "bearing", k, pin, given))
+        found.append(Force("applied force on piston", "bearing", k, pin, given))
     if "gas_force" in data:
         gas = in_engine_frame(scene, -data["gas_force"], none)[:, k]
         crown = 0.5 * (corners[:, 1] + corners[:, 2])

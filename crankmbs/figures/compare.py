@@ -47,12 +47,17 @@ FAMILIES = {
 """The quantities that a slide shows, one or two side by side, by its name."""
 
 _SHOWN = {"m": (1e-3, "mm"), "m/s^2": (1.0, "m/s$^2$")}  # unit -> divisor and unit on an axis
+_UNTRUNCATED, *_ = LECTURES
+_ABOUT = "error: formula minus run; S0: Grega; S1: Yi, Win and Htay"
+_ABSENT = 1e-9  # of the error: a peak so small has no percent
+_APART = 0.02  # of the larger: curves nearer than this are one line
 _UNSEEN = 1e-3  # of the largest of a panel's causes: no line can be told from zero
 _STYLES: dict[str, dict[str, Any]] = {
-    "run": {"color": "black", "linewidth": 4.0},
+    "run": {"color": "black", "linewidth": 3.0},
     "lecture": {"color": "0.5", "linestyle": (0, (4, 2))},
     "sum of the causes": {"color": "0.65", "linewidth": 7.0},
-    **{name: line_of(k) for k, name in enumerate((CLOSED_FORM, *LECTURES))},
+    **{name: line_of(k) for k, name in enumerate(("S0", "S1", CLOSED_FORM, _UNTRUNCATED))},
+    "S0 and S1": line_of(0) | {"color": line_of(2)["color"]},
     **{name: line_of(k) for k, name in enumerate((*CAUSES, REST))},
 }
 _OWN = 5  # the first line for formulas of one's own: dashed, of a colour that no reference has
@@ -88,28 +93,41 @@ def save_validation(comparison: Comparison, budget: Budget, folder: Path) -> lis
 
 @rc_context(SLIDE)
 def comparison_figure(comparison: Comparison, quantities: tuple[str, ...]) -> Figure | None:
-    """Run, closed form, truncated lecture and one's own formulas above, every error below.
+    """The error of the truncated lectures and of one's own formulas, in percent of the run's peak,
+    below a strip of the run.
 
-    The headline is the largest error of a lecture in percent of its quantity's peak. None where
+    Formulas that cannot be told apart share a curve. The headline is the largest error. None where
     none of the quantities could be compared.
     """
     shown = [name for name in quantities if name in comparison.simulated]
     if not shown:
         return None
-    lectures = [name for name in LECTURES if name in comparison.references]
-    hidden = set(lectures[:-1])  # the last lecture truncates most
     columns = []
     every: list[Deviation] = []
     for name in shown:
         rows = [row for row in comparison.rows if row.quantity == name]
-        every += rows
-        above = {row.reference: row.values for row in rows if row.reference not in hidden}
-        errors = {row.reference: row.error for row in rows}
-        columns.append((name, {"run": comparison.simulated[name], **above}, errors))
+        truncated = [row for row in rows if row.reference not in (CLOSED_FORM, _UNTRUNCATED)]
+        every += truncated + [row for row in rows if row.reference == CLOSED_FORM]
+        columns.append((name, {"run": comparison.simulated[name]}, _errors(truncated or rows)))
     own = comparison.excerpt.result.formulation == "multibody"
     headline = comparison_headline(every, independent=own)
-    about = "run against formulas; error: formula minus run"
-    return _figure(comparison.excerpt, columns, headline, about)
+    return _figure(comparison.excerpt, columns, headline, _ABOUT)
+
+
+def _errors(rows: list[Deviation]) -> dict[str, Array]:
+    """Errors by formula; those that coincide are one curve with both labels."""
+    groups: list[list[Deviation]] = []
+    for row in rows:
+        for group in groups:
+            if np.max(np.abs(group[0].error - row.error)) <= _APART * row.size.largest:
+                group.append(row)
+                break
+        else:
+            groups.append([row])
+    return {
+        " and ".join(row.reference.partition(" (")[0] for row in group): group[0].error
+        for group in groups
+    }
 
 
 @rc_context(SLIDE)
@@ -161,7 +179,8 @@ def _figure(
     headline: tuple[str, str],
     about: str,
 ) -> Figure:
-    """A column for each quantity: its curves above, its errors below, one crank-angle axis."""
+    """A column for each quantity: its curves above, below twice as high its errors in percent of
+    the run's peak, one crank-angle axis."""
     n = len(columns)
     labels = dict.fromkeys(label for _, *both in columns for lines in both for label in lines)
     own = [label for label in labels if label not in _STYLES]
@@ -173,9 +192,10 @@ def _figure(
     of_one = several and any(OBSERVABLES[name].per_cylinder for name, _, _ in columns)
     for k, (name, curves, errors) in enumerate(columns):
         top, bottom = axes[k], axes[n + k]
-        for ax, drawn, what in ((top, curves, ""), (bottom, errors, "error\n")):
+        peak = float(np.max(np.abs(curves["run"])))
+        for ax, drawn, of in ((top, curves, None), (bottom, errors, peak)):
             on_axis = {label: view.drawn(degrees, curve) for label, curve in drawn.items()}
-            _panel(ax, name, on_axis, what, styles)
+            _panel(ax, name, on_axis, styles, of)
         above = crank_axis([top, bottom], view)
         symbol = OBSERVABLES[name].symbol
         if n > 1:
@@ -183,6 +203,7 @@ def _figure(
             top.set_title(title, loc="left", pad=8.0 + 21.0 * above)
     lines = {str(line.get_label()): line for ax in axes for line in ax.lines}
     slide_legend(figure, {label: lines[label] for label in styles if label in labels})
+    axes[0].get_gridspec().set_height_ratios((1.0, 2.0))
     figure.align_ylabels(axes)
     of = f", cylinder {excerpt.cylinder}" if of_one else ""
     footer(figure, excerpt.result, f"{about}{of}")
@@ -193,17 +214,21 @@ def _panel(
     ax: Axes,
     quantity: str,
     curves: dict[str, tuple[Array, Array]],
-    what: str,
     styles: dict[str, dict[str, Any]],
+    peak: float | None,
 ) -> None:
+    """Curves in their unit, or errors in percent of a peak, if there is one."""
     units = OBSERVABLES[quantity].units
     scale, unit = _SHOWN.get(units, (1.0, units))
     if units == "N":
         scale, unit = force_scale(*(curve for _, curve in curves.values()))
+    largest = max(float(np.nanmax(np.abs(curve))) for _, curve in curves.values())
+    if peak is not None and peak > _ABSENT * largest:
+        scale, unit = 0.01 * peak, "% of peak"
     low = min(np.nanmin(curve) for _, curve in curves.values())
     high = max(np.nanmax(curve) for _, curve in curves.values())
     if 2.0 * low - high <= 0.0 <= 2.0 * high - low:  # else the swing of a speed could not be seen
         ax.axhline(0.0, color="0.55", linewidth=1.0)
     for label, (degrees, curve) in curves.items():
         ax.plot(degrees, curve / scale, **styles[label], label=label)
-    ax.set_ylabel(f"{what}[{unit}]")
+    ax.set_ylabel(f"[{unit}]" if peak is None else f"error [{unit}]")

@@ -75,10 +75,10 @@ def piston_motion_figure(view: View) -> Figure:
 
 @rc_context(STYLE)
 def forces_figure(view: View) -> Figure:
-    """Gas force, force from outside and side force over the crank angle, those that there are."""
+    """Gas force, applied force and side force over the crank angle, those that there are."""
     names = {
         "gas_force": "gas on piston,\ntowards the crank",
-        "applied_force": "from outside on piston,\ntowards the crank",
+        "applied_force": "applied to piston,\ntowards the crank",
         "side_force": "cylinder wall on\npiston, along Y",
     }
     if view.scene.gas is None:
@@ -94,14 +94,14 @@ def forces_figure(view: View) -> Figure:
     crank_axis(axes, view)
     legend(figure, axes[0])
     figure.align_ylabels(axes)
-    said = {"gas_force": "gas", "applied_force": "from outside", "side_force": "side force"}
+    said = {"gas_force": "gas", "applied_force": "applied force", "side_force": "side force"}
     footer(figure, view.result, " and ".join(word for name, word in said.items() if name in names))
     return figure
 
 
 @rc_context(STYLE)
 def torque_figure(view: View) -> Figure:
-    """Torque of the rods on the crank, their sum, and the torque from outside."""
+    """Torque of the rods on the crank, their sum, and the torque of drive and loads."""
     figure, (ax,) = panels(1, 1, 10.0, 6.0)
     torque = view.values("crank_torque")
     several = torque.shape[1] > 1
@@ -112,8 +112,11 @@ def torque_figure(view: View) -> Figure:
         ax.plot(degrees, drawn[:, group[0]], **line_of(group[0]), linewidth=width, label=label)
     if several:
         ax.plot(degrees, drawn.sum(axis=1), color="black", linewidth=2.5, label="all rods")
-    _, outside = view.drawn(view.along, view.values("external_torque"))
-    ax.plot(degrees, outside, color="0.45", linestyle=(0, (5, 2)), label="from outside")
+    external = view.values("external_torque")
+    label = "drive and load" if np.min(external) < 0.0 < np.max(external) else "load"
+    label = "drive" if np.min(external) >= 0.0 else label
+    _, drawn = view.drawn(view.along, external)
+    ax.plot(degrees, drawn, color="0.45", linestyle=(0, (5, 2)), label=label)
     ax.set_ylabel("torque, positive in the\nsense of rotation +theta [N m]")
     crank_axis([ax], view)
     legend(figure, ax)

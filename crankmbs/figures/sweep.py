@@ -29,6 +29,7 @@ _ON_AXES = {"1": (0.01, "%"), "N": (1e3, "kN")}  # else as in text
 _MOST = 12  # panels
 _COLUMNS = 3
 _LEVELS = 12
+_ROUND = [1, 2, 5, 10]  # steps of ticks and levels, times a power of ten
 _CELLS = 500  # along an axis: finer than the points that are drawn
 
 
@@ -65,7 +66,7 @@ class _Axis(NamedTuple):
             ax.set_xscale("log")
             logarithmic(ax.xaxis)
         else:
-            ax.xaxis.set_major_locator(MaxNLocator(6))
+            ax.xaxis.set_major_locator(MaxNLocator(6, steps=_ROUND))
 
     def along_y(self, ax: Axes) -> None:
         ax.set_ylabel(self.label)
@@ -74,6 +75,8 @@ class _Axis(NamedTuple):
         elif self.log:
             ax.set_yscale("log")
             logarithmic(ax.yaxis)
+        else:
+            ax.yaxis.set_major_locator(MaxNLocator(6, steps=_ROUND))
 
 
 @rc_context(STYLE)
@@ -157,7 +160,7 @@ def _over(data: xr.Dataset, drawn: _Drawn, knobs: list[str]) -> Figure:
         )
         if rest is not None:
             ax.set_title(_where(data, others, rest["panel"].values[k]), fontsize=11)
-    figure.colorbar(filled, ax=axes)
+    figure.colorbar(filled, ax=axes, ticks=levels)
     figure.suptitle(drawn.label, fontsize=14)
     return figure
 
@@ -186,6 +189,9 @@ def _contours(ax: Axes, at: tuple[_Axis, _Axis], drawn: _Drawn, levels: Array) -
     ax.set_facecolor("white")
     ax.grid(visible=False)
     filled = ax.contourf(x.at, y.at, table, levels, cmap="viridis")
+    inks = ["white" if level < np.mean(levels) else "black" for level in levels]
+    lines = ax.contour(x.at, y.at, table, levels, colors=inks, linewidths=0.6)
+    ax.clabel(lines, fmt=lambda level: f"{level:.6g}", fontsize=11)
     if limit is not None and levels[0] < limit < levels[-1]:
         ax.contour(x.at, y.at, table, [limit], colors=COLOURS[1])
         ax.plot([], [], color=COLOURS[1], label=_amount(drawn))  # beside it, it is cut at an edge
@@ -256,7 +262,7 @@ def _levels(values: Array) -> Array:
     if high - low <= 1e-12 * max(abs(low), abs(high)):
         half = 0.5 * abs(high) or 0.5
         return np.array([low - half, high + half])
-    return np.asarray(MaxNLocator(_LEVELS).tick_values(low, high))
+    return np.asarray(MaxNLocator(_LEVELS, steps=_ROUND).tick_values(low, high))
 
 
 def _on_axis(units: str) -> tuple[float, str]:

@@ -66,7 +66,9 @@ def _said(found: Assembled, lost: LostError) -> Assembled:
 def _settled(found: Assembled, decay: Decay) -> Assembled:
     """The settled period, with what it leaves of a disturbance."""
     _, mark, short = found.solution.message.partition(";")
-    message = f"settled: a period leaves {decay.factor:.4g} of a disturbance{mark}{short}"
+    message = (
+        f"settled: a disturbance decays to {100.0 * decay.factor:.4g} % per period{mark}{short}"
+    )
     return replace(found, solution=replace(found.solution, message=message, decay=decay))
 
 
