@@ -19,6 +19,7 @@ from crankmbs.scene.unit_table import PREFIXES, UNITS
 
 sys.path.insert(0, str(DOCS / "_ext"))
 import docstrings
+import hard
 import keys
 import names
 
@@ -93,6 +94,16 @@ def test_every_command_variable_and_public_name_has_its_place():
     assert re.findall(r"^\| `(\w+)`", names.variables_page(), re.MULTILINE) == list(EVERY)
     shown = set(re.findall(r"^\.\. auto\w+:: crankmbs\.(\w+)$", names.python_page(), re.MULTILINE))
     assert shown == set(crankmbs.__all__) - {"figures", "lecture"}
+
+
+def test_every_hard_case_has_its_reason_and_a_row_with_both_errors():
+    cases = {file.stem for file in (DOCS.parent / "validation" / "cases").glob("hard_*.toml")}
+    assert {f"hard_{name}" for name in hard.WHY} == cases
+    rows = [line.strip("|").split(" | ") for line in hard.hard_page().splitlines()[2:]]
+    assert {len(row) for row in rows} == {6}
+    for case, _, _, outcome, true, stated in rows:
+        assert outcome.startswith(("right", "stops: ", "refused: ")), case
+        assert bool(true) == bool(stated) == (not outcome.startswith("refused"))
 
 
 def test_the_manual_names_every_unit_and_prefix():

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import matplotlib as mpl
+from hard import hard_page
 from keys import keys_page
 from names import commands_page, python_page, variables_page
 
@@ -25,6 +26,7 @@ _PAGES = {
     "keys": keys_page,
     "commands": commands_page,
     "variables": variables_page,
+    "hard": hard_page,
     "python": python_page,
 }
 _VALIDATION = ("REPORT", "CLAIMS", "ERRATA", "MUTANTS", "BIBLIOGRAPHY")
