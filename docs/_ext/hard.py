@@ -14,7 +14,7 @@ _RIGHT = re.compile(r"right: (\w+) (\S+), stated (\S+) ([^;]+)")
 _STOPPED = re.compile(r"stopped \(status -?\d\): ([^;]+)")
 
 WHY = {
-    "beside_dead_centre": "the torque is almost zero: what a rounding changes grows as the crank leaves",
+    "beside_dead_centre": "the torque is almost zero, and what a rounding changes grows",
     "close_knots": "an interval a thousand times narrower than a sample's",
     "compression": "the crank turns back at each compression",
     "compression_angle": "the end that is asked for does not exist",
@@ -63,7 +63,7 @@ class _Row(NamedTuple):
 
 
 def hard_page() -> str:
-    """Case, why it is hard, what exudyn's rigid bodies and what crankmbs make of it, in Markdown."""
+    """Case, why it is hard, what exudyn's bodies and what crankmbs make of it, in Markdown."""
     details = json.loads(_DETAILS.read_text(encoding="utf-8"))
     heads = "| case | why it is hard | exudyn's rigid bodies | crankmbs | true error | stated |"
     lines = [heads, "|---|---|---|---|---|---|"]
