@@ -21,7 +21,16 @@ __all__ = ["main"]
 
 _FILE = Path(__file__).parent / "figures" / "lecture_map.png"
 _LECTURE = "S1 (motion and forces truncated)"
-_QUANTITIES = ("piston acceleration", "side thrust", "torque")
+_QUANTITIES = (
+    "piston velocity",
+    "piston acceleration",
+    "side thrust",
+    "rod force",
+    "torque",
+    "crank pin force x",
+    "crank pin force y",
+    "main bearing force x",
+)
 
 
 def main() -> int:
@@ -30,10 +39,11 @@ def main() -> int:
     vary = {"rod_ratio": "0.15..0.45:25", "crank.inertia": "0.02..2 kg m^2:49:log"}
     found = sweep(scene, vary).sel(lecture=_LECTURE)
     with mpl.rc_context(STYLE):
-        figure, axes = panels(1, len(_QUANTITIES), 16.0, 6.5)
+        figure, axes = panels(2, len(_QUANTITIES) // 2, 18.0, 10.0)
         for ax, quantity in zip(axes, _QUANTITIES, strict=True):
             _draw(ax, found.sel(quantity=quantity))
-        axes[0].set_ylabel("rod ratio r / l")
+        for ax in axes[:: len(_QUANTITIES) // 2]:
+            ax.set_ylabel("rod ratio r / l")
         error = 100.0 * float(found["lecture_deviation_error"].sel(quantity=[*_QUANTITIES]).max())
         caption(
             figure,
