@@ -1,6 +1,7 @@
 """Counterweights: closed forms of textbooks, at constant speed."""
 
 import math
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -122,6 +123,25 @@ def test_a_share_that_cannot_be(share):
         balance(engine(), share)
 
 
+@pytest.mark.parametrize("name", ["propeller", "yi_diesel"])
+def test_a_scene_with_its_counterweights_has_the_force_that_was_said(name, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    done = crankmbs_("balance", name, "--no-figures", "-o", "balanced.toml")
+    assert done.exit_code == 0, done.output
+    found, with_it = balance(load_scene(name), 0.5), simulate(load_scene("balanced.toml"))
+    if with_it.scene.motion is not None:  # else their weight changes the motion
+        force = with_it.data["frame_force_x"].values
+        assert force == pytest.approx(found.after[:, 0], abs=1e-6 * abs(force).max())
+    (peak,) = re.findall(r"^main bearing \[N\] +\S+ +\S+ +(\S+) ", done.output, re.MULTILINE)
+    largest = max(j.peak.value for j in with_it.measures().joints if j.joint == "main bearing")
+    assert float(peak) == pytest.approx(largest, rel=1e-5)
+
+
+def test_counterweights_beside_the_reference_line_have_no_centre_of_mass():
+    with pytest.raises(InputError, match="at 150 degrees, do not lie along the crank's reference"):
+        _ = balance(load_scene("v_twin")).crank
+
+
 def test_on_the_command_line(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     done = crankmbs_("balance", "yi_diesel", "--share", "40 %", "--out", "here")
@@ -130,4 +150,5 @@ def test_on_the_command_line(tmp_path, monkeypatch):
     assert {file.name for file in (tmp_path / "here").iterdir()} == {"balance.csv", "balance.png"}
     lines = (tmp_path / "here" / "balance.csv").read_text().splitlines()
     assert len(lines) == 7
+    assert 'center_of_mass = "' in done.stdout
     assert "--share: " in refused("balance", "yi_diesel", "--share", "150%")

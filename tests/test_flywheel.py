@@ -1,5 +1,6 @@
 """The flywheel for a fluctuation: met on the settled cycle, or the sentence why not."""
 
+import re
 from dataclasses import replace
 from itertools import pairwise
 
@@ -173,12 +174,22 @@ def test_a_scene_that_cannot_be_is_refused():
         flywheel(replace(ONE, motion=ramp), 0.01)
 
 
-def test_the_command():
-    shown = crankmbs_("flywheel", "yi_diesel_free", "--fluctuation", "1 %")
+def test_the_command(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    shown = crankmbs_("flywheel", "yi_diesel_free", "--fluctuation", "1 %", "-o", "heavy.toml")
     assert shown.exit_code == 0, shown.output
+    (peak,) = re.findall(r"^crank pin \[N\] +(\S+) +\S+ +(\S+) ", shown.output, re.MULTILINE)
+    assert [float(part) for part in peak] == pytest.approx([20289.4, 20516.4], abs=0.1)
+    assert (tmp_path / "results" / "yi_diesel_free" / "flywheel.png").exists()
+    heavy = (tmp_path / "heavy.toml").read_text(encoding="utf-8")
+    assert 'inertia = "0.439724 kg m^2"    # the speed fluctuates by 1 %' in heavy
+    written = simulate(load_scene("heavy.toml").with_(run__until="settled"))
+    assert measure(written).fluctuation.value == pytest.approx(0.01, rel=1e-5)
     assert "inertia of crank and flywheel [kg m^2]                      0.439724" in shown.output
     assert "which is off by [%]                                           0.0880" in shown.output
-    balanced = crankmbs_("flywheel", "yi_diesel")
+    balanced = crankmbs_("flywheel", "yi_diesel", "--no-figures", "-o", "free.toml")
+    run = simulate(load_scene("free.toml"))
+    assert measure(run).fluctuation.value == pytest.approx(0.01, rel=1e-5)
     assert "a constant -21.8274 N m balances gas and gravity" in balanced.output
     far = crankmbs_("flywheel", "yi_diesel_free", "--fluctuation", "150 %")
     assert far.exit_code == 3

@@ -85,6 +85,8 @@ def test_a_least_value_fulfils_its_conditions():
     assert found.values["crank.inertia"] == pytest.approx(wanted.value.value, rel=1e-5)
     free = minimize(SCENE, vary, "peak main bearing force")
     assert free.values["crank.inertia"] == pytest.approx(1.0)
+    assert free.message == "found, at a bound of crank.inertia: beyond it there may be less"
+    assert found.message == "found"
     assert free.reached.value < found.reached.value
 
 

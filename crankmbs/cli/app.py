@@ -14,7 +14,15 @@ import typer
 from typer.core import TyperGroup
 
 from crankmbs.cli.ending import ending
-from crankmbs.cli.options import CostCap, NoFigures, Out, Rtol, SceneName, Until
+from crankmbs.cli.options import (
+    CostCap,
+    NoFigures,
+    Out,
+    Rtol,
+    SceneName,
+    Until,
+    WrittenScene,
+)
 from crankmbs.cli.plot import plot
 from crankmbs.cli.pressure import pressure
 from crankmbs.cli.sensitivity import sensitivity
@@ -113,13 +121,15 @@ def balance(
         str, typer.Option(help="Share of the reciprocating mass that is balanced.")
     ] = "50%",
     cost_cap: CostCap = 10.0,
+    write: WrittenScene = None,
     out: Out = None,
     no_figures: NoFigures = False,
 ) -> None:
     """Find counterweights; show what is left of first and second order, before and after."""
-    from crankmbs.cli.balance import balance_scene
+    from crankmbs.cli.balance import Wanted, balance_scene
 
-    if not balance_scene(scene, share, out=out, figures=not no_figures, cost_cap=cost_cap):
+    wanted = Wanted(share, write, out, not no_figures, cost_cap)
+    if not balance_scene(scene, wanted):
         raise typer.Exit(3)
 
 
@@ -129,11 +139,14 @@ def flywheel(
     fluctuation: Annotated[
         str, typer.Option(help='Wanted (max - min)/mean of the speed, as "1 %" or 0.01.')
     ] = "1 %",
+    write: WrittenScene = None,
+    out: Out = None,
+    no_figures: NoFigures = False,
 ) -> None:
     """Find the crank inertia that gives a fluctuation of speed on the settled cycle."""
     from crankmbs.cli.flywheel import size_flywheel
 
-    if not size_flywheel(scene, fluctuation):
+    if not size_flywheel(scene, fluctuation, write, out=out, figures=not no_figures):
         raise typer.Exit(3)
 
 
@@ -222,7 +235,7 @@ def export(
         typer.Option("--out", "-o", metavar="FILE", help="Default NAME.toml, NAME.mat or NAME.py."),
     ] = None,
 ) -> None:
-    """Write a scene as TOML, its result for MATLAB, or its bodies as a script for exudyn."""
+    """Copy a scene as it is, write its result for MATLAB, or its bodies as a script for exudyn."""
     from crankmbs.cli.export import export_scene
 
     if not export_scene(scene, to, out=out):

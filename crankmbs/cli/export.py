@@ -7,7 +7,7 @@ from pathlib import Path
 import typer
 
 from crankmbs.cli.progress import progress
-from crankmbs.export import export
+from crankmbs.export import copy_scene, export
 from crankmbs.export.files import SUFFIXES
 from crankmbs.scene.read import load_scene, scene_path
 from crankmbs.simulate import simulate
@@ -27,7 +27,7 @@ def export_scene(name: str, to: str, *, out: Path | None) -> bool:
     target = out or Path(f"{path.stem}{SUFFIXES.get(to, '')}")
     with progress("exporting"):
         result = simulate(scene) if to == "matlab" else None
-        written = export(result or scene, to, target)
+        written = copy_scene(path, target) if to == "toml" else export(result or scene, to, target)
     typer.echo(f"wrote {', '.join(map(str, written))}")
     if result is not None and result.status != 0:
         typer.echo(result.message)

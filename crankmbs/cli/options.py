@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-__all__ = ["CostCap", "NoFigures", "Out", "Rtol", "SceneName", "Until"]
+__all__ = ["CostCap", "NoFigures", "Out", "Rtol", "SceneName", "Until", "WrittenScene"]
 
 
 SceneName = Annotated[
@@ -23,4 +23,10 @@ Until = Annotated[
     str | None, typer.Option(help='End: "20 cycles", "10 rev", "0.75 s" or "settled".')
 ]
 Out = Annotated[Path | None, typer.Option(help="Folder of the results; default results/NAME.")]
+WrittenScene = Annotated[
+    Path | None,
+    typer.Option(
+        "-o", "--write", metavar="FILE", help="Write the scene with the answer in place, .toml."
+    ),
+]
 NoFigures = Annotated[bool, typer.Option("--no-figures", help="Draw no figures.")]

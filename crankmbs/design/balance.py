@@ -18,6 +18,7 @@ from crankmbs.simulate import simulate
 
 __all__ = ["Balance", "Remaining", "balance"]
 
+_ALONG = 1e-9  # of a throw's counterweight: what lies across the reference line
 _ORDERS = (1.0, 2.0)
 _VECTORS = {"frame force": "frame_force", "rocking moment": "rocking_moment"}
 
@@ -57,6 +58,36 @@ class Balance:
     result: Result
     before: Array
     after: Array
+
+    @property
+    def crank(self) -> dict[str, float]:
+        """mass [kg] and center_of_mass [m] of the scene's crank with the counterweights.
+
+        The crank keeps its mass; where it has none, the counterweight stands opposite the throw at
+        the crank radius. Of a crank whose throws stand in several directions they are those of all
+        counterweights together.
+
+        Raises
+        ------
+        InputError : the counterweights do not lie along the crank's reference line
+
+        >>> found = balance(load_scene("propeller"), 0.5).crank
+        >>> f"{found['mass']:.4g} kg at {1e3 * found['center_of_mass']:.4g} mm"
+        '5 kg at -16.94 mm'
+        """
+        scene = self.result.scene
+        throws = [np.exp(1j * (c.phase + c.bank)) for c in scene.cylinders]
+        moment = -self.per_throw * sum(throws)
+        if abs(moment.imag) > _ALONG * self.per_throw:
+            lies = f"{abs(moment):.6g} kg m at {np.degrees(np.angle(moment)):.6g} degrees"
+            raise InputError(
+                f"the counterweights together, {lies}, do not lie along the crank's reference "
+                "line, where center_of_mass is; turn that line by the phases of [layout] and the "
+                "angle of the start"
+            )
+        radius = scene.crank.radius
+        mass = scene.crank.mass or abs(float(moment.real)) / radius
+        return {"mass": mass, "center_of_mass": float(moment.real) / mass if mass else 0.0}
 
 
 def balance(scene: Scene, share: float = 0.5, *, cost_cap: float = 10.0) -> Balance:

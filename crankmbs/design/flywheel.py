@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from numbers import Real
 from typing import NamedTuple
@@ -22,7 +22,7 @@ from crankmbs.scene.torque import Torque
 from crankmbs.scene.units import DEGREE
 from crankmbs.simulate import simulate
 
-__all__ = ["Flywheel", "excess", "excess_at", "flywheel"]
+__all__ = ["Flywheel", "excess", "excess_at", "fluctuations", "flywheel"]
 
 _CLOSE = 1e-7  # of the fluctuation: as near the target is on it,
 _LEFT = 0.1  # or within so much of its error, which hardly grows by that
@@ -103,10 +103,25 @@ def flywheel(scene: Scene, fluctuation: float = 0.01) -> Flywheel:
             "fluctuation must be a number above 0 and below 2, such as 0.01 for 1 %; "
             f"{shown(fluctuation)} came"
         )
+    return _search(scene, float(fluctuation)).found(scene.crank.moment_of_inertia)
+
+
+def fluctuations(scene: Scene, inertias: Sequence[float]) -> list[Measures | None]:
+    """Measures of the settled cycle with each crank inertia [kg m2], as `flywheel` has it; None
+    where none is found.
+
+    >>> light, heavy = fluctuations(load_scene("turning_moment"), [0.1, 0.3])
+    >>> light.fluctuation.value > heavy.fluctuation.value
+    True
+    """
+    search = _search(scene, math.nan)
+    return [search.tried(inertia).measures for inertia in inertias]
+
+
+def _search(scene: Scene, wanted: float) -> _Search:
     freed = _freed(scene)
     over_speed = any(load.parts.over_speed or load.parts.function for load in freed.torque)
-    search = _Search(freed, float(fluctuation), simulate if over_speed else _balanced)
-    return search.found(scene.crank.moment_of_inertia)
+    return _Search(freed, wanted, simulate if over_speed else _balanced)
 
 
 def excess_at(scene: Scene, speed: float) -> tuple[float, float]:
@@ -197,7 +212,7 @@ class _Search:
         whole = work.value / (self._wanted * self._scene.start.speed**2)
         floor = max(self._scene.crank.mass * self._scene.crank.center_of_mass**2, _NARROW * whole)
         low, high = floor, _WIDE * whole
-        trial, before = self._tried(max(whole - rest, floor)), None
+        trial, before = self.tried(max(whole - rest, floor)), None
         for _ in range(_MOST):
             if trial.measures is None:
                 low, step = trial.inertia, math.inf
@@ -214,10 +229,11 @@ class _Search:
             inside = low < after < high
             near_floor = high < 4.0 * floor or after <= floor
             other = after if inside else floor if near_floor else math.sqrt(low * high)
-            before, trial = trial if trial.measures else before, self._tried(other)
+            before, trial = trial if trial.measures else before, self.tried(other)
         return self._answer(trial, own, rest, math.nan)
 
-    def _tried(self, inertia: float) -> _Trial:
+    def tried(self, inertia: float) -> _Trial:
+        """The settled cycle with a crank inertia [kg m2]."""
         crank = replace(self._scene.crank, inertia=inertia)
         result = self._settle(replace(self._scene, crank=crank))
         return _Trial(inertia, result, measure(result) if result.status == 0 else None)

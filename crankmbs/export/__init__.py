@@ -1,5 +1,5 @@
 """A scene and its result for other programs: TOML, MATLAB, and exudyn as a script of its own."""
 
-from crankmbs.export.files import export
+from crankmbs.export.files import copy_scene, export
 
-__all__ = ["export"]
+__all__ = ["copy_scene", "export"]

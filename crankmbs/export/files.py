@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
 from crankmbs.errors import InputError, OutputError, shown
 from crankmbs.export.matlab import write_matlab
 from crankmbs.result import Result
+from crankmbs.scene.edit import edited_files
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.sentences import did_you_mean
 from crankmbs.scene.write import scene_files
 from crankmbs.simulate import simulate
 from crankmbs.storage.files import text_in_one_move, together, write_in_one_move
 
-__all__ = ["SUFFIXES", "export"]
+__all__ = ["SUFFIXES", "copy_scene", "export"]
 
 SUFFIXES = {"toml": ".toml", "matlab": ".mat", "exudyn": ".py"}
 """What can be written, and how the file's name ends."""
@@ -47,12 +49,7 @@ def export(what: Scene | Result, to: str, file: str | Path) -> tuple[Path, ...]:
     if not isinstance(to, str) or to not in SUFFIXES:
         near = did_you_mean(to, list(SUFFIXES)) if isinstance(to, str) else ""
         raise InputError(f'to must be "toml", "matlab" or "exudyn"; {shown(to)} came{near}')
-    target = Path(file)
-    if target.suffix != SUFFIXES[to]:
-        raise InputError(
-            f'{target}: the name of a file for "{to}" ends in {SUFFIXES[to]}; '
-            f"{target.suffix or 'no ending'} came"
-        )
+    target = _ending(Path(file), to)
     scene = what.scene if isinstance(what, Result) else what
     if to == "toml":
         return _toml(scene, target)
@@ -66,12 +63,50 @@ def export(what: Scene | Result, to: str, file: str | Path) -> tuple[Path, ...]:
     return (target,)
 
 
+def copy_scene(
+    path: str | Path, file: str | Path, crank: Mapping[str, str] | None = None, remark: str = ""
+) -> tuple[Path, ...]:
+    """Copy a scene file, its units and comments as they are, with its tables; values of [crank] may
+    be set.
+
+    Parameters
+    ----------
+    path : of the scene; file : its name ends in .toml
+    crank : key -> value with its unit, {"inertia": "0.3 kg m^2"}; remark : the comment beside each
+
+    Returns
+    -------
+    the files written, the scene first
+
+    Raises
+    ------
+    InputError : another ending; a scene that is none with these values
+    OutputError : the file cannot be written, or one of the files is there already
+    """
+    target = _ending(Path(file), "toml")
+    return _new(edited_files(Path(path), target, crank or {}, remark), target)
+
+
+def _ending(target: Path, to: str) -> Path:
+    if target.suffix != SUFFIXES[to]:
+        raise InputError(
+            f'{target}: the name of a file for "{to}" ends in {SUFFIXES[to]}; '
+            f"{target.suffix or 'no ending'} came"
+        )
+    return target
+
+
 def _toml(scene: Scene, target: Path) -> tuple[Path, ...]:
     files = scene_files(scene, target.stem)
+    return _new({name: text.encode() for name, text in files.items()}, target)
+
+
+def _new(files: Mapping[str, bytes], target: Path) -> tuple[Path, ...]:
+    """Write files that are not there yet."""
     there = [target.parent / name for name in files if (target.parent / name).exists()]
     if there:  # it may be the very scene, with its comments
         raise OutputError(f"{there[0]}: exists already and is not overwritten; name another file")
     with together(target.parent) as part:
-        for name, text in files.items():
-            (part / name).write_text(text, encoding="utf-8")
+        for name, content in files.items():
+            (part / name).write_bytes(content)
     return tuple(target.parent / name for name in files)

@@ -5,6 +5,7 @@ from .bearings import bearings_figure
 from .compare import budget_figure, comparison_figure, save_validation
 from .cycles import cycles_figure
 from .difference import difference_figure, save_differences
+from .flywheel import flywheel_figure, save_flywheel_figure
 from .indicated import pressure_figure, save_indicated_figures, scatter_figure, volume_figure
 from .indicator import indicator_figure
 from .machine import machine_figure
@@ -25,6 +26,7 @@ __all__ = [
     "crank_pin_figure",
     "cycles_figure",
     "difference_figure",
+    "flywheel_figure",
     "forces_figure",
     "indicator_figure",
     "last_view",
@@ -39,6 +41,7 @@ __all__ = [
     "save_balance_figure",
     "save_differences",
     "save_figures",
+    "save_flywheel_figure",
     "save_indicated_figures",
     "save_orders_figure",
     "save_validation",

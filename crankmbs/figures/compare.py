@@ -193,9 +193,9 @@ def _figure(
     for k, (name, curves, errors) in enumerate(columns):
         top, bottom = axes[k], axes[n + k]
         peak = float(np.max(np.abs(curves["run"])))
-        for ax, drawn, of in ((top, curves, None), (bottom, errors, peak)):
+        for ax, drawn, whole in ((top, curves, None), (bottom, errors, peak)):
             on_axis = {label: view.drawn(degrees, curve) for label, curve in drawn.items()}
-            _panel(ax, name, on_axis, styles, of)
+            _panel(ax, name, on_axis, styles, whole)
         above = crank_axis([top, bottom], view)
         symbol = OBSERVABLES[name].symbol
         if n > 1:
@@ -203,7 +203,9 @@ def _figure(
             top.set_title(title, loc="left", pad=8.0 + 21.0 * above)
     lines = {str(line.get_label()): line for ax in axes for line in ax.lines}
     slide_legend(figure, {label: lines[label] for label in styles if label in labels})
-    axes[0].get_gridspec().set_height_ratios((1.0, 2.0))
+    grid = axes[0].get_gridspec()
+    assert grid is not None
+    grid.set_height_ratios((1.0, 2.0))
     figure.align_ylabels(axes)
     of = f", cylinder {excerpt.cylinder}" if of_one else ""
     footer(figure, excerpt.result, f"{about}{of}")

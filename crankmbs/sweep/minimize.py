@@ -26,6 +26,7 @@ __all__ = ["Condition", "Minimum", "minimize"]
 _POINTS = 16  # of the scan for each knob
 _MOST = 60  # evaluations of the polish for each knob
 _FIRST, _LAST = 0.05, 1e-6  # steps of the polish, shares of a range
+_AT = 1e-5  # of a range: so near its end a knob has ended there
 _SLACK = 1e-6  # of a bound: so far a condition may be missed
 
 
@@ -48,7 +49,8 @@ class Minimum:
     measure, reached : what is least, and how much it is
     conditions : what had to hold
     evaluations : runs
-    status, message : 0 found; 1 where nothing fulfils the conditions
+    status, message : 0 found, and whether a knob ended at a bound of its range; 1 where nothing
+        fulfils the conditions
     """
 
     values: dict[str, float]
@@ -140,7 +142,15 @@ class _Descent:
         best = self._best(np.clip(ended.x, 0.0, 1.0))
         if self._missed(best).max(initial=0.0) > _SLACK:
             return self._answer(best, 1, "nothing in the ranges fulfils the conditions")
-        return self._answer(best, 0, "found")
+        return self._answer(best, 0, f"found{self._at_bounds(best)}")
+
+    def _at_bounds(self, share: Array) -> str:
+        """The knobs that ended at a bound of their range, in words."""
+        ends = np.minimum(share, 1.0 - share) <= _AT
+        names = [name for name, ended in zip(self._asked.names, ends, strict=True) if ended]
+        return (
+            f", at a bound of {' and '.join(names)}: beyond it there may be less" if names else ""
+        )
 
     def _best(self, end: Array) -> Array:
         """The best point known that fulfils the conditions; without one the end of the polish."""

@@ -1,0 +1,30 @@
+"""Bearing loads before and after a change of the machine, as a table."""
+
+from __future__ import annotations
+
+from crankmbs.cli.text import table
+from crankmbs.digits import digits, error_digits
+from crankmbs.measures import Measures
+
+__all__ = ["loads_table"]
+
+
+def loads_table(over: str, before: Measures | None, after: Measures, words: str) -> str:
+    """The largest peak of every kind of joint that bears a load; dashes where there is no motion
+    before; empty where there is no load.
+
+    over : the window; words : what is changed, as a heading
+    """
+    rows = []
+    for joint in dict.fromkeys(one.joint for one in after.joints):
+        cells: list[str] = []
+        for measures in (before, after):
+            if measures is None:
+                cells += ["-", "-"]
+                continue
+            one = max((j for j in measures.joints if j.joint == joint), key=lambda j: j.peak.value)
+            cells += [digits(*one.peak), error_digits(one.peak.error)]
+        if any(j.peak.value > 0.0 for j in after.joints if j.joint == joint):
+            rows.append([f"{joint} [N]", *cells])
+    heading = [f"largest load over {over}", "before", "num. error", words, "num. error"]
+    return table(heading, rows) if rows else ""
