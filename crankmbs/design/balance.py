@@ -73,7 +73,7 @@ class Balance:
 
         >>> found = balance(load_scene("propeller"), 0.5).crank
         >>> f"{found['mass']:.4g} kg at {1e3 * found['center_of_mass']:.4g} mm"
-        '5 kg at -16.94 mm'
+        '5 kg at -16.54 mm'
         """
         scene = self.result.scene
         throws = [np.exp(1j * (c.phase + c.bank)) for c in scene.cylinders]
