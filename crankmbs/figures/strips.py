@@ -113,15 +113,22 @@ def torque_figure(view: View) -> Figure:
     if several:
         ax.plot(degrees, drawn.sum(axis=1), color="black", linewidth=2.5, label="all rods")
     external = view.values("external_torque")
-    label = "drive and load" if np.min(external) < 0.0 < np.max(external) else "load"
-    label = "drive" if np.min(external) >= 0.0 else label
     _, drawn = view.drawn(view.along, external)
-    ax.plot(degrees, drawn, color="0.45", linestyle=(0, (5, 2)), label=label)
+    ax.plot(degrees, drawn, color="0.45", linestyle=(0, (5, 2)), label=_cause(view, external))
     ax.set_ylabel("torque, positive in the\nsense of rotation +theta [N m]")
     crank_axis([ax], view)
     legend(figure, ax)
     footer(figure, view.result, "torque on the crank")
     return figure
+
+
+def _cause(view: View, external: Array) -> str:
+    """What the torque beside those of the rods is."""
+    if view.scene.motion is not None:
+        return "holds the speed"
+    if np.min(external) >= 0.0:
+        return "drive"
+    return "load" if np.max(external) <= 0.0 else "drive and load"
 
 
 def _per_cylinder(ax: Axes, view: View, values: Array, groups: list[list[int]]) -> None:
