@@ -71,9 +71,11 @@ def acceleration(motion, valley, fork):
     yield "acceleration, two harmonics", same(y(motion, 1, 1), pair)
     _, _, ratio = gear(valley)
     at = np.radians(x(valley, 0))
-    yield "valley", same(y(valley, 0), swing(at, ratio), 1e-5)
-    pair = np.cos(at) + ratio * (2.0 * np.cos(at) ** 2 - 1.0)
+    bottom = swing(np.pi, ratio)
+    yield "valley", bool(np.all(np.abs(y(valley, 0) - swing(at, ratio) + bottom) < 1e-5))
+    pair = np.cos(at) + ratio * (2.0 * np.cos(at) ** 2 - 1.0) - (ratio - 1.0)
     yield "valley, two harmonics", same(y(valley, 1), pair)
+    yield "says ratio", said(valley, "ratio", ratio)
     lowest = minimize_scalar(lambda p: swing(p, ratio), bounds=(1.6, 3.1), method="bounded").x
     yield "least", said(valley, "least", least(ratio))
     both = [float(each) for each in re.findall(r"[\d.]+", valley["says"]["least"])]
@@ -262,6 +264,7 @@ def balance(shake, couple, torque, twin):
     yield "spacing", same(spacing, np.full(len(spacing), made("balance").more["spacing"]))
     yield from row(couple)
     moment = column(couple, "rocking_moment_y")
+    yield "couple's words", "3 cylinders sum to nothing" in couple["says"]["words"]
     yield "couple", said(couple, "most", np.abs(moment).max())
     sums = np.array([sum(c["crank_torque"] for c in v["cylinders"]) for v in torque["samples"]])
     yield "torque", same(y(torque, 0), sums)
@@ -295,6 +298,19 @@ def omega(moment, energy, speed):
     yield "balance", np.median(np.abs(slope - (gas - load))) < 0.01 * gas.max()
     yield "says load", said(moment, "load", load[1:].mean())
     yield "says most", said(moment, "most", gas.max())
+    fast, angles = column(moment, "crank_speed"), np.array(moment["angles"])
+    feels = 2.0 * column(moment, "kinetic_energy") / fast**2  # inertia of all that moves
+    alpha = column(moment, "crank_acceleration")
+    moving = feels - moment["scene"]["crank"]["inertia"]
+    taken = 0.5 * np.gradient(feels, angles) * fast**2 + moving * alpha
+    yield "taken", np.median(np.abs(y(moment, 2) - load - taken)) < 0.01 * taken.max()
+    yield "faster", bool(np.all(((y(moment, 0) > y(moment, 2)) == (alpha > 0.0))[1:-1]))
+    yield "crank speed", same(y(moment, 0, 1), fast / RPM)
+    yield "mean speed", same(y(moment, 1, 1), np.full(len(fast), moment["mean"] / RPM))
+    yield "says mean", said(moment, "mean", moment["mean"] / RPM)
+    share = 100.0 * np.mean(alpha[gas > load] > 0.0)
+    yield "share", said(moment, "share", share)
+    yield "verdict", ("follows the gas" in moment["says"]["verdict"]) == (share > 50.0)
     kinetic = column(energy, "kinetic_energy")
     yield "energy", same(y(energy, 0), kinetic)
     yield "its mean", same(y(energy, 1), np.full(len(kinetic), kinetic[1:].mean()))
@@ -312,6 +328,11 @@ def polar(bearing, pin, turning):
     size = np.hypot(*(column(bearing, f"main_bearing_force_{axis}") for axis in "xy"))
     yield "size", same(y(bearing, 0, 1), 1e-3 * size)
     yield "peak", said(bearing, "peak", 1e-3 * size.max())
+    at = np.abs(np.degrees(bearing["angles"]) % 10.0 - 5.0) > 5.0 - 1e-6
+    for k, figure in ((1, bearing), (1, pin), (2, turning)):
+        found = np.array([x(figure, k), y(figure, k)])
+        right = same(found[:, ::3], [x(figure, 0)[at], y(figure, 0)[at]])
+        yield "dots", right and bool(np.all(np.isnan(found[:, 2::3])))
     yield "angle", said(bearing, "angle", math.degrees(bearing["angles"][size.argmax()]))
     force = of_first(pin, "crank_pin_force_x") + 1j * of_first(pin, "crank_pin_force_y")
     yield "pin's peak", said(pin, "peak", 1e-3 * np.abs(force).max())

@@ -11,6 +11,7 @@ from importlib import import_module
 import numpy as np
 import pytest
 from browser import visiting
+from lesson_visit import LAPTOP, Opened
 
 from crankmbs import load_scene, simulate
 from crankmbs.lessons import LESSONS, write_lesson
@@ -19,72 +20,7 @@ from crankmbs.scene.parts import Layout
 
 pytestmark = pytest.mark.slow
 
-PASSES = "() => [...document.querySelectorAll('figure')].every((f) => f.dataset.passes === '2')"
-PHONE, LAPTOP, LARGE = (390, 844), (1366, 641), (1920, 1080)
-
-
-@pytest.fixture(scope="module")
-def written(tmp_path_factory):
-    """The file of a lesson, written once."""
-    folder = tmp_path_factory.mktemp("lessons")
-
-    def file(name):
-        target = folder / f"{name}.html"
-        return target if target.is_file() else write_lesson(name, folder)
-
-    return file
-
-
-class Opened:
-    """A lesson that is open."""
-
-    def __init__(self, visit, file):
-        self.page = visit.page
-        self.visit = visit
-        self.page.goto(file.as_uri())
-        self.settle()
-
-    def settle(self):
-        """Wait for the second pass of every figure."""
-        self.page.wait_for_function(PASSES)
-
-    def said(self, what):
-        """The number in a text that follows a figure."""
-        self.settle()
-        text = self.page.locator(f'[data-say="{what}"]').first.inner_text()
-        return float(re.search(r"[-\u2212\d.]+", text)[0].replace("\u2212", "-"))
-
-    def curve(self, figure, style="simulated"):
-        return self.page.locator(f"#{figure} path.curve.{style}").first.get_attribute("d")
-
-    def type(self, figure, knob, text):
-        entry = self.page.locator(f"#{figure} .knob:has(#{figure}-knob-{knob}) input.entry")
-        entry.fill(str(text))
-        entry.press("Enter")
-
-    def choose(self, figure, choice, word):
-        self.page.locator(f"#{figure} select[data-choice={choice}]").select_option(word)
-
-    def answer(self, question, text):
-        root = self.page.locator(f"#{question}")
-        root.locator("input").fill(text)
-        root.locator("button").click()
-        return root.locator(".reply")
-
-
-@pytest.fixture
-def lesson(browser, written):
-    """Opens lessons, and at the end finds that nothing was asked for nor complained of."""
-    visits = []
-
-    def opened(name, size=LAPTOP, **options):
-        manager = visiting(browser, size=size, offline=True, **options)
-        visits.append(manager)
-        return Opened(manager.__enter__(), written(name))
-
-    yield opened
-    for manager in visits:
-        manager.__exit__(None, None, None)
+PHONE, LARGE = (390, 844), (1920, 1080)
 
 
 @pytest.mark.parametrize("size", [PHONE, LAPTOP, LARGE], ids=str)
@@ -100,7 +36,7 @@ def test_a_lesson_fits_every_screen(lesson, name, size):
         assert 10.0 < inner["height"] < 110.0  # built up, and not one line of letters
 
 
-@pytest.mark.parametrize(("name", "figure"), [("forces", "along"), ("omega", "moment")])
+@pytest.mark.parametrize(("name", "figure"), [("forces", "along"), ("polar", "pin")])
 def test_names_of_arrows_stand_within_their_drawing(lesson, name, figure):
     opened = lesson(name, PHONE)
     stage = opened.page.locator(f"#{figure} .stage").bounding_box()
@@ -138,6 +74,7 @@ KNOBS = [
     ("fluctuation", "swing", "flywheel", 0.05),
     ("fluctuation", "cost", "flywheel", 0.05),
     ("balance", "twin", "bank", 90),
+    ("omega", "moment", "speed", 3600),
     ("omega", "energy", "flywheel", 0.3),
     ("omega", "speed", "flywheel", 0.3),
     ("polar", "pin", "speed", 5000),
@@ -200,7 +137,6 @@ def numbers_of(name):
 
 
 SAID = [
-    ("acceleration", "valley.least", "minimum_exact", 0.006),
     ("forces", "side.off", "missing", 0.6),
     ("forces", "worth.masses", "missing_share", 0.02),
     ("fluctuation", "swing.delta", "fluctuation", 0.006),
@@ -228,6 +164,10 @@ def test_cylinders_in_a_row_rock_as_python_has_it(lesson):
         most = np.abs(simulate(scene).data["rocking_moment_y"].values).max()
         opened.choose("couple", "cylinders", word)
         assert opened.said("couple.most") == pytest.approx(most, abs=0.6)
+        words = opened.page.locator('[data-say="couple.words"]').inner_text()
+        assert f"{word} cylinders" in words
+        rocks = "sum to nothing" in words
+        assert rocks == (most > 1.0)
 
 
 def test_a_weight_balances_the_v_twin_at_90_degrees_only(lesson):
@@ -265,9 +205,10 @@ ANSWERS = [
     ("0,584 cm", "right", "Right"),
     ("5.3 mm", "wrong", "Close"),
     ("40 mm", "wrong", "Half of r"),
-    ("5.84", "unclear", "unit is missing"),
-    ("5.84 kN", "unclear", "no unit of it"),
-    ("some", "unclear", "A number"),
+    ("5.84", "right", "Right"),
+    ("40", "wrong", "Half of r"),
+    ("5.84 kN", "unclear", "“kN” does not fit here: answer in mm."),
+    ("some", "unclear", "A number, please, such as 1.5\u00a0mm."),
 ]
 
 

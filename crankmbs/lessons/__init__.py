@@ -21,9 +21,9 @@ LESSONS = {
     "displacement": "Displacement and the Brix correction",
     "acceleration": "Velocity and acceleration",
     "forces": "Forces and side thrust",
+    "omega": "Why the speed is not constant",
     "fluctuation": "Constant speed or not",
     "balance": "The engine with several cylinders",
-    "omega": "Why the speed is not constant",
     "polar": "Reading a bearing polar",
     "trust": "How far to trust a number",
 }

@@ -78,15 +78,17 @@ def _motion(scene: Scene) -> Section:
 def _valley(scene: Scene) -> Section:
     return Section(
         title="The valley of the acceleration becomes two",
-        before="This is the same acceleration near bottom dead centre, enlarged. Shorten the rod: "
-        "the floor of the valley flattens, then rises in the middle. The acceleration is least "
-        '<output data-say="valley.least"></output>, at the dots.',
+        before="This is the same acceleration near bottom dead centre, much enlarged and counted "
+        "from its value there. Shorten the rod by the slider: the floor of the valley flattens, "
+        "then rises in the middle. With a rod ratio of "
+        '<output data-say="valley.ratio"></output> the acceleration is least '
+        '<output data-say="valley.least"></output>, at the filled dots.',
         figure=Figure(
             name="valley",
             caption=f"Move the slider across {_LIMIT_SERIES:g}, where the truncated formula says "
             f"that the valley splits, and {_LIMIT:.4f}, where it does.",
             plots=("Acceleration near bottom dead centre",),
-            knobs=(ratio_knob(scene, 0.15, 0.45),),
+            knobs=(ratio_knob(scene, 0.2, 0.36, first=0.22),),
             angle=150.0,
             machine=False,
         ),
@@ -95,7 +97,7 @@ def _valley(scene: Scene) -> Section:
 
 def _fork(scene: Scene) -> Section:
     return Section(
-        title=f"It leaves at {_LIMIT:.4f}; the truncated formula says 1/4",
+        title=f"The valley splits at {_LIMIT:.4f}; the truncated formula says 1/4",
         before="For every rod ratio, where is the acceleration least? One line becomes two: the "
         'fork is at <output data-say="fork.limit"></output>. This rod has '
         '<output data-say="fork.ratio"></output>.',
@@ -144,7 +146,7 @@ def _minimum(result: Result) -> Question:
         ", and again as far on the other side. "
         f"{simulated('least', depth, 'm/s²', most=6)} there against "
         f"{simulated('at_bottom', half, 'm/s²', most=6)} at bottom dead centre: a flat double "
-        "valley, so the place tells more than the depth."
+        "valley, so its place says more than its depth."
     )
     return Question(
         name="ask_minimum",
@@ -170,7 +172,7 @@ def _fastest(result: Result) -> Question:
     wanted = exact("speed_exact", formula, "m/s", most=6)
     return Question(
         name="ask_speed",
-        asked="How fast does the piston get? The crank radius is "
+        asked="What is the greatest speed of the piston? The crank radius is "
         f"{exact('radius', gear['crank_radius'], 'mm', 1e3)}, the speed "
         f"{exact('turning', omega, 'rad/s')}, the rod ratio "
         f"{exact('ratio', gear['crank_radius'] / gear['rod_length'], '')}.",
@@ -195,8 +197,8 @@ def _shortest(result: Result) -> Question:
         asked="What is the shortest rod with which the acceleration is least at bottom dead "
         "centre?",
         wanted=wanted,
-        hint="The fork tells the rod ratio; the truncated formula would say four crank radii.",
+        hint="The fork gives the rod ratio; the truncated formula would say four crank radii.",
         answer=f"{exact('rod_series', r / _LIMIT_SERIES, 'mm', 1e3)} by the truncated formula, "
-        f"{wanted} truly. With the latter the simulated minimum is at "
+        f"{wanted} by the exact one. With the latter the simulated minimum is at "
         f"{simulated('limit_angle', found, '°', most=5)}.",
     )

@@ -1,4 +1,4 @@
-"""Lesson 5: what several cylinders cancel, and which orders of force, couple and torque remain."""
+"""Lesson 6: what several cylinders cancel, and which orders of force, couple and torque remain."""
 
 from __future__ import annotations
 
@@ -81,10 +81,10 @@ def _cylinders(first: str, words: tuple[str, ...] = tuple(FIRING_ORDERS)) -> Cho
 def _shake() -> Section:
     return Section(
         title="Four cylinders cancel the first order and add up the second",
-        before="Only what goes to and fro shakes here: rotating masses are balanced, and gas "
-        "pushes head and bearing alike. With these cylinders the first order is left with "
-        '<output data-say="shake.first"></output>, the second with '
-        '<output data-say="shake.second"></output>.',
+        before="Only the reciprocating masses shake the engine here: rotating masses are balanced, "
+        "and gas pushes head and bearing alike. With these cylinders "
+        '<output data-say="shake.first"></output> of the first order are left, and '
+        '<output data-say="shake.second"></output> of the second.',
         figure=Figure(
             name="shake",
             caption="Force of the moving pistons on the engine's frame, positive towards the "
@@ -111,10 +111,9 @@ def _shake() -> Section:
 def _couple() -> Section:
     return Section(
         title="What cancels as a force may rock the engine",
-        before="The forces of three cylinders sum to nothing in the first order, but they do not "
-        "act in one place. Seen from the side, one end of the engine is pushed up while the other "
-        'is pulled down: a couple of up to <output data-say="couple.most"></output>. Four '
-        "cylinders with their cranks in a mirror, and six, have none.",
+        before='<output class="told" data-say="couple.words"></output> The couple is up to '
+        '<output data-say="couple.most"></output>. Choose another number of cylinders: those whose '
+        "cranks stand as in a mirror have none.",
         figure=Figure(
             name="couple",
             caption="The crank from the side, with the force of each piston on the frame, and "
@@ -179,7 +178,7 @@ def _second_order(four: Scene) -> Question:
     wanted = simulated("second", second, "kN", 1e-3)
     return Question(
         name="ask_second",
-        asked="How hard do four pistons shake the frame in the second order? One has "
+        asked="How hard do four pistons shake the frame in the second order? Each has "
         f"{exact('mass', scene.piston.mass, 'kg')} with its share of the rod; the crank radius is "
         f"{exact('radius', scene.crank.radius, 'mm', 1e3)}, the rod ratio {exact('ratio', ratio)}, "
         f"the speed {exact('turning', omega, 'rad/s')}.",

@@ -42,13 +42,13 @@ def _half(scene: Scene) -> Section:
         title="At 90 degrees the piston is past the middle",
         before="Turn the crank to 90 degrees, by its pin or by the slider. The dashed line is half "
         "the stroke, and the piston pin has passed it: by "
-        '<output data-say="half.lead"></output> with this rod. The rod leans most just there, and '
-        "what its tilt shortens brings the piston down.",
+        '<output data-say="half.lead"></output> with this rod. The rod leans most there, and '
+        "because it leans it does not reach as high.",
         figure=Figure(
             name="half",
-            caption="The mechanism to scale, and the piston over one turn beside the cosine of an "
-            "endless rod. A shorter rod leads more.",
-            plots=("The piston, and an endless rod",),
+            caption="The mechanism to scale, and the piston over one turn with the cosine of an "
+            "infinitely long rod. A shorter rod leads more.",
+            plots=("The piston, and an infinitely long rod",),
             knobs=(ratio_knob(scene),),
             angle=90.0,
         ),
@@ -72,13 +72,14 @@ def _half(scene: Scene) -> Section:
 def _series(scene: Scene) -> Section:
     return Section(
         title="Two harmonics are nearly enough",
-        before="The lectures replace the tilt by one cosine of twice the angle. Above both curves "
-        "coincide; the strip below shows what the formula is short of. It is right at 0 and 180 "
-        'degrees and worst at 90: there it lacks <output data-say="series.short"></output>, '
+        before="The lectures replace the tilt by one cosine of twice the angle. Both curves "
+        "coincide to the eye; the strip below shows the error. It vanishes at 0 and 180 "
+        "degrees and is largest at 90, where the formula is short by "
+        '<output data-say="series.short"></output>, '
         r"about $r\lambda^3/8$, at any speed.",
         figure=Figure(
             name="series",
-            caption="The piston, the truncated formula, and below their difference.",
+            caption="The piston and the truncated formula; below, their difference.",
             plots=("What two harmonics leave out",),
             knobs=(ratio_knob(scene),),
             angle=90.0,
@@ -128,11 +129,12 @@ def _middle(result: Result) -> Question:
         name="ask_middle",
         asked="At which crank angle is the piston at half its stroke?",
         wanted=wanted,
+        also=(360.0 - wanted.value,),
         hint="The piston pin is then one rod's length from the crank axis: crank, rod and that "
         "distance make a triangle with two equal sides.",
         answer=r"Where the crank and the rod make an isosceles triangle, $\cos\varphi=\lambda/2$: "
-        f"at {wanted}, not at 90°. A run that starts there has the piston at {at}, and half the "
-        f"stroke is {exact('radius', r, 'mm', 1e3)}.",
+        f"at {wanted}, not at 90°, and again on the way up. A run that starts there has the "
+        f"piston at {at}, and half the stroke is {exact('radius', r, 'mm', 1e3)}.",
         tolerance=0.003,
     )
 

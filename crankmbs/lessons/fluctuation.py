@@ -1,4 +1,4 @@
-"""Lesson 4: the speed swings with the torque; a flywheel makes the swing small, never zero."""
+"""Lesson 5: the speed swings with the torque; a flywheel makes the swing small, never zero."""
 
 from __future__ import annotations
 
@@ -85,9 +85,9 @@ def _swing(scene: Scene) -> Section:
 def _fall(scene: Scene) -> Section:
     return Section(
         title="Twice the flywheel, half the swing",
-        before="Each point of the curve is a run of its own until it settles. The textbook needs "
-        "only the greatest excess of work in a cycle at constant speed. At the dot the run has "
-        '<output data-say="fall.delta"></output>.',
+        before="Each point of the curve is a separate run until it settles. The textbook needs "
+        "only $W$, the greatest excess of work in a cycle at constant speed. At the dot the run "
+        'has <output data-say="fall.delta"></output>.',
         figure=Figure(
             name="fall",
             caption="Coefficient of fluctuation over the inertia of crank and flywheel.",
@@ -96,6 +96,9 @@ def _fall(scene: Scene) -> Section:
             machine=False,
             plays=False,
         ),
+        after="$W$ is the work of gas, load and inertia torque, which is what pistons and rods "
+        "take from the crank and give back. The energy of all moving parts together, as in the "
+        "lesson before, swings by gas and load alone.",
         formulas=(
             Formula(
                 r"\delta \approx \frac{W}{J\,\omega_m^2}",
@@ -110,12 +113,12 @@ def _fall(scene: Scene) -> Section:
 def _cost(scene: Scene) -> Section:
     return Section(
         title="What constant speed costs",
-        before="The lectures reckon at constant speed. The same formula with the true speed and "
+        before="The lectures calculate at constant speed. The same formula with the true speed and "
         "acceleration differs from that by "
         '<output data-say="cost.share"></output> of the peak; a heavier flywheel brings it down.',
         figure=Figure(
             name="cost",
-            caption="The lecture's answer as the speed swings and at constant speed; below their "
+            caption="The lecture's formula with the true speed and at constant speed; below, their "
             "difference.",
             plots=("A quantity, and what constant speed makes of it",),
             knobs=(flywheel_knob(scene),),
@@ -182,7 +185,7 @@ def _lightest(scene: Scene) -> Question:
     return Question(
         name="ask_lightest",
         asked=f"With {inertia:g} kg m² only, constant speed says {even} for the greatest piston "
-        "acceleration. How large is it truly?",
+        "acceleration. How large is it in fact?",
         wanted=fastest,
         hint="Put the slider of the last figure there, and read the peak as it swings.",
         answer=f"{fastest}. The greatest load of the crank pin is {pin}, at constant speed "

@@ -39,8 +39,8 @@ _QUANTITIES = (
 SCENE = "yi_diesel"
 IDEA = (
     "Gas and inertia push the piston along the cylinder; the tilted rod turns part of it "
-    "against the wall. Two masses in place of the rod weigh as much and balance alike, but "
-    "are too hard to swing: that spoils the side thrust, and never the mean torque."
+    "against the wall. Two masses in place of the rod weigh as much and have the same centre of "
+    "mass, but too much inertia: the side thrust is then wrong, the mean torque never is."
 )
 
 
@@ -73,7 +73,7 @@ def _along(scene: Scene) -> Section:
         title="Gas against inertia",
         before="Along the cylinder two forces meet on the piston pin: that of the gas, and that of "
         "the mass $m_A$ that moves with the piston. Where the gas pushes most, with "
-        '<output data-say="along.gas"></output>, inertia adds '
+        '<output data-say="along.gas"></output>, inertia has '
         '<output data-say="along.inertia"></output>. Turn the speed up: inertia grows with its '
         "square, the gas does not.",
         figure=Figure(
@@ -96,13 +96,13 @@ def _side(scene: Scene) -> Section:
     return Section(
         title="The rod is not two masses",
         before="The tilted rod presses the piston against the wall. The lectures put two masses in "
-        "place of the rod: right in weight and balance, but too hard to swing. Move the slider: "
-        "both agree only where the rod has the inertia of its two masses. Now they differ by "
-        '<output data-say="side.off"></output> at most.',
+        "place of the rod, with the right mass and centre but too much inertia. Move the slider: "
+        "both agree only where the rod has the inertia of its two masses. At present they differ "
+        'by <output data-say="side.off"></output> at most.',
         figure=Figure(
             name="side",
             caption="Side thrust of the wall on the piston with a rigid rod and with the lecture's "
-            "two masses, and below their difference.",
+            "two masses; below, their difference.",
             plots=("Side thrust on the piston",),
             knobs=(Knob("share", label, "", min(0.6, own), max(1.2, own), own, 3),),
             forces="piston",
@@ -120,7 +120,7 @@ def _side(scene: Scene) -> Section:
 
 def _worth(scene: Scene) -> Section:
     return Section(
-        title="What each simplification is worth",
+        title="What each simplification costs",
         before="The truncated lecture errs twice: by its two masses, here at most "
         '<output data-say="worth.masses"></output> of the peak, and by its two harmonics, '
         '<output data-say="worth.series"></output>. Choose a force: along the cylinder two masses '
@@ -128,7 +128,7 @@ def _worth(scene: Scene) -> Section:
         figure=Figure(
             name="worth",
             caption="Simulated, by the exact formula for two masses, and by the truncated lecture; "
-            "below what each step leaves out.",
+            "below, what each step leaves out.",
             plots=("A force, and its errors by cause",),
             knobs=(ratio_knob(scene), speed_knob(scene)),
             choices=(Choice("quantity", "force", _QUANTITIES, _QUANTITIES[0]),),
@@ -195,7 +195,7 @@ def _missing(result: Result, split: Budget) -> Question:
     wanted = simulated("missing", found, "N")
     return Question(
         name="ask_missing",
-        asked="How many newtons of the side thrust do the two masses make up, at most?",
+        asked="By how many newtons, at most, is the side thrust wrong because of the two masses?",
         wanted=wanted,
         hint="The strip below the side thrust shows it, with the slider where the rod has it.",
         tolerance=0.02,

@@ -1,4 +1,4 @@
-"""Lesson 6: why the speed is not constant: the balance of energy over a cycle."""
+"""Lesson 4: why the speed is not constant: the balance of energy over a cycle."""
 
 from __future__ import annotations
 
@@ -7,24 +7,28 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from crankmbs.lessons.freed import flywheel_knob, free, settled
+from crankmbs.lessons.freed import flywheel_knob, free, settled, textbook
 from crankmbs.lessons.pieces import Figure, Formula, Lesson, Question, Section, exact, simulated
-from crankmbs.lessons.runs import changed, named
+from crankmbs.lessons.runs import changed, named, speed_of
 from crankmbs.measures import Estimate, measure
 from crankmbs.measures.summary import largest
 from crankmbs.numerics.arrays import Array
+from crankmbs.page.knobs import Knob
 from crankmbs.result import Result
 from crankmbs.scene.run import Extent
 from crankmbs.scene.scene import Scene
+from crankmbs.scene.units import RPM
 
 __all__ = ["IDEA", "SCENE", "lesson"]
 
 SCENE = "yi_diesel_free"
 IDEA = (
     "The gas gives its work in pulses, the load takes it evenly. What is given and not yet taken "
-    "is kinetic energy, so the speed must swing: a flywheel cannot stop it, only make it small."
+    "is kinetic energy of everything that moves; the crank speeds up only where pistons and rods "
+    "leave some of it. A flywheel cannot stop the swing, only make it small."
 )
 _ENERGY = "The balance of energy"
+_SLOW = 0.24  # coefficient of fluctuation by energy with which the first figure begins
 
 
 def lesson(own: Scene) -> Lesson:
@@ -39,7 +43,7 @@ def lesson(own: Scene) -> Lesson:
     result = settled(changed(scene, run={"every": every}))
     return Lesson(
         idea=IDEA,
-        sections=(_moment(scene), _energy(scene), _speed(scene)),
+        sections=(_moment(scene, result), _energy(scene, result), _speed(scene)),
         questions=(_swing(result), _fluctuation(result), _inertia(result)),
         scene=scene,
         about=f"The machine: {named(own)}; its settled motion.",
@@ -47,21 +51,30 @@ def lesson(own: Scene) -> Lesson:
     )
 
 
-def _moment(scene: Scene) -> Section:
+def _moment(scene: Scene, result: Result) -> Section:
     return Section(
         title="The gas gives in pulses, the load takes evenly",
-        before="Turn the crank through a cycle. Where the gas gives more than the load takes, the "
-        "crank gains; where it gives less, or takes itself, the crank must pay. The load takes "
+        before="Turn the crank through a cycle at "
+        '<output data-say="moment.mean"></output>. The load takes '
         '<output data-say="moment.load"></output> on average, the gas gives up to '
-        '<output data-say="moment.most"></output>. Over the whole cycle the two areas are equal, '
-        "or the next cycle would be faster than this one.",
+        '<output data-say="moment.most"></output>. Where the gas gives more than the load takes, '
+        "the moving parts gain energy; whether the crank speeds up depends on what the pistons and "
+        "rods take of it. It does so over "
+        '<output data-say="moment.share"></output> of the angles with such a surplus: '
+        '<output class="told" data-say="moment.verdict"></output>. Now move the speed.',
         figure=Figure(
             name="moment",
-            caption="Work of the gas on all pistons per radian, and the torque of the load.",
-            plots=("What the gas gives and the load takes",),
-            forces="piston",
+            caption="Work per radian: what the gas gives to all pistons, what the load takes, and "
+            "what load, pistons and rods take together. The crank speeds up where the first is "
+            "above the last.",
+            plots=("What is given and taken", "Crank speed"),
+            knobs=(_speed_knob(scene, result),),
             ring=True,
         ),
+        after="Pistons and rods have to be thrown and caught again twice a turn, which takes a "
+        "torque that grows with the square of the speed; the gas and the load do not know the "
+        "speed. Over the whole cycle all areas are equal, or the next cycle would be faster than "
+        "this one.",
         formulas=(
             Formula(
                 r"\frac{dT}{d\varphi} = M_{\text{gas}} - M_{\text{load}}",
@@ -72,7 +85,18 @@ def _moment(scene: Scene) -> Section:
     )
 
 
-def _energy(scene: Scene) -> Section:
+def _speed_knob(scene: Scene, result: Result) -> Knob:
+    """A slider of the speed that begins where the crank follows the gas: so slow that the energy
+    makes the speed swing a lot."""
+    own = speed_of(scene) / RPM
+    slow = own * min(1.0, math.sqrt(_energy_swing(result) / _SLOW))
+    first = math.copysign(float(f"{abs(slow):.2g}"), own)
+    low, high = sorted((0.85 * first, 1.25 * own))
+    return Knob("speed", "speed", "rpm", low, high, first, 0)
+
+
+def _energy(scene: Scene, result: Result) -> Section:
+    work = exact("textbook_work", textbook(result).work, "J")
     return Section(
         title="The difference is stored as kinetic energy",
         before="Summed over the angle, the difference is the kinetic energy. It swings by "
@@ -86,6 +110,9 @@ def _energy(scene: Scene) -> Section:
             knobs=(flywheel_knob(scene),),
             ring=True,
         ),
+        after=f"The next lesson sizes a flywheel with $W$ = {work} for the engine as it is: its "
+        "$W$ also counts the inertia torque, which is what pistons and rods take from the crank "
+        "and give back at constant speed. Here their energy is part of the store.",
     )
 
 
@@ -125,6 +152,12 @@ def _range(result: Result, quantity: Callable[[Mapping[str, Array]], Array]) -> 
     return Estimate(high.value + low.value, high.error + low.error)
 
 
+def _energy_swing(result: Result) -> float:
+    """The coefficient of fluctuation by the energy: its swing over twice its mean."""
+    energy = result.data["kinetic_energy"].values
+    return float(np.ptp(energy) / (2.0 * energy.mean()))
+
+
 def _swing(result: Result) -> Question:
     wanted = simulated("swing", _range(result, lambda v: v["kinetic_energy"]), "J")
     return Question(
@@ -140,15 +173,14 @@ def _swing(result: Result) -> Question:
 
 def _fluctuation(result: Result) -> Question:
     found = measure(result)
-    energy = result.data["kinetic_energy"].values
-    wanted = exact("from_energy", float(np.ptp(energy) / (2.0 * energy.mean())), "%", 100.0)
+    wanted = exact("from_energy", _energy_swing(result), "%", 100.0)
     return Question(
         name="ask_fluctuation",
         asked="How much would the speed fluctuate by that swing alone, if the inertia were "
         "constant?",
         wanted=wanted,
         hint="Twice the mean kinetic energy is J times the square of the speed; the second figure "
-        "tells both energies.",
+        "shows both energies.",
         answer=f"By {wanted}, the swing over twice the mean energy. The run has "
         f"{simulated('fluctuation', found.fluctuation, '%', 100.0)}: what the inertia of rods and "
         "pistons adds, or takes away, is no small part.",
@@ -166,7 +198,7 @@ def _inertia(result: Result) -> Question:
         name="ask_inertia",
         asked="By how much does the inertia that the crank feels change over a turn?",
         wanted=wanted,
-        hint="The text above the last figure tells its least and its greatest value.",
+        hint="The text above the last figure gives its least and its greatest value.",
         answer=f"By {wanted}, above a least of {least:.4g} kg m².",
         tolerance=0.03,
     )

@@ -169,9 +169,10 @@ class Section:
 
 @dataclass(frozen=True)
 class Question:
-    """A question whose answer is typed with its unit; HTML in which $...$ is TeX.
+    """A question whose answer is typed, in the unit shown or with its own; words as in a section.
 
     name : its id; wanted : the number asked for; tolerance : relative; hint : where it is missed
+    also : other right numbers, in the same unit
     answer : in full, which opens when it is right or on a click
     """
 
@@ -181,13 +182,14 @@ class Question:
     hint: str
     answer: str
     tolerance: float = 0.01
+    also: tuple[float, ...] = ()
 
     @property
     def given(self) -> dict[str, Any]:
         """What the scripts take of it."""
         return {
             "name": self.name,
-            "value": self.wanted.value,
+            "values": [self.wanted.value, *self.also],
             "unit": self.wanted.unit,
             "tolerance": self.tolerance,
             "units": _UNITS[self.wanted.unit],

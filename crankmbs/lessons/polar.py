@@ -15,9 +15,9 @@ __all__ = ["IDEA", "SCENE", "lesson"]
 
 SCENE = "propeller"
 IDEA = (
-    "A bearing polar is a map: every point is the force at one crank angle, its distance from the "
-    "middle the size, its direction the direction. It tells where a bearing wears and where oil "
-    "may enter."
+    "A polar plot of a bearing force is a map: every point is the force at one crank angle, with "
+    "its size as the distance from the middle and its direction as it acts. It shows where a "
+    "bearing wears and where oil may enter."
 )
 
 
@@ -45,9 +45,9 @@ def _bearing(scene: Scene) -> Section:
         title="A point is a force",
         before="Drag the crank and watch the dot. The line from the middle to the dot is the force "
         "of the main bearing on the crank, X up along the engine and Y to the left, as in the "
-        "mechanism beside it. Its length over the crank angle is the other curve. It is greatest "
-        'with <output data-say="bearing.peak"></output> at a crank angle of '
-        '<output data-say="bearing.angle"></output>.',
+        "mechanism beside it. The other curve is its length over the crank angle. The force is "
+        'greatest, <output data-say="bearing.peak"></output>, at a crank angle '
+        'of <output data-say="bearing.angle"></output>.',
         figure=Figure(
             name="bearing",
             caption="The force of the main bearing on the crank over one cycle, as a polar and by "
@@ -56,8 +56,8 @@ def _bearing(scene: Scene) -> Section:
             beside=True,
             forces="crank",
         ),
-        after="Where the dot runs fast, the force changes quickly; where points crowd, the force "
-        "stays: a polar does not show time, so turn the crank to see it.",
+        after="The small dots are ten degrees apart: where they lie far from each other, the force "
+        "changes quickly; where they crowd, it stays.",
         formulas=(
             Formula(
                 r"F = \sqrt{F_X^2+F_Y^2},\quad \tan\gamma = \frac{F_Y}{F_X}",
@@ -87,17 +87,17 @@ def _pin(scene: Scene) -> Section:
 
 def _turning(scene: Scene) -> Section:
     return Section(
-        title="Turn with the pin, and see where oil may enter",
+        title="Seen from the turning pin: where oil may enter",
         before="The same force, now of the rod on the pin, in a frame that turns with the crank: "
         "up is outwards, left is ahead of the crank. The rod's inertia always pulls the pin "
         "outwards, so most of the loop lies there. A force presses on the side from which it "
-        "comes. The dotted ray points to where the pin is loaded least over the cycle, "
+        "comes. The dotted green line points to where the pin is loaded least over the cycle, "
         '<output data-say="turning.hole"></output> from outwards, counted against the clock: a '
         "good place for the oil hole.",
         figure=Figure(
             name="turning",
-            caption="Force of the rod on the crank pin in the frame of the crank; the ray counts "
-            "what presses within 60 degrees to either side.",
+            caption="Force of the rod on the crank pin in the frame of the crank; the green line "
+            "counts what presses within 60 degrees to either side.",
             plots=("Crank pin, in a frame that turns with it",),
             knobs=(speed_knob(scene),),
             forces="crank",

@@ -126,10 +126,13 @@ def even(scene: Scene) -> Scene:
     )
 
 
-def ratio_knob(scene: Scene, low: float = 0.1, high: float = 0.6) -> Knob:
-    """A slider of the rod ratio in which the scene's own lies."""
+def ratio_knob(
+    scene: Scene, low: float = 0.1, high: float = 0.6, first: float | None = None
+) -> Knob:
+    """A slider of the rod ratio in which the scene's own lies; it begins there, or at first."""
     own = scene.crank.radius / scene.rod.length
-    return Knob("rod_ratio", "rod ratio r/l", "", min(low, own), max(high, own), own, 3)
+    begin = own if first is None else first
+    return Knob("rod_ratio", "rod ratio r/l", "", min(low, own), max(high, own), begin, 3)
 
 
 def speed_knob(scene: Scene) -> Knob:

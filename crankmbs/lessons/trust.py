@@ -12,9 +12,9 @@ __all__ = ["IDEA", "SCENE", "lesson"]
 
 SCENE = "yi_diesel_free"
 IDEA = (
-    "A computer always gives a number. How many of its digits are true depends on the step and on "
-    "the order of the method; two runs with different steps can tell, and a number without its "
-    "error is only half an answer."
+    "A computer always gives a number. How many of its digits are correct depends on the step "
+    "and on the order of the method. Two runs with different steps show it, and a number without "
+    "its error is only half an answer."
 )
 
 _METHODS = ("Euler", "Heun", "Runge-Kutta")
@@ -49,16 +49,15 @@ def _method(own: str) -> Choice:
 
 def _step() -> Section:
     return Section(
-        title="Every step errs a little",
+        title="Every step makes a small error",
         before="A settled cycle ends with the speed with which it began. A method that goes in "
-        "steps misses that: here it takes "
-        '<output data-say="step.count"></output> steps and ends '
-        '<output data-say="step.end"></output> off. Make the steps smaller, then try a '
+        "steps does not get there: here it takes "
+        '<output data-say="step.count"></output> steps and is wrong by up to '
+        '<output data-say="step.off"></output>. Make the steps smaller, then try a '
         "better method.",
         figure=Figure(
             name="step",
-            caption="Crank speed over one settled cycle, exact and in steps; below what the steps "
-            "get wrong.",
+            caption="Crank speed over one settled cycle, exact and in steps; below, the error.",
             plots=("Crank speed, exact and in steps",),
             knobs=(_size(10.0),),
             choices=(_method("Euler"),),
@@ -66,7 +65,7 @@ def _step() -> Section:
         formulas=(
             Formula(
                 r"T_{n+1} = T_n + h\,M(\varphi_n, T_n)",
-                note="Euler's method: the torque at the begin of the step for the whole step.",
+                note="Euler's method: the torque at its beginning holds for the whole step.",
                 source=_ERRORS,
             ),
         ),
@@ -104,15 +103,15 @@ def _order() -> Section:
 
 def _stated() -> Section:
     return Section(
-        title="Two runs can state their error",
-        before="Nobody knows the true error, but two runs tell it nearly: that with half as many "
-        "steps errs about 2 to the p times as much, so their difference is that much of the finer "
-        "one's error, less one. The error stated is "
+        title="Two runs show how large the error is",
+        before="Nobody knows the true error, but two runs give a good estimate. With half as many "
+        "steps the error is about $2^p$ times as large, so the two runs differ by $2^p-1$ times "
+        "the error of the finer one. The error stated is "
         '<output data-say="stated.ratio"></output> times the true one here. An honest program '
-        "states one that is near, and never far below.",
+        "states one that is close to it, and never far below.",
         figure=Figure(
             name="stated",
-            caption="Correct digits, true and as two runs state them.",
+            caption="Correct digits: the true number, and as estimated from two runs.",
             plots=("True and stated",),
             knobs=(_size(5.0),),
             choices=(_method("Heun"),),
@@ -155,10 +154,10 @@ def _digits() -> Question:
 def _richardson() -> Question:
     return Question(
         name="ask_richardson",
-        asked="Two runs of order 2 with steps of 2° and 1° end at 3196.4 and 3199.1 rpm. By how "
-        "much is the second off, about?",
+        asked="Two runs of order 2 with steps of 2° and 1° end at 3196.4 and 3199.1 rpm. How "
+        "large, about, is the error of the second?",
         wanted=exact("off", (3199.1 - 3196.4) / 3.0, "rpm"),
-        hint="The first is off four times as much as the second.",
+        hint="The error of the first is four times that of the second.",
         answer="Their difference is three times the error of the second: 2.7 / 3 = 0.9 rpm.",
         tolerance=0.03,
     )

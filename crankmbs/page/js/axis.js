@@ -95,7 +95,8 @@ function ends(x) {
 }
 
 /** A range around values, which does not change with every little change of them. */
-function rangeOf(values) {
+function rangeOf(all) {
+  const values = all.filter((value) => !Number.isNaN(value)); // gaps
   let low = Math.min(...values);
   let high = Math.max(...values);
   if (!values.length) [low, high] = [-1, 1];

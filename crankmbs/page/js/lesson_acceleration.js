@@ -20,7 +20,7 @@ const VALLEY = {
     const at = leastAngle(ratioOf(cycle)) / DEGREE;
     const both = `at ${readable(at, 2)}° and ${readable(360 - at, 2)}°`;
     const places = at > 179.995 ? "at 180°" : both;
-    return { least: places };
+    return { least: places, ratio: readable(ratioOf(cycle), 3) };
   },
 };
 
@@ -90,32 +90,35 @@ function acceleration(cycle, about = { holds: { y: [-1.1, 1.6] } }) {
 function valley(cycle) {
   const { radius: r } = cycle.train.shape;
   const ratio = ratioOf(cycle);
-  const angles = spread(110, 250, 140);
-  const scaled = (theta) => {
+  const angles = spread(125, 235, 110);
+  const of = (theta) => {
     const v = cycle.at(theta);
     return v.cylinders[0].piston_acceleration / (r * v.crank_speed ** 2);
   };
-  const within = (theta) => Math.min(Math.max(theta / DEGREE, 110), 250);
+  const bottom = of(Math.PI);
+  const scaled = (theta) => of(theta) - bottom;
+  const truncated = (theta) => Math.cos(theta) + ratio * Math.cos(2 * theta) + 1 - ratio;
+  const within = (theta) => Math.min(Math.max(theta / DEGREE, 125), 235);
   const least = leastAngle(ratio) / DEGREE;
   const lowest = [least, 360 - least].map((at) => [at, scaled(at * DEGREE)]);
   return diagram({
     title: "acceleration near bottom dead centre",
     right: { text: "angle after top dead centre", unit: "degrees" },
-    up: { text: "acceleration over rω²", unit: "" },
+    up: { text: "acceleration less that at bottom dead centre, over rω²", unit: "" },
     curves: [
       { name: "piston", x: angles, y: angles.map((at) => scaled(at * DEGREE)) },
       {
         name: "two harmonics",
         style: "exact",
         x: angles,
-        y: angles.map((at) => Math.cos(at * DEGREE) + ratio * Math.cos(2 * at * DEGREE)),
+        y: angles.map((at) => truncated(at * DEGREE)),
       },
       ...lowest.map(([x, y], n) => ({
         name: n ? "" : "lowest", style: n ? "dots unnamed" : "dots", x: [x, x], y: [y, y + 1e-6],
       })),
     ],
     of: (theta) => [within(theta), scaled(within(theta) * DEGREE)],
-    holds: { y: [-0.9, -0.45] },
+    holds: { y: [-0.03, 0.06] },
   });
 }
 

@@ -53,7 +53,17 @@ const COUPLE = {
   },
   says: (cycle) => {
     const values = cycle.samples.map((v) => Math.abs(v.rocking_moment_y));
-    return { most: `${readable(Math.max(...values), 0)} N m` };
+    const most = `${readable(Math.max(...values), 0)} N m`;
+    const count = cycle.train.cylinders.length;
+    return {
+      most,
+      words: most === "0 N m"
+        ? `The pistons of ${count} cylinders move as mirror images about the middle of the crank: ` +
+          "both ends are pushed alike, and nothing rocks the engine."
+        : `The forces of ${count} cylinders sum to nothing in the first order, but they do not ` +
+          "act in one place: seen from the side, one end of the engine is pushed up while the " +
+          "other is pulled down.",
+    };
   },
   draw: drawRow,
 };

@@ -11,16 +11,40 @@ export function start() {
 
 const MOMENT = {
   shapes: (cycle) => {
-    const curves = [
-      { name: "the gas gives", of: gasTorque },
-      { name: "the load takes", style: "exact", of: (v) => -v.external_torque },
+    const { inertia } = cycle.scene.crank;
+    const torques = [
+      { name: "gas", of: gasTorque },
+      { name: "load", style: "exact", of: (v) => -v.external_torque },
+      {
+        name: "load, pistons and rods",
+        style: "second",
+        of: (v) => gasTorque(v) - inertia * v.crank_acceleration,
+      },
     ];
-    return [overAngle(cycle, { title: "torque", unit: "N m", curves })];
+    const speeds = [
+      { name: "crank speed", of: (v) => v.crank_speed / RPM },
+      { name: "its mean", style: "plain", of: () => cycle.mean / RPM },
+    ];
+    return [
+      overAngle(cycle, { title: "torque", unit: "N m", curves: torques }),
+      overAngle(cycle, { title: "crank speed", unit: "rpm", curves: speeds }),
+    ];
   },
   says: (cycle) => {
     const load = mean(cycle, (v) => -v.external_torque);
     const most = Math.max(...cycle.samples.map(gasTorque));
-    return { load: `${readable(load, 1)} N m`, most: `${readable(most, 0)} N m` };
+    const surplus = cycle.samples.filter((v) => gasTorque(v) > -v.external_torque);
+    const faster = surplus.filter((v) => v.crank_acceleration * cycle.sense > 0);
+    const share = (100 * faster.length) / surplus.length;
+    return {
+      mean: `${readable(cycle.mean / RPM, 0)} rpm`,
+      load: `${readable(load, 1)} N m`,
+      most: `${readable(most, 0)} N m`,
+      share: `${readable(share, 0)} %`,
+      verdict: share > 50
+        ? "pistons and rods take little, and the crank follows the gas"
+        : "pistons and rods take more than the surplus, and the crank slows down where they do",
+    };
   },
 };
 

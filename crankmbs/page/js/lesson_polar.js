@@ -5,6 +5,7 @@ import { drawn } from "./quantities.js";
 import { diagram, overAngle } from "./shapes.js";
 
 const KN = 1e3;
+const TEN = Math.PI / 18;
 const DIRECTIONS = 180; // at which the load of the pin's surface is looked at
 const WIDE = Math.PI / 3; // rad to either side: how far a load presses on the surface
 
@@ -40,6 +41,8 @@ const TURNING = {
     const { phase } = cycle.train.cylinders[0];
     const force = (v) => onPin(v, phase).map((each) => each / KN).reverse();
     const points = cycle.samples.map(force);
+    const across = points.map(([a]) => a);
+    const along = points.map(([, b]) => b);
     const { x, y } = outline(cycle, points);
     return [diagram({
       title: "force of the rod on the pin, as the pin feels it",
@@ -47,8 +50,9 @@ const TURNING = {
       right: { text: "across the crank", unit: "kN" },
       up: { text: "outwards along the crank", unit: "kN" },
       curves: [
-        { name: "force on the pin", x: points.map(([a]) => a), y: points.map(([, b]) => b) },
+        { name: "force on the pin", x: across, y: along },
         { name: "where it is loaded least", style: "second", x, y },
+        dots(cycle, across, along),
       ],
       of: (theta) => force(cycle.at(theta)),
     })];
@@ -60,10 +64,20 @@ const TURNING = {
   },
 };
 
-/** The simulated curve of a diagram alone. */
+/** The simulated curve of a polar, with dots. */
 function run(name, cycle) {
   const shape = drawn(name, cycle, 0);
-  return { ...shape, curves: shape.curves.slice(0, 1) };
+  const [{ x, y }] = shape.curves;
+  return { ...shape, curves: [shape.curves[0], dots(cycle, x, y)] };
+}
+
+/** A dot every ten degrees of the crank angle, as a line with gaps. */
+function dots({ angles }, x, y) {
+  const step = TEN / Math.abs(angles[1] - angles[0]);
+  const count = Math.floor((angles.length - 1) / step + 1e-9);
+  const at = Array.from({ length: count + 1 }, (_, n) => Math.round(n * step));
+  const gaps = (values) => at.flatMap((k) => [values[k], values[k], NaN]);
+  return { name: "every 10°", style: "dots", x: gaps(x), y: gaps(y) };
 }
 
 /** The largest force of a cycle in a joint, and at which crank angle; in the quick pass that of the

@@ -48,6 +48,7 @@ export class Plot {
     this.most = sizeOf(shape.curves[0]);
     this.marks = marks;
     this.root.classList.toggle("diagram", isDiagram(shape));
+    this.root.classList.toggle("square", Boolean(shape.equal));
     if (this.ghost && this.ghost.title !== shape.title) this.ghost = null;
     this.trace();
   }
@@ -125,7 +126,9 @@ export class Plot {
     const at = this.hover ?? degrees;
     if (isDiagram(shape)) {
       const [x, y] = shape.of((at * Math.PI) / 180);
-      pen.add("circle", { cx: upper.right(x), cy: upper.up(y), r: 0.35 * this.type });
+      const end = { x2: upper.right(x), y2: upper.up(y) };
+      if (shape.equal) pen.add("line", { x1: upper.right(0), y1: upper.up(0), ...end });
+      pen.add("circle", { cx: end.x2, cy: end.y2, r: 0.35 * this.type });
     } else {
       const x = upper.right(degrees);
       const bottom = (lower ?? upper).box.bottom;

@@ -1,27 +1,26 @@
-/** A question: an answer is typed with its unit, and checked; what is near is not yet right. */
+/** A question: an answer is typed, in the unit shown or with its own, and checked; what is near is
+ * not yet right. */
 
 const NUMBER = /^([+-]?(?:\d+[.,]?\d*|[.,]\d+)(?:e[+-]?\d+)?)\s*(.*)$/i;
 
 /** What a typed answer is worth: { verdict, text }, the verdict "right", "wrong" or "unclear".
  *
- * question : { value, unit, tolerance relative, units, hint } with the answer in `unit`, and units
+ * question : { values that are right in `unit`, unit, tolerance relative, units, hint }, with units
  * that may be typed, each by its factor to `unit`
  */
-export function judged(typed, { value, unit, tolerance, units, hint }) {
+export function judged(typed, { values, unit, tolerance, units, hint }) {
   const match = NUMBER.exec(typed.trim().replace(/[\u2212\u2013]/g, "-"));
-  if (!match) {
-    return { verdict: "unclear", text: `A number with its unit, please, such as 1.5 ${unit}.` };
-  }
-  const factor = units[plain(match[2])];
+  const shown = unit && `\u00a0${unit}`;
+  if (!match) return { verdict: "unclear", text: `A number, please, such as 1.5${shown}.` };
+  const factor = match[2] ? units[plain(match[2])] : 1;
   if (factor === undefined) {
-    const came = match[2] ? `“${match[2]}” is no unit of it` : "The unit is missing";
-    return { verdict: "unclear", text: `${came}: answer in ${unit}.` };
+    const wanted = unit ? `in ${unit}` : "by a number without a unit";
+    return { verdict: "unclear", text: `“${match[2]}” does not fit here: answer ${wanted}.` };
   }
   const found = Number(match[1].replace(",", ".")) * factor;
-  const off = Math.abs(found - value);
-  if (off <= tolerance * Math.abs(value)) return { verdict: "right", text: "Right." };
-  const text = off <= 5 * tolerance * Math.abs(value) ? `Close, but not there. ${hint}` : hint;
-  return { verdict: "wrong", text };
+  const off = Math.min(...values.map((value) => Math.abs(found / value - 1)));
+  if (off <= tolerance) return { verdict: "right", text: "Right." };
+  return { verdict: "wrong", text: off <= 5 * tolerance ? `Close, but not there. ${hint}` : hint };
 }
 
 /** A unit without what may be written one way or the other. */
