@@ -19,9 +19,8 @@ RPM = math.pi / 30.0
 _NEAR = 0.02  # rad: a minimum so near to bottom dead centre is taken to lie there
 
 
-def swing(phi, ratio):
+def swing(phi, ratio, h=1e-4):
     """Acceleration of a central piston over r omega^2, by differences of its place."""
-    h = 1e-4
     place = [1.0 - np.cos(p) + (1.0 - np.sqrt(1.0 - (ratio * np.sin(p)) ** 2)) / ratio
              for p in (phi - h, phi, phi + h)]  # fmt: skip
     return (place[0] - 2.0 * place[1] + place[2]) / h**2
@@ -305,12 +304,12 @@ def omega(moment, energy, speed):
     taken = 0.5 * np.gradient(feels, angles) * fast**2 + moving * alpha
     yield "taken", np.median(np.abs(y(moment, 2) - load - taken)) < 0.01 * taken.max()
     yield "faster", bool(np.all(((y(moment, 0) > y(moment, 2)) == (alpha > 0.0))[1:-1]))
-    yield "crank speed", same(y(moment, 0, 1), fast / RPM)
-    yield "mean speed", same(y(moment, 1, 1), np.full(len(fast), moment["mean"] / RPM))
+    shown = fast / RPM, np.full(len(fast), moment["mean"] / RPM)
+    yield "crank speed", all(same(y(moment, k, 1), each) for k, each in enumerate(shown))
     yield "says mean", said(moment, "mean", moment["mean"] / RPM)
-    share = 100.0 * np.mean(alpha[gas > load] > 0.0)
+    share, follows = 100.0 * np.mean(alpha[gas > load] > 0.0), "follows the gas"
     yield "share", said(moment, "share", share)
-    yield "verdict", ("follows the gas" in moment["says"]["verdict"]) == (share > 50.0)
+    yield "verdict", (follows in moment["says"]["verdict"]) == (share > 50.0)
     kinetic = column(energy, "kinetic_energy")
     yield "energy", same(y(energy, 0), kinetic)
     yield "its mean", same(y(energy, 1), np.full(len(kinetic), kinetic[1:].mean()))
