@@ -24,7 +24,7 @@ def drawing_holds(said, scene, data, k):
                 and turns(pose["web"], theta + cylinder.phase + cylinder.bank)
                 and turns(pose["mark"], theta)
                 and ring_holds(pose, theta, lead, most)
-                and arrows_hold(pose, said["forces"][body][n], 20.0 * crank.radius)
+                and arrows_hold(pose, said["forces"][body][n], largest(said["forces"][body]))
             )
             if not ok:
                 return False
@@ -64,7 +64,7 @@ def ring_holds(pose, theta, lead, most):
     words = pose["says"]
     if words == "the crank turns evenly":
         return most <= 1e-9 and pose["ring"] is None
-    times = float(words.rpartition("shown ")[2].removesuffix(" times"))
+    times = float(words.rpartition("drawn ")[2].removesuffix(" times as large"))
     degrees, where = words.removeprefix("crank ").split("° ")
     ahead = "ahead" if lead > 0.0 else "behind"
     return (
@@ -76,19 +76,31 @@ def ring_holds(pose, theta, lead, most):
     )
 
 
-def arrows_hold(pose, forces, least):
-    """Their lengths are to the scale's bar as their forces to what it says, and all are there that
-    are not too short [mm]."""
+def largest(samples):
+    """Of the forces on a body over the cycle [N]."""
+    return max(abs(complex(*each["force"])) for arrows in samples for each in arrows)
+
+
+def arrows_hold(pose, forces, most):
+    """Their lengths are to the scale's bar as the roots of their forces to that of what it says,
+    and all are there that are above a hundredth of the largest, with a line to their names, which
+    stand beside the drawing in rows of their own."""
     path, text = pose["bar"]
-    newtons, unit, *_ = text["text"].replace(",", "").split()
+    newtons, unit, *_ = text["text"].split()
     size = float(newtons) * (1e3 if unit == "kN" else 1.0)
     bar = float(path["d"].partition("h")[2].partition("v")[0])
     by_name = {each["name"]: complex(*each["force"]) for each in forces}
-    for arrow, name in zip(pose["arrows"], pose["names"], strict=True):
+    shown = {name: force for name, force in by_name.items() if abs(force) >= 0.01 * most}
+    if len(pose["arrows"]) != len(shown):
+        return False
+    for arrow, force in zip(pose["arrows"], shown.values(), strict=True):
         points = [complex(*map(float, each.split())) for each in arrow["d"][1:-1].split("L")]
         drawn = points[3] - 0.5 * (points[0] + points[-1])
-        force = by_name[name["text"]]
-        if abs(drawn - bar / size * complex(-force.imag, -force.real)) > 0.3:
+        long = bar * math.sqrt(abs(force) / size)
+        if abs(drawn - long * complex(-force.imag, -force.real) / abs(force)) > 0.3:
             return False
-    long = {name for name, force in by_name.items() if bar / size * abs(force) > least}
-    return {each["text"] for each in pose["names"]} == long
+    rows = {side: [float(each["y"]) for each in pose["names"] if each["text-anchor"] == side]
+            for side in ("start", "end")}  # fmt: skip
+    letters = float(text["font-size"])
+    apart = all(np.all(np.diff(each) >= 1.2 * letters) for each in rows.values())
+    return apart and {each["text"] for each in pose["names"]} == set(shown)

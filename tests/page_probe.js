@@ -50,7 +50,7 @@
     forces: bodies.map((body) => shown.samples.map((v) =>
       page.forces.forcesOn(body, shown.train, v, k))),
     poses: bodies.map((body) => poses.map((n) => posed(body, n))),
-    numbers: page.words.numbersOf(shown, 2.3e-5), badge: page.words.badgeOf(shown, given.endings),
+    numbers: page.words.numbersOf(shown), badge: page.words.badgeOf(shown, given.endings),
     marks: page.words.deadCentreMarks(shown, k, dead),
     rim: page.drawing.inertiaOfRim(posed("none", 0).rim.r / 1000, asked.crank.radius),
     even: evens

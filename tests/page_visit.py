@@ -18,13 +18,16 @@ PASSES = "() => !document.getElementById('numbers').textContent.includes('…')"
 
 
 @contextmanager
-def opened(browser, folder, scene, address="", **options):
-    """A page of a scene, or of that of a name."""
+def opened(browser, folder, scene, address="", *, everything=True, **options):
+    """A page of a scene, or of that of a name; everything : unfolded."""
     scene = load_scene(scene) if isinstance(scene, str) else scene
     file = folder / "page.html"
     file.write_text(page_of(scene, "mine"), encoding="utf-8")
     with visiting(browser, offline=True, **options) as visit:
         visit.page.goto(f"{file.as_uri()}{address}")
+        if everything and visit.page.get_attribute("#more", "aria-expanded") == "false":
+            visit.page.click("#more")
+            visit.page.evaluate("document.activeElement.blur()")
         yield Opened(visit, file)
 
 

@@ -16,7 +16,7 @@ from crankmbs.errors import InputError
 from crankmbs.mechanics.variables import EVERY
 from crankmbs.motion.ending import Ending
 from crankmbs.page.export import encoded, exported, rules
-from crankmbs.page.knobs import FIRING_ORDERS, Choice, choices_of, knobs_of
+from crankmbs.page.knobs import FIRING_ORDERS, Choice, choices_of, first_of, knobs_of
 from crankmbs.page.refusals import early_end, refusals, settling
 from crankmbs.page.script import joined
 from crankmbs.scene.parts import LIGHT_CRANK
@@ -40,10 +40,15 @@ _ENDINGS = {
         "crankmbs run --until settled shows it"
     ),
     "light": NEAR_REST,
-    "slow": f"the crank comes near rest, where time must be the variable; {_ON}",
+    "slow": (
+        "too light or too slow: the engine would stall or come near rest, where time must be the "
+        f"variable; {_ON}"
+    ),
     "held": f"a jump of the loads holds the speed from both sides; {_ON}",
 }
 _FOLD = f"fold: the rod folds onto the crank, where the motion is not determined; {_ON}"
+
+_PLAIN = {"given": "as in the scene", "rebalanced": "scaled to hold the speed"}
 
 _FLUCTUATION = (
     "fluctuation: the {what} is {percent:.4g} %, with the flywheel of {end:g} kg m^2 at the end of "
@@ -85,6 +90,9 @@ def page_of(scene: Scene, stem: str) -> str:
         prescribed=scene.motion is not None,
         uneven="" if scene.fuel is None else UNEVEN,
         choices={choice.name: choice for choice in choices},
+        plain=_PLAIN,
+        first=first_of(shown),
+        settles=shown.settles and not scene.settles,
         policy=policy(script, style),
         script=Markup(script),
         style=Markup(style),
@@ -111,6 +119,7 @@ def _given(scene: Scene, stem: str, choices: tuple[Choice, ...]) -> dict[str, An
         "knobs": [dataclasses.asdict(knob) for knob in knobs_of(scene)],
         "words": [{"name": choice.name, "words": choice.words} for choice in choices],
         "own": {choice.name: choice.own for choice in choices},
+        "first": first_of(scene).knobs,
         "compression": None if indicator is None else indicator.compression_ratio,
         "units": {name: variable.units for name, variable in EVERY.items()},
     }

@@ -12,7 +12,7 @@ from crankmbs.scene.scene import Scene
 from crankmbs.scene.tables import CylinderTable
 from crankmbs.scene.units import RPM
 
-__all__ = ["AS_GIVEN", "FIRING_ORDERS", "Choice", "Knob", "choices_of", "knobs_of"]
+__all__ = ["AS_GIVEN", "FIRING_ORDERS", "Choice", "Knob", "choices_of", "first_of", "knobs_of"]
 
 AS_GIVEN = "given"
 _EVEN = 0.01  # coefficient of fluctuation with the heaviest flywheel of a prescribed speed
@@ -50,6 +50,39 @@ class Choice:
     label: str
     words: tuple[str, ...]
     own: str
+
+
+@dataclasses.dataclass(frozen=True)
+class First:
+    """What the page begins with: a question, what to look at and turn, and the names of knobs."""
+
+    question: str
+    sentence: str
+    knobs: tuple[str, ...]
+
+
+def first_of(scene: Scene) -> First:
+    """The question of a scene, free or of prescribed speed, and the knobs that answer it.
+
+    >>> first_of(load_scene("propeller")).question
+    'Why does the speed swing?'
+    """
+    there = [knob.name for knob in knobs_of(scene)]
+    if scene.motion is None:
+        question = "Why does the speed swing?"
+        sentence = (
+            "The torque comes in pulses, the load takes it evenly; crank, rods and pistons store "
+            "the difference. Make the flywheel heavier: the swing becomes small, never zero."
+        )
+        wanted = ("flywheel", "load", "speed", "rod_mass", "rod_ratio")
+    else:
+        question = "What does the length of the rod change?"
+        sentence = (
+            "A short rod tilts more: the piston is thrown harder at the top than at the bottom, "
+            "and pressed harder against the wall. Make the rod ratio larger and watch both."
+        )
+        wanted = ("rod_ratio", "speed", "rod_mass", "offset")
+    return First(question, sentence, tuple(name for name in wanted if name in there)[:3])
 
 
 def knobs_of(scene: Scene) -> tuple[Knob, ...]:
@@ -136,7 +169,7 @@ def _machine(scene: Scene) -> list[Knob]:
         center = scene.crank.center_of_mass * 1e3
         wide = max(_above(r), abs(center))
         about = "the crank's centre of mass from its axis; below 0 a counterweight"
-        title = "crank's centre"
+        title = "crank's centre of mass"
         knobs.append(Knob("counterweight", title, "mm", -wide, wide, center, 1, about))
     return knobs
 

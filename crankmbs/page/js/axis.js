@@ -18,6 +18,12 @@ export function frameOf(box, curves, { shape, overAngle, holds = {} }) {
   return { box, right, up, x, y };
 }
 
+/** The value of a frame's axis at a pointer. */
+export function valueAt({ clientY }, svg, { box, y }) {
+  const part = (box.bottom - clientY + svg.getBoundingClientRect().top) / (box.bottom - box.top);
+  return y.low + part * (y.high - y.low);
+}
+
 /** Draw the axes of a frame into a group.
  *
  * about : { type in pixels, shape, marks at dead centres, overAngle, last whether the angles stand
@@ -42,6 +48,7 @@ function ordinate({ pen, lines }, box, up, { y, type }) {
   if (ticks.length < 2) { // one says nothing of the scale
     ({ ticks, step } = roundTicks(y.low, y.high, 2 * count));
     if (ticks.length > 3) ticks = ticks.filter((tick) => Math.round(tick / step) % 2 === 0);
+    if (ticks.length === 3 && up(ticks[0]) - up(ticks[1]) < 0.9 * type) ticks.splice(1, 1);
   }
   for (const tick of ticks) {
     const at = up(tick);

@@ -3,7 +3,7 @@ import { Player } from "./player.js";
 import { choices } from "./quantities.js";
 import { set, write } from "./svg.js";
 import { spanOf } from "./view.js";
-import { badgeOf, numbersOf } from "./words.js";
+import { badgeOf, numbersOf, trustOf } from "./words.js";
 
 let shownAs = ""; // the choices that stand there, as text
 
@@ -60,7 +60,8 @@ export function showSlower(cycle, changed) {
 /** Measures, badge, whether the pressure was carried over, and whether a flywheel can be sought.
  * error : of the quick pass */
 export function showWords(given, cycle, error) {
-  const all = numbersOf(cycle, error);
+  const all = numbersOf(cycle);
+  write(find("trust"), trustOf(error));
   const list = find("numbers");
   while (list.children.length > all.length) list.lastChild.remove();
   all.forEach(([name, value], n) => {
@@ -93,6 +94,22 @@ function options(select, count) {
 export function unused(cycle, given, values) {
   if (cycle.prescribed && given.scene.motion === null) return ["flywheel", "load"];
   return values.load_is === "rebalanced" ? ["load"] : [];
+}
+
+/** Say a sentence in the place of the badge, or none. stale : whether the picture is another one
+ * than the knobs say */
+export function say(sentence, stale = false) {
+  find("message").textContent = sentence;
+  find("message").hidden = sentence === "";
+  find("badge").hidden = sentence !== "";
+  document.body.classList.toggle("stale", stale);
+}
+
+/** Unfold all that the page has, or fold it to what it begins with. */
+export function unfold(all) {
+  document.documentElement.classList.toggle("full", all);
+  set(find("more"), { "aria-expanded": String(all) });
+  write(find("more"), all ? "show less" : "show all");
 }
 
 /** Large type for a projector, or no longer. */

@@ -42,7 +42,8 @@ export class Figure {
 
   listen() {
     const { spec, lesson, root } = this;
-    this.knobs = new Knobs(this.find(".sliders"), spec.knobs, lesson.given.sentences, {
+    const { sentences } = lesson.given;
+    this.knobs = new Knobs(this.find(".sliders"), { knobs: spec.knobs, sentences }, {
       turn: (name, value) => this.turn(name, value),
       release: () => {},
       refuse: (sentence) => this.say(sentence),

@@ -26,7 +26,11 @@ export function filled(template, values) {
 
 /** A value as a message repeats it, cut to a readable length. */
 export function shown(value) {
-  const text = JSON.stringify(value).split(/\s+/).join(" ").trim();
+  return cut(JSON.stringify(value).split(/\s+/).join(" ").trim());
+}
+
+/** A text cut to a readable length. */
+export function cut(text) {
   return text.length <= 60 ? text : `${text.slice(0, 56)} ...`;
 }
 
@@ -35,6 +39,12 @@ export function readable(x, decimals) {
   if (!Number.isFinite(x)) return "–";
   const text = x.toFixed(decimals);
   return Number(text) === 0 ? (0).toFixed(decimals) : text.replace("-", "\u2212");
+}
+
+/** A value with room for the longest of its curve, so that nothing beside it moves. */
+export function padded(value, decimals, size) {
+  const longest = readable(-size, decimals).length;
+  return readable(value, decimals).padEnd(longest, "\u2007");
 }
 
 /** How many digits after the point show a size in four digits. */

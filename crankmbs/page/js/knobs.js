@@ -4,16 +4,19 @@ import { numberOf } from "./state.js";
 
 export class Knobs {
   /** root : where they stand, its data-prefix before their ids; knobs : { name, label, unit, low,
-   * high, value, decimals, about }; rules : templates of sentences; on : { turn(name, value),
-   * release(), refuse(sentence) } */
-  constructor(root, knobs, rules, on) {
-    this.rules = rules;
+   * high, value, decimals, about }; sentences : templates; first : names of those that the page
+   * begins with, else all; on : { turn(name, value), release(), refuse(sentence) } */
+  constructor(root, { knobs, sentences, first = null }, on) {
+    this.rules = sentences;
     this.on = on;
-    this.made = new Map(knobs.map((knob) => [knob.name, this.make(root, knob)]));
+    this.made = new Map(knobs.map((knob) => {
+      const rest = first !== null && !first.includes(knob.name);
+      return [knob.name, this.make(root, knob, rest ? "knob rest" : "knob")];
+    }));
   }
 
-  make(root, knob) {
-    const row = element("div", "knob", root);
+  make(root, knob, kind) {
+    const row = element("div", kind, root);
     const label = element("label", "", row);
     label.htmlFor = `${root.dataset.prefix ?? ""}knob-${knob.name}`;
     label.textContent = knob.label;

@@ -58,8 +58,8 @@ const COUPLE = {
     return {
       most,
       words: most === "0 N m"
-        ? `The pistons of ${count} cylinders move as mirror images about the middle of the crank: ` +
-          "both ends are pushed alike, and nothing rocks the engine."
+        ? `The pistons of ${count} cylinders move as mirror images about the middle of the ` +
+          "crank: both ends are pushed alike, and nothing rocks the engine."
         : `The forces of ${count} cylinders sum to nothing in the first order, but they do not ` +
           "act in one place: seen from the side, one end of the engine is pushed up while the " +
           "other is pulled down.",

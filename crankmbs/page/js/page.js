@@ -1,7 +1,7 @@
 /** The page: knobs, mechanism and plots of one scene, and what happens between them. */
 import { decoded } from "./answers.js";
 import { fillChoices, find, listenToChoices, showChoices, showSlower } from "./controls.js";
-import { enlarge, showWords, unused } from "./controls.js";
+import { enlarge, say, showWords, unfold, unused } from "./controls.js";
 import { cycleOf } from "./cycle.js";
 import { dragged } from "./drag.js";
 import { Engine } from "./engine.js";
@@ -21,7 +21,7 @@ import { firstView, keysOf, tellingPose } from "./view.js";
 import { deadCentreMarks } from "./words.js";
 
 const DEGREE = Math.PI / 180;
-const LATER = 100; // ms after the last turn of a knob: the second pass
+const LATER = 100; // ms after a knob is let go: the second pass
 const PLOTS = ["upper", "lower"];
 
 /** Begin with what Python wrote into the page. */
@@ -47,10 +47,10 @@ class Page {
 
   listen() {
     const { given } = this;
-    this.knobs = new Knobs(find("sliders"), given.knobs, given.sentences, {
+    this.knobs = new Knobs(find("sliders"), given, {
       turn: (name, value) => this.turn(name, value),
       release: () => this.release(),
-      refuse: (sentence) => this.say(sentence),
+      refuse: say,
     });
     find("fluctuation")?.addEventListener("change", ({ target }) => this.even(target.value));
     dragged(this.stage, {
@@ -71,6 +71,7 @@ class Page {
     this.press("toml", () => save(...sceneFile(given, this.values, this.cycle)));
     this.press("csv", () => save(...dataFile(given, this.cycle)));
     this.press("large", enlarge);
+    this.press("more", () => unfold(find("more").getAttribute("aria-expanded") === "false"));
     find("angle").addEventListener("input", (event) => {
       this.play(false);
       this.seek(Number(event.target.value) * DEGREE);
@@ -99,16 +100,16 @@ class Page {
 
   begin() {
     this.update();
-    this.say("");
     if (location.hash.length > 1) this.open(location.hash);
-    if (this.cycle === null) return;
-    if (this.view.angle === null) this.seek(tellingPose(this.cycle));
+    this.refineLater();
+    if (this.cycle === null || this.view.angle !== null) return;
+    this.seek(tellingPose(this.cycle));
     this.play(!matchMedia("(prefers-reduced-motion: reduce)").matches);
   }
 
   /** Show the state that an address says; what cannot be leaves the page as it is. */
   open(address) {
-    const before = { values: this.values, view: this.view };
+    const { values, view } = this;
     try {
       const state = this.address.read(address);
       this.view = { ...firstView(this.given) };
@@ -116,16 +117,21 @@ class Page {
       for (const [name, value] of Object.entries(state)) {
         (name in this.view ? this.view : this.values)[name] = value;
       }
+      const begun = [...this.given.first, "angle"];
+      if (Object.keys(state).some((name) => !begun.includes(name))) unfold(true);
       this.compute();
-      this.say("");
+      say("");
     } catch (refused) {
       if (!(refused instanceof Refused)) throw refused;
-      Object.assign(this, before);
-      this.say(refused.message);
+      Object.assign(this, { values, view });
+      say(refused.message);
     }
     this.knobs.show(this.values);
     this.redraw();
-    if (this.view.angle !== null) this.seek(this.view.angle * DEGREE);
+    this.refineLater();
+    if (this.view.angle === null) return;
+    this.play(false);
+    this.seek(this.view.angle * DEGREE);
   }
 
   /** Give a knob a value; without one, the scene's own. */
@@ -166,7 +172,7 @@ class Page {
       this.release();
     } catch (refused) {
       if (!(refused instanceof Refused)) throw refused;
-      this.say(refused.message);
+      say(refused.message);
     }
   }
 
@@ -178,28 +184,30 @@ class Page {
     this.release();
   }
 
-  /** Compute and draw; where it cannot be, keep the last good picture and say why. */
+  /** Compute and draw; where it cannot be, grey the last good picture and say why. */
   update() {
     try {
       this.compute();
-      this.say("");
+      say("");
     } catch (refused) {
       if (!(refused instanceof Refused)) throw refused;
-      this.say(refused.message);
-      return;
+      return say(refused.message, true);
     }
-    this.redraw();
+    return this.redraw();
   }
 
   compute() {
     const { values } = this;
     const asked = this.turner.scene(values);
     this.cycle = this.pass(this.quick, asked, values, { warm: this.cycle });
-    this.asked = asked;
-    this.good = values;
-    this.error = null;
+    Object.assign(this, { asked, good: values, error: null });
     clearTimeout(this.later);
-    this.later = setTimeout(() => this.refine(), LATER);
+  }
+
+  /** The second pass, once a hand has let go. */
+  refineLater() {
+    clearTimeout(this.later);
+    if (this.error === null && this.cycle) this.later = setTimeout(() => this.refine(), LATER);
   }
 
   /** The cycle of a scene that is asked for, by an engine. */
@@ -255,9 +263,8 @@ class Page {
     this.stage.pose(theta);
     for (const name of PLOTS) this.plots[name].place(degrees);
     find("angle").value = degrees;
-    const text = `${degrees.toFixed(0)}°`;
-    find("angle").setAttribute("aria-valuetext", text);
-    write(find("degrees"), text);
+    write(find("degrees"), `${degrees.toFixed(0)}°`);
+    find("angle").setAttribute("aria-valuetext", find("degrees").textContent);
     write(find("lead"), this.stage.leadInWords(theta));
   }
 
@@ -271,30 +278,23 @@ class Page {
     if (event.target.closest("input, select, button, textarea")) return;
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const step = { ArrowLeft: -1, ArrowRight: 1, ArrowDown: -1, ArrowUp: 1 }[event.key];
-    if (event.key === " ") {
-      this.play(!this.player.playing);
-    } else if (step) {
+    if (event.key === " ") this.play(!this.player.playing);
+    else if (step) {
       this.play(false);
       const degrees = Math.round(this.theta / DEGREE) + step * (event.shiftKey ? 10 : 1);
       this.seek(degrees * DEGREE);
       this.release();
-    } else {
-      return;
-    }
+    } else return;
     event.preventDefault();
   }
 
-  /** Keep in the address what is shown. */
+  /** A hand lets go: refine, and keep in the address what is shown. */
   release() {
+    this.refineLater();
     const first = firstView(this.given);
     const view = Object.entries(this.view).filter(([name, value]) => value !== first[name]);
     const state = { ...this.good, ...Object.fromEntries(view) };
     if (!this.player.playing) state.angle = Number((this.theta / DEGREE).toFixed(3));
     history.replaceState(null, "", this.address.write(state));
-  }
-
-  say(sentence) {
-    find("message").textContent = sentence;
-    find("message").hidden = sentence === "";
   }
 }

@@ -3,12 +3,13 @@
  * It is drawn in pixels of the page, so that its type has the size of the page's; the cursor can
  * be dragged, and what lies under the pointer is read out.
  */
-import { drawAxes, frameOf } from "./axis.js";
-import { decimalsFor, readable } from "./format.js";
+import { drawAxes, frameOf, valueAt } from "./axis.js";
+import { decimalsFor, padded, readable } from "./format.js";
 import { Pen, add, lineOf, set, watched, write } from "./svg.js";
 
 const STRIP = 0.3; // of the height, for the differences
 const PEAKED = "gas pressure"; // the curve of which the peak can be dragged
+const SLIP = 8; // px that a finger moves across before it turns the crank: else it scrolls
 const NOTHING = 1e-9; // of the largest value: a difference that is none
 
 export class Plot {
@@ -26,7 +27,7 @@ export class Plot {
     this.degrees = 0;
     this.hover = null;
     this.size = null;
-    this.held = this.peak = null;
+    this.held = this.peak = this.from = null;
     this.axes = { upper: add(this.svg, "g"), lower: add(this.svg, "g") };
     this.lines = add(this.svg, "g", { transform: "scale(0.1)" });
     this.cursor = add(this.svg, "g", { class: "cursor" });
@@ -181,14 +182,14 @@ export class Plot {
   values(degrees) {
     const { curves, differences } = this.shape;
     const run = this.shape.of((degrees * Math.PI) / 180);
-    const decimals = decimalsFor(this.most);
     const styled = curves.map((curve, n) => {
       const value = n === 0 ? run : between(curve, degrees);
-      return [curve.name, styleOf(curve, n), readable(value, decimals)];
+      return [curve.name, styleOf(curve, n), padded(value, decimalsFor(this.most), this.most)];
     });
     if (!differences.length) return styled;
     const seen = this.seen.map((each) => {
-      return [each.name, each.style, readable(between(each, degrees), decimalsFor(each.size))];
+      const value = between(each, degrees);
+      return [each.name, each.style, padded(value, decimalsFor(each.size), each.size)];
     });
     return seen.length ? [...styled, ...seen] : [...styled, ["no difference but rounding", "", ""]];
   }
@@ -206,18 +207,28 @@ export class Plot {
     this.svg.setPointerCapture?.(event.pointerId);
     this.held = event.pointerId;
     this.peak = event.target.closest(".peak") && this.upper; // its scale stays while it is held
-    const release = () => {
+    this.from = event.pointerType === "touch" && !this.peak ? event.clientX : null;
+    const listening = new AbortController();
+    const release = (last) => {
+      if (last.type === "pointerup") this.from = null; // a tap turns, too
+      this.move(last);
       this.held = this.peak = null;
       this.onMove(null);
+      listening.abort();
     };
-    this.svg.addEventListener("pointerup", release, { once: true });
-    this.svg.addEventListener("pointercancel", release, { once: true });
+    for (const end of ["pointerup", "pointercancel"]) {
+      this.svg.addEventListener(end, release, { signal: listening.signal });
+    }
     this.move(event);
   }
 
   move(event) {
     if (!this.shape || !this.upper || isDiagram(this.shape)) return;
     const degrees = this.degreesAt(event);
+    if (this.held === event.pointerId && this.from !== null) {
+      if (Math.abs(event.clientX - this.from) < SLIP) return;
+      this.from = null;
+    }
     if (this.held === event.pointerId && this.peak) {
       this.onPeak(valueAt(event, this.svg, this.peak), Math.max(...this.shape.curves[0].y));
     } else if (this.held === event.pointerId) {
@@ -240,12 +251,6 @@ export class Plot {
     const [low, high] = [Math.min(...ys), Math.max(...ys)].map((y) => readable(y, decimals));
     return `${shape.title}: ${low} to ${high} ${shape.up.unit}, over the ${shape.right.text}`;
   }
-}
-
-/** The value of a frame's axis at a pointer. */
-function valueAt({ clientY }, svg, { box, y }) {
-  const part = (box.bottom - clientY + svg.getBoundingClientRect().top) / (box.bottom - box.top);
-  return y.low + part * (y.high - y.low);
 }
 
 /** The differences that are more than rounding, each with its style and size. */

@@ -116,7 +116,7 @@ function overAngle(name, cycle, k) {
     up: { text: name, unit },
     right: { text: "crank angle", unit: "°" },
     curves,
-    differences: differencesOf(curves),
+    differences: quantity.even ? [] : differencesOf(curves), // else the curve again
     of: (theta) => read(quantity, cycle, theta, k) / si,
   };
 }

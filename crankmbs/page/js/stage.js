@@ -3,6 +3,7 @@
 import { proportions, turnedBy } from "./drawing.js";
 import { BODIES, forcesOn } from "./forces.js";
 import { general, readable, roundBelow } from "./format.js";
+import { LETTER, namesBeside } from "./labels.js";
 import { arrowOf, rodOf, webOf } from "./outlines.js";
 import { Pen, add, set, watched } from "./svg.js";
 
@@ -11,7 +12,7 @@ const LEAD = (14 * Math.PI) / 180; // the ring's magnified lead, at most
 const TICKS = 24;
 const UNITS = 1000; // of the drawing per metre
 const SMALL = 0.85; // of the page's type: letters in the drawing
-const LETTER = 0.62; // of the type: how wide a bold letter is
+const SHORTEST = 0.01; // of the largest force: what has an arrow
 
 export class Stage {
   /** root : its svg; compression : the ratio that the scene has, or null; resized : called when its
@@ -32,7 +33,7 @@ export class Stage {
     const { train } = cycle;
     Object.assign(this, { cycle, train, k, body });
     this.sizes = proportions(train, ratio, this.compression);
-    this.force = this.scaleOf(cycle, body, k);
+    this.largest = this.largestOf(cycle, body, k);
     this.most = Math.max(...cycle.samples.map((v) => v.cylinders[k].gas_pressure), 1);
     const lead = Math.max(...cycle.leads.map(Math.abs));
     this.magnified = lead > 1e-9 ? Math.max(roundBelow(LEAD / lead), 1) : 0;
@@ -46,8 +47,8 @@ export class Stage {
     this.fitScale();
   }
 
-  /** Metres of arrow per newton, from the largest force of the cycle. */
-  scaleOf(cycle, body, k) {
+  /** The largest force of the cycle on a body [N]. */
+  largestOf(cycle, body, k) {
     if (!BODIES.includes(body)) return 0;
     let most = 0;
     for (const v of cycle.samples) {
@@ -55,8 +56,12 @@ export class Stage {
         most = Math.max(most, Math.hypot(...force));
       }
     }
-    this.largest = most;
-    return most > 0 ? (REACH * this.sizes.r) / most : 0;
+    return most;
+  }
+
+  /** How long the arrow of a force [N] is drawn: by its root, so that small ones show where to. */
+  lengthOf(newtons) {
+    return REACH * this.sizes.r * UNITS * Math.sqrt(newtons / this.largest);
   }
 
   /** The elements, in the order in which they cover each other. */
@@ -97,6 +102,7 @@ export class Stage {
     const middle = left + 0.5 * width; // what is wider than the drawing is room beside it
     const half = (0.5 * this.size.width) / scale;
     const above = top + 0.5 * (height - this.size.height / scale);
+    this.sides = { left, right: left + width };
     this.edge = { left: middle - half, right: middle + half, top: above };
     for (const part of parts) this.fitCylinder(part);
     set(axle, { r: 0.13 * sizes.r * UNITS });
@@ -119,17 +125,19 @@ export class Stage {
 
   /** A bar as long as a round force. */
   fitScale() {
-    const { force, bar, type } = this;
+    const { largest, bar, type } = this;
     const pen = new Pen(bar);
-    if (!force) return pen.end();
-    const newtons = roundBelow(this.largest / 2.2);
-    const long = newtons * force * UNITS;
+    if (!largest) return pen.end();
+    const newtons = roundBelow(largest / 2.2);
+    const long = this.lengthOf(newtons);
     const { left, top, height } = scaledBox(this.sizes.bounds);
-    const [x, y] = [left + 0.4 * type, top + height - 0.5 * type];
-    pen.add("path", { d: `M${x} ${y - 0.3 * type}v${0.3 * type}h${long}v${-0.3 * type}` });
     const size = newtons >= 1000 ? `${general(newtons / 1000)} kN` : `${general(newtons)} N`;
+    const text = `${size} on the ${this.body} (length: root of the force)`;
+    const far = this.edge.right - LETTER * type * text.length; // all of the words in the drawing
+    const [x, y] = [Math.min(left + 0.4 * type, far), top + height - 0.5 * type];
+    pen.add("path", { d: `M${x} ${y - 0.3 * type}v${0.3 * type}h${long}v${-0.3 * type}` });
     const at = { x, y: y - 0.6 * type, "font-size": type };
-    pen.add("text", at, `${size}, on the ${this.body}`);
+    pen.add("text", at, text);
     return pen.end();
   }
 
@@ -238,18 +246,19 @@ export class Stage {
     const lead = (this.cycle.leadAt(theta) * this.cycle.sense * 180) / Math.PI;
     const decimals = Math.min(Math.max(2 + Math.floor(Math.log10(this.magnified)), 1), 6);
     const where = lead < 0 ? "behind" : "ahead of";
-    return `crank ${readable(Math.abs(lead), decimals)}° ${where} a ring at mean speed, ` +
-      `shown ${general(this.magnified)} times`;
+    return `crank ${readable(Math.abs(lead), decimals)}° ${where} steady rotation, ` +
+      `drawn ${general(this.magnified)} times as large`;
   }
 
   poseArrows(v) {
-    const { arrows, force, train, k, body, sizes } = this;
+    const { arrows, largest, train, k, body, sizes } = this;
     const pen = new Pen(arrows);
-    const acting = force ? forcesOn(body, train, v, k) : [];
+    const acting = largest ? forcesOn(body, train, v, k) : [];
+    const names = [];
     for (const { name, kind, at, force: [fx, fy], onCrown, onSide } of acting) {
-      const [dx, dy] = onScreen([fx * force * UNITS, fy * force * UNITS]);
-      const long = Math.hypot(dx, dy);
-      if (long < 0.02 * sizes.r * UNITS) continue;
+      const size = Math.hypot(fx, fy);
+      if (size < SHORTEST * largest) continue;
+      const [dx, dy] = onScreen([fx, fy].map((each) => (each / size) * this.lengthOf(size)));
       let [x, y] = onScreen([at[0] * UNITS, at[1] * UNITS]);
       let pushes = false;
       if (onCrown) {
@@ -263,25 +272,10 @@ export class Stage {
         [x, y] = [x + ux, y + uy];
       }
       pen.add("path", { d: arrowOf(x, y, dx, dy, 0.055 * sizes.r * UNITS), class: kind });
-      const [ex, ey] = pushes ? [-0.02 * dx, -0.02 * dy] : [dx, dy]; // whence its name
-      const place = this.placed(ex, ey, { x: x + ex, y: y + ey, name });
-      pen.add("text", { "font-size": this.type, class: kind, ...place }, name);
+      names.push({ name, kind, x: x + (pushes ? 0 : dx), y: y + (pushes ? 0 : dy) });
     }
+    namesBeside(pen, names, this);
     pen.end();
-  }
-
-  /** Where an arrow's name stands: beyond its tip, but within the drawing. */
-  placed(dx, dy, { x, y, name }) {
-    const { type, edge } = this;
-    const long = Math.hypot(dx, dy);
-    const side = Math.abs(dx) < 0.35 * long ? 1 : Math.sign(dx);
-    const wide = LETTER * type * name.length;
-    const beyond = x + 0.35 * side * type;
-    const [anchor, near] = side > 0
-      ? ["start", Math.min(beyond, edge.right - wide)]
-      : ["end", Math.max(beyond, edge.left + wide)];
-    const low = Math.max(y + (0.7 * dy * type) / long, edge.top + 1.2 * type);
-    return { "text-anchor": anchor, x: near, y: low };
   }
 }
 

@@ -3,7 +3,7 @@
  * An address is read as strictly as a knob: what cannot be is refused with the sentence that the
  * command line has for such a key.
  */
-import { filled, shown } from "./format.js";
+import { cut, filled, shown } from "./format.js";
 import { Refused } from "./refused.js";
 
 const NUMBER = /^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i;
@@ -18,8 +18,8 @@ export function numberOf(text, { name, low, high }, rules) {
   if (!NUMBER.test(trimmed)) refuse("float_type", {}, shown(text));
   const value = Number(trimmed);
   if (!Number.isFinite(value)) refuse("finite_number", {}, "inf");
-  if (value < low) refuse("greater_than_equal", { ge: low }, trimmed);
-  if (value > high) refuse("less_than_equal", { le: high }, trimmed);
+  if (value < low) refuse("greater_than_equal", { ge: low }, cut(trimmed));
+  if (value > high) refuse("less_than_equal", { le: high }, cut(trimmed));
   return value;
 }
 
@@ -58,7 +58,7 @@ export class Address {
   }
 
   unknown(name) {
-    return `${decoded(name)}: unknown key; known keys are ${[...this.keys.keys()].join(", ")}`;
+    return `${cut(decoded(name))}: unknown key; known keys are ${[...this.keys.keys()].join(", ")}`;
   }
 
   /** The address of a state; numbers to their last digit. */

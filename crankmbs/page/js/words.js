@@ -3,37 +3,47 @@ import { general, readable } from "./format.js";
 
 const RPM = Math.PI / 30;
 
-/** The numbers of the headline, [name, value] each. error : of the speed, relative, or null */
-export function numbersOf(cycle, error) {
+/** The numbers of the headline, [name, value] each, those that say most first; what the quick pass
+ * does not have stands as ... in its place. */
+export function numbersOf(cycle) {
   const { measures, train } = cycle;
+  const { external_torque: outside } = measures ?? cycle.samples[0];
+  const drives = cycle.prescribed || outside * cycle.mean > 0;
+  const shown = (of, si, decimals, unit) =>
+    (measures ? `${readable(of(measures) / si, decimals)} ${unit}` : "…");
+  const peak = (joint) => shown((found) => peakIn(found, joint), 1e3, 2, "kN");
+  const power = (name) => shown((found) => found[name], 1e3, 2, "kW");
   const found = [
     ["mean speed", `${readable(cycle.mean / RPM, 1)} rpm`],
     ["fluctuation", `${readable(100 * cycle.fluctuation, 3)} %`],
+    ["main bearing, peak", peak("main bearing")],
+    ["side force, peak", peak("side force")],
+    ["crank pin, peak", peak("crank pin")],
+    [drives ? "drive torque" : "load torque", shown(() => outside, 1, 1, "N m")],
   ];
-  if (measures) {
-    const outside = measures.external_torque;
-    const drives = cycle.prescribed || outside * cycle.mean > 0;
-    const name = drives ? "drive torque" : "load torque";
-    found.push([name, `${readable(outside, 1)} N m`]);
-    if (measures.indicated_power !== null) {
-      found.push(["indicated power", `${readable(measures.indicated_power / 1e3, 2)} kW`]);
-    }
-    for (const end of ["head end", "crank end"]) {
-      const power = measures[`indicated_power_${end.replace(" ", "_")}`];
-      if (power !== undefined) found.push([`of the ${end}`, `${readable(power / 1e3, 2)} kW`]);
-    }
+  if (train.pressure.length) found.push(["indicated power", power("indicated_power")]);
+  for (const end of train.crank_end.length ? ["head end", "crank end"] : []) {
+    found.push([`of the ${end}`, power(`indicated_power_${end.replace(" ", "_")}`)]);
   }
-  if (measures && measures.friction_power !== null) {
-    found.push(["friction power", `${readable(measures.friction_power / 1e3, 2)} kW`]);
-    if (measures.mechanical_efficiency !== null) {
-      const left = readable(100 * measures.mechanical_efficiency, 1);
-      found.push(["mechanical efficiency", `${left} %`]);
-    }
+  if (train.friction !== null) {
+    found.push(["friction power", power("friction_power")]);
+    const left = shown((each) => 100 * each.mechanical_efficiency, 1, 1, "%");
+    if (measures?.mechanical_efficiency !== null) found.push(["mechanical efficiency", left]);
   }
   if (cycle.share !== 1) found.push(["load, rebalanced", `${readable(100 * cycle.share, 1)} %`]);
-  const cells = train.cylinders.length > 1 ? [["cylinders", `${train.cylinders.length}`]] : [];
-  const trust = error === null ? "…" : `${general(Math.max(error, 1e-15), 1)}`;
-  return [...found, ...cells, ["error of the quick pass", trust]];
+  const count = train.cylinders.length;
+  return count > 1 ? [...found, ["cylinders", `${count}`]] : found;
+}
+
+/** The greatest force [N] in a joint of any cylinder. */
+function peakIn({ joints }, wanted) {
+  return Math.max(...joints.map(({ joint, peak }) => (joint === wanted ? peak : 0)));
+}
+
+/** How exact the speed is. error : of the quick pass, relative, or null */
+export function trustOf(error) {
+  const trust = error === null ? "…" : general(Math.max(error, 1e-15), 1);
+  return `Numerical error of the speed: ${trust} of its mean while a knob moves, less at rest.`;
 }
 
 /** How far the cycle is one that repeats itself: { text, good }. sentences : of endings */
@@ -53,7 +63,7 @@ export function badgeOf(cycle, endings) {
   if (cycle.settled && cycle.motion.balanced) {
     return said("settled at any speed: the mean speed of the start is kept", true);
   }
-  if (cycle.settled) return said("settled cycle: it repeats itself", true);
+  if (cycle.settled) return said("settled motion: every cycle is like this one", true);
   if (cycle.train.fuel?.misfire.some(({ every }) => every)) {
     const once = drifts.replace(/ a cycle$/, "");
     return said(`one of several cycles, of which the last ${once}; ${endings.uneven}`, false);

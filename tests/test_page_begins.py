@@ -1,0 +1,189 @@
+"""What the page begins with and how it behaves under a student's hands: one question, nothing that
+moves its place, a refused knob that does not lie, a finger that scrolls, a link that keeps a pose.
+"""
+
+import pytest
+from page_visit import opened
+
+from crankmbs import load_scene, shipped_scenes
+from crankmbs.page import refusals
+from crankmbs.page.refusals import early_end
+
+pytestmark = pytest.mark.slow
+
+PHONE, LAPTOP = (390, 844), (1366, 641)
+SHOWN = [
+    name
+    for name, scene in ((name, load_scene(name)) for name in shipped_scenes())
+    if not refusals(scene) and not early_end(scene)
+]
+
+
+@pytest.fixture
+def page(browser, tmp_path):
+    with opened(browser, tmp_path, "propeller", size=LAPTOP, everything=False) as visited:
+        yield visited.settle()
+
+
+def boxes(page, *places):
+    """Where things stand on the page, however far it is scrolled."""
+    found = [page.page.locator(place).first.bounding_box() for place in places]
+    scrolled = page.page.evaluate("scrollY")
+    return [{**box, "y": box["y"] + scrolled} for box in found]
+
+
+@pytest.mark.parametrize("size", [PHONE, LAPTOP], ids=str)
+@pytest.mark.parametrize("name", SHOWN)
+def test_it_begins_with_a_question_the_mechanism_a_plot_and_three_knobs(
+    browser, tmp_path, name, size
+):
+    with opened(browser, tmp_path, name, size=size, everything=False) as visited:
+        visited.settle()
+        assert visited.text("#idea h2").endswith("?")
+        assert not visited.page.is_visible("#lower")
+        assert len(visited.page.locator("#numbers div:visible").all()) <= 4
+        knobs = visited.page.locator(".knob:visible").all()
+        assert len(knobs) <= 3
+        parts = boxes(visited, "#idea", "#stage", "#upper svg", "#angle")
+        for box in [*parts, *(knob.bounding_box() for knob in knobs)]:
+            assert box["x"] >= 0.0
+            assert box["x"] + box["width"] <= size[0]
+            assert box["y"] >= 0.0
+            assert box["y"] + box["height"] <= size[1]
+        visited.page.click("#more")
+        assert visited.page.is_visible("#lower")
+        assert len(visited.page.locator(".knob:visible").all()) >= len(knobs)
+
+
+def test_the_mechanism_is_larger_than_the_plot(page):
+    stage, plot = boxes(page, "#stage", "#upper svg")
+    assert stage["width"] * stage["height"] > 2.0 * plot["width"] * plot["height"]
+
+
+def test_a_knob_that_cannot_be_greys_the_picture_and_covers_nothing(page):
+    before = boxes(page, "h1", "#stage", "#upper svg", "#numbers")
+    slider = page.page.locator("#knob-flywheel")
+    turn = "(each, share) => { each.value = +each.min + share * (each.max - each.min);"
+    turn += " each.dispatchEvent(new Event('input')); each.dispatchEvent(new Event('change')) }"
+    numbers, good = page.text("#numbers"), page.curve()
+    slider.evaluate(turn, 0.0)
+    assert page.message.startswith("too light or too slow: the engine would stall")
+    assert page.page.locator("#stage").evaluate("(e) => getComputedStyle(e).opacity") == "0.3"
+    assert (page.text("#numbers"), page.curve()) == (numbers, good)
+    assert boxes(page, "h1", "#stage", "#upper svg", "#numbers") == before
+    assert "flywheel" not in page.address
+    slider.evaluate(turn, 0.5)
+    assert not page.page.is_visible("#message")
+    assert page.page.locator("#stage").evaluate("(e) => getComputedStyle(e).opacity") == "1"
+    assert page.settle().text("#numbers") != numbers
+
+
+@pytest.mark.parametrize("size", [PHONE, LAPTOP], ids=str)
+def test_nothing_moves_its_place_as_knobs_and_crank_turn(browser, tmp_path, size):
+    places = ("header", "#stage", "#upper svg", "#upper .legend", "#lower svg", "#sliders")
+    with opened(browser, tmp_path, "propeller", size=size) as visited:
+        before = boxes(visited.settle(), *places)
+        visited.type("load", 0)
+        for degrees in range(0, 720, 45):
+            visited.page.locator("#angle").evaluate(
+                "(e, at) => { e.value = at; e.dispatchEvent(new Event('input')) }", degrees
+            )
+            assert boxes(visited, *places) == before
+        assert boxes(visited.settle(), *places) == before
+
+
+def test_an_address_of_200_kb_makes_a_short_message(page):
+    for text in ("#" + "x" * 200_000 + "=1", "#load=" + "9" * 200_000, "#rod=" + "y" * 200_000):
+        page.go("#")
+        page.page.wait_for_function("() => document.getElementById('message').hidden")
+        page.go(text)
+        page.page.wait_for_function("() => !document.getElementById('message').hidden")
+        assert len(page.message) < 400
+        assert page.page.evaluate("document.documentElement.scrollHeight") <= LAPTOP[1]
+
+
+def test_a_link_with_an_angle_keeps_its_pose_and_does_not_play(browser, tmp_path):
+    options = {"motion": "no-preference", "everything": False}
+    with opened(browser, tmp_path, "propeller", "#angle=100", **options) as visited:
+        visited.page.wait_for_timeout(300)
+        assert visited.degrees == 100.0
+        assert "pause" not in visited.text("#play")
+        assert visited.page.get_attribute("#more", "aria-expanded") == "false"
+
+
+def test_a_link_to_what_is_folded_unfolds_it(browser, tmp_path):
+    with opened(browser, tmp_path, "propeller", "#offset=5", everything=False) as visited:
+        assert visited.page.is_visible("#knob-offset")
+
+
+def test_the_page_says_that_it_shows_the_settled_motion(browser, tmp_path, page):
+    assert "Shown is the settled motion" in page.text("footer")
+    with opened(browser, tmp_path, "grega_lecture") as driven:
+        assert "settled" not in driven.text("footer")
+
+
+def test_two_curves_of_a_legend_have_two_colours(browser, tmp_path):
+    with opened(browser, tmp_path, "propeller") as visited:
+        visited.settle()
+        assert "constant speed" in visited.text("#upper .legend")
+        assert "\u2212 constant" not in visited.text("#upper .legend")  # the curve once more
+        colours = visited.page.locator("#lower .legend i").evaluate_all(
+            "(all) => all.map((each) => getComputedStyle(each).color)"
+        )
+        assert len(colours) == len(set(colours)) == 5
+
+
+@pytest.fixture
+def phone(browser, tmp_path):
+    touch = {"has_touch": True, "is_mobile": True, "everything": False}
+    with opened(browser, tmp_path, "propeller", size=PHONE, **touch) as visited:
+        yield visited.settle()
+
+
+def finger(page, begin, *places):
+    """A finger goes from one place to others, as the browser hears it."""
+    devtools = page.page.context.new_cdp_session(page.page)
+
+    def send(kind, *points):
+        touches = [{"x": x, "y": y} for x, y in points]
+        devtools.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": touches})
+
+    send("touchStart", begin)
+    for place in places:
+        send("touchMove", place)
+        page.page.wait_for_timeout(20)
+    send("touchEnd")
+    page.page.wait_for_timeout(100)
+
+
+def middle(box):
+    return box["x"] + 0.3 * box["width"], box["y"] + 0.5 * box["height"]
+
+
+def test_a_swipe_over_a_plot_or_the_drawing_scrolls_and_does_not_turn(phone):
+    phone.page.click("#more")
+    for place in ("#upper svg", "#stage"):
+        phone.page.evaluate("scrollTo(0, 0)")
+        degrees, (box,) = phone.degrees, boxes(phone, place)
+        x, y = middle(box)
+        x = box["x"] + 8.0 if place == "#stage" else x
+        finger(phone, (x, y), *((x, y - step) for step in range(10, 180, 10)))
+        assert phone.page.evaluate("scrollY") > 60.0
+        assert phone.degrees == degrees
+
+
+def test_a_finger_across_a_plot_turns_the_crank_and_a_tap_does(phone):
+    (box,) = boxes(phone, "#upper svg")
+    x, y = middle(box)
+    degrees = phone.degrees
+    finger(phone, (x, y), *((x + step, y) for step in range(10, 100, 10)))
+    dragged = phone.degrees
+    assert dragged != degrees
+    phone.page.touchscreen.tap(x, y)
+    assert phone.degrees < dragged
+
+
+def test_targets_are_large_enough_for_a_finger(phone):
+    phone.page.click("#more")
+    for each in phone.page.locator("button:visible, select:visible, input:visible").all():
+        assert each.bounding_box()["height"] >= 44.0
