@@ -40,15 +40,12 @@ _ENDINGS = {
         "crankmbs run --until settled shows it"
     ),
     "light": NEAR_REST,
-    "slow": (
-        "too light or too slow: the engine would stall or come near rest, where time must be the "
-        f"variable; {_ON}"
-    ),
+    "slow": f"too light or too slow: the engine would stall; {_ON}",
     "held": f"a jump of the loads holds the speed from both sides; {_ON}",
 }
 _FOLD = f"fold: the rod folds onto the crank, where the motion is not determined; {_ON}"
 
-_PLAIN = {"given": "as in the scene", "rebalanced": "scaled to hold the speed"}
+_PLAIN = {"given": "as given", "rebalanced": "for this speed"}
 
 _FLUCTUATION = (
     "fluctuation: the {what} is {percent:.4g} %, with the flywheel of {end:g} kg m^2 at the end of "

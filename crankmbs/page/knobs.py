@@ -169,7 +169,7 @@ def _machine(scene: Scene) -> list[Knob]:
         center = scene.crank.center_of_mass * 1e3
         wide = max(_above(r), abs(center))
         about = "the crank's centre of mass from its axis; below 0 a counterweight"
-        title = "crank's centre of mass"
+        title = "crank mass centre"
         knobs.append(Knob("counterweight", title, "mm", -wide, wide, center, 1, about))
     return knobs
 

@@ -105,11 +105,17 @@ export function say(sentence, stale = false) {
   document.body.classList.toggle("stale", stale);
 }
 
-/** Unfold all that the page has, or fold it to what it begins with. */
-export function unfold(all) {
+/** Unfold all that the page has, or fold it to what it begins with; else the other of both. */
+export function unfold(all = find("more").getAttribute("aria-expanded") === "false") {
   document.documentElement.classList.toggle("full", all);
   set(find("more"), { "aria-expanded": String(all) });
   write(find("more"), all ? "show less" : "show all");
+}
+
+/** The plots that are seen: of what the page begins with, the upper. */
+export function seenPlots() {
+  const all = document.documentElement.classList.contains("full");
+  return all ? ["upper", "lower"] : ["upper"];
 }
 
 /** Large type for a projector, or no longer. */

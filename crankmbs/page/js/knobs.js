@@ -9,10 +9,10 @@ export class Knobs {
   constructor(root, { knobs, sentences, first = null }, on) {
     this.rules = sentences;
     this.on = on;
-    this.made = new Map(knobs.map((knob) => {
-      const rest = first !== null && !first.includes(knob.name);
-      return [knob.name, this.make(root, knob, rest ? "knob rest" : "knob")];
-    }));
+    const begun = first?.map((name) => knobs.find((each) => each.name === name)) ?? knobs;
+    const rest = knobs.filter((each) => !begun.includes(each));
+    this.made = new Map([...begun, ...rest].map((knob) =>
+      [knob.name, this.make(root, knob, rest.includes(knob) ? "knob rest" : "knob")]));
   }
 
   make(root, knob, kind) {

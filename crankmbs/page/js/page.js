@@ -1,7 +1,7 @@
 /** The page: knobs, mechanism and plots of one scene, and what happens between them. */
 import { decoded } from "./answers.js";
 import { fillChoices, find, listenToChoices, showChoices, showSlower } from "./controls.js";
-import { enlarge, say, showWords, unfold, unused } from "./controls.js";
+import { enlarge, say, seenPlots, showWords, unfold, unused } from "./controls.js";
 import { cycleOf } from "./cycle.js";
 import { dragged } from "./drag.js";
 import { Engine } from "./engine.js";
@@ -71,7 +71,7 @@ class Page {
     this.press("toml", () => save(...sceneFile(given, this.values, this.cycle)));
     this.press("csv", () => save(...dataFile(given, this.cycle)));
     this.press("large", enlarge);
-    this.press("more", () => unfold(find("more").getAttribute("aria-expanded") === "false"));
+    this.press("more", () => { unfold(); this.redraw(); });
     find("angle").addEventListener("input", (event) => {
       this.play(false);
       this.seek(Number(event.target.value) * DEGREE);
@@ -237,7 +237,7 @@ class Page {
     const heavy = own > 0 && given.knobs.some((each) => each.name === "flywheel");
     this.stage.show(cycle, { k, body: view.forces, ratio, heavy });
     const marks = deadCentreMarks(cycle, k, deadCentres(cycle.train.shape));
-    for (const name of PLOTS) this.plots[name].draw(drawn(view[name], cycle, k), marks);
+    for (const name of seenPlots()) this.plots[name].draw(drawn(view[name], cycle, k), marks);
     showChoices(given, cycle, { ...given.own, ...view, ...this.values, cylinder: String(k + 1) });
     this.knobs.disable(unused(cycle, given, this.values));
     this.player.slower = showSlower(cycle, (slower) => {
