@@ -81,7 +81,7 @@ def first_of(scene: Scene) -> First:
             "A short rod tilts more: the piston is thrown harder at the top than at the bottom, "
             "and pressed harder against the wall. Make the rod ratio larger and watch both."
         )
-        wanted = ("rod_ratio", "speed", "rod_mass", "offset")
+        wanted = ("rod_ratio", "speed", "rod_mass", "offset", "pressure")
     return First(question, sentence, tuple(name for name in wanted if name in there)[:3])
 
 
