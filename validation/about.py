@@ -13,8 +13,10 @@ _HERE = Path(__file__).parent
 _WRITTEN = (
     "validation/REPORT.md",
     "validation/CLAIMS.md",
+    "validation/MEASURED.md",
     "validation/MUTANTS.md",
     "validation/details.json",
+    "validation/measured.json",
     "validation/results.csv",
     "validation/figures/",
     "validation/mutants/results.csv",

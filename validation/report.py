@@ -43,6 +43,12 @@ radius, rod ratio, bore nor reciprocating mass: they were identified from its ow
 about the cells that they were identified from shows consistency, no more. Parameters, cells and
 standard errors are in [CLAIMS.md](CLAIMS.md); misprints in [ERRATA.md](ERRATA.md)."""
 
+_MACHINE = """\
+## Held against a machine
+
+[MEASURED.md](MEASURED.md) holds a free run under measured pressures against the speed that the
+machine's wheel showed: identified on some cycles at full load, predicted for its other cycles, half
+load and no load, with what it leaves and why."""
 _MUTANTS = """\
 ## Every law guarded
 
@@ -58,7 +64,8 @@ def write_pages(
     """Write REPORT.md and CLAIMS.md of claims that all have their row; returns the report."""
     (folder / CLAIMS.name).write_text(claims_page(cases, rows), encoding="utf-8")
     lines = [_INTRODUCTION, "", *_head(cases, rows), "", *_kinds(cases, rows), ""]
-    lines += [*_worst(cases, rows), "", *_standings(cases), "", *_MUTANTS.splitlines(), ""]
+    lines += [*_worst(cases, rows), "", *_standings(cases), "", *_MACHINE.splitlines(), ""]
+    lines += [*_MUTANTS.splitlines(), ""]
     report = folder / REPORT.name
     report.write_text("\n".join([*lines, *bibliography.links(["S1"])]) + "\n", encoding="utf-8")
     return report

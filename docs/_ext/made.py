@@ -29,7 +29,7 @@ _PAGES = {
     "hard": hard_page,
     "python": python_page,
 }
-_VALIDATION = ("REPORT", "CLAIMS", "ERRATA", "MUTANTS", "BIBLIOGRAPHY")
+_VALIDATION = ("REPORT", "MEASURED", "CLAIMS", "ERRATA", "MUTANTS", "BIBLIOGRAPHY")
 _ANCHOR = re.compile(r'^(#+ )<a id="([^"]+)"></a>', re.MULTILINE)
 _FIGURES: dict[str, tuple[str, dict[str, object], str]] = {  # scene, changes, kind of the figure
     "speed": ("yi_diesel_free", {"run__until": "4 cycles"}, "speed"),

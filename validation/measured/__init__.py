@@ -1,0 +1,1 @@
+"""A free crank under measured pressures, held against the speed that the machine's wheel showed."""
