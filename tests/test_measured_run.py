@@ -11,7 +11,7 @@ import pytest
 from engine_log import EngineLog
 from records import SENSOR
 
-from validation.measured.__main__ import judged
+from validation.measured.__main__ import judged, main
 from validation.measured.free_run import Engine, Unknown, free_run
 from validation.measured.held import wheel_errors
 from validation.measured.identify import identify
@@ -38,6 +38,7 @@ def logged(tmp_path_factory):
         path.write_text("\n".join(f"{t:.6e}\t{p:.6e}\t{w:.6e}" for t, p, w in rows) + "\n")
         return record, read_logged(path, "60-2", SENSOR)
 
+    make.folder = folder
     return make
 
 
@@ -110,6 +111,24 @@ def test_the_wheel_s_errors_are_identified(logged):
 def test_the_page_is_that_of_the_numbers_beside_it():
     numbers = json.loads((ROOT / "validation" / "measured.json").read_text(encoding="utf-8"))
     assert (ROOT / "validation" / "MEASURED.md").read_text(encoding="utf-8") == page_of(numbers)
+
+
+
+def test_another_machine_s_files_are_written_where_asked(tmp_path, logged):
+    machine = tmp_path / "machine.toml"
+    text = (ROOT / "validation/measured/generating_set.toml").read_text(encoding="utf-8")
+    text = text[: text.index("# what the numbers say")].replace("generating set", "engine known")
+    text = text.replace('["0 ms", "0.4 ms", "0.8 ms"]', '["0.8 ms"]').replace("= 6 ", "= 3 ")
+    machine.write_text(text, encoding="utf-8")
+    _, found = logged(delay=8e-4, noise=0.02, cycles=5)
+    path = next(logged.folder.glob(f"{found.name}.txt"))
+    assert main([str(path), "--machine", str(machine), "--into", str(tmp_path)]) == 0
+    page = (tmp_path / "MEASURED.md").read_text(encoding="utf-8")
+    assert "engine known" in page
+    assert found.digest in page
+    assert "torsion," not in page
+    figures = sorted(each.name for each in (tmp_path / "figures").iterdir())
+    assert figures == ["measured_half_orders.png", "measured_speed.png"]
 
 
 @pytest.mark.skipif(FOLDER is None, reason="CRANKMBS_MEASURED names no folder with the records")

@@ -93,7 +93,7 @@ def page_of(numbers: dict[str, Any]) -> str:
         "",
         *_predicted(numbers),
         "",
-        *_orders(first, machine["of_orders"]),
+        *_orders(first, machine.get("of_orders", [])),
         "",
         *_even(first),
         "",
@@ -149,7 +149,7 @@ def _identified(numbers: dict[str, Any]) -> Iterator[str]:
         )
     yield from ("", "The dead centre counts from the first edge after the gap, modulo 360 degrees.")
     yield "The last rows are a question to the other records, not used for any prediction."
-    yield from ("", _INTERVALS, *numbers["machine"]["of_delay"])
+    yield from ("", _INTERVALS, *numbers["machine"].get("of_delay", []))
 
 
 def _with(pair: list[float], digits: int) -> str:
