@@ -113,7 +113,6 @@ def test_the_page_is_that_of_the_numbers_beside_it():
     assert (ROOT / "validation" / "MEASURED.md").read_text(encoding="utf-8") == page_of(numbers)
 
 
-
 def test_another_machine_s_files_are_written_where_asked(tmp_path, logged):
     machine = tmp_path / "machine.toml"
     text = (ROOT / "validation/measured/generating_set.toml").read_text(encoding="utf-8")
