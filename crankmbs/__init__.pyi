@@ -41,7 +41,16 @@ from .scene.forces import (
 from .scene.fuel import Fuel, Governor, Misfire
 from .scene.gas import Gas, Indicator, Polytrope
 from .scene.loads import AngleTable, Constant, Quadratic, SpeedTable, TimeTable, Viscous
-from .scene.parts import Crank, Cylinder, Gravity, Layout, Piston, Rod
+from .scene.parts import (
+    Crank,
+    Cylinder,
+    Gravity,
+    Layout,
+    OwnPiston,
+    OwnRod,
+    Piston,
+    Rod,
+)
 from .scene.python_force import Force
 from .scene.python_load import Load
 from .scene.read import load_scene
@@ -111,6 +120,8 @@ __all__ = [
     "Orders",
     "Oscillation",
     "OutputError",
+    "OwnPiston",
+    "OwnRod",
     "Piston",
     "Polytrope",
     "Quadratic",

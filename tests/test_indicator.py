@@ -58,6 +58,11 @@ CASES = [
 ]
 
 
+def pieces(scene):
+    """The diagram of a machine of like cylinders."""
+    return indicator_pieces(scene.gas, scene.running_gear[0].shape)
+
+
 def scene(indicator, shape, stroke):
     radius, length, offset = shape
     return Scene(
@@ -72,7 +77,7 @@ def scene(indicator, shape, stroke):
 
 def diagram(indicator, shape, stroke):
     """The pieces with absolute pressure, to be evaluated inside them."""
-    knots, coefficients = indicator_pieces(scene(indicator, shape, stroke))
+    knots, coefficients = pieces(scene(indicator, shape, stroke))
     absolute = coefficients + np.array([[0.0], [0.0], [0.0], [AT]])
     return PPoly(absolute, knots)
 
@@ -129,7 +134,7 @@ def test_a_shifted_parameter_is_noticed(name):
 
 @pytest.mark.parametrize(("indicator", "shape", "stroke"), CASES)
 def test_pieces_cover_one_period_and_are_not_too_many(indicator, shape, stroke):
-    knots, coefficients = indicator_pieces(scene(indicator, shape, stroke))
+    knots, coefficients = pieces(scene(indicator, shape, stroke))
     assert knots[-1] - knots[0] == pytest.approx(stroke * math.pi, rel=1e-15)
     assert np.diff(knots).min() > 1e-9
     assert coefficients.shape == (4, len(knots) - 1)
@@ -171,7 +176,7 @@ def test_work_of_a_cycle_is_that_of_the_polytropes(indicator, shape, stroke):
 
 
 def test_quarter_turns_are_knots_so_that_cylinders_share_them():
-    knots, _ = indicator_pieces(scene(S1, ENGINE, 4))
+    knots, _ = pieces(scene(S1, ENGINE, 4))
     quarters = np.arange(3, 6) * 0.5 * math.pi
     assert np.abs(knots[:, None] - quarters).min(axis=0).max() < 1e-14
 

@@ -78,9 +78,9 @@ from crankmbs.errors import SceneError
             "until: must be finite and above 0; -1 s came",
         ),
         (
-            lambda: Gas(pressure=[1, 2], ambient=1e5),
+            lambda: Gas(pressure=[1.0, [2.0]], ambient=1e5),
             "pressure: must be the name of a CSV file or a Table(crank angles [rad], pressures "
-            '[Pa]), a list of them, or a pressure such as "1 bar"; 1 came',
+            '[Pa]), a list of them, or a pressure such as "1 bar"; [2.0] came',
         ),
         (
             lambda: scene(torque=[Constant(torque=1.0), 3]),
@@ -115,7 +115,7 @@ from crankmbs.errors import SceneError
         (
             lambda: Layout(cylinders=Cylinder()),
             "cylinders: must be a tuple or list of Cylinder; "
-            "Cylinder(phase=0.0, bank=0.0, position=None, throw=None) came",
+            "Cylinder(phase=0.0, bank=0.0, position=None, throw=None, ... came",
         ),
         (lambda: Layout(firing_order=3), "firing_order: must be a tuple or list; 3 came"),
         (

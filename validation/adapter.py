@@ -6,6 +6,7 @@ those are held against the polytropes in a claim of their own.
 """
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,7 @@ from crankmbs.motion.plan import plan_of
 from crankmbs.result import Result
 from crankmbs.scene.drives import Motion as Prescribed
 from crankmbs.scene.drives import Oscillation, Ramp, SpeedFile
+from crankmbs.scene.parts import Piston, RunningGear
 from crankmbs.scene.scene import Scene
 from validation.oracles.arithmetic import LONG, Arithmetic, Array
 from validation.oracles.energy import kinetic_energy
@@ -52,13 +54,21 @@ _SAME_PRESSURE = 1e-9
 
 def machine_of(scene: Scene) -> Machine:
     """The machine of a scene, with the loads of its free crank."""
-    crank, rod, piston = scene.crank, scene.rod, scene.piston
+    gears = [RunningGear(scene.crank.radius, scene.rod, scene.piston)]
+    gears += scene.running_gear if scene.unlike else ()
+    common, *each = (_machine(scene, gear) for gear in gears)
+    return replace(common, each=tuple(each))
+
+
+def _machine(scene: Scene, gear: RunningGear) -> Machine:
+    """With one throw, rod and piston for all cylinders."""
+    crank, (radius, rod, piston) = scene.crank, gear
     gx = gy = 0.0
     if scene.gravity is not None:
         gx = scene.gravity.acceleration * math.cos(scene.gravity.angle)
         gy = scene.gravity.acceleration * math.sin(scene.gravity.angle)
     return Machine(
-        crank_radius=crank.radius,
+        crank_radius=radius,
         crank_inertia=crank.moment_of_inertia,
         crank_mass=crank.mass,
         crank_center_of_mass=crank.center_of_mass,
@@ -75,14 +85,14 @@ def machine_of(scene: Scene) -> Machine:
         gravity=(gx, gy),
         loads=loads_of(scene.torque),
         crank_ends=crank_ends_of(scene),
-        crank_end_area=_crank_end_area(scene),
+        crank_end_area=_crank_end_area(scene, piston),
     )
 
 
-def _crank_end_area(scene: Scene) -> float:
+def _crank_end_area(scene: Scene, piston: Piston) -> float:
     if not scene.double_acting:
         return 0.0
-    area, rod = scene.piston.gas_area or 0.0, scene.piston.rod_diameter or 0.0
+    area, rod = piston.gas_area or 0.0, piston.rod_diameter or 0.0
     return area - math.pi / 4.0 * rod**2
 
 

@@ -73,7 +73,10 @@ def _firings(scene: Scene, gas: Gas, fuel: Fuel, fired: tuple[Curve, ...]) -> Fi
         governor = Governor(law.speed, law.kp, law.ki, law.min, law.max, law.initial)
     if isinstance(given, Polytrope):
         numbers = given.polytrope, given.closes, given.compression_ratio, gas.ambient or 0.0
-        motored = tuple(continued(machine_of(scene), each, gas.period, numbers) for each in fired)
+        machine = machine_of(scene)
+        motored = tuple(
+            continued(machine.of(k), each, gas.period, numbers) for k, each in enumerate(fired)
+        )
     elif isinstance(given, float):
         level = given - (gas.ambient or 0.0)
         motored = (Curve((0.0,), (lambda x: level,), gas.period),) * len(fired)

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from crankmbs.compare.bodies import bodies_of
 from crankmbs.compare.quantities import QUANTITIES, observed
 from crankmbs.errors import InputError
-from crankmbs.lecture import two_mass_rod
 from crankmbs.measures.interpolate import read_at
 from crankmbs.measures.span import last_span, passes_over
 from crankmbs.result import Result
@@ -148,11 +148,8 @@ def _error(scene: Scene, data: xr.Dataset, name: str) -> float:
         return stated("side_force")
     if name == "torque":
         return stated("crank_torque")
-    rod = scene.rod
-    masses = two_mass_rod(
-        rod_mass=rod.mass, rod_length=rod.length, center_of_mass=rod.center_of_mass
-    )
+    bodies = bodies_of(scene)
+    largest = float(np.max(np.abs(bodies.masses.crank_pin * bodies.crank_radius)))
     speed = abs(float(data["crank_speed"].values[0]))
     rate = 2.0 * speed * stated("crank_speed") + stated("crank_acceleration")
-    turning = abs(float(masses.crank_pin)) * scene.crank.radius * rate
-    return stated("crank_pin_force_x") + stated("crank_pin_force_y") + turning
+    return stated("crank_pin_force_x") + stated("crank_pin_force_y") + largest * rate

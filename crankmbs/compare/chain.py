@@ -7,8 +7,9 @@ from collections.abc import Callable, Sequence
 from functools import cached_property
 
 from crankmbs import lecture
+from crankmbs.compare.bodies import bodies_of
 from crankmbs.compare.excerpt import Answer, Excerpt
-from crankmbs.compare.lectured import S1
+from crankmbs.compare.lectured import S1, Gear
 from crankmbs.errors import InputError, shown
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
@@ -115,14 +116,14 @@ class Idealized:
         if "forces" in under:
             scene = dataclasses.replace(scene, force=())
         if "two-mass rod" in under:
-            scene = dataclasses.replace(
-                scene, rod=dataclasses.replace(scene.rod, inertia="two-mass")
-            )
+            scene = scene.two_mass
         answer = dict(self.excerpt.newton_euler(scene, constant_speed="constant speed" in under))
         if "gas torque" in answer:  # of every speed, also where the mean is 0
             answer["gas torque"] = self.closed_form["gas torque"]
         if "datum" in under:
-            answer["piston displacement"] = answer["piston displacement"] + _shift(scene)
+            gear = bodies_of(scene, self.excerpt.cylinder)[:3]
+            shift = lecture.datum_shift(**Gear(*gear)._asdict())
+            answer["piston displacement"] = answer["piston displacement"] + shift
         if "solver" not in under:
             answer = {name: answer[name] + self._solver[name] for name in answer}
         return answer
@@ -152,10 +153,3 @@ def steps(
         found[cause] = before - after
         under, before = lifted, after
     return found
-
-
-def _shift(scene: Scene) -> Array | float:
-    """Of the lectures' datum, l + r, from the true top dead centre [m]."""
-    return lecture.datum_shift(
-        crank_radius=scene.crank.radius, rod_length=scene.rod.length, offset=scene.piston.offset
-    )

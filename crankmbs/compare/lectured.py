@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from crankmbs import lecture
+from crankmbs.compare.bodies import bodies_of
 from crankmbs.compare.quantities import cycle_angles
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.numerics.arrays import Array
@@ -34,11 +35,11 @@ __all__ = [
 
 
 class Gear(NamedTuple):
-    """What a cylinder's kinematics depend on [m]."""
+    """What a cylinder's kinematics depend on [m], of all cylinders or shape (cylinders,)."""
 
-    crank_radius: float
-    rod_length: float
-    offset: float
+    crank_radius: Array | float
+    rod_length: Array | float
+    offset: Array | float
 
 
 class Motion(NamedTuple):
@@ -159,12 +160,12 @@ def lectured(
 
 
 def gear_of(scene: Scene) -> Gear:
-    """The gear of any cylinder.
+    """The gear of any cylinder, or of each where they are unlike.
 
     >>> gear_of(load_scene("propeller")).crank_radius
     0.046
     """
-    return Gear(scene.crank.radius, scene.rod.length, scene.piston.offset)
+    return Gear(*bodies_of(scene)[:3])
 
 
 def of_cylinders(
@@ -189,27 +190,25 @@ def of_cylinders(
     dict over those QUANTITIES that a cylinder has, of the shape of all together
     """
     (moved, forces), (speed, rate) = at, motion
-    rod, piston, r = scene.rod, scene.piston, scene.crank.radius
-    masses = lecture.two_mass_rod(
-        rod_mass=rod.mass, rod_length=rod.length, center_of_mass=rod.center_of_mass
-    )
+    bodies = bodies_of(scene)
+    r, masses = bodies.crank_radius, bodies.masses
     mass = lecture.reciprocating_mass(
-        piston_mass=piston.mass, rod_piston_pin_mass=masses.piston_pin
+        piston_mass=bodies.piston_mass, rod_piston_pin_mass=masses.piston_pin
     )
     gas = np.asarray(
         lecture.gas_force(
-            gas_pressure=difference, ambient_pressure=0.0, piston_area=piston.gas_area or 0.0
+            gas_pressure=difference, ambient_pressure=0.0, piston_area=bodies.piston_area
         )
     )
     acceleration = moved.square * speed**2 + moved.alpha * rate
 
-    def force_with(moving: float) -> Array:
+    def force_with(moving: Array | float) -> Array:
         inertia = lecture.inertia_force(reciprocating_mass=moving, piston_acceleration=acceleration)
         return np.asarray(lecture.net_force(gas_force=gas, inertia_force=inertia))
 
-    net = force_with(float(mass))
+    net = force_with(mass)
     side_thrust, tangential = net * forces.side_thrust, net * forces.tangential
-    turning_x, turning_y = _inertia_at_throw(float(masses.crank_pin), r, phi, speed, rate)
+    turning_x, turning_y = _inertia_at_throw(masses.crank_pin, r, phi, speed, rate)
     throw_x, throw_y = net + turning_x, turning_y - side_thrust
     drive = np.asarray(lecture.crank_torque(tangential_force=tangential, crank_radius=r))
     from_gas = gas * forces.tangential
@@ -224,7 +223,7 @@ def of_cylinders(
         "radial force": net * forces.radial,
         "torque": drive - masses.crank_pin * r**2 * rate,
         "gas torque": np.asarray(lecture.crank_torque(tangential_force=from_gas, crank_radius=r)),
-        "piston pin force x": force_with(piston.mass),
+        "piston pin force x": force_with(bodies.piston_mass),
         "piston pin force y": -side_thrust,
         "crank pin force x": throw_x,
         "crank pin force y": throw_y,
@@ -232,7 +231,11 @@ def of_cylinders(
 
 
 def _inertia_at_throw(
-    mass: float, radius: float, angle: Array, omega: Array, alpha: Array | float
+    mass: Array | float,
+    radius: Array | float,
+    angle: Array,
+    omega: Array,
+    alpha: Array | float,
 ) -> tuple[Array, Array]:
     """Force that a mass turning at the crank radius needs: inwards, and forwards with alpha."""
     inwards = np.asarray(

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from crankmbs.lecture import two_mass_rod
+from crankmbs.compare.bodies import bodies_of
 from crankmbs.mechanics.variables import EVERY
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
@@ -104,11 +104,8 @@ def observed_cylinders(
     [rad]; the others in shapes that broadcast with it."""
     sin_phi, cos_phi = np.sin(phi), np.cos(phi)
     square = omega**2
-    rod, r = scene.rod, scene.crank.radius
-    masses = two_mass_rod(
-        rod_mass=rod.mass, rod_length=rod.length, center_of_mass=rod.center_of_mass
-    )
-    turning = float(masses.crank_pin) * r
+    bodies = bodies_of(scene)
+    turning = bodies.masses.crank_pin * bodies.crank_radius
     through_x = variables["crank_pin_force_x"] + turning * (cos_phi * square + sin_phi * alpha)
     through_y = variables["crank_pin_force_y"] + turning * (sin_phi * square - cos_phi * alpha)
     beta = variables["rod_angle"]

@@ -7,11 +7,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from crankmbs import lecture
+from crankmbs.compare.bodies import Bodies, bodies_of
 from crankmbs.compare.excerpt import Excerpt
 from crankmbs.compare.quantities import cycle_angles
 from crankmbs.errors import InputError
-from crankmbs.lecture import TwoMassRod
 from crankmbs.mechanics.axes import gravity_vector
 from crankmbs.mechanics.inertia import reduce
 from crankmbs.numerics.arrays import Array
@@ -43,12 +42,13 @@ class Words:
         return self.seen(data[name].values[self._excerpt.samples] if name in data else nothing)
 
     @property
-    def masses(self) -> TwoMassRod:
-        """The rod as two masses."""
-        rod = self.scene.rod
-        return lecture.two_mass_rod(
-            rod_mass=rod.mass, rod_length=rod.length, center_of_mass=rod.center_of_mass
-        )
+    def bodies(self) -> Bodies:
+        """Those of the cylinder; for the whole engine of every cylinder."""
+        return bodies_of(self.scene, self._excerpt.cylinder if self._one else None)
+
+    def area(self, area: Array | float) -> Array | float | None:
+        """An area; None where the scene has none."""
+        return area if np.all(np.asarray(area) > 0.0) else None
 
     def gravity(self, axis: int) -> float:
         """Gravity along X (0) or Y (1), of the cylinder or, for the whole engine, of the engine."""
@@ -114,7 +114,7 @@ WORDS = {
     ),
     "reduced_slope": Word("kg m^2/rad", "dJ/dtheta", lambda w: w.reduced.slope),
     "generalized_force": Word("N m", "of gas and weights on the crank", lambda w: w.reduced.torque),
-    "crank_radius": Word("m", "r", lambda w: w.scene.crank.radius),
+    "crank_radius": Word("m", "r", lambda w: w.bodies.crank_radius),
     "crank_inertia": Word(
         "kg m^2",
         "about the crank axis, with the flywheel",
@@ -124,36 +124,34 @@ WORDS = {
     "crank_center_of_mass": Word(
         "m", "of the crank, from its axis", lambda w: w.scene.crank.center_of_mass
     ),
-    "rod_length": Word("m", "l", lambda w: w.scene.rod.length),
-    "rod_ratio": Word("1", "lambda = r/l", lambda w: w.scene.crank.radius / w.scene.rod.length),
-    "rod_mass": Word("kg", "of the rod", lambda w: w.scene.rod.mass),
+    "rod_length": Word("m", "l", lambda w: w.bodies.rod_length),
+    "rod_ratio": Word("1", "lambda = r/l", lambda w: w.bodies.crank_radius / w.bodies.rod_length),
+    "rod_mass": Word("kg", "of the rod", lambda w: w.bodies.rod_mass),
     "rod_center_of_mass": Word(
-        "m", "of the rod, from the crank pin", lambda w: w.scene.rod.center_of_mass
+        "m", "of the rod, from the crank pin", lambda w: w.bodies.center_of_mass
     ),
-    "rod_inertia": Word(
-        "kg m^2", "about the rod's centre of mass", lambda w: w.scene.rod.moment_of_inertia
-    ),
-    "piston_mass": Word("kg", "of the piston", lambda w: w.scene.piston.mass),
+    "rod_inertia": Word("kg m^2", "about the rod's centre of mass", lambda w: w.bodies.inertia),
+    "piston_mass": Word("kg", "of the piston", lambda w: w.bodies.piston_mass),
     "piston_area": Word(
         "m^2",
         "of the piston",
-        lambda w: w.scene.piston.gas_area,
+        lambda w: w.area(w.bodies.piston_area),
         "the scene has neither piston.bore nor piston.area",
     ),
     "crank_end_area": Word(
         "m^2",
         "of the piston less the piston rod's",
-        lambda w: None if w.scene.piston.gas_area is None else w.scene.piston.crank_end_area,
+        lambda w: w.area(w.bodies.crank_end),
         "the scene has neither piston.bore nor piston.area",
     ),
-    "offset": Word("m", "e, of the cylinder axis in +Y", lambda w: w.scene.piston.offset),
+    "offset": Word("m", "e, of the cylinder axis in +Y", lambda w: w.bodies.offset),
     "reciprocating_mass": Word(
         "kg",
         "piston, and the rod's mass at its pin",
-        lambda w: w.scene.piston.mass + float(w.masses.piston_pin),
+        lambda w: w.bodies.piston_mass + w.bodies.masses.piston_pin,
     ),
     "rod_crank_pin_mass": Word(
-        "kg", "the rod's mass at the crank pin", lambda w: float(w.masses.crank_pin)
+        "kg", "the rod's mass at the crank pin", lambda w: w.bodies.masses.crank_pin
     ),
     "gravity_x": Word("m/s^2", "gravity along X", lambda w: w.gravity(0)),
     "gravity_y": Word("m/s^2", "gravity along Y", lambda w: w.gravity(1)),

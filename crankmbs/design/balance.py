@@ -115,6 +115,11 @@ def balance(scene: Scene, share: float = 0.5, *, cost_cap: float = 10.0) -> Bala
     """
     if not 0.0 <= share <= 1.0:
         raise InputError(f"share must be from 0 to 1 of the reciprocating mass; {share!r} came")
+    if scene.unlike:
+        raise InputError(
+            "balance: the cylinders are unlike, and each throw would need its own counterweight; "
+            "give a scene whose cylinders have one rod and piston, or read the frame force of a run"
+        )
     rod = scene.rod
     masses = two_mass_rod(
         rod_mass=rod.mass, rod_length=rod.length, center_of_mass=rod.center_of_mass

@@ -227,15 +227,15 @@ def _rows(values: Sequence[float], across: int = 3) -> str:
 
 
 def _gas(train: CrankTrain) -> list[str]:
-    """The forces of the gas: each different pressure once, and which each cylinder has."""
-    area = train.scene.piston.gas_area or 0.0
-    pressures = list(train.pressure or ())
-    different = list(dict.fromkeys(pressures))
+    """The forces of the gas: each different one once, and which each cylinder has."""
+    areas = [gear.piston.gas_area or 0.0 for gear in train.scene.running_gear]
+    forces = list(zip(train.pressure or (), areas, strict=False))
+    different = list(dict.fromkeys(forces))
     lines = [
         "# What the gas puts on a piston [N] over its cycle angle [rad]: from each start a cubic,",
         "# by descending power of the angle from there.",
     ]
-    for number, pressure in enumerate(different, start=1):
+    for number, (pressure, area) in enumerate(different, start=1):
         knots = pressure.knots
         cubics = (area * pressure.coefficients).T
         lines += [
@@ -250,5 +250,5 @@ def _gas(train: CrankTrain) -> list[str]:
             "    ],",
             "}",
         ]
-    names = [f"PIECES_{different.index(pressure) + 1}" for pressure in pressures]
+    names = [f"PIECES_{different.index(force) + 1}" for force in forces]
     return [*lines, f"GAS = [{', '.join(names)}]", "", ""]

@@ -19,10 +19,11 @@ def indicator_figure(view: View) -> Figure:
     diagram, over the volume that its piston has displaced from the top dead centre; of
     double-acting cylinders that of both ends, each over its own area times the displacement. The
     area of a loop is the work of a cycle."""
-    piston, displacement = view.scene.piston, view.values("piston_displacement")
-    ends = {"head end": ("gas_pressure", piston.gas_area or 0.0)}
+    pistons = [gear.piston for gear in view.scene.running_gear]
+    displacement = view.values("piston_displacement")
+    ends = {"head end": ("gas_pressure", [piston.gas_area or 0.0 for piston in pistons])}
     if view.scene.double_acting:
-        ends["crank end"] = "crank_end_pressure", piston.crank_end_area
+        ends["crank end"] = "crank_end_pressure", [piston.crank_end_area for piston in pistons]
     pressures = {end: view.values(name) / BAR for end, (name, _) in ends.items()}
     figure, axes = panels(1, 2, 13.0, 5.5, ratios=(1.5, 1.0))
     for group in one_curve_each(*pressures.values(), displacement):
@@ -32,7 +33,7 @@ def indicator_figure(view: View) -> Figure:
             k, line = group[0], line_of(group[0] * len(ends) + number)
             along, drawn = view.drawn(view.along, pressure)
             axes[0].plot(along, drawn[:, k], **line, label=", ".join(parts) or None)
-            volume = ends[end][1] * displacement[:, k] * 1e6
+            volume = ends[end][1][k] * displacement[:, k] * 1e6
             axes[1].plot(volume, pressure[:, k], **line)
     axes[0].set_ylabel("gauge pressure [bar]")
     axes[1].set_ylabel("gauge pressure [bar]")

@@ -12,8 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from crankmbs.mechanics.geometry import close_loop, dead_centres
+from crankmbs.mechanics.geometry import close_loop, top_position
 from crankmbs.numerics.arrays import Array
+from crankmbs.scene.parts import RunningGear
 from crankmbs.scene.scene import Scene
 
 __all__ = ["Mechanism", "in_engine_frame", "mechanism"]
@@ -68,22 +69,23 @@ def mechanism(scene: Scene, crank_angle: ArrayLike) -> Mechanism:
     [0.046, 0.0]
     """
     theta = np.asarray(crank_angle, dtype=np.float64)
-    r, l, e = scene.crank.radius, scene.rod.length, scene.piston.offset
+    gears = scene.running_gear
+    r, l, e = np.array([gear.shape for gear in gears]).T
     phi = theta[:, None] + np.array([cylinder.phase for cylinder in scene.cylinders])
     pin = close_loop(phi, r, l, e).x
-    top, bottom = close_loop(np.array(dead_centres(r, l, e)), r, l, e).x
-    width = _width(scene)
-    head = float(top) + _CROWN * width + _clearance(scene, float(top - bottom))
+    top = np.array([top_position(*gear.shape) for gear in gears])
+    stroke = np.array([gear.stroke for gear in gears])
+    width = np.array([_width(gear) for gear in gears])
+    head = top + _CROWN * width + _clearance(scene, stroke)
     crown, skirt = pin + _CROWN * width, pin - _SKIRT * width
     left, right = e + 0.5 * width, e - 0.5 * width
-    low = float(bottom) - _SKIRT * width
-    foot = np.full((1, len(scene.cylinders)), low)
+    foot = (top - stroke - _SKIRT * width)[np.newaxis]
     return Mechanism(
         crank_pin=in_engine_frame(scene, r * np.cos(phi), r * np.sin(phi)),
-        piston_pin=in_engine_frame(scene, pin, np.full_like(pin, e)),
+        piston_pin=in_engine_frame(scene, pin, np.broadcast_to(e, pin.shape)),
         piston=_rectangles(scene, skirt, crown, left, right),
-        gas=_rectangles(scene, crown, np.full_like(crown, head), left, right),
-        liner=_rectangles(scene, foot, foot + (head - low), left, right)[0],
+        gas=_rectangles(scene, crown, np.broadcast_to(head, crown.shape), left, right),
+        liner=_rectangles(scene, foot, head[np.newaxis], left, right)[0],
     )
 
 
@@ -98,18 +100,20 @@ def in_engine_frame(scene: Scene, x: ArrayLike, y: ArrayLike) -> Array:
     return np.stack([along * cos - across * sin, along * sin + across * cos], axis=-1)
 
 
-def _rectangles(scene: Scene, low: Array, high: Array, left: float, right: float) -> Array:
+def _rectangles(scene: Scene, low: Array, high: Array, left: Array, right: Array) -> Array:
     """Corners (low, left), (high, left), (high, right), (low, right) of every cylinder."""
     corners = [(low, left), (high, left), (high, right), (low, right)]
-    return np.stack([in_engine_frame(scene, x, np.full_like(x, y)) for x, y in corners], axis=-2)
+    return np.stack(
+        [in_engine_frame(scene, x, np.broadcast_to(y, x.shape)) for x, y in corners], axis=-2
+    )
 
 
-def _width(scene: Scene) -> float:
-    area = scene.piston.gas_area
-    return _WIDTH * scene.crank.radius if area is None else math.sqrt(4.0 * area / math.pi)
+def _width(gear: RunningGear) -> float:
+    area = gear.piston.gas_area
+    return _WIDTH * gear.radius if area is None else math.sqrt(4.0 * area / math.pi)
 
 
-def _clearance(scene: Scene, stroke: float) -> float:
+def _clearance(scene: Scene, stroke: Array) -> Array:
     indicator = None if scene.gas is None else scene.gas.indicator
     return (
         stroke * _CLEARANCE if indicator is None else stroke / (indicator.compression_ratio - 1.0)

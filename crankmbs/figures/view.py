@@ -95,11 +95,10 @@ class View:
         """
         if self.over_time:
             return {}
-        crank, rod, piston = self.scene.crank, self.scene.rod, self.scene.piston
-        top, bottom = dead_centres(crank.radius, rod.length, piston.offset)
+        centres = [dead_centres(*gear.shape) for gear in self.scene.running_gear]
         cylinders = self.scene.cylinders
         if len(cylinders) == 1:
-            phase = cylinders[0].phase
+            (top, bottom), phase = centres[0], cylinders[0].phase
             labels = dict.fromkeys(self._passes(bottom - phase), "BDC")
             for at in self._passes(top - phase):
                 labels[at] = "firing TDC" if self._fires(at, 0) else "TDC"
@@ -107,7 +106,7 @@ class View:
         passes = sorted(
             (at, number, self._fires(at, number - 1))
             for number, cylinder in enumerate(cylinders, start=1)
-            for at in self._passes(top - cylinder.phase)
+            for at in self._passes(centres[number - 1][0] - cylinder.phase)
         )
         groups: dict[float, dict[int, bool]] = {}
         for at, number, fires in passes:

@@ -91,10 +91,19 @@ def shape_of(scene: Scene | None, header: dict[str, float], ratio: float | None)
 def of_scene(scene: Scene) -> Shape:
     """A scene's geometry, with the compression ratio where its gas has one.
 
+    Raises
+    ------
+    InputError : its cylinders are unlike
+
     >>> of_scene(load_scene("v_twin")).source
     'the scene'
     """
     gas, ratio = scene.gas, None
+    if scene.unlike:
+        raise InputError(
+            "scene: its cylinders are unlike, and a record is read with the geometry of one; give "
+            "a scene of the cylinder that was measured"
+        )
     if gas is not None and gas.indicator is not None:
         ratio = gas.indicator.compression_ratio
     elif gas is not None and isinstance(gas.motored, Polytrope):

@@ -12,9 +12,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from crankmbs.mechanics.geometry import close_loop, dead_centres, top_position
+from crankmbs.mechanics.geometry import close_loop
 from crankmbs.mechanics.pressure import PeriodicPressure, crank_ends_of, pressures_of
 from crankmbs.scene.gas import Gas
+from crankmbs.scene.parts import RunningGear
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.units import BAR
 
@@ -24,12 +25,9 @@ _STEEL = 7850.0  # kg/m3
 
 
 class _Sized(NamedTuple):
-    """A scene, the gas of its head ends, the stroke [m] and the piston's diameter, without area the
-    stroke [m]."""
+    """What moves in a cylinder, and its piston's diameter, without area the stroke [m]."""
 
-    scene: Scene
-    pressure: tuple[PeriodicPressure, ...]
-    stroke: float
+    gear: RunningGear
     diameter: float
 
 
@@ -39,12 +37,15 @@ def warnings(scene: Scene) -> tuple[str, ...]:
     >>> warnings(load_scene("propeller"))
     ()
     """
-    r, l, e = shape = scene.crank.radius, scene.rod.length, scene.piston.offset
-    stroke = top_position(r, l, e) - float(close_loop(dead_centres(r, l, e)[1], *shape).x)
-    area = scene.piston.gas_area
-    diameter = stroke if area is None else math.sqrt(4.0 * area / math.pi)
-    machine = _Sized(scene, pressures_of(scene) or (), stroke, diameter)
-    return tuple(said for rule in _RULES for said in rule(machine))
+    common = RunningGear(scene.crank.radius, scene.rod, scene.piston)
+    found = []
+    for number, gear in enumerate(scene.running_gear, start=1):
+        area = gear.piston.gas_area
+        sized = _Sized(gear, gear.stroke if area is None else math.sqrt(4.0 * area / math.pi))
+        where = "" if gear == common else f"cylinder[{number}]: "
+        found += [f"{where}{said}" for rule in _OF_GEAR for said in rule(sized)]
+    found += [said for rule in _OF_SCENE for said in rule(scene)]
+    return tuple(dict.fromkeys(found))
 
 
 # The longest strokes are those of ships' two-stroke engines, 3.5 m; model engines have 5 mm.
@@ -53,10 +54,10 @@ _STROKES = 1e-3, 5.0
 
 def _stroke(machine: _Sized) -> Iterator[str]:
     least, most = _STROKES
-    if not least <= machine.stroke <= most:
+    if not least <= machine.gear.stroke <= most:
         yield (
-            f"crank.radius: a stroke of {machine.stroke:.4g} m is outside {least:g} to {most:g} m, "
-            "where machines lie; a bare number is in metres"
+            f"crank.radius: a stroke of {machine.gear.stroke:.4g} m is outside {least:g} to "
+            f"{most:g} m, where machines lie; a bare number is in metres"
         )
 
 
@@ -66,16 +67,16 @@ _BORE_OVER_STROKE = 0.15, 3.5
 
 
 def _bore(machine: _Sized) -> Iterator[str]:
-    if machine.stroke < _STROKES[0]:  # that is said already
+    if machine.gear.stroke < _STROKES[0]:  # that is said already
         return
-    ratio = machine.diameter / machine.stroke
+    ratio = machine.diameter / machine.gear.stroke
     least, most = _BORE_OVER_STROKE
     if not least <= ratio <= most:
-        name = "bore" if machine.scene.piston.area is None else "area"
+        name = "bore" if machine.gear.piston.area is None else "area"
         yield (
             f"piston.{name}: a piston {machine.diameter * 1e3:.4g} mm wide with a stroke of "
-            f"{machine.stroke * 1e3:.4g} mm has a bore {ratio:.3g} times the stroke; machines have "
-            f"{least:g} to {most:g} times; check its unit"
+            f"{machine.gear.stroke * 1e3:.4g} mm has a bore {ratio:.3g} times the stroke; machines "
+            f"have {least:g} to {most:g} times; check its unit"
         )
 
 
@@ -85,7 +86,7 @@ _DIAMETERS = 5.0
 
 
 def _masses(machine: _Sized) -> Iterator[str]:
-    rod, piston, d = machine.scene.rod, machine.scene.piston, machine.diameter
+    (_, rod, piston), d = machine
     column = _STEEL * math.pi / 4.0 * d**2
     for name, mass, height in (
         ("rod", rod.mass, rod.length),
@@ -103,8 +104,8 @@ _ROD_OVER_RADIUS = 50.0
 
 
 def _rod_length(machine: _Sized) -> Iterator[str]:
-    length, radius = machine.scene.rod.length, machine.scene.crank.radius
-    if machine.stroke >= _STROKES[0] and length > _ROD_OVER_RADIUS * radius:
+    radius, length, _ = machine.gear.shape
+    if machine.gear.stroke >= _STROKES[0] and length > _ROD_OVER_RADIUS * radius:
         yield (
             f"rod.length: a rod of {length:.4g} m is {length / radius:.4g} times as long as the "
             f"crank's radius, and machines have up to {_ROD_OVER_RADIUS:g}; a bare number is in "
@@ -117,7 +118,7 @@ _GYRATION = 0.7
 
 
 def _rod(machine: _Sized) -> Iterator[str]:
-    rod = machine.scene.rod
+    rod = machine.gear.rod
     if rod.mass == 0.0:
         return
     if not 0.0 <= rod.center_of_mass <= rod.length:
@@ -138,8 +139,8 @@ def _rod(machine: _Sized) -> Iterator[str]:
 _AMBIENT = 0.2 * BAR, 50.0 * BAR
 
 
-def _ambient(machine: _Sized) -> Iterator[str]:
-    gas = machine.scene.gas
+def _ambient(scene: Scene) -> Iterator[str]:
+    gas = scene.gas
     if gas is None or gas.ambient is None:
         return
     least, most = _AMBIENT
@@ -160,8 +161,8 @@ _FAR = math.radians(45.0)
 _NEARLY = 0.98
 
 
-def _peak(machine: _Sized) -> Iterator[str]:
-    gas, pressures = machine.scene.gas, list(dict.fromkeys(machine.pressure))
+def _peak(scene: Scene) -> Iterator[str]:
+    gas, pressures = scene.gas, list(dict.fromkeys(pressures_of(scene) or ()))
     if gas is None or isinstance(gas.pressure, float):
         return
     for number, pressure in enumerate(pressures, start=1):
@@ -195,10 +196,10 @@ def _peak_of(gas: Gas, pressure: PeriodicPressure) -> Iterator[str]:
         )
 
 
-def _loads(machine: _Sized) -> Iterator[str]:
+def _loads(scene: Scene) -> Iterator[str]:
     """A load that turns the crank on where the gas does so already has the wrong sign."""
-    scene, start = machine.scene, machine.scene.start
-    if start is None or start.speed == 0.0 or start.speed * _gas_work(machine) <= 0.0:
+    start = scene.start
+    if start is None or start.speed == 0.0 or start.speed * _gas_work(scene) <= 0.0:
         return
     for number, load in enumerate(scene.torque, start=1):
         torque = float(load(0.0, start.angle, start.speed))
@@ -210,27 +211,29 @@ def _loads(machine: _Sized) -> Iterator[str]:
             )
 
 
-def _gas_work(machine: _Sized) -> float:
+def _gas_work(scene: Scene) -> float:
     """Work of the gas over one period of the engine in the sense of +theta [J]."""
-    scene, work = machine.scene, 0.0
-    pushing = [(scene.piston.gas_area or 0.0, each) for each in machine.pressure]
-    pushing += [(-scene.piston.crank_end_area, each) for each in crank_ends_of(scene) or ()]
-    for area, pressure in pushing:
+    work, gears = 0.0, scene.running_gear
+    heads, ends = pressures_of(scene) or (), crank_ends_of(scene) or ()
+    pushing = [
+        *(
+            (gear, gear.piston.gas_area or 0.0, each)
+            for gear, each in zip(gears, heads, strict=False)
+        ),
+        *(
+            (gear, -gear.piston.crank_end_area, each)
+            for gear, each in zip(gears, ends, strict=False)
+        ),
+    ]
+    for gear, area, pressure in pushing:
         count = 1440 * round(pressure.period / scene.period)
         angle = (np.arange(count) + 0.5) * pressure.period / count
-        loop = close_loop(angle, scene.crank.radius, scene.rod.length, scene.piston.offset)
+        loop = close_loop(angle, *gear.shape)
         torque = -pressure(angle) * area * loop.x_1
         work += float(np.mean(torque)) * scene.period
     return work
 
 
-_RULES: tuple[Callable[[_Sized], Iterator[str]], ...] = (
-    _stroke,
-    _bore,
-    _masses,
-    _rod_length,
-    _rod,
-    _ambient,
-    _peak,
-    _loads,
-)
+_Rules = tuple[Callable[..., Iterator[str]], ...]
+_OF_GEAR: _Rules = (_stroke, _bore, _masses, _rod_length, _rod)
+_OF_SCENE: _Rules = (_ambient, _peak, _loads)

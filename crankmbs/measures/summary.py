@@ -15,7 +15,7 @@ from crankmbs.measures.joints import JointForce, joints_of
 from crankmbs.measures.nodes import Nodes, nodes_of
 from crankmbs.measures.peaks import Peak, extremes_of
 from crankmbs.measures.span import CYCLES, TURNS_BACK, Span, measured_span, passes_over
-from crankmbs.mechanics.geometry import close_loop, dead_centres
+from crankmbs.mechanics.axes import areas
 from crankmbs.motion.motion import Motion
 from crankmbs.motion.states import samples_in
 from crankmbs.numerics.arrays import Array
@@ -185,7 +185,7 @@ def efficiency(indicated: Estimate | None, rubbed: Estimate | None) -> Estimate 
     >>> efficiency(Estimate(4.0, 0.0), Estimate(1.0, 0.1)).value
     0.75
     """
-    if indicated is None or rubbed is None or indicated.value == 0.0:
+    if indicated is None or rubbed is None or abs(indicated.value) <= indicated.error:
         return None
     of_gas, left = indicated.value, indicated.value - rubbed.value
     value, whole = (left / of_gas, of_gas) if of_gas > 0.0 else (of_gas / left, left)
@@ -236,13 +236,13 @@ def _powers(scene: Scene, window: Span, nodes: Nodes, late: float) -> Numbers:
     duration."""
     variables, velocity = nodes.variables, nodes.variables["piston_velocity"]
 
-    def work(name: str, factor: float = 1.0) -> Number:
+    def work(name: str, factor: Array | float = 1.0) -> Number:
         power = factor * variables[name] * velocity if name in variables else 0.0 * velocity
         return Number(nodes.integral(power), late * nodes.integral(np.abs(power)))
 
     ends = None
     if scene.double_acting:
-        head, crank = scene.piston.gas_area or 0.0, scene.piston.crank_end_area
+        head, crank = areas(scene)
         ends = work("gas_pressure", head), work("crank_end_pressure", -crank)
     works = Works(work("gas_force"), work("friction_force"), ends)
     whole = window.kind in CYCLES
@@ -266,20 +266,19 @@ class Works(NamedTuple):
 def powers(scene: Scene, works: Works, cycles: float, duration: float | Array) -> Numbers:
     """Powers, mean effective pressures and efficiency by the works on the pistons over so many
     cycles, 0 where they are not whole ones, in a duration [s]."""
-    numbers, (of_gas, rubbed, ends), piston = {}, works, scene.piston
-    if scene.gas is not None and piston.gas_area is not None:
+    numbers, (of_gas, rubbed, ends) = {}, works
+    if scene.gas is not None:
         numbers["indicated_power"] = of_gas.summed.over(duration)
         head, crank = ends or (of_gas, None)
         if crank is not None:
             numbers["indicated_power_head_end"] = head.summed.over(duration)
             numbers["indicated_power_crank_end"] = crank.summed.over(duration)
         if cycles:
-            shape = scene.crank.radius, scene.rod.length, scene.piston.offset
-            top, bottom = close_loop(dead_centres(*shape), *shape).x
-            strokes = cycles * float(top - bottom)
-            numbers["imep"] = head.over(piston.gas_area * strokes)
+            strokes = cycles * np.array([gear.stroke for gear in scene.running_gear])
+            on_head, on_crank = areas(scene)
+            numbers["imep"] = head.over(on_head * strokes)
             if crank is not None:
-                numbers["imep_crank_end"] = crank.over(piston.crank_end_area * strokes)
+                numbers["imep_crank_end"] = crank.over(on_crank * strokes)
     if scene.friction is not None:
         numbers["friction_power"] = rubbed.summed.over(-duration)
         gained, lost = (

@@ -57,12 +57,15 @@ def carried_over(scene: Scene, before: Scene) -> Scene:
     >>> carried_over(*2 * [load_scene("v_twin")]) == load_scene("v_twin")
     True
     """
-    gas, ways = scene.gas, (_shape(before), _shape(scene))
-    if gas is None or ways[0] == ways[1]:
+    gas = scene.gas
+    pairs = zip(before.running_gear, scene.running_gear, strict=True)
+    ways = [(Shape(*one.shape), Shape(*other.shape)) for one, other in pairs]
+    if gas is None or all(one == other for one, other in ways):
         return scene
     if gas.indicator is not None and not tables_of(gas.crank_end):
         return scene
-    if any(radius == length and offset == 0.0 for radius, length, offset in ways):
+    shapes = {shape for way in ways for shape in way}
+    if any(radius == length and offset == 0.0 for radius, length, offset in shapes):
         raise InputError(
             "rod.length: a rod as long as the crank lets the piston rest for half a turn, where a "
             "table of pressures cannot follow it; give a longer rod"
@@ -108,20 +111,17 @@ def _swept(phi: Array, shape: Shape) -> tuple[Array, Array]:
     return above / (above + below), below / (above + below)
 
 
-def _shape(scene: Scene) -> Shape:
-    return Shape(scene.crank.radius, scene.rod.length, scene.piston.offset)
-
-
 def _moved(
-    before: Scene, gas: Gas, given: Tables, ways: tuple[Shape, Shape]
+    before: Scene, gas: Gas, given: Tables, ways: list[tuple[Shape, Shape]]
 ) -> Table | tuple[Table, ...]:
-    """Every table with its rows moved, one for all cylinders or one for each."""
+    """Every table with its rows moved, one for all cylinders of one shape or one for each."""
     shifts = behind(before, gas, given)
-    if isinstance(given, Table):
-        return _table(given, shifts[0], shifts[0], ways)
-    aligned = behind(before, gas, tables_of(given))  # what a list of tables lags
-    every = zip(tables_of(given), shifts, aligned, strict=True)
-    return tuple(_table(table, shift, own, ways) for table, shift, own in every)
+    if isinstance(given, Table) and len(set(ways)) == 1:
+        return _table(given, shifts[0], shifts[0], ways[0])
+    tables = (given,) * len(ways) if isinstance(given, Table) else tables_of(given)
+    aligned = behind(before, gas, tables)  # what a list of tables lags
+    every = zip(tables, shifts, aligned, ways, strict=True)
+    return tuple(_table(*one) for one in every)
 
 
 def _table(table: Table, shift: float, back: float, ways: tuple[Shape, Shape]) -> Table:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from crankmbs.mechanics.axes import axes_of, closed_loops
+from crankmbs.mechanics.axes import axes_of, closed_loops, gears_of
 from crankmbs.mechanics.journals import of_rods
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.periodic import Period, single
@@ -27,12 +27,12 @@ def pushed(scene: Scene, period: Period, forces: Array) -> dict[str, Array]:
     >>> pushed(scene, single(np.zeros(1)), np.ones((1, 1)))["piston_pin_force_x"]
     array([[1.]])
     """
-    axes, loop = axes_of(scene), closed_loops(scene, period.angles)
+    axes, gears, loop = axes_of(scene), gears_of(scene), closed_loops(scene, period.angles)
     tangent = loop.sin_beta / loop.cos_beta
-    lever = scene.crank.radius * (loop.sin_phi + loop.cos_phi * tangent)
+    lever = gears.radius * (loop.sin_phi + loop.cos_phi * tangent)
     across = period.times(-tangent, forces)
     torque = period.times(lever, forces)
-    moment = period.times(-loop.x * tangent - scene.piston.offset, forces)
+    moment = period.times(-loop.x * tangent - gears.offset, forces)
     journal = np.cumsum(torque, axis=0)
     return of_rods(scene, forces, across) | {
         "external_torque": -journal[-1:],

@@ -25,15 +25,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from crankmbs.mechanics.axes import axes_of, closed_loops
-from crankmbs.mechanics.geometry import (
-    Loop,
-    bottom_position,
-    dead_centres,
-    slides,
-    throw_angles,
-    top_position,
-)
+from crankmbs.mechanics.axes import axes_of, closed_loops, displacements, slides
+from crankmbs.mechanics.geometry import Loop, dead_centres, throw_angles
 from crankmbs.mechanics.knots import KNOT, apart
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.cycle import tiled
@@ -176,7 +169,7 @@ class OnCrank:
             found += law.over_time(t)
         if law.given is not None:
             velocity = -loop.x_1 * omega
-            at = t, self._cycle_angles(theta), self._displacement(loop), velocity
+            at = t, self._cycle_angles(theta), displacements(self.scene, loop), velocity
             which = np.flatnonzero(self.pistons)
             each = (np.broadcast_to(one, loop.x.shape)[which] for one in at)
             found[which] += _each(law.given.function, *each)
@@ -193,42 +186,38 @@ class OnCrank:
 
     def _sign(self, theta: Array, sense: Array) -> Array:
         """Of the pistons' velocities in a sense of rotation."""
-        phi = self._cycle_angles(theta)
-        return np.where(sense >= 0.0, *(slides(phi, one, *self._shape) for one in (1.0, -1.0)))
+        return np.where(sense >= 0.0, *(slides(self.scene, theta, one) for one in (1.0, -1.0)))
 
     def _cycle_angles(self, theta: Array) -> Array:
         return np.add.outer(axes_of(self.scene).phases, theta)
 
-    @cached_property
-    def _shape(self) -> tuple[float, float, float]:
-        return self.scene.crank.radius, self.scene.rod.length, self.scene.piston.offset
-
-    def _displacement(self, loop: Loop) -> Array:
-        return top_position(*self._shape) - loop.x
-
     def _over_travel(self, way: Piecewise, theta: Array, loop: Loop) -> Array:
         """A function of the displacement; on a jump that at a larger crank angle."""
-        at = self._displacement(loop)
+        at = displacements(self.scene, loop)
         if not way.jumps:
             return way(at)
-        beyond = self._displacement(closed_loops(self.scene, theta + KNOT))
+        beyond = displacements(self.scene, closed_loops(self.scene, theta + KNOT))
         return way.of_piece(beyond, at)
 
     @cached_property
-    def travel_knots(self) -> Array:
-        """Cycle angles [rad] in a revolution at which the force over the travel bends or jumps."""
+    def travel_knots(self) -> list[Array]:
+        """Cycle angles [rad] in a revolution at which the force over the travel of each piston
+        bends or jumps."""
         law = self.force.law
         rows = {k for way in (law.forward, law.back) if way is not None for k in way.knots}
         rows |= set(law.given.displacements if law.given else ())
-        stroke = top_position(*self._shape) - bottom_position(*self._shape)
-        inside = np.array(sorted(row for row in rows if 0.0 < row < stroke))
-        return np.concatenate(throw_angles(inside, stroke - inside, *self._shape))
+        found = []
+        for gear in self.scene.running_gear:
+            inside = np.array(sorted(row for row in rows if 0.0 < row < gear.stroke))
+            found.append(np.concatenate(throw_angles(inside, gear.stroke - inside, *gear.shape)))
+        return found
 
-    def at_crank(self, cycle_angles: Array, period: float) -> Array:
-        """The crank angles [rad] in [0, period) at which a piston that it acts on is at one of
-        these cycle angles."""
-        phases = axes_of(self.scene).phases[self.pistons[:, 0] > 0.0]
-        return apart(np.mod(np.subtract.outer(cycle_angles, phases).ravel(), period))
+    def at_crank(self, cycle_angles: list[Array], period: float) -> Array:
+        """The crank angles [rad] in [0, period) at which a piston that it acts on is at one of its
+        cycle angles."""
+        own = zip(cycle_angles, axes_of(self.scene).phases, self.pistons[:, 0], strict=True)
+        angles = [angle - phase for angle, phase, acts in own if acts]
+        return apart(np.mod(np.concatenate(angles), period))
 
 
 def _each(function: Callable[..., float], *at: Array) -> Array:
@@ -244,9 +233,10 @@ class _OverAngle:
         self._load, law = load, load.force.law
         self.period = _TURN if law.over_angle is None else law.over_angle.period
         turns = _TURN * np.arange(round(self.period / _TURN) or 1)
-        over_travel = np.add.outer(turns, load.travel_knots).ravel()
         given = np.empty(0) if law.over_angle is None else tiled(law.over_angle, self.period)
-        inside = load.at_crank(np.concatenate([over_travel, given]), self.period)
+        over_travel = (np.add.outer(turns, own).ravel() for own in load.travel_knots)
+        cycle_angles = [np.concatenate([own, given]) for own in over_travel]
+        inside = load.at_crank(cycle_angles, self.period)
         inside = inside[(inside > KNOT) & (inside < self.period - KNOT)]
         self.knots = np.concatenate([[0.0], inside, [self.period]])
 
@@ -266,15 +256,16 @@ class _OfTime(Function):
     """The torque [N m] of what depends on time, or is a function of Python."""
 
     def __init__(self, load: OnCrank) -> None:
-        self._load, law, scene = load, load.force.law, load.scene
+        self._load, law = load, load.force.law
         given = law.given or Given(_nothing)
         own = given.period or _TURN
-        knots = np.empty(0)
-        if law.given is not None:  # it may jump with the sense of the velocity
-            shape = scene.crank.radius, scene.rod.length, scene.piston.offset
-            knots = np.concatenate([load.travel_knots, dead_centres(*shape)])
-        knots = np.add.outer(_TURN * np.arange(round(own / math.pi)), knots).ravel()
-        angles = load.at_crank(np.concatenate([knots, given.angles]), own).tolist()
+        turns, knots = _TURN * np.arange(round(own / math.pi)), []
+        for travel, gear in zip(load.travel_knots, load.scene.running_gear, strict=True):
+            centres = dead_centres(*gear.shape) if law.given is not None else ()
+            # at a dead centre it may jump with the sense of the velocity
+            every = np.add.outer(turns, np.concatenate([travel, centres])).ravel()
+            knots.append(np.concatenate([every, given.angles]))
+        angles = load.at_crank(knots, own).tolist()
         times = (*given.times, *(law.over_time.knots if law.over_time else ()))
         speeds = () if law.given is None else (0.0,)
 

@@ -22,8 +22,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from crankmbs.mechanics.axes import axes_of, closed_loops
-from crankmbs.mechanics.geometry import slides as slides_of
+from crankmbs.mechanics.axes import axes_of, closed_loops, gears_of
+from crankmbs.mechanics.axes import slides as sliding
 from crankmbs.mechanics.inertia import fired_torque, gas_at
 from crankmbs.mechanics.pressure import pressures_at
 from crankmbs.mechanics.torque import pushing
@@ -84,7 +84,7 @@ def rubbing(train: CrankTrain, theta: ArrayLike, phases: Phases = ()) -> Rubbing
         rings, drag = rings + more[0], drag + more[1]
     pressure = gas_at(train, angles)
     gas = np.zeros_like(x_1) if pressure is None else pressure
-    torque = -(scene.piston.gas_area or 0.0) * gas * x_1
+    torque = -gears_of(scene).area * gas * x_1
     return Rubbing(
         rings.reshape(theta.shape),
         torque.T.reshape(*theta.shape, len(torque)),
@@ -144,17 +144,15 @@ def friction_forces(
     scene, friction = train.scene, train.scene.friction or _NONE
     theta, omega = np.asarray(theta, dtype=np.float64), np.asarray(omega, dtype=np.float64)
     slides = np.sign(omega) if slides is None else slides
-    area, axes = scene.piston.gas_area or 0.0, axes_of(scene)
-    period = period_of(theta, train.period)
-    phi = np.add.outer(axes.phases, period.angles)
+    area, period = gears_of(scene).area, period_of(theta, train.period)
+    phi = np.add.outer(axes_of(scene).phases, period.angles)
     gas = np.zeros((len(phi), len(theta)))
     if train.pressure is not None:
         gas += (area * pressures_at(train.pressure, phi))[:, period.which]
     if train.combustion is not None and fuel is not None:
         gas += fuel.T * (area * pressures_at(train.combustion, phi))[:, period.which]
-    shape = scene.crank.radius, scene.rod.length, scene.piston.offset
-    sliding = (slides_of(phi, sense, *shape)[:, period.which] for sense in (1.0, -1.0))
-    towards = np.where(slides >= 0.0, *sliding)
+    ways = (sliding(scene, period.angles, sense)[:, period.which] for sense in (1.0, -1.0))
+    towards = np.where(slides >= 0.0, *ways)
     limit = friction.ring_force + friction.ring_pressure * np.abs(gas)
     velocity = -closed_loops(scene, period.angles).x_1[:, period.which] * omega
     forces = -np.abs(slides) * towards * limit - friction.viscous * velocity

@@ -16,16 +16,16 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from crankmbs.mechanics.knots import KNOT
 from crankmbs.numerics.arrays import Array
 
 __all__ = [
+    "Lengths",
     "Loop",
     "bottom_position",
     "close_loop",
     "close_loops",
     "dead_centres",
-    "slides",
+    "lengths_of",
     "throw_angles",
     "top_position",
 ]
@@ -53,7 +53,12 @@ class Loop(NamedTuple):
         return np.asarray(np.arctan2(self.sin_beta, self.cos_beta))
 
 
-def close_loop(cycle_angle: ArrayLike, radius: float, rod_length: float, offset: float) -> Loop:
+def close_loop(
+    cycle_angle: ArrayLike,
+    radius: Array | float,
+    rod_length: Array | float,
+    offset: Array | float,
+) -> Loop:
     """Close the loop exactly.
 
     beta_1 = r cos(phi) / (l cos(beta)),  beta_2 = -r sin(phi) / (l cos(beta)) + tan(beta) beta_1^2
@@ -63,7 +68,8 @@ def close_loop(cycle_angle: ArrayLike, radius: float, rod_length: float, offset:
     Parameters
     ----------
     cycle_angle : shape (...) [rad]
-    radius, rod_length, offset : [m]; rod_length >= radius + abs(offset)
+    radius, rod_length, offset : [m], of all angles or of shapes that broadcast with them;
+        rod_length >= radius + abs(offset)
 
     Returns
     -------
@@ -74,18 +80,49 @@ def close_loop(cycle_angle: ArrayLike, radius: float, rod_length: float, offset:
     0.4
     """
     phi = np.asarray(cycle_angle, dtype=np.float64)
-    return _closed(np.sin(phi), np.cos(phi), (radius, rod_length, offset))
+    return _closed(np.sin(phi), np.cos(phi), lengths_of(radius, rod_length, offset))
 
 
-def close_loops(
-    crank_angle: Array, phases: Array, radius: float, rod_length: float, offset: float
-) -> Loop:
+class Lengths(NamedTuple):
+    """What of a loop does not change with the angle: its lengths [m] and what is made of them, of
+    all cylinders or shape (cylinders, 1).
+
+    ratio, skew, far : r / l, e / l, |e| / l; spare : of l, by which the rod is longer than it must
+        be
+    centred : whether there is no offset
+    """
+
+    radius: Array | float
+    rod_length: Array | float
+    offset: Array | float
+    ratio: Array | float
+    skew: Array | float
+    spare: Array | float
+    far: Array | float
+    centred: bool
+
+
+def lengths_of(radius: Array | float, rod_length: Array | float, offset: Array | float) -> Lengths:
+    """The lengths of a loop, with what is made of them.
+
+    >>> lengths_of(0.1, 0.4, 0.0).ratio
+    0.25
+    """
+    r, l, e = radius, rod_length, offset
+    far: Array | float = np.abs(e) / l
+    spare: Array | float = np.maximum(l - r - np.abs(e), 0.0) / l
+    spare, far = (float(x) if np.ndim(x) == 0 else x for x in (spare, far))
+    return Lengths(r, l, e, r / l, e / l, spare, far, not np.any(e))
+
+
+def close_loops(crank_angle: Array, phases: Array, lengths: Lengths) -> Loop:
     """Close the loops of several cylinders: one sine and one cosine for each crank angle, turned
     by the phases.
 
     crank_angle, phases : shape (n,), (cylinders,) [rad]; every field has shape (cylinders, n)
 
-    >>> close_loops(np.zeros(1), np.array([0.0, math.pi]), 0.1, 0.3, 0.0).x.round(12).tolist()
+    >>> phases, lengths = np.array([0.0, math.pi]), lengths_of(0.1, 0.3, 0.0)
+    >>> close_loops(np.zeros(1), phases, lengths).x.round(12).tolist()
     [[0.4], [0.2]]
     """
     sin, cos = np.sin(crank_angle), np.cos(crank_angle)
@@ -94,27 +131,25 @@ def close_loops(
     else:
         ahead, beside = np.cos(phases)[:, np.newaxis], np.sin(phases)[:, np.newaxis]
         sin, cos = sin * ahead + cos * beside, cos * ahead - sin * beside
-    return _closed(sin, cos, (radius, rod_length, offset))
+    return _closed(sin, cos, lengths)
 
 
-def _closed(sin_phi: Array, cos_phi: Array, lengths: tuple[float, float, float]) -> Loop:
-    r, l, e = lengths
-    ratio, skew = r / l, e / l
+def _closed(sin_phi: Array, cos_phi: Array, lengths: Lengths) -> Loop:
+    _, l, e, ratio, skew, spare, far, centred = lengths
     throw, side = ratio * cos_phi, ratio * sin_phi
-    sin_beta = side - skew if e else side
+    sin_beta = side if centred else side - skew
     # 1 - |sin(phi)| from its product with 1 + |sin(phi)|, as it would cancel near a fold
     wide = 1.0 + np.abs(sin_phi)
     narrow = cos_phi * cos_phi / wide
     # l (1 - sin(beta)) = (l - r + e) + r (1 - sin(phi)); likewise 1 + sin
-    spare, far = max(l - r - abs(e), 0.0) / l, abs(skew)
-    beyond = np.copysign(skew, e * sin_phi) if e else 0.0
+    beyond: Array | float = 0.0 if centred else np.copysign(skew, e * sin_phi)
     cos_beta = np.sqrt(
         (spare + (far + beyond) + ratio * narrow) * (spare + (far - beyond) + ratio * wide)
     )
     beta_1 = throw / cos_beta
     # -cos(beta)^3 beta_2 / lambda as a sum of terms that are themselves small near a fold
     bend = (spare * (1.0 + ratio + far)) * sin_phi
-    if e:
+    if not centred:
         towards = np.where((sin_phi > 0.0) == (e > 0.0), wide, narrow)
         bend = bend + (skew * ratio) * towards**2
     beta_2 = -ratio * bend / (cos_beta * cos_beta * cos_beta)
@@ -143,20 +178,6 @@ def dead_centres(radius: float, rod_length: float, offset: float) -> tuple[float
     spare = rod_length - radius
     bottom = math.asin(min(max(offset / spare, -1.0), 1.0)) if spare > 0.0 else 0.0
     return math.asin(offset / (rod_length + radius)), math.pi + bottom
-
-
-def slides(
-    cycle_angle: ArrayLike, sense: float, radius: float, rod_length: float, offset: float
-) -> Array:
-    """The sign of a piston's velocity towards the crank just beyond cycle angles, shape (...)
-    [rad], in a sense of rotation (a sign).
-
-    >>> slides([0.0, 4.0], 1.0, 0.1, 0.3, 0.0)
-    array([ 1., -1.])
-    """
-    top, bottom = dead_centres(radius, rod_length, offset)
-    behind = np.mod(np.asarray(cycle_angle) + sense * KNOT - top, 2.0 * math.pi)
-    return np.where(behind < bottom - top, sense, -sense)
 
 
 def top_position(radius: float, rod_length: float, offset: float) -> float:

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crankmbs.numerics.arrays import Array
+from crankmbs.scene.parts import RunningGear
 from crankmbs.scene.scene import Scene
 
 __all__ = ["ClosedOrders", "closed_orders"]
@@ -54,9 +55,31 @@ def closed_orders(scene: Scene, highest: int = 12) -> ClosedOrders | None:
     >>> print(abs(closed.torque[1]) > abs(closed.torque[0]))
     True
     """
-    crank, rod, piston = scene.crank, scene.rod, scene.piston
-    r, l, a = crank.radius, rod.length, rod.center_of_mass
-    ratio, skew = r / l, piston.offset / l
+    order, crank = np.arange(1.0, highest + 1.0), scene.crank
+    waves = {gear: _of_gear(gear, highest) for gear in set(scene.running_gear)}
+    total = np.zeros((3, highest), dtype=np.complex128)
+    for cylinder, gear in zip(scene.cylinders, scene.running_gear, strict=True):
+        of_gear = waves[gear]
+        if of_gear is None:
+            return None
+        along, across, torque = of_gear
+        turn, cos_bank, sin_bank = (
+            np.exp(1j * order * cylinder.phase),
+            np.cos(cylinder.bank),
+            np.sin(cylinder.bank),
+        )
+        total[0] += turn * (cos_bank * along - sin_bank * across)
+        total[1] += turn * (sin_bank * along + cos_bank * across)
+        total[2] += turn * torque
+    own = crank.mass * crank.center_of_mass
+    total[:2, 0] += own, -1j * own
+    return ClosedOrders(order, *total)
+
+
+def _of_gear(gear: RunningGear, highest: int) -> tuple[Waves, Waves, Waves] | None:
+    """Force along and across the cylinder, and torque, of one at phase 0, shape (highest,) each."""
+    (r, l, e), rod, piston = gear.shape, gear.rod, gear.piston
+    a, ratio, skew = rod.center_of_mass, r / l, e / l
     if ratio + abs(skew) > _STEEPEST:
         return None
     cosine, sine = _wave({1: 0.5, -1: 0.5}), _wave({1: -0.5j, -1: 0.5j})
@@ -72,23 +95,10 @@ def closed_orders(scene: Scene, highest: int = 12) -> ClosedOrders | None:
     )
     force_x = -piston.mass * _slope(x_1) - rod.mass * _slope(rod_x_1)
     force_y = -rod.mass * _slope(rod_y_1)
-    order = np.arange(1.0, highest + 1.0)
     along, across, torque = (
         2.0 * wave[_K + 1 : _K + 1 + highest] for wave in (force_x, force_y, -0.5 * _slope(inertia))
     )
-    total = np.zeros((3, highest), dtype=np.complex128)
-    for cylinder in scene.cylinders:
-        turn, cos_bank, sin_bank = (
-            np.exp(1j * order * cylinder.phase),
-            np.cos(cylinder.bank),
-            np.sin(cylinder.bank),
-        )
-        total[0] += turn * (cos_bank * along - sin_bank * across)
-        total[1] += turn * (sin_bank * along + cos_bank * across)
-        total[2] += turn * torque
-    own = crank.mass * crank.center_of_mass
-    total[:2, 0] += own, -1j * own
-    return ClosedOrders(order, *total)
+    return along, across, torque
 
 
 def _series(u: Waves, most: float) -> tuple[Waves, Waves]:

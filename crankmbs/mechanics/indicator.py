@@ -19,11 +19,11 @@ from crankmbs.mechanics.geometry import close_loop, dead_centres, top_position
 from crankmbs.mechanics.knots import KNOT, apart
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.gas import Gas, Indicator
-from crankmbs.scene.scene import Scene
 
 __all__ = ["INDICATOR_RTOL", "fit", "indicator_pieces", "relative_volume"]
 
 Stroke = tuple[float, float, Callable[[Array], Array]]
+Shape = tuple[float, float, float]
 
 INDICATOR_RTOL = 1e-9  # of the absolute pressure
 
@@ -34,8 +34,8 @@ _BETWEEN = np.array([0.1, 0.5, 0.9])  # where a cubic through the support errs m
 _TO_POWERS = np.linalg.inv(np.vander(_SUPPORT, 4))
 
 
-def indicator_pieces(scene: Scene, *, fires: bool = True) -> tuple[Array, Array]:
-    """The diagram of ``scene.gas.indicator`` as a periodic piecewise cubic, gauge.
+def indicator_pieces(gas: Gas, shape: Shape, *, fires: bool = True) -> tuple[Array, Array]:
+    """The diagram of ``gas.indicator`` in a cylinder as a periodic piecewise cubic, gauge.
 
     From the true gas-exchange top dead centre: intake; compression p V^n = const; at the firing
     dead centre a rise to the peak pressure, held until V = pre_expansion * V_clearance; expansion
@@ -47,7 +47,7 @@ def indicator_pieces(scene: Scene, *, fires: bool = True) -> tuple[Array, Array]
 
     Parameters
     ----------
-    scene : with ``gas.indicator``
+    gas : with an indicator; shape : radius of the throw, length of the rod and offset [m]
     fires : else the compression's polytrope is run back down to the bottom dead centre
 
     Returns
@@ -56,29 +56,27 @@ def indicator_pieces(scene: Scene, *, fires: bool = True) -> tuple[Array, Array]
     coefficients : shape (4, n) [Pa by descending power of (angle - knots[i]) in rad], as in
         `scipy.interpolate.PPoly`; within 1e-9 of the absolute pressure of the diagram
 
-    >>> knots, coefficients = indicator_pieces(load_scene("grega_lecture"))
+    >>> scene = load_scene("grega_lecture")
+    >>> knots, coefficients = indicator_pieces(scene.gas, scene.running_gear[0].shape)
     """
-    gas = scene.gas
-    assert gas is not None
     assert gas.indicator is not None
     assert gas.ambient is not None
-    parts = [fit(*stroke) for stroke in _strokes(scene, gas, gas.indicator, fires)]
+    parts = [fit(*stroke) for stroke in _strokes(gas, gas.indicator, shape, fires)]
     knots = np.concatenate([*(left for left, _ in parts), [parts[0][0][0] + gas.period]])
     coefficients = np.concatenate([cubic for _, cubic in parts], axis=1)
     coefficients[-1] -= gas.ambient
     return knots, coefficients
 
 
-def _strokes(scene: Scene, gas: Gas, indicator: Indicator, fires: bool) -> list[Stroke]:
+def _strokes(gas: Gas, indicator: Indicator, shape: Shape, fires: bool) -> list[Stroke]:
     """(begin, end, absolute pressure) of each smooth part of the cycle."""
-    shape = (scene.crank.radius, scene.rod.length, scene.piston.offset)
     top, bottom = dead_centres(*shape)
     turn = 2.0 * math.pi
     ratio = indicator.compression_ratio
     x_top, x_bottom = top_position(*shape), float(close_loop(bottom, *shape).x)
 
     def volume(angle: Array) -> Array:
-        return relative_volume(scene, ratio, angle)
+        return relative_volume(shape, ratio, angle)
 
     def held(pressure: float) -> Callable[[Array], Array]:
         return lambda angle: np.full_like(angle, pressure)
@@ -107,9 +105,8 @@ def _strokes(scene: Scene, gas: Gas, indicator: Indicator, fires: bool) -> list[
     ]
 
 
-def relative_volume(scene: Scene, ratio: float, angle: Array) -> Array:
+def relative_volume(shape: Shape, ratio: float, angle: Array) -> Array:
     """V / V_clearance at cycle angles [rad], for a compression ratio."""
-    shape = (scene.crank.radius, scene.rod.length, scene.piston.offset)
     x_top = top_position(*shape)
     x_bottom = float(close_loop(dead_centres(*shape)[1], *shape).x)
     share = (x_top - close_loop(angle, *shape).x) / (x_top - x_bottom)

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from crankmbs.mechanics.axes import axes_of, closed_loops, gravity_vector
+from crankmbs.mechanics.axes import Gears, axes_of, closed_loops, gears_of, gravity_vector
 from crankmbs.mechanics.geometry import Loop
 from crankmbs.mechanics.pressure import pressures_at
 from crankmbs.mechanics.train import CrankTrain
@@ -47,7 +47,7 @@ class RodCentre(NamedTuple):
     y_2: Array
 
 
-def rod_centre(loop: Loop, radius: float, share: float) -> RodCentre:
+def rod_centre(loop: Loop, radius: Array | float, share: Array | float) -> RodCentre:
     """First and second derivatives in phi of the rod's centre of mass, exact.
 
     It divides the line from the crank pin to the piston pin, which moves along the cylinder alone.
@@ -64,25 +64,19 @@ def rod_centre(loop: Loop, radius: float, share: float) -> RodCentre:
     )
 
 
-def moving_inertias(scene: Scene, loop: Loop, centre: RodCentre) -> Array:
+def moving_inertias(gears: Gears, loop: Loop, centre: RodCentre) -> Array:
     """What piston and rod of each cylinder add to J [kg m2], of the shape of the loop."""
-    rod = scene.rod
-    inertia = scene.piston.mass * loop.x_1**2
-    if rod.mass:
-        inertia += rod.mass * (centre.x_1**2 + centre.y_1**2)
-    if rod.moment_of_inertia:
-        inertia += rod.moment_of_inertia * loop.beta_1**2
+    inertia = gears.piston_mass * loop.x_1**2
+    inertia += gears.rod_mass * (centre.x_1**2 + centre.y_1**2)
+    inertia += gears.rod_inertia * loop.beta_1**2
     return np.asarray(inertia)
 
 
-def _half_slopes(scene: Scene, loop: Loop, centre: RodCentre) -> Array:
+def _half_slopes(gears: Gears, loop: Loop, centre: RodCentre) -> Array:
     """Half of its derivative [kg m2/rad]."""
-    rod = scene.rod
-    slope = scene.piston.mass * loop.x_1 * loop.x_2
-    if rod.mass:
-        slope += rod.mass * (centre.x_1 * centre.x_2 + centre.y_1 * centre.y_2)
-    if rod.moment_of_inertia:
-        slope += rod.moment_of_inertia * loop.beta_1 * loop.beta_2
+    slope = gears.piston_mass * loop.x_1 * loop.x_2
+    slope += gears.rod_mass * (centre.x_1 * centre.x_2 + centre.y_1 * centre.y_2)
+    slope += gears.rod_inertia * loop.beta_1 * loop.beta_2
     return np.asarray(slope)
 
 
@@ -143,21 +137,19 @@ def reduce(train: CrankTrain, theta: ArrayLike, shares: ArrayLike | None = None)
 def _reduced(train: CrankTrain, theta: Array, shares: Array | None) -> tuple[Array, Array, Array]:
     """J, dJ/dtheta and the torque, shape (n,); shares : shape (cylinders, n)."""
     scene = train.scene
-    crank, rod, piston = scene.crank, scene.rod, scene.piston
-    loop = closed_loops(scene, theta)
-    g = rod_centre(loop, crank.radius, rod.center_of_mass / rod.length)
-    inertia = crank.moment_of_inertia + moving_inertias(scene, loop, g).sum(axis=0)
-    slope = 2.0 * _half_slopes(scene, loop, g).sum(axis=0)
+    gears, loop = gears_of(scene), closed_loops(scene, theta)
+    g = rod_centre(loop, gears.radius, gears.rod_centre / gears.length)
+    inertia = scene.crank.moment_of_inertia + moving_inertias(gears, loop, g).sum(axis=0)
+    slope = 2.0 * _half_slopes(gears, loop, g).sum(axis=0)
     torque = np.zeros(len(theta))
     if scene.gravity is not None:
         torque += crank_weight(scene, theta)
-        (gx, gy), mass = axes_of(scene).gravity, rod.mass
-        torque += (((piston.mass * gx) * loop.x_1) + (mass * gx) * g.x_1 + (mass * gy) * g.y_1).sum(
-            axis=0
-        )
+        (gx, gy), mass = axes_of(scene).gravity, gears.rod_mass
+        of_piston = (gears.piston_mass * gx) * loop.x_1
+        torque += (of_piston + (mass * gx) * g.x_1 + (mass * gy) * g.y_1).sum(axis=0)
     gas = gas_at(train, theta, shares)
     if gas is not None:
-        torque -= (piston.gas_area or 0.0) * (gas * loop.x_1).sum(axis=0)
+        torque -= (gears.area * (gas * loop.x_1)).sum(axis=0)
     return inertia, slope, torque
 
 
@@ -198,7 +190,7 @@ def ends_at(train: CrankTrain, theta: Array, net: Array) -> dict[str, Array]:
     if train.crank_end is None:
         return {}
     below = pressures_at(train.crank_end, np.add.outer(axes_of(train.scene).phases, theta))
-    head = net + train.scene.piston.crank_end_share * below
+    head = net + gears_of(train.scene).crank_end_share * below
     return {"gas_pressure": head, "crank_end_pressure": below}
 
 
@@ -214,5 +206,5 @@ def fired_torque(train: CrankTrain, theta: ArrayLike) -> Array:
         return np.empty((*theta.shape, 0))
     angles = theta.ravel()
     more = pressures_at(train.combustion, np.add.outer(axes_of(scene).phases, angles))
-    torque = -(scene.piston.gas_area or 0.0) * more * closed_loops(scene, angles).x_1
+    torque = -gears_of(scene).area * more * closed_loops(scene, angles).x_1
     return np.asarray(torque.T.reshape(*theta.shape, len(torque)))

@@ -16,8 +16,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from crankmbs.mechanics.axes import axes_of, closed_loops, gravity_vector
-from crankmbs.mechanics.geometry import Loop, top_position
+from crankmbs.mechanics.axes import axes_of, closed_loops, gears_of, gravity_vector
+from crankmbs.mechanics.geometry import Loop
 from crankmbs.mechanics.inertia import crank_weight, ends_at, gas_at, moving_inertias, rod_centre
 from crankmbs.mechanics.journals import journal_rows, of_journals
 from crankmbs.mechanics.train import CrankTrain
@@ -119,8 +119,8 @@ def of_cylinders(train: CrankTrain, theta: Array, motion: Powers) -> Cylinders:
     """The variables of every cylinder, at crank angles of shape (n,) [rad]; balance after balance,
     in the order in which each needs the one before."""
     scene = train.scene
-    rod, piston, area = scene.rod, scene.piston, scene.piston.gas_area or 0.0
-    r, l, a = scene.crank.radius, rod.length, rod.center_of_mass
+    gears = gears_of(scene).over_motions
+    r, l, a = gears.radius, gears.length, gears.rod_centre
     square, alpha, one = motion
     gx, gy = axes_of(scene).gravity[..., np.newaxis]
     loop = Loop(*(part[:, np.newaxis] for part in closed_loops(scene, theta)))
@@ -134,15 +134,15 @@ def of_cylinders(train: CrankTrain, theta: Array, motion: Powers) -> Cylinders:
     felt_x = g.x_2 * square + g.x_1 * alpha - gx * one  # the rod's acceleration minus gravity
     felt_y = g.y_2 * square + g.y_1 * alpha - gy * one
     felt = x_tt - gx * one  # the piston's, along the cylinder
-    force = gas * area
+    force = gas * gears.area
     push = force * one
-    inertial_x, inertial_y = rod.mass * felt_x, rod.mass * felt_y
-    carried = piston.mass * felt
+    inertial_x, inertial_y = gears.rod_mass * felt_x, gears.rod_mass * felt_y
+    carried = gears.piston_mass * felt
     pin_x = carried + push
     weight = cos_b * inertial_y + sin_b * inertial_x
-    pin_y = ((rod.moment_of_inertia * beta_tt - a * weight) / l - pin_x * sin_b) / cos_b
+    pin_y = ((gears.rod_inertia * beta_tt - a * weight) / l - pin_x * sin_b) / cos_b
     throw_x, throw_y = inertial_x + pin_x, inertial_y + pin_y
-    leaning = piston.mass * gy * one
+    leaning = gears.piston_mass * gy * one
     side = -pin_y - leaning
     torque = r * (loop.sin_phi * throw_x - loop.cos_phi * throw_y)
     journal = np.cumsum(torque, axis=0)
@@ -151,7 +151,7 @@ def of_cylinders(train: CrankTrain, theta: Array, motion: Powers) -> Cylinders:
         "rod_angular_speed": loop.beta_1,
         "rod_angular_acceleration": beta_tt,
         "piston_position": loop.x,
-        "piston_displacement": top_position(r, l, piston.offset) - loop.x,
+        "piston_displacement": gears.top - loop.x,
         "piston_velocity": -loop.x_1,
         "piston_acceleration": -x_tt,
         "gas_pressure": gas,
@@ -168,8 +168,8 @@ def of_cylinders(train: CrankTrain, theta: Array, motion: Powers) -> Cylinders:
     for name, pressures in ends_at(train, theta, gas[:, 0]).items():
         variables[name] = pressures[:, np.newaxis]
     shake_x, shake_y = -inertial_x - carried, leaning - inertial_y
-    moment = -loop.x * side - piston.offset * push
-    return Cylinders(variables, shake_x, shake_y, moment, moving_inertias(scene, loop, g))
+    moment = -loop.x * side - gears.offset * push
+    return Cylinders(variables, shake_x, shake_y, moment, moving_inertias(gears, loop, g))
 
 
 def of_crank(

@@ -179,11 +179,11 @@ def pressures_of(scene: Scene) -> tuple[PeriodicPressure, ...] | None:
 
     >>> pressure, = pressures_of(load_scene("propeller"))
     """
-    gas, cylinders = scene.gas, scene.cylinders
+    gas = scene.gas
     if gas is None:
         return None
     if gas.indicator is not None:
-        return (_of_indicator(scene, gas, fires=True),) * len(cylinders)
+        return _of_indicator(scene, gas, fires=True)
     assert gas.pressure is not None
     return _given(scene, gas, gas.pressure)
 
@@ -198,12 +198,13 @@ def motored_of(scene: Scene) -> tuple[PeriodicPressure, ...]:
     assert gas is not None
     assert fired is not None
     if gas.indicator is not None:
-        return (_of_indicator(scene, gas, fires=False),) * len(fired)
+        return _of_indicator(scene, gas, fires=False)
     assert gas.motored is not None
     if not isinstance(gas.motored, Polytrope):
         return _given(scene, gas, gas.motored)
-    once = {each: _continued(scene, gas, gas.motored, each) for each in dict.fromkeys(fired)}
-    return tuple(once[each] for each in fired)
+    of_each = [(one, gear.shape) for one, gear in zip(fired, scene.running_gear, strict=True)]
+    once = {each: _continued(gas, gas.motored, *each) for each in dict.fromkeys(of_each)}
+    return tuple(once[each] for each in of_each)
 
 
 def crank_ends_of(scene: Scene) -> tuple[PeriodicPressure, ...] | None:
@@ -218,10 +219,14 @@ def crank_ends_of(scene: Scene) -> tuple[PeriodicPressure, ...] | None:
     return _given(scene, gas, gas.crank_end)
 
 
-def _of_indicator(scene: Scene, gas: Gas, *, fires: bool) -> PeriodicPressure:
-    knots, coefficients = indicator_pieces(scene, fires=fires)
-    absolute = coefficients + np.array([[0.0], [0.0], [0.0], [gas.ambient or 0.0]])
-    return PeriodicPressure(knots, coefficients, INDICATOR_RTOL * absolute)
+def _of_indicator(scene: Scene, gas: Gas, *, fires: bool) -> tuple[PeriodicPressure, ...]:
+    """That of each cylinder over its own volume; cylinders of one shape share it."""
+    once = {}
+    for shape in {gear.shape for gear in scene.running_gear}:
+        knots, coefficients = indicator_pieces(gas, shape, fires=fires)
+        absolute = coefficients + np.array([[0.0], [0.0], [0.0], [gas.ambient or 0.0]])
+        once[shape] = PeriodicPressure(knots, coefficients, INDICATOR_RTOL * absolute)
+    return tuple(once[gear.shape] for gear in scene.running_gear)
 
 
 def _given(scene: Scene, gas: Gas, source: PressureGiven) -> tuple[PeriodicPressure, ...]:
@@ -237,20 +242,20 @@ def _given(scene: Scene, gas: Gas, source: PressureGiven) -> tuple[PeriodicPress
 
 
 def _continued(
-    scene: Scene, gas: Gas, polytrope: Polytrope, fired: PeriodicPressure
+    gas: Gas, polytrope: Polytrope, fired: PeriodicPressure, shape: tuple[float, float, float]
 ) -> PeriodicPressure:
-    """A fired pressure, from ``closes`` to the bottom dead centre a polytrope in its place, in
-    every cycle."""
+    """A fired pressure of a cylinder of this shape, from ``closes`` to the bottom dead centre a
+    polytrope in its place, in every cycle."""
     ambient, ratio = gas.ambient or 0.0, polytrope.compression_ratio
     begin, end = 2.0 * math.pi + polytrope.closes, 3.0 * math.pi
     whole = np.arange(begin, begin + fired.period - 1e-6, gas.period)
     knots, columns = [], []
     for at in whole:
         pressed = float(fired(at)) + ambient
-        size = float(relative_volume(scene, ratio, np.array(at)))
+        size = float(relative_volume(shape, ratio, np.array(at)))
 
         def pressure(angle: Array, pressed: float = pressed, size: float = size) -> Array:
-            volume = relative_volume(scene, ratio, angle)
+            volume = relative_volume(shape, ratio, angle)
             return np.asarray(pressed * (size / volume) ** polytrope.polytrope)
 
         rows = repeat(fired.knots[:-1], fired.period, at, at + end - begin)

@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from crankmbs.mechanics.axes import axes_of
+from crankmbs.mechanics.axes import axes_of, gears_of
 from crankmbs.mechanics.fired import pushed
 from crankmbs.mechanics.friction import friction_forces
 from crankmbs.mechanics.newton_euler import UNITS, Powers, balanced, powers_of, rows_of
@@ -263,7 +263,7 @@ def _added(
     if fuel is not None and train.combustion is not None:
         phi = np.add.outer(axes_of(train.scene).phases, period.angles)
         more = period.times(pressures_at(train.combustion, phi), np.ascontiguousarray(fuel.T))
-        forces.append((train.scene.piston.gas_area or 0.0) * more)
+        forces.append(gears_of(train.scene).area * more)
         found |= {"gas_pressure": more, "gas_force": forces[0]}
     for name, push in pushes.items():
         forces.append(np.ascontiguousarray(push.T))

@@ -150,10 +150,11 @@ def crank_train(scene: Scene) -> CrankTrain:
 def _net(
     scene: Scene, heads: tuple[PeriodicPressure, ...], ends: tuple[PeriodicPressure, ...]
 ) -> tuple[PeriodicPressure, ...]:
-    """What pushes each piston; cylinders of one pair of pressures share it."""
-    share, pairs = scene.piston.crank_end_share, list(zip(heads, ends, strict=True))
-    once = {pair: net_of(*pair, share) for pair in dict.fromkeys(pairs)}
-    return tuple(once[pair] for pair in pairs)
+    """What pushes each piston; cylinders of one pair of pressures and areas share it."""
+    shares = (gear.piston.crank_end_share for gear in scene.running_gear)
+    of_each = list(zip(heads, ends, shares, strict=True))
+    once = {one: net_of(*one) for one in dict.fromkeys(of_each)}
+    return tuple(once[one] for one in of_each)
 
 
 def _beginning(scene: Scene) -> tuple[float, float]:
@@ -231,8 +232,11 @@ def friction_knots(train: CrankTrain) -> Array:
     if scene.friction is None and not train.sticks:
         return np.empty(0)
     turns = 2.0 * math.pi * np.arange(round(train.period / (2.0 * math.pi)))
-    centres = dead_centres(scene.crank.radius, scene.rod.length, scene.piston.offset)
-    angles = [np.add.outer(turns, np.array(centres) - c.phase).ravel() for c in scene.cylinders]
+    own = zip(scene.cylinders, scene.running_gear, strict=True)
+    angles = [
+        np.add.outer(turns, np.array(dead_centres(*gear.shape)) - c.phase).ravel()
+        for c, gear in own
+    ]
     if train.combustion is None:
         angles.append(sign_changes(train))
     return apart(np.mod(np.concatenate(angles), train.period))

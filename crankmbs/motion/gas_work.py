@@ -6,7 +6,8 @@ import math
 
 import numpy as np
 
-from crankmbs.mechanics.geometry import close_loop, dead_centres
+from crankmbs.mechanics.axes import areas
+from crankmbs.mechanics.geometry import close_loop
 from crankmbs.mechanics.train import CrankTrain, crank_angle_knots
 from crankmbs.numerics.arrays import Array, Index
 from crankmbs.scene.units import DEGREE
@@ -27,8 +28,6 @@ class GasWork:
         self._cycles = round(train.period / scene.period)
         self._phases = np.array([c.phase for c in scene.cylinders])
         self._train, self._points = train, points
-        self._shape = (scene.crank.radius, scene.rod.length, scene.piston.offset)
-        self._area = scene.piston.gas_area or 0.0
         ahead = (math.pi - self._phases - start) % self._period
         self._decides = np.where(self._period - ahead < _SAME, 0.0, ahead)
         self._without, self._below, self._above, self._crank_end = self._integrals()
@@ -36,15 +35,15 @@ class GasWork:
     def pressures(self, work: Array, place: Index, sense: Array) -> dict[str, Array]:
         """Mean effective pressures by name [Pa], shape (n, cylinders), of works of the gas [J] in
         cycles as `works` takes them; of double-acting cylinders those of both ends."""
-        r, l, e = self._shape
-        top, bottom = close_loop(dead_centres(r, l, e), r, l, e).x
-        stroke, piston = float(top - bottom), self._train.scene.piston
+        scene = self._train.scene
+        on_head, on_crank = areas(scene)
+        stroke = np.array([gear.stroke for gear in scene.running_gear])
         if self._train.crank_end is None:
-            return {"imep": work / (self._area * stroke)}
+            return {"imep": work / (on_head * stroke)}
         below = sense[:, None] * self._crank_end[self._which(place, sense)]
         return {
-            "imep": (work - below) / (self._area * stroke),
-            "imep_crank_end": below / (piston.crank_end_area * stroke),
+            "imep": (work - below) / (on_head * stroke),
+            "imep_crank_end": below / (on_crank * stroke),
         }
 
     def works(self, place: Index, sense: Array, before: Array, after: Array) -> Array:
@@ -88,9 +87,9 @@ class GasWork:
         ahead = edges[:-1, None] + 0.5 * width * (1.0 + nodes)
         of_panel = np.minimum(ahead[:, 0] // self._period, self._cycles - 1).astype(np.intp)
         found = np.zeros((4, self._cycles, len(self._phases)))
-        for k, phase in enumerate(self._phases):
-            phi = self._start + ahead + phase
-            lever = -self._area * close_loop(phi, *self._shape).x_1 * 0.5 * width * weights
+        for k, (phase, gear) in enumerate(zip(self._phases, train.scene.running_gear, strict=True)):
+            phi, area = self._start + ahead + phase, gear.piston.gas_area or 0.0
+            lever = -area * close_loop(phi, *gear.shape).x_1 * 0.5 * width * weights
             if train.pressure is not None:
                 work = (lever * train.pressure[k](phi)).sum(axis=1)
                 np.add.at(found[0, :, k], of_panel, work)
@@ -99,7 +98,7 @@ class GasWork:
                 late = (ahead[:, 0] % self._period > self._decides[k]).astype(np.intp)
                 np.add.at(found[1:3, :, k], (late, of_panel), work)
             if train.crank_end is not None:
-                share = train.scene.piston.crank_end_share
+                share = gear.piston.crank_end_share
                 work = -(share * lever * train.crank_end[k](phi)).sum(axis=1)
                 np.add.at(found[3, :, k], of_panel, work)
         return found

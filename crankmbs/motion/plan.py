@@ -113,9 +113,12 @@ def plan_of(scene: Scene) -> Plan:
 
 def folds_of(scene: Scene, start: float) -> tuple[float, float]:
     """The nearest crank angles [rad] around ``start`` at which a rod folds, drawn in by a hair."""
-    r, l, e = scene.crank.radius, scene.rod.length, scene.piston.offset
-    angles = [0.5 * math.pi] * (l - r + e <= 1e-15 * l) + [1.5 * math.pi] * (l - r - e <= 1e-15 * l)
-    ahead = [(a - c.phase - start) % (2 * math.pi) for a in angles for c in scene.cylinders]
+    ahead = []
+    for cylinder, gear in zip(scene.cylinders, scene.running_gear, strict=True):
+        r, l, e = gear.shape
+        angles = [0.5 * math.pi] * (l - r + e <= 1e-15 * l)
+        angles += [1.5 * math.pi] * (l - r - e <= 1e-15 * l)
+        ahead += [(angle - cylinder.phase - start) % (2 * math.pi) for angle in angles]
     if not ahead:
         return -math.inf, math.inf
     return start + max(ahead) - 2 * math.pi + _HAIR, start + min(ahead) - _HAIR

@@ -63,6 +63,8 @@ def _reasons(scene: Scene) -> Iterator[str]:
         yield "multibody: asked for by name, and the page solves one rotation"
     if any(load.parts.function is not None for load in scene.torque):
         yield "function: a load is a function of Python"
+    if scene.unlike:
+        yield "cylinder: the page's engine has cylinders that are alike"
     if scene.force:
         yield "force: the page's engine has no forces from outside on the pistons"
     yield from _of_fuel(scene)

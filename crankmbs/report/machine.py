@@ -8,13 +8,14 @@ import numpy as np
 
 from crankmbs.choose import Choice
 from crankmbs.measures.plausible import warnings
-from crankmbs.mechanics.geometry import close_loop, dead_centres
+from crankmbs.mechanics.geometry import dead_centres
 from crankmbs.mechanics.pressure import PeriodicPressure, crank_ends_of, pressures_of, remarks
 from crankmbs.mechanics.speed import speed_remarks
 from crankmbs.scene.cycles import cycles_in
 from crankmbs.scene.drives import Oscillation, Ramp, SpeedFile
 from crankmbs.scene.force import PistonForce
 from crankmbs.scene.gas import Gas, PressureGiven, tables_of
+from crankmbs.scene.parts import RunningGear
 from crankmbs.scene.run import SETTLED, Extent
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.speed_rows import repeats
@@ -44,14 +45,16 @@ def machine_rows(scene: Scene) -> list[tuple[str, str]]:
     ['crank', 'rod', 'piston']
     """
     heads, ends = (dict.fromkeys(of(scene) or ()) for of in (pressures_of, crank_ends_of))
+    common = RunningGear(scene.crank.radius, scene.rod, scene.piston)
     at_head = "in the head end" if ends else "across the piston"
     rows = [
         ("title", scene.title),
         ("source", scene.source),
         ("crank", _crank(scene)),
-        ("rod", _rod(scene)),
-        ("piston", _piston(scene)),
-        ("dead centres", _dead_centres(scene)),
+        ("rod", _rod(common)),
+        ("piston", _piston(common)),
+        ("dead centres", _dead_centres(common)),
+        *_unlike(scene, common),
         ("cylinders", _cylinders(scene)),
         ("gas", _gas(scene)),
         *(("pressure", _pressure(scene, pressure, at_head)) for pressure in heads),
@@ -78,8 +81,22 @@ def _crank(scene: Scene) -> str:
     )
 
 
-def _rod(scene: Scene) -> str:
-    rod, ratio = scene.rod, scene.crank.radius / scene.rod.length
+def _unlike(scene: Scene, common: RunningGear) -> list[tuple[str, str]]:
+    """The throw, rod and piston of each cylinder that has its own."""
+    return [
+        row
+        for number, gear in enumerate(scene.running_gear, start=1)
+        if gear != common
+        for row in (
+            (f"cylinder[{number}]", f"radius {gear.radius * 1e3:.6g} mm; rod: {_rod(gear)}"),
+            ("", f"piston: {_piston(gear)}"),
+            ("", f"dead centres: {_dead_centres(gear)}"),
+        )
+    ]
+
+
+def _rod(gear: RunningGear) -> str:
+    rod, ratio = gear.rod, gear.radius / gear.rod.length
     lumped = ", two masses" if rod.inertia == "two-mass" else ""
     return (
         f"length {rod.length * 1e3:.6g} mm, ratio {ratio:.6g}, "
@@ -93,8 +110,8 @@ def _body(mass: float, center_of_mass: float) -> str:
     return f"mass {mass:.6g} kg{place}"
 
 
-def _piston(scene: Scene) -> str:
-    piston, area = scene.piston, scene.piston.gas_area
+def _piston(gear: RunningGear) -> str:
+    piston, area = gear.piston, gear.piston.gas_area
     bore = ""
     if area is not None:
         across = math.sqrt(4.0 * area / math.pi)
@@ -104,15 +121,12 @@ def _piston(scene: Scene) -> str:
     return f"mass {piston.mass:.6g} kg{bore}{offset}{rod}"
 
 
-def _dead_centres(scene: Scene) -> str:
-    r, l, e = scene.crank.radius, scene.rod.length, scene.piston.offset
-    angles = dead_centres(r, l, e)
-    top, bottom = close_loop(angles, r, l, e).x
-    at = " and ".join(f"{angle:.6g}" for angle in np.degrees(angles))
-    text = f"cycle angles {at} deg, stroke {float(top - bottom) * 1e3:.6g} mm"
-    area = scene.piston.gas_area
+def _dead_centres(gear: RunningGear) -> str:
+    at = " and ".join(f"{angle:.6g}" for angle in np.degrees(dead_centres(*gear.shape)))
+    text = f"cycle angles {at} deg, stroke {gear.stroke * 1e3:.6g} mm"
+    area = gear.piston.gas_area
     if area is not None:
-        text += f", displaced {float(top - bottom) * area * 1e6:.6g} cm^3 a cylinder"
+        text += f", displaced {gear.stroke * area * 1e6:.6g} cm^3 a cylinder"
     return text
 
 

@@ -16,7 +16,6 @@ from crankmbs.display import displayed
 from crankmbs.measures import Estimate, JointForce, Measures
 from crankmbs.measures.peaks import Peak, run_peaks
 from crankmbs.measures.span import TURNS_BACK
-from crankmbs.mechanics.geometry import close_loop, dead_centres
 from crankmbs.result import Result
 from crankmbs.scene.scene import Scene
 
@@ -215,10 +214,8 @@ def _specific(measures: Measures) -> list[list[str]]:
 
 
 def _piston_speed(speed: Estimate, scene: Scene) -> Estimate:
-    """Twice the stroke a revolution [m/s]."""
-    shape = scene.crank.radius, scene.rod.length, scene.piston.offset
-    top, bottom = close_loop(dead_centres(*shape), *shape).x
-    per_radian = float(top - bottom) / math.pi
+    """Twice the stroke a revolution, of unlike cylinders the longest [m/s]."""
+    per_radian = max(gear.stroke for gear in scene.running_gear) / math.pi
     return Estimate(abs(speed.value) * per_radian, speed.error * per_radian)
 
 

@@ -151,6 +151,13 @@ def _numbers(scene: Scene) -> tuple[int, ...]:
                 f"bank is the same; cylinders {first + 1} and {k + 1} of throw {number + 1} have "
                 f"{at[0]:.6g} and {at[1]:.6g} degrees"
             )
+        radii = [scene.running_gear[i].radius for i in (first, k)]
+        if radii[0] != radii[1]:
+            raise InputError(
+                f"layout.cylinders[{k + 1}].throw: cylinders of one throw share a pin, so its "
+                f"radius is the same; cylinders {first + 1} and {k + 1} of throw {number + 1} have "
+                f"{radii[0]:.6g} and {radii[1]:.6g} m"
+            )
     return tuple(numbers)
 
 

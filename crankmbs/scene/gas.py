@@ -77,17 +77,31 @@ def _source(value: Any, info: ValidationInfo) -> PressureGiven:
     if isinstance(value, list | tuple):
         if not value:
             raise InputError("must name a file for each cylinder; an empty list came")
-        return tuple(_one_file(each, info) for each in value)
+        return tuple(_of_one(each, info) for each in value)
+    constant = _constant(value, info)
+    return _table(value, info) if constant is None else constant
+
+
+def _constant(value: Any, info: ValidationInfo) -> float | None:
+    """A quantity [Pa]; None of what is none."""
     text = isinstance(value, str) and _NUMBER.match(value) and not _FILE_NAME.fullmatch(value)
-    if text or (isinstance(value, Real) and not isinstance(value, bool)):
-        pressure = to_si(value, "pressure", info)
-        if not math.isfinite(pressure):
-            raise InputError(f"must be a finite number; {shown(value)} came")
-        return pressure
-    return _table(value, info)
+    if not text and (not isinstance(value, Real) or isinstance(value, bool)):
+        return None
+    pressure = to_si(value, "pressure", info)
+    if not math.isfinite(pressure):
+        raise InputError(f"must be a finite number; {shown(value)} came")
+    return pressure
 
 
-def _one_file(value: Any, info: ValidationInfo) -> Table:
+def _of_one(value: Any, info: ValidationInfo) -> Table:
+    """The pressure of one cylinder, a constant as one in every quarter turn."""
+    constant = _constant(value, info)
+    if constant is not None:
+        stroke = (info.data or {}).get("stroke", 4)
+        quarters = range(2 * stroke)
+        return Table(
+            tuple(0.5 * math.pi * k for k in quarters), (constant,) * len(quarters), "a constant"
+        )
     table = _table(value, info)
     if isinstance(table, CylinderTable):
         raise InputError(
@@ -174,8 +188,8 @@ MotoredSource = Annotated[
 class Gas:
     """The gas in the cylinders: pressures over the crank angle, or an indicator diagram.
 
-    pressure: a table of crank angle [rad] and pressure [Pa], one for each cylinder or for all, or
-    a constant [Pa]; absolute: whether the pressure is; ambient [Pa]: crankcase side; stroke: 4
+    pressure: a table of crank angle [rad] and pressure [Pa] or a constant [Pa], one for each
+    cylinder or for all; absolute: whether the pressure is; ambient [Pa]: crankcase side; stroke: 4
     (period 720 degrees) or 2 (360); zero: the cycle angle of the table's 0; aligned: whether each
     of several columns runs over its own cylinder's cycle angle, else all over that of cylinder 1;
     cycles: what is made of a file longer than a period, its mean cycle or the sequence of them;
@@ -194,11 +208,11 @@ class Gas:
     separator: Annotated[str, Strict(), AfterValidator(sign_of)] | None = None
     decimal: Literal[".", ","] | None = None
     skip: Annotated[int, Strict(), Ge(0)] | None = None
+    stroke: Literal[2, 4] = 4
     pressure: PressureSource | None = None
     indicator: Indicator | None = None
     absolute: Annotated[bool, Strict()] = True
     ambient: Pressure | None = None
-    stroke: Literal[2, 4] = 4
     zero: Literal["gas_exchange_tdc", "firing_tdc"] = "gas_exchange_tdc"
     interpolation: Literal["pchip", "linear", "cubic", "step"] = "pchip"
     aligned: Annotated[bool, Strict()] = False

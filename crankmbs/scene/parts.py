@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal, NamedTuple
 
 from annotated_types import Ge, Gt, Le, Len
 from pydantic import Discriminator, Strict, Tag
@@ -16,7 +16,19 @@ from pydantic import Discriminator, Strict, Tag
 from crankmbs.errors import InputError, shown
 from crankmbs.scene.schema import Float, part, si
 
-__all__ = ["LIGHT_CRANK", "Crank", "Cylinder", "Friction", "Gravity", "Layout", "Piston", "Rod"]
+__all__ = [
+    "LIGHT_CRANK",
+    "Crank",
+    "Cylinder",
+    "Friction",
+    "Gravity",
+    "Layout",
+    "OwnPiston",
+    "OwnRod",
+    "Piston",
+    "Rod",
+    "RunningGear",
+]
 
 LIGHT_CRANK = (
     "inertia about the crank axis must be at least mass * center_of_mass^2 = {least:.6g} kg m^2; "
@@ -130,15 +142,86 @@ class Piston:
 
 
 @part
+class OwnRod:
+    """What the rod of one cylinder has otherwise than `Rod`, in the same units."""
+
+    length: Length | None = None
+    mass: Mass | None = None
+    center_of_mass: Distance | None = None
+    inertia: RodInertia | None = None
+
+
+@part
+class OwnPiston:
+    """What the piston of one cylinder has otherwise than `Piston`, in the same units; bore and area
+    replace each other."""
+
+    mass: Mass | None = None
+    bore: Length | None = None
+    area: Area | None = None
+    offset: Distance | None = None
+    rod_diameter: Length | None = None
+
+
+class RunningGear(NamedTuple):
+    """What moves in one cylinder: the radius of its throw [m], its rod and its piston."""
+
+    radius: float
+    rod: Rod
+    piston: Piston
+
+    @property
+    def shape(self) -> tuple[float, float, float]:
+        """Radius of the throw, length of the rod and offset of the cylinder [m]: all that its
+        motion depends on."""
+        return self.radius, self.rod.length, self.piston.offset
+
+    @property
+    def stroke(self) -> float:
+        """Between the true dead centres [m]: sqrt((l + r)^2 - e^2) - sqrt((l - r)^2 - e^2)."""
+        r, l, e = self.shape
+        low = (l - r - e) * (l - r + e)
+        return math.sqrt((l + r - e) * (l + r + e)) - math.sqrt(max(low, 0.0))
+
+
+@part
 class Cylinder:
     """phase [rad]: its cycle angle at crank angle 0; bank [rad]: its axis from the engine's X;
     position [m]: of its rod along the crank, in the sense of X turned into Y; throw: number of the
-    throw on whose pin its rod is, from 1; left out, each has its own."""
+    throw on whose pin its rod is, from 1; left out, each has its own.
+
+    radius [m] of its throw, rod and piston: where they are unlike those of [crank], [rod] and
+    [piston], key by key.
+    """
 
     phase: Angle = 0.0
     bank: Angle = 0.0
     position: Distance | None = None
     throw: Annotated[int, Strict(), Ge(1)] | None = None
+    radius: Length | None = None
+    rod: OwnRod | None = None
+    piston: OwnPiston | None = None
+
+    def running_gear(self, radius: float, rod: Rod, piston: Piston) -> RunningGear:
+        """What moves in it, where a machine has these unless it has its own.
+
+        Raises
+        ------
+        InputError : a rod or a piston that cannot be
+        """
+        if self.rod is not None:
+            rod = replace(rod, **_given(self.rod))
+        if self.piston is not None:
+            given = _given(self.piston)
+            if {"bore", "area"} & given.keys():
+                given = {"bore": None, "area": None} | given
+            piston = replace(piston, **given)
+        return RunningGear(radius if self.radius is None else self.radius, rod, piston)
+
+
+def _given(own: OwnRod | OwnPiston) -> dict[str, Any]:
+    """What one cylinder has of its own."""
+    return {name: value for name, value in vars(own).items() if value is not None}
 
 
 @part

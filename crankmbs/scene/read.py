@@ -10,6 +10,7 @@ from typing import Any
 from pydantic import TypeAdapter, ValidationError
 
 from crankmbs.errors import InputError, SceneError, shown
+from crankmbs.scene.own import by_layout
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.sentences import did_you_mean, sentence
 from crankmbs.scene.shipped import shipped_scenes
@@ -73,12 +74,18 @@ def parse_scene(text: str, path: Path) -> Scene:
         way_out = _in_quotes(text, error) or "crankmbs new NAME writes a scene to compare with"
         raise SceneError(f"{path}: not valid TOML: {error}; {way_out}") from None
     try:
+        raw = by_layout(raw)
         scene: Scene = _SCENE.validate_python(raw, context={"folder": path.parent}, by_name=False)
     except ValidationError as error:
-        raise SceneError(f"{path}: {sentence(error, Scene, raw)}") from None
+        raise SceneError(f"{path}: {_as_written(sentence(error, Scene, raw), text)}") from None
     except InputError as error:
-        raise SceneError(f"{path}: {error}") from None
+        raise SceneError(f"{path}: {_as_written(str(error), text)}") from None
     return scene
+
+
+def _as_written(said: str, text: str) -> str:
+    """What is wrong, of a cylinder where it stands in the file."""
+    return said.replace("layout.cylinders", "cylinder") if "[[cylinder]]" in text else said
 
 
 def _in_quotes(text: str, error: Exception) -> str:

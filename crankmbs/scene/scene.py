@@ -7,6 +7,7 @@ degrees, angles counter-clockwise.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import cached_property
 from typing import Annotated
 
@@ -25,7 +26,16 @@ from crankmbs.scene.drives import Motion, Start
 from crankmbs.scene.force import AnyForce
 from crankmbs.scene.fuel import Fuel
 from crankmbs.scene.gas import Gas, tables_of
-from crankmbs.scene.parts import Crank, Cylinder, Friction, Gravity, Layout, Piston, Rod
+from crankmbs.scene.parts import (
+    Crank,
+    Cylinder,
+    Friction,
+    Gravity,
+    Layout,
+    Piston,
+    Rod,
+    RunningGear,
+)
 from crankmbs.scene.run import SETTLED, Run
 from crankmbs.scene.schema import part
 from crankmbs.scene.torque import AnyTorque
@@ -119,6 +129,33 @@ class Scene:
     def cylinders(self) -> tuple[Cylinder, ...]:
         """The cylinders in the order of their numbers, firing order resolved."""
         return self.layout.resolve(self.period)
+
+    @cached_property
+    def running_gear(self) -> tuple[RunningGear, ...]:
+        """Throw, rod and piston of every cylinder.
+
+        >>> load_scene("propeller").running_gear[0].rod.length
+        0.1533333
+        """
+        common = self.crank.radius, self.rod, self.piston
+        return tuple(cylinder.running_gear(*common) for cylinder in self.cylinders)
+
+    @cached_property
+    def unlike(self) -> bool:
+        """Whether a cylinder has another throw, rod or piston than the scene's."""
+        return set(self.running_gear) != {RunningGear(self.crank.radius, self.rod, self.piston)}
+
+    @property
+    def two_mass(self) -> Scene:
+        """The scene with rods of two masses at their pins."""
+        layout, rod = self.layout, replace(self.rod, inertia="two-mass")
+        if layout.cylinders is not None:
+            own = [
+                c if c.rod is None else replace(c, rod=replace(c.rod, inertia=None))
+                for c in layout.cylinders
+            ]
+            layout = replace(layout, cylinders=tuple(own))
+        return replace(self, rod=rod, layout=layout)
 
     @cached_property
     def levers(self) -> tuple[float, ...] | None:

@@ -12,6 +12,7 @@ from crankmbs.scene.force import PistonForce
 from crankmbs.scene.forces import TravelTable
 from crankmbs.scene.fuel import Fuel
 from crankmbs.scene.gas import tables_of
+from crankmbs.scene.parts import RunningGear
 from crankmbs.scene.speed_rows import repeats
 from crankmbs.scene.tables import CylinderTable
 from crankmbs.scene.torque import Torque
@@ -81,15 +82,28 @@ def _uneven(fuel: Fuel) -> str:
 
 
 def _check_loop(scene: Scene) -> None:
-    least = scene.crank.radius + abs(scene.piston.offset)
-    if scene.rod.length < least * (1.0 - 1e-15):
-        raise InputError(OPEN_LOOP.format(least=least, came=scene.rod.length))
-    if scene.rod.moment_of_inertia < 0.0:  # after its length, which may be what is wrong
+    """Refuse cylinders whose crank cannot turn, or whose gas has nothing to press on."""
+    for number, cylinder in enumerate(scene.cylinders, start=1):
+        own = (cylinder.radius, cylinder.rod, cylinder.piston) != (None, None, None)
+        where = f"layout.cylinders[{number}]: " if own else ""
+        try:
+            gear = cylinder.running_gear(scene.crank.radius, scene.rod, scene.piston)
+            _check_gear(gear, gas=scene.gas is not None)
+        except InputError as error:
+            raise InputError(f"{where}{error}") from None
+
+
+def _check_gear(gear: RunningGear, *, gas: bool) -> None:
+    radius, rod, piston = gear
+    least = radius + abs(piston.offset)
+    if rod.length < least * (1.0 - 1e-15):
+        raise InputError(OPEN_LOOP.format(least=least, came=rod.length))
+    if rod.moment_of_inertia < 0.0:  # after its length, which may be what is wrong
         raise InputError(
             'rod: the inertia "two-mass" needs a center_of_mass between the pins, 0 to '
-            f"{scene.rod.length:.6g} m; {scene.rod.center_of_mass:.6g} m came"
+            f"{rod.length:.6g} m; {rod.center_of_mass:.6g} m came"
         )
-    if scene.gas is not None and scene.piston.gas_area is None:
+    if gas and piston.gas_area is None:
         raise InputError(
             "piston.bore: with [gas] the piston needs its bore, or its area; neither came"
         )
@@ -141,9 +155,6 @@ def _check_friction(scene: Scene) -> None:
 def _check_forces(scene: Scene) -> None:
     """Refuse forces on pistons that are not there, over a travel that is left, and windows of speed
     where the speed is prescribed."""
-    r, l, e = scene.crank.radius, scene.rod.length, scene.piston.offset
-    top = math.sqrt((l + r - e) * (l + r + e))
-    stroke = top - math.sqrt(max((l - r - e) * (l - r + e), 0.0))
     for number, force in enumerate(scene.force, start=1):
         where = f"force[{number}]"
         if force.cylinder is not None and force.cylinder > len(scene.cylinders):
@@ -157,6 +168,9 @@ def _check_forces(scene: Scene) -> None:
             )
         if isinstance(force, TravelTable):
             low, high = 1e3 * force.file.x[0], 1e3 * force.file.x[-1]
+            on = scene.running_gear
+            on = on if force.cylinder is None else on[force.cylinder - 1 : force.cylinder]
+            stroke = max(gear.stroke for gear in on)
             spare = _SPARE * stroke
             if force.file.x[0] > spare or force.file.x[-1] < stroke - spare:
                 raise InputError(
@@ -183,8 +197,9 @@ def _check_motion(scene: Scene) -> None:
         )
     if scene.motion is not None and scene.motion.speed == 0.0 and not scene.end[1]:
         raise InputError("motion.speed: at speed 0 no angle is ever reached; until must be a time")
-    rod_turns = scene.rod.moment_of_inertia > 0.0 or (
-        scene.rod.mass > 0.0 and scene.rod.center_of_mass != scene.rod.length
+    rod_turns = any(
+        rod.moment_of_inertia > 0.0 or (rod.mass > 0.0 and rod.center_of_mass != rod.length)
+        for _, rod, _ in scene.running_gear
     )
     if scene.start is not None and scene.crank.inertia is None:
         raise InputError(

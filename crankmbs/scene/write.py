@@ -135,7 +135,8 @@ def _written(key: str, value: Any) -> str:
     if dataclasses.is_dataclass(value):
         value = dict(_values(value))
     if isinstance(value, dict):
-        return f"{{ {', '.join(f'{k} = {_written(k, item)}' for k, item in value.items())} }}"
+        inside = ", ".join(f"{k} = {_written(k, item)}" for k, item in value.items())
+        return f"{{ {inside} }}" if inside else "{}"
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, float):

@@ -53,6 +53,8 @@ def _stretched(scene: Scene, _ratio: object) -> Rod:
     ratio = _number("rod_ratio", {"rod_ratio": _ratio})
     if not 0.0 < ratio <= 1.0:
         raise InputError(f"rod_ratio: must be above 0 and at most 1; {ratio:g} came")
+    if scene.unlike:
+        raise InputError("rod_ratio: the cylinders are unlike; vary each rod's length in its place")
     rod, length = scene.rod, scene.crank.radius / ratio
     stretch = length / rod.length
     inertia = rod.inertia if rod.inertia == "two-mass" else rod.inertia * stretch**2

@@ -25,8 +25,8 @@ _BOUNDS = {Ge: ("ge", "at least"), Gt: ("gt", "above"), Le: ("le", "at most"), L
 _PLAIN = {bool: "`true` or `false`", int: "whole number", float: "number", str: "text"}
 _FILE = "file name"
 _BY_CHECK = {  # what a check of its own takes, by its name
-    "_source": (EXAMPLES["pressure"], _FILE, "list of file names"),
-    "_motored": (EXAMPLES["pressure"], _FILE, "list of file names", "a table"),
+    "_source": (EXAMPLES["pressure"], _FILE, "list of either"),
+    "_motored": (EXAMPLES["pressure"], _FILE, "list of either", "a table"),
     "_spacing": (EXAMPLES["extent"], '`"none"`'),
     "_cycles": ('"5"', '"5-8"', '"every 4"'),
 }

@@ -38,9 +38,17 @@ Floats = NDArray[np.float64]
 _STUCK = 40  # events at one time
 _AT_ONCE = 1e-9  # s: so near a change over time either value is right
 _FINER = 50.0  # steps in a stretch in which the speed turns beside a bound
-_TURN = 0.05  # rad in the first steps: in a wider one a bound of the speed may be met twice
 _FAR = 9.0  # rad: beyond any stretch
 _BESIDE = 1e-6  # of an angle [rad] or a speed: so near a knot either value is right
+
+
+def _passed(found: Any, slow: float, fast: float) -> bool:
+    """Whether the speed of a solution passes a bound inside a step, there and back."""
+    within = np.linspace(0.0, 1.0, 11)[1:-1]
+    times = found.t[:-1, None] + np.diff(found.t)[:, None] * within
+    speeds = found.sol(times.ravel())[1]
+    spare = _BESIDE * max(float(np.max(np.abs(speeds))), 1e-300)
+    return bool(np.any(speeds < slow - spare) or np.any(speeds > fast + spare))
 
 
 @dataclass(frozen=True)
@@ -88,9 +96,8 @@ class _Walk:
         self.decider = Decider(changes, theta, omega) if changes.firings is not None else None
         self.loads: tuple[Pull | Push, ...] = (*changes.pulls, *changes.pushes)
         self.stage = ["waiting"] * len(self.loads)
-        self.holds = changes.rings is not None or any(
-            push.back is not push.forward for push in changes.pushes
-        )
+        self.switches = any(push.back is not push.forward for push in changes.pushes)
+        self.holds = changes.rings is not None or self.switches
         self.side = self.came = 0.0  # how the speed grows; in which sense the crank came to rest
         self.marks = self._marks()
         self._settle_windows()
@@ -115,11 +122,12 @@ class _Walk:
         """Angles at which pistons turn back, and those of knots over their displacement."""
         machine, found = self.changes.machine, []
         if self.holds:
-            found += [c - p for p in self.phases for c in dead_centres(machine)]
+            found += [c - p for k, p in enumerate(self.phases) for c in dead_centres(machine.of(k))]
         for push in self.changes.pushes:
             knots = {x for way in (push.forward, push.back) if way for x in way.knots}
-            angles = [angle for x in knots for angle in angles_at(machine, x)]
-            found += [angle - self.phases[k] for k in self._pistons(push) for angle in angles]
+            for k in self._pistons(push):
+                angles = [angle for x in knots for angle in angles_at(machine.of(k), x)]
+                found += [angle - self.phases[k] for angle in angles]
         return [marks(found, 2.0 * math.pi)] if found else []
 
     def _pistons(self, push: Push) -> list[int]:
@@ -235,7 +243,7 @@ class _Walk:
             over_angle, origin, _ = push.over_angle.at(ahead + phase)
         over_time = piece_at(push.over_time, self.state.time, 1.0)
         way = push.forward if slides > 0.0 else push.back
-        displacement = displacement_at(self.changes.machine, amid + phase)
+        displacement = displacement_at(self.changes.machine.of(k), amid + phase)
         over_travel = piece_at(way, displacement, 1.0)
         return Pushing(push, k, phase, over_time, over_travel, over_angle, origin)
 
@@ -297,10 +305,8 @@ class _Walk:
         scale = abs(float(y[1])) + abs(slopes(start, y)[1]) * (end - start) + 1e-9
         options: dict[str, Any] = {"method": "DOP853", "rtol": 1e-13}
         options["atol"] = [1e-15, 1e-14 * scale]
-        if y[1] != 0.0:
-            options["max_step"] = _TURN / abs(float(y[1]))
-        found = solve_ivp(slopes, (start, end), y, events=events, **options)
-        if at.may_touch(found.t, found.y):
+        found = solve_ivp(slopes, (start, end), y, events=events, dense_output=True, **options)
+        if at.may_touch(found.t, found.y) or _passed(found, slow, fast):
             options["max_step"] = (float(found.t[-1]) - start) / _FINER
             found = solve_ivp(slopes, (start, end), y, events=events, **options)
         if found.status < 0:
@@ -344,6 +350,8 @@ class _Walk:
         alpha = at.alpha(*self.state) if clear else 0.0
         shares = list(self.decider.shares) if self.decider else [1.0] * len(self.phases)
         clear = clear and edges and speeds and min(times) > _AT_ONCE
+        if omega == 0.0 and sense != 0.0:  # a function of the velocity may have any value there
+            clear = clear and not self.switches
         forces, rubbed = at.forces(theta), at.friction(theta, omega)
         applied, external = at.applied(*self.state), at.external(*self.state)
         return theta, omega, alpha, external, forces, rubbed, applied, shares, clear

@@ -1,5 +1,7 @@
 """What the oracles take: plain records of SI numbers, with nothing derived."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
 from itertools import pairwise
@@ -87,7 +89,8 @@ class Loads:
 
 @dataclass(frozen=True)
 class Machine:
-    """Crank, rods and pistons; every cylinder has the same rod, piston and offset.
+    """Crank, rods and pistons; every cylinder has the same rod, piston and offset, unless each has
+    its own, which only the oracle of changing loads knows of.
 
     crank_center_of_mass lies on the reference line, from the axis; crank_inertia is about the axis.
     rod_center_of_mass is measured from the crank pin, rod_inertia about it. cylinders holds
@@ -117,6 +120,11 @@ class Machine:
     loads: Loads = Loads()
     crank_ends: tuple[Pressure, ...] = ()
     crank_end_area: Number = 0.0
+    each: tuple[Machine, ...] = ()
+
+    def of(self, cylinder: int) -> Machine:
+        """The machine with the throw, rod and piston of a cylinder, from 0."""
+        return self.each[cylinder] if self.each else self
 
     @property
     def pressures(self) -> tuple[Pressure, ...]:

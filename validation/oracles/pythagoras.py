@@ -21,7 +21,7 @@ class Place(NamedTuple):
 
 def cylinder_at(machine: Machine, theta: float, j: int) -> Place:
     """l^2 = (x - r cos)^2 + (e - r sin)^2, differentiated twice."""
-    m = machine
+    m = machine.of(j)
     r, l, e = float(m.crank_radius), float(m.rod_length), float(m.offset)
     phi, part = theta + float(m.cylinders[j][0]), float(m.rod_center_of_mass) / l
     c, s = r * math.cos(phi), r * math.sin(phi)
@@ -44,8 +44,9 @@ def inertia_and_torque(
     unbalanced = float(m.crank_mass) * float(m.crank_center_of_mass)
     inertia, slope = float(m.crank_inertia), 0.0
     torque = unbalanced * (gy * math.cos(theta) - gx * math.sin(theta))
-    mp, mr, ir = float(m.piston_mass), float(m.rod_mass), float(m.rod_inertia)
-    for (_, bank), c, force in zip(m.cylinders, places, forces, strict=True):
+    for j, ((_, bank), c, force) in enumerate(zip(m.cylinders, places, forces, strict=True)):
+        own = machine.of(j)
+        mp, mr, ir = float(own.piston_mass), float(own.rod_mass), float(own.rod_inertia)
         a, b, a_2, b_2 = c.rod
         inertia += mp * c.x_1**2 + mr * (a * a + b * b) + ir * c.b_1**2
         slope += 2.0 * (mp * c.x_1 * c.x_2 + mr * (a * a_2 + b * b_2) + ir * c.b_1 * c.b_2)

@@ -122,14 +122,15 @@ class Stretch:
     def forces(self, theta: float) -> list[float]:
         """Of the gas on every piston [N], towards the crank."""
         machine, forces = self.changes.machine, []
-        for piece, share in zip(self.gas, self.shares, strict=True):
+        for j, (piece, share) in enumerate(zip(self.gas, self.shares, strict=True)):
+            own = machine.of(j)
             pressure = piece.fired(theta - piece.low)
             if piece.motored is not None:
                 without = piece.motored(theta - piece.since)
                 pressure = without + share * (pressure - without)
-            force = float(machine.piston_area) * pressure
+            force = float(own.piston_area) * pressure
             if piece.below is not None:
-                force -= float(machine.crank_end_area) * piece.below(theta - piece.under)
+                force -= float(own.crank_end_area) * piece.below(theta - piece.under)
             forces.append(force)
         return forces or [0.0] * len(self.changes.machine.cylinders)
 
@@ -160,7 +161,7 @@ class Stretch:
     def _applied(self, t: float, theta: float, omega: float, places: list[Place]) -> list[float]:
         found = [0.0] * len(places)
         for one in self.pushed:
-            displacement = displacement_at(self.changes.machine, theta + one.phase)
+            displacement = displacement_at(self.changes.machine.of(one.k), theta + one.phase)
             found[one.k] += one.at(t, theta, displacement, -places[one.k].x_1 * omega)
         return found
 

@@ -37,14 +37,14 @@ def _near_folds(train: CrankTrain) -> Array:
     The rod swings over within ``width`` of there, where its formulas have their singularity beside
     the real angles: in wider cells two rules err alike, if they see it at all.
     """
-    scene, period = train.scene, train.period
-    radius, spare = scene.crank.radius, scene.rod.length - scene.crank.radius
-    marks = [np.empty(0)]
-    for fold, gap in ((0.5, spare + scene.piston.offset), (-0.5, spare - scene.piston.offset)):
-        width = math.sqrt(2.0 * max(gap, 0.0) / radius)
-        if 0.0 < width < WIDEST:
-            beside = width * 2.0 ** np.arange(math.ceil(math.log2(WIDEST / width)))
-            around = fold * math.pi + np.concatenate([-beside, [0.0], beside])
-            turns = 2.0 * math.pi * np.arange(round(period / (2.0 * math.pi)))
-            marks += [np.add.outer(turns - c.phase, around).ravel() for c in scene.cylinders]
+    period, marks = train.period, [np.empty(0)]
+    turns = 2.0 * math.pi * np.arange(round(period / (2.0 * math.pi)))
+    own = zip(train.scene.cylinders, train.scene.running_gear, strict=True)
+    for cylinder, (radius, length, offset) in ((c, gear.shape) for c, gear in own):
+        for fold, gap in ((0.5, length - radius + offset), (-0.5, length - radius - offset)):
+            width = math.sqrt(2.0 * max(gap, 0.0) / radius)
+            if 0.0 < width < WIDEST:
+                beside = width * 2.0 ** np.arange(math.ceil(math.log2(WIDEST / width)))
+                around = fold * math.pi + np.concatenate([-beside, [0.0], beside])
+                marks.append(np.add.outer(turns - cylinder.phase, around).ravel())
     return np.asarray(np.mod(np.concatenate(marks), period))

@@ -209,7 +209,7 @@ class Answers:
         g = complex(*self._model.mechanism.gravity)
         pull = mass * (g - a)
         moment = found.torque + (r.conj() * pull).imag.sum(axis=1) - spin @ spins
-        lengths = scene.crank.radius, scene.rod.length, scene.piston.offset
+        tops = np.array([top_position(*gear.shape) for gear in scene.running_gear])
         values = {
             "crank_acceleration": spin[:, 0],
             "kinetic_energy": 0.5 * ((np.abs(v) ** 2) @ mass + (rate**2) @ spins),
@@ -221,7 +221,7 @@ class Answers:
             "rod_angular_speed": -rate[:, 1:],
             "rod_angular_acceleration": -spin[:, 1:],
             "piston_position": pistons[0],
-            "piston_displacement": top_position(*lengths) - pistons[0],
+            "piston_displacement": tops - pistons[0],
             "piston_velocity": -pistons[1],
             "piston_acceleration": -pistons[2],
         }
@@ -232,12 +232,13 @@ class Answers:
 
     def _of_joints(self, found: Consistent) -> dict[str, Array]:
         """Joint forces, each cylinder's in its axes, and their moments on the crank."""
-        crank = self._scene.crank
+        scene = self._scene
         forces = found.hinges[..., 0] + 1j * found.hinges[..., 1]
         turn = np.exp(-1j * self._banks)
         crank_pin, piston_pin = forces[:, 1::2] * turn, forces[:, 2::2] * turn
-        phases = np.array([cylinder.phase for cylinder in self._scene.cylinders])
-        lever = crank.radius * np.exp(-1j * (found.position[:, 2:3] + phases))
+        phases = np.array([cylinder.phase for cylinder in scene.cylinders])
+        radii = np.array([gear.radius for gear in scene.running_gear])
+        lever = radii * np.exp(-1j * (found.position[:, 2:3] + phases))
         torque = -(lever * crank_pin).imag
         return self._of_journals(found, forces[:, 1::2]) | {
             "external_torque": found.torque,

@@ -15,6 +15,7 @@ from crankmbs.motion.mode import Mode
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.cycle import Cycle
 from crankmbs.scene.force import Law, PistonForce
+from crankmbs.scene.parts import RunningGear
 
 __all__ = ["Applied", "Push"]
 
@@ -39,28 +40,31 @@ class Applied:
         scene, self._train = train.scene, train
         self._forces, self._first = scene.force, len(scene.torque)
         self._phases = np.array([cylinder.phase for cylinder in scene.cylinders])
-        self._shape = scene.crank.radius, scene.rod.length, scene.piston.offset
+        self._gears = scene.running_gear
         laws = [force.law for force in self._forces]
         self.switches = any(law.switches or law.given for law in laws)
-        own = np.concatenate([np.empty(0), *(self._jumps(law) for law in laws)])
-        own = np.mod(np.subtract.outer(own, self._phases), _TURN).ravel()
+        jumps = [
+            self._jumps(law, gear) - phase
+            for law in laws
+            for gear, phase in zip(self._gears, self._phases, strict=True)
+        ]
+        own = np.mod(np.concatenate([np.empty(0), *jumps]), _TURN)
         turns = _TURN * np.arange(round(train.period / _TURN))
         self.angles = apart(np.add.outer(turns, own).ravel())
         given = [law.given.times for law in laws if law.given is not None]
         rows = [law.over_time.bends for law in laws if law.over_time is not None]
         self.times = tuple({time for times in (*given, *rows) for time in times})
 
-    def _jumps(self, law: Law) -> Array:
-        """Cycle angles [rad] in a revolution at which a force jumps; or, where such places are few,
-        bends over the travel."""
-        top = top_position(*self._shape)
-        stroke = top - bottom_position(*self._shape)
+    def _jumps(self, law: Law, gear: RunningGear) -> Array:
+        """Cycle angles [rad] of a cylinder in a revolution at which a force jumps; or, where such
+        places are few, bends over the travel."""
+        stroke = top_position(*gear.shape) - bottom_position(*gear.shape)
         ways = [way for way in (law.forward, law.back) if way is not None]
         bends = {row for way in ways for row in way.bends}
         jumps = {row for way in ways for row in way.jumps}
         chosen = bends if len(bends) <= _MOST_BENDS else jumps
         rows = np.array(sorted(row for row in chosen if 0.0 < row < stroke))
-        found = [*throw_angles(rows, stroke - rows, *self._shape)]
+        found = [*throw_angles(rows, stroke - rows, *gear.shape)]
         if law.over_angle is not None:
             knots = law.over_angle.knots[:-1]
             rises = np.abs(law.over_angle(knots) - law.over_angle(knots - _SIDE))
@@ -82,7 +86,8 @@ class Applied:
             crank axis [m], and velocities towards the crank [m/s]
         """
         time, theta, _ = motion
-        total, down = np.zeros_like(x), top_position(*self._shape) - x
+        tops = np.array([top_position(*gear.shape) for gear in self._gears])
+        total, down = np.zeros_like(x), tops - x
         for number, force in enumerate(self._forces, start=self._first):
             for k in range(x.shape[1]):
                 if not self._on(force, k):

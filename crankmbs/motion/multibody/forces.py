@@ -60,9 +60,9 @@ class Forces:
     def __init__(self, train: CrankTrain) -> None:
         self.train, scene = train, train.scene
         self._stops = True
-        self._area = scene.piston.gas_area or 0.0
+        self._areas = np.array([gear.piston.gas_area or 0.0 for gear in scene.running_gear])
         self._phases = np.array([cylinder.phase for cylinder in scene.cylinders])
-        self._shape = scene.crank.radius, scene.rod.length, scene.piston.offset
+        self._shapes = np.array([gear.shape for gear in scene.running_gear]).T
         gas = [
             np.unique(np.concatenate([_jumps(each) for each in parts]))
             for parts in zip(train.pressure or (), *filter(None, [train.combustion]), strict=True)
@@ -76,8 +76,8 @@ class Forces:
         self.angles = angles if self.smooth else np.empty(0)
         if self._sticks:
             turns = 2.0 * math.pi * np.arange(round(train.period / (2.0 * math.pi)))
-            centres = np.add.outer(np.array(dead_centres(*self._shape)), turns)
-            centres = np.subtract.outer(centres, self._phases).ravel()
+            own = np.array([dead_centres(*gear.shape) for gear in scene.running_gear])
+            centres = np.add.outer(own - self._phases[:, None], turns).ravel()
             self.angles = apart(np.concatenate([self.angles, np.mod(centres, train.period)]))
 
     @property
@@ -98,21 +98,22 @@ class Forces:
         """Gas forces [N] towards the crank at crank angles (m,), shape (m, n)."""
         forces = np.zeros((len(theta), len(self._phases)))
         for k, pressure in enumerate(self.train.pressure or ()):
-            forces[:, k] = self._area * pressure(theta + self._phases[k])
+            forces[:, k] = self._areas[k] * pressure(theta + self._phases[k])
         for k, more in enumerate(self.train.combustion or ()):
             assert shares is not None
-            forces[:, k] += shares[:, k] * self._area * more(theta + self._phases[k])
+            forces[:, k] += shares[:, k] * self._areas[k] * more(theta + self._phases[k])
         return forces
 
     def pressures(self, theta: Array, gas: Array) -> dict[str, Array]:
         """The pressures [Pa] of the ends of the cylinders under gas forces [N], by variable, shape
         (m, n) each."""
-        net, ends = gas / (self._area or 1.0), self.train.crank_end
+        net, ends = gas / np.where(self._areas > 0.0, self._areas, 1.0), self.train.crank_end
         if ends is None:
             return {"gas_pressure": net}
-        below = [each(theta + phase) for each, phase in zip(ends, self._phases, strict=True)]
-        crank_end = np.array(below).T
-        head = (gas + self.train.scene.piston.crank_end_area * crank_end) / self._area
+        pairs = zip(ends, self._phases, strict=True)
+        crank_end = np.array([each(theta + phase) for each, phase in pairs]).T
+        below = np.array([gear.piston.crank_end_area for gear in self.train.scene.running_gear])
+        head = (gas + below * crank_end) / self._areas
         return {"gas_pressure": head, "crank_end_pressure": crank_end}
 
     def friction(self, theta: Array, omega: Array, gas: Array, sense: Array) -> Array:
@@ -128,7 +129,7 @@ class Forces:
     def slides(self, theta: Array, sense: Array) -> Array:
         """The sign of the pistons' velocities towards the crank just beyond crank angles."""
         beyond = (theta + _BESIDE * sense)[:, None] + self._phases
-        return np.asarray(-np.sign(close_loop(beyond, *self._shape).x_1) * sense[:, None])
+        return np.asarray(-np.sign(close_loop(beyond, *self._shapes).x_1) * sense[:, None])
 
     @property
     def jumps(self) -> bool:
@@ -138,13 +139,13 @@ class Forces:
     def applied(self, time: Array, theta: Array, omega: Array, sense: Array, acts: Array) -> Array:
         """Forces from outside on the pistons [N] towards the crank, shape (m, n), that slide in
         this sense of rotation; acts : shape (m, loads), whether each does."""
-        x = close_loop(theta[:, None] + self._phases, *self._shape).x
+        x = close_loop(theta[:, None] + self._phases, *self._shapes).x
         slides, velocity = self.slides(theta, sense), self.sliding(theta, omega)
         return self._applied.forces((time, theta, omega), acts, slides, x, velocity)
 
     def sliding(self, theta: Array, omega: Array) -> Array:
         """Velocities of the pistons towards the crank [m/s], shape (m, n)."""
-        rise = close_loop(theta[:, None] + self._phases, *self._shape).x_1
+        rise = close_loop(theta[:, None] + self._phases, *self._shapes).x_1
         return np.asarray(-rise * omega[:, None])
 
     def torque(self, time: Array, theta: Array, omega: Array, acts: Array) -> Array:
@@ -247,7 +248,7 @@ class Forces:
         cubics = pressure.coefficients
         if shares and self.train.combustion is not None:
             cubics = cubics + shares[k] * self.train.combustion[k].coefficients
-        return Cycle(pressure.knots - phase, self._area * cubics).by_number()
+        return Cycle(pressure.knots - phase, self._areas[k] * cubics).by_number()
 
 
 def _around(stops: Sequence[float], x: float, sense: float) -> Range:

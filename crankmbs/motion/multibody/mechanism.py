@@ -59,15 +59,15 @@ def mechanism_of(scene: Scene) -> Mechanism:
     >>> [body.name for body in mechanism_of(load_scene("propeller")).bodies]
     ['crank', 'rod 1', 'piston 1']
     """
-    crank, rod, piston = scene.crank, scene.rod, scene.piston
-    centre, a = crank.center_of_mass, rod.center_of_mass
+    crank, centre = scene.crank, scene.crank.center_of_mass
     inertia = max(crank.moment_of_inertia - crank.mass * centre**2, 0.0)
     bodies = [Body("crank", crank.mass, inertia)]
     hinges = [Hinge("main bearing", ("ground", "crank"), ((0.0, 0.0), (-centre, 0.0)))]
     guides = []
     for k, cylinder in enumerate(scene.cylinders, start=1):
-        turn = cylinder.phase + cylinder.bank
-        throw = crank.radius * math.cos(turn) - centre, crank.radius * math.sin(turn)
+        radius, rod, piston = scene.running_gear[k - 1]
+        turn, a = cylinder.phase + cylinder.bank, rod.center_of_mass
+        throw = radius * math.cos(turn) - centre, radius * math.sin(turn)
         big_end, small_end = (-a, 0.0), (rod.length - a, 0.0)
         bodies.append(Body(f"rod {k}", rod.mass, rod.moment_of_inertia))
         bodies.append(Body(f"piston {k}", piston.mass, None))
@@ -86,14 +86,13 @@ def mechanism_of(scene: Scene) -> Mechanism:
 def closed(scene: Scene, theta: Array) -> Array:
     """Coordinates of all bodies on the closed loop at crank angles [rad], shape (m, q): the right
     one of the two ways in which a rod closes it."""
-    crank, rod, e = scene.crank, scene.rod, scene.piston.offset
-    centre = crank.center_of_mass * np.exp(1j * theta)
+    centre = scene.crank.center_of_mass * np.exp(1j * theta)
     columns = [centre.real, centre.imag, theta]
-    for cylinder in scene.cylinders:
-        loop = close_loop(theta + cylinder.phase, crank.radius, rod.length, e)
-        axis = np.exp(1j * cylinder.bank)
-        throw = crank.radius * (loop.cos_phi + 1j * loop.sin_phi)
+    for cylinder, gear in zip(scene.cylinders, scene.running_gear, strict=True):
+        loop = close_loop(theta + cylinder.phase, *gear.shape)
+        axis, a = np.exp(1j * cylinder.bank), gear.rod.center_of_mass
+        throw = gear.radius * (loop.cos_phi + 1j * loop.sin_phi)
         along = loop.cos_beta - 1j * loop.sin_beta
-        middle, pin = axis * (throw + rod.center_of_mass * along), axis * (loop.x + 1j * e)
+        middle, pin = axis * (throw + a * along), axis * (loop.x + 1j * gear.piston.offset)
         columns += [middle.real, middle.imag, cylinder.bank - loop.beta, pin.real, pin.imag]
     return np.stack(columns, axis=-1)

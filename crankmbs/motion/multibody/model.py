@@ -144,7 +144,7 @@ class Model:
             data.GetODE2Coordinates_t(copy=False),
             data.GetODE2Coordinates_tt(copy=False),
         )
-        self._top = top_position(scene.crank.radius, scene.rod.length, scene.piston.offset)
+        self._tops = [top_position(*gear.shape) for gear in scene.running_gear]
         self._towards = [(-guide.normal[1], guide.normal[0]) for guide in self.mechanism.guides]
         self._read()
 
@@ -161,7 +161,7 @@ class Model:
             moving = self.states(at, faster, push, torque)
             rows = (row[0, 3:].reshape(-1, 5)[:, 3:] for row in (moving.position, moving.velocity))
             down, speeds = ((row * self._towards).sum(axis=1) for row in rows)
-            pairs = zip(self.pushes, (self._top + down).tolist(), speeds.tolist(), strict=True)
+            pairs = zip(self.pushes, (self._tops + down).tolist(), speeds.tolist(), strict=True)
             push = np.array([[each(time, theta, *where) for each, *where in pairs]])
         if driven:
             return self.driven(at, faster, np.zeros(1), push)
@@ -357,7 +357,7 @@ class Model:
         x, y = self._towards[k]
         at = 6 + 5 * k
         speed = x * self._v.item(at) + y * self._v.item(at + 1)
-        down = self._top + x * self._q.item(at) + y * self._q.item(at + 1)
+        down = self._tops[k] + x * self._q.item(at) + y * self._q.item(at + 1)
         force = self.pushes[k](self._begin + time, self._q.item(2), down, speed)
         return force * x, force * y
 
