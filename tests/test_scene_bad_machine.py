@@ -182,7 +182,8 @@ KEYS = (
                 ("cylinders = []", ".cylinders: must have at least 1 entry; [] came"),
                 (
                     "cylinders = [1]",
-                    ".cylinders[1]: must be a table with phase, bank, position, throw; 1 came",
+                    ".cylinders[1]: must be a table with phase, bank, position, throw, radius, "
+                    "rod, piston; 1 came",
                 ),
                 (
                     "cylinders = [{ phase = 90 }]",

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from itertools import cycle
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -58,7 +59,7 @@ def carried_over(scene: Scene, before: Scene) -> Scene:
     True
     """
     gas = scene.gas
-    pairs = zip(before.running_gear, scene.running_gear, strict=True)
+    pairs = zip(before.running_gear, cycle(scene.running_gear), strict=False)
     ways = [(Shape(*one.shape), Shape(*other.shape)) for one, other in pairs]
     if gas is None or all(one == other for one, other in ways):
         return scene
