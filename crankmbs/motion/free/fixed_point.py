@@ -99,30 +99,35 @@ class _FixedPoint:
         energy changes; the state in which the crank turns the other way where it stalls before."""
         period_map, sense = self._period_map, first.sense
         energy, returned, edge = period_map.energy(state), first, math.inf
+        loses = 0.0  # of an energy more, in a period, by the last two
         while True:
             gained = returned.energy - energy
             if abs(gained) <= _NONE * energy:
                 return self._limit_at(energy, sense)
-            reach = self._reach(returned, energy, gained, edge)
+            reach = self._reach(returned, energy, gained, loses, edge)
             if reach >= _FARTHEST * energy:
                 raise LostError(Ending.RUNS_AWAY)
             other = energy + math.copysign(reach, gained)
             if reach <= _SEARCH * energy:
                 return self._limit_at(other, sense)
-            beyond = period_map.period(self._grid, _LOCAL, period_map.state(other, sense))
+            trial = period_map.state(other, sense)
+            beyond = period_map.period(self._grid, _LOCAL, trial, one_way=True)
             if beyond.ending is not Ending.COMPLETE or beyond.sense != sense:
                 if reach <= _AT_EDGE * energy:
                     return self._stalled(energy, sense)
                 edge = reach / 3.0
             elif (beyond.energy - other) * gained > 0.0:
                 edge = edge - reach if edge > reach else math.inf
+                loses = (gained - (beyond.energy - other)) / (other - energy)
                 energy, returned = other, beyond
             elif reach > _CLOSE * energy and self._may_be_several(returned, beyond):
                 edge = reach / 2.0
             else:
                 return self._limit_at(self._between(energy, other, sense), sense)
 
-    def _reach(self, returned: Returned, energy: float, gained: float, edge: float) -> float:
+    def _reach(
+        self, returned: Returned, energy: float, gained: float, loses: float, edge: float
+    ) -> float:
         """How far from an energy [J] the next period may be tried without missing a fixed point.
 
         Over a period a difference of energies grows by exp(int T' / J dt), T' the slope of the
@@ -147,7 +152,7 @@ class _FixedPoint:
             safe = max(safe, abs(gained) / falls)
             if most <= 0.0:
                 mean = 0.5 * sum(period_map.slopes(returned.slow, returned.fast, returned.sense))
-                falls = -math.expm1(mean * held)
+                falls = loses if loses > 0.0 else -math.expm1(mean * held)
                 return min(reach, _BEYOND * abs(gained) / falls) if falls > 0.0 else reach
         return safe
 
