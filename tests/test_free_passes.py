@@ -17,6 +17,7 @@ from crankmbs import (
     load_scene,
     simulate,
 )
+from crankmbs.mechanics.train import crank_train
 from crankmbs.motion.crank_angle.grid import Grid
 from crankmbs.motion.free import handover, passes
 
@@ -119,12 +120,29 @@ def test_the_tolerance_is_kept(formulation, rtol):
     assert 0.0 < result.error.estimated <= rtol
 
 
+def test_cells_are_split_on_the_way_and_nothing_is_begun_anew(monkeypatch):
+    integrate, passed = passes.integrate, []
+
+    def counted(grid, *arguments, **options):
+        passed.append(made := integrate(grid, *arguments, **options))
+        return made
+
+    monkeypatch.setattr(passes, "integrate", counted)
+    result = simulate(load_scene("torque_driven"), formulation="crank_angle")
+    assert result.error.estimated <= result.error.asked
+    answer, better = passed
+    assert len(answer.grid.edges) > len(
+        passes.first_grid(crank_train(load_scene("torque_driven")), result.error.asked).edges
+    )
+    assert np.array_equal(better.grid.edges, answer.grid.edges)
+
+
 def halved(grid):
-    return grid.split(np.full(len(grid.edges) - 1, 2))
+    return grid.split(np.full(len(grid.edges) - 1, 2)) if len(grid.edges) < 1000 else grid
 
 
-def test_the_last_pass_gives_an_answer_where_cells_could_still_be_split(monkeypatch):
-    monkeypatch.setattr(passes, "_PASSES", 3)
+def test_cells_that_are_split_in_every_segment_give_an_answer(monkeypatch):
+    monkeypatch.setattr(handover, "_ROUNDS", 3)
     monkeypatch.setattr(Grid, "refined", lambda grid, *_: halved(grid))
     result = simulate(COASTING, formulation="crank_angle")
     assert result.status == 0

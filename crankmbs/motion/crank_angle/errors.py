@@ -8,7 +8,7 @@ import numpy as np
 
 from crankmbs.motion.crank_angle.grid import largest_of_row
 from crankmbs.motion.crank_angle.solvers import torque_at
-from crankmbs.numerics.arrays import Array, Index
+from crankmbs.numerics.arrays import Array
 
 if TYPE_CHECKING:
     from crankmbs.motion.crank_angle.segment import AngleSegment
@@ -23,13 +23,6 @@ class Errors(NamedTuple):
     energy: Array
     at_end: Array
     inside: Array
-
-    def raised(self, worst: Array, cell: Index) -> None:
-        """Raise the largest errors so far at ends and inside of each cell of a grid, shape (2, n),
-        to these; NaN where one is."""
-        with np.errstate(invalid="ignore"):
-            for most, errors in zip(worst, (self.at_end, self.inside), strict=True):
-                np.maximum.at(most, cell, errors)
 
 
 def errors_of(segment: AngleSegment) -> Errors:

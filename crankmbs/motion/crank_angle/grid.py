@@ -235,20 +235,22 @@ class Grid:
         edges = self.edges[cell] + part * (np.diff(self.edges) / parts)[cell]
         return Grid(self.train, np.append(edges, self.edges[-1]), self.rule)
 
-    def refined(self, worst: Array, local: float) -> Grid:
+    def refined(self, cell: NDArray[np.intp], at_end: Array, inside: Array, local: float) -> Grid:
         """Cells so fine that each errs by ``local`` per radian at its end, and by ``local`` inside,
         where the order is lower; itself where they are, or where there are too many.
 
-        worst : shape (2, n), relative errors of the cells at ends and inside
+        cell, at_end, inside : shape (m,) each, cells that were passed and their relative errors
         """
-        stages, widths = len(self.rule.nodes), self._widths
-        at_end = worst[0] / np.maximum(local * widths, FINEST_CELL)
-        inside = worst[1] / max(local, FINEST_CELL)
+        stages = len(self.rule.nodes)
+        at_end = at_end / np.maximum(local * self._widths[cell], FINEST_CELL)
+        inside = inside / max(local, FINEST_CELL)
         enough = at_end.max() <= 1.0 and inside.max() <= 1.0
         if enough or len(self.edges) >= _MOST_CELLS:
             return self
         parts = np.ceil(np.maximum(at_end ** (0.5 / stages), inside ** (1.0 / (stages + 1))))
-        return self.split(np.clip(np.nan_to_num(parts, nan=2.0), 1, 4).astype(np.intp))
+        most = np.ones(len(self._widths), dtype=np.intp)
+        np.maximum.at(most, cell, np.clip(np.nan_to_num(parts, nan=2.0), 1, 4).astype(np.intp))
+        return self.split(most)
 
     def cell_at(self, theta: float, sense: float) -> int:
         """Number of the cell that the motion is about to pass at a crank angle [rad]."""

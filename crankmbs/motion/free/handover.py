@@ -27,19 +27,21 @@ _VAIN = 8  # after as many vain hand-overs the crank must turn through a period 
 _FAST = (2.0, 8.0)  # as many times as fast as need be either pass takes over: the better one later
 # what either pass may miss at kinks of the loads: of the local tolerance, and at most
 _KINKS, _MOST_MISSED = 0.2, (math.inf, 1e-11)
+_ROUNDS = 5  # of splitting the cells of one segment
 FINEST_STEP = 1e-15
 """What rounding leaves of a step over time."""
 
 
-@dataclass(frozen=True)
+@dataclass
 class Handover:
     """What carries a pass.
 
-    grid : cells of the crank angle; reduced : the crank train over time
+    grid : cells of the crank angle, the finest so far; reduced : the crank train over time
     local : what may be erred locally
     by_angle : the crank angle is the variable wherever it can be; else time throughout
     before : the steps of a first pass, which this one betters: the crank angle carries it only
         where it did then, and its steps over time are at most half as long
+    refines : whether cells that err too much are split, and their segment is solved again
     taken : the steps of this pass
     """
 
@@ -48,6 +50,7 @@ class Handover:
     local: float
     by_angle: bool = True
     before: StepSizes | None = None
+    refines: bool = False
     taken: StepSizes = field(default_factory=StepSizes)
 
     def segments(
@@ -57,8 +60,8 @@ class Handover:
 
         allowed : evaluations over time
         """
-        grid, period = self.grid, self.grid.train.scene.period
-        kinks = max(min(_KINKS * self.local, _MOST_MISSED[grid.checks]), FINEST_STEP)
+        period = self.grid.train.scene.period
+        kinks = max(min(_KINKS * self.local, _MOST_MISSED[self.grid.checks]), FINEST_STEP)
         tolerance = max(0.01 * self.local, FINEST_STEP)
         turned_back, vain = plan.start, 0  # hand-overs that did not carry it through a period
 
@@ -68,12 +71,12 @@ class Handover:
 
         over_time, slow = not self.by_angle or state.omega == 0.0, False
         while True:
-            begin = state
+            begin, rounds = state, 0
             effort = minimal.Effort(tolerance, allowed, self.before)
             found: Any = (
                 minimal.advance(self.reduced, state, plan, effort, is_fast)
                 if over_time
-                else crank_angle.advance(grid, state, plan, kinks)
+                else crank_angle.advance(self.grid, state, plan, kinks)
             )
             while True:
                 try:
@@ -81,6 +84,11 @@ class Handover:
                 except StopIteration as stop:
                     ending: Ending | None = stop.value
                     break
+                if not over_time and rounds < _ROUNDS and self._refined(segment):
+                    found = crank_angle.advance(self.grid, state, plan, kinks)
+                    rounds += 1
+                    continue
+                rounds = 0
                 state = segment.end
                 turned_back = state.theta if state.omega == 0.0 else turned_back
                 self._note(segment)
@@ -90,6 +98,14 @@ class Handover:
                 return ending
             vain += not over_time and slow and abs(state.theta - begin.theta) < period
             over_time, slow = not over_time, slow or over_time
+
+    def _refined(self, segment: AngleSegment) -> bool:
+        """Whether a segment errs too much; the cells are finer then."""
+        if not self.refines:
+            return False
+        before, errors = self.grid, segment.errors
+        self.grid = before.refined(segment.terms.cell, errors.at_end, errors.inside, self.local)
+        return self.grid is not before
 
     def _note(self, segment: AngleSegment | TimeSegment) -> None:
         """Add the steps of a segment to those taken."""

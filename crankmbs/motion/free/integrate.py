@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -12,7 +11,6 @@ import numpy as np
 from crankmbs.motion.assemble import ANGLE_ROUNDING
 from crankmbs.motion.base import Samples, State
 from crankmbs.motion.crank_angle.grid import Grid
-from crankmbs.motion.crank_angle.segment import AngleSegment
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.free.handover import Handover
 from crankmbs.motion.free.recorder import Recorder, Watch
@@ -21,7 +19,6 @@ from crankmbs.motion.minimal.step_sizes import StepSizes
 from crankmbs.motion.mode import begun
 from crankmbs.motion.plan import Plan
 from crankmbs.motion.states import first_sample
-from crankmbs.numerics.arrays import Array
 
 __all__ = ["Begin", "Origin", "Pass", "Setup", "begin_at_start", "integrate"]
 
@@ -31,12 +28,14 @@ Begin = Callable[[Grid, float], State]
 class Setup(NamedTuple):
     """What a pass follows: from where, sampled how, and the evaluations over time it may take.
 
+    refines : whether cells that err too much in a first pass are split on the way
     watch : is shown every segment
     """
 
     begin: Begin
     plan: Plan
     allowed: int
+    refines: bool = False
     watch: Watch | None = None
 
 
@@ -51,7 +50,7 @@ class Origin(NamedTuple):
 class Pass(NamedTuple):
     """One pass over the whole motion.
 
-    local : shape (2, cells), errors at ends and inside
+    grid : the finest on which it was solved
     slow : times [s] where time took over
     """
 
@@ -59,7 +58,7 @@ class Pass(NamedTuple):
     samples: Samples
     ending: Ending
     path: Recorder
-    local: Array
+    grid: Grid
     slow: list[float]
 
 
@@ -91,17 +90,11 @@ def integrate(
         ahead = math.copysign(ANGLE_ROUNDING * state.theta, state.omega or float(begin.alpha[0]))
         state = state._replace(theta=state.theta + ahead)
     reduced = Reduced(grid.train, grid.checks)
-    hand = Handover(grid, reduced, local, by_angle, first and first.taken)
-    worst = np.zeros((2, len(grid.edges) - 1))
-    note = partial(_note, worst) if first is None else None
-    ending = path.follow(hand.segments(state, plan, setup.allowed), note)
+    refines = setup.refines and first is None
+    hand = Handover(grid, reduced, local, by_angle, first and first.taken, refines)
+    ending = path.follow(hand.segments(state, plan, setup.allowed))
     if ending is Ending.COMPLETE and plan.folds_at((path.state or state).theta):
         ending = Ending.FOLD
     path.log.close(ending, path.state or begun_in)
     origin = Origin(begun_in, begin, hand.taken)
-    return Pass(origin, path.samples(), ending, path, worst, path.slow if by_angle else [])
-
-
-def _note(worst: Array, segment: AngleSegment) -> None:
-    """Keep the largest errors so far of a segment's cells."""
-    segment.errors.raised(worst, segment.terms.cell)
+    return Pass(origin, path.samples(), ending, path, hand.grid, path.slow if by_angle else [])

@@ -36,7 +36,8 @@ from crankmbs.scene.scene import Scene
 
 __all__ = ["Lead", "evaluations", "first_grid", "has_functions", "run", "staggered"]
 
-_PASSES = 12  # at most; each splits cells, or asks for less of an error
+_PASSES = 12  # at most; each asks for less of an error, or begins elsewhere
+_BETTERED = 0.5  # of the least error: what is not below has not been bettered by finer steps
 _EVALUATIONS = 50_000  # over time, for which a second of the cost cap stands: as measured
 _PLACES = np.array([0.225, 0.725])  # of new edges in a cell: an old edge is then at 0.55 of a new
 # cell, where no Gauss rule of few nodes takes a jump to be
@@ -86,7 +87,7 @@ def run(
     lead : of a motion that does not begin at the start
     """
     grid, local, begin = lead or Lead(first_grid(train, rtol), rtol, begin_at_start)
-    setup = Setup(begin, plan_of(train.scene), evaluations(cost_cap))
+    setup = Setup(begin, plan_of(train.scene), evaluations(cost_cap), refines=True)
     functions = has_functions(train)
     best: Assembled | None = None
     least, rounded = math.inf, False
@@ -94,13 +95,12 @@ def run(
     local = max(local, finest)
     for left in reversed(range(_PASSES)):
         answer = integrate(grid, setup, local, by_angle=by_angle)
-        refined = grid.refined(answer.local, local)
-        if left and refined is not grid:
-            grid = refined
-            continue
+        begun, grid = grid, answer.grid
+        if left and lead is not None and grid is not begun:
+            continue  # where a settled motion begins depends on the cells
         origin = answer.origin
         better = integrate(grid.finer, setup, 1e-2 * local, by_angle=by_angle, first=origin)
-        passes = [_Made(grid, local, answer), _Made(grid.finer, 1e-2 * local, better)]
+        passes = [_Made(begun, local, answer), _Made(grid.finer, 1e-2 * local, better)]
         solution = _solution(train.scene, answer, better, setup)
         assembled = assemble(train, solution)
         if functions:
@@ -111,10 +111,11 @@ def run(
             assembled = _stated_twice(assembled, again)
         near = local <= 10.0 * finest
         estimate = assembled.relative_error * (2.0 if near else 1.0)
+        in_vain = not functions and estimate > _BETTERED * least
         if estimate <= least:
             best, least, rounded = assembled, estimate, near
             followed = tuple(passes)
-        if estimate <= rtol or local <= finest or answer.ending in _BROKEN:
+        if estimate <= rtol or in_vain or local <= finest or answer.ending in _BROKEN:
             break
         local = max(local * max(1e-3, 0.1 * rtol / estimate), finest)
     assert best is not None
@@ -135,7 +136,7 @@ def run(
 
 
 class _Made(NamedTuple):
-    """A pass, and what it was made with: the grid, and what it might err locally."""
+    """A pass, and what it was made with: the first grid, and what it might err locally."""
 
     grid: Grid
     local: float
@@ -153,7 +154,8 @@ def _account(passes: tuple[_Made, ...], setup: Setup, share: float, *, by_angle:
                 cycles[-1].add(segment)
             continue
         plan = replace(setup.plan, last=(MOST_CYCLES + 1) * grid.train.scene.period)
-        again = Setup(partial(_given, made.origin.state), plan, setup.allowed, cycles[-1].add)
+        begin, watch = partial(_given, made.origin.state), cycles[-1].add
+        again = setup._replace(begin=begin, plan=plan, watch=watch)
         integrate(grid, again, local, by_angle=by_angle, first=None if k == 0 else origin)
     events = events_of([one.made.path.log for one in passes], share)
     return Account(events, cycles_of(cycles, share))

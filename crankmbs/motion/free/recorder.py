@@ -79,15 +79,8 @@ class Recorder:
         self.segments: deque[Segment] = deque()
         self.reversals = self.steps = self.evaluations = 0
 
-    def follow(
-        self,
-        segments: Generator[AngleSegment | TimeSegment, None, Ending],
-        note: Callable[[AngleSegment], None] | None = None,
-    ) -> Ending:
-        """Add every segment; return how the motion ends.
-
-        note : is shown every segment before
-        """
+    def follow(self, segments: Generator[AngleSegment | TimeSegment, None, Ending]) -> Ending:
+        """Add every segment; return how the motion ends."""
         over_time = False
         while True:
             try:
@@ -96,8 +89,6 @@ class Recorder:
                 ending: Ending = stop.value
                 return ending
             went_on, over_time = over_time, isinstance(segment, TimeSegment)
-            if note is not None and isinstance(segment, AngleSegment):
-                note(segment)
             self.slow += [segment.begin.time] if over_time and not went_on else []
             count = self._count
             self._add(segment)

@@ -13,7 +13,6 @@ from crankmbs.mechanics.windows import acting
 from crankmbs.motion.assemble import ANGLE_ROUNDING, Assembled, assemble
 from crankmbs.motion.base import Samples, Solution, State
 from crankmbs.motion.crank_angle.grid import FINEST_CELL, Grid
-from crankmbs.motion.crank_angle.segment import AngleSegment
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.free.handover import Handover
 from crankmbs.motion.free.passes import first_grid, has_functions, staggered
@@ -24,7 +23,6 @@ from crankmbs.motion.mode import begun
 from crankmbs.motion.plan import Plan, folds_of
 from crankmbs.motion.states import first_sample
 from crankmbs.motion.stepwise.standing import AT_REST, Moving, Standing, commanded, said
-from crankmbs.numerics.arrays import Array
 
 __all__ = ["Free"]
 
@@ -36,13 +34,13 @@ _ROUNDING = 64 * float(np.finfo(float).eps)  # as in `assemble`
 
 
 class _Carried(NamedTuple):
-    """A pass carried on: the state, how it ended, the steps that it took over time, and the largest
-    errors so far at ends and inside of each cell, shape (2, cells)."""
+    """A pass carried on: the state, how it ended, the steps that it took over time, and its
+    cells."""
 
     state: State
     ending: Ending
     taken: StepSizes
-    worst: Array
+    grid: Grid
 
 
 class Free:
@@ -78,13 +76,10 @@ class Free:
         """One step of all passes; see `crankmbs.motion.stepwise.standing.Steps`."""
         begins = [commanded(state, torque, share) for state in standing.states]
         grid, edges = self._grid_of(standing.edges), standing.edges
-        while True:
-            hand = Handover(grid, self._reduced[0], self._local, self._by_angle)
-            answer = self._carried(hand, begins[0], until)
-            refined = grid.refined(answer.worst, self._local)
-            if refined is grid:
-                break
-            grid, edges = refined, tuple(refined.edges.tolist())
+        hand = Handover(grid, self._reduced[0], self._local, self._by_angle, refines=True)
+        answer = self._carried(hand, begins[0], until)
+        if answer.grid is not grid:
+            grid, edges = answer.grid, tuple(answer.grid.edges.tolist())
             self._refined = edges, grid
         ways = [(grid.finer, self._reduced[1], _BETTER * self._local)]
         if self._functions:
@@ -115,11 +110,10 @@ class Free:
 
     def _carried(self, hand: Handover, state: State, until: float) -> _Carried:
         """A pass carried on to a time [s]; a crank at rest for good stays there."""
-        worst = np.zeros((2, len(hand.grid.edges) - 1))
         if state.time >= until:
-            return _Carried(state, Ending.COMPLETE, hand.taken, worst)
+            return _Carried(state, Ending.COMPLETE, hand.taken, hand.grid)
         if self._plan.folds_at(state.theta):
-            return _Carried(state, Ending.FOLD, hand.taken, worst)
+            return _Carried(state, Ending.FOLD, hand.taken, hand.grid)
         segments = hand.segments(state, replace(self._plan, until=until), _ALLOWED)
         ending: Ending | None = None
         while ending is None:
@@ -129,14 +123,12 @@ class Free:
                 ending = stop.value
                 continue
             state = segment.end
-            if isinstance(segment, AngleSegment) and not hand.grid.checks:
-                segment.errors.raised(worst, segment.terms.cell)
         if ending is Ending.REST or (ending in AT_REST and state.omega == 0.0):
             state = state._replace(time=until, omega=0.0)
         elif ending is Ending.COMPLETE and state.time < until:
             ending = Ending.FOLD
         ending = Ending.LABOURS if ending is Ending.COSTLY else ending
-        return _Carried(state, ending, hand.taken, worst)
+        return _Carried(state, ending, hand.taken, hand.grid)
 
     def moving(self, standing: Standing) -> Moving:
         """The motion of the answer, with the most that the passes have differed by."""
