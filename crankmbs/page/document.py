@@ -19,10 +19,12 @@ from crankmbs.page.export import encoded, exported, rules
 from crankmbs.page.knobs import FIRING_ORDERS, Choice, choices_of, first_of, knobs_of
 from crankmbs.page.refusals import early_end, refusals, settling
 from crankmbs.page.script import joined
+from crankmbs.scene.force import PistonForce
+from crankmbs.scene.forces import TravelTable
 from crankmbs.scene.parts import LIGHT_CRANK
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.sentences import RULES
-from crankmbs.scene.whole import NO_INERTIA, OPEN_LOOP
+from crankmbs.scene.whole import NO_INERTIA, OPEN_LOOP, UNCOVERED
 from crankmbs.scene.write import scene_files
 
 __all__ = ["given_of", "page_of", "policy", "shown_scene"]
@@ -138,11 +140,19 @@ def given_of(scene: Scene) -> dict[str, Any]:
             "open_loop": OPEN_LOOP,
             "light_crank": LIGHT_CRANK,
             "no_inertia": NO_INERTIA,
+            "uncovered": [_uncovered(*one) for one in enumerate(scene.force, start=1)],
             "fold": _FOLD,
             "fluctuation": _FLUCTUATION,
             **{kind: RULES[kind] for kind in _NUMBERS},
         },
     }
+
+
+def _uncovered(number: int, force: PistonForce) -> str | None:
+    """What is said of a force over the travel whose rows do not cover it."""
+    if not isinstance(force, TravelTable):
+        return None
+    return f"force[{number}].file: {force.file.source}: {UNCOVERED}"
 
 
 def policy(script: str, style: str, *, fonts: bool = False) -> str:

@@ -22,7 +22,10 @@ from crankmbs.numerics.cycle import Cycle
 from crankmbs.numerics.piecewise import Piecewise
 from crankmbs.page.gas import exported_gas
 from crankmbs.scene.drives import Motion, Oscillation, SpeedFile
+from crankmbs.scene.force import PistonForce
+from crankmbs.scene.forces import TravelTable
 from crankmbs.scene.fuel import Fuel, Misfire
+from crankmbs.scene.parts import Piston, Rod, RunningGear
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.speed_rows import over_angle, repeats
 from crankmbs.scene.torque import Torque
@@ -45,6 +48,7 @@ def exported(scene: Scene) -> dict[str, Any]:
         **_machine(scene),
         "gas": exported_gas(scene, train),
         "loads": [_load(load) for load in scene.torque],
+        "force": [_force(force) for force in scene.force],
         "fuel": None if scene.fuel is None else _fuel(scene.fuel),
         "period": scene.period,
         "load_period": scene.load_period,
@@ -95,23 +99,34 @@ def encoded(value: object) -> str:
 
 
 def _machine(scene: Scene) -> dict[str, Any]:
-    crank, rod, piston, gravity = scene.crank, scene.rod, scene.piston, scene.gravity
-    friction = scene.friction
+    crank, gravity, friction = scene.crank, scene.gravity, scene.friction
     return {
         "crank": {
             "inertia": crank.moment_of_inertia,
             **_fields(crank, "radius", "mass", "center_of_mass"),
         },
-        "rod": {
-            "inertia": rod.moment_of_inertia,
-            **_fields(rod, "length", "mass", "center_of_mass"),
-        },
-        "piston": {"area": piston.gas_area, **_fields(piston, "mass", "offset")},
+        "rod": _rod(scene.rod),
+        "piston": _piston(scene.piston),
         "gravity": None if gravity is None else _fields(gravity, "acceleration", "angle"),
         "friction": None if friction is None else _fields(friction, *_FRICTION),
-        "cylinders": [_fields(cylinder, "phase", "bank") for cylinder in scene.cylinders],
+        "cylinders": [
+            {**_fields(cylinder, "phase", "bank"), "own": _gear(gear) if scene.unlike else None}
+            for cylinder, gear in zip(scene.cylinders, scene.running_gear, strict=True)
+        ],
         "levers": None if scene.levers is None else list(scene.levers),
     }
+
+
+def _gear(gear: RunningGear) -> dict[str, Any]:
+    return {"radius": gear.radius, "rod": _rod(gear.rod), "piston": _piston(gear.piston)}
+
+
+def _rod(rod: Rod) -> dict[str, Any]:
+    return {"inertia": rod.moment_of_inertia, **_fields(rod, "length", "mass", "center_of_mass")}
+
+
+def _piston(piston: Piston) -> dict[str, Any]:
+    return {"area": piston.gas_area, **_fields(piston, "mass", "offset", "crank_end_share")}
 
 
 def _fields(part: object, *names: str) -> dict[str, Any]:
@@ -126,6 +141,22 @@ def _load(load: Torque) -> dict[str, Any]:
         "over_angle": None if over_angle is None else _cycle(over_angle),
         **_fields(load, *_WINDOW),
     }
+
+
+def _force(force: PistonForce) -> dict[str, Any]:
+    law = force.law
+    return {
+        "forward": None if law.forward is None else _lines(law.forward),
+        "back": _lines(law.back) if law.back is not None and law.switches else None,
+        "over_angle": None if law.over_angle is None else _cycle(law.over_angle),
+        "rows": list(force.file.x) if isinstance(force, TravelTable) else None,
+        **_fields(force, "cylinder"),
+        **_fields(law, "viscous"),
+    }
+
+
+def _lines(function: Piecewise) -> dict[str, Any]:
+    return {**_pieces(function), "jumps": list(function.jumps)}
 
 
 def _pieces(function: Piecewise) -> dict[str, Array]:

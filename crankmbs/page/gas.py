@@ -26,8 +26,8 @@ _DIAGRAM = (
 
 def exported_gas(scene: Scene, train: CrankTrain) -> dict[str, Any] | None:
     """What pushes every piston over its area, what combustion adds, and the crank ends, as cycles;
-    the crank end's share of the area; the sources of the pressures, and by number which is that of
-    which cylinder, `below` of the crank ends; the shape that they belong to. None without gas.
+    the sources of the pressures, and by number which is that of which cylinder, `below` of the
+    crank ends; the shape that they belong to, None where cylinders are unlike. None without gas.
 
     >>> scene = load_scene("v_twin")
     >>> exported_gas(scene, crank_train(scene))["fired"]
@@ -43,21 +43,24 @@ def exported_gas(scene: Scene, train: CrankTrain) -> dict[str, Any] | None:
         given = gas.motored if gas.indicator is None else gas.indicator
         motored = sources.numbers(given, fires=False)
     return {
-        "shape": {
-            "radius": scene.crank.radius,
-            "length": scene.rod.length,
-            "offset": scene.piston.offset,
-        },
+        "shape": None if scene.unlike else _shape(scene),
         "pressure": [_cycle(each) for each in train.pressure],
         "combustion": [_cycle(each) for each in train.combustion or ()],
         "crank_end": [_cycle(each) for each in train.crank_end or ()],
-        "share": scene.piston.crank_end_share if scene.double_acting else 0.0,
         "sources": sources.found,
         "fired": fired,
         "motored": motored,
         "below": [] if gas.crank_end is None else sources.numbers(gas.crank_end, fires=False),
         "period": gas.period,
         "ambient": gas.ambient or 0.0,
+    }
+
+
+def _shape(scene: Scene) -> dict[str, float]:
+    return {
+        "radius": scene.crank.radius,
+        "length": scene.rod.length,
+        "offset": scene.piston.offset,
     }
 
 

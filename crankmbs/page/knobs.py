@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from collections.abc import Iterator
 
 from crankmbs.design.flywheel import excess_at
 from crankmbs.design.freed import mean_prescribed
@@ -75,6 +76,13 @@ def first_of(scene: Scene) -> First:
             "the difference. Make the flywheel heavier: the swing becomes small, never zero."
         )
         wanted = ("flywheel", "load", "speed", "rod_mass", "rod_ratio")
+    elif scene.unlike:
+        question = "What do the forces become at another speed?"
+        sentence = (
+            "The forces of inertia grow with the square of the speed, those of the gas do not. Turn "
+            "the crank faster, and in each cylinder they take over at another speed."
+        )
+        wanted = ("speed", "pressure", "counterweight")
     else:
         question = "What does the length of the rod change?"
         sentence = (
@@ -86,12 +94,14 @@ def first_of(scene: Scene) -> First:
 
 
 def knobs_of(scene: Scene) -> tuple[Knob, ...]:
-    """The sliders that mean something for a scene; the scene's value lies between their ends.
+    """The sliders that mean something for a scene; the scene's value lies between their ends. Where
+    cylinders are unlike, none turns their geometry and masses.
 
     >>> [knob.name for knob in knobs_of(load_scene("grega_lecture"))]
     ['speed', 'pressure', 'flywheel', 'rod_ratio', 'offset', 'rod_mass']
     """
-    return (*_drive(scene), *_machine(scene))
+    gear = () if scene.unlike else _gear(scene)
+    return (*_drive(scene), *gear, *_counterweight(scene))
 
 
 def choices_of(scene: Scene) -> tuple[Choice, ...]:
@@ -100,8 +110,10 @@ def choices_of(scene: Scene) -> tuple[Choice, ...]:
     >>> [choice.name for choice in choices_of(load_scene("yi_diesel"))]
     ['rod', 'cylinders', 'speed_is']
     """
-    rod = "two-mass" if scene.rod.inertia == "two-mass" else "rigid"
-    choices = [Choice("rod", "rod", ("rigid", "two-mass"), rod)]
+    choices = []
+    if not scene.unlike:
+        rod = "two-mass" if scene.rod.inertia == "two-mass" else "rigid"
+        choices.append(Choice("rod", "rod", ("rigid", "two-mass"), rod))
     if _is_of_any_number(scene):
         words = (AS_GIVEN, *FIRING_ORDERS)
         choices.append(Choice("cylinders", "cylinders", words, AS_GIVEN))
@@ -152,31 +164,34 @@ def _heaviest(scene: Scene) -> float:
     return _above(most or 4e-3)
 
 
-def _machine(scene: Scene) -> list[Knob]:
-    """The knobs of its parts."""
+def _gear(scene: Scene) -> tuple[Knob, ...]:
+    """The knobs of what moves in the cylinders."""
     r, rod = scene.crank.radius * 1e3, scene.rod
     ratio = scene.crank.radius / rod.length
     heaviest = _above(3.0 * rod.mass or scene.piston.mass or 1.0)
     offset = scene.piston.offset * 1e3
     far = max(_above(0.5 * r), abs(offset))
     about = "pressures keep to the swept fraction of each stroke" if scene.gas is not None else ""
-    knobs = [
+    return (
         Knob("rod_ratio", "rod ratio r/l", "", min(0.1, ratio), 0.9, ratio, 3, about),
         Knob("offset", "offset", "mm", -far, far, offset, 1, about),
         Knob("rod_mass", "rod mass", "kg", 0.0, heaviest, rod.mass, 2),
-    ]
+    )
+
+
+def _counterweight(scene: Scene) -> Iterator[Knob]:
     if scene.crank.mass > 0.0:
         center = scene.crank.center_of_mass * 1e3
-        wide = max(_above(r), abs(center))
+        wide = max(_above(1e3 * scene.crank.radius), abs(center))
         about = "the crank's centre of mass from its axis; below 0 a counterweight"
-        title = "crank mass centre"
-        knobs.append(Knob("counterweight", title, "mm", -wide, wide, center, 1, about))
-    return knobs
+        yield Knob("counterweight", "crank mass centre", "mm", -wide, wide, center, 1, about)
 
 
 def _is_of_any_number(scene: Scene) -> bool:
-    """Whether other cylinders than the scene's can have its pressure, fuel and loads: a table over
-    the crank angle is of the cylinders that it was made of."""
+    """Whether other cylinders than the scene's can have its parts, pressure, fuel and loads: a table
+    over the crank angle is of the cylinders that it was made of."""
+    if scene.unlike or any(force.cylinder is not None for force in scene.force):
+        return False
     if any(load.parts.over_angle is not None for load in scene.torque):
         return False
     gas = scene.gas

@@ -63,10 +63,7 @@ def _reasons(scene: Scene) -> Iterator[str]:
         yield "multibody: asked for by name, and the page solves one rotation"
     if any(load.parts.function is not None for load in scene.torque):
         yield "function: a load is a function of Python"
-    if scene.unlike:
-        yield "cylinder: the page's engine has cylinders that are alike"
-    if scene.force:
-        yield "force: the page's engine has no forces from outside on the pistons"
+    yield from _of_forces(scene)
     yield from _of_fuel(scene)
     if any(abs(fold) < float("inf") for fold in plan_of(scene).folds):
         yield "fold: the rod folds onto the crank, where the motion is not determined"
@@ -74,6 +71,17 @@ def _reasons(scene: Scene) -> Iterator[str]:
         yield "rest: the crank starts from rest, where time must be the variable"
     if scene.motion is not None and _turns_back(scene):
         yield "reversal: the prescribed speed comes to rest or turns back"
+
+
+def _of_forces(scene: Scene) -> Iterator[str]:
+    for force in scene.force:
+        if force.law.given is not None:
+            yield "function: a force on a piston is a function of Python"
+        elif not force.is_steady:
+            yield (
+                "force: on the page every cycle has the same forces on the pistons, and one changes "
+                "with time or has a window; leave that out"
+            )
 
 
 def _of_fuel(scene: Scene) -> Iterator[str]:

@@ -21,7 +21,7 @@ from crankmbs.scene.units import EXAMPLES
 if TYPE_CHECKING:
     from crankmbs.scene.scene import Scene
 
-__all__ = ["NO_INERTIA", "OPEN_LOOP", "check_whole"]
+__all__ = ["NO_INERTIA", "OPEN_LOOP", "UNCOVERED", "check_whole"]
 
 OPEN_LOOP = (
     "rod.length must be at least crank.radius + |piston.offset| = {least:.12g} m, or the crank "
@@ -30,6 +30,9 @@ OPEN_LOOP = (
 NO_INERTIA = (
     "crank.inertia: a free crank needs an inertia above 0, or nothing resists it at the dead "
     "centres; 0 came"
+)
+UNCOVERED = (
+    "the rows must cover the stroke, 0 to {stroke:.6g} mm; they go from {low:.6g} to {high:.6g} mm"
 )
 
 _SPARE = 1e-3  # of the stroke, over which the ends of a table over the travel are held
@@ -173,10 +176,8 @@ def _check_forces(scene: Scene) -> None:
             stroke = max(gear.stroke for gear in on)
             spare = _SPARE * stroke
             if force.file.x[0] > spare or force.file.x[-1] < stroke - spare:
-                raise InputError(
-                    f"{where}.file: {force.file.source}: the rows must cover the stroke, 0 to "
-                    f"{1e3 * stroke:.6g} mm; they go from {low:.6g} to {high:.6g} mm"
-                )
+                said = UNCOVERED.format(stroke=1e3 * stroke, low=low, high=high)
+                raise InputError(f"{where}.file: {force.file.source}: {said}")
 
 
 def _check_bearings(scene: Scene) -> None:

@@ -45,7 +45,7 @@ export class AffinePeriod {
         this.inertia[to] = train.crank.inertia + inertia[i];
         this.push[to] = torque[i] + branch.c0;
         if (overAngle) this.push[to] += torqueOverAngle(train.loads, phases, angles[i]);
-        if (friction !== null) this.push[to] -= sense * ringTorqueIn(friction, tables, i, []);
+        this.push[to] -= sense * ringTorqueIn(friction, tables, i, []);
         this.rate[to] = (2 * branch.c2) / this.inertia[to];
       }
     }

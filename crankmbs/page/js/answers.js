@@ -98,7 +98,8 @@ function columns(samples) {
 
 /** The pressures of a scene in a machine of another shape, and what combustion adds, as lists. */
 export function carried(_, { scene, shape }) {
-  const { pressure, combustion, crank_end } = pressuresOf(scene.gas, shape);
+  const { crank_end_share: share } = scene.piston;
+  const { pressure, combustion, crank_end } = pressuresOf(scene.gas, shape, share);
   const plain = ({ knots, coefficients }) => [Array.from(knots), Array.from(coefficients)];
   const [made, more, below] = [pressure, combustion, crank_end].map((each) => each.map(plain));
   return { pressure: made, combustion: more, crank_end: below };

@@ -34,11 +34,8 @@ export class Stepper {
       this.inertia[j] = train.crank.inertia + tables.inertia[i];
       let given = tables.torque[i] + torqueOverAngle(train.loads, phases, tables.angles[i]);
       for (let c = 0; c < shares.length; c++) given += shares[c] * tables.combustion[c][i];
-      if (friction !== null) {
-        given -= sense * ringTorqueIn(friction, tables, i, shares);
-        this.drag[j] = friction.viscous * tables.square[i];
-      }
-      this.given[j] = given;
+      this.given[j] = given - sense * ringTorqueIn(friction, tables, i, shares);
+      this.drag[j] = tables.drag[i];
     }
   }
 
@@ -49,7 +46,7 @@ export class Stepper {
       const of = reduceAt(train, angle);
       this.inertia[j] = of.inertia;
       this.given[j] = givenAt(train, of, firing.shares, sense, 0);
-      this.drag[j] = (train.friction?.viscous ?? 0) * of.square;
+      this.drag[j] = of.drag;
       this.given[j] += torqueOverAngle(train.loads, phases, angle);
     });
   }

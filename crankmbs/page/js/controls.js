@@ -1,4 +1,5 @@
 /** The page's choices and words: selects, slow motion, measures, badge. */
+import { isShape } from "./gas.js";
 import { Player } from "./player.js";
 import { choices } from "./quantities.js";
 import { set, write } from "./svg.js";
@@ -72,9 +73,8 @@ export function showWords(given, cycle, error) {
   const { text, good } = badgeOf(cycle, given.endings);
   write(find("badge"), text);
   set(find("badge"), { class: good ? "good" : "drifts" });
-  const [shape, own] = [cycle.train.shape, given.scene.gas?.shape];
-  const moved = own && ["radius", "length", "offset"].some((key) => shape[key] !== own[key]);
-  find("carried").hidden = !moved;
+  const own = given.scene.gas?.shape;
+  find("carried").hidden = !own || isShape(cycle.train.shape, own);
   find("fluctuation")?.toggleAttribute("disabled", cycle.prescribed);
 }
 

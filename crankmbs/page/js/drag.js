@@ -71,7 +71,7 @@ function along(stage, k, { x, y }) {
 }
 
 function positionAt({ train }, k, theta) {
-  return train.loop.at(theta + train.cylinders[k].phase).x;
+  return train.gears[k].loop.at(theta + train.cylinders[k].phase).x;
 }
 
 /** The crank angle nearest to the present one at which the piston comes closest to a position: from

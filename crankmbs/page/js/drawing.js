@@ -12,29 +12,38 @@ const RIM = 1.65; // of the crank radius: the flywheel's rim, at the inertia tha
 const WIDEST = 2.5;
 const ROOM = 0.7; // of the crank radius
 
-/** The proportions of a machine [m]. ratio : of the flywheel's inertia to that of the scene */
+/** The proportions of a machine [m], and under `each` those of its cylinders; r is the longest
+ * throw. ratio : of the flywheel's inertia to that of the scene */
 export function proportions(train, ratio, compression) {
-  const { shape, piston, cylinders } = train;
-  const r = shape.radius;
+  const each = train.gears.map((gear) => cylinderOf(gear, compression));
+  const r = Math.max(...each.map((one) => one.r));
+  const ring = WIDEST * r;
+  const ends = train.cylinders.flatMap(({ bank }, k) => endsOf(each[k], bank));
+  const edge = ring + 0.15 * r;
+  const far = Math.max(edge, ...ends.map(([y]) => Math.abs(y)));
+  const high = Math.max(...ends.map(([, x]) => x), edge);
+  const bounds = { left: -far, top: -high, width: 2 * far, height: high + edge };
+  return { each, r, rim: rimOf(r, ratio), ring, bounds };
+}
+
+function cylinderOf({ shape, piston }, compression) {
+  const { radius: r, offset } = shape;
   const width = piston.area ? Math.sqrt((4 * piston.area) / Math.PI) : 1.6 * r;
   const top = topPosition(shape);
   const bottom = bottomPosition(shape);
   const clearance = compression ? (top - bottom) / (compression - 1) : CLEARANCE * (top - bottom);
   const head = top + CROWN * width + clearance;
   const low = bottom - SKIRT * width;
-  const rim = rimOf(r, ratio);
-  const ring = WIDEST * r;
-  const across = 0.62 * width + Math.abs(shape.offset);
-  const ends = cylinders.flatMap(({ bank }) =>
-    [-across, across].map((y) => [y * Math.cos(bank) + head * Math.sin(bank),
-      head * Math.cos(bank) - y * Math.sin(bank) + 0.1 * width]));
   const above = piston.area ? ROOM * r : 0; // for the arrow of the gas
-  ends.push(...cylinders.map(({ bank }) => turnedBy(bank, head + above, 0).reverse()));
-  const edge = ring + 0.15 * r;
-  const far = Math.max(edge, ...ends.map(([y]) => Math.abs(y)));
-  const high = Math.max(...ends.map(([, x]) => x), edge);
-  const bounds = { left: -far, top: -high, width: 2 * far, height: high + edge };
-  return { r, width, head, low, rim, ring, bounds, crown: CROWN * width, skirt: SKIRT * width };
+  return { r, offset, width, head, low, above, crown: CROWN * width, skirt: SKIRT * width };
+}
+
+/** How far a cylinder reaches, [Y, X] of its corners and above its head. */
+function endsOf({ width, offset, head, above }, bank) {
+  const across = 0.62 * width + Math.abs(offset);
+  const corners = [-across, across].map((y) => [y * Math.cos(bank) + head * Math.sin(bank),
+    head * Math.cos(bank) - y * Math.sin(bank) + 0.1 * width]);
+  return [...corners, turnedBy(bank, head + above, 0).reverse()];
 }
 
 /** A disc of one thickness: its inertia grows with the fourth power of its radius. */

@@ -6,9 +6,10 @@
 import { remembering } from "./arrays.js";
 import { knotsOver } from "./cubics.js";
 import { settleFree } from "./freed.js";
+import { appliedMarks, appliedTo } from "./applied.js";
 import { frictionMarks } from "./friction.js";
 import { Firing, decisionAngles } from "./fuel.js";
-import { Loop } from "./geometry.js";
+import { Loop, topPosition } from "./geometry.js";
 import { DIAGRAM, SEEN, pressuresOf } from "./gas.js";
 import { Travel } from "./motion.js";
 import { readCell } from "./path.js";
@@ -31,30 +32,47 @@ export class Engine {
     this.rules = rules;
     this.tables = new Tables();
     this.finer = new Tables();
-    this.shape = remembering((radius, length, offset) => ({ radius, length, offset }));
-    this.loops = remembering((shape, n) => Array.from({ length: n }, () => new Loop(shape)));
+    this.shapes = remembering((lengths) =>
+      lengths.map(([radius, length, offset]) => ({ radius, length, offset })));
+    this.loops = remembering((shapes) => shapes.map((shape) => new Loop(shape)));
     this.pressures = { fine: remembering(pressuresOf), quick: remembering(pressuresOf) };
     // a stronger load has the knots that it had
     this.marks = remembering(marksOf);
     this.edges = remembering(edgesOf);
     this.bends = remembering(frictionMarks);
+    this.kinks = remembering(appliedMarks);
     this.strong = remembering(strongOf);
   }
 
-  /** The crank train of a scene: its machine with the pressures that its shape has.
+  /** The crank train of a scene: its machine with the pressures that its shape has. Under `gears`
+   * what moves in each cylinder and rubs there; shape, piston: of the first.
    *
    * quick : diagrams of polytropes are fitted to what a screen shows */
   train(scene, quick = false) {
-    const { crank, rod, piston, cylinders, levers } = scene;
-    const shape = this.shape(crank.radius, rod.length, piston.offset);
-    const loops = this.loops(shape, cylinders.length);
-    const machine = { shape, loop: loops[0], loops, crank, rod, piston, cylinders, levers };
+    const { crank, cylinders, levers, gravity, friction, loads, fuel, period } = scene;
+    const gears = this.gears(scene);
+    const [{ shape, piston }] = gears;
+    const machine = { gears, shape, piston, crank, cylinders, levers };
     const pressures = quick ? this.pressures.quick : this.pressures.fine;
-    const gas = pressures(scene.gas, shape, quick ? SEEN : DIAGRAM);
-    const { pressure, combustion, crank_end, share } = gas;
-    const { gravity, friction, loads, fuel, period } = scene;
-    const outside = { gravity, friction, loads, fuel, period };
-    return { ...machine, ...outside, pressure, combustion, crank_end, share };
+    const share = piston.crank_end_share;
+    const { pressure, combustion, crank_end } =
+      pressures(scene.gas, shape, share, quick ? SEEN : DIAGRAM);
+    const outside = { gravity, friction, loads, fuel, period, applies: scene.force.length > 0 };
+    return { ...machine, ...outside, pressure, combustion, crank_end };
+  }
+
+  /** What moves in every cylinder, with the forces from outside on its piston. */
+  gears({ crank, rod, piston, cylinders, friction, force }) {
+    const parts = cylinders.map(({ own }) => own ?? { radius: crank.radius, rod, piston });
+    const shapes = this.shapes(parts.map((each) =>
+      [each.radius, each.rod.length, each.piston.offset]));
+    const loops = this.loops(shapes);
+    return parts.map((part, k) => {
+      const applied = appliedTo(force, k);
+      const drag = applied.reduce((sum, { viscous }) => sum + viscous, friction?.viscous ?? 0);
+      const top = topPosition(shapes[k]);
+      return { ...part, shape: shapes[k], loop: loops[k], top, applied, drag };
+    });
   }
 
   /** The motion of a scene; its cells are cut until they err by no more than a tolerance, relative,
@@ -89,14 +107,17 @@ export class Engine {
   }
 
   edgesFor(train, period, quick) {
-    const { shape, cylinders, pressure, combustion, loads, fuel } = train;
+    const { gears, cylinders, pressure, combustion, loads, fuel } = train;
+    const shapes = gears.map(({ shape }) => shape);
     const tables = loads.map((load) => load.over_angle).filter((cycle) => cycle !== null);
     const decisions = decisionAngles(fuel, cylinders, train.period);
     const knots = (quick ? strongOf(tables) : tables).map((cycle) => cycle.knots);
     const marks = this.marks(knots, decisions, train.period, period);
-    const bends = this.bends(train.friction, shape, cylinders, pressure, combustion, period);
+    const bends = this.bends(train.friction, shapes, cylinders, pressure, combustion, period);
+    const applied = gears.map((gear) => gear.applied);
+    const kinks = this.kinks(applied, shapes, cylinders, period, quick);
     const cycles = quick ? this.strong([...pressure, ...combustion]) : pressure;
-    return this.edges(shape, cylinders, cycles, [...marks, bends], period);
+    return this.edges(shapes, cylinders, cycles, [...marks, bends, kinks], period);
   }
 
   grid(train, edges, stages, tables) {

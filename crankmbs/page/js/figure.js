@@ -187,7 +187,7 @@ export class Figure {
     const { stage } = this;
     if (!this.levels?.isConnected) this.levels = add(stage.root, "g", { class: "levels" });
     const pen = new Pen(this.levels);
-    const half = 650 * stage.sizes.width;
+    const half = 650 * stage.sizes.each[0].width;
     const middle = -1000 * stage.train.shape.offset;
     for (const [x, name] of levels) {
       const y = -1000 * x;

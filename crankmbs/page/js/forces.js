@@ -5,7 +5,8 @@ import { turnedBy } from "./drawing.js";
 export const BODIES = ["piston", "rod", "crank"];
 
 /** The forces on a body at a sample, in the engine's frame: { name, kind, at: [x, y], force }. With
- * onCrown one is drawn on the piston's crown, with onSide on its side towards Y (1) or away.
+ * onCrown one is drawn on the piston's crown, with onSkirt below its skirt, with onSide on its side
+ * towards Y (1) or away.
  *
  * v : variables; k : number of the cylinder
  */
@@ -18,7 +19,7 @@ export function forcesOn(body, train, v, k) {
 function onPiston(train, v, k) {
   const { bank } = train.cylinders[k];
   const at = v.cylinders[k];
-  const pin = turnedBy(bank, at.piston_position, train.shape.offset);
+  const pin = turnedBy(bank, at.piston_position, train.gears[k].shape.offset);
   const place = (x, y) => turnedBy(bank, x, y);
   const found = [
     arrow("wall on piston", "wall", pin, place(0, at.side_force)),
@@ -31,15 +32,19 @@ function onPiston(train, v, k) {
   if (train.pressure.length) {
     found.push({ ...arrow("gas on piston", "gas", pin, place(-at.gas_force, 0)), onCrown: true });
   }
+  if (train.applies) {
+    const applied = arrow("applied force", "outside", pin, place(-at.applied_force, 0));
+    found.push({ ...applied, onSkirt: true });
+  }
   return found;
 }
 
 function onRod(train, v, k) {
   const { bank, phase } = train.cylinders[k];
   const at = v.cylinders[k];
-  const pin = turnedBy(bank, at.piston_position, train.shape.offset);
+  const { radius: r, offset } = train.gears[k].shape;
+  const pin = turnedBy(bank, at.piston_position, offset);
   const throwAt = v.crank_angle + phase + bank;
-  const r = train.shape.radius;
   const crank = [r * Math.cos(throwAt), r * Math.sin(throwAt)];
   const [px, py] = [at.piston_pin_force_x, at.piston_pin_force_y];
   return [
@@ -50,8 +55,8 @@ function onRod(train, v, k) {
 }
 
 function onCrank(train, v) {
-  const r = train.shape.radius;
   const rods = train.cylinders.map(({ bank, phase }, k) => {
+    const r = train.gears[k].shape.radius;
     const angle = v.crank_angle + phase + bank;
     const { crank_pin_force_x: x, crank_pin_force_y: y } = v.cylinders[k];
     const name = train.cylinders.length > 1 ? `rod ${k + 1} on crank` : "rod on crank";

@@ -44,14 +44,13 @@ export function settleFree(train, grid, start) {
   return withDrag({ grid, start, sense, loaded }, torque, found.motion);
 }
 
-/** Machine and grid whose viscous friction is what it would be at a constant speed [rad/s]. */
+/** Machine and grid whose drag is what it would be at a constant speed [rad/s]. */
 function evenly(train, grid, speed) {
-  const { friction } = train;
-  if (friction === null || friction.viscous === 0) return { train, grid };
-  const { torque: given, square } = grid.tables;
-  const torque = given.map((each, i) => each - friction.viscous * square[i] * speed);
+  if (train.gears.every(({ drag }) => drag === 0)) return { train, grid };
+  const { torque: given, drag } = grid.tables;
+  const torque = given.map((each, i) => each - drag[i] * speed);
   return {
-    train: { ...train, friction: { ...friction, viscous: 0 } },
+    train: { ...train, gears: train.gears.map((gear) => ({ ...gear, drag: 0 })) },
     grid: { ...grid, tables: { ...grid.tables, torque } },
   };
 }

@@ -5,7 +5,7 @@
  * with the piston's velocity v = -x1 omega. On the crank it is, with the torque of each cylinder's
  * gas, -sign(omega) (ring_force sum |x1| + ring_pressure sum |gas|) - viscous omega sum x1^2: all
  * but the last is a function of the angle, smooth between dead centres and changes of the gas's
- * sign.
+ * sign. Forces from outside that resist as these do (`applied`) are among `rings` and `drag`.
  */
 import { wrapped } from "./arrays.js";
 import { deadCentres } from "./geometry.js";
@@ -15,46 +15,50 @@ const TURN = 2 * Math.PI;
 
 /** What rings oppose to either sense of rotation [N m].
  *
- * rise : sum of |x1| [m]; gas, combustion : torques of each cylinder [N m]
+ * rings : of the ring force; gas, combustion : torques of each cylinder [N m]
  */
-export function ringTorque(friction, rise, gas, combustion, shares) {
+export function ringTorque(friction, rings, gas, combustion, shares) {
+  if (friction === null || friction.ring_pressure === 0) return rings;
   let pressed = 0;
   for (let k = 0; k < gas.length; k++) {
     pressed += Math.abs(gas[k] + (shares.length ? shares[k] * combustion[k] : 0));
   }
-  return friction.ring_force * rise + friction.ring_pressure * pressed;
+  return rings + friction.ring_pressure * pressed;
 }
 
 /** The same at node i of tables. */
 export function ringTorqueIn(friction, tables, i, shares) {
+  if (friction === null || friction.ring_pressure === 0) return tables.rings[i];
   let pressed = 0;
   for (let k = 0; k < tables.gas.length; k++) {
     const burning = shares.length ? shares[k] * tables.combustion[k][i] : 0;
     pressed += Math.abs(tables.gas[k][i] + burning);
   }
-  return friction.ring_force * tables.rise[i] + friction.ring_pressure * pressed;
+  return tables.rings[i] + friction.ring_pressure * pressed;
+}
+
+/** In which sense a piston slides towards the crank, 1 or -1, at a cycle angle and a speed. */
+export function slides(shape, phi, omega) {
+  const { top, bottom } = deadCentres(shape);
+  const sense = omega < 0 ? -1 : 1;
+  const behind = wrapped(phi + sense * KNOT - top, TURN);
+  return behind < bottom - top ? sense : -sense;
 }
 
 /** Friction on a piston [N], positive towards the crank, at a cycle angle of the closed loop. */
 export function frictionForce(friction, shape, { phi, x1 }, omega, gasForce) {
-  const { top, bottom } = deadCentres(shape);
-  const sense = omega < 0 ? -1 : 1;
-  const behind = wrapped(phi + sense * KNOT - top, TURN);
-  const towards = behind < bottom - top ? sense : -sense;
+  const towards = slides(shape, phi, omega);
   const limit = friction.ring_force + friction.ring_pressure * Math.abs(gasForce);
   return -towards * limit + friction.viscous * x1 * omega;
 }
 
 /** Crank angles of a period at which friction bends [rad]: dead centres, and where the gas on a
  * piston changes its sign, with its combustion and without. */
-export function frictionMarks(friction, shape, cylinders, pressure, combustion, period) {
+export function frictionMarks(friction, shapes, cylinders, pressure, combustion, period) {
   if (friction === null) return [];
-  const { top, bottom } = deadCentres(shape);
   const found = [];
   cylinders.forEach(({ phase }, k) => {
-    for (let turn = 0; turn < period - 1; turn += TURN) {
-      found.push(wrapped(top + turn - phase, period), wrapped(bottom + turn - phase, period));
-    }
+    found.push(...centresOver(shapes[k], phase, period));
     if (friction.ring_pressure === 0 || !pressure.length) return;
     const { knots, coefficients } = pressure[k];
     const own = knots[knots.length - 1] - knots[0];
@@ -67,6 +71,16 @@ export function frictionMarks(friction, shape, cylinders, pressure, combustion, 
       found.push(...roots.map((angle) => wrapped(angle + turn - phase, period)));
     }
   });
+  return found;
+}
+
+/** Crank angles of a period at which a cylinder of a phase is at a dead centre [rad]. */
+export function centresOver(shape, phase, period) {
+  const { top, bottom } = deadCentres(shape);
+  const found = [];
+  for (let turn = 0; turn < period - 1; turn += TURN) {
+    found.push(wrapped(top + turn - phase, period), wrapped(bottom + turn - phase, period));
+  }
   return found;
 }
 

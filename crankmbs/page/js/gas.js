@@ -9,7 +9,9 @@
  */
 import { distinct } from "./arrays.js";
 import { joined, knotsOver, valueAt } from "./cubics.js";
-import { Loop, bottomPosition, deadCentres, topPosition } from "./geometry.js";
+import {
+  Loop, bottomPosition, deadCentres, strokeOf, throwAngles, topPosition,
+} from "./geometry.js";
 
 const TURN = 2 * Math.PI;
 const KNOT = 1e-9; // rad: two knots closer than this are one
@@ -20,28 +22,26 @@ const SUPPORT = [0, 0.25, 0.75, 1]; // Chebyshev's extrema: the ends are met exa
 const BETWEEN = [0.1, 0.5, 0.9]; // where a cubic through the support errs most
 
 /** The cycles of the pressure without combustion, and of what combustion adds, of each cylinder;
- * those of the crank ends, if there are any, and their share of the piston's area.
+ * those of the crank ends, if there are any.
  *
- * gas : as Python passes it, or null; shape : may differ from that of the scene, gas.shape
+ * gas : as Python passes it, or null; shape : may differ from that of the scene, gas.shape, which
+ * is null where cylinders are unlike, and then each keeps its own
+ * share : of the piston's area, on which a crank end's pressure acts
  * closeness : of the absolute pressure, of cubics to a polytrope
  */
-export function pressuresOf(gas, shape, closeness = DIAGRAM) {
-  if (gas === null) return { pressure: [], combustion: [], crank_end: [], share: 0 };
-  const { radius, length, offset } = gas.shape;
-  if (shape.radius === radius && shape.length === length && shape.offset === offset) {
-    return gas;
-  }
+export function pressuresOf(gas, shape, share, closeness = DIAGRAM) {
+  if (gas === null) return { pressure: [], combustion: [], crank_end: [] };
+  if (gas.shape === null || isShape(shape, gas.shape)) return gas;
   const once = new Map();
   const close = { ...gas, closeness };
   const cycle = (number) => {
     if (!once.has(number)) once.set(number, cycleOf(close, gas.sources[number], shape));
     return once.get(number);
   };
-  const { share } = gas;
   const fired = gas.fired.map(cycle);
   const crankEnd = gas.below.map(cycle);
   const net = (head, k) => (crankEnd.length ? netOf(head, crankEnd[k], share) : head);
-  const ends = { crank_end: crankEnd, share };
+  const ends = { crank_end: crankEnd };
   if (gas.motored === null) return { pressure: fired.map(net), combustion: [], ...ends };
   const both = gas.motored.map((number, k) => {
     const motored = cycleOf(close, gas.sources[number], shape, fired[k]);
@@ -49,6 +49,11 @@ export function pressuresOf(gas, shape, closeness = DIAGRAM) {
   });
   const [pressure, combustion] = [0, 1].map((n) => both.map((each) => each[n]));
   return { pressure, combustion, ...ends };
+}
+
+/** Whether one shape is another. */
+export function isShape(one, other) {
+  return ["radius", "length", "offset"].every((key) => one[key] === other[key]);
 }
 
 /** The pressure that a source stands for in a machine of this shape. */
@@ -77,17 +82,13 @@ export function carriedAngle(phi, from, to) {
 function carrying(from, to) {
   const centres = deadCentres(from);
   const swept = sweptIn(from);
-  const x = topPosition(to);
-  const stroke = x - bottomPosition(to);
+  const stroke = strokeOf(to);
   return (phi) => {
     const turn = Math.floor((phi - centres.top) / TURN);
     const within = phi - turn * TURN;
     const part = swept(within);
-    const above = part.fraction * stroke;
-    const lead = leadAt(x - above, above, part.rest * stroke, to);
-    const along = Math.atan2(to.offset, x - above);
-    const down = within <= centres.bottom;
-    return (down ? along + lead : along - lead + TURN) + turn * TURN;
+    const [down, up] = throwAngles(part.fraction * stroke, part.rest * stroke, to);
+    return (within <= centres.bottom ? down : up) + turn * TURN;
   };
 }
 
@@ -104,19 +105,6 @@ function sweptIn(shape) {
     const below = (size * Math.cos(half) ** 2) / (at.x + bottom);
     return { fraction: above / (above + below), rest: below / (above + below) };
   };
-}
-
-/** The angle [rad] by which the throw leads the direction of the piston pin at x, opposite the rod;
- * above, below [m] : how far the pin is from its dead centres. */
-function leadAt(x, above, below, { radius, length, offset }) {
-  const distance = Math.hypot(x, offset);
-  const top = x + above;
-  const bottom = x - below;
-  const nearTop = (above * (top + x)) / (radius + length + distance);
-  const nearBottom = (below * (bottom + x)) / (distance + length - radius);
-  const over = nearTop * (length + distance - radius);
-  const under = nearBottom * (radius + distance + length);
-  return 2 * Math.atan2(Math.sqrt(Math.max(over, 0)), Math.sqrt(Math.max(under, 0)));
 }
 
 /** An indicator diagram: compression p V^n, a rise at the firing dead centre, combustion at
@@ -145,10 +133,9 @@ function strokesOf(gas, source, shape) {
   const closed = [[bottom, fired, compression]];
   let burnt = fired;
   if (source.fires && source.pre_expansion > 1) {
-    const stroke = topPosition(shape) - bottomPosition(shape);
+    const stroke = strokeOf(shape);
     const above = ((source.pre_expansion - 1) / (ratio - 1)) * stroke;
-    const x = topPosition(shape) - above;
-    burnt = TURN + Math.atan2(shape.offset, x) + leadAt(x, above, stroke - above, shape);
+    burnt = TURN + throwAngles(above, stroke - above, shape)[0];
     closed.push([fired, burnt, () => source.peak_pressure]);
   }
   closed.push([burnt, TURN + bottom, source.fires ? expansion : compression]);
@@ -164,7 +151,7 @@ function strokesOf(gas, source, shape) {
 function relativeVolume(ratio, shape) {
   const loop = new Loop(shape);
   const top = topPosition(shape);
-  const stroke = top - bottomPosition(shape);
+  const stroke = strokeOf(shape);
   return (phi) => 1 + ((ratio - 1) * (top - loop.at(phi).x)) / stroke;
 }
 

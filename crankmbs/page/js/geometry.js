@@ -74,3 +74,30 @@ export function topPosition({ radius, length, offset }) {
 export function bottomPosition(shape) {
   return new Loop(shape).at(deadCentres(shape).bottom).x;
 }
+
+/** Between the true dead centres [m]. */
+export function strokeOf(shape) {
+  return topPosition(shape) - bottomPosition(shape);
+}
+
+/** The angle [rad] by which the throw leads the direction of the piston pin at x, opposite the rod;
+ * above, below [m] : how far the pin is from its dead centres. */
+function leadAt(x, above, below, { radius, length, offset }) {
+  const distance = Math.hypot(x, offset);
+  const top = x + above;
+  const bottom = x - below;
+  const nearTop = (above * (top + x)) / (radius + length + distance);
+  const nearBottom = (below * (bottom + x)) / (distance + length - radius);
+  const over = nearTop * (length + distance - radius);
+  const under = nearBottom * (radius + distance + length);
+  return 2 * Math.atan2(Math.sqrt(Math.max(over, 0)), Math.sqrt(Math.max(under, 0)));
+}
+
+/** Cycle angles [rad] at which the piston is so far from its dead centres [m], on the way to the
+ * crank and, less than a turn later, on the way back. */
+export function throwAngles(above, below, shape) {
+  const x = topPosition(shape) - above;
+  const along = Math.atan2(shape.offset, x);
+  const lead = leadAt(x, above, below, shape);
+  return [along + lead, along - lead + 2 * Math.PI];
+}

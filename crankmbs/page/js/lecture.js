@@ -80,9 +80,8 @@ export const LECTURES = {
 export function lecturedAt(train, lecture, sample) {
   const { theta, omega, alpha } = sample;
   const cylinders = train.cylinders.map((_, k) => cylinderLectured(train, lecture, sample, k));
-  const { crank, shape } = train;
-  const web = (crank.mass * crank.center_of_mass) / shape.radius;
-  let [x, y] = inertiaAtThrow(web, shape.radius, theta, omega, alpha);
+  const { crank } = train;
+  let [x, y] = inertiaAtThrow(crank.mass, crank.center_of_mass, theta, omega, alpha);
   cylinders.forEach((found, k) => {
     const [sin, cos] = [Math.sin(train.cylinders[k].bank), Math.cos(train.cylinders[k].bank)];
     x += found["crank pin force x"] * cos - found["crank pin force y"] * sin;
@@ -93,7 +92,8 @@ export function lecturedAt(train, lecture, sample) {
 
 /** Those of one cylinder, from number 0. */
 export function cylinderLectured(train, { motion, forces }, sample, number) {
-  const { rod, piston, shape, cylinders } = train;
+  const { gears, cylinders } = train;
+  const { rod, piston, shape } = gears[number];
   const { theta, omega, alpha, shares } = sample;
   const r = shape.radius;
   const phi = theta + cylinders[number].phase;

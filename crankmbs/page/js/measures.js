@@ -4,7 +4,7 @@
  * not: the size of a force has a kink where the force passes zero. Peaks are looked for between the
  * samples, panel by panel.
  */
-import { bottomPosition, topPosition } from "./geometry.js";
+import { strokeOf } from "./geometry.js";
 import { reactionsAt } from "./reactions.js";
 
 const ROUGH = 1e-7; // of a quantity: such a tail of its polynomial, and the sum errs by its square
@@ -59,7 +59,7 @@ export function measuresOf(motion, rule, span) {
     return { joint, cylinder, ...peaks[k], mean: means[k] };
   });
   const [fastest, slowest] = peaks.slice(-2).map((each) => each.peak);
-  const [rods, outside, rubbed, ...gas] = means.slice(places.length);
+  const [rods, outside, rubbed, applied, ...gas] = means.slice(places.length);
   const power = indicated(train, span, gas, duration);
   const gained = power.indicated_power;
   return {
@@ -73,27 +73,28 @@ export function measuresOf(motion, rule, span) {
     ...power,
     friction_power: train.friction === null ? null : -rubbed,
     mechanical_efficiency: train.friction === null ? null : efficiency(gained, -rubbed),
+    force_power: train.applies ? applied : null,
   };
 }
 
 /** Powers and mean effective pressures of the gas, and of both its ends, from its mean powers on
  * the pistons, and those of the crank ends, [W]. */
 function indicated(train, { kind, from, to }, powers, duration) {
-  const { pressure, crank_end: ends, share, piston, shape, period } = train;
+  const { gears, pressure, crank_end: ends, period } = train;
   if (!pressure.length) return { indicated_power: null, imep: null };
   const [all, below] = [powers.slice(0, pressure.length), powers.slice(pressure.length)];
   const above = all.map((each, k) => each - (below[k] ?? 0));
   const sum = (each) => each.reduce((total, one) => total + one, 0);
-  const volume = piston.area * (topPosition(shape) - bottomPosition(shape));
+  const volumes = gears.map(({ piston, shape }) => piston.area * strokeOf(shape));
   const cycles = Math.round(Math.abs(to - from) / period);
   const whole = ["last cycle", "last period", "settled period"].includes(kind);
   const imepOf = (each, swept) =>
-    whole ? each.map((one) => (one * duration) / (cycles * swept)) : null;
-  const found = { indicated_power: sum(all), imep: imepOf(above, volume) };
+    whole ? each.map((one, k) => (one * duration) / (cycles * swept[k])) : null;
+  const found = { indicated_power: sum(all), imep: imepOf(above, volumes) };
   if (!ends.length) return found;
   return {
     ...found,
-    imep_crank_end: imepOf(below, share * volume),
+    imep_crank_end: imepOf(below, volumes.map((one, k) => gears[k].piston.crank_end_share * one)),
     indicated_power_head_end: sum(above),
     indicated_power_crank_end: sum(below),
   };
@@ -118,18 +119,20 @@ function placesOf({ cylinders }) {
   return [...places, { size: (v) => v.crank_speed }, { size: (v) => -v.crank_speed }];
 }
 
-/** The sizes of all places, the power of the rods, from outside and of friction, and that of the
- * gas and of the crank ends by cylinder, at a sample. */
+/** The sizes of all places, the power of the rods, from outside, of friction and of the forces on
+ * the pistons, and that of the gas and of the crank ends by cylinder, at a sample. */
 function rowOf(train, places, sample) {
   const v = reactionsAt(train, sample);
   const rods = v.cylinders.reduce((sum, each) => sum + each.crank_torque, 0);
   const gas = v.cylinders.map((each) => each.gas_force * each.piston_velocity);
-  const area = train.share * (train.piston.area ?? 0);
-  const below = train.crank_end.map((_, k) =>
-    -area * v.cylinders[k].crank_end_pressure * v.cylinders[k].piston_velocity);
-  const rubs = v.cylinders.reduce(
-    (sum, each) => sum + (each.friction_force ?? 0) * each.piston_velocity, 0);
-  const power = [rods * v.crank_speed, v.external_torque * v.crank_speed, rubs, ...gas, ...below];
+  const below = train.crank_end.map((_, k) => {
+    const { area, crank_end_share: share } = train.gears[k].piston;
+    return -share * area * v.cylinders[k].crank_end_pressure * v.cylinders[k].piston_velocity;
+  });
+  const [rubs, applied] = ["friction_force", "applied_force"].map((name) => v.cylinders.reduce(
+    (sum, each) => sum + (each[name] ?? 0) * each.piston_velocity, 0));
+  const outside = v.external_torque * v.crank_speed;
+  const power = [rods * v.crank_speed, outside, rubs, applied, ...gas, ...below];
   return [...places.map(({ size }) => size(v)), ...power];
 }
 

@@ -236,7 +236,7 @@ class Page {
     const ratio = own > 0 ? cycle.scene.crank.inertia / own : 1;
     const heavy = own > 0 && given.knobs.some((each) => each.name === "flywheel");
     this.stage.show(cycle, { k, body: view.forces, ratio, heavy });
-    const marks = deadCentreMarks(cycle, k, deadCentres(cycle.train.shape));
+    const marks = deadCentreMarks(cycle, k, deadCentres(cycle.train.gears[k].shape));
     for (const name of seenPlots()) this.plots[name].draw(drawn(view[name], cycle, k), marks);
     showChoices(given, cycle, { ...given.own, ...view, ...this.values, cylinder: String(k + 1) });
     this.knobs.disable(unused(cycle, given, this.values));

@@ -29,6 +29,7 @@ const QUANTITIES = {
   "piston acceleration": own("m/s²", 1, "piston_acceleration", "piston acceleration"),
   "gas pressure": own("bar", 1e5, "gas_pressure"),
   "crank end pressure": own("bar", 1e5, "crank_end_pressure"),
+  "applied force": own("N", 1, "applied_force"),
   "side force on the piston": own("N", 1, "side_force", "side thrust"),
   "piston pin force, axial": own("N", 1, "piston_pin_force_x", "piston pin force x"),
   "crank pin force, axial": own("N", 1, "crank_pin_force_x", "crank pin force x"),
@@ -44,10 +45,11 @@ const QUANTITIES = {
 const DIAGRAMS = {
   "p-V diagram": {
     right: ["swept volume", "cm³", 1e-6, (v, k, c) =>
-      v.cylinders[k].piston_displacement * (c.train.piston.area ?? 0)],
+      v.cylinders[k].piston_displacement * (c.train.gears[k].piston.area ?? 0)],
     up: ["gas pressure", "bar", 1e5, (v, k) => v.cylinders[k].gas_pressure],
     crankEnd: [
-      (v, k, c) => v.cylinders[k].piston_displacement * c.train.share * c.train.piston.area,
+      (v, k, { train: { gears } }) => v.cylinders[k].piston_displacement *
+        gears[k].piston.crank_end_share * gears[k].piston.area,
       (v, k) => v.cylinders[k].crank_end_pressure,
     ],
   },
@@ -88,11 +90,13 @@ function sum(list, part) {
 
 /** The names of what a plot can show of a scene: first curves, then diagrams. */
 export function choices(scene) {
-  const { gas } = scene;
-  const gassed = (name) => (/crank end/.test(name)
-    ? gas !== null && gas.crank_end.length > 0
-    : gas !== null || !/pressure|p-V/.test(name));
-  const [curves, diagrams] = [QUANTITIES, DIAGRAMS].map((all) => Object.keys(all).filter(gassed));
+  const { gas, force } = scene;
+  const there = (name) => {
+    if (name === "applied force") return force.length > 0;
+    if (/crank end/.test(name)) return gas !== null && gas.crank_end.length > 0;
+    return gas !== null || !/pressure|p-V/.test(name);
+  };
+  const [curves, diagrams] = [QUANTITIES, DIAGRAMS].map((all) => Object.keys(all).filter(there));
   return { curves, diagrams };
 }
 
@@ -131,7 +135,7 @@ function curvesOf(quantity, cycle, k) {
   const found = [{ name: CURVES[0], y: run }];
   if (quantity.even) found.push({ name: "constant speed", y: run.map(() => quantity.even(cycle)) });
   if (!quantity.said) return found;
-  const datum = quantity.datum ? quantity.datum(cycle.train.shape) : 0;
+  const datum = quantity.datum ? quantity.datum(cycle.train.gears[k].shape) : 0;
   [EXACT, LECTURE].forEach((lecture, n) => {
     const only = quantity.cylinder ? k : null;
     const y = cycle.lectured(lecture, only).map((each) => quantity.said(each, k) - datum);

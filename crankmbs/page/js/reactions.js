@@ -5,9 +5,9 @@
  * Y balance the wall, the rod's balance the crank pin, the crank's the main bearing and the torque
  * from outside. Names, signs and frames are those of a result.
  */
+import { appliedForce } from "./applied.js";
 import { valueAt } from "./cubics.js";
 import { frictionForce } from "./friction.js";
-import { topPosition } from "./geometry.js";
 import { gravityVector, rodCentre } from "./tables.js";
 
 /** All variables at one sample { time, theta, omega, alpha, external_torque, shares }: numbers, and
@@ -35,25 +35,28 @@ export function reactionsAt(train, sample) {
 
 /** The variables of one cylinder, and what it adds to the balance of crank and frame. */
 function cylinderAt(train, { theta, omega, alpha, shares }, number) {
-  const { rod, piston, gravity, cylinders, shape, friction } = train;
+  const { gears, gravity, cylinders, friction } = train;
+  const { rod, piston, shape, loop, top } = gears[number];
   const { phase, bank } = cylinders[number];
   const { radius: r, length: l, offset: e } = shape;
   const area = piston.area ?? 0;
   const [gx, gy] = gravityVector(gravity, bank);
   const phi = theta + phase;
-  const at = train.loops[number].at(phi);
+  const at = loop.at(phi);
   const g = rodCentre(at, rod.center_of_mass);
   const square = omega * omega;
   const pressure = pressureAt(train, shares, number, phi);
   const below = train.crank_end.length ? valueAt(train.crank_end[number], phi) : 0;
   const gas = pressure * area;
   const rubs = friction === null ? 0 : frictionForce(friction, shape, at, omega, gas);
+  const applied = train.applies ? appliedForce(gears[number], at, omega) : 0;
+  const push = gas + rubs + applied;
   const pistonX = at.x2 * square + at.x1 * alpha;
   const rodTurn = at.beta2 * square + at.beta1 * alpha;
   const feltX = g.x2 * square + g.x1 * alpha - gx; // the rod's acceleration minus gravity
   const feltY = g.y2 * square + g.y1 * alpha - gy;
   const felt = pistonX - gx; // the piston's, along the cylinder
-  const pinX = piston.mass * felt + gas + rubs;
+  const pinX = piston.mass * felt + push;
   const weight = rod.mass * (at.cosBeta * feltY + at.sinBeta * feltX);
   const moment = (rod.inertia * rodTurn - rod.center_of_mass * weight) / l;
   const pinY = (moment - pinX * at.sinBeta) / at.cosBeta;
@@ -67,10 +70,10 @@ function cylinderAt(train, { theta, omega, alpha, shares }, number) {
     rod_angular_speed: at.beta1 * omega,
     rod_angular_acceleration: rodTurn,
     piston_position: at.x,
-    piston_displacement: topPosition(shape) - at.x,
+    piston_displacement: top - at.x,
     piston_velocity: -at.x1 * omega,
     piston_acceleration: -pistonX,
-    gas_pressure: pressure + train.share * below,
+    gas_pressure: pressure + piston.crank_end_share * below,
     gas_force: gas,
     side_force: side,
     piston_pin_force_x: pinX,
@@ -82,11 +85,12 @@ function cylinderAt(train, { theta, omega, alpha, shares }, number) {
   if (train.crank_end.length) variables.crank_end_pressure = below;
   if (train.fuel !== null) variables.fuel = shares[number];
   if (friction !== null) variables.friction_force = rubs;
+  if (train.applies) variables.applied_force = applied;
   return {
     variables,
     pull: turned(bank, throwX, throwY),
     shake: turned(bank, ...shaking),
-    moment: -at.x * side - e * (gas + rubs),
+    moment: -at.x * side - e * push,
     kinetic: 0.5 * (inertia + rod.inertia * at.beta1 ** 2) * square,
   };
 }

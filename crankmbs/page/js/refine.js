@@ -62,10 +62,7 @@ function alongFiner(train, rule, { rule: fine, tables }, cell) {
     shares.forEach((share, c) => {
       given += share * tables.combustion[c][i];
     });
-    if (friction !== null) {
-      given -= sense * ringTorqueIn(friction, tables, i, shares);
-      given -= friction.viscous * tables.square[i] * omega;
-    }
+    given -= sense * ringTorqueIn(friction, tables, i, shares) + tables.drag[i] * omega;
     torque.push(given + torqueOf(branch, time, omega));
     slowness.push(sense / omega);
   });

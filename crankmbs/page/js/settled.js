@@ -64,7 +64,7 @@ export class Section {
   /** The branch at a speed if under it every cell is affine, at whatever speed; else null. */
   affineBranch(omega) {
     const branch = this.branch(omega);
-    const drags = this.train.friction !== null && this.train.friction.viscous > 0;
+    const drags = this.train.gears.some(({ drag }) => drag > 0);
     if (branch === null || !isAffine(branch) || drags) return null;
     const ends = (limit) => this.sense * limit > 0 && Number.isFinite(limit);
     return ends(branch.low) || ends(branch.high) ? null : branch;

@@ -40,7 +40,7 @@ export class Stage {
     const made = JSON.stringify([k, train.cylinders, heavy, this.magnified > 0]);
     if (made !== this.made) this.make(heavy);
     const { rim, ...others } = this.sizes;
-    const fits = JSON.stringify([made, others, this.size, this.magnified, train.shape]);
+    const fits = JSON.stringify([made, others, this.size, this.magnified]);
     if (fits !== this.fits) this.fit();
     [this.made, this.fits] = [made, fits];
     for (const disc of this.discs) set(disc, { r: rim * UNITS });
@@ -104,7 +104,7 @@ export class Stage {
     const above = top + 0.5 * (height - this.size.height / scale);
     this.sides = { left, right: left + width };
     this.edge = { left: middle - half, right: middle + half, top: above };
-    for (const part of parts) this.fitCylinder(part);
+    parts.forEach((part, k) => this.fitCylinder(part, sizes.each[k]));
     set(axle, { r: 0.13 * sizes.r * UNITS });
     if (this.magnified) this.fitRing();
   }
@@ -158,11 +158,10 @@ export class Stage {
     return { gas, wall, piston, body, grooves, crank, rod, pin, small };
   }
 
-  fitCylinder(part) {
-    const { sizes, train } = this;
+  fitCylinder(part, sizes) {
     const { gas, wall, body, grooves, crank, pin, small } = part;
     const scale = (value) => value * UNITS;
-    const middle = -scale(train.shape.offset);
+    const middle = -scale(sizes.offset);
     const half = scale(0.5 * sizes.width);
     const [head, low] = [-scale(sizes.head), -scale(sizes.low)];
     Object.assign(part, { head, middle });
@@ -207,7 +206,8 @@ export class Stage {
   }
 
   poseCylinder(k, theta, at) {
-    const { sizes, train, parts } = this;
+    const { train, parts } = this;
+    const sizes = this.sizes.each[k];
     const { phase, bank } = train.cylinders[k];
     const { gas, piston, crank, rod, pin, small, head, middle } = parts[k];
     const r = sizes.r * UNITS;
@@ -255,19 +255,21 @@ export class Stage {
     const pen = new Pen(arrows);
     const acting = largest ? forcesOn(body, train, v, k) : [];
     const names = [];
-    for (const { name, kind, at, force: [fx, fy], onCrown, onSide } of acting) {
+    const own = sizes.each[k];
+    for (const { name, kind, at, force: [fx, fy], onCrown, onSkirt, onSide } of acting) {
       const size = Math.hypot(fx, fy);
       if (size < SHORTEST * largest) continue;
       const [dx, dy] = onScreen([fx, fy].map((each) => (each / size) * this.lengthOf(size)));
       let [x, y] = onScreen([at[0] * UNITS, at[1] * UNITS]);
       let pushes = false;
-      if (onCrown) {
-        const [ux, uy] = onScreen(turnedBy(train.cylinders[k].bank, sizes.crown * UNITS, 0));
-        pushes = dx * ux + dy * uy < 0; // then its tip is on the crown
+      if (onCrown || onSkirt) {
+        const far = onCrown ? own.crown : -own.skirt;
+        const [ux, uy] = onScreen(turnedBy(train.cylinders[k].bank, far * UNITS, 0));
+        pushes = dx * ux + dy * uy < 0; // then its tip is on the piston
         [x, y] = pushes ? [x + ux - dx, y + uy - dy] : [x + ux, y + uy];
       }
       if (onSide) {
-        const half = 0.5 * onSide * sizes.width * UNITS;
+        const half = 0.5 * onSide * own.width * UNITS;
         const [ux, uy] = onScreen(turnedBy(train.cylinders[k].bank, 0, half));
         [x, y] = [x + ux, y + uy];
       }

@@ -7,10 +7,11 @@
  * it depends on changes: loops of the geometry, inertia of the masses, torque of gas and weights.
  * The crank's inertia is added where it is used, so that a flywheel costs nothing here.
  */
+import { appliedAt, appliedAlong } from "./applied.js";
 import { distinct, remembering, wrapped } from "./arrays.js";
 import { knotsOver, valueAt, valuesAlong } from "./cubics.js";
 import { ringTorque } from "./friction.js";
-import { Loop } from "./geometry.js";
+import { Loop, topPosition } from "./geometry.js";
 import { nodesBetween } from "./rule.js";
 
 const WIDEST = (6 * Math.PI) / 180;
@@ -24,20 +25,23 @@ export function gravityVector(gravity, bank) {
 }
 
 /** The crank train at one crank angle [rad]: inertia J [kg m2] with the crank's, slope dJ/dtheta,
- * torque of gas and weights [N m], what the combustion of each cylinder adds to it, and what
- * friction depends on: torque of each cylinder's gas, sums of |x1| and of x1^2. */
+ * torque of gas, weights and forces on the pistons [N m], what the combustion of each cylinder adds
+ * to it, and of friction the torque of each cylinder's gas, what rings oppose to either sense of
+ * rotation without it [N m], and drag, torque per speed [N m s/rad]. */
 export function reduceAt(train, theta) {
-  const { crank, rod, piston, cylinders, gravity, pressure, combustion, loops } = train;
+  const { crank, gears, cylinders, gravity, pressure, combustion } = train;
+  const force = train.friction?.ring_force ?? 0;
   const gas = [];
-  let rise = 0;
-  let square = 0;
+  let rings = 0;
+  let drag = 0;
   let inertia = crank.inertia;
   let slope = 0;
   let torque = crankWeight(crank, gravity, theta);
   const burning = [];
   for (let k = 0; k < cylinders.length; k++) {
+    const { rod, piston, loop } = gears[k];
     const phi = theta + cylinders[k].phase;
-    const at = loops[k].at(phi);
+    const at = loop.at(phi);
     const g = rodCentre(at, rod.center_of_mass);
     inertia += piston.mass * at.x1 * at.x1 + rod.mass * (g.x1 * g.x1 + g.y1 * g.y1);
     inertia += rod.inertia * at.beta1 * at.beta1;
@@ -49,20 +53,20 @@ export function reduceAt(train, theta) {
     }
     if (pressure.length) gas.push(-piston.area * valueAt(pressure[k], phi) * at.x1);
     torque += gas[k] ?? 0;
-    rise += Math.abs(at.x1);
-    square += at.x1 * at.x1;
+    const { steady, jumping } = appliedAt(gears[k], at);
+    torque -= at.x1 * steady;
+    rings += Math.abs(at.x1) * (force + jumping);
+    drag += gears[k].drag * at.x1 * at.x1;
     if (combustion.length) burning.push(-piston.area * valueAt(combustion[k], phi) * at.x1);
   }
-  return { inertia, slope, torque, combustion: burning, gas, rise, square };
+  return { inertia, slope, torque, combustion: burning, gas, rings, drag };
 }
 
 /** Torque of gas, weights and friction [N m] at an angle that is reduced, with these shares of the
  * combustion, in a sense of rotation at a speed. */
 export function givenAt({ friction }, of, shares, sense, omega) {
-  const given = of.torque + burnt(of.combustion, shares);
-  if (friction === null) return given;
-  const rings = ringTorque(friction, of.rise, of.gas, of.combustion, shares);
-  return given - sense * rings - friction.viscous * of.square * omega;
+  const rings = ringTorque(friction, of.rings, of.gas, of.combustion, shares);
+  return of.torque + burnt(of.combustion, shares) - sense * rings - of.drag * omega;
 }
 
 /** Torque of the crank's own weight at a crank angle [N m]. */
@@ -94,8 +98,9 @@ export function rodCentre(at, a) {
  * cycles : over the cycle angle, of one cylinder after the other, and so on
  * marks : knots [rad], of cycles over the crank angle and decisions
  */
-export function edgesOf(shape, cylinders, cycles, marks, period) {
-  const found = [0, period, ...nearFolds(shape, cylinders, period)];
+export function edgesOf(shapes, cylinders, cycles, marks, period) {
+  const found = [0, period];
+  shapes.forEach((shape, k) => found.push(...nearFolds(shape, cylinders[k], period)));
   for (const each of marks) for (const mark of each) found.push(mark);
   cycles.forEach((cycle, k) => {
     const { phase } = cylinders[k % cylinders.length];
@@ -120,18 +125,15 @@ export function split(edges, parts) {
 
 /** Crank angles around those where a rod is hardly longer than it must be, ever farther: it swings
  * over there so fast that wider cells would not see it. */
-function nearFolds(shape, cylinders, period) {
-  const { radius, length, offset } = shape;
+function nearFolds({ radius, length, offset }, { phase }, period) {
   const marks = [];
   for (const [fold, gap] of [[0.5, length - radius + offset], [-0.5, length - radius - offset]]) {
     const width = Math.sqrt((2 * Math.max(gap, 0)) / radius);
     if (!(width > 0 && width < WIDEST)) continue;
     const around = [0];
     for (let far = width; far < WIDEST; far *= 2) around.push(-far, far);
-    for (const { phase } of cylinders) {
-      for (let turn = 0; turn < period - 1; turn += 2 * Math.PI) {
-        marks.push(...around.map((each) => wrapped(fold * Math.PI + turn - phase + each, period)));
-      }
+    for (let turn = 0; turn < period - 1; turn += 2 * Math.PI) {
+      marks.push(...around.map((each) => wrapped(fold * Math.PI + turn - phase + each, period)));
     }
   }
   return marks;
@@ -146,27 +148,34 @@ export class Tables {
     this.gas = remembering(gasTorque);
     this.burning = remembering(gasTorque);
     this.weights = remembering(weightTorque);
+    this.applied = remembering(appliedTorque);
+    this.rings = remembering(ringsOf);
+    this.drag = remembering(dragOf);
     this.total = remembering(totalOf);
   }
 
   /** Inertia without the crank's [kg m2], torque [N m] and what combustion adds to it, by cylinder,
    * at the nodes of the cells. */
   of(train, edges, rule) {
-    const { shape, crank, rod, piston, cylinders, gravity } = train;
-    const masses = [crank.mass * crank.center_of_mass, rod.mass, piston.mass];
+    const { crank, gears, cylinders, gravity, friction } = train;
+    const first = crank.mass * crank.center_of_mass;
     const angles = this.nodes(edges, rule);
-    const loops = this.loops(shape, rod.center_of_mass, cylinders, angles);
-    const gas = this.gas(loops, cylinders, train.pressure, piston.area, angles);
-    const burning = this.burning(loops, cylinders, train.combustion, piston.area, angles);
-    const weights = this.weights(loops, masses, cylinders, gravity, angles);
+    const shapes = gears.map(({ shape, rod }) => [shape, rod.center_of_mass]);
+    const masses = gears.map(({ rod, piston }) => [piston.mass, rod.mass, rod.inertia]);
+    const areas = gears.map(({ piston }) => piston.area);
+    const loops = this.loops(shapes, cylinders, angles);
+    const gas = this.gas(loops, cylinders, train.pressure, areas, angles);
+    const weights = this.weights(loops, masses, first, cylinders, gravity, angles);
+    const laws = gears.map(({ applied }) => applied);
+    const { steady, jumping } = this.applied(loops, laws, cylinders, angles);
     return {
       angles,
-      inertia: this.inertia(loops, piston.mass, rod.mass, rod.inertia),
-      torque: this.total([weights, ...gas]),
-      combustion: burning,
+      inertia: this.inertia(loops, masses),
+      torque: this.total([weights, ...gas, ...steady]),
+      combustion: this.burning(loops, cylinders, train.combustion, areas, angles),
       gas,
-      rise: loops.rise,
-      square: loops.squares.piston,
+      rings: this.rings(loops, friction?.ring_force ?? 0, jumping),
+      drag: this.drag(loops, gears.map((gear) => gear.drag)),
     };
   }
 }
@@ -178,52 +187,82 @@ function totalOf([first, ...others]) {
   return total;
 }
 
-/** Derivatives of every cylinder's loop at crank angles, and the sums of their squares. */
-function loopsAt(shape, center, cylinders, angles) {
-  const loop = new Loop(shape);
+/** Positions of every cylinder's piston and derivatives of its loop at crank angles.
+ *
+ * shapes : [shape, centre of mass of the rod from the crank pin] of each
+ */
+function loopsAt(shapes, cylinders, angles) {
   const empty = () => new Float64Array(angles.length);
-  const squares = { piston: empty(), rod: empty(), turn: empty() };
-  const rise = empty();
-  const each = cylinders.map(({ phase }) => {
-    const own = { x1: empty(), gx1: empty(), gy1: empty() };
+  return shapes.map(([shape, center], k) => {
+    const loop = new Loop(shape);
+    const top = topPosition(shape);
+    const { phase } = cylinders[k];
+    const own = { s: empty(), x1: empty(), gx1: empty(), gy1: empty(), beta1: empty() };
     for (let i = 0; i < angles.length; i++) {
       const at = loop.at(angles[i] + phase);
       const gx1 = -at.radius * at.sinPhi - center * at.sinBeta * at.beta1;
       const gy1 = at.radius * at.cosPhi - center * at.cosBeta * at.beta1;
+      own.s[i] = top - at.x;
       own.x1[i] = at.x1;
       own.gx1[i] = gx1;
       own.gy1[i] = gy1;
-      rise[i] += Math.abs(at.x1);
-      squares.piston[i] += at.x1 * at.x1;
-      squares.rod[i] += gx1 * gx1 + gy1 * gy1;
-      squares.turn[i] += at.beta1 * at.beta1;
+      own.beta1[i] = at.beta1;
     }
     return own;
   });
-  return { squares, rise, each };
 }
 
-function inertiaOf({ squares }, pistonMass, rodMass, rodInertia) {
-  const { piston, rod, turn } = squares;
-  const inertia = new Float64Array(piston.length);
-  for (let i = 0; i < inertia.length; i++) {
-    inertia[i] = pistonMass * piston[i] + rodMass * rod[i] + rodInertia * turn[i];
-  }
-  return inertia;
+/** masses : [piston's, rod's, its moment of inertia] of each cylinder */
+function inertiaOf(loops, masses) {
+  return summed(loops, ({ x1, gx1, gy1, beta1 }, k) => {
+    const [piston, rod, turn] = masses[k];
+    return (i) => piston * x1[i] * x1[i] + rod * (gx1[i] * gx1[i] + gy1[i] * gy1[i]) +
+      turn * beta1[i] * beta1[i];
+  });
+}
+
+/** What all cylinders sum up to, given for each by the number of the node. */
+function summed(loops, of) {
+  const sum = new Float64Array(loops[0].x1.length);
+  loops.forEach((loop, k) => {
+    const value = of(loop, k);
+    for (let i = 0; i < sum.length; i++) sum[i] += value(i);
+  });
+  return sum;
+}
+
+/** Torque per speed of what drags at each piston [N m s/rad]. */
+function dragOf(loops, drags) {
+  return summed(loops, ({ x1 }, k) => (i) => drags[k] * x1[i] * x1[i]);
+}
+
+/** What opposes either sense of rotation [N m]: the rings, and what jumps where a piston turns. */
+function ringsOf(loops, force, jumping) {
+  return summed(loops, ({ x1 }, k) => (i) =>
+    Math.abs(x1[i]) * (force + (jumping[k] ? jumping[k][i] : 0)));
+}
+
+/** Torque of the forces from outside on each piston, and half of what they are more on the way back
+ * [N]; null for a piston on which none acts. */
+function appliedTorque(loops, laws, cylinders, angles) {
+  const each = loops.map((loop, k) => appliedAlong(laws[k], loop, angles, cylinders[k].phase));
+  const jumping = each.map((one) => one && one.jumping);
+  const acting = each.map((one, k) => one && one.steady.map((force, i) => -force * loops[k].x1[i]));
+  return { steady: acting.filter((one) => one !== null), jumping };
 }
 
 /** Torque of pressures on the crank, by cylinder. */
-function gasTorque({ each }, cylinders, pressure, area, angles) {
+function gasTorque(loops, cylinders, pressure, areas, angles) {
   return pressure.map((cycle, k) => {
     const torque = valuesAlong(cycle, angles, cylinders[k].phase);
-    const { x1 } = each[k];
-    for (let i = 0; i < torque.length; i++) torque[i] *= -area * x1[i];
+    const { x1 } = loops[k];
+    for (let i = 0; i < torque.length; i++) torque[i] *= -areas[k] * x1[i];
     return torque;
   });
 }
 
-/** Torque of the weights on the crank; given the crank's first moment [kg m], rod and piston. */
-function weightTorque({ each }, [first, rod, piston], cylinders, gravity, angles) {
+/** Torque of the weights on the crank, of which first is the first moment [kg m]. */
+function weightTorque(loops, masses, first, cylinders, gravity, angles) {
   const [gx, gy] = gravityVector(gravity, 0);
   const torque = new Float64Array(angles.length);
   if (gravity === null) return torque;
@@ -232,7 +271,8 @@ function weightTorque({ each }, [first, rod, piston], cylinders, gravity, angles
   }
   cylinders.forEach(({ bank }, k) => {
     const [ax, ay] = gravityVector(gravity, bank);
-    const { x1, gx1, gy1 } = each[k];
+    const { x1, gx1, gy1 } = loops[k];
+    const [piston, rod] = masses[k];
     for (let i = 0; i < angles.length; i++) {
       torque[i] += piston * ax * x1[i] + rod * (ax * gx1[i] + ay * gy1[i]);
     }

@@ -1,5 +1,5 @@
 /** What can be taken away: the scene that is shown, as TOML with its tables, and its data. */
-import { carriedAngle } from "./gas.js";
+import { carriedAngle, isShape } from "./gas.js";
 import { general } from "./format.js";
 import { Toml } from "./toml.js";
 import { zipped } from "./zip.js";
@@ -66,7 +66,7 @@ function putGas({ toml, files, given, scene }, values) {
   const { gas } = scene;
   const [{ radius }, { length }, { offset }] = [scene.crank, scene.rod, scene.piston];
   const shape = { radius, length, offset };
-  const same = ["radius", "length", "offset"].every((key) => shape[key] === gas.shape[key]);
+  const same = gas.shape === null || isShape(shape, gas.shape);
   if (same && !("pressure" in values)) return;
   const sources = { pressure: gas.fired };
   if (toml.get("[gas]", "motored") !== null) sources.motored = gas.motored;
@@ -98,7 +98,7 @@ function rowsText({ angle, value }, gas, shape) {
   const closes = Math.abs(angle[last] - angle[0] - turns) < AROUND && value[last] === value[0];
   const lines = ["crank_angle_deg,pressure_Pa"];
   for (let k = 0; k <= (closes ? last - 1 : last); k++) {
-    const moved = carriedAngle(angle[k], gas.shape, shape);
+    const moved = gas.shape === null ? angle[k] : carriedAngle(angle[k], gas.shape, shape);
     lines.push(`${moved / DEGREE},${value[k] + gas.ambient}`);
   }
   return `${lines.join("\n")}\n`;

@@ -4,11 +4,13 @@
 import { remembering } from "./arrays.js";
 import { filled } from "./format.js";
 import { setFree } from "./freed.js";
+import { strokeOf } from "./geometry.js";
 import { Refused } from "./refused.js";
 
 const RPM = Math.PI / 30;
 const MM = 1e-3;
 const PERCENT = 0.01;
+const SPARE = 1e-3; // of the stroke, over which the ends of rows over the travel are held
 
 /** Turns the knobs of one scene.
  *
@@ -32,15 +34,18 @@ export class Turner {
     const rod = this.rod(at, values);
     const piston = { ...scene.piston };
     if ("offset" in values) piston.offset = at.offset * MM;
-    refuseOpenLoop(crank, rod, piston, sentences);
-    refuseLightCrank(crank, sentences);
     const cylinders = this.layout(values);
-    const gas = this.gas(scene.gas, at.pressure * PERCENT, cylinders.length);
+    const gears = cylinders.map(({ own }) => own ?? { radius: crank.radius, rod, piston });
+    for (const gear of gears) refuseOpenLoop(gear, sentences);
+    refuseLightCrank(crank, sentences);
+    refuseUncovered(scene.force, gears, sentences);
+    const shares = gears.map((gear) => gear.piston.crank_end_share);
+    const gas = this.gas(scene.gas, at.pressure * PERCENT, shares);
     const levers = cylinders === scene.cylinders ? scene.levers : null;
     const parts = { crank, rod, piston, cylinders, levers, gas };
     const turned = { ...scene, ...parts, ...this.driven(at, values) };
     if (scene.motion === null || values.speed_is !== "free") return turned;
-    refuseNoInertia(turned, sentences);
+    refuseNoInertia(crank, gears, sentences);
     return setFree(turned);
   }
 
@@ -89,12 +94,12 @@ function evenly(order, period) {
   const n = order.length;
   return order.map((_, number) => {
     const lag = order.indexOf(number + 1);
-    return { phase: (((n - lag) % n) * period) / n, bank: 0 };
+    return { phase: (((n - lag) % n) * period) / n, bank: 0, own: null };
   });
 }
 
-function refuseOpenLoop(crank, rod, piston, sentences) {
-  const least = crank.radius + Math.abs(piston.offset);
+function refuseOpenLoop({ radius, rod, piston }, sentences) {
+  const least = radius + Math.abs(piston.offset);
   if (rod.length < least * (1 - 1e-15)) {
     throw new Refused(filled(sentences.open_loop, { least, came: rod.length }));
   }
@@ -109,22 +114,39 @@ function refuseLightCrank({ inertia, mass, center_of_mass: center }, sentences) 
 }
 
 /** A free crank that nothing resists at the dead centres. */
-function refuseNoInertia({ crank, rod }, sentences) {
-  const turns = rod.inertia > 0 || (rod.mass > 0 && rod.center_of_mass !== rod.length);
+function refuseNoInertia(crank, gears, sentences) {
+  const turns = gears.some(({ rod }) =>
+    rod.inertia > 0 || (rod.mass > 0 && rod.center_of_mass !== rod.length));
   if (crank.inertia === 0 && !turns) throw new Refused(sentences.no_inertia);
 }
 
-/** The pressures of tables or diagrams times a factor, for so many cylinders; ambient stays. */
-function pressed(gas, factor, count) {
+/** A force over a travel that is longer than its rows. */
+function refuseUncovered(force, gears, sentences) {
+  force.forEach(({ rows, cylinder }, number) => {
+    if (rows === null) return;
+    const on = cylinder === null ? gears : [gears[cylinder - 1]];
+    const stroke = Math.max(...on.map(({ radius, rod, piston }) =>
+      strokeOf({ radius, length: rod.length, offset: piston.offset })));
+    const [low, high] = [rows[0], rows[rows.length - 1]];
+    if (low <= SPARE * stroke && high >= (1 - SPARE) * stroke) return;
+    const found = { stroke: stroke / MM, low: low / MM, high: high / MM };
+    throw new Refused(filled(sentences.uncovered[number], found));
+  });
+}
+
+/** The pressures of tables or diagrams times a factor, for cylinders with these shares of the
+ * piston's area on the side of the crank; ambient stays. */
+function pressed(gas, factor, shares) {
   if (gas === null) return null;
-  const same = count === gas.pressure.length;
+  const same = shares.length === gas.pressure.length;
   if (factor === 1 && same) return gas;
-  const every = (list) => (same || !list.length ? list : Array(count).fill(list[0]));
+  const every = (list) => (same || !list.length ? list : shares.map(() => list[0]));
   const gauge = gas.ambient * (factor - 1);
-  const across = gauge * (1 - gas.share); // of what both ends are less ambient
+  // of what both ends are less ambient
+  const across = (k) => gauge * (gas.crank_end.length ? 1 - shares[k] : 1);
   return {
     ...gas,
-    pressure: every(gas.pressure.map((cycle) => scaledCycle(cycle, factor, across))),
+    pressure: every(gas.pressure.map((cycle, k) => scaledCycle(cycle, factor, across(k)))),
     combustion: every(gas.combustion.map((cycle) => scaledCycle(cycle, factor, 0))),
     crank_end: every(gas.crank_end.map((cycle) => scaledCycle(cycle, factor, gauge))),
     sources: gas.sources.map((source) => scaledSource(source, factor, gauge)),

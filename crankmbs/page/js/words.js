@@ -30,6 +30,7 @@ export function numbersOf(cycle) {
     const left = shown((each) => 100 * each.mechanical_efficiency, 1, 1, "%");
     if (measures?.mechanical_efficiency !== null) found.push(["mechanical efficiency", left]);
   }
+  if (train.applies) found.push(["power of applied forces", power("force_power")]);
   if (cycle.share !== 1) found.push(["load, rebalanced", `${readable(100 * cycle.share, 1)} %`]);
   const count = train.cylinders.length;
   return count > 1 ? [...found, ["cylinders", `${count}`]] : found;
