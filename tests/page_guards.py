@@ -6,14 +6,22 @@ from dataclasses import replace
 import numpy as np
 
 from crankmbs import load_scene
+from crankmbs.mechanics.axes import closed_loops, displacements
 from crankmbs.page import exported
 from crankmbs.scene.drives import Motion, Oscillation, Ramp, SpeedFile, Start
+from crankmbs.scene.forces import (
+    ConstantForce,
+    Damper,
+    ForceAngleTable,
+    Spring,
+    TravelTable,
+)
 from crankmbs.scene.fuel import Fuel, Misfire
 from crankmbs.scene.gas import Polytrope
 from crankmbs.scene.loads import AngleTable, Constant, Quadratic, SpeedTable, TimeTable, Viscous
-from crankmbs.scene.parts import Cylinder, Friction, Gravity, Layout
+from crankmbs.scene.parts import Cylinder, Friction, Gravity, Layout, OwnPiston, OwnRod
 from crankmbs.scene.run import Extent
-from crankmbs.scene.tables import Table
+from crankmbs.scene.tables import CylinderTable, Table
 
 EVERY = Extent(value=math.radians(15.0), unit="rad")
 MACHINE = {
@@ -119,6 +127,47 @@ def both_ends():
     return replace(scene, gas=gas, piston=replace(scene.piston, rod_diameter=0.04))
 
 
+def uneven(scene):
+    """The second cylinder with another throw, rod and piston than the first."""
+    own = Cylinder(
+        phase=2.0,
+        bank=0.5,
+        position=0.1,
+        radius=0.9 * scene.crank.radius,
+        rod=OwnRod(length=1.2 * scene.rod.length, mass=0.7 * scene.rod.mass),
+        piston=OwnPiston(mass=1.3 * scene.piston.mass, bore=0.07, rod_diameter=0.02, offset=0.02),
+    )
+    first = MACHINE["layout"].cylinders[0]
+    return replace(scene, layout=Layout(cylinders=(first, own)))
+
+
+WAYS = CylinderTable(
+    (0.0, 0.02, 0.05, 0.3), ((100.0, 600.0, -300.0, 200.0), (400.0, 300.0, 900.0, 100.0)), "ways"
+)
+SOFT = CylinderTable((0.0, 0.05, 0.3), ((-5.0, 10.0, 3.0), (15.0, 20.0, 8.0)), "soft ways")
+STEP = Table((0.0, 0.03, 0.03, 0.3), (100.0, -200.0, 650.0, 80.0))
+TURN = Table((0.1, 1.5, 3.0, 3.0, 5.0), (100.0, -200.0, 650.0, 80.0, 10.0))
+TURNS = Table((0.3, 3.5, 6.0, 7.0, 11.0), (100.0, -400.0, 350.0, 80.0, 10.0))
+PUSHES = (
+    Spring(stiffness=5e3, relaxed_at=0.02),
+    ConstantForce(force=-150.0, cylinder=1),
+    TravelTable(file=WAYS),
+    TravelTable(file=STEP, cylinder=2),
+    ForceAngleTable(file=TURN, interpolation="pchip", cylinder=1),
+    ForceAngleTable(file=TURNS),
+)
+DRAGS = (*PUSHES, Damper(coefficient=30.0), Damper(coefficient=50.0, cylinder=2))
+"""Forces of every kind on the pistons, and besides what drags."""
+
+
+def stepping(scene):
+    """A force that jumps where the first piston is at a sample, 60 degrees after its centre."""
+    loop = closed_loops(scene, np.array([math.radians(60.0)]))
+    at = float(displacements(scene, loop)[0, 0])
+    step = Table((0.0, at, at, 0.3), (0.0, 100.0, -900.0, 0.0))
+    return replace(scene, force=(*scene.force, TravelTable(file=step, cylinder=1)))
+
+
 SWING = Oscillation(mean=300.0, amplitude=60.0, order=1.5, phase=0.4)
 RISE = Ramp(start=250.0, to=330.0, over=0.02)
 MEASURED_SPEED = SpeedFile(file=Table((0.0, 0.02, 0.05, 0.2), (280.0, 300.0, 260.0, 300.0)))
@@ -141,6 +190,12 @@ GUARDS = {
     "rubbing backwards": replace(backwards(), friction=replace(RUBBING, ring_pressure=0.0)),
     "started": replace(started(), friction=RUBBING),
     "both ends": replace(misfiring(both_ends()), friction=RUBBING),
+    "unlike": replace(uneven(misfiring(both_ends())), friction=RUBBING),
+    "pushed": stepping(replace(running("v_twin", "settled", **MACHINE), force=PUSHES)),
+    "dragged and settled": replace(running("v_twin", "settled", **MACHINE), force=DRAGS),
+    "dragged": replace(uneven(running("propeller", Extent(value=1.2, unit="cycle"))), force=DRAGS),
+    "pushed backwards": replace(backwards(), force=(TravelTable(file=SOFT),)),
+    "pushed driven": replace(driven(RISE), force=DRAGS),
 }
 
 
@@ -171,6 +226,7 @@ FREED = {
     "near rest": near_rest(),
     "slow at the begin": replace(light(), motion=Motion(speed=300.0, angle=1.7)),
     "dragging": dragging(),
+    "pushed": replace(dragging(), force=DRAGS),
     "dragging backwards": replace(dragging(), motion=Motion(speed=-280.0, angle=0.2)),
 }
 """Prescribed speeds that are set free."""
@@ -180,11 +236,12 @@ def tasks(angles):
     """What is asked of an engine, by name and arguments, the quickest first: lectures, pressures
     carried over, and the guards by their names at crank angles."""
     found = [("lectured", lecture(name)) for name in ("untruncated lecture", S1)]
+    found.append(("lectured", lecture(S1, uneven)))
     shape = {"radius": 0.044, "length": 0.14, "offset": 0.011}
     scenes = [joined_by(*pair) for pair in JOINED]
     scenes += [jumping(), *(GUARDS[name] for name in ("started", "affine", "both ends"))]
     found += [("carried", {"scene": exported(scene), "shape": shape}) for scene in scenes]
-    names, balancing = ("affine", "started"), ("affine", "settling")
+    names, balancing = ("affine", "started", "pushed"), ("affine", "settling")
     found += [("dragged", {"scene": longer(GUARDS[n]), "angles": angles[n][::3]}) for n in names]
     scenes = [braked(), *(GUARDS[name] for name in balancing)]
     found += [("balancing", {"scene": exported(scene), "speed": 345.0}) for scene in scenes]
@@ -229,8 +286,8 @@ def jumping():
     return replace(scene, gas=gas)
 
 
-def lecture(name):
-    scene = replace(load_scene("yi_diesel"), **MACHINE)
+def lecture(name, change=lambda scene: scene):
+    scene = change(replace(load_scene("yi_diesel"), **MACHINE))
     theta = np.linspace(0.0, 12.0, 19)
     samples = [
         {"theta": each, "omega": 300.0, "alpha": 2e3 * math.sin(each), "shares": []}

@@ -69,6 +69,7 @@ def first_of(scene: Scene) -> First:
     'Why does the speed swing?'
     """
     there = [knob.name for knob in knobs_of(scene)]
+    wanted: tuple[str, ...]
     if scene.motion is None:
         question = "Why does the speed swing?"
         sentence = (
@@ -79,8 +80,8 @@ def first_of(scene: Scene) -> First:
     elif scene.unlike:
         question = "What do the forces become at another speed?"
         sentence = (
-            "The forces of inertia grow with the square of the speed, those of the gas do not. Turn "
-            "the crank faster, and in each cylinder they take over at another speed."
+            "The forces of inertia grow with the square of the speed, those of the gas do not. "
+            "Turn the crank faster: in each cylinder they take over at another speed."
         )
         wanted = ("speed", "pressure", "counterweight")
     else:
@@ -188,8 +189,8 @@ def _counterweight(scene: Scene) -> Iterator[Knob]:
 
 
 def _is_of_any_number(scene: Scene) -> bool:
-    """Whether other cylinders than the scene's can have its parts, pressure, fuel and loads: a table
-    over the crank angle is of the cylinders that it was made of."""
+    """Whether other cylinders than the scene's can have its parts, pressure, fuel and loads: a
+    table over the crank angle is of the cylinders that it was made of."""
     if scene.unlike or any(force.cylinder is not None for force in scene.force):
         return False
     if any(load.parts.over_angle is not None for load in scene.torque):

@@ -79,8 +79,8 @@ def _of_forces(scene: Scene) -> Iterator[str]:
             yield "function: a force on a piston is a function of Python"
         elif not force.is_steady:
             yield (
-                "force: on the page every cycle has the same forces on the pistons, and one changes "
-                "with time or has a window; leave that out"
+                "force: the page has the same forces on the pistons in every cycle, and one "
+                "changes with time or has a window; leave that out"
             )
 
 
