@@ -14,7 +14,10 @@ from turned import turned
 from crankmbs import load_scene, simulate
 from crankmbs.page import joined
 from crankmbs.page.document import page_of
+from crankmbs.scene.forces import Spring, TravelTable
+from crankmbs.scene.parts import Layout, OwnRod
 from crankmbs.scene.run import Extent
+from crankmbs.scene.tables import CylinderTable
 
 CASES = {
     "vee": ("v_twin", {"rod_ratio": 0.3, "offset": 5.0, "pressure": 80.0, "load": 90.0}, 1),
@@ -37,6 +40,12 @@ CASES = {
     ),
     "freed rubbing": ("friction", {"speed_is": "free", "flywheel": 0.02, "rod_mass": 1.0}, 0),
     "steam": ("absolute_steam", {"pressure": 80.0, "rod_ratio": 0.25, "offset": 12.0}, 0),
+    "stages": (
+        "uneven_stages",
+        {"speed": 1000.0, "pressure": 90.0, "flywheel": 0.5, "counterweight": -2.0},
+        1,
+    ),
+    "pressing": ("press", {"rod_ratio": 0.25, "pressure": 110.0, "speed": 1300.0}, 0),
     "uniform": ("grega_lecture", {"rod": "rigid", "rod_mass": 0.5, "pressure": 80.0}, 0),
 }  # fmt: skip
 """Name -> scene, values of its knobs, cylinder from 0."""
@@ -44,9 +53,12 @@ FREED = ("freed", "freed rubbing")
 
 
 def named(name):
-    """A shipped scene; or the steam engine, its pressures absolute."""
-    if name != "absolute_steam":
-        return load_scene(name)
+    """A shipped scene, or one made of it."""
+    return MADE[name]() if name in MADE else load_scene(name)
+
+
+def absolute_steam():
+    """The steam engine, its pressures absolute."""
     scene, ambient = load_scene("steam_engine"), 101325.0
 
     def lifted(table):
@@ -56,6 +68,28 @@ def named(name):
     gas = dataclasses.replace(scene.gas, absolute=True, ambient=ambient, **ends)
     return dataclasses.replace(scene, gas=gas)
 
+
+def uneven_stages():
+    """The compressor of two stages, the second with a throw, a rod and an offset of its own."""
+    scene = load_scene("two_stage_compressor")
+    first, second = scene.layout.cylinders
+    piston = dataclasses.replace(second.piston, offset=0.006)
+    rod = OwnRod(length=0.16, mass=0.6, inertia=3e-3)
+    second = dataclasses.replace(second, radius=0.04, rod=rod, piston=piston)
+    return dataclasses.replace(scene, layout=Layout(cylinders=(first, second)))
+
+
+def press():
+    """The compressor with a spring, and what it presses on the way down."""
+    scene = load_scene("compressor")
+    stroke = scene.running_gear[0].stroke
+    x = tuple(part * stroke for part in (0.0, 0.5, 0.8, 1.0))
+    ways = CylinderTable(x, ((0.0, 0.0, -900.0, -900.0), (-100.0,) * 4), "press")
+    force = TravelTable(file=ways), Spring(stiffness=8e3, relaxed_at=0.5 * stroke)
+    return dataclasses.replace(scene, force=force)
+
+
+MADE = {made.__name__: made for made in (absolute_steam, uneven_stages, press)}
 
 EVENED = "lumped"  # the case in which a flywheel for a fluctuation is sought
 
@@ -96,6 +130,7 @@ POLARS = {
     "frame force, polar": "frame_force",
 }
 DOUBLE = ("crank end pressure",)  # of double-acting cylinders
+FORCED = ("applied force",)  # of what forces from outside act on
 POSES = (40, 130, 222, 310)  # samples at which the drawing is looked at
 
 _MODULES = (
@@ -136,7 +171,11 @@ def probe(page, script, name, *, fresh=True, evens=True):
         "name": name,
         "values": values,
         "k": k,
-        "curves": [*CURVES, "p-V diagram", *POLARS, *DOUBLE[: named(scene).double_acting]],
+        "curves": [
+            *(*CURVES, "p-V diagram", *POLARS),
+            *DOUBLE[: named(scene).double_acting],
+            *FORCED[: len(named(scene).force)],
+        ],
         "poses": POSES,
         "evens": evens and name == EVENED,
         "fresh": fresh,

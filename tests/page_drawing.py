@@ -9,14 +9,14 @@ from page_cases import CASES, POSES, frame, named, of_cylinder, same, truth
 def drawing_holds(said, scene, data, k):
     """Pins, piston, notch and ring where the mechanism has them in millimetres with X upwards and Y
     to the left, arrows as long as their bar says, the disc's inertia by its rim."""
-    crank, cylinder = scene.crank, scene.cylinders[k]
+    cylinder, gear = scene.cylinders[k], scene.running_gear[k]
     most = max(map(abs, said["leads"]))
     position = of_cylinder(data["piston_position"].values, k)
     for body, poses in enumerate(said["poses"]):
         for n, pose in zip(POSES, poses, strict=True):
             theta, lead = said["angles"][n], said["leads"][n]
-            throw = frame(cylinder.bank + cylinder.phase + theta, crank.radius, 0.0)
-            pin = frame(cylinder.bank, position[n], scene.piston.offset)
+            throw = frame(cylinder.bank + cylinder.phase + theta, gear.radius, 0.0)
+            pin = frame(cylinder.bank, position[n], gear.piston.offset)
             ok = (
                 at(pose["pin"], throw)
                 and at(pose["small"], pin)

@@ -31,8 +31,7 @@
     };
   };
   const bodies = ["piston", "rod", "crank"];
-  const dead = { top: page.geometry.deadCentres(shown.train.shape).top,
-    bottom: page.geometry.deadCentres(shown.train.shape).bottom };
+  const dead = page.geometry.deadCentres(shown.train.gears[k].shape);
   const knob = given.knobs.find(({ name }) => name === "flywheel");
   const even = (inertia) => of(turner.scene({ ...values, flywheel: inertia })).fluctuation;
   const middle = 0.5 * (shown.angles[77] + shown.angles[78]);

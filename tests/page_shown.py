@@ -115,7 +115,7 @@ def at_mean(scene, data):
 def curves_hold(said, scene, data, k):
     """Every curve in its unit, those of the lectures, and what one is less the next."""
     says = at_mean(scene, data)
-    shape = scene.crank.radius, scene.rod.length, scene.piston.offset
+    shape = scene.running_gear[k].shape
     datum = shape[0] + shape[1] - math.sqrt((shape[0] + shape[1]) ** 2 - shape[2] ** 2)
     for name, (variable, per, unit) in CURVES.items():
         if variable == "gas_pressure" and scene.gas is None:
@@ -152,6 +152,12 @@ def curves_hold(said, scene, data, k):
         below = 1e-5 * of_cylinder(data["crank_end_pressure"].values, k)
         if not same(said["curves"]["crank end pressure"]["curves"][0]["y"], below, near=1e-8):
             return False
+    if scene.force:
+        found = said["curves"]["applied force"]
+        pushed = of_cylinder(data["applied_force"].values, k)
+        per = 1e-3 if np.abs(pushed).max() >= 1e3 else 1.0
+        if not same(found["curves"][0]["y"], per * pushed, near=1e-8):
+            return False
     ahead = said["curves"]["crank ahead of the mean"]
     return ahead["up"]["unit"] == "°" and same(ahead["curves"][0]["y"], np.degrees(said["leads"]))
 
@@ -176,10 +182,10 @@ def polars_hold(said, scene, data, k):
     found = said["curves"]["p-V diagram"]
     if scene.gas is None:
         return True
-    volume = area(scene) * 1e6 * of_cylinder(data["piston_displacement"].values, k)
+    volume = area(scene, k) * 1e6 * of_cylinder(data["piston_displacement"].values, k)
     loops = {"simulated": (volume, data["gas_pressure"])}
     if scene.double_acting:
-        share = 1.0 - 0.25 * math.pi * scene.piston.rod_diameter**2 / area(scene)
+        share = 1.0 - 0.25 * math.pi * scene.piston.rod_diameter**2 / area(scene, k)
         loops = {
             "head end": (volume, data["gas_pressure"]),
             "crank end": (share * volume, data["crank_end_pressure"]),
@@ -193,28 +199,28 @@ def polars_hold(said, scene, data, k):
     )
 
 
-def area(scene):
-    """Of the piston's crown [m2]."""
-    piston = scene.piston
+def area(scene, k=0):
+    """Of a piston's crown [m2]."""
+    piston = scene.running_gear[k].piston
     return piston.area if piston.bore is None else 0.25 * math.pi * piston.bore**2
 
 
 def forces_hold(forces, scene, data, k):
     """Newton: the arrows on a body and its weight give its acceleration; Euler: about its centre of
     mass those on the rod turn it."""
-    crank, rod, piston = scene.crank, scene.rod, scene.piston
+    (radius, rod, piston), crank = scene.running_gear[k], scene.crank
     cylinder = scene.cylinders[k]
     g = gravity_of(scene)
     one = {name: of_cylinder(data[name].values, k) for name in data.data_vars}
     phi = data["crank_angle"].values + cylinder.phase
     pins = [
         frame(cylinder.bank, one["piston_position"], piston.offset),
-        frame(cylinder.bank, crank.radius * np.cos(phi), crank.radius * np.sin(phi)),
+        frame(cylinder.bank, radius * np.cos(phi), radius * np.sin(phi)),
     ]
     share = rod.center_of_mass / rod.length
     turned_by = np.exp(1j * data["crank_angle"].values)
     omega, alpha = data["crank_speed"].values, data["crank_acceleration"].values
-    lag = frame(cylinder.bank + cylinder.phase, crank.radius, 0.0)
+    lag = frame(cylinder.bank + cylinder.phase, radius, 0.0)
     of_pin = (1j * alpha - omega**2) * turned_by * lag
     of_piston = frame(cylinder.bank, -one["piston_acceleration"], 0.0)
     of_rod = (1.0 - share) * of_pin + share * of_piston
@@ -264,6 +270,7 @@ def named_rightly(forces, pins, scene):
     on_piston, _, on_crank = (samples[0] for samples in forces)
     names = {"wall on piston", "rod on piston"} | ({"gas on piston"} if scene.gas else set())
     names |= {"friction on piston"} if scene.friction else set()
+    names |= {"applied force"} if scene.force else set()
     n = len(scene.cylinders)
     rods = [f"rod {number} on crank" for number in range(1, n + 1)] if n > 1 else ["rod on crank"]
     return (
@@ -272,7 +279,8 @@ def named_rightly(forces, pins, scene):
         and [each["name"] for each in on_crank] == [*rods, "bearing on crank"]
         and abs(complex(*on_crank[-1]["at"])) < 1e-12
         and all(
-            abs(abs(complex(*each["at"])) - scene.crank.radius) < 1e-12 for each in on_crank[:-1]
+            abs(abs(complex(*each["at"])) - gear.radius) < 1e-12
+            for each, gear in zip(on_crank[:-1], scene.running_gear, strict=True)
         )
     )
 
@@ -309,7 +317,13 @@ def words_hold(said, scene, data, k):
         power = data["friction_force"].values * data["piston_velocity"].values
         rubbed = -np.trapezoid(power.reshape(len(time), -1).sum(axis=1), time)
         close["friction power"] = (1e-3 * rubbed / (time[-1] - time[0]), "kW", 0.01)
-        close["mechanical efficiency"] = (100.0 * (1.0 - rubbed / work), "%", 0.1)
+        left = work - rubbed
+        efficiency = left / work if work > 0.0 else work / left
+        close["mechanical efficiency"] = (100.0 * efficiency, "%", 0.1)
+    if scene.force:
+        power = data["applied_force"].values * data["piston_velocity"].values
+        given = np.trapezoid(power.reshape(len(time), -1).sum(axis=1), time)
+        close["power of applied forces"] = (1e-3 * given / (time[-1] - time[0]), "kW", 0.01)
     if numbers_said.get("cylinders", "1") != str(len(scene.cylinders)):
         return False
     for name, (value, unit, near) in close.items():
@@ -331,7 +345,7 @@ def words_hold(said, scene, data, k):
         )
         if abs(at_mark) > 1e-3 * np.abs(still).max():
             return False
-        if (high < 0.5 * scene.crank.radius) != (mark["name"] == "top"):
+        if (high < 0.5 * scene.running_gear[k].radius) != (mark["name"] == "top"):
             return False
     gain = (speed[-1] - speed[0]) * 30.0 / math.pi
     badge = said["badge"]["text"]
