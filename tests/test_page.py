@@ -13,6 +13,7 @@ import re
 import numpy as np
 import pytest
 from browser import visiting
+from page_cases import press
 from page_visit import assert_same, expected, opened
 from turned import turned
 
@@ -71,6 +72,10 @@ TURNED = [
     ("v_twin", {"rod_ratio": 0.4, "offset": 5.0, "pressure": 80.0}),
     ("v_twin", {"rod_mass": 0.0, "cylinders": "2"}),
     ("grega_lecture", {"rod": "rigid", "rod_mass": 0.5}),
+    (
+        "two_stage_compressor",
+        {"speed": 950.0, "pressure": 90.0, "flywheel": 0.5, "counterweight": 4.0},
+    ),
 ]
 
 
@@ -159,6 +164,19 @@ CLOSED = [
     *(("yi_diesel_free", each) for each in rod_ratios()),
     *(("v_twin", {"flywheel": 0.002, "counterweight": far}) for far in (-36.0, -25.0, 20.0, 36.0)),
 ]
+
+
+def test_rows_that_no_longer_cover_the_stroke_are_refused_in_pythons_words(browser, tmp_path):
+    scene = press()
+    with opened(browser, tmp_path, scene) as visited:
+        good = visited.settle().curve()
+        with pytest.raises(InputError, match="the rows must cover the stroke") as caught:
+            turned(scene, {"offset": 12.0})
+        visited.type("offset", "12")
+        assert visited.message == str(caught.value)
+        assert visited.draws(good)
+        visited.type("offset", "0")
+        assert visited.message == ""
 
 
 @pytest.mark.parametrize("name", ["propeller", "yi_diesel_free", "v_twin"])
