@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from page_engine import differences, sizes, unlike
+from page_guards import DRAGS, PUSHES, driven, uneven
 from page_scenes import refused
 
 from crankmbs import freed, load_scene, shipped_scenes, simulate
@@ -45,7 +46,9 @@ def assert_freed(page, scene, every):
     worst = differences(result, found["variables"])
     assert max(worst.values()) < 1e-9, max(worst.items(), key=lambda one: one[1])
     assert found["speed"] == pytest.approx(mean_prescribed(scene), rel=1e-13)
-    assert found["balanced"] == (scene.friction is None or scene.friction.viscous == 0.0)
+    drags = [force.law.viscous for force in scene.force]
+    drags.append(0.0 if scene.friction is None else scene.friction.viscous)
+    assert found["balanced"] == (not any(drags))
     (load,) = result.scene.torque
     kinetic = result.data["kinetic_energy"].values
     size = max(abs(load.torque), kinetic.max() / result.scene.settled_period)
@@ -58,6 +61,11 @@ def test_a_shipped_scene_is_set_free_as_in_python(page, name):
     result, found = assert_freed(page, heavier(name), math.radians(0.25))
     measures = measure(result)
     assert unlike(measures, found["measures"], sizes(result, measures)) == {}
+
+
+@pytest.mark.parametrize("force", [PUSHES, DRAGS], ids=["pushed", "dragged"])
+def test_unlike_cylinders_with_forces_on_the_pistons_are_set_free_as_in_python(page, force):
+    assert_freed(page, replace(uneven(driven(300.0)), force=force), 0.1)
 
 
 @pytest.mark.parametrize("seed", RANDOM)
