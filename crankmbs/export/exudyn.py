@@ -14,8 +14,9 @@ from crankmbs.errors import InputError
 from crankmbs.mechanics.train import CrankTrain, crank_train
 from crankmbs.motion.multibody.beside import initial
 from crankmbs.motion.multibody.forces import Forces
+from crankmbs.motion.multibody.generalized_alpha import settings_of
 from crankmbs.motion.multibody.mechanism import Body, Guide, Hinge, Mechanism, mechanism_of
-from crankmbs.motion.multibody.model import build, settings_of
+from crankmbs.motion.multibody.model import build
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.cycle import NEAR
 from crankmbs.scene.loads import Constant, Quadratic, Viscous

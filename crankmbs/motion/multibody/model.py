@@ -20,20 +20,16 @@ from exudyn import itemInterface
 from crankmbs.mechanics.geometry import top_position
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.multibody.applied import Push
+from crankmbs.motion.multibody.generalized_alpha import quiet_shifts, settings_of
 from crankmbs.motion.multibody.mechanism import Mechanism, closed, mechanism_of
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 
-__all__ = ["SPECTRAL_RADIUS", "Consistent", "Model", "build", "settings_of"]
+__all__ = ["Consistent", "Model", "build"]
 
 exu: Any = exudyn  # its stubs are narrower than what it takes
 eii: Any = itemInterface
 
-SPECTRAL_RADIUS = 0.9  # cleanly of order 2, so that extrapolation pays; 0.6 is not
-_ALPHA_M = (2.0 * SPECTRAL_RADIUS - 1.0) / (SPECTRAL_RADIUS + 1.0)
-_ALPHA_F = SPECTRAL_RADIUS / (SPECTRAL_RADIUS + 1.0)
-_GAMMA = 0.5 + _ALPHA_F - _ALPHA_M
-_BETA = 0.25 * (_GAMMA + 0.5) ** 2
 # of Newton's method, relative, and absolute as a share of the largest joint force at the start:
 # where forces are small beside what they cancel the first may lie below what is rounded; a relative
 # 1e-8 leaves errors that no halving shows, and passes near folds
@@ -173,11 +169,8 @@ class Model:
         """Speed and acceleration of the crank in the method's own smooth solution, and position,
         velocity and acceleration from which the multipliers do not ring.
 
-        With the jerk j the method's own smooth solution has, to the order of h^2, the velocity
-        v - (1/12 + (alpha_f - alpha_m)^2 / 4) h^2 j and the algorithmic acceleration
-        a + (alpha_m - alpha_f) h j. exudyn takes one acceleration for both; shifts of position and
-        velocity make up for that in the first step. A run that began with the speed v itself would
-        have between its first two rows an error that does not fall as h^2 at a fixed time.
+        A run that began with the speed v itself would have between its first two rows an error that
+        does not fall as h^2 at a fixed time.
 
         driven : at constant speed
         """
@@ -192,12 +185,10 @@ class Model:
             for t in (-0.5 * step, 0.5 * step)
         ]
         jerk = (sides[1].acceleration[0] - sides[0].acceleration[0]) / step
-        late = _ALPHA_F * step * jerk
-        position = here.position[0] + step**2 * (0.5 - _GAMMA + _BETA) * late
-        shifted = step**2 * (1.0 / 12.0 + 0.25 * (_ALPHA_F - _ALPHA_M) ** 2) * jerk
-        velocity = here.velocity[0] - shifted - step * (1.0 - _GAMMA) * late
-        smooth = omega - float(shifted[2]) if omega else 0.0  # at rest it is not to turn back
-        return (smooth, alpha), position, velocity, here.acceleration[0] + _ALPHA_M * step * jerk
+        own, *shifts = quiet_shifts(jerk, step)
+        smooth = omega + float(own[2]) if omega else 0.0  # at rest it is not to turn back
+        here_too = here.position[0], here.velocity[0], here.acceleration[0]
+        return (smooth, alpha), *(x + shift for x, shift in zip(here_too, shifts, strict=True))
 
     def run(
         self,
@@ -371,26 +362,6 @@ def _in_blocks(solve: Callable[..., Consistent], *rows: Array) -> Consistent:
     starts = range(0, max(len(rows[0]), 1), _BLOCK)
     parts = [solve(*(row[k : k + _BLOCK] for row in rows)) for k in starts]
     return Consistent(*map(np.concatenate, zip(*parts, strict=True)))
-
-
-def settings_of(step: float, most: int = 1, *, stiff: bool = False) -> Any:
-    """The generalized-alpha method, index 3, at equal steps [s]: halving them divides the error by
-    four."""
-    settings = exu.SimulationSettings()
-    integration = settings.timeIntegration
-    integration.numberOfSteps = most
-    integration.endTime = most * step
-    integration.adaptiveStep = False  # it may succeed with nonsense near a singular position
-    integration.verboseMode = 0
-    integration.generalizedAlpha.spectralRadius = SPECTRAL_RADIUS
-    integration.generalizedAlpha.computeInitialAccelerations = False
-    integration.generalizedAlpha.resetAccelerations = False
-    integration.newton.useModifiedNewton = True
-    integration.newton.modifiedNewtonJacUpdatePerStep = True  # a third less time than full Newton
-    integration.computeLoadsJacobian = 2 if stiff else 0
-    settings.solution.file.write = False
-    settings.linearSolver.solverType = exu.LinearSolverType.EXUdense
-    return settings
 
 
 @contextmanager
