@@ -51,7 +51,7 @@ class Reader:
         self._said = self._capsys.readouterr().out
 
     def _sh(self, text):
-        self._said = "".join(map(self._command, text.splitlines()))
+        self._said = "".join(map(self._command, text.replace("\\\n", " ").splitlines()))
 
     def _command(self, line):
         words = shlex.split(line, comments=True)

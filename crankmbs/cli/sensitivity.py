@@ -26,7 +26,8 @@ def sensitivity(
         list[str],
         typer.Option(
             metavar="NAME[=RANGE]",
-            help='"crank.inertia" for the derivative there, or with ranges for all, '
+            help='"crank.inertia" for the derivative there, "gas.shift", "gas.scale" or '
+            '"gas.offset" of a pressure table; or with ranges for all, '
             '"crank.inertia=0.05..0.5 kg m^2", Sobol indices; often.',
         ),
     ],

@@ -20,10 +20,11 @@ from crankmbs.scene.schema import dimension_of
 from crankmbs.scene.sentences import did_you_mean
 from crankmbs.scene.tables import CylinderTable, Table
 from crankmbs.scene.units import quantity, unit_of
+from crankmbs.sweep.pressure_table import TABLE_KNOBS, TABLE_VALUES, table_at
 
 __all__ = ["DERIVED", "Interval", "Knob", "interval_of", "knob_of", "number_at"]
 
-DERIVED = {"rod_ratio": None, "settled_speed": "angular speed"}
+DERIVED = {"rod_ratio": None, "settled_speed": "angular speed", **TABLE_KNOBS}
 """Knobs that are no value of a scene, and their dimensions."""
 
 _NUMBER = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
@@ -158,18 +159,19 @@ def number_at(scene: Scene, name: str) -> tuple[Knob, float]:
     0.046
     """
     kind = _kind(scene, name)
-    value: object = scene.crank.radius / scene.rod.length
-    if kind.name != "rod_ratio":
-        value = None if kind.name in DERIVED else _at(scene, kind.name)
+    derived = {"rod_ratio": scene.crank.radius / scene.rod.length, **TABLE_VALUES}
+    value = derived.get(kind.name) if kind.name in DERIVED else _at(scene, kind.name)
     if kind.whole or isinstance(value, bool) or not isinstance(value, float):
         raise InputError(f"{name}: must be a number that a little can be added to; it is no such")
     return Knob(kind.name, kind.unit, np.empty(0)), value
 
 
 def _kind(scene: Scene, name: str) -> _Kind:
-    if name in DERIVED:
-        return _Kind(name, DERIVED[name], False)
     dotted = re.sub(r"\[(\d+)\]", r".\1", name).replace("__", ".")
+    if dotted in TABLE_KNOBS:
+        table_at(scene, name)
+    if dotted in DERIVED:
+        return _Kind(dotted, DERIVED[dotted], False)
     try:
         place = field_at(scene, name)
     except InputError as error:

@@ -13,6 +13,7 @@ from crankmbs.scene.change import changed
 from crankmbs.scene.parts import Rod
 from crankmbs.scene.scene import Scene
 from crankmbs.sweep.knobs import DERIVED
+from crankmbs.sweep.pressure_table import TABLE_KNOBS, corrected
 
 __all__ = ["scene_of"]
 
@@ -24,7 +25,8 @@ def scene_of(scene: Scene, names: Sequence[str], values: Sequence[object]) -> Sc
     stroke the pressure stays a function of the swept fraction (`crankmbs.mechanics.carried`).
     "rod_ratio" gives the rod the length r / ratio, at the same stroke; it keeps its mass, the place
     of its centre of mass and its shape, so that its inertia goes with the length squared.
-    "settled_speed" scales the loads so that the motion settles to it.
+    "settled_speed" scales the loads so that the motion settles to it. "gas.shift", "gas.scale" and
+    "gas.offset" correct the pressure table as it is given (`crankmbs.sweep.pressure_table`).
 
     Raises
     ------
@@ -38,6 +40,8 @@ def scene_of(scene: Scene, names: Sequence[str], values: Sequence[object]) -> Sc
     new = changed(scene, plain)
     if "rod_ratio" in given:
         new = dataclasses.replace(new, rod=_stretched(new, given["rod_ratio"]))
+    if table := {name: _number(name, given) for name in TABLE_KNOBS if name in given}:
+        new = corrected(new, table)
     new = carried_over(new, scene)
     if len(new.cylinders) != len(scene.cylinders):
         raise InputError(
