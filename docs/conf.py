@@ -12,7 +12,7 @@ sys.path[:0] = [str(_HERE / "_ext"), str(_HERE.parent)]
 
 project = "crankmbs"
 copyright = "the crankmbs founders, MIT license"
-extensions = ["myst_parser", "sphinx.ext.autodoc", "docstrings", "mathml", "made"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "docstrings", "mathml", "made", "blocks"]
 exclude_patterns = ["_build", "_made"]
 smartquotes = False
 
@@ -20,7 +20,9 @@ myst_enable_extensions = ["dollarmath", "colon_fence", "html_image"]
 myst_heading_anchors = 3
 
 autodoc_member_order = "bysource"
-autodoc_typehints = "none"
+autodoc_typehints = "signature"
+autodoc_typehints_format = "short"
+python_maximum_signature_line_length = 80
 
 numfig = True
 

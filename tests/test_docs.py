@@ -3,11 +3,11 @@
 import re
 import sys
 import tomllib
+from pathlib import Path
 from typing import Any
 
 import matplotlib as mpl
 import pytest
-from manual import DOCS, Reader, blocks, pages
 from typer.main import get_command
 
 import crankmbs
@@ -17,11 +17,12 @@ from crankmbs.mechanics.variables import EVERY
 from crankmbs.scene.shipped import shipped_scenes
 from crankmbs.scene.unit_table import PREFIXES, UNITS
 
-sys.path.insert(0, str(DOCS / "_ext"))
+sys.path.insert(0, str(Path(__file__).parent.parent / "docs" / "_ext"))
 import docstrings
 import hard
 import keys
 import names
+from blocks import DOCS, WIDTH, Reader, blocks, pages, printed
 
 pytestmark = pytest.mark.slow
 
@@ -29,21 +30,38 @@ PAGES = {str(page): (DOCS / page).read_text(encoding="utf-8") for page in pages(
 
 
 @pytest.mark.parametrize("page", [page for page, text in PAGES.items() if blocks(text)])
-def test_a_page_runs_as_printed(page, tmp_path, monkeypatch, capsys):
+def test_a_page_runs_as_printed(page, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     mpl.use("agg")
-    reader = Reader(capsys)
+    reader = Reader()
     for block in blocks(PAGES[page]):
         reader.follow(block)
 
 
-def test_what_a_page_shows_can_be_wrong(tmp_path, monkeypatch, capsys):
+def test_what_a_page_shows_can_be_wrong(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    reader = Reader(capsys)
+    reader = Reader()
     code, shown = blocks("```python\nprint(1 + 1)\n```\n\n```text\n3\n```\n")
     reader.follow(code)
-    with pytest.raises(AssertionError, match="what came is\n2"):
+    with pytest.raises(ValueError, match="what came is\n2"):
         reader.follow(shown)
+    with pytest.raises(ValueError, match="does not name it"):
+        reader.follow(blocks("```toml\nradius = 1\n```\n")[0])
+
+
+def test_a_page_shows_what_was_printed_where_it_has_room():
+    came = "speed  12 rpm\n" + "x\n" * 3 + "wrote a: " + "b, " * WIDTH + "c\n"
+    shown = "speed ... rpm\n...\nwrote a: ...c\n"
+    assert printed(shown, came) == "speed  12 rpm\n...\nwrote a: ...c\n"
+    assert printed(shown.replace("speed", "mean"), came) is None
+    assert printed("speed 12 rpm\n", came) is None
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_no_code_overflows_its_page(page):
+    for block in blocks(PAGES[page]):
+        if block.language != "text":  # which is wrapped
+            assert max(map(len, block.text.splitlines())) <= WIDTH
 
 
 @pytest.mark.parametrize("page", PAGES)
@@ -97,6 +115,11 @@ def test_every_command_variable_and_public_name_has_its_place():
     assert re.findall(r"^\| `(\w+)`", names.variables_page(), re.MULTILINE) == list(EVERY)
     shown = set(re.findall(r"^\.\. auto\w+:: crankmbs\.(\w+)$", names.python_page(), re.MULTILINE))
     assert shown == set(crankmbs.__all__) - {"figures", "lecture"}
+
+
+def test_a_part_shows_the_types_of_its_fields():
+    signature, _ = docstrings._typed(None, "class", "crankmbs.Crank", crankmbs.Crank)
+    assert signature.startswith("(*, radius: float, inertia: float | None = None")
 
 
 def test_every_hard_case_has_its_reason_and_a_row_with_both_errors():

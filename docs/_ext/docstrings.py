@@ -3,9 +3,13 @@ sections of entries ``name : what it is``, examples."""
 
 from __future__ import annotations
 
+import inspect
 import re
+import typing
 from itertools import groupby
 from typing import TYPE_CHECKING, Any
+
+from sphinx.util.inspect import stringify_signature
 
 if TYPE_CHECKING:
     from sphinx.application import Sphinx
@@ -71,7 +75,21 @@ def _process(app: Sphinx, what: str, name: str, thing: Any, options: Any, lines:
     lines[:] = restructured(lines)
 
 
+def _typed(app: Sphinx, what: str, name: str, thing: Any, *_: Any) -> tuple[str, str] | None:
+    """The types of a part's fields as Python has them, without the rules that the keys state."""
+    if not hasattr(thing, "__pydantic_fields__"):
+        return None
+    types, plain = typing.get_type_hints(thing), inspect.signature(thing)
+    parameters = [
+        each.replace(annotation=types.get(each.name, each.annotation))
+        for each in plain.parameters.values()
+    ]
+    bare = plain.replace(parameters=parameters)
+    return stringify_signature(bare, show_return_annotation=False, unqualified_typehints=True), ""
+
+
 def setup(app: Sphinx) -> dict[str, Any]:
     """Have autodoc read docstrings this way."""
     app.connect("autodoc-process-docstring", _process)
+    app.connect("autodoc-process-signature", _typed)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -1,9 +1,10 @@
 """What the manual shows of the project is made from it while it is built: tables of keys, commands
-and names, figures of shipped scenes, the lessons and a page that computes."""
+and names, figures of shipped scenes, the lessons, a page that computes, and the source."""
 
 from __future__ import annotations
 
 import re
+import subprocess
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -61,6 +62,8 @@ def _make(app: Sphinx) -> None:
     write_lessons(made / "pages" / "lessons")
     demo = page_of(crankmbs.load_scene("yi_diesel_free"), "yi_diesel_free")
     text_in_one_move(made / "pages" / "demo.html", demo)
+    archive = ["git", "archive", "--prefix=crankmbs/", "-o", made / "crankmbs.tar.gz", "HEAD"]
+    subprocess.run(archive, cwd=made.parents[1], check=True)
 
 
 def _linked(text: str) -> str:
