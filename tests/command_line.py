@@ -1,5 +1,6 @@
 """Commands of the tests, called as from a terminal, and the scene that they are given."""
 
+import importlib
 import json
 from pathlib import Path
 
@@ -8,6 +9,7 @@ from typer.testing import CliRunner
 from crankmbs.cli import app
 from crankmbs.scene.shipped import models_folder
 
+RUNNING = importlib.import_module("crankmbs.simulate")  # the package names its function so
 PRESSURE = models_folder() / "pressure" / "made_up_diesel.csv"
 SCENE = f"""
 title = "driven [red] engine"

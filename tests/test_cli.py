@@ -8,9 +8,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from command_line import SCENE, crankmbs_, names, refused
+from command_line import RUNNING, SCENE, crankmbs_, names, refused
 
-import crankmbs.cli.run
 import crankmbs.figures.run
 import crankmbs.result.record
 from crankmbs import Result, simulate
@@ -164,7 +163,7 @@ def test_wrong_usage_exits_with_2(words):
 
 
 def test_a_folder_that_cannot_be_written_is_refused_before_the_run(monkeypatch):
-    monkeypatch.setattr(crankmbs.cli.run, "simulate", lambda *_, **__: pytest.fail("it ran"))
+    monkeypatch.setattr(RUNNING, "simulate", lambda *_, **__: pytest.fail("it ran"))
     Path("taken").write_text("")
     assert "cannot be written" in refused("run", "engine.toml", "--out", "taken/here")
     assert "cannot be written" in refused("run", "engine.toml", "--out", "taken")
@@ -187,7 +186,7 @@ def test_an_interrupt_exits_with_130_and_leaves_no_file_of_the_run(where, monkey
     def interrupt(*_, **__):
         raise KeyboardInterrupt
 
-    owner = crankmbs.cli.run if where == "simulate" else crankmbs.result.record
+    owner = RUNNING if where == "simulate" else crankmbs.result.record
     if where == "torque_figure":
         monkeypatch.setitem(crankmbs.figures.run._FIGURES, "torque", interrupt)
     else:
@@ -223,7 +222,7 @@ def test_confirm_says_when_the_stated_errors_do_not_cover_the_difference(monkeyp
         result = simulate(scene, **options)
         return dataclasses.replace(result, scene=scene.with_(piston__mass=1.01 * scene.piston.mass))
 
-    monkeypatch.setattr(crankmbs.cli.run, "simulate", wrong)
+    monkeypatch.setattr(RUNNING, "simulate", wrong)
     result = crankmbs_("run", "engine.toml", "--confirm", "--no-figures")
     assert "exudyn's rigid bodies differ by" in result.stdout
     assert names("results/engine") == {"result.nc", "motion.csv", "cycles.csv"}

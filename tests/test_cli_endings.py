@@ -6,9 +6,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from command_line import crankmbs_, names, refused
-
-import crankmbs.cli.run
+from command_line import RUNNING, crankmbs_, names, refused
 
 pytestmark = pytest.mark.slow
 
@@ -65,7 +63,7 @@ def test_too_little_memory_is_one_sentence(tmp_path, monkeypatch):
         raise MemoryError
 
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(crankmbs.cli.run, "simulate", full)
+    monkeypatch.setattr(RUNNING, "simulate", full)
     assert refused("run", "coasting") == (
         "this machine has not enough memory for it; give a wider run.every, or "
         'every = "none" to keep the last cycle alone'
@@ -78,6 +76,6 @@ def test_an_error_that_is_none_of_the_output_keeps_its_own_words(tmp_path, monke
         raise FileNotFoundError(2, "No such file or directory", "part")
 
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(crankmbs.cli.run, "simulate", missing)
+    monkeypatch.setattr(RUNNING, "simulate", missing)
     result = crankmbs_("run", "coasting")
     assert isinstance(result.exception, FileNotFoundError)

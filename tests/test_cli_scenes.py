@@ -5,9 +5,8 @@ from importlib import metadata
 from pathlib import Path
 
 import pytest
-from command_line import SCENE, crankmbs_, names, refused
+from command_line import RUNNING, SCENE, crankmbs_, names, refused
 
-import crankmbs.cli.run
 from crankmbs.scene.shipped import models_folder
 
 
@@ -19,7 +18,7 @@ def folder(tmp_path, monkeypatch):
 
 
 def test_check_explains_and_runs_nothing(monkeypatch):
-    monkeypatch.setattr(crankmbs.cli.run, "simulate", lambda *_, **__: pytest.fail("it ran"))
+    monkeypatch.setattr(RUNNING, "simulate", lambda *_, **__: pytest.fail("it ran"))
     result = crankmbs_("check", "engine.toml")
     assert result.exit_code == 0
     assert "kinetostatic" in result.stdout

@@ -3,44 +3,45 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Annotated
 
 import typer
 
 from crankmbs.cli.folder import writable
+from crankmbs.cli.options import SceneName
 from crankmbs.cli.progress import progress
-from crankmbs.scene.read import load_scene, scene_path
-from crankmbs.simulate import simulate
 
-if TYPE_CHECKING:
-    from crankmbs.figures.animation import Filming
-
-__all__ = ["animate_scene"]
+__all__ = ["animate"]
 
 
-def animate_scene(name: str, out: Path | None, filming: Filming) -> bool:
-    """Run a scene and film its last cycle; return whether it reached its end.
+def animate(
+    scene: SceneName,
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", "-o", metavar="FILE", help=".gif or .mp4; default NAME.gif."),
+    ] = None,
+    length: Annotated[float | None, typer.Option(help="Seconds of a cycle; default 6.")] = None,
+    width: Annotated[int | None, typer.Option(help="Pixels, a multiple of 32.")] = None,
+    cylinder: Annotated[int | None, typer.Option(help="The one shown alone; default all.")] = None,
+    forces: Annotated[
+        str | None, typer.Option(help="Arrows of the forces on piston, rod or crank.")
+    ] = None,
+) -> None:
+    """Film the mechanism and its speed over the last cycle, for slides."""
+    from crankmbs.figures.animation import Filming, check_filming, check_format, save_animation
+    from crankmbs.scene.read import load_scene, scene_path
+    from crankmbs.simulate import simulate
 
-    Parameters
-    ----------
-    out : .gif or .mp4 file; None: NAME.gif; filming : length, width and cylinder
-
-    Raises
-    ------
-    CrankmbsError : bad scene, an ending that cannot be written, a film that cannot be, or folder;
-        before anything runs
-    """
-    path = scene_path(name)
-    scene = load_scene(path)
-    from crankmbs.figures.animation import check_filming, check_format, save_animation
-
+    path = scene_path(scene)
+    loaded, filming = load_scene(path), Filming(length, width, cylinder, forces)
     file = Path(f"{path.stem}.gif") if out is None else out
     check_format(file)
-    check_filming(filming, scene)
+    check_filming(filming, loaded)
     writable(file.parent)
     with progress("running"):
-        result = simulate(scene)
+        result = simulate(loaded)
     with progress("filming"):
         save_animation(result, file, filming)
     typer.echo(f"{result}\n\nwrote {file}, {file.stat().st_size / 1e6:.1f} MB")
-    return result.status == 0
+    if result.status != 0:
+        raise typer.Exit(3)

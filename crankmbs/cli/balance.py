@@ -3,78 +3,70 @@
 from __future__ import annotations
 
 import textwrap
-from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from crankmbs.cli.folder import writable, wrote
 from crankmbs.cli.loads import loads_table
+from crankmbs.cli.options import CostCap, NoFigures, Out, SceneName, WrittenScene
 from crankmbs.cli.progress import progress
 from crankmbs.cli.text import table
-from crankmbs.design import Balance, Remaining, balance
 from crankmbs.digits import digits, error_digits
 from crankmbs.errors import InputError
-from crankmbs.export import copy_scene
-from crankmbs.measures import measure
-from crankmbs.scene.read import load_scene, scene_path
-from crankmbs.scene.scene import Scene
-from crankmbs.simulate import simulate
 from crankmbs.storage.files import together
 
-__all__ = ["Wanted", "balance_scene"]
+if TYPE_CHECKING:
+    from crankmbs.design import Balance, Remaining
+    from crankmbs.scene.scene import Scene
+
+__all__ = ["balance"]
 
 _ERRORS = ["before", "num. error", "after", "num. error"]
 
 
-@dataclass(frozen=True)
-class Wanted:
-    """What is asked of a balance.
+def balance(
+    scene: SceneName,
+    share: Annotated[
+        str, typer.Option(help="Share of the reciprocating mass that is balanced.")
+    ] = "50%",
+    cost_cap: CostCap = 10.0,
+    write: WrittenScene = None,
+    out: Out = None,
+    no_figures: NoFigures = False,
+) -> None:
+    """Find counterweights; show what is left of first and second order, before and after."""
+    from crankmbs.design import balance as balanced
+    from crankmbs.export import copy_scene
+    from crankmbs.scene.read import load_scene, scene_path
 
-    share : of the reciprocating mass, as "50%" or 0.5
-    write : file of the scene with the counterweights; out : folder, None: results/NAME
-    cost_cap : as `simulate` takes it [s]
-    """
-
-    share: str
-    write: Path | None
-    out: Path | None
-    figures: bool
-    cost_cap: float
-
-
-def balance_scene(name: str, wanted: Wanted) -> bool:
-    """Balance a scene, write table, figure and scene; return whether its run reached its end.
-
-    Raises
-    ------
-    CrankmbsError : bad scene, share, folder or file; a run without a whole cycle
-    """
-    path, part_of = scene_path(name), _share(wanted.share)
-    scene = load_scene(path)
-    folder = writable(Path("results", path.stem) if wanted.out is None else wanted.out)
+    path, part_of = scene_path(scene), _share(share)
+    machine = load_scene(path)
+    folder = writable(Path("results", path.stem) if out is None else out)
     with progress("balancing"):
-        found = balance(scene, part_of, cost_cap=wanted.cost_cap)
-        said = [_report(path.stem, found), "", *_crank(scene, found, wanted.cost_cap)]
+        weights = balanced(machine, part_of, cost_cap=cost_cap)
+        said = [_report(path.stem, weights), "", *_crank(machine, weights, cost_cap)]
     written = ["balance.csv"]
     with together(folder) as part:
-        (part / "balance.csv").write_text(_csv(found), encoding="utf-8")
-        if wanted.figures:
+        (part / "balance.csv").write_text(_csv(weights), encoding="utf-8")
+        if not no_figures:
             from crankmbs.figures import save_balance_figure  # matplotlib only here
 
-            written.append(save_balance_figure(found, part).name)
+            written.append(save_balance_figure(weights, part).name)
     said += ["", wrote(folder, written)]
-    if wanted.write is not None:
-        remark = f"with counterweights for {100.0 * found.share:g} % of the reciprocating mass"
-        files = copy_scene(path, wanted.write, _pasted(scene, found), remark)
+    if write is not None:
+        remark = f"with counterweights for {100.0 * weights.share:g} % of the reciprocating mass"
+        files = copy_scene(path, write, _pasted(machine, weights), remark)
         said.append(f"wrote {', '.join(map(str, files))}")
     typer.echo("\n".join(said))
-    return found.result.status == 0
+    if weights.result.status != 0:
+        raise typer.Exit(3)
 
 
-def _pasted(scene: Scene, found: Balance) -> dict[str, str]:
+def _pasted(scene: Scene, weights: Balance) -> dict[str, str]:
     """What [crank] is with the counterweights; its inertia where it would be too small for them."""
-    crank = found.crank
+    crank = weights.crank
     values = {
         "mass": f"{crank['mass']:.7g} kg",
         "center_of_mass": f"{crank['center_of_mass'] * 1e3:.7g} mm",
@@ -85,19 +77,22 @@ def _pasted(scene: Scene, found: Balance) -> dict[str, str]:
     return values
 
 
-def _crank(scene: Scene, found: Balance, cost_cap: float) -> list[str]:
+def _crank(scene: Scene, weights: Balance, cost_cap: float) -> list[str]:
     """The crank to paste into the scene, and the bearing loads of a run with it."""
+    from crankmbs.measures import measure
+    from crankmbs.simulate import simulate
+
     try:
-        values = _pasted(scene, found)
+        values = _pasted(scene, weights)
     except InputError as error:
         return [textwrap.fill(str(error), 100)]
-    if found.crank["center_of_mass"] == scene.crank.center_of_mass == 0.0:
+    if weights.crank["center_of_mass"] == scene.crank.center_of_mass == 0.0:
         return ["the counterweights of all throws cancel on the crank as a whole: [crank] stays"]
     after = simulate(
         scene.with_(**{f"crank__{key}": value for key, value in values.items()}), cost_cap=cost_cap
     )
     return [
-        loads_table("the last cycle", measure(found.result), measure(after), "after"),
+        loads_table("the last cycle", measure(weights.result), measure(after), "after"),
         "",
         "[crank]",
         *(f'{key} = "{value}"' for key, value in values.items()),
@@ -117,25 +112,25 @@ def _share(text: str) -> float:
     return value
 
 
-def _report(name: str, found: Balance) -> str:
-    title = found.result.scene.title
+def _report(name: str, weights: Balance) -> str:
+    title = weights.result.scene.title
     rows = [
         [
-            f"{one.quantity}, {one.direction} [{one.units}]",
-            f"{one.order:g}",
-            *(digits(*one.before), error_digits(one.before.error)),
-            *(digits(*one.after), error_digits(one.after.error)),
+            f"{force.quantity}, {force.direction} [{force.units}]",
+            f"{force.order:g}",
+            *(digits(*force.before), error_digits(force.before.error)),
+            *(digits(*force.after), error_digits(force.after.error)),
         ]
-        for one in found.remaining
+        for force in weights.remaining
     ]
     return "\n".join(
         [
             f"{name}: {title}" if title else name,
             "",
             "counterweight, mass times radius, for the rotating mass and "
-            f"{100.0 * found.share:g} % of the reciprocating mass:",
-            f"  opposite every throw                      {digits(found.per_throw)} kg m",
-            f"  opposite the crank's own centre of mass   {digits(found.of_crank)} kg m",
+            f"{100.0 * weights.share:g} % of the reciprocating mass:",
+            f"  opposite every throw                      {digits(weights.per_throw)} kg m",
+            f"  opposite the crank's own centre of mass   {digits(weights.of_crank)} kg m",
             "",
             table(["over the last cycle", "order", *_ERRORS], rows),
             "moving parts on the frame, engine's X and Y; rocking about the middle of the crank",
@@ -143,12 +138,12 @@ def _report(name: str, found: Balance) -> str:
     )
 
 
-def _csv(found: Balance) -> str:
+def _csv(weights: Balance) -> str:
     head = "quantity,direction,order,units,before,before_error,after,after_error"
-    return "\n".join([head, *map(_line, found.remaining)]) + "\n"
+    return "\n".join([head, *map(_line, weights.remaining)]) + "\n"
 
 
-def _line(one: Remaining) -> str:
-    numbers = (*one.before, *one.after)
-    words = f"{one.quantity},{one.direction},{one.order:g},{one.units}"
+def _line(force: Remaining) -> str:
+    numbers = (*force.before, *force.after)
+    words = f"{force.quantity},{force.direction},{force.order:g},{force.units}"
     return ",".join([words, *(f"{number:.12g}" for number in numbers)])

@@ -3,33 +3,39 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Annotated
 
 import typer
 
+from crankmbs.cli.options import SceneName
 from crankmbs.cli.progress import progress
-from crankmbs.export import copy_scene, export
-from crankmbs.export.files import SUFFIXES
-from crankmbs.scene.read import load_scene, scene_path
-from crankmbs.simulate import simulate
 
-__all__ = ["export_scene"]
+__all__ = ["export"]
 
 
-def export_scene(name: str, to: str, *, out: Path | None) -> bool:
-    """Write a scene for another program; return whether a run that this took reached its end.
+def export(
+    scene: SceneName,
+    to: Annotated[str, typer.Option(help="toml, matlab or exudyn.")],
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", "-o", metavar="FILE", help="Default NAME.toml, NAME.mat or NAME.py."),
+    ] = None,
+) -> None:
+    """Copy a scene as it is, write its result for MATLAB, or its bodies as a script for exudyn."""
+    from crankmbs.export import copy_scene
+    from crankmbs.export import export as exported
+    from crankmbs.export.files import SUFFIXES
+    from crankmbs.scene.read import load_scene, scene_path
+    from crankmbs.simulate import simulate
 
-    Raises
-    ------
-    CrankmbsError : a bad scene, what cannot be expressed, or a file that cannot be written
-    """
-    path = scene_path(name)
-    scene = load_scene(path)
+    path = scene_path(scene)
+    loaded = load_scene(path)
     target = out or Path(f"{path.stem}{SUFFIXES.get(to, '')}")
     with progress("exporting"):
-        result = simulate(scene) if to == "matlab" else None
-        written = copy_scene(path, target) if to == "toml" else export(result or scene, to, target)
+        result = simulate(loaded) if to == "matlab" else None
+        copied = to == "toml"
+        written = copy_scene(path, target) if copied else exported(result or loaded, to, target)
     typer.echo(f"wrote {', '.join(map(str, written))}")
     if result is not None and result.status != 0:
         typer.echo(result.message)
-        return False
-    return True
+        raise typer.Exit(3)

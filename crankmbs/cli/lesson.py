@@ -3,37 +3,48 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Annotated
 
 import typer
 
 from crankmbs.cli.folder import writable
 from crankmbs.cli.progress import progress
-from crankmbs.lessons import LESSONS, check_lesson, write_lesson, write_lessons
-from crankmbs.scene.read import load_scene
 
-__all__ = ["list_lessons", "make_lesson"]
+__all__ = ["lesson", "lessons"]
 
 
-def make_lesson(name: str | None, folder: Path, about: str | None) -> None:
-    """Write the page of a lesson into a folder, or without a name all and their index; about the
-    scene of a name or file, or about those that they have by themselves.
+def lesson(
+    name: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="NAME", help="Its name, as lessons lists them; without it all, with an index."
+        ),
+    ] = None,
+    out: Annotated[
+        Path, typer.Option("--out", "-o", metavar="DIR", help="Folder of the page.")
+    ] = Path("lessons"),
+    scene: Annotated[
+        str | None,
+        typer.Option("--scene", metavar="SCENE", help="Which it is about; default its own."),
+    ] = None,
+) -> None:
+    """Write a lesson: figures that compute while you drag them, formulas, and questions."""
+    from crankmbs.lessons import check_lesson, write_lesson, write_lessons
+    from crankmbs.scene.read import load_scene
 
-    Raises
-    ------
-    CrankmbsError : no such lesson, a bad scene, or a folder that cannot be written; before anything
-        runs
-    """
     if name is not None:
         check_lesson(name)
-    scene = None if about is None else load_scene(about)
-    writable(folder)
+    about = None if scene is None else load_scene(scene)
+    writable(out)
     with progress(f"lesson {name}" if name else "lessons"):
-        file = write_lesson(name, folder, scene) if name else write_lessons(folder, scene)
+        file = write_lesson(name, out, about) if name else write_lessons(out, about)
     typer.echo(f"wrote {file}; open it in a browser")
 
 
-def list_lessons() -> None:
-    """Print the lessons in their order."""
+def lessons() -> None:
+    """List the lessons."""
+    from crankmbs.lessons import LESSONS
+
     width = max(map(len, LESSONS))
     for number, (name, title) in enumerate(LESSONS.items(), start=1):
         typer.echo(f"{number}  {name:<{width}}  {title}")

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from crankmbs.cli.text import table
 from crankmbs.digits import digits, error_digits
-from crankmbs.measures import Measures
+
+if TYPE_CHECKING:
+    from crankmbs.measures import Measures
 
 __all__ = ["loads_table"]
 

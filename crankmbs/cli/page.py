@@ -3,44 +3,46 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Annotated
 
 import typer
 
-from crankmbs.page import page_of
-from crankmbs.scene.read import load_scene, scene_path
+from crankmbs.cli.options import SceneName
 from crankmbs.storage.files import text_in_one_move
 
-__all__ = ["demonstrate", "write_page"]
+__all__ = ["demo", "page"]
 
 
-def demonstrate(name: str, *, browser: bool) -> None:
-    """Write the page of a scene to results/NAME.html, where a browser in a sandbox may read it, and
-    open it.
-
-    Raises
-    ------
-    CrankmbsError : a bad scene, one that the page cannot show, or a file that cannot be written
-    """
-    path = scene_path(name)
-    target = Path("results", f"{path.stem}.html").absolute()
-    _write(path, target)
-    typer.echo(f"{path.stem}: {target}")
-    if browser:
+def demo(
+    scene: SceneName = "propeller",
+    no_browser: Annotated[
+        bool, typer.Option("--no-browser", help="Write the file only, open no browser.")
+    ] = False,
+) -> None:
+    """Open a page that shows the mechanism moving, and what each knob changes."""
+    name = Path(scene).stem
+    target = Path("results", f"{name}.html").absolute()  # where a browser in a sandbox may read it
+    _write(scene, target)
+    typer.echo(f"{name}: {target}")
+    if not no_browser:
         typer.launch(target.as_uri())
 
 
-def write_page(name: str, *, out: Path | None) -> None:
-    """Write the page of a scene as one file.
-
-    Raises
-    ------
-    CrankmbsError : a bad scene, one that the page cannot show, or a file that cannot be written
-    """
-    path = scene_path(name)
-    target = out or Path(f"{path.stem}.html")
-    _write(path, target)
+def page(
+    scene: SceneName,
+    out: Annotated[
+        Path | None, typer.Option("-o", "--out", help="The file; default NAME.html.")
+    ] = None,
+) -> None:
+    """Write the page as one file: no server, no network."""
+    target = out or Path(f"{Path(scene).stem}.html")
+    _write(scene, target)
     typer.echo(f"wrote {target}; open it in a browser")
 
 
-def _write(path: Path, target: Path) -> None:
+def _write(scene: str, target: Path) -> None:
+    from crankmbs.page import page_of
+    from crankmbs.scene.read import load_scene, scene_path
+
+    path = scene_path(scene)
     text_in_one_move(target, page_of(load_scene(path), path.stem))

@@ -6,100 +6,80 @@ import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from crankmbs.choose import choose, chosen
 from crankmbs.cli.folder import writable, wrote
+from crankmbs.cli.options import CostCap, NoFigures, Out, Rtol, SceneName, Until
 from crankmbs.cli.progress import progress
-from crankmbs.cli.report import comparison, report
 from crankmbs.errors import InputError
-from crankmbs.measures import EngineOrders, engine_orders, measure
-from crankmbs.result import Result
-from crankmbs.scene.read import load_scene, scene_path
-from crankmbs.scene.scene import Scene
-from crankmbs.simulate import simulate
 from crankmbs.storage.files import together
 
 if TYPE_CHECKING:
     from crankmbs.compare.confirm import Confirmation
+    from crankmbs.measures import EngineOrders
+    from crankmbs.result import Result
+    from crankmbs.scene.scene import Scene
 
-__all__ = ["Wanted", "override", "run_scene"]
-
-
-@dataclass(frozen=True)
-class Wanted:
-    """What a run shall show beside its measures.
-
-    confirm : let exudyn integrate the last period too, print and draw the difference
-    orders : print, write and draw the orders of torque and frame force
-    at : crank angles with their unit, at which every quantity is printed
-    """
-
-    figures: bool = True
-    confirm: bool = False
-    orders: bool = False
-    at: tuple[str, ...] = ()
-
+__all__ = ["override", "run"]
 
 _LENGTH = ("until", "every")  # the options that a scene may refuse though [run] takes them
 
 
-def run_scene(
-    name: str,
-    options: Mapping[str, Any],
-    *,
-    out: Path | None,
-    wanted: Wanted,
-    cost_cap: float,
-) -> bool:
-    """Run a scene, write its results, print its report; return whether it reached its end.
+def run(
+    scene: SceneName,
+    formulation: Annotated[
+        str | None,
+        typer.Option(help="auto, kinetostatic, crank_angle, minimal or multibody."),
+    ] = None,
+    rtol: Rtol = None,
+    until: Until = None,
+    every: Annotated[
+        str | None, typer.Option(help='Output spacing: "1 deg", "0.1 ms" or "none".')
+    ] = None,
+    out: Out = None,
+    no_figures: NoFigures = False,
+    confirm: Annotated[
+        bool,
+        typer.Option("--confirm", help="Let exudyn's rigid bodies run the last cycle too."),
+    ] = False,
+    orders: Annotated[
+        bool, typer.Option("--orders", help="Show the orders of torque and frame force.")
+    ] = False,
+    at: Annotated[
+        list[str] | None,
+        typer.Option(help='Every quantity at a crank angle, "60 deg"; may be given often.'),
+    ] = None,
+    cost_cap: CostCap = 10.0,
+) -> None:
+    """Run a scene: print its measures, write data and figures."""
+    from crankmbs.choose import choose, chosen
+    from crankmbs.cli.report import report
+    from crankmbs.measures import measure
+    from crankmbs.scene.read import load_scene, scene_path
+    from crankmbs.simulate import simulate
 
-    Parameters
-    ----------
-    options : those of [run] that the command line overrides
-    out : folder of the results; None: results/NAME
-    cost_cap : as `simulate` takes it [s]
-
-    Raises
-    ------
-    CrankmbsError : bad scene, option or folder; before anything runs
-    """
-    path = scene_path(name)
-    scene = override(load_scene(path), options)
-    choice = choose(scene, scene.run.formulation)
-    angles = [_angle(text) for text in wanted.at]
-    if wanted.confirm and choice.formulation == "multibody":
+    path = scene_path(scene)
+    options = {"formulation": formulation, "rtol": rtol, "until": until, "every": every}
+    machine = override(load_scene(path), options)
+    choice = choose(machine, machine.run.formulation)
+    angles = [_angle(text) for text in at or ()]
+    if confirm and choice.formulation == "multibody":
         raise InputError(
             "--confirm compares a run with multibody, and this run is multibody itself; "
             "leave out --confirm or choose another formulation"
         )
     folder = writable(Path("results", path.stem) if out is None else out)
 
-    with progress(chosen(choice).cost(scene) or "running"):
-        result = simulate(scene, rtol=options.get("rtol"), cost_cap=cost_cap)
-    said = [report(path.stem, result, measure(result))]
-    complete, made = result.status == 0, _Made(result)
-    if wanted.confirm:
-        from crankmbs.compare.confirm import confirm
-
-        with progress("exudyn"):
-            made.confirmation = confirm(result)
-        said.append(comparison(result, made.confirmation))
-    if wanted.orders:
-        from crankmbs.cli.orders import orders_report
-
-        made.orders = engine_orders(result)
-        said.append(orders_report(made.orders))
-    if angles:
-        from crankmbs.cli.orders import reading_report
-        from crankmbs.compare import at_angle
-
-        said += [reading_report(at_angle(result, angle), scene.period) for angle in angles]
-    written = _save(made, folder, figures=wanted.figures)
+    with progress(chosen(choice).cost(machine) or "running"):
+        result = simulate(machine, rtol=rtol, cost_cap=cost_cap)
+    said, made = [report(path.stem, result, measure(result))], _Made(result)
+    said += _further(made, angles, confirm=confirm, orders=orders)
+    written = _save(made, folder, figures=not no_figures)
     typer.echo("\n".join([*said, "", wrote(folder, written)]))  # a screen may fail: files first
-    return complete
+    if result.status != 0:
+        raise typer.Exit(3)
 
 
 @dataclass
@@ -109,6 +89,31 @@ class _Made:
     result: Result
     confirmation: Confirmation | None = None
     orders: EngineOrders | None = None
+
+
+def _further(made: _Made, angles: list[float], *, confirm: bool, orders: bool) -> list[str]:
+    """What is said beside the report; what is to be written of it is put into ``made``."""
+    said, result = [], made.result
+    if confirm:
+        from crankmbs.cli.report import comparison
+        from crankmbs.compare.confirm import confirm as confirmed
+
+        with progress("exudyn"):
+            made.confirmation = confirmed(result)
+        said.append(comparison(result, made.confirmation))
+    if orders:
+        from crankmbs.cli.orders import orders_report
+        from crankmbs.measures import engine_orders
+
+        made.orders = engine_orders(result)
+        said.append(orders_report(made.orders))
+    if angles:
+        from crankmbs.cli.orders import reading_report
+        from crankmbs.compare import at_angle
+
+        period = result.scene.period
+        said += [reading_report(at_angle(result, angle), period) for angle in angles]
+    return said
 
 
 def _save(made: _Made, folder: Path, *, figures: bool) -> list[str]:
@@ -135,8 +140,8 @@ def _draw(made: _Made, folder: Path) -> list[str]:
     if made.orders is not None:
         files.append(figures.save_orders_figure(made.result, made.orders, folder))
     if made.confirmation is not None and made.confirmation.period:
-        found = made.confirmation.period
-        files.append(figures.save_differences(made.result, found, folder))
+        differences = made.confirmation.period
+        files.append(figures.save_differences(made.result, differences, folder))
     return [file.name for file in files]
 
 
@@ -151,7 +156,8 @@ def _angle(text: str) -> float:
 
 
 def override(scene: Scene, options: Mapping[str, Any]) -> Scene:
-    """The scene with options of [run] replaced; an error names the option."""
+    """The scene with options of [run] replaced where they are not None; an error names them."""
+    options = {name: value for name, value in options.items() if value is not None}
     try:
         run = dataclasses.replace(scene.run, **options)
     except InputError as error:

@@ -56,9 +56,7 @@ def validate(
     from crankmbs.scene.read import load_scene, scene_path
     from crankmbs.simulate import simulate
 
-    given = {"rtol": rtol, "until": until}
-    options = {name: value for name, value in given.items() if value is not None}
-    loaded = override(load_scene(scene_path(scene)), options)
+    loaded = override(load_scene(scene_path(scene)), {"rtol": rtol, "until": until})
     check_comparable(loaded, cylinder)
     chain = None if causes is None else [name.strip() for name in causes.split(",")]
     checked_chain(chain, loaded)

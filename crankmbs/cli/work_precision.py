@@ -4,25 +4,27 @@ from __future__ import annotations
 
 import textwrap
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import typer
 
 from crankmbs.cli.folder import writable, wrote
+from crankmbs.cli.options import Out, SceneName
 from crankmbs.cli.progress import progress
 from crankmbs.cli.text import table
 from crankmbs.digits import error_digits
-from crankmbs.scene.read import load_scene, scene_path
 from crankmbs.storage.files import together
-from crankmbs.work_precision import (
-    TARGETS,
-    Beside,
-    Row,
-    WorkPrecision,
-    save_work_precision,
-    work_precision,
-)
 
-__all__ = ["measure_scene"]
+if TYPE_CHECKING:
+    from crankmbs.work_precision import Beside, Row, WorkPrecision
+
+__all__ = ["measure_scene", "work_precision"]
+
+
+def work_precision(scene: SceneName, out: Out = None) -> None:
+    """Measure speed against error of every formulation that serves the scene."""
+    if not measure_scene(scene, out=out):
+        raise typer.Exit(3)
 
 
 def measure_scene(name: str, *, out: Path | None, beside: Beside | None = None) -> bool:
@@ -37,6 +39,9 @@ def measure_scene(name: str, *, out: Path | None, beside: Beside | None = None) 
     ------
     CrankmbsError : bad scene or folder; before anything runs
     """
+    from crankmbs.scene.read import load_scene, scene_path
+    from crankmbs.work_precision import save_work_precision, work_precision
+
     path = scene_path(name)
     scene = load_scene(path)
     folder = writable(Path("results", path.stem) if out is None else out)
@@ -71,6 +76,8 @@ def _numbers(row: Row, names: tuple[str, ...]) -> list[str]:
 
 def _times(outcome: WorkPrecision) -> str:
     """Least time of a setting that keeps the state at the end within an error."""
+    from crankmbs.work_precision import TARGETS
+
     headings = ["time [ms] to an end within", *(f"{target:g}" for target in TARGETS)]
     return table(
         headings,
