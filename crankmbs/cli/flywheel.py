@@ -86,9 +86,9 @@ def _drawn(scene: Scene, wheel: Flywheel, folder: Path) -> str:
     from crankmbs.design.flywheel import fluctuations
     from crankmbs.figures import save_flywheel_figure  # matplotlib only here
 
-    at, own = wheel.inertia.value, scene.crank.moment_of_inertia
+    at, before = wheel.inertia.value, scene.crank.moment_of_inertia
     floor = scene.crank.mass * scene.crank.center_of_mass**2
-    least, most = max(min(at, own or at) / _BEYOND, floor), max(at, own or at) * _BEYOND
+    least, most = max(min(at, before or at) / _BEYOND, floor), max(at, before or at) * _BEYOND
     inertias = np.geomspace(least, most, _POINTS).tolist()
     with progress("figure"), together(folder) as part:
         curve = [

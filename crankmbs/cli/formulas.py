@@ -25,7 +25,7 @@ def named_formulas(texts: Sequence[str]) -> dict[str, Callable[..., Any]]:
     ------
     InputError : no such file or name; a file that Python cannot run; a function that is no formula
     """
-    found: dict[str, Callable[..., Any]] = {}
+    formulas: dict[str, Callable[..., Any]] = {}
     files: dict[Path, ModuleType] = {}
     for text in texts:
         place, _, name = text.rpartition(":")
@@ -37,19 +37,19 @@ def named_formulas(texts: Sequence[str]) -> dict[str, Callable[..., Any]]:
         if path not in files:
             files[path] = _run(path)
         label = f"{name} of {path.name}"
-        if label in found:
+        if label in formulas:
             raise InputError(
                 f"--formula: {label} comes twice; give each once, from files of different names"
             )
-        found[label] = _function(files[path], path, name)
-    formulas_of(found)
-    return found
+        formulas[label] = _function(files[path], path, name)
+    formulas_of(formulas)
+    return formulas
 
 
 def _function(module: ModuleType, path: Path, name: str) -> Any:
-    own = [key for key, value in vars(module).items() if callable(value) and key[:1] != "_"]
+    functions = [key for key, value in vars(module).items() if callable(value) and key[:1] != "_"]
     if name not in vars(module):
-        near = did_you_mean(name, own) or f"; it has {', '.join(own) or 'no function'}"
+        near = did_you_mean(name, functions) or f"; it has {', '.join(functions) or 'no function'}"
         raise InputError(f"--formula: {path} has no {name}{near}")
     return vars(module)[name]
 

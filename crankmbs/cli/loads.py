@@ -20,14 +20,16 @@ def loads_table(over: str, before: Measures | None, after: Measures, words: str)
     over : the window; words : what is changed, as a heading
     """
     rows = []
-    for joint in dict.fromkeys(one.joint for one in after.joints):
+    for joint in dict.fromkeys(force.joint for force in after.joints):
         cells: list[str] = []
         for measures in (before, after):
             if measures is None:
                 cells += ["-", "-"]
                 continue
-            one = max((j for j in measures.joints if j.joint == joint), key=lambda j: j.peak.value)
-            cells += [digits(*one.peak), error_digits(one.peak.error)]
+            largest = max(
+                (j for j in measures.joints if j.joint == joint), key=lambda j: j.peak.value
+            )
+            cells += [digits(*largest.peak), error_digits(largest.peak.error)]
         if any(j.peak.value > 0.0 for j in after.joints if j.joint == joint):
             rows.append([f"{joint} [N]", *cells])
     heading = [f"largest load over {over}", "before", "num. error", words, "num. error"]

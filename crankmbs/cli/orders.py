@@ -19,17 +19,17 @@ __all__ = ["orders_report", "reading_report", "save_orders"]
 _SMALL = 1e-6  # of the largest amplitude: not printed, but written
 
 
-def orders_report(found: EngineOrders) -> str:
+def orders_report(orders: EngineOrders) -> str:
     """The orders as one table, those that are not rounding beside the largest."""
-    rows = [line for row in found.rows for line in _lines(row)]
+    rows = [line for row in orders.rows for line in _lines(row)]
     headings = [
-        f"orders over the {found.window.kind}",
+        f"orders over the {orders.window.kind}",
         "order",
         "amplitude",
         "num. error",
         "phase [deg]",
     ]
-    speed = digits(found.speed.value / RPM, found.speed.error / RPM, most=8)
+    speed = digits(orders.speed.value / RPM, orders.speed.error / RPM, most=8)
     return "\n".join(
         [
             "",
@@ -40,10 +40,10 @@ def orders_report(found: EngineOrders) -> str:
     )
 
 
-def save_orders(found: EngineOrders, folder: Path) -> Path:
+def save_orders(orders: EngineOrders, folder: Path) -> Path:
     """Write orders.csv: every order of every quantity."""
-    names, columns = ["order"], [found.rows[0].orders.order]
-    for row in found.rows:
+    names, columns = ["order"], [orders.rows[0].orders.order]
+    for row in orders.rows:
         split = row.orders
         names += [f"{row.quantity} [{row.units}]", f"{row.quantity} phase [deg]"]
         columns += [split.amplitude, np.degrees(split.phase)]
@@ -58,14 +58,14 @@ def save_orders(found: EngineOrders, folder: Path) -> Path:
     return file
 
 
-def reading_report(found: AtAngle, period: float) -> str:
+def reading_report(state: AtAngle, period: float) -> str:
     """Every quantity at one crank angle: a table of the engine, one with a column a cylinder."""
-    degrees = round(math.degrees(found.crank_angle), 9)
+    degrees = round(math.degrees(state.crank_angle), 9)
     within = degrees % round(math.degrees(period))
     rows: dict[tuple[bool, str, str], list[Reading]] = {}
-    for one in found.readings:
-        key = one.cylinder is not None, f"{one.quantity.replace('_', ' ')}", one.symbol
-        rows.setdefault(key, []).append(one)
+    for reading in state.readings:
+        key = reading.cylinder is not None, f"{reading.quantity.replace('_', ' ')}", reading.symbol
+        rows.setdefault(key, []).append(reading)
     engine = [_reading(*key[1:], row) for key, row in rows.items() if not key[0]]
     cylinders = [_reading(*key[1:], row) for key, row in rows.items() if key[0]]
     place = f"at {within:.9g} deg of the last cycle"
@@ -76,7 +76,7 @@ def reading_report(found: AtAngle, period: float) -> str:
             table([place, "symbol", "value", "num. error"], engine),
             "",
             table([place, "symbol", *columns, "num. error"], cylinders),
-            f"passed at {digits(found.time, most=10)} s, at a crank angle of {degrees:.9g} deg",
+            f"passed at {digits(state.time, most=10)} s, at a crank angle of {degrees:.9g} deg",
         ]
     )
 
@@ -108,5 +108,5 @@ def _degrees(phase: float, size: float, error: float) -> str:
 
 def _reading(name: str, symbol: str, row: list[Reading]) -> list[str]:
     scale, units = displayed(row[0].units)
-    values = [digits(one.value / scale, one.error / scale, most=9) for one in row]
+    values = [digits(reading.value / scale, reading.error / scale, most=9) for reading in row]
     return [f"{name} [{units}]", symbol, *values, error_digits(row[0].error / scale)]

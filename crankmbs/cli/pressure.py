@@ -128,28 +128,28 @@ def _measured(
     folder = writable(target.parent)
     try:
         with progress("reading"):
-            found = read_pressure(file, machine, **given)
+            indicated = read_pressure(file, machine, **given)
         with together(folder) as part:
-            found.save(part / target.name)
+            indicated.save(part / target.name)
             names = [target.name]
-            if found.speed is not None:
-                names.append(found.speed.save(part / f"{target.stem}_speed.csv").name)
+            if indicated.speed is not None:
+                names.append(indicated.speed.save(part / f"{target.stem}_speed.csv").name)
             if figures:
-                names += _draw(found, part, target.stem)
+                names += _draw(indicated, part, target.stem)
     except InputError as error:
         raise InputError(as_options(str(error))) from None
-    lines = [as_options(sentence) for sentence in found.sentences]
+    lines = [as_options(sentence) for sentence in indicated.sentences]
     lines += ["", wrote_into(folder, names), "as [gas] of a scene:"]
-    lines += [f"  {line}" for line in gas_lines(found, target.name)]
-    if found.speed is not None:
+    lines += [f"  {line}" for line in gas_lines(indicated, target.name)]
+    if indicated.speed is not None:
         lines += ["as [motion] of a scene:", f"  {motion_line(names[1])}"]
     typer.echo("\n".join(lines))
 
 
-def _draw(found: Indicated, folder: Path, stem: str) -> list[str]:
+def _draw(indicated: Indicated, folder: Path, stem: str) -> list[str]:
     from crankmbs.figures import save_indicated_figures  # matplotlib only here
 
-    return [file.name for file in save_indicated_figures(found, folder, stem)]
+    return [file.name for file in save_indicated_figures(indicated, folder, stem)]
 
 
 def as_options(text: str) -> str:

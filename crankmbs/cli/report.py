@@ -31,13 +31,13 @@ def report(name: str, result: Result, measures: Measures) -> str:
         _about(result, measures),
         *(f"{'warning':<12} {said}" for said in warnings(result.scene)),
     ]
-    for one in tables(result, measures):
-        parts += ["", table(*one)]
+    for rows in tables(result, measures):
+        parts += ["", table(*rows)]
     parts += [textwrap.fill(said, 100) for said in journal_remarks(result.scene)]
     return "\n".join(parts)
 
 
-def comparison(result: Result, found: Confirmation) -> str:
+def comparison(result: Result, confirmation: Confirmation) -> str:
     """What exudyn's rigid bodies say of a run: the answer, and the differences behind it."""
     several = result.data.sizes["cylinder"] > 1
     headings = [
@@ -48,7 +48,7 @@ def comparison(result: Result, found: Confirmation) -> str:
         "num. error exudyn",
     ]
     lines = []
-    for row in found.period:
+    for row in confirmation.period:
         largest, sample, column = row.largest
         cylinder = f" {column + 1}" if several and row.size.shape[1] > 1 else ""
         where = degrees_within(float(row.crank_angle[sample]), result.scene.period)
@@ -58,12 +58,12 @@ def comparison(result: Result, found: Confirmation) -> str:
     return "\n".join(
         [
             "",
-            found.sentence,
+            confirmation.sentence,
             *([] if not lines else ["", table(headings, lines), ""]),
-            f"at {len(found.states[0].size)} states of the run accelerations and joint forces "
-            f"agree to {found.at_states:.0e} of the peak",
+            f"at {len(confirmation.states[0].size)} states of the run accelerations and joint "
+            f"forces agree to {confirmation.at_states:.0e} of the peak",
             "that nothing builds up over the whole run, --formulation minimal confirms",
-            *found.missing,
+            *confirmation.missing,
         ]
     )
 

@@ -43,7 +43,7 @@ def sensitivity(
     from crankmbs.scene.read import load_scene, scene_path
     from crankmbs.sweep.indices import sobol_indices
 
-    ranges = [one for one in vary if "=" in one]
+    ranges = [knob for knob in vary if "=" in knob]
     if ranges and len(ranges) < len(vary):
         raise InputError(
             "--vary: names alone ask for derivatives, names with ranges for Sobol indices; give "
@@ -54,9 +54,11 @@ def sensitivity(
     title = f"{path.stem}: {loaded.title}" if loaded.title else path.stem
     with progress("solving"):
         if ranges:
-            found = sobol_indices(loaded, varied(ranges), wanted, n=n, seed=seed, executor=workers)
-            said = "\n\n".join(_indices(one) for one in found)
-            lacks = any(one.status for one in found)
+            indices = sobol_indices(
+                loaded, varied(ranges), wanted, n=n, seed=seed, executor=workers
+            )
+            said = "\n\n".join(_indices(shares) for shares in indices)
+            lacks = any(shares.status for shares in indices)
         else:
             said, lacks = _derivatives(loaded, vary, wanted), False
     typer.echo(f"{title}\n\n{said}")
@@ -70,26 +72,27 @@ def _derivatives(scene: Scene, names: list[str], measures: list[str]) -> str:
     rows = []
     for words in measures:
         for name in names:
-            one = sensitivity_of(scene, name, words)
+            slope = sensitivity_of(scene, name, words)
             rows.append(
                 [
-                    with_unit(one.measure.words, one.measure.about.units),
-                    with_unit(one.knob, one.units),
-                    *cells(one.derivative, one.measure.about.units, one.units),
+                    with_unit(slope.measure.words, slope.measure.about.units),
+                    with_unit(slope.knob, slope.units),
+                    *cells(slope.derivative, slope.measure.about.units, slope.units),
                     digits(
-                        one.elasticity, one.derivative.error * abs(one.value / one.reached.value)
+                        slope.elasticity,
+                        slope.derivative.error * abs(slope.value / slope.reached.value),
                     ),
                 ]
             )
     return table(["measure", "knob", "derivative", "num. error", "% for 1 %"], rows)
 
 
-def _indices(found: SobolIndices) -> str:
-    if found.status != 0:
-        return f"{found.measure.words}: {found.message}"
+def _indices(shares: SobolIndices) -> str:
+    if shares.status != 0:
+        return f"{shares.measure.words}: {shares.message}"
     rows = [
         [name, *cells(first), *cells(total)]
-        for name, first, total in zip(found.knobs, found.first, found.total, strict=True)
+        for name, first, total in zip(shares.knobs, shares.first, shares.total, strict=True)
     ]
     heading = ["knob", "first order", "num. error", "total", "num. error"]
-    return f"{found.measure.words}, {found.message}\n\n{table(heading, rows)}"
+    return f"{shares.measure.words}, {shares.message}\n\n{table(heading, rows)}"

@@ -54,8 +54,8 @@ def solve(
     title = f"{path.stem}: {loaded.title}" if loaded.title else path.stem
     with progress("solving"):
         if wanted is not None:
-            one = solved(loaded, ranges, wanted)
-            status, said = one.status, _roots(one)
+            answer = solved(loaded, ranges, wanted)
+            status, said = answer.status, _roots(answer)
         else:
             lowest = minimize(loaded, ranges, str(least), subject_to or [])
             status, said = lowest.status, _minimum(lowest)
@@ -64,34 +64,34 @@ def solve(
         raise typer.Exit(3)
 
 
-def _roots(found: Solved) -> str:
-    measure = _named(found.measure)
-    heading = [with_unit(found.knob, found.units), "num. error", measure, "num. error"]
-    roots = found.roots or ((found.nearest,) if found.nearest else ())
-    of = found.measure.about.units
-    rows = [[*cells(root.value, found.units), *cells(root.reached, of)] for root in roots]
-    said = found.message if found.roots else f"{found.message}; the nearest in the scan"
-    return f"{said}\n\n{table(heading, rows)}" if rows else found.message
+def _roots(answer: Solved) -> str:
+    measure = _named(answer.measure)
+    heading = [with_unit(answer.knob, answer.units), "num. error", measure, "num. error"]
+    roots = answer.roots or ((answer.nearest,) if answer.nearest else ())
+    of = answer.measure.about.units
+    rows = [[*cells(root.value, answer.units), *cells(root.reached, of)] for root in roots]
+    said = answer.message if answer.roots else f"{answer.message}; the nearest in the scan"
+    return f"{said}\n\n{table(heading, rows)}" if rows else answer.message
 
 
-def _minimum(found: Minimum) -> str:
+def _minimum(answer: Minimum) -> str:
     rows = [
         [with_unit(name, of), cells((value, 0.0), of)[0], "", ""]
-        for name, value in found.values.items()
-        for of in (found.units[name],)
+        for name, value in answer.values.items()
+        for of in (answer.units[name],)
     ]
-    rows.append([_named(found.measure), *cells(found.reached, found.measure.about.units), ""])
+    rows.append([_named(answer.measure), *cells(answer.reached, answer.measure.about.units), ""])
     rows += [
         [
-            _named(one.measure),
-            *cells(one.reached, of),
-            f"{one.sign} {one.bound / displayed(of)[0]:.6g}",
+            _named(condition.measure),
+            *cells(condition.reached, of),
+            f"{condition.sign} {condition.bound / displayed(of)[0]:.6g}",
         ]
-        for one in found.conditions
-        for of in (one.measure.about.units,)
+        for condition in answer.conditions
+        for of in (condition.measure.about.units,)
     ]
-    said = f"{found.message}, in {found.evaluations} runs"
-    headings = [f"least of {found.measure.words}", "value", "num. error", ""]
+    said = f"{answer.message}, in {answer.evaluations} runs"
+    headings = [f"least of {answer.measure.words}", "value", "num. error", ""]
     return f"{said}\n\n{table(headings, rows)}"
 
 

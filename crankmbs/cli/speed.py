@@ -61,11 +61,11 @@ def speed(
     folder = writable(target.parent)
     try:
         with progress("reading"):
-            found = read_speed(file, **given, stroke=stroke, skip=skip)
+            measured = read_speed(file, **given, stroke=stroke, skip=skip)
         with together(folder) as part:
-            found.save(part / target.name)
+            measured.save(part / target.name)
     except InputError as error:
         raise InputError(as_options(str(error))) from None
-    lines = [as_options(sentence) for sentence in found.sentences]
+    lines = [as_options(sentence) for sentence in measured.sentences]
     lines += ["", f"wrote {folder}: {target.name}", "as [motion] of a scene:"]
     typer.echo("\n".join([*lines, f"  {motion_line(target.name)}"]))

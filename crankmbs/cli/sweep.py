@@ -203,20 +203,22 @@ def _progress(count: int) -> Iterator[Callable[[int], None]]:
         yield lambda more: bar.advance(task, more)
 
 
-def _report(plan: Plan, found: Summary) -> str:
+def _report(plan: Plan, summary: Summary) -> str:
     lines = [f"{plan.cases.count} cases over {', '.join(plan.cases.names)}"]
-    for status, (count, said) in sorted(found.ended.items(), key=lambda one: one[0] != 0):
+    for status, (count, said) in sorted(summary.ended.items(), key=lambda item: item[0] != 0):
         first = "" if status == 0 else f"; the first: {said}"
         lines.append(f"{count} {_ENDED[status]}{first}")
-    if found.bounds:
+    if summary.bounds:
         headings = ["over all cases", "least", "largest", "num. error at most"]
-        lines += ["", table(headings, [_bounds(one) for one in found.bounds])]
+        lines += ["", table(headings, [_bounds(bounds) for bounds in summary.bounds])]
     return "\n".join(lines)
 
 
-def _bounds(one: Bounds) -> list[str]:
-    least, largest = (cells((x, one.error), one.units) for x in (one.least, one.largest))
-    return [with_unit(one.long_name, one.units), least[0], *largest]
+def _bounds(bounds: Bounds) -> list[str]:
+    least, largest = (
+        cells((x, bounds.error), bounds.units) for x in (bounds.least, bounds.largest)
+    )
+    return [with_unit(bounds.long_name, bounds.units), least[0], *largest]
 
 
 def _bytes(size: float) -> str:

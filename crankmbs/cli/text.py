@@ -24,14 +24,14 @@ def table(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     )
 
 
-def cells(one: tuple[float, float], units: str = "1", per: str = "1") -> list[str]:
+def cells(estimate: tuple[float, float], units: str = "1", per: str = "1") -> list[str]:
     """A value with its error, to the digits that this leaves, and the error, in the units that
     people read.
 
     units, per : SI, of the value, or of it and what it is divided by
     """
     scale = displayed(units)[0] / displayed(per)[0]
-    value, error = (part / scale for part in one)
+    value, error = (part / scale for part in estimate)
     return [digits(value, error), error_digits(error)]
 
 

@@ -82,7 +82,7 @@ def _independent(scene: Scene) -> str:
     """The formulation with joint forces of its own, where it serves the scene."""
     from crankmbs.motion.formulations import serving
 
-    names = [one.name for one in serving(scene)]
+    names = [formulation.name for formulation in serving(scene)]
     return "multibody" if "multibody" in names else names[0]
 
 

@@ -98,11 +98,11 @@ def _believed(comparison: Comparison) -> str:
 
 def _own(comparison: Comparison, split: Budget) -> str:
     """Each formula of one's own, with its causes where it has a budget."""
-    own = [row for row in split.ranked if not row.is_lecture]
-    by = dict.fromkeys(row.reference for row in own)
+    formulas = [row for row in split.ranked if not row.is_lecture]
+    by = dict.fromkeys(row.reference for row in formulas)
     parts = []
     for label in by:
-        rows = [row for row in own if row.reference == label]
+        rows = [row for row in formulas if row.reference == label]
         parts += [
             f"{label} less run, in % of the run's peak, at its largest",
             *_rows(rows),
@@ -137,8 +137,8 @@ def _of_engine(splits: Sequence[Split]) -> bool:
 
 def _rows(splits: Sequence[Split], beside: Comparison | None = None) -> list[str]:
     """The table of these formulas, and what it leaves out."""
-    found = budget_table(splits, beside)
-    lines = [table(*found)] if found.rows else []
+    budget = budget_table(splits, beside)
+    lines = [table(*budget)] if budget.rows else []
     return [*lines, *([textwrap.fill(said, _WIDTH)] if (said := exact_words(splits)) else [])]
 
 

@@ -84,9 +84,9 @@ def solved(job: Job) -> Block:
     cases = [_attempt(partial(scene_of, job.scene, job.names, values)) for values in job.values]
     scenes = [case if isinstance(case, Scene) else None for case in cases]
     together = [] if job.series else rows_of(scenes)
-    found = {int(k) for rows in together for k in rows.which}
+    solved_together = {int(k) for rows in together for k in rows.which}
     samples = samples_of(job.scene) if job.series else None
-    ended = {k: _one(case, samples) for k, case in enumerate(cases) if k not in found}
+    ended = {k: _one(case, samples) for k, case in enumerate(cases) if k not in solved_together}
     return _block(job, ended, together)
 
 
@@ -97,9 +97,9 @@ def broken(job: Job, message: str) -> Block:
 
 def joined(parts: list[Block]) -> Block:
     """The blocks of single cases as one."""
-    rows = {name: np.concatenate([one.rows[name] for one in parts]) for name in parts[0].rows}
-    status = np.concatenate([one.status for one in parts])
-    return Block(rows, status, tuple(text for one in parts for text in one.message))
+    rows = {name: np.concatenate([part.rows[name] for part in parts]) for name in parts[0].rows}
+    status = np.concatenate([part.status for part in parts])
+    return Block(rows, status, tuple(text for part in parts for text in part.message))
 
 
 def _attempt(make: Callable[[], T]) -> T | Ended:

@@ -119,7 +119,7 @@ class Spread(Cases):
         """Drawn anew."""
         columns = self._sample.points(rows).T
         pairs = zip(self._ranges, columns, strict=True)
-        return tuple(one.taken(one.at(column)) for one, column in pairs)
+        return tuple(knob.taken(knob.at(column)) for knob, column in pairs)
 
     @property
     def _identity(self) -> object:

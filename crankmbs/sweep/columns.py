@@ -61,24 +61,26 @@ def columns_of(scene: Scene, *, series: bool) -> dict[str, Column]:
     without |= set() if scene.double_acting else {n for n in _MEASURES if n.endswith("_end")}
     without |= set() if scene.friction is not None else {"friction_power", "mechanical_efficiency"}
     without |= set() if scene.force else {"force_power"}
-    found = {name: column for name, column in _MEASURES.items() if name not in without}
+    columns = {name: column for name, column in _MEASURES.items() if name not in without}
     joints = _joints(scene)
     for joint, dims in joints.items():
         words = joint.replace("_", " ")
         force = "side force" if joint == "side_force" else f"{words} force"
-        found[f"{joint}_peak"] = Column("N", f"largest {force}", dims)
-        found[f"{joint}_mean"] = Column("N", f"mean {force} over time", dims)
+        columns[f"{joint}_peak"] = Column("N", f"largest {force}", dims)
+        columns[f"{joint}_mean"] = Column("N", f"mean {force} over time", dims)
     if scene.fuel is None:  # the lectures know one pressure for all firings
-        found["lecture_deviation"] = _LECTURE
+        columns["lecture_deviation"] = _LECTURE
     if series:
-        found |= _series(scene)
+        columns |= _series(scene)
     errors = {
         f"{name}{_ERROR}": Column(
-            one.units,
-            f"error of {one.long_name}",
-            tuple(dim for dim in one.dims if not (dim == "sample" or name.startswith("series_"))),
+            column.units,
+            f"error of {column.long_name}",
+            tuple(
+                dim for dim in column.dims if not (dim == "sample" or name.startswith("series_"))
+            ),
         )
-        for name, one in found.items()
+        for name, column in columns.items()
     }
     for joint, dims in joints.items():
         angle = "cycle angle" if dims == _CYLINDER else "crank angle"
@@ -86,7 +88,7 @@ def columns_of(scene: Scene, *, series: bool) -> dict[str, Column]:
         errors[f"{joint}_peak_angle"] = Column("rad", f"{angle} of the largest {words}", dims)
     errors["energy_closure"] = Column("1", "largest energy residual over peak kinetic energy")
     errors["relative_error"] = Column("1", "relative global error, estimated")
-    return found | errors
+    return columns | errors
 
 
 def _joints(scene: Scene) -> dict[str, tuple[str, ...]]:
@@ -98,18 +100,18 @@ def _joints(scene: Scene) -> dict[str, tuple[str, ...]]:
 
 def dims_of(scene: Scene, *, series: bool) -> dict[str, tuple[str, ...] | tuple[int, ...]]:
     """The coordinates of the dimensions beyond the case."""
-    found: dict[str, tuple[str, ...] | tuple[int, ...]] = {
+    coordinates: dict[str, tuple[str, ...] | tuple[int, ...]] = {
         "cylinder": tuple(range(1, len(scene.cylinders) + 1))
     }
     if scene.throws is not None:
-        found["journal"] = tuple(range(1, len(scene.throws.rods) + 1))
+        coordinates["journal"] = tuple(range(1, len(scene.throws.rods) + 1))
         if scene.throws.shared:
-            found["pin"] = found["journal"][:-1]
+            coordinates["pin"] = coordinates["journal"][:-1]
     if scene.fuel is None:
-        found |= {"lecture": tuple(LECTURES), "quantity": tuple(QUANTITIES)}
+        coordinates |= {"lecture": tuple(LECTURES), "quantity": tuple(QUANTITIES)}
     if series:
-        found["sample"] = tuple(range(samples_of(scene)))
-    return found
+        coordinates["sample"] = tuple(range(samples_of(scene)))
+    return coordinates
 
 
 def row_of(result: Result, samples: int | None) -> Row:
@@ -156,19 +158,19 @@ def _measured(measures: Measures, scene: Scene) -> Row:
     for name in _MEASURES:
         _put(row, name, getattr(measures, name))
     for joint, dims in _joints(scene).items():
-        of_one = [one for one in measures.joints if one.joint.replace(" ", "_") == joint]
+        of_one = [force for force in measures.joints if force.joint.replace(" ", "_") == joint]
         single = not dims
         for what in ("peak", "mean"):
-            found = tuple(getattr(one, what) for one in of_one)
-            _put(row, f"{joint}_{what}", found[0] if single else found)
-        angles = np.array([_angle(one, scene.period) for one in of_one])
+            estimates = tuple(getattr(force, what) for force in of_one)
+            _put(row, f"{joint}_{what}", estimates[0] if single else estimates)
+        angles = np.array([_angle(force, scene.period) for force in of_one])
         row[f"{joint}_peak_angle"] = angles[0] if single else angles
     return row
 
 
-def _put(row: Row, name: str, found: Estimate | tuple[Estimate, ...] | None) -> None:
-    if found is not None:
-        value, error = np.array(found, dtype=np.float64).T
+def _put(row: Row, name: str, estimates: Estimate | tuple[Estimate, ...] | None) -> None:
+    if estimates is not None:
+        value, error = np.array(estimates, dtype=np.float64).T
         row[name], row[f"{name}{_ERROR}"] = value, error
 
 
@@ -180,12 +182,12 @@ def _lectured(result: Result) -> Row:
     """Errors of the lectures, as far as they have one."""
     value, error = np.full((2, len(LECTURES), len(QUANTITIES)), np.nan)
     try:
-        found = largest_deviations(result)
+        deviations = largest_deviations(result)
     except InputError:  # folded all the time
         return {}
-    for (lecture, quantity), one in found.items():
+    for (lecture, quantity), deviation in deviations.items():
         at = list(LECTURES).index(lecture), list(QUANTITIES).index(quantity)
-        value[at], error[at] = one
+        value[at], error[at] = deviation
     return {"lecture_deviation": value, f"lecture_deviation{_ERROR}": error}
 
 
@@ -195,7 +197,7 @@ def _series(scene: Scene) -> dict[str, Column]:
     for name, about in variables_of(scene).items():
         dims = ("sample", about.of) if about.of else ("sample",)
         sampled[name] = Column(about.units, about.long_name, dims)
-    return {f"series_{name}": one for name, one in sampled.items()}
+    return {f"series_{name}": column for name, column in sampled.items()}
 
 
 def _sampled(result: Result, most: int) -> Row:

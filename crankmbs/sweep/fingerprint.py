@@ -70,7 +70,12 @@ def _parts(value: Any) -> list[Any] | None:
     if isinstance(value, CodeType):
         names = [value.co_names, value.co_varnames, value.co_freevars]
         counts = [value.co_argcount, value.co_kwonlyargcount, value.co_flags]
-        return [value.co_code, [_ordered(one) for one in value.co_consts], *names, *counts]
+        return [
+            value.co_code,
+            [_ordered(constant) for constant in value.co_consts],
+            *names,
+            *counts,
+        ]
     if isinstance(value, ModuleType):
         return _module(value.__name__)
     if isinstance(value, type | FunctionType):
@@ -78,7 +83,7 @@ def _parts(value: Any) -> list[Any] | None:
     if isinstance(value, MethodType):
         return [value.__self__, value.__func__]
     if dataclasses.is_dataclass(value):
-        return [type(value), *(getattr(value, one.name) for one in dataclasses.fields(value))]
+        return [type(value), *(getattr(value, field.name) for field in dataclasses.fields(value))]
     if isinstance(value, cached_property):
         return [value.func]
     return [getattr(value, name) for name in _WRAPPED if hasattr(value, name)] or None
@@ -99,14 +104,14 @@ def _named(value: Any) -> list[Any] | None:
         return [value.__qualname__, value.__bases__, members]
     named = value.__globals__
     reached = [(name, _ordered(named[name])) for name in _names(value.__code__) if name in named]
-    closure = [_ordered(one.cell_contents) for one in value.__closure__ or ()]
+    closure = [_ordered(cell.cell_contents) for cell in value.__closure__ or ()]
     defaults = [value.__defaults__, value.__kwdefaults__]
     return [value.__qualname__, value.__code__, *defaults, closure, reached]
 
 
 def _names(code: CodeType) -> list[str]:
     """The names that a code and those in it look up."""
-    inside = [one for one in code.co_consts if isinstance(one, CodeType)]
+    inside = [constant for constant in code.co_consts if isinstance(constant, CodeType)]
     return sorted(set(code.co_names).union(*map(_names, inside)))
 
 

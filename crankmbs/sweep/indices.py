@@ -110,11 +110,11 @@ def sobol_indices(
         )
     columns = columns_of(scene, series=False)
     words = [measures] if isinstance(measures, str) else list(measures)
-    readings = [reading_of(one, columns) for one in words]
+    readings = [reading_of(text, columns) for text in words]
     knobs = tuple(interval_of(scene, *item) for item in vary.items())
     plan = Plan(scene, Listed(_design(knobs, n, seed)), series=False)
     data = run_in_memory(plan, executor)
-    return tuple(_found(plan, data, one, n, seed) for one in readings)
+    return tuple(_found(plan, data, reading, n, seed) for reading in readings)
 
 
 def _design(knobs: tuple[Interval, ...], n: int, seed: int) -> tuple[Knob, ...]:
@@ -130,12 +130,12 @@ def _design(knobs: tuple[Interval, ...], n: int, seed: int) -> tuple[Knob, ...]:
 
     stats.sobol_indices(func=recorded, n=n, dists=[uniform] * len(knobs), rng=seed)
     columns = np.concatenate(asked, axis=1)
-    return tuple(one.taken(one.at(column)) for one, column in zip(knobs, columns, strict=True))
+    return tuple(knob.taken(knob.at(column)) for knob, column in zip(knobs, columns, strict=True))
 
 
 def _found(plan: Plan, data: xr.Dataset, reading: Reading, n: int, seed: int) -> SobolIndices:
     names, count = plan.cases.names, plan.cases.count
-    read, own = reading.of_sweep(data)
+    read, numerical = reading.of_sweep(data)
     values = np.where(data["status"].values == 0, read.values, np.nan)
     why = _why_not(plan, data, reading, values)
     if why:
@@ -144,7 +144,7 @@ def _found(plan: Plan, data: xr.Dataset, reading: Reading, n: int, seed: int) ->
     deviation = float(np.std(values[: 2 * n]))
     here, rng = _indices(values, n, np.arange(n)), np.random.default_rng(seed)
     others = [_indices(values, n, rng.integers(n, size=n)) for _ in range(_RESAMPLES)]
-    error = _CONFIDENCE * np.std(others, axis=0, ddof=1) + _OWN * own / deviation
+    error = _CONFIDENCE * np.std(others, axis=0, ddof=1) + _OWN * numerical / deviation
     first, total = (
         tuple(Estimate(*pair) for pair in zip(*both, strict=True))
         for both in zip(here.tolist(), error.tolist(), strict=True)
@@ -162,8 +162,8 @@ def _indices(values: Array, n: int, rows: Index) -> Array:
         "f_B": values[None, n + rows],
         "f_AB": mixed[..., rows],
     }
-    found = stats.sobol_indices(func=parts, n=n)
-    return np.array([found.first_order, found.total_order])
+    indices = stats.sobol_indices(func=parts, n=n)
+    return np.array([indices.first_order, indices.total_order])
 
 
 def _why_not(plan: Plan, data: xr.Dataset, reading: Reading, values: Array) -> str:

@@ -44,11 +44,11 @@ class Plan:
         """Cases in a block along each dimension: they follow one another, the last the fastest."""
         together = not self.series and loads_of(self.scene) is not None
         size = block_size(self.cases.count, series=self.series, together=together)
-        found: list[int] = []
+        shape: list[int] = []
         for length in reversed(self.cases.shape):
-            found.insert(0, ceil(length / ceil(length / size)))
+            shape.insert(0, ceil(length / ceil(length / size)))
             size = max(size // length, 1)
-        return tuple(found)
+        return tuple(shape)
 
     @property
     def blocks(self) -> int:
@@ -82,14 +82,14 @@ class Plan:
         """What all its numbers take [B]."""
         sizes = {dim: len(at) for dim, at in dims_of(self.scene, series=self.series).items()}
         columns = columns_of(self.scene, series=self.series).values()
-        return 8 * self.cases.count * sum(prod(sizes[d] for d in one.dims) for one in columns)
+        return 8 * self.cases.count * sum(prod(sizes[d] for d in column.dims) for column in columns)
 
     @cached_property
     def identity(self) -> dict[str, str]:
         """What an unfinished sweep must have in common with this one to be resumed; what is empty,
         which nothing identifies, agrees with nothing."""
-        functions = [one.function for one in self.scene.torque if isinstance(one, Load)]
-        functions += [one.function for one in self.scene.force if isinstance(one, Force)]
+        functions = [load.function for load in self.scene.torque if isinstance(load, Load)]
+        functions += [force.function for force in self.scene.force if isinstance(force, Force)]
         scene = json.dumps(_SCENE.dump_python(self.scene, mode="json"), sort_keys=True)
         return {
             "version": metadata.version("crankmbs"),

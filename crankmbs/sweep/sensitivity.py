@@ -73,13 +73,13 @@ def sensitivity(scene: Scene, name: str, measure: str) -> Sensitivity:
         raise InputError(f"{name}: is 0 in this scene, and steps are a share of it; give it a size")
     asked = Asked(scene, (knob.name,))
     cases = [asked.at((value + k * step,), (reading,))[0] for k in (-2, -1, 0, 1, 2)]
-    far_low, low, here, high, far_high = (one.value for one in cases)
+    far_low, low, here, high, far_high = (case.value for case in cases)
     near, far = (high - low) / (2.0 * step), (far_high - far_low) / (4.0 * step)
     derivative = (4.0 * near - far) / 3.0
     bend, far_bend = (high - 2.0 * here + low) / step, (far_high - 2.0 * here + far_low) / step
     bent = abs(2.0 * bend - 0.5 * far_bend)  # 0 of a parabola, else the jump of the slope
-    own = max(one.error for one in cases) / step
-    error = abs(derivative - near) + 0.5 * bent + 2.0 * own
+    numerical = max(case.error for case in cases) / step
+    error = abs(derivative - near) + 0.5 * bent + 2.0 * numerical
     return Sensitivity(
         knob=knob.name,
         units=knob.units,

@@ -152,11 +152,11 @@ class _Search:
     def found(self) -> Solved:
         shares = self._points()
         estimates = [self._estimate(share) for share in shares.tolist()]
-        off = np.array([one.value for one in estimates]) - self._wanted
+        off = np.array([estimate.value for estimate in estimates]) - self._wanted
         roots = [self._root(share) for share in shares[off == 0.0].tolist()]
         for k in np.flatnonzero(off[:-1] * off[1:] < 0.0).tolist():
-            found = self._polished(float(shares[k]), float(shares[k + 1]))
-            roots += [] if found is None else [found]
+            root = self._polished(float(shares[k]), float(shares[k + 1]))
+            roots += [] if root is None else [root]
         roots.sort(key=lambda root: root.value.value)
         status, message, nearest = 0, f"{len(roots)} found", None
         if not roots:
@@ -197,13 +197,13 @@ class _Search:
     def _turn(self, low: float, high: float, side: float) -> float:
         """Where between two shares the measure, on one side of what is wanted, is nearest to it or
         farthest beyond it."""
-        found = minimize_scalar(
+        turn = minimize_scalar(
             lambda share: np.nan_to_num(side * self._estimate(share).value, nan=math.inf),
             bounds=(low, high),
             method="bounded",
             options={"xatol": _TURN},
         )
-        return float(found.x)
+        return float(turn.x)
 
     def _polished(self, low: float, high: float) -> Root | None:
         """The crossing between two shares; none where a case in between has no measure, or where

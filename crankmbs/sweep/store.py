@@ -165,13 +165,13 @@ def load_sweep(path: str | Path) -> xr.Dataset:
     for each in data.variables.values():
         each.attrs.pop("_FillValue", None)
     data = data.set_coords(data.attrs.pop("coordinates").split())
-    found = {name: data[name] for name in ("message", "status")}
-    for name in map(str, set(data).difference(found)):
+    variables = {name: data[name] for name in ("message", "status")}
+    for name in map(str, set(data).difference(variables)):
         array, over = data[name], name.removesuffix("s")
         for k, column in enumerate(data[over].values):
-            found[column] = array.isel({over: k}, drop=True)
-            found[column].attrs = {label: array.attrs[label][k] for label in _LABELS}
-    return xr.Dataset(dict(sorted(found.items())), attrs=data.attrs)
+            variables[column] = array.isel({over: k}, drop=True)
+            variables[column].attrs = {label: array.attrs[label][k] for label in _LABELS}
+    return xr.Dataset(dict(sorted(variables.items())), attrs=data.attrs)
 
 
 def _check_resumable(path: Path, plan: Plan) -> None:
@@ -194,10 +194,10 @@ def _finished(group: zarr.Group) -> NDArray[np.bool_]:
 
 def _measures(plan: Plan) -> dict[str, list[str]]:
     """The arrays of measures by name, and the columns in each."""
-    found: dict[str, list[str]] = {}
+    groups: dict[str, list[str]] = {}
     for name, column in columns_of(plan.scene, series=plan.series).items():
-        found.setdefault("_".join((*column.dims, "measures")), []).append(name)
-    return found
+        groups.setdefault("_".join((*column.dims, "measures")), []).append(name)
+    return groups
 
 
 def _lay_out(group: zarr.Group, plan: Plan) -> None:

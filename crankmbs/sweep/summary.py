@@ -57,9 +57,11 @@ def summary(path: Path) -> Summary:
         for name, k in sorted(places.items())
         if (error := places.get(f"{name}_error")) is not None and not np.isnan(least[k])
     ]
-    found = (one.tolist() for one in np.unique(status, return_index=True, return_counts=True))
+    groups = (
+        column.tolist() for column in np.unique(status, return_index=True, return_counts=True)
+    )
     ended = {
         kind: (count, str(arrays["message"][np.unravel_index(first, status.shape)]))
-        for kind, first, count in zip(*found, strict=True)
+        for kind, first, count in zip(*groups, strict=True)
     }
     return Summary(ended, tuple(bounds))

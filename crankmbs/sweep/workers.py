@@ -142,7 +142,7 @@ class Workers:
         block = self._attempt(job)
         if block is None:
             cases = [job.only(k) for k in range(len(job.values))]
-            block = joined([self._attempt(one) or broken(one, _ENDED) for one in cases])
+            block = joined([self._attempt(case) or broken(case, _ENDED) for case in cases])
         return block
 
     def _attempt(self, job: Job) -> Block | None:
