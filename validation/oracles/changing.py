@@ -37,7 +37,8 @@ Floats = NDArray[np.float64]
 
 _STUCK = 40  # events at one time
 _AT_ONCE = 1e-9  # s: so near a change over time either value is right
-_WIDEST = 0.15  # rad: a step, as DOP853's estimate of the error of a wide one may vanish by chance
+_WIDEST = 0.03  # rad: a step; at 1e-13 alone 45 reversals add up to 8e-11 of the peak, and the
+# estimate of a wide step may vanish by chance
 _FINER = 50.0  # steps in a stretch in which the speed turns beside a bound
 _FAR = 9.0  # rad: beyond any stretch
 _BESIDE = 1e-6  # of an angle [rad] or a speed: so near a knot either value is right
@@ -303,10 +304,11 @@ class _Walk:
         bounds = {-1.0: slow, 1.0: fast}
         events: list[Any] = [passes, *(meets(speed, way) for way, speed in bounds.items())]
         passes.terminal, passes.direction = True, 1.0  # type: ignore[attr-defined]
-        scale = abs(float(y[1])) + abs(slopes(start, y)[1]) * (end - start) + 1e-9
+        alpha = abs(slopes(start, y)[1])  # from rest it turns by no more than a radian here
+        scale = abs(float(y[1])) + min(alpha * (end - start), math.sqrt(2.0 * alpha)) + 1e-9
         options: dict[str, Any] = {"method": "DOP853", "rtol": 1e-13}
         options["atol"] = [1e-15, 1e-14 * scale]
-        options["max_step"] = _WIDEST / abs(float(y[1])) if y[1] else math.inf
+        options["max_step"] = _WIDEST / scale
         found = solve_ivp(slopes, (start, end), y, events=events, dense_output=True, **options)
         if at.may_touch(found.t, found.y) or _passed(found, slow, fast):
             finer = (float(found.t[-1]) - start) / _FINER
