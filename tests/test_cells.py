@@ -11,7 +11,6 @@ from crankmbs import Quadratic, Run, Viscous, load_scene, simulate
 from crankmbs.mechanics.torque import branch_of
 from crankmbs.mechanics.train import CrankTrain, crank_train
 from crankmbs.motion.cells import Acting, Cells
-from crankmbs.motion.crank_angle.errors import Errors
 from crankmbs.motion.crank_angle.grid import grid_of
 from crankmbs.motion.crank_angle.periods import period_of
 from crankmbs.motion.crank_angle.solvers import Begin, lasting, solve
@@ -96,11 +95,20 @@ def test_a_chain_is_exact_to_rounding_of_its_edges():
     assert np.abs(chain(growth, rise, 1000.0) - edges).max() > 0.0
 
 
-def test_the_worst_errors_of_cells_passed_again_and_what_is_no_number():
-    worst, cell = np.zeros((2, 3)), np.array([0, 1, 2, 0, 1, 2])
-    at_end = np.array([2.0, math.nan, 1.0, 1.0, 3.0, 4.0])
-    Errors(at_end, at_end, 2.0 * at_end[::-1]).raised(worst, cell)
-    np.testing.assert_array_equal(worst, [[2.0, math.nan, 4.0], [8.0, math.nan, 4.0]])
+def test_cells_are_split_by_their_worst_passage_and_where_an_error_is_no_number():
+    """By 2 where three stages make 2^6 of an error at the end, or 2^4 of one inside."""
+    local, cell = 1e-6, np.array([0, 1, 2, 3, 0, 1])
+    allowed = local * np.diff(COASTING.edges)[cell]
+    at_end = np.array([50.0, 1.0, math.nan, 0.9, 2.0, 1e9]) * allowed
+    inside = np.array([0.5, 0.5, 0.5, 14.0, 0.5, 0.5]) * local
+    fine = COASTING.refined(cell, at_end, inside, local)
+    _, parts = np.unique(
+        np.searchsorted(COASTING.edges, fine.edges[:-1], "right"), return_counts=True
+    )
+    assert parts[:4].tolist() == [2, 4, 2, 2]
+    assert set(parts[4:]) == {1}
+    enough = np.full(6, 1e-9)
+    assert COASTING.refined(cell, enough * allowed, enough * local, local) is COASTING
 
 
 def test_cells_last_as_long_as_their_energy():

@@ -302,10 +302,11 @@ def test_a_load_that_drives_as_the_crank_end_does_is_warned_of():
 
 
 def test_the_page_is_given_both_ends():
-    gas = exported(STEAM)["gas"]
-    assert gas["share"] == pytest.approx(1.0 - ROD / AREA, rel=1e-15)
-    assert len(gas["crank_end"]) == len(gas["below"]) == 1
-    assert exported(load_scene("propeller"))["gas"]["share"] == 0.0
+    given = exported(STEAM)
+    share = given["piston"]["crank_end_share"]
+    assert share == pytest.approx(1.0 - ROD / AREA, rel=1e-15)
+    assert len(given["gas"]["crank_end"]) == len(given["gas"]["below"]) == 1
+    assert exported(load_scene("propeller"))["gas"]["crank_end"] == []
 
 
 REFUSED = {
