@@ -12,6 +12,10 @@ from crankmbs.page.refusals import early_end
 pytestmark = pytest.mark.slow
 
 PHONE, LAPTOP = (390, 844), (1366, 641)
+ENDS = """what => [...document.querySelectorAll(what)].map((each) => {
+    const { left, right } = each.getBoundingClientRect();
+    return [left, right];
+})"""
 SHOWN = [
     name
     for name, scene in ((name, load_scene(name)) for name in shipped_scenes())
@@ -53,6 +57,21 @@ def test_it_begins_with_a_question_the_mechanism_a_plot_and_three_knobs(
         visited.page.click("#more")
         assert visited.page.is_visible("#lower")
         assert len(visited.page.locator(".knob:visible").all()) >= len(knobs)
+
+
+@pytest.mark.parametrize("size", [PHONE, LAPTOP], ids=str)
+@pytest.mark.parametrize("name", ["v_twin", "two_stage_compressor"])
+def test_names_of_forces_stand_beside_a_cylinder_that_leans(browser, tmp_path, name, size):
+    with opened(browser, tmp_path, name, size=size, everything=False) as visited:
+        visited.settle()
+        walls, names, (stage,) = (
+            visited.page.evaluate(ENDS, what)
+            for what in ("#stage .cylinder .wall", "#stage .arrows text", "#stage")
+        )
+        assert len(names) >= 2
+        for left, right in names:
+            assert left >= max(end for _, end in walls)
+            assert right <= stage[1] + 1.0
 
 
 def test_the_mechanism_is_larger_than_the_plot(page):

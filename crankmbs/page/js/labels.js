@@ -2,6 +2,17 @@
 
 export const LETTER = 0.62; // of the type: how wide a bold letter is
 const APART = 1.25; // of the type, between names
+const LEANS = 0.3; // sine of the angle at which names stand on one side of a cylinder
+
+/** The box of a drawing, widened on the side to which the chosen cylinder leans, so that names of
+ * so many letters stand beside it; and its scale [px]. size : of the svg; type : its letters [px];
+ * lean : sine, to the right */
+export function boxBeside({ left, top, width, height }, size, { letters, type, lean }) {
+  const room = Math.abs(lean) > LEANS ? Math.min(LETTER * type * letters, 0.5 * size.width) : 0;
+  const scale = Math.min((size.width - room) / width, size.height / height) || 1;
+  const more = Math.max(2 * room - (size.width - scale * width), 0) / scale;
+  return { left: lean < 0 ? left - more : left, top, width: width + more, height, scale };
+}
 
 /** Write names { name, kind, x, y of the arrow's end } to the left and right of a stage's drawing,
  * each with a line to its arrow. */

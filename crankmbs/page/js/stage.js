@@ -3,7 +3,7 @@
 import { proportions, turnedBy } from "./drawing.js";
 import { BODIES, forcesOn } from "./forces.js";
 import { general, readable, roundBelow } from "./format.js";
-import { LETTER, namesBeside } from "./labels.js";
+import { LETTER, boxBeside, namesBeside } from "./labels.js";
 import { arrowOf, rodOf, webOf } from "./outlines.js";
 import { Pen, add, set, watched } from "./svg.js";
 
@@ -33,30 +33,31 @@ export class Stage {
     const { train } = cycle;
     Object.assign(this, { cycle, train, k, body });
     this.sizes = proportions(train, ratio, this.compression);
-    this.largest = this.largestOf(cycle, body, k);
+    this.measure(cycle, body, k);
+    [this.lean] = onScreen(turnedBy(train.cylinders[k].bank, 1, 0));
     this.most = Math.max(...cycle.samples.map((v) => v.cylinders[k].gas_pressure), 1);
     const lead = Math.max(...cycle.leads.map(Math.abs));
     this.magnified = lead > 1e-9 ? Math.max(roundBelow(LEAD / lead), 1) : 0;
     const made = JSON.stringify([k, train.cylinders, heavy, this.magnified > 0]);
     if (made !== this.made) this.make(heavy);
     const { rim, ...others } = this.sizes;
-    const fits = JSON.stringify([made, others, this.size, this.magnified]);
+    const fits = JSON.stringify([made, others, this.size, this.magnified, this.letters]);
     if (fits !== this.fits) this.fit();
     [this.made, this.fits] = [made, fits];
     for (const disc of this.discs) set(disc, { r: rim * UNITS });
     this.fitScale();
   }
 
-  /** The largest force of the cycle on a body [N]. */
-  largestOf(cycle, body, k) {
-    if (!BODIES.includes(body)) return 0;
-    let most = 0;
+  /** The largest force of the cycle on a body [N], and the letters of the longest name. */
+  measure(cycle, body, k) {
+    [this.largest, this.letters] = [0, 0];
+    if (!BODIES.includes(body)) return;
     for (const v of cycle.samples) {
-      for (const { force } of forcesOn(body, this.train, v, k)) {
-        most = Math.max(most, Math.hypot(...force));
+      for (const { name, force } of forcesOn(body, this.train, v, k)) {
+        this.largest = Math.max(this.largest, Math.hypot(...force));
+        this.letters = Math.max(this.letters, name.length);
       }
     }
-    return most;
   }
 
   /** How long the arrow of a force [N] is drawn: by its root, so that small ones show where to. */
@@ -93,8 +94,9 @@ export class Stage {
   /** The sizes of all that stands still. */
   fit() {
     const { root, sizes, parts, axle } = this;
-    const { left, top, width, height } = scaledBox(sizes.bounds);
-    const scale = Math.min(this.size.width / width, this.size.height / height) || 1;
+    const drawn = scaledBox(sizes.bounds);
+    const words = { letters: this.letters, type: SMALL * this.size.type, lean: this.lean };
+    const { left, top, width, height, scale } = boxBeside(drawn, this.size, words);
     set(root, { viewBox: `${left} ${top} ${width} ${height}` });
     // lines are about as wide on every screen; a new value would be a new style for every part
     root.style.setProperty("--px", (1 / scale).toPrecision(2));
@@ -102,7 +104,7 @@ export class Stage {
     const middle = left + 0.5 * width; // what is wider than the drawing is room beside it
     const half = (0.5 * this.size.width) / scale;
     const above = top + 0.5 * (height - this.size.height / scale);
-    this.sides = { left, right: left + width };
+    this.sides = { left: drawn.left, right: drawn.left + drawn.width };
     this.edge = { left: middle - half, right: middle + half, top: above };
     parts.forEach((part, k) => this.fitCylinder(part, sizes.each[k]));
     set(axle, { r: 0.13 * sizes.r * UNITS });
