@@ -35,6 +35,7 @@ _PLACES = 360  # at which it is compared: between samples, beside jumps at whole
 _STATES = 60  # of the whole run
 _LATE = 1e-3  # of a stretch that begins at rest: where friction lets go, rounding decides
 _NOTHING = 1e-9  # of the largest of the same unit: what is smaller is compared with that
+_TOO_SMALL = 2.0  # times as large as its stated estimate a true error may be, here as everywhere
 _SAME = 1e-6  # of the sample spacing: so near each other two samples are one
 _MOTION = {
     "crank speed": ("crank_speed",),
@@ -119,8 +120,8 @@ class Confirmation:
 
     @property
     def holds(self) -> bool:
-        """Whether the difference lies within the error that both state."""
-        return not self.difference > self.error
+        """Whether the difference lies within twice the error that both state, an estimate."""
+        return not self.difference > _TOO_SMALL * self.error
 
     @property
     def sentence(self) -> str:
