@@ -147,7 +147,7 @@ def test_the_perturbation_is_off_by_what_is_printed():
     (file,) = [text for language, text in blocks(OWN) if language == "py"]
     exec(file, own)
     (shares,) = re.findall(r"it is off by ([\d., and]+) % of the fluctuation", OWN)
-    (inertias,) = re.findall(r"the flywheel\s+goes from ([\d., overandto]+) kg m\^2", OWN)
+    (inertias,) = re.findall(r"the\s+flywheel\s+goes from ([\d., overandto]+) kg m\^2", OWN)
     pairs = zip(re.findall(r"[\d.]+", shares), re.findall(r"[\d.]+", inertias), strict=True)
     for share, inertia in pairs:
         scene = crankmbs.load_scene("yi_diesel_free").with_(
