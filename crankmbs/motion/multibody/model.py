@@ -187,8 +187,8 @@ class Model:
         jerk = (sides[1].acceleration[0] - sides[0].acceleration[0]) / step
         own, *shifts = quiet_shifts(jerk, step)
         smooth = omega + float(own[2]) if omega else 0.0  # at rest it is not to turn back
-        here_too = here.position[0], here.velocity[0], here.acceleration[0]
-        return (smooth, alpha), *(x + shift for x, shift in zip(here_too, shifts, strict=True))
+        begin = here.position[0], here.velocity[0], here.acceleration[0]
+        return (smooth, alpha), *(x + shift for x, shift in zip(begin, shifts, strict=True))
 
     def run(
         self,
