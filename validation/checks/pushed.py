@@ -1,8 +1,9 @@
-"""Forces from outside on the pistons: random scenes by their seeds."""
+"""Forces from outside on the pistons, and unlike cylinders: random scenes by their seeds."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,8 +16,9 @@ from validation.case import Case, shifted
 from validation.judge import Outcome
 from validation.oracles.changing import changing_motion
 from validation.random_forces import random_forces
+from validation.random_unlike import random_unlike
 
-__all__ = ["stated_scenes", "worst_ratio"]
+__all__ = ["stated_scenes", "unlike_scenes", "worst_ratio"]
 
 _TOO_SMALL = 2.0  # the true error may be this many times the stated one and the oracle's
 _TOO_LARGE = 100.0  # the stated error may be this many times the true one, or what is asked
@@ -44,12 +46,21 @@ def stated_scenes(case: Case) -> Outcome:
     """True error over twice the sum of the stated one and the oracle's own, or stated over 100
     times the true one and over what was asked for, or what the run says that it reached instead:
     the worst variable of all scenes, each run by one of the formulations in turn."""
+    return _worst(case, random_forces, "rod.length")
+
+
+def unlike_scenes(case: Case) -> Outcome:
+    """The same of scenes whose cylinders are unlike one another."""
+    return _worst(case, random_unlike, "layout.cylinders.0.radius")
+
+
+def _worst(case: Case, draw: Callable[[int], Scene], length: str) -> Outcome:
     first, count = int(case.parameters["first"]), int(case.parameters["count"])
     formulations = case.parameters["formulations"]
     worst, said, left_out = 0.0, "", []
     for seed in range(first, first + count):
-        theirs = random_forces(seed)
-        ours = shifted(theirs, "rod.length", lambda length: length * case.number("rod"))
+        theirs = draw(seed)
+        ours = shifted(theirs, length, lambda length: length * case.number("factor"))
         formulation = formulations[seed % len(formulations)]
         try:
             ratio, what = worst_ratio(simulate(ours, formulation=formulation), theirs)
