@@ -9,6 +9,8 @@ from collections.abc import Iterable
 
 __all__ = ["StepSizes"]
 
+_DIED_OUT = 1e-12  # of the time: steps as short led to where a load has no value, and need no half
+
 
 class StepSizes:
     """When the steps of a pass begin and how long they are [s]: without bound where the crank angle
@@ -35,6 +37,7 @@ class StepSizes:
 
     def halved(self, time: float, size: float) -> float:
         """A step [s] from a time [s] on, no longer than half the one under way at its middle."""
-        while size > (half := 0.5 * self.at(time + 0.5 * size)):
+        least = _DIED_OUT * abs(time)
+        while size > (half := 0.5 * self.at(time + 0.5 * size)) > least:
             size = half
         return size
