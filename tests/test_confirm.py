@@ -13,6 +13,7 @@ from crankmbs.result import Result
 from crankmbs.scene.read import load_scene
 from crankmbs.scene.run import Run
 from crankmbs.simulate import simulate
+from validation.random_forces import random_forces
 
 pytestmark = pytest.mark.slow
 
@@ -88,6 +89,11 @@ def test_a_crank_that_friction_holds_is_confirmed_too(name: str) -> None:
     assert found.holds
     assert found.at_states <= 1e-9
     assert "while it holds the crank at rest" in found.missing[0]
+
+
+@pytest.mark.parametrize("seed", [19, 36])
+def test_between_samples_the_run_errs_by_what_its_passes_differ_by(seed: int) -> None:
+    assert confirm(simulate(random_forces(seed))).holds
 
 
 @pytest.mark.parametrize(

@@ -52,7 +52,7 @@ KINDS = (
         "Random scenes",
         "Nothing but the scene, drawn from a seed: stated errors against the oracles.",
         "changing.stated_scenes double.stated_scenes drawn.stated_scenes friction.random_errors "
-        "periods pushed stepped unlike",
+        "periods pushed stepped",
     ),
     Kind(
         "Another formulation that shares no mechanics",

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from crankmbs.errors import FormulationError, InputError
+from crankmbs.measures.interpolate import read_with_errors
 from crankmbs.mechanics.knots import repeat
 from crankmbs.mechanics.train import CrankTrain, crank_train
 from crankmbs.mechanics.variables import EVERY
@@ -18,7 +19,6 @@ from crankmbs.mechanics.windows import Phase
 from crankmbs.motion.cells import Cells
 from crankmbs.motion.motion import Motion
 from crankmbs.motion.plan import Plan, plan_of
-from crankmbs.motion.states import variables_at
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 from crankmbs.scene.scene import Scene
@@ -35,7 +35,6 @@ _PLACES = 360  # at which it is compared: between samples, beside jumps at whole
 _STATES = 60  # of the whole run
 _LATE = 1e-3  # of a stretch that begins at rest: where friction lets go, rounding decides
 _NOTHING = 1e-9  # of the largest of the same unit: what is smaller is compared with that
-_TOO_SMALL = 2.0  # times as large as its stated estimate a true error may be, here as everywhere
 _SAME = 1e-6  # of the sample spacing: so near each other two samples are one
 _MOTION = {
     "crank speed": ("crank_speed",),
@@ -120,8 +119,8 @@ class Confirmation:
 
     @property
     def holds(self) -> bool:
-        """Whether the difference lies within twice the error that both state, an estimate."""
-        return not self.difference > _TOO_SMALL * self.error
+        """Whether the difference lies within the error that both state."""
+        return not self.difference > self.error
 
     @property
     def sentence(self) -> str:
@@ -200,8 +199,7 @@ def _last_period(
     if part.at(np.array([begin]), in_time=True).omega[0] == 0.0:
         begin += _LATE * (end - begin)
     times = begin + (end - begin) * (np.arange(_PLACES) + 0.5) / _PLACES
-    states = part.at(times, in_time=True)
-    ours, fuel = variables_at(part.train, states), states.own.get("fuel")
+    ours, stated = read_with_errors(result, result.passes, times, in_time=True)
     if result.scene.motion is not None:
         acts = _acts(part, times)
         theirs = beside.consistent(train, ours, acts, driven=True) | {"time": times}
@@ -209,12 +207,13 @@ def _last_period(
     else:
         start = part.at(np.array([begin]), in_time=True)
         state = begin, float(start.theta[0]), float(start.omega[0])
-        shares = None if fuel is None else _shares(train, states.theta, fuel)
+        fuel = ours.get("fuel")
+        shares = None if fuel is None else _shares(train, ours["crank_angle"], fuel)
         phases, steps = part.cells[0].acting.phases, _STEPS // len(result.scene.cylinders)
         theirs, errors = beside.integrated(train, state, (phases, shares), times, _RTOL, steps)
     turned = abs(part.turned)
     rows = {"crank angle": ("crank_angle",), **_MOTION, **_forces(result.scene)}
-    return _rows(rows, ours, theirs, _stated_by(result), errors, turned), (begin, end)
+    return _rows(rows, ours, theirs, stated, errors, turned), (begin, end)
 
 
 def _shares(train: CrankTrain, theta: Array, fuel: Array) -> Shares:

@@ -16,7 +16,7 @@ from crankmbs.result import Result
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["interp", "read_at"]
+__all__ = ["interp", "read_at", "read_with_errors"]
 
 _HAIR = 1e-12  # of the run: an end may be so far off by rounding
 
@@ -62,19 +62,32 @@ def read_at(result: Result, passes: Passes, wanted: Array, *, in_time: bool) -> 
     angles [rad], shape (n,), as `interp` gives it."""
     import xarray as xr
 
+    values, errors = read_with_errors(result, passes, wanted, in_time=in_time)
+    rows = {}
+    for variable, found in values.items():
+        sampled = result.data[variable]
+        attributes = {**sampled.attrs, "error_estimate": errors[variable]}
+        rows[variable] = (sampled.dims, found, attributes)
+    coordinates = {name: rows.pop(name) for name in ("time", "crank_angle")}
+    numbers = {str(of): result.data[of] for of in result.data.dims if of != "time"}
+    return xr.Dataset(rows, {**coordinates, **numbers})
+
+
+def read_with_errors(
+    result: Result, passes: Passes, wanted: Array, *, in_time: bool
+) -> tuple[dict[str, Array], dict[str, float]]:
+    """The same as arrays, (n,) or (n, cylinders), and the error of each."""
+
     def read(motion: Motion) -> dict[str, Array]:
         return variables_at(motion.train, motion.at(wanted, in_time=in_time))
 
     values, others = read(passes.answer), [read(motion) for motion in passes.checks]
-    rows = {}
+    sampled, errors = result.variables, {}
     for variable, found in values.items():
-        sampled = result.data[variable]
         apart = [float(np.max(np.abs(one[variable] - found))) for one in others]
-        error = float(sampled.attrs["error_estimate"]) + passes.share * max(apart, default=0.0)
-        rows[variable] = (sampled.dims, found, {**sampled.attrs, "error_estimate": error})
-    coordinates = {name: rows.pop(name) for name in ("time", "crank_angle")}
-    numbers = {str(of): result.data[of] for of in result.data.dims if of != "time"}
-    return xr.Dataset(rows, {**coordinates, **numbers})
+        stated = float(sampled[variable][2]["error_estimate"])
+        errors[variable] = stated + passes.share * max(apart, default=0.0)
+    return values, errors
 
 
 def _inside(result: Result, name: str, unit: str, given: ArrayLike | None) -> Array:

@@ -31,6 +31,7 @@ _UNTOUCHED = 0.98  # of the time to where it fails: before it goes wrong
 _EPS = float(np.finfo(float).eps)
 _STUCK = 1e-9  # rad/s2
 _EXTRAPOLATED = (-1.0 / 3.0, 4.0 / 3.0)  # weights of two runs, h and h/2, whose error is of h^2
+_BEFORE = (-1.0 / 48.0, 5.0 / 48.0, -20.0 / 48.0, 64.0 / 48.0)  # E'' + (E - E') / 16
 _SHAKEN = 1e-12  # of the crank angle: how far off a run begins that shows what rounding grows to
 _HELD = "a jump of the loads drives the speed back from both sides"
 _NO_STEP = "exudyn's Newton iteration does not converge"
@@ -191,7 +192,9 @@ class Runs:
 
         With f, f', f'' the last three runs, coarse to fine, the answer is E'' = f'' + (f'' - f')/3
         where that differs from E' = f' + (f' - f)/3 by at most a third of f'' - f', and loads jump
-        nowhere within a step; it is checked by E'. Else the answer is f'', and the checks are off
+        nowhere within a step; it is checked by E', and by a motion that is off by what E' was off
+        by from the one before, E, over 16: where in its last step a run is cut differs from run to
+        run, and E' may be right by chance. Else the answer is f'', and the checks are off
         by half of f - f'' and by f' - f'': at order 1 the first is no less by chance where f' is
         between, and the second where it is not. The last check is off by what the rounding of all
         steps grows to, as they do at random. Of one run there is none.
@@ -204,6 +207,8 @@ class Runs:
         if len(coarser) == 2 and fine.whole and self._is_clean():
             answer = Motion((coarser[1], fine), _EXTRAPOLATED)
             checks = [Motion(tuple(coarser), _EXTRAPOLATED)]
+            if len(self.paths) > len(_BEFORE) - 1:
+                checks.append(Motion(tuple(self.paths[-len(_BEFORE) :]), _BEFORE))
         rounded = math.sqrt(fine.steps) * _EPS / _SHAKEN
         also = (self.shaken, self.paths[0], *answer.paths), (rounded, -rounded, *answer.weights)
         return answer, (*checks, Motion(*also))
