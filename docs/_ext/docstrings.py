@@ -9,6 +9,8 @@ import typing
 from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
+from sphinx.util.inspect import stringify_signature
+
 if TYPE_CHECKING:
     from sphinx.application import Sphinx
 
@@ -83,8 +85,6 @@ def _typed(app: Sphinx, what: str, name: str, thing: Any, *_: Any) -> tuple[str,
         for each in plain.parameters.values()
     ]
     bare = plain.replace(parameters=parameters)
-    from sphinx.util.inspect import stringify_signature  # the docstrings' tests run without Sphinx
-
     return stringify_signature(bare, show_return_annotation=False, unqualified_typehints=True), ""
 
 
