@@ -1,4 +1,4 @@
-"""The manual: its blocks run and print what it shows, its tables are complete."""
+"""The manual, whose build runs its blocks: its tables are complete, what it names is there."""
 
 import re
 import sys
@@ -6,7 +6,6 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
-import matplotlib as mpl
 import pytest
 from typer.main import get_command
 
@@ -27,15 +26,6 @@ from blocks import DOCS, WIDTH, Reader, blocks, pages, printed
 pytestmark = pytest.mark.slow
 
 PAGES = {str(page): (DOCS / page).read_text(encoding="utf-8") for page in pages()}
-
-
-@pytest.mark.parametrize("page", [page for page, text in PAGES.items() if blocks(text)])
-def test_a_page_runs_as_printed(page, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    mpl.use("agg")
-    reader = Reader()
-    for block in blocks(PAGES[page]):
-        reader.follow(block)
 
 
 def test_what_a_page_shows_can_be_wrong(tmp_path, monkeypatch):

@@ -8,6 +8,7 @@ from guards import COLLECTED
 
 from validation import inputs
 from validation.case import load_cases
+from validation.judge import SEEN
 from validation.kinds import KINDS, kind_of
 from validation.mutants.page import write_page
 from validation.mutants.plan import load_mutants
@@ -25,6 +26,11 @@ def test_every_claim_has_its_row_and_was_judged_from_the_inputs_as_they_are():
     rows = read_rows()
     assert stale(list(CASES.values()), rows) == [], "judge them: python -m validation NAME ..."
     assert rows.keys() <= CASES.keys(), "python -m validation --page drops the others"
+
+
+def test_every_claim_was_seen_to_turn_red():
+    blind = {name: row.mutant for name, row in read_rows().items() if row.mutant != SEEN}
+    assert blind == {}
 
 
 def test_report_and_claims_are_those_of_the_rows(tmp_path):

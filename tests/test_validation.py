@@ -13,7 +13,7 @@ from validation import judge as judging
 from validation import reference
 from validation.case import Case, Mutant, load_case, load_cases, shifted
 from validation.claims import claims_page
-from validation.judge import Outcome, Skipped, Verdict, judge
+from validation.judge import SEEN, Outcome, Skipped, Verdict, judge, seen
 from validation.report import write_pages
 from validation.results import read_rows, row_of, write_rows
 
@@ -129,8 +129,14 @@ def test_every_reference_names_its_source():
 
 
 def rows_of(verdicts):
-    made = {"seconds": 1, "date": "2000-01-01", "commit": "0", "environment": "a machine"}
-    return {v.case.name: row_of(v, **made) for v in verdicts}
+    made = {
+        "mutant": SEEN,
+        "seconds": 1,
+        "date": "2000-01-01",
+        "commit": "0",
+        "environment": "a machine",
+    }
+    return {v.case.name: row_of(replace(v, mutant=SEEN), **made) for v in verdicts}
 
 
 def test_report(tmp_path):
@@ -184,6 +190,28 @@ def test_shifting_reaches_into_a_scene():
     moved = shifted(scene, "torque.0.coefficient", lambda value: 2.0 * value)
     assert moved.torque[0].coefficient == 2.0 * scene.torque[0].coefficient
     assert replace(moved, torque=scene.torque) == scene
+
+
+def test_a_shifted_parameter_is_seen_or_what_came_instead_is_said():
+    assert seen(CASE) == SEEN
+    parameter = CASE.mutant.parameter
+    unmoved = replace(CASE, mutant=Mutant(parameter, 1.0))
+    assert seen(unmoved).startswith(f"holds under {parameter} shifted: ")
+    shorter = CASES["honest_turning_moment_crank_angle"]
+    assert shorter.mutant.until is not None
+    assert seen(replace(shorter, tolerance=-1.0)).startswith("fails shortened alone: ")
+
+
+def test_a_claim_that_does_not_see_its_mutant_is_red(monkeypatch, capsys, tmp_path):
+    (row,) = rows_of([Verdict(CASE, "holds", Outcome(0.0, "fine"))]).values()
+    assert row.green
+    assert not replace(row, mutant="holds under it").green
+    monkeypatch.setattr(command, "load_cases", lambda: [CASE])
+    monkeypatch.setattr(command, "seen", lambda case: "holds under it")
+    monkeypatch.setattr(command, "write_rows", lambda rows: None)
+    monkeypatch.setattr(command, "write_pages", lambda cases, rows: "the pages")
+    assert command.main([CASE.name]) == 1
+    assert "; holds under it\n1 claims, 1 red" in capsys.readouterr().out
 
 
 def test_a_mutant_is_on_our_side_only():

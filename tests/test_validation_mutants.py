@@ -1,4 +1,4 @@
-"""Every tolerance has been seen to fail: the shifted parameter of a claim turns it red."""
+"""A speed that is slightly off turns every curve of the lectures over the angle red."""
 
 from dataclasses import replace
 
@@ -9,9 +9,6 @@ from validation.judge import judge
 
 pytestmark = pytest.mark.slow
 
-CASES = load_cases()
-
-
 OVER_THE_ANGLE = {
     "curves.truncation",
     "curves.maximum_speed",
@@ -20,19 +17,7 @@ OVER_THE_ANGLE = {
     "two_mass.torque_of_one_cylinder",
     "two_mass.torque_of_all_cylinders",
 }
-CURVES = [case for case in CASES if case.check in OVER_THE_ANGLE]
-SHORTENED = [case for case in CASES if case.mutant.until is not None]
-
-
-@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
-def test_a_shifted_parameter_turns_the_claim_red(case):
-    verdict = judge(replace(case, mutated=True, shortened=True))
-    assert verdict.word == "fails", verdict.outcome.detail
-
-
-@pytest.mark.parametrize("case", SHORTENED, ids=lambda case: case.name)
-def test_a_shorter_run_alone_does_not(case):
-    assert judge(replace(case, shortened=True)).word == "holds"
+CURVES = [case for case in load_cases() if case.check in OVER_THE_ANGLE]
 
 
 @pytest.mark.parametrize("case", CURVES, ids=lambda case: case.name)

@@ -11,7 +11,7 @@ import pytest
 from validation.about import commit, environment
 from validation.case import Mutant, load_cases
 from validation.claims import claims_page
-from validation.judge import Outcome, Verdict
+from validation.judge import SEEN, Outcome, Verdict
 from validation.results import row_of
 
 pytestmark = pytest.mark.slow
@@ -20,8 +20,13 @@ CASES = {case.name: case for case in load_cases()}
 
 
 def written(case):
-    made = {"seconds": 1, "date": "2000-01-01", "commit": "0", "environment": "a machine"}
-    row = row_of(Verdict(case, "holds", Outcome(0.0, "fine")), **made)
+    made = {
+        "seconds": 1,
+        "date": "2000-01-01",
+        "commit": "0",
+        "environment": "a machine",
+    }
+    row = row_of(Verdict(case, "holds", Outcome(0.0, "fine"), SEEN), **made)
     return claims_page([case], {case.name: row})
 
 

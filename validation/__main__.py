@@ -6,27 +6,29 @@ import sys
 import time
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import replace
 from datetime import UTC, datetime
+from functools import partial
 
 from validation.about import commit, environment
 from validation.case import Case, load_cases
-from validation.judge import Verdict, judge
+from validation.judge import SEEN, Verdict, judge, seen
 from validation.many import run_many
 from validation.report import write_pages
 from validation.results import read_rows, row_of, stale, write_rows
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Print one line a claim; but for --quick and --long, keep what is measured and write the
-    pages."""
+    """Print one line a claim; but for --quick and --long, try its shifted parameter, too, keep what
+    is measured and write the pages."""
     cases = load_cases()
     asked = _parser([case.name for case in cases]).parse_args(arguments)
     if asked.long is not None:
         return 0 if run_many(asked.long, asked.first, asked.processes) else 1
     processes = asked.processes or 1
     if asked.quick:
-        verdicts = [v for v, _ in _judged([case for case in cases if case.quick], processes)]
-        return 0 if verdicts and all(verdict.green for verdict in verdicts) else 1
+        tried = list(_judged([case for case in cases if case.quick], processes, shift=False))
+        return 0 if tried and all(verdict.green for verdict, _ in tried) else 1
     chosen = [case for case in cases if not asked.page and case.name in (asked.name or case.name)]
     return 0 if _written(cases, chosen, processes) else 1
 
@@ -70,7 +72,7 @@ def _written(cases: Sequence[Case], chosen: Sequence[Case], processes: int) -> b
     names = {case.name for case in cases}
     rows = {name: row for name, row in read_rows().items() if name in names}
     at, made_with, day = commit(), environment(), f"{datetime.now(UTC):%Y-%m-%d}"
-    for verdict, seconds in _judged(chosen, processes):
+    for verdict, seconds in _judged(chosen, processes, shift=True):
         row = row_of(verdict, seconds=seconds, date=day, commit=at, environment=made_with)
         rows[row.name] = row
         write_rows(rows)
@@ -81,33 +83,42 @@ def _written(cases: Sequence[Case], chosen: Sequence[Case], processes: int) -> b
     return all(rows[name].green for name in names)
 
 
-def _judged(cases: Sequence[Case], processes: int) -> Iterator[tuple[Verdict, int]]:
-    """Verdicts as they come, each with its seconds; printed, one line a claim."""
+def _judged(cases: Sequence[Case], processes: int, *, shift: bool) -> Iterator[tuple[Verdict, int]]:
+    """Verdicts as they come, each with its seconds; printed, one line a claim.
+
+    shift : whether the shifted parameter is tried, too, which is not counted in the seconds
+    """
     begin, count, red = time.perf_counter(), 0, 0
-    for verdict, seconds in _timed_all(cases, processes):
+    for verdict, seconds in _timed_all(cases, processes, shift=shift):
         count, red = count + 1, red + (not verdict.green)
         print(
             f"{verdict.word:12} {verdict.case.name:40} {verdict.outcome.error:9.2e} of "
             f"{verdict.case.tolerance:7.1e}  {verdict.outcome.detail}",
+            f"; {verdict.mutant}" if verdict.mutant not in ("", SEEN) else "",
+            sep="",
             flush=True,
         )
         yield verdict, seconds
     print(f"{count} claims, {red} red, {time.perf_counter() - begin:.0f} s")
 
 
-def _timed_all(cases: Sequence[Case], processes: int) -> Iterator[tuple[Verdict, int]]:
+def _timed_all(
+    cases: Sequence[Case], processes: int, *, shift: bool
+) -> Iterator[tuple[Verdict, int]]:
+    timed = partial(_timed, shift=shift)
     if processes == 1:
-        yield from map(_timed, cases)
+        yield from map(timed, cases)
         return
     with ProcessPoolExecutor(processes) as pool:
-        for future in as_completed([pool.submit(_timed, case) for case in cases]):
+        for future in as_completed([pool.submit(timed, case) for case in cases]):
             yield future.result()
 
 
-def _timed(case: Case) -> tuple[Verdict, int]:
+def _timed(case: Case, *, shift: bool) -> tuple[Verdict, int]:
     begin = time.perf_counter()
     verdict = judge(case)
-    return verdict, round(time.perf_counter() - begin)
+    seconds = round(time.perf_counter() - begin)
+    return (replace(verdict, mutant=seen(case)) if shift else verdict), seconds
 
 
 if __name__ == "__main__":

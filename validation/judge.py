@@ -5,7 +5,7 @@ from __future__ import annotations
 import importlib
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from validation.case import Case
@@ -14,7 +14,9 @@ from validation.reference import MissingReference
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["Outcome", "Skipped", "Verdict", "judge"]
+__all__ = ["SEEN", "Outcome", "Skipped", "Verdict", "judge", "seen"]
+
+SEEN = "seen"
 
 
 class Skipped(Exception):
@@ -38,16 +40,21 @@ class Outcome:
 
 @dataclass(frozen=True)
 class Verdict:
-    """word : "holds", "fails", "skipped", "no reference" or "broken"; only the first is green."""
+    """What became of a claim.
+
+    word : "holds", "fails", "skipped", "no reference" or "broken"
+    mutant : what `seen` says of its shifted parameter; "" where that was not tried
+    """
 
     case: Case
     word: str
     outcome: Outcome
+    mutant: str = ""
 
     @property
     def green(self) -> bool:
-        """Whether the claim holds."""
-        return self.word == "holds"
+        """Whether the claim holds, and would not with its shifted parameter."""
+        return self.word == "holds" and self.mutant in ("", SEEN)
 
 
 def judge(case: Case) -> Verdict:
@@ -61,6 +68,19 @@ def judge(case: Case) -> Verdict:
     except Exception as error:
         return Verdict(case, "broken", Outcome(math.nan, f"{type(error).__name__}: {error}"))
     return Verdict(case, "holds" if outcome.error <= case.tolerance else "fails", outcome)
+
+
+def seen(case: Case) -> str:
+    """Whether the shifted parameter of a claim turns it red, and a shorter run alone does not:
+    `SEEN`, or what came instead."""
+    shifted = judge(replace(case, mutated=True, shortened=True))
+    if shifted.word != "fails":
+        return f"{shifted.word} under {case.mutant.parameter} shifted: {shifted.outcome.detail}"
+    if case.mutant.until is not None:
+        shorter = judge(replace(case, shortened=True))
+        if shorter.word != "holds":
+            return f"{shorter.word} shortened alone: {shorter.outcome.detail}"
+    return SEEN
 
 
 def _check_of(case: Case) -> Callable[[Case], Outcome]:

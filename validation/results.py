@@ -12,7 +12,7 @@ from typing import Any
 
 from validation.case import Case
 from validation.inputs import digest
-from validation.judge import Verdict
+from validation.judge import SEEN, Verdict
 
 __all__ = ["DETAILS", "RESULTS", "Row", "read_rows", "row_of", "stale", "write_rows"]
 
@@ -27,6 +27,7 @@ class Row:
 
     name, claim : of the case
     verdict : that of `validation.judge`; measured, tolerance : in the norm of the case
+    mutant : whether the shifted parameter of the case was seen, as `validation.judge.seen` says it
     seconds : what that took; date, commit, environment : when, of which checkout and with what
     inputs : digest of what it was judged from
     detail : one line with the numbers behind it; table : lines of Markdown; figures : names in
@@ -38,6 +39,7 @@ class Row:
     verdict: str
     measured: float
     tolerance: float
+    mutant: str
     seconds: int
     date: str
     commit: str
@@ -49,8 +51,8 @@ class Row:
 
     @property
     def green(self) -> bool:
-        """Whether the claim held."""
-        return self.verdict == "holds"
+        """Whether the claim held, and would not have with its shifted parameter."""
+        return self.verdict == "holds" and self.mutant == SEEN
 
     @property
     def share(self) -> float:
@@ -78,6 +80,7 @@ def row_of(
         verdict=verdict.word,
         measured=float(outcome.error),
         tolerance=case.tolerance,
+        mutant=verdict.mutant,
         seconds=seconds,
         date=date,
         commit=commit,

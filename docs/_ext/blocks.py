@@ -141,8 +141,8 @@ def _elsewhere() -> Iterator[None]:
 
 
 def _made(app: Sphinx, name: str, source: list[str]) -> None:
-    """Put what the blocks of a page print in place of what it says that they print."""
-    if not any(block.language == "text" for block in blocks(source[0])):
+    """Follow a page, and put what its blocks print in place of what it says that they print."""
+    if not blocks(source[0]):
         return
     reader = Reader()
     with _elsewhere():
