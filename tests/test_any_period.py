@@ -59,7 +59,10 @@ def wheel(*torque, speed=250.0 * TURN / 60.0, until="6 rev", inertia=INERTIA):
 
 def taken(t, theta, omega):
     """The same machine as a function."""
-    return float(np.interp(theta % (3.0 * TURN), ROWS.x, ROWS.y))
+    x = theta / DEGREE % 1080.0
+    if x < 720.0:
+        return max(-3000.0, -750.0 - 12.5 * min(x, 720.0 - x))
+    return -750.0
 
 
 BY_FUNCTION = Load(taken, kink_angles=ROWS.x[:-1], period=3.0 * TURN)

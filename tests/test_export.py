@@ -2,6 +2,7 @@
 script for exudyn that quotes the multibody model."""
 
 import inspect
+import math
 import re
 import runpy
 import subprocess
@@ -13,11 +14,14 @@ from command_line import crankmbs_, names, refused
 from scipy.io import loadmat
 
 import crankmbs
-from crankmbs import Constant, InputError, Load, OutputError, export, load_scene, simulate
+from crankmbs import Constant, Force, InputError, Load, OutputError, export, load_scene, simulate
 from crankmbs.export.exudyn import exudyn_script
 from crankmbs.motion.multibody.mechanism import mechanism_of
 from crankmbs.motion.multibody.model import build
+from crankmbs.scene.forces import ConstantForce, Damper, ForceAngleTable, Spring, TravelTable
+from crankmbs.scene.tables import Table
 
+TURN = 2.0 * math.pi
 TORQUE_DRIVEN = load_scene("torque_driven").with_(run__until="0.3 s")
 SCENES = {
     "torque_driven": TORQUE_DRIVEN,
@@ -26,6 +30,23 @@ SCENES = {
     "yi_diesel": load_scene("yi_diesel").with_(run__until="0.5 rev"),
     "steam_engine": load_scene("steam_engine").with_(run__until="0.5 rev"),
     "four cylinders": load_scene("yi_diesel_free").with_(run__until="0.2 rev"),
+    "forces": load_scene("torque_driven").with_(
+        run__until="0.1 s",
+        layout=crankmbs.Layout(
+            cylinders=(
+                crankmbs.Cylinder(),
+                crankmbs.Cylinder(bank="60 deg", phase="100 deg", radius="30 mm"),
+            )
+        ),
+        force=(
+            Spring(stiffness=2e4, relaxed_at=0.02, cylinder=1),
+            Damper(coefficient=40.0, cylinder=2),
+            ConstantForce(force=-300.0),
+            ForceAngleTable(
+                file=Table((0.0, 2.0, 4.0, TURN), (0.0, 500.0, -200.0, 0.0)), interpolation="cubic"
+            ),
+        ),
+    ),
     "banks": load_scene("torque_driven").with_(
         run__until="0.1 s",
         layout=crankmbs.Layout(
@@ -108,7 +129,10 @@ def test_a_hostile_title_stays_a_comment(tmp_path):
     [
         (load_scene("misfire"), "cannot express [fuel], whose shares are decided on the way"),
         (load_scene("friction"), "cannot express [friction], which jumps where a piston turns"),
-        (load_scene("turning_moment"), "torque[1], a angle_table; give constant, viscous or"),
+        (
+            load_scene("turning_moment"),
+            'torque[1], kind = "angle_table"; give constant, viscous or',
+        ),
         (
             TORQUE_DRIVEN.with_(torque=(Load(lambda t, theta, omega: 1.0),)),
             "torque[1], a function of Python; give constant",
@@ -123,6 +147,20 @@ def test_a_hostile_title_stays_a_comment(tmp_path):
                 motion__speed=crankmbs.Oscillation(mean=300.0, amplitude=3.0, order=2.0)
             ),
             "a prescribed speed that changes; give one constant speed",
+        ),
+        (
+            TORQUE_DRIVEN.with_(
+                force=(TravelTable(file=Table((0.0, 0.05, 0.2), (0.0, 0.0, 5.0))),)
+            ),
+            'force[1], kind = "travel_table"; give springs, dampers, constants or a table over',
+        ),
+        (
+            TORQUE_DRIVEN.with_(force=(Force(lambda t, phi, s, v: 1.0),)),
+            "force[1], a function of Python; give springs",
+        ),
+        (
+            TORQUE_DRIVEN.with_(force=(ConstantForce(force=1.0, until=0.1),)),
+            "the window of force[1]; leave out when it sets in",
         ),
         (load_scene("v_twin"), "its multibody run is cut where forces or loads jump"),
         (

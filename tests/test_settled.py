@@ -51,9 +51,11 @@ def settled(scene: Scene, **options: object) -> Result:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("loads", BRAKED)
-@pytest.mark.parametrize("formulation", ["crank_angle", "minimal"])
-def test_it_is_the_last_cycle_of_a_run_that_has_settled(loads: str, formulation: str) -> None:
+@pytest.mark.parametrize(
+    ("formulation", "loads"),
+    [*(("crank_angle", loads) for loads in BRAKED), ("minimal", "kinked"), ("minimal", "mixed")],
+)
+def test_it_is_the_last_cycle_of_a_run_that_has_settled(formulation: str, loads: str) -> None:
     scene = replace(DIESEL, torque=BRAKED[loads])
     found = settled(scene, formulation=formulation)
     assert found.status == 0, found.message

@@ -130,7 +130,6 @@ def test_every_reference_names_its_source():
 
 def rows_of(verdicts):
     made = {
-        "mutant": SEEN,
         "seconds": 1,
         "date": "2000-01-01",
         "commit": "0",

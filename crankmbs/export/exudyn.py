@@ -11,6 +11,8 @@ from typing import Any
 import numpy as np
 
 from crankmbs.errors import InputError
+from crankmbs.mechanics.geometry import top_position
+from crankmbs.mechanics.pressure import PeriodicPressure
 from crankmbs.mechanics.train import CrankTrain, crank_train
 from crankmbs.motion.multibody.beside import initial
 from crankmbs.motion.multibody.forces import Forces
@@ -18,7 +20,9 @@ from crankmbs.motion.multibody.generalized_alpha import settings_of
 from crankmbs.motion.multibody.mechanism import Body, Guide, Hinge, Mechanism, mechanism_of
 from crankmbs.motion.multibody.model import build
 from crankmbs.numerics.arrays import Array
-from crankmbs.numerics.cycle import NEAR
+from crankmbs.numerics.cycle import NEAR, Cycle
+from crankmbs.scene.force import PistonForce
+from crankmbs.scene.forces import ConstantForce, Damper, ForceAngleTable, Spring
 from crankmbs.scene.loads import Constant, Quadratic, Viscous
 from crankmbs.scene.scene import Scene
 from crankmbs.simulate import simulate
@@ -61,9 +65,9 @@ def exudyn_script(scene: Scene, stem: str) -> str:
 
     Raises
     ------
-    InputError : fuel, friction, forces on pistons, loads with windows, tables or functions, a
-        speed that changes, a settled motion, forces that jump, a crank that nothing moves; says
-        which
+    InputError : fuel, friction, torques by tables, forces over the travel or over time, windows,
+        functions, a speed that changes, a settled motion, forces that jump, a crank that nothing
+        moves; says which
 
     >>> "def run():" in exudyn_script(load_scene("torque_driven"), "mine")
     True
@@ -97,9 +101,8 @@ def _text(train: CrankTrain, stem: str, end: float, steps: int) -> str:
     quoted = [inspect.getsource(each) for each in sources]
     quoted[-1] = quoted[-1].replace("settings_of", "settings", 1)
     main = 'if __name__ == "__main__":\n    main()\n'
-    return "\n\n".join(
-        [_IMPORTS, *quoted, parameters, *_gas(train), _BODY.read_text(encoding="utf-8"), main]
-    )
+    body = _BODY.read_text(encoding="utf-8")
+    return "\n\n".join([_IMPORTS, *quoted, parameters, *_over_angle(train), body, main])
 
 
 def _run(text: str) -> dict[str, Array]:
@@ -138,19 +141,30 @@ def _refused(scene: Scene) -> str:
         return "[fuel], whose shares are decided on the way; remove [fuel]"
     if scene.friction is not None:
         return "[friction], which jumps where a piston turns; remove [friction]"
-    if scene.force:
-        return "[[force]], forces on the pistons; remove them"
     if scene.motion is not None and not isinstance(scene.motion.speed, float):
         return "a prescribed speed that changes; give one constant speed, or free the crank"
+    return _refused_load(scene)
+
+
+def _refused_load(scene: Scene) -> str:
     for number, load in enumerate(scene.torque, start=1):
         if not isinstance(load, Constant | Viscous | Quadratic):
-            kind = "a function of Python" if load.parts.function else f"a {load.kind}"
+            kind = "a function of Python" if load.parts.function else f'kind = "{load.kind}"'
             return (
                 f"torque[{number}], {kind}; give constant, viscous or quadratic loads, which are "
                 "smooth"
             )
-        if load.has_window:
-            return f"the window of torque[{number}]; leave out when it sets in and ends"
+    for number, force in enumerate(scene.force, start=1):
+        if not isinstance(force, ConstantForce | Spring | Damper | ForceAngleTable):
+            kind = "a function of Python" if force.law.given else f'kind = "{force.kind}"'
+            return (
+                f"force[{number}], {kind}; give springs, dampers, constants or a table over the "
+                "angle, which are smooth"
+            )
+    for name, loads in (("torque", scene.torque), ("force", scene.force)):
+        for number, one in enumerate(loads, start=1):
+            if one.has_window:
+                return f"the window of {name}[{number}]; leave out when it sets in and ends"
     return ""
 
 
@@ -178,6 +192,8 @@ def _parameters(train: CrankTrain, stem: str, end: float, steps: int) -> str:
     speed = None if scene.motion is None else scene.motion.speed
     values: list[tuple[str, object, str]] = [
         ("PHASES", [c.phase for c in scene.cylinders], "rad, cycle angles at crank angle 0"),
+        ("TOPS", [top_position(*g.shape) for g in scene.running_gear], "m, of the pistons"),
+        ("SPRINGS", _springs(scene), "of each piston: N at the top dead centre, N/m, N s/m"),
         ("TORQUE_CONSTANT", _sum(scene, Constant, "torque"), "N m, on the free crank"),
         ("TORQUE_VISCOUS", 0.0 - _sum(scene, Viscous, "coefficient"), "N m s"),
         ("TORQUE_QUADRATIC", 0.0 - _sum(scene, Quadratic, "coefficient"), "N m s^2"),
@@ -227,18 +243,40 @@ def _rows(values: Sequence[float], across: int = 3) -> str:
     return "".join(f"    {', '.join(map(repr, row))},\n" for row in rows)
 
 
-def _gas(train: CrankTrain) -> list[str]:
-    """The forces of the gas: each different one once, and which each cylinder has."""
-    areas = [gear.piston.gas_area or 0.0 for gear in train.scene.running_gear]
-    forces = list(zip(train.pressure or (), areas, strict=False))
-    different = list(dict.fromkeys(forces))
+def _on(scene: Scene, k: int) -> list[PistonForce]:
+    """The forces on the piston of the cylinder k."""
+    return [force for force in scene.force if force.cylinder in (None, k + 1)]
+
+
+def _springs(scene: Scene) -> list[tuple[float, float, float]]:
+    """Of each piston the sum of constants [N], springs [N/m] and dampers [N s/m]: the force at rest
+    at its top dead centre, what it loses there over the displacement, and with the velocity."""
+    rows = []
+    for k in range(len(scene.cylinders)):
+        laws = [force.law for force in _on(scene, k)]
+        lines = [law.forward.pieces[0] for law in laws if law.forward is not None]
+        constant, slope = (math.fsum(line[power] for line in lines) for power in (0, 1))
+        rows.append((constant, 0.0 - slope, math.fsum(law.viscous for law in laws)))
+    return rows
+
+
+def _over_angle(train: CrankTrain) -> list[str]:
+    """The forces over the cycle angle, of gas and tables: each different one once, and which act on
+    each piston."""
+    scene = train.scene
+    of_each: list[list[tuple[PeriodicPressure | Cycle, float]]] = []
+    for k, gear in enumerate(scene.running_gear):
+        gas = [(each, gear.piston.gas_area or 0.0) for each in (train.pressure or ())[k : k + 1]]
+        tables = [force.law.over_angle for force in _on(scene, k)]
+        of_each.append([*gas, *((each, 1.0) for each in tables if each is not None)])
+    different = list(dict.fromkeys(each for forces in of_each for each in forces))
     lines = [
-        "# What the gas puts on a piston [N] over its cycle angle [rad]: from each start a cubic,",
-        "# by descending power of the angle from there.",
+        "# What gas and tables put on a piston [N] over its cycle angle [rad]: from each start a",
+        "# cubic, by descending power of the angle from there.",
     ]
-    for number, (pressure, area) in enumerate(different, start=1):
-        knots = pressure.knots
-        cubics = (area * pressure.coefficients).T
+    for number, (force, area) in enumerate(different, start=1):
+        knots = force.knots
+        cubics = (area * force.coefficients).T
         lines += [
             f"PIECES_{number} = {{",
             f'    "first": {float(knots[0]) - NEAR!r},',
@@ -251,5 +289,6 @@ def _gas(train: CrankTrain) -> list[str]:
             "    ],",
             "}",
         ]
-    names = [f"PIECES_{different.index(force) + 1}" for force in forces]
-    return [*lines, f"GAS = [{', '.join(names)}]", "", ""]
+    names = [[f"PIECES_{different.index(force) + 1}" for force in forces] for forces in of_each]
+    rows = (f"[{', '.join(row)}]" for row in names)
+    return [*lines, f"OVER_ANGLE = [{', '.join(rows)}]", "", ""]
