@@ -68,6 +68,7 @@ def taken(t, theta, omega):
 BY_FUNCTION = Load(taken, kink_angles=ROWS.x[:-1], period=3.0 * TURN)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("formulation", ["crank_angle", "minimal"])
 @pytest.mark.parametrize("halves", [1, 3, 6, 7])
 @pytest.mark.parametrize("sense", [1.0, -1.0])
@@ -82,6 +83,7 @@ def test_energy_is_the_work_of_a_sine_of_that_period(halves, formulation, sense)
     np.testing.assert_allclose(0.5 * INERTIA * omega**2, 0.5 * INERTIA * 400.0 + work, rtol=1e-7)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("load", [PRESS, BY_FUNCTION], ids=["table", "function"])
 def test_its_settled_motion_is_the_limit_of_its_run(load):
     scene = wheel(load, Viscous(coefficient=200.0), Constant(torque=7100.0), inertia=60.0)
@@ -96,6 +98,7 @@ def test_its_settled_motion_is_the_limit_of_its_run(load):
     assert measure(settled).speed_gain.value == pytest.approx(0.0, abs=1e-8)
 
 
+@pytest.mark.slow
 def test_a_function_settles_as_the_table_that_it_is():
     loads = Quadratic(coefficient=0.6), Constant(torque=2500.0)
     one, other = (
@@ -107,6 +110,7 @@ def test_a_function_settles_as_the_table_that_it_is():
     assert apart <= one.decay.error + other.decay.error
 
 
+@pytest.mark.slow
 def test_a_load_that_depends_on_angle_and_speed_together_settles():
     def load(t, theta, omega):
         return -omega * (30.0 + 20.0 * math.sin(theta / 1.5))

@@ -17,6 +17,7 @@ SEEDS = {"windows": (1, 2, 4), "pressures": (1, 2, 4), "fuel": (1, 2, 4), "funct
 DOZEN = [(kind, seed) for kind in KINDS for seed in SEEDS.get(kind, (3,))]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("kind", "seed"), DOZEN)
 def test_random_scenes_are_within_their_stated_errors(kind, seed):
     scene = random_changes(kind, seed)

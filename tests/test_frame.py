@@ -62,6 +62,7 @@ def in_line(order, **layout):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(12))
 def test_rocking_moments_of_random_machines(seed):
     scene, motion = placed(random_scene(seed), seed), state(seed)

@@ -263,6 +263,7 @@ def test_loads_are_drawn_in_the_frame_of_the_body_that_carries_them():
         simulate(TWIN).plot("bearings")
 
 
+@pytest.mark.slow
 def test_a_reading_at_an_angle_and_exudyn_have_every_journal():
     result = simulate(VEE)
     readings = {r.quantity: r for r in at_angle(result, "60 deg").readings}

@@ -84,6 +84,7 @@ def test_samples_in_time_up_to_an_angle(way):
     assert angle[-1] == 0.1 + sense(way) * 2 * pi
 
 
+@pytest.mark.slow
 @EVERY_WAY
 @pytest.mark.parametrize("until", ["3 cycles", "100 ms"])
 def test_none_keeps_the_last_period(way, until):

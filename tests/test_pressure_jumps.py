@@ -105,6 +105,7 @@ CYCLE = rows(
 SHORT = Run(until="700 deg", every="13 deg")  # no sample on a row: there two values are right
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("speed", [335.0, -335.0])
 @pytest.mark.parametrize("formulation", ["crank_angle", "minimal"])
 @pytest.mark.parametrize("kind", KINDS)
@@ -117,6 +118,7 @@ def test_the_error_is_honest_with_jumps(kind, formulation, speed):
     assert worst_ratio(result) <= 2.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["pchip", "cubic"])
 def test_the_error_of_multibody_is_honest_with_jumps(kind):
     scene = replace(with_gas(CYCLE, interpolation=kind), run=SHORT)

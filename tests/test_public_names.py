@@ -74,6 +74,7 @@ def test_importing_crankmbs_imports_nothing_else():
     assert {name for name in loaded if name.startswith("crankmbs")} == {"crankmbs"}
 
 
+@pytest.mark.slow
 def test_a_load_is_known_by_its_kind_whatever_was_imported_first():
     for module in ("scene.torque", "scene.read", "scene.scene", "choose"):
         loaded_by(f"import crankmbs.{module}, crankmbs.scene.read as r; r.load_scene('propeller')")

@@ -38,6 +38,7 @@ def misfit(scene, state, exact):
     return worst
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(20))
 def test_every_variable_of_random_machines(seed):
     scene, state = random_scene(seed), motion(seed)
@@ -53,6 +54,7 @@ def test_every_variable_of_shipped_machines(name):
     assert max(worst.values()) < 1e-12, worst
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(12))
 def test_every_balance_per_power(seed):
     """Per omega^2, alpha and 1, of which it has what is said, and put together."""

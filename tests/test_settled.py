@@ -206,6 +206,7 @@ def test_it_is_kept_and_written(tmp_path) -> None:
     assert read_scene(tmp_path / "mine.toml").run == found.scene.run
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("inertia", [3.0, 300.0])
 def test_of_a_motor_too_weak_it_is_said_when_the_crank_stops(inertia: float) -> None:
     """The press takes more in a turn than the motor gives; with the heavier wheel it stops some

@@ -65,6 +65,7 @@ def test_it_is_the_end_of_a_run_that_has_settled(name, angle):
         assert apart <= 2e-10 * np.abs(found.data[key].values).max(), key
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["governor", "governor and misfire"])
 @pytest.mark.parametrize("loads", [FOUR.torque, (Viscous(coefficient=0.2),)])
 def test_unclipped_the_mean_is_exactly_the_governors_speed(name, loads):

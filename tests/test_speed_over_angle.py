@@ -104,6 +104,7 @@ def test_a_cubic_is_nearer_to_a_smooth_speed_than_pchip():
     assert off("cubic") < 0.01 < off("pchip")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(10))
 def test_random_tables_against_the_closed_form(seed):
     scene = random_speeds(seed)

@@ -164,6 +164,7 @@ def test_exudyns_rigid_bodies_agree_within_what_is_stated(scene):
         assert apart <= 2.0 * stated, name
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [6, 9])
 def test_random_ones_agree_over_the_angle_and_over_time(seed):
     runs = [simulate(random_unlike(seed), formulation=f).data for f in ("crank_angle", "minimal")]
