@@ -24,7 +24,7 @@ from crankmbs.scene.scene import Scene
 __all__ = ["functions_of", "simulate", "why"]
 
 _MOST_CYCLES = 10_000  # of a run that is followed to its stop
-_HUNTING = Ending.SWINGS.value[1].partition(",")[0]  # it slows down and speeds up again
+_HUNTING = Ending.HUNTS, Ending.SWINGS  # its speed falls and rises again
 
 
 def simulate(
@@ -82,7 +82,7 @@ def simulate(
         keep=solution.keep,
         motion=assembled.motion,
     )
-    if scene.settles and found.status == 1 and not found.message.startswith(_HUNTING):
+    if scene.settles and found.status == 1 and solution.unsettled not in _HUNTING:
         found = dataclasses.replace(found, message=_slowing(found) or found.message)
     return found
 

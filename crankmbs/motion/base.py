@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from crankmbs.motion.account import Keep
 from crankmbs.motion.cells import Cells
+from crankmbs.motion.ending import Ending
 from crankmbs.motion.mode import Mode
 from crankmbs.numerics.arrays import Array
 
@@ -83,7 +84,7 @@ class Solution:
     status, message : 0 reached the end; 1 a physical end; -1 a numerical one; and a sentence
     evaluations, steps : what it cost
     reasons : sentences about what the run had to do, beside the choice of the formulation
-    decay : of a settled motion
+    decay : of a settled motion; unsettled : why there is none
     keep : makes the account of what happened on the way
     """
 
@@ -96,6 +97,7 @@ class Solution:
     errors: Mapping[str, float] = field(default_factory=dict)
     reasons: tuple[str, ...] = ()
     decay: Decay | None = None
+    unsettled: Ending | None = None
     keep: Keep | None = None
 
 

@@ -60,7 +60,8 @@ def _said(found: Assembled, lost: LostError) -> Assembled:
     samples = found.solution.samples
     at = float(samples.theta[-1]), float(samples.omega[-1])
     status, message = lost.ending.said(*at, periods=MOST_PERIODS, factor=lost.factor)
-    return replace(found, solution=replace(found.solution, status=status, message=message))
+    solution = replace(found.solution, status=status, message=message, unsettled=lost.ending)
+    return replace(found, solution=solution)
 
 
 def _settled(found: Assembled, decay: Decay) -> Assembled:
