@@ -23,6 +23,7 @@ from crankmbs import (
     simulate,
 )
 from crankmbs.errors import InputError
+from crankmbs.scene.parts import OwnPiston
 
 SPEED = 200.0
 RECIPROCATING = 0.5 + 0.8 * 0.05 / 0.2
@@ -59,7 +60,8 @@ def test_one_cylinder_moves_its_first_order_across(share):
     assert after == pytest.approx([*expected, max(expected)], rel=1e-12, abs=1e-9)
     second = left(found, "frame force", 2.0)
     assert second[1] == pytest.approx(second[0], rel=1e-12, abs=1e-9)
-    assert found.per_throw == pytest.approx(0.05 * (ROTATING + share * RECIPROCATING), rel=1e-14)
+    (weight,) = found.per_throw
+    assert weight == pytest.approx(0.05 * (ROTATING + share * RECIPROCATING), rel=1e-14)
 
 
 def test_a_90_degree_twin_on_one_pin_has_no_first_order_left():
@@ -92,6 +94,24 @@ def test_rocking_of_three_in_line_and_its_counterweights():
     assert max(left(found, "frame force", 1.0)[1]) < 1e-9
 
 
+def test_unlike_cylinders_each_have_their_own():
+    """Of two opposite throws of one cylinder each, in one plane, the first orders subtract."""
+    small = Cylinder(phase=math.pi, radius=0.03, piston=OwnPiston(mass=0.2))
+    found = balance(engine(Layout(cylinders=(Cylinder(), small))), 0.4)
+    reciprocating = RECIPROCATING - 0.3
+    own = (
+        0.05 * (ROTATING + 0.4 * RECIPROCATING),
+        0.03 * (ROTATING + 0.4 * reciprocating),
+    )
+    assert found.per_throw == pytest.approx(own, rel=1e-14)
+    before, after = left(found, "frame force", 1.0)
+    along = (0.05 * RECIPROCATING - 0.03 * reciprocating) * SPEED**2
+    across = (0.05 - 0.03) * ROTATING * SPEED**2
+    assert before[:2] == pytest.approx([along + across, across], rel=1e-12)
+    assert after[:2] == pytest.approx([0.6 * along, 0.4 * along], rel=1e-12)
+    assert found.crank["center_of_mass"] * found.crank["mass"] == pytest.approx(own[1] - own[0])
+
+
 @pytest.mark.parametrize(
     "speed", [SPEED, Oscillation(mean=SPEED, amplitude=30.0, order=2)], ids=["even", "uneven"]
 )
@@ -100,7 +120,7 @@ def test_a_crank_that_has_the_counterweight_is_what_is_left(speed):
     scene = replace(load_scene("yi_diesel"), gravity=None, motion=Motion(speed=speed))
     plain = replace(scene, crank=replace(scene.crank, mass=0.0, center_of_mass=0.0))
     found = balance(plain, 0.4)
-    crank = replace(plain.crank, inertia=1.0, mass=10.0, center_of_mass=-found.per_throw / 10.0)
+    crank = replace(plain.crank, inertia=1.0, mass=10.0, center_of_mass=-found.per_throw[0] / 10.0)
     data = simulate(replace(plain, crank=crank)).data
     again = np.stack([data["frame_force_x"].values, data["frame_force_y"].values], axis=1)
     np.testing.assert_allclose(found.after, again, rtol=0, atol=1e-12 * np.abs(again).max())

@@ -129,13 +129,24 @@ def _report(name: str, weights: Balance) -> str:
             "",
             "counterweight, mass times radius, for the rotating mass and "
             f"{100.0 * weights.share:g} % of the reciprocating mass:",
-            f"  opposite every throw                      {digits(weights.per_throw)} kg m",
+            *(
+                f"  {f'opposite {throw}':40}  {digits(moment)} kg m"
+                for throw, moment in _throws(weights)
+            ),
             f"  opposite the crank's own centre of mass   {digits(weights.of_crank)} kg m",
             "",
             table(["over the last cycle", "order", *_ERRORS], rows),
             "moving parts on the frame, engine's X and Y; rocking about the middle of the crank",
         ]
     )
+
+
+def _throws(weights: Balance) -> list[tuple[str, float]]:
+    """Which throws a counterweight stands opposite, and how much it is [kg m]."""
+    moments = weights.per_throw
+    if weights.result.scene.unlike:
+        return [(f"the throw of cylinder {k}", each) for k, each in enumerate(moments, start=1)]
+    return [("every throw", moments[0])]
 
 
 def _csv(weights: Balance) -> str:

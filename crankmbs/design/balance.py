@@ -13,6 +13,7 @@ from crankmbs.measures import Estimate, Orders
 from crankmbs.measures.orders import Harmonics
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
+from crankmbs.scene.parts import RunningGear
 from crankmbs.scene.scene import Scene
 from crankmbs.simulate import simulate
 
@@ -44,7 +45,8 @@ class Balance:
     """Counterweights, mass times radius [kg m], and what remains.
 
     share : of the reciprocating mass
-    per_throw : opposite every cylinder's throw, for its rod's mass at the crank pin and the share
+    per_throw : opposite each cylinder's throw, for its rod's mass at the crank pin and the share of
+        its reciprocating mass
     of_crank : opposite the crank's own centre of mass; negative: as much less of what it has
     remaining : orders 1 and 2 of the force and, where cylinders have places, rocking moment
     result : the run they are taken from
@@ -52,7 +54,7 @@ class Balance:
     """
 
     share: float
-    per_throw: float
+    per_throw: tuple[float, ...]
     of_crank: float
     remaining: tuple[Remaining, ...]
     result: Result
@@ -76,9 +78,9 @@ class Balance:
         '5 kg at -16.54 mm'
         """
         scene = self.result.scene
-        throws = [np.exp(1j * (c.phase + c.bank)) for c in scene.cylinders]
-        moment = -self.per_throw * sum(throws)
-        if abs(moment.imag) > _ALONG * self.per_throw:
+        throws = np.array([np.exp(1j * (c.phase + c.bank)) for c in scene.cylinders])
+        moment = complex(-np.array(self.per_throw) @ throws)
+        if abs(moment.imag) > _ALONG * max(self.per_throw):
             lies = f"{abs(moment):.6g} kg m at {np.degrees(np.angle(moment)):.6g} degrees"
             raise InputError(
                 f"the counterweights together, {lies}, do not lie along the crank's reference "
@@ -95,7 +97,7 @@ def balance(scene: Scene, share: float = 0.5, *, cost_cap: float = 10.0) -> Bala
 
     per_throw = r (m_B + share m_A),  m_A = m_piston + m_rod a / l,  m_B = m_rod (l - a) / l
 
-    opposite every throw, in its plane, and m c opposite the crank's own centre of mass. What the
+    opposite each throw, in its plane, and m c opposite the crank's own centre of mass. What the
     frame feels before is `frame_force` and `rocking_moment` of a run over its last whole cycle;
     after, with what the counterweights add to it in the same motion: their own inertia is not in
     it, which at a prescribed speed is exact.
@@ -115,17 +117,7 @@ def balance(scene: Scene, share: float = 0.5, *, cost_cap: float = 10.0) -> Bala
     """
     if not 0.0 <= share <= 1.0:
         raise InputError(f"share must be from 0 to 1 of the reciprocating mass; {share!r} came")
-    if scene.unlike:
-        raise InputError(
-            "balance: the cylinders are unlike, and each throw would need its own counterweight; "
-            "give a scene whose cylinders have one rod and piston, or read the frame force of a run"
-        )
-    rod = scene.rod
-    masses = two_mass_rod(
-        rod_mass=rod.mass, rod_length=rod.length, center_of_mass=rod.center_of_mass
-    )
-    reciprocating = scene.piston.mass + float(masses.piston_pin)
-    per_throw = scene.crank.radius * (float(masses.crank_pin) + share * reciprocating)
+    per_throw = tuple(_counterweight(gear, share) for gear in scene.running_gear)
     weights = _Weights(scene, per_throw, scene.crank.mass * scene.crank.center_of_mass)
     result = simulate(scene, cost_cap=cost_cap)
     data = {str(name): variable.values for name, variable in result.data.variables.items()}
@@ -137,12 +129,22 @@ def balance(scene: Scene, share: float = 0.5, *, cost_cap: float = 10.0) -> Bala
     return Balance(share, per_throw, weights.of_crank, remaining, result, before, after)
 
 
+def _counterweight(gear: RunningGear, share: float) -> float:
+    """For the rotating mass of a cylinder and a share of its reciprocating mass [kg m]."""
+    rod = gear.rod
+    masses = two_mass_rod(
+        rod_mass=rod.mass, rod_length=rod.length, center_of_mass=rod.center_of_mass
+    )
+    reciprocating = gear.piston.mass + float(masses.piston_pin)
+    return gear.radius * (float(masses.crank_pin) + share * reciprocating)
+
+
 @dataclass(frozen=True)
 class _Weights:
-    """Counterweights opposite every throw and opposite the crank's centre of mass [kg m]."""
+    """Counterweights opposite each throw and opposite the crank's centre of mass [kg m]."""
 
     scene: Scene
-    per_throw: float
+    per_throw: tuple[float, ...]
     of_crank: float
 
     def on_frame(self, variables: Mapping[str, Array]) -> dict[str, Array]:
@@ -152,8 +154,8 @@ class _Weights:
         force, rocking = np.zeros((len(theta), 2)), np.zeros((len(theta), 2))
         levers = self.scene.levers or (0.0,) * len(self.scene.cylinders)
         throws = [
-            (self.per_throw, c.phase + c.bank, lever)
-            for c, lever in zip(self.scene.cylinders, levers, strict=True)
+            (moment, c.phase + c.bank, lever)
+            for moment, c, lever in zip(self.per_throw, self.scene.cylinders, levers, strict=True)
         ]
         for moment, angle, lever in [*throws, (self.of_crank, 0.0, 0.0)]:
             cosine, sine = np.cos(theta + angle), np.sin(theta + angle)

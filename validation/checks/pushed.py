@@ -23,6 +23,7 @@ __all__ = ["stated_scenes", "unlike_scenes", "worst_ratio"]
 _TOO_SMALL = 2.0  # the true error may be this many times the stated one and the oracle's
 _TOO_LARGE = 100.0  # the stated error may be this many times the true one, or what is asked
 _ROUNDING = 1e-11  # of the peak, in the oracle: two divisions of its steps err alike by 9e-12
+_NOTHING = 1e-9  # of the largest torque in the machine: loads that cancel leave its rounding
 _PARTS = (5, 8)  # of the time between samples, in each of which the oracle's integrator begins anew
 _MOST_LEFT_OUT = 0.1  # of the runs
 _NAMES = {
@@ -121,9 +122,10 @@ def _of_result(
     data, found = result.data, {}
     peaks = {
         name: float(np.max(np.abs(data[name].values)))
-        for name in (*_NAMES, *_OF_EVENTS)
+        for name in (*_NAMES, *_OF_EVENTS, "crank_torque")
         if name in data.variables
     }
+    peaks["external_torque"] = max(peaks["external_torque"], _NOTHING * peaks["crank_torque"])
     for name in _NAMES:
         if name in data:
             column = data[name]
