@@ -20,7 +20,6 @@ from crankmbs import (
 )
 from crankmbs.batch.serves import loads_of
 from crankmbs.compare.causes import budget
-from crankmbs.design.balance import balance
 from crankmbs.indicated.shape import of_scene
 from crankmbs.measures import measure, orders
 from crankmbs.measures.plausible import warnings
@@ -292,8 +291,6 @@ def test_tables_move_with_each_cylinders_own_stroke():
 
 
 def test_what_takes_like_cylinders_alone_says_so(scene):
-    with pytest.raises(InputError, match="balance: the cylinders are unlike"):
-        balance(scene)
     with pytest.raises(InputError, match="rod_ratio: the cylinders are unlike"):
         scene_of(scene, ["rod_ratio"], [0.25])
     with pytest.raises(InputError, match="a scene of the cylinder that was measured"):
