@@ -28,6 +28,7 @@ from crankmbs import (
 )
 from crankmbs.motion import events as kept
 from crankmbs.motion.account import Rows, beside
+from crankmbs.scene.parts import Friction
 
 HEAVY = {"piston": Piston(mass=2.0), "rod": Rod(length=0.14, mass=1.0)}
 
@@ -93,6 +94,18 @@ def test_a_run_that_ends_at_rest_ends_with_it():
     assert result.status == 1
     assert kinds(result.events) == ["rest"]
     assert float(result.events["time"][0]) == pytest.approx(1.0, rel=1e-9)
+
+
+@pytest.mark.parametrize("formulation", FREE)
+def test_a_crank_that_rubs_to_rest_rests(formulation):
+    """At a stop; and where it never leaves its start."""
+    scene = load_scene("coasting").with_(friction=Friction(ring_force=300.0), run__until="20 s")
+    stopped = simulate(scene, formulation=formulation)
+    assert "friction holds the crank" in stopped.message
+    assert kinds(stopped.events) == ["rest"]
+    assert float(stopped.events["time"][0]) == float(stopped.data["time"][-1])
+    held = scene.with_(start__speed="0 rpm", start__angle="10 deg")
+    assert kinds(simulate(held, formulation=formulation).events) == ["rest"]
 
 
 def test_multibody_has_the_same_loads_and_reversals():
