@@ -26,7 +26,7 @@ def digest(case: Case) -> str:
     any. A row with another digest was measured for another claim.
 
     The code of crankmbs and of the oracles is left out: nearly every commit changes it, and to
-    judge all claims takes half an hour. Continuous integration judges the quick claims by the code
+    judge all claims takes hours. Continuous integration judges the quick claims by the code
     as it is, tests hold the oracles, and every row names the commit that it was measured at.
     """
     return short_hash(_text(path) for path in inputs(case))
