@@ -1,9 +1,8 @@
-"""Unlike cylinders and forces from outside on the pistons in the page's engine, as in Python:
-scenes of each kind of force, and random ones, seeds fixed beforehand."""
+"""Unlike cylinders, double-acting ones and forces from outside on the pistons in the page's engine,
+as in Python: scenes of each kind of force, and random ones, seeds fixed beforehand."""
 
 from dataclasses import replace
 
-import numpy as np
 import pytest
 from page_engine import differences, sizes, unlike
 from page_guards import DRAGS, MACHINE, PUSHES, stepping, uneven
@@ -16,6 +15,7 @@ from crankmbs.page.knobs import choices_of, first_of, knobs_of
 from crankmbs.scene.forces import ConstantForce, ForceTimeTable
 from crankmbs.scene.run import Extent
 from crankmbs.scene.tables import Table
+from validation.random_double import random_double
 from validation.random_unlike import random_unlike
 
 STAGES = load_scene("two_stage_compressor")
@@ -29,7 +29,6 @@ MADE = {
     "driven": replace(uneven(load_scene("yi_diesel")), force=DRAGS),
     "both ends": replace(load_scene("steam_engine"), force=(ConstantForce(force=50.0),)),
 }
-SEEDS = range(5000, 5120)
 LEFT = {"function", "governor", "random firing", "rest"}  # to Python
 
 
@@ -55,10 +54,18 @@ def test_motion_every_reaction_and_measure_are_those_of_python(page, name):
 
 
 @pytest.mark.slow
-def test_random_ones_are_those_of_python(page):
+@pytest.mark.parametrize(
+    ("draw", "seeds", "least"),
+    [
+        (lambda seed: steady(random_unlike(seed)), range(5000, 5120), 50),
+        (random_double, range(60), 15),
+    ],
+    ids=["unlike", "double-acting"],
+)
+def test_random_ones_are_those_of_python(page, draw, seeds, least):
     same, slow = [], []
-    for seed in SEEDS:
-        scene = steady(random_unlike(seed))
+    for seed in seeds:
+        scene = draw(seed)
         reasons = {said.partition(":")[0] for said in refusals(scene)}
         assert reasons <= LEFT
         if reasons:
@@ -68,15 +75,15 @@ def test_random_ones_are_those_of_python(page):
         result = simulate(scene, rtol=1e-12)
         found = page.answer(scene, result.data["crank_angle"].values)
         if found["ending"] == "slow":  # comes to rest, turns back, or nearly so
-            speed = np.abs(result.data["crank_speed"].values)
-            assert result.status == 1 or speed.min() < 0.2 * speed.max(), seed
+            over_time = any("slow stretches" in reason for reason in result.reasons)
+            assert result.status == 1 or over_time, seed
             slow.append(seed)
             continue
         assert found["ending"] == "complete", (seed, result.message)
         worst = differences(result, found["variables"])
         assert max(worst.values()) < 1e-9, (seed, max(worst.items(), key=lambda one: one[1]))
         same.append(seed)
-    assert len(same) > 50
+    assert len(same) > least
     assert len(slow) < 20
 
 
