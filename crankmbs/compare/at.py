@@ -140,7 +140,7 @@ def _lecture_forces(scene: Scene, data: xr.Dataset) -> Iterator[Reading]:
 
 
 def _error(scene: Scene, data: xr.Dataset, name: str) -> float:
-    """Of a lecture's quantity: the errors of the crank pin force and of the inertia force m_or C''."""
+    """Of a lecture's quantity: the errors of the crank pin force and of its inertia part."""
 
     def error_of(variable: str) -> float:
         return float(data[variable].attrs["error_estimate"])

@@ -12,7 +12,7 @@ __all__ = ["NUMBERS", "Number", "NumberOf"]
 
 
 class NumberOf(NamedTuple):
-    """units; estimate : reads it from measures, None where they lack it; lacking : why they may lack it."""
+    """units; estimate : read from measures, None where they lack it; lacking : why they may."""
 
     units: str
     estimate: Callable[[Measures, int], Estimate | None]
