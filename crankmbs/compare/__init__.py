@@ -1,7 +1,7 @@
-"""Simulation against exact and lecture formula and against one's own, the error budget of formulas,
-and two runs of one scene beside each other.
+"""A run against the exact closed form, the lectures' formulas and a user's own; the error budget of
+formulas; and two runs of one scene compared.
 
-The formulas themselves belong in lecture and mechanics, what a run amounts to in measures.
+The formulas themselves belong in lecture and mechanics, the measures of a run in measures.
 """
 
 from crankmbs.compare.against import Comparison, Deviation, compare

@@ -1,4 +1,4 @@
-"""A run against the exact closed form, against the lectures' formulas and against one's own."""
+"""A run against the exact closed form, the lectures' formulas and a user's own."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from crankmbs.compare.excerpt import Answer, Excerpt, LeftOut, excerpt_of, vanishing
-from crankmbs.compare.formula import CLOSED_FORM, Formula, formulas_of
+from crankmbs.compare.formula import CLOSED_FORM, Formula, formulas_of, variables_of
 from crankmbs.compare.lectured import LECTURES
 from crankmbs.compare.numbers import NUMBERS, Number
 from crankmbs.compare.quantities import QUANTITIES
@@ -23,7 +23,7 @@ __all__ = ["Comparison", "Deviation", "compare"]
 
 @dataclass(frozen=True)
 class Deviation:
-    """One quantity of a run against one reference, over the stretch compared.
+    """One quantity of a run against one reference, over the samples compared.
 
     values : shape (n,) [unit], of the reference; error : shape (n,) [unit], reference minus run
     size : maximum and RMS of the error [unit], and the angle of the maximum: the cylinder's cycle
@@ -43,8 +43,8 @@ class Deviation:
 class Comparison:
     """A run against every reference.
 
-    simulated : quantity -> shape (n,), the run's own values in SI units
-    rows : reference by reference; numbers : of formulas that stand for one number of the run
+    simulated : quantity -> shape (n,), values of the run in SI units
+    rows : deviations, reference by reference; numbers : formulas for one number of the run
     left_out : what could not be compared, and why
     """
 
@@ -56,7 +56,7 @@ class Comparison:
 
     @property
     def references(self) -> tuple[str, ...]:
-        """The references that could be had, in their order."""
+        """The references that could be evaluated, in their order."""
         return tuple(dict.fromkeys(row.reference for row in self.rows))
 
     def _repr_html_(self) -> str:
@@ -92,9 +92,9 @@ def compare(
     Every reference is evaluated at the run's own crank angles. "closed form" is Newton-Euler at
     the run's own theta, omega and alpha, with the rigid rod and gravity: exact, so that the error
     is the run's. The lectures take the time mean of the speed, the two-mass rod and no gravity,
-    and count displacement from l + r: the error is theirs (`budget` says what it is made of). S0
+    and count displacement from l + r: the error is theirs (`budget` splits it into causes). S0
     and S1, the sources of `crankmbs.lecture`, truncate the motion after the second harmonic; S1
-    truncates the way of the force through the rod too.
+    truncates the forces on rod and crank too.
     Only "multibody" has joint forces of its own; other formulations take them from the closed form
     and agree with it to rounding.
 
@@ -108,7 +108,7 @@ def compare(
 
     Parameters
     ----------
-    result : any formulation; cylinder : number of the one compared, the main bearing carries all
+    result : any formulation; cylinder : number of the one compared; the main bearing carries all
     formulas : functions by the labels under which they are shown
 
     Returns
@@ -131,10 +131,9 @@ def compare(
     >>> f"{100.0 * row.size.largest / row.peak:.1f} %"
     '24.9 %'
     """
-    own = formulas_of(formulas)
-    curves = [formula for formula in own if not formula.is_number]
-    others = tuple(dict.fromkeys(f.quantity for f in curves if f.quantity not in QUANTITIES))
-    excerpt = excerpt_of(result, cylinder, others)
+    user_formulas = formulas_of(formulas)
+    curves = [formula for formula in user_formulas if not formula.is_number]
+    excerpt = excerpt_of(result, cylinder, variables_of(curves))
     simulated = excerpt.simulated()
     references = {CLOSED_FORM: excerpt.newton_euler(result.scene)}
     left_out = [LeftOut(name, "", reason) for name, reason in excerpt.left_out().items()]
@@ -142,42 +141,42 @@ def compare(
         try:
             references[reference] = excerpt.lecture(truncation, constant_speed=True)
         except InputError as error:
-            left_out += [LeftOut(n, reference, str(error)) for n in simulated if n in QUANTITIES]
+            left_out += [LeftOut(q, reference, str(error)) for q in simulated if q in QUANTITIES]
     for formula in curves:
         if formula.quantity in simulated:
             references[formula.label] = {formula.quantity: formula.curve(excerpt)}
         else:
             reason = excerpt.left_out().get(formula.quantity, "the run has none")
             left_out.append(LeftOut(formula.quantity, formula.label, reason))
-    nothing = vanishing([simulated, *references.values()])
-    left_out += [LeftOut(name, "", reason) for name, reason in nothing.items()]
-    kept = {name: curve for name, curve in simulated.items() if name not in nothing}
+    zero = vanishing([simulated, *references.values()])
+    left_out += [LeftOut(name, "", reason) for name, reason in zero.items()]
+    nonzero = {name: curve for name, curve in simulated.items() if name not in zero}
     rows = tuple(
         _deviation(excerpt, reference, name, curve, answer[name])
         for reference, answer in references.items()
-        for name, curve in kept.items()
+        for name, curve in nonzero.items()
         if name in answer
     )
-    numbers = _numbers([formula for formula in own if formula.is_number], excerpt, left_out)
-    return Comparison(excerpt, kept, rows, numbers, tuple(left_out))
+    numbers = _numbers([f for f in user_formulas if f.is_number], excerpt, left_out)
+    return Comparison(excerpt, nonzero, rows, numbers, tuple(left_out))
 
 
 def _numbers(
     formulas: list[Formula], excerpt: Excerpt, left_out: list[LeftOut]
 ) -> tuple[Number, ...]:
-    """What formulas say of single numbers of the run; those that it lacks are left out."""
+    """Formulas for single numbers against the run's; numbers that it lacks are left out."""
     if not formulas:
         return ()
-    found, measures = [], excerpt.result.measures()
+    numbers, measures = [], excerpt.result.measures()
     for formula in formulas:
-        about = NUMBERS[formula.quantity]
-        simulated = about.found(measures, excerpt.cylinder)
+        definition = NUMBERS[formula.quantity]
+        simulated = definition.estimate(measures, excerpt.cylinder)
         if simulated is None:
-            left_out.append(LeftOut(formula.quantity, formula.label, about.lacking))
+            left_out.append(LeftOut(formula.quantity, formula.label, definition.lacking))
         else:
             value = formula.number(excerpt)
-            found.append(Number(formula.quantity, formula.label, value, simulated))
-    return tuple(found)
+            numbers.append(Number(formula.quantity, formula.label, value, simulated))
+    return tuple(numbers)
 
 
 def _deviation(

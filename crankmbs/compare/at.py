@@ -23,10 +23,10 @@ if TYPE_CHECKING:
 
 __all__ = ["AtAngle", "Reading", "angle_of", "at_angle"]
 
-_SAME = 1e-9  # rad
+_ROUNDING = 1e-9  # rad
 _FARTHEST = 1e6  # rad: the next number after it is 1e-10 rad away
-_LECTURED = ("net force", "side thrust", "rod force", "tangential force", "radial force", "torque")
-_OF_MOTION = {"piston displacement": "s", "piston velocity": "v", "piston acceleration": "a"}
+_FORCES = ("net force", "side thrust", "rod force", "tangential force", "radial force", "torque")
+_MOTION_SYMBOLS = {"piston displacement": "s", "piston velocity": "v", "piston acceleration": "a"}
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class Reading:
 
 @dataclass(frozen=True)
 class AtAngle:
-    """A run at one crank angle [rad], unwrapped, and the time [s] at which it is passed."""
+    """A run at one crank angle [rad], unwrapped, and the time [s] at which the crank passes it."""
 
     crank_angle: float
     time: float
@@ -54,9 +54,9 @@ class AtAngle:
 def at_angle(result: Result, angle: float | str) -> AtAngle:
     """Every quantity of a run where the last whole cycle passes a crank angle.
 
-    It is read from the motion as it was solved, between the samples too. The lectures' F_v, N,
+    Values are read from the motion as solved, also between the samples. The lectures' F_v, N,
     F_oj, F_T, F_R and M_k follow as in `crankmbs.compare.quantities.observed`, with the lectures'
-    signs; their errors sum those of what they are made of.
+    signs; the error of each sums those of the variables it follows from.
 
     Parameters
     ----------
@@ -64,23 +64,24 @@ def at_angle(result: Result, angle: float | str) -> AtAngle:
 
     Raises
     ------
-    InputError : no angle; no whole cycle in the run, a reversal that passes the angle twice
+    InputError : no angle; no whole cycle in the run; a reversal, which passes the angle twice
 
-    >>> found = at_angle(simulate(load_scene("yi_diesel")), "60 deg")
-    >>> print(round(math.degrees(found.crank_angle)))
+    >>> state = at_angle(simulate(load_scene("yi_diesel")), "60 deg")
+    >>> print(round(math.degrees(state.crank_angle)))
     60
     """
-    wanted = angle_of(angle)
+    modulo_period = angle_of(angle)
     window = last_span(result)
     if window.kind != "last cycle":
         raise InputError(
             "a crank angle is looked up in the last whole cycle, and this run ends with none: it "
             "is shorter, or the crank rests or turns back in it; look in the samples"
         )
-    there, passes = _in_window(result, wanted), passes_over(result, window)
-    data = read_at(result, passes, np.array([there]), in_time=False)
+    crank_angle = _in_last_cycle(result, modulo_period)
+    passes = passes_over(result, window)
+    data = read_at(result, passes, np.array([crank_angle]), in_time=False)
     time = float(data["time"].values[0])
-    return AtAngle(there, time, (*_variables(data), *_lectured(result.scene, data)))
+    return AtAngle(crank_angle, time, (*_variables(data), *_lecture_forces(result.scene, data)))
 
 
 def angle_of(given: float | str) -> float:
@@ -102,54 +103,56 @@ def angle_of(given: float | str) -> float:
     return angle
 
 
-def _in_window(result: Result, angle: float) -> float:
-    """The crank angle of the last cycle that is this one modulo the period; its end counts, its
-    beginning does not."""
+def _in_last_cycle(result: Result, angle: float) -> float:
+    """The crank angle in the last cycle that equals this one modulo the period; the cycle's end
+    belongs to it, its beginning does not."""
     period = result.scene.period
     end = float(result.data["crank_angle"].values[-1])
     sense = math.copysign(1.0, last_span(result).angle)
-    short = sense * (end - angle) % period
-    if period - short <= _SAME:
-        short = 0.0
-    return end - sense * short
+    until_end = sense * (end - angle) % period
+    if period - until_end <= _ROUNDING:
+        until_end = 0.0
+    return end - sense * until_end
 
 
 def _variables(data: xr.Dataset) -> Iterator[Reading]:
     """Every variable at the one point."""
-    symbols = {name.replace(" ", "_"): symbol for name, symbol in _OF_MOTION.items()}
+    symbols = {name.replace(" ", "_"): symbol for name, symbol in _MOTION_SYMBOLS.items()}
     for name, variable in data.data_vars.items():
         units, error = variable.attrs["units"], variable.attrs["error_estimate"]
         for k, value in enumerate(np.atleast_1d(variable.values[0]), start=1):
             cylinder = k if "cylinder" in variable.dims else None
-            of_many = variable.ndim > 1 and cylinder is None  # journals, pins
-            quantity, symbol = f"{name} {k}" if of_many else str(name), symbols.get(str(name), "")
-            yield Reading(quantity, symbol, units, cylinder, float(value), error)
+            numbered = variable.ndim > 1 and cylinder is None  # journals, pins
+            label, symbol = f"{name} {k}" if numbered else str(name), symbols.get(str(name), "")
+            yield Reading(label, symbol, units, cylinder, float(value), error)
 
 
-def _lectured(scene: Scene, data: xr.Dataset) -> Iterator[Reading]:
-    """The lectures' forces and torque there."""
+def _lecture_forces(scene: Scene, data: xr.Dataset) -> Iterator[Reading]:
+    """The lectures' forces and torque at the one point."""
     variables = {str(name): variable.values for name, variable in data.variables.items()}
     motion = (variables[name] for name in ("crank_angle", "crank_speed", "crank_acceleration"))
-    found = observed(scene, variables, *motion)
-    for name in _LECTURED:
+    lecture_values = observed(scene, variables, *motion)
+    for name in _FORCES:
         units, symbol, _ = QUANTITIES[name]
         error, plain = _error(scene, data, name), symbol.replace("{", "").replace("}", "")
-        for k, value in enumerate(found[name][0], start=1):
+        for k, value in enumerate(lecture_values[name][0], start=1):
             yield Reading(name, plain, units, k, float(value), error)
 
 
 def _error(scene: Scene, data: xr.Dataset, name: str) -> float:
-    """Of a lecture's quantity: those of the crank pin force and of what turns with it."""
+    """Of a lecture's quantity: the errors of the crank pin force and of its inertia part."""
 
-    def stated(variable: str) -> float:
+    def error_of(variable: str) -> float:
         return float(data[variable].attrs["error_estimate"])
 
     if name == "side thrust":
-        return stated("side_force")
+        return error_of("side_force")
     if name == "torque":
-        return stated("crank_torque")
+        return error_of("crank_torque")
     bodies = bodies_of(scene)
-    largest = float(np.max(np.abs(bodies.masses.crank_pin * bodies.crank_radius)))
+    mass_radius = float(np.max(np.abs(bodies.masses.crank_pin * bodies.crank_radius)))
     speed = abs(float(data["crank_speed"].values[0]))
-    rate = 2.0 * speed * stated("crank_speed") + stated("crank_acceleration")
-    return stated("crank_pin_force_x") + stated("crank_pin_force_y") + largest * rate
+    motion_error = 2.0 * speed * error_of("crank_speed") + error_of("crank_acceleration")
+    return (
+        error_of("crank_pin_force_x") + error_of("crank_pin_force_y") + mass_radius * motion_error
+    )

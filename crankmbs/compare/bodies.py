@@ -40,16 +40,16 @@ class Bodies(NamedTuple):
 
 
 def bodies_of(scene: Scene, cylinder: int | None = None) -> Bodies:
-    """Those of every cylinder, or of one by its number.
+    """The numbers of every cylinder, or those of one by its number.
 
     >>> bodies_of(load_scene("propeller")).crank_radius
     0.046
     """
-    rows = []
+    cylinders = []
     for radius, rod, piston in scene.running_gear:
-        own = radius, rod.length, piston.offset, rod.mass, rod.center_of_mass
-        area = piston.gas_area or 0.0, piston.crank_end_area if piston.gas_area else 0.0
-        rows.append((*own, rod.moment_of_inertia, piston.mass, *area))
+        gear_and_rod = radius, rod.length, piston.offset, rod.mass, rod.center_of_mass
+        areas = piston.gas_area or 0.0, piston.crank_end_area if piston.gas_area else 0.0
+        cylinders.append((*gear_and_rod, rod.moment_of_inertia, piston.mass, *areas))
     if cylinder is not None or not scene.unlike:
-        return Bodies(*rows[(cylinder or 1) - 1])
-    return Bodies(*np.array(rows).T)
+        return Bodies(*cylinders[(cylinder or 1) - 1])
+    return Bodies(*np.array(cylinders).T)

@@ -1,4 +1,4 @@
-"""The error budget: what a formula's answer is wrong by, split into causes that add up to it."""
+"""The error budget: the error of a formula, split into causes that add up to it."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 from crankmbs.compare.chain import Idealized, checked_chain, steps
 from crankmbs.compare.excerpt import Answer, LeftOut, excerpt_of, vanishing
-from crankmbs.compare.formula import Formula, formulas_of
+from crankmbs.compare.formula import Formula, formulas_of, variables_of
 from crankmbs.compare.lectured import LECTURES, S1
 from crankmbs.compare.quantities import QUANTITIES
 from crankmbs.compare.split import Budget, Cause, Split
@@ -20,14 +20,14 @@ from crankmbs.result import Result
 __all__ = ["budget"]
 
 _UNTRUNCATED, _, _TRUNCATED = LECTURES
-_OF_MOTION = "the causes are of forces and of the piston's motion at the run's own speed"
+_NO_BUDGET = "the causes are of forces and of the piston's motion at the run's own speed"
 
 
-class _Answered(NamedTuple):
-    """What is split: a formula's values by quantity, and what it idealizes.
+class _Evaluation(NamedTuple):
+    """A formula's values by quantity, and what it idealizes.
 
-    errors : what it is wrong by under these idealizations, at the constant speed (True) and at the
-        run's own; nothing where it is the closed form
+    errors : its values minus the closed form under these idealizations, at constant speed (True)
+        and at the run's own; empty where it is the closed form
     """
 
     reference: str
@@ -45,8 +45,8 @@ def budget(
 ) -> Budget:
     """Split the error of the lectures' truncated formulas (S1's), and of others, into named causes.
 
-    At every sample of the run's last whole cycle, each cause is the difference of two neighbours.
-    In the order that is taken unless ``chain`` gives another:
+    At every sample of the run's last whole cycle, each cause is the difference of two neighbours
+    in this list, unless ``chain`` gives another order:
 
         truncated formula
             series          exact closed form, lecture's datum, mean speed, two-mass rod
@@ -69,7 +69,7 @@ def budget(
 
     Parameters
     ----------
-    result : any formulation; cylinder : number of the one looked at, the main bearing carries all
+    result : any formulation; cylinder : number of the one compared; the main bearing carries all
     formulas : as in `compare`; those that stand for a single number have no budget
     chain : the causes in the order in which they are lifted, each at most once; what it does not
         name is lifted last, together, as "rest"
@@ -81,49 +81,48 @@ def budget(
 
     Raises
     ------
-    InputError : no such cylinder or cause; a formula that cannot be, as in `compare`
+    InputError : no such cylinder or cause; a formula that `compare` refuses too
 
     >>> split = budget(simulate(load_scene("yi_diesel"))).split("side thrust")
     >>> f"{split.share(split.cause('two-mass rod')):.1f} % of the peak"
     '17.7 % of the peak'
     """
-    own = [formula for formula in formulas_of(formulas) if not formula.is_number]
+    curves = [formula for formula in formulas_of(formulas) if not formula.is_number]
     causes = checked_chain(chain, result.scene)
-    others = tuple(dict.fromkeys(f.quantity for f in own if f.quantity not in QUANTITIES))
-    excerpt = excerpt_of(result, cylinder, others)
+    excerpt = excerpt_of(result, cylinder, variables_of(curves))
     ideal = Idealized(excerpt)
     left_out = [LeftOut(name, "", reason) for name, reason in excerpt.left_out().items()]
-    lecture = _lecture(ideal, left_out)
-    answered = [lecture, *_own(own, ideal, "datum" in (chain or ()), left_out)]
-    nothing = vanishing([ideal.run, ideal.closed_form, *(each.values for each in answered)])
-    left_out += [LeftOut(name, "", reason) for name, reason in nothing.items()]
+    from_datum = "datum" in (chain or ())
+    evaluations = [_lecture(ideal, left_out), *_users(curves, ideal, from_datum, left_out)]
+    zero = vanishing([ideal.run, ideal.closed_form, *(e.values for e in evaluations)])
+    left_out += [LeftOut(name, "", reason) for name, reason in zero.items()]
     splits = tuple(
-        _split(ideal, causes, each, name)
-        for each in answered
-        for name in each.values
-        if name not in nothing
+        _split(ideal, causes, evaluation, name)
+        for evaluation in evaluations
+        for name in evaluation.values
+        if name not in zero
     )
     return Budget(excerpt, causes, splits, tuple(dict.fromkeys(left_out)))
 
 
-def _lecture(ideal: Idealized, left_out: list[LeftOut]) -> _Answered:
-    """S1's formulas; where their series diverge the lectures' closed form, which is said."""
+def _lecture(ideal: Idealized, left_out: list[LeftOut]) -> _Evaluation:
+    """S1's formulas; where their series diverge, the lectures' closed form, noted in left_out."""
     names = [name for name in ideal.run if name in QUANTITIES]
     try:
         values = ideal.excerpt.lecture(S1, constant_speed=True)
-        return _Answered(_TRUNCATED, values, ideal.all, ideal.truncated)
+        return _Evaluation(_TRUNCATED, values, ideal.all, ideal.truncated)
     except InputError as error:
         left_out += [LeftOut(name, "series", str(error)) for name in names]
-    under = ideal.all - {"series"}
-    exact = ideal.exact(under)
-    return _Answered(_UNTRUNCATED, {name: exact[name] for name in names}, under, {})
+    idealized = ideal.all - {"series"}
+    exact = ideal.exact(idealized)
+    return _Evaluation(_UNTRUNCATED, {name: exact[name] for name in names}, idealized, {})
 
 
-def _own(
+def _users(
     formulas: Sequence[Formula], ideal: Idealized, from_datum: bool, left_out: list[LeftOut]
-) -> list[_Answered]:
-    """One's own formulas, those that the closed form answers too."""
-    found = []
+) -> list[_Evaluation]:
+    """A user's formulas, those for quantities that the closed form has too."""
+    evaluations = []
     for formula in formulas:
         name = formula.quantity
         if name not in ideal.run:
@@ -131,25 +130,27 @@ def _own(
             left_out.append(LeftOut(name, formula.label, reason))
             continue
         if name not in ideal.closed_form:
-            left_out.append(LeftOut(name, f"the budget of {formula.label}", _OF_MOTION))
+            left_out.append(LeftOut(name, f"the budget of {formula.label}", _NO_BUDGET))
             continue
-        under = formula.idealized | {"series", "solver"} | ({"datum"} if from_datum else set())
+        idealized = formula.idealized | {"series", "solver"} | ({"datum"} if from_datum else set())
         values = formula.curve(ideal.excerpt)
-        error = {name: values - ideal.exact(under)[name]}  # as it is, whatever the speed
-        own = _Answered(
-            formula.label, {name: values}, under & ideal.all, {True: error, False: error}
+        error = {name: values - ideal.exact(idealized)[name]}  # the same at either speed
+        errors = {True: error, False: error}
+        evaluations.append(
+            _Evaluation(formula.label, {name: values}, idealized & ideal.all, errors)
         )
-        found.append(own)
-    return found
+    return evaluations
 
 
-def _split(ideal: Idealized, chain: Sequence[str], answered: _Answered, name: str) -> Split:
-    reference, values, idealized, errors = answered
+def _split(ideal: Idealized, chain: Sequence[str], evaluation: _Evaluation, name: str) -> Split:
+    reference, values, idealized, errors = evaluation
     simulated = ideal.run[name]
 
-    def answer(under: frozenset[str]) -> Array:
-        exact = ideal.exact(under)[name]
-        return exact + errors["constant speed" in under][name] if "series" in under else exact
+    def answer(remaining: frozenset[str]) -> Array:
+        exact = ideal.exact(remaining)[name]
+        return (
+            exact + errors["constant speed" in remaining][name] if "series" in remaining else exact
+        )
 
     if not errors:
         chain = [cause for cause in chain if cause != "series"]

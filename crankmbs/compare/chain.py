@@ -7,9 +7,8 @@ from collections.abc import Callable, Sequence
 from functools import cached_property
 
 from crankmbs import lecture
-from crankmbs.compare.bodies import bodies_of
 from crankmbs.compare.excerpt import Answer, Excerpt
-from crankmbs.compare.lectured import S1, Gear
+from crankmbs.compare.lectured import S1, gear_of
 from crankmbs.errors import InputError, shown
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
@@ -28,9 +27,9 @@ CAUSES = {
     "forces": "neglecting the forces on the pistons",
     "solver": "the solver",
 }
-"""The causes in their order unless told otherwise, and how a sentence names them."""
+"""The causes in their default order, and how a sentence names them."""
 
-REST = "rest"  # what a chain does not name, together
+REST = "rest"  # all causes that a chain does not name
 
 
 def checked_chain(chain: Sequence[str] | None, scene: Scene) -> tuple[str, ...]:
@@ -42,27 +41,27 @@ def checked_chain(chain: Sequence[str] | None, scene: Scene) -> tuple[str, ...]:
     """
     missing = {"friction"} if scene.friction is None else set()
     missing |= set() if scene.force else {"forces"}
-    all_there = tuple(name for name in CAUSES if name not in missing)
+    applicable = tuple(name for name in CAUSES if name not in missing)
     if chain is None:
-        return all_there
+        return applicable
     if isinstance(chain, str) or not isinstance(chain, Sequence) or not chain:
         raise InputError(
             f'chain must be a list of causes, such as ["series", "solver"]; {shown(chain)} came'
         )
     for k, name in enumerate(chain):
         if name not in CAUSES:
-            near = did_you_mean(name, list(CAUSES)) if isinstance(name, str) else ""
-            raise InputError(f"chain: a cause is {', '.join(CAUSES)}; {shown(name)} came{near}")
+            hint = did_you_mean(name, list(CAUSES)) if isinstance(name, str) else ""
+            raise InputError(f"chain: a cause is {', '.join(CAUSES)}; {shown(name)} came{hint}")
         if name in chain[:k]:
             raise InputError(f"chain: each cause once; {shown(name)} came twice; leave one out")
-    return (*chain, *([] if set(all_there) <= set(chain) else [REST]))
+    return (*chain, *([] if set(applicable) <= set(chain) else [REST]))
 
 
 class Idealized:
-    """The answers under idealizations, each made once.
+    """The answers under idealizations, each evaluated once.
 
-    An idealization is named like the cause that lifts it. With "series" a formula's own error
-    is in the answer, without "solver" that of the run.
+    An idealization is named like the cause that lifts it. With "series" the answer includes
+    the formula's own error, without "solver" the run's.
     """
 
     def __init__(self, excerpt: Excerpt) -> None:
@@ -76,7 +75,7 @@ class Idealized:
 
     @cached_property
     def run(self) -> Answer:
-        """The run."""
+        """The quantities of the run."""
         return self.excerpt.simulated()
 
     @cached_property
@@ -84,16 +83,16 @@ class Idealized:
         """The exact closed form at the run's own motion."""
         return self.excerpt.newton_euler(self.excerpt.result.scene)
 
-    def exact(self, under: frozenset[str]) -> Answer:
-        """The closed form under all of these but "series", and that of the run without "solver"."""
-        under = (under - {"series"}) & self.all
-        if under not in self._exact:
-            self._exact[under] = self._made(under)
-        return self._exact[under]
+    def exact(self, idealized: frozenset[str]) -> Answer:
+        """The closed form under these but "series", with the run's error unless "solver" is one."""
+        idealized = (idealized - {"series"}) & self.all
+        if idealized not in self._exact:
+            self._exact[idealized] = self._evaluate(idealized)
+        return self._exact[idealized]
 
     @cached_property
     def truncated(self) -> dict[bool, Answer]:
-        """What S1's formulas are wrong by under all its idealizations, at the constant speed (True)
+        """S1's formulas minus the closed form under all its idealizations, at constant speed (True)
         and at the run's own.
 
         Raises
@@ -107,24 +106,25 @@ class Idealized:
             errors[constant] = {name: formula[name] - exact[name] for name in formula}
         return errors
 
-    def _made(self, under: frozenset[str]) -> Answer:
+    def _evaluate(self, idealized: frozenset[str]) -> Answer:
         scene = self.excerpt.result.scene
-        if "gravity" in under:
+        if "gravity" in idealized:
             scene = dataclasses.replace(scene, gravity=None)
-        if "friction" in under:
+        if "friction" in idealized:
             scene = dataclasses.replace(scene, friction=None)
-        if "forces" in under:
+        if "forces" in idealized:
             scene = dataclasses.replace(scene, force=())
-        if "two-mass rod" in under:
+        if "two-mass rod" in idealized:
             scene = scene.two_mass
-        answer = dict(self.excerpt.newton_euler(scene, constant_speed="constant speed" in under))
-        if "gas torque" in answer:  # of every speed, also where the mean is 0
+        answer = dict(
+            self.excerpt.newton_euler(scene, constant_speed="constant speed" in idealized)
+        )
+        if "gas torque" in answer:  # the same at every speed, also where the mean is 0
             answer["gas torque"] = self.closed_form["gas torque"]
-        if "datum" in under:
-            gear = bodies_of(scene, self.excerpt.cylinder)[:3]
-            shift = lecture.datum_shift(**Gear(*gear)._asdict())
+        if "datum" in idealized:
+            shift = lecture.datum_shift(**gear_of(scene, self.excerpt.cylinder)._asdict())
             answer["piston displacement"] = answer["piston displacement"] + shift
-        if "solver" not in under:
+        if "solver" not in idealized:
             answer = {name: answer[name] + self._solver[name] for name in answer}
         return answer
 
@@ -144,12 +144,12 @@ def steps(
     """What each cause of a chain adds, from a formula's values to the run: they add up to formula
     minus run, to rounding, whatever their order.
 
-    idealized : what the formula idealizes; answer : under fewer idealizations than these
+    idealized : what the formula idealizes; answer : the formula's under fewer idealizations
     """
-    under, before, found = idealized, values, {}
+    remaining, before, contributions = idealized, values, {}
     for cause in chain:
-        lifted = frozenset[str]() if cause == REST else under - {cause}
-        after = before if lifted == under else answer(lifted) if lifted else simulated
-        found[cause] = before - after
-        under, before = lifted, after
-    return found
+        lifted = frozenset[str]() if cause == REST else remaining - {cause}
+        after = before if lifted == remaining else answer(lifted) if lifted else simulated
+        contributions[cause] = before - after
+        remaining, before = lifted, after
+    return contributions

@@ -1,4 +1,4 @@
-"""The stretch of a run that is compared: its last cycle, seen from one cylinder."""
+"""The samples of a run that are compared: those of its last cycle, for one cylinder."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 from crankmbs.scene.scene import Scene
 
-__all__ = ["FOLD", "Answer", "Excerpt", "LeftOut", "check_comparable", "excerpt_of", "vanishing"]
+__all__ = ["Answer", "Excerpt", "LeftOut", "at_fold", "check_comparable", "excerpt_of", "vanishing"]
 
 Answer = dict[str, Array]
 
-FOLD = 0.01  # cosine of the rod angle; below it the formulas lose digits with its third power
+_FOLD = 0.01  # cosine of the rod angle; below it the formulas lose digits with its third power
 
 
 class LeftOut(NamedTuple):
@@ -41,12 +41,12 @@ class LeftOut(NamedTuple):
 class Excerpt:
     """The samples of a run's last whole cycle (or revolution, or the run), and one cylinder.
 
-    samples : shape (n,), numbers of the samples; those within 0.6 degrees of a rod square to its
+    samples : shape (n,), their indices; those within 0.6 degrees of a rod square to its
         cylinder, where it folds onto the crank and the formulas lose their digits, are left out
     theta, omega, alpha : shape (n,) [rad, rad/s, rad/s2], the run's own
-    mean_speed [rad/s] : over time
+    mean_speed [rad/s] : time mean
     cylinder : number of the one that is compared
-    others : variables of the result that are compared too, by their names in OBSERVABLES
+    others : further variables of the result to compare, by their names in OBSERVABLES
     """
 
     result: Result
@@ -61,49 +61,52 @@ class Excerpt:
     others: tuple[str, ...] = ()
 
     def simulated(self) -> Answer:
-        """What the run says, in the lectures' quantities."""
+        """The run's values, in the lectures' quantities."""
         data = self.result.data.isel(time=self.samples)
-        own = {name: data[name].values for name in EVERY if name in data}
-        return self._of(own, self.omega, self.alpha)
+        variables = {name: data[name].values for name in EVERY if name in data}
+        return self._quantities(variables, self.omega, self.alpha)
 
     def newton_euler(self, scene: Scene, *, constant_speed: bool = False) -> Answer:
         """The exact closed form at the run's own theta, at its own or its mean speed; ``scene`` may
-        differ. Forces from outside on the pistons are the run's own."""
-        speed, rate = self._speeds(constant_speed)
-        given = {}
+        differ. The applied forces on the pistons are the run's."""
+        omega, alpha = self._speeds(constant_speed)
+        loads = {}
         if scene.force:
-            given["applied_force"] = self.result.sampled("applied_force")[self.samples]
-        found = reactions(replace(self.train, scene=scene), self.theta, speed, rate, given)
-        return self._of(found, speed, rate)
+            loads["applied_force"] = self.result.sampled("applied_force")[self.samples]
+        train = replace(self.train, scene=scene)
+        variables = reactions(train, self.theta, omega, alpha, loads)
+        return self._quantities(variables, omega, alpha)
 
     def lecture(self, formulas: Formulas, *, constant_speed: bool) -> Answer:
         """The lectures' formulas at the run's own theta, at its mean or its own speed."""
-        return self.seen(lectured(formulas, self.train, self.theta, *self._speeds(constant_speed)))
+        omega, alpha = self._speeds(constant_speed)
+        return self.of_cylinder(lectured(formulas, self.train, self.theta, omega, alpha))
 
     def angles(self, quantity: str) -> Array:
-        """Cycle angle of the cylinder, for the whole engine's quantities the crank angle [rad]."""
+        """Cycle angle of the cylinder; for quantities of the whole engine the crank angle [rad]."""
         if not OBSERVABLES[quantity].per_cylinder:
             return self.theta
         return self.theta + self.result.scene.cylinders[self.cylinder - 1].phase
 
     def size(self, quantity: str, curve: Array) -> Size:
-        """Measure a curve of this excerpt."""
+        """Maximum and RMS of a curve over these samples."""
         return size_of(curve, self.angles(quantity), self.result.scene.period)
 
     def _speeds(self, constant_speed: bool) -> tuple[Array, Array]:
-        """omega and alpha: the run's own, or those of its mean speed."""
+        """omega and alpha: the run's own, or its mean speed and 0."""
         if not constant_speed:
             return self.omega, self.alpha
-        still = np.zeros_like(self.alpha)
-        return still + self.mean_speed, still
+        zeros = np.zeros_like(self.alpha)
+        return zeros + self.mean_speed, zeros
 
-    def _of(self, variables: dict[str, Array], omega: Array, alpha: Array) -> Answer:
+    def _quantities(self, variables: dict[str, Array], omega: Array, alpha: Array) -> Answer:
         answer = observed(self.result.scene, variables, self.theta, omega, alpha)
-        more = {name: variables.get(name.replace(" ", "_")) for name in self.others}
-        return self.seen(answer | {name: v for name, v in more.items() if v is not None})
+        others = {name: variables.get(name.replace(" ", "_")) for name in self.others}
+        answer |= {name: curve for name, curve in others.items() if curve is not None}
+        return self.of_cylinder(answer)
 
-    def seen(self, answer: Answer) -> Answer:
-        """The curves of the one cylinder and of the whole engine, without those left out."""
+    def of_cylinder(self, answer: Answer) -> Answer:
+        """The curves of the cylinder compared and of the whole engine, without those left out."""
         missing = self.left_out()
         return {
             name: curve[:, self.cylinder - 1] if OBSERVABLES[name].per_cylinder else curve
@@ -112,7 +115,7 @@ class Excerpt:
         }
 
     def left_out(self) -> dict[str, str]:
-        """Quantities that this run does not have, and why."""
+        """Quantities that this run lacks, and why."""
         if self.train.pressure is None:
             return {"gas torque": "the scene has no gas"}
         if np.any(self.omega == 0.0):
@@ -120,8 +123,13 @@ class Excerpt:
         return {}
 
 
+def at_fold(rod_angle: Array) -> NDArray[np.bool_]:
+    """Where any rod is at its fold, from rod angles of shape (n, cylinders) [rad]."""
+    return np.asarray(np.min(np.cos(rod_angle), axis=1) < _FOLD)
+
+
 def vanishing(answers: Iterable[Answer]) -> dict[str, str]:
-    """Quantities that are zero but for rounding in every answer, and why they are left out."""
+    """Quantities that are zero to rounding in every answer, and why they are left out."""
     peaks: dict[str, float] = {}
     for answer in answers:
         for name, curve in answer.items():
@@ -144,15 +152,15 @@ def check_comparable(scene: Scene, cylinder: int) -> None:
 
 
 def excerpt_of(result: Result, cylinder: int, others: tuple[str, ...] = ()) -> Excerpt:
-    """The last cycle of a run, seen from a cylinder, counted from 1; ``others`` as in `Excerpt`.
+    """The last cycle of a run for a cylinder, counted from 1; ``others`` as in `Excerpt`.
 
     Raises
     ------
-    InputError : no such cylinder, a scene with fuel, or no sample but at a fold
+    InputError : no such cylinder, a scene with fuel, or every sample at a fold
     """
     check_comparable(result.scene, cylinder)
     window = last_span(result)
-    folded = np.min(np.cos(result.data["rod_angle"].values), axis=1) < FOLD
+    folded = at_fold(result.data["rod_angle"].values)
     samples = np.flatnonzero(~folded[window.inside :]) + window.inside
     if len(samples) == 0:
         raise InputError("the rod is folded onto the crank all the time: nothing can be compared")

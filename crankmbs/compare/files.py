@@ -29,7 +29,7 @@ def save_comparison(comparison: Comparison, folder: Path) -> Path:
     OutputError : the folder cannot be made or written
     """
     lines = (
-        [row.reference, *_whose(comparison.excerpt, row.quantity), *_cells(row.size, row.peak)]
+        [row.reference, *_label(comparison.excerpt, row.quantity), *_values(row.size, row.peak)]
         for row in comparison.rows
     )
     heading = ["reference", "quantity", "unit", "cylinder", *_SIZE]
@@ -39,16 +39,16 @@ def save_comparison(comparison: Comparison, folder: Path) -> Path:
 def save_budget(budget: Budget, folder: Path) -> Path:
     """Write budget.csv: every cause over the angle, so that they can be added up.
 
-    A line for each formula, quantity and sample, in SI units and degrees; the causes of a line add
-    up to "total", which is "formula" minus "run". crank_angle_deg is the run's own; angle_deg lies
-    within one cycle, of the cylinder, for the main bearing of the crank.
+    A line for each formula, quantity and sample, in SI units and degrees; the causes in a line add
+    up to "total", which is "formula" minus "run". crank_angle_deg is unwrapped; angle_deg is the
+    cycle angle of the cylinder, for the main bearing the crank angle within one period.
 
     Raises
     ------
     OutputError : the folder cannot be made or written
     """
     heading = ["reference", "quantity", "unit", "cylinder", "crank_angle_deg", "angle_deg"]
-    lines = (line for split in budget.splits for line in _curves(budget, split))
+    lines = (line for split in budget.splits for line in _budget_lines(budget, split))
     heading += ["run", "formula", "total", *budget.chain]
     return _write(folder / "budget.csv", heading, lines)
 
@@ -63,9 +63,9 @@ def save_budget_peaks(budget: Budget, folder: Path) -> Path:
     lines = (
         [
             split.reference,
-            *_whose(budget.excerpt, split.quantity),
+            *_label(budget.excerpt, split.quantity),
             cause.name,
-            *_cells(cause.size, split.peak),
+            *_values(cause.size, split.peak),
         ]
         for split in budget.splits
         for cause in (*split.causes, split.total)
@@ -94,24 +94,25 @@ def save_numbers(comparison: Comparison, folder: Path) -> Path:
     return _write(folder / "numbers.csv", heading, lines)
 
 
-def _curves(budget: Budget, split: Split) -> Iterator[list[str]]:
-    """The lines of a quantity, sample by sample; causes that it has not are 0."""
+def _budget_lines(budget: Budget, split: Split) -> Iterator[list[str]]:
+    """The lines of a quantity, sample by sample; causes that it lacks are 0."""
     excerpt = budget.excerpt
-    about = [split.reference, *_whose(excerpt, split.quantity)]
+    label = [split.reference, *_label(excerpt, split.quantity)]
     angle = within(excerpt.angles(split.quantity), excerpt.result.scene.period)
     causes = {cause.name: cause.curve for cause in split.causes}
     curves = [np.degrees(excerpt.theta), np.degrees(angle), split.simulated, split.values]
-    curves += [split.total.curve, *(causes.get(n, 0.0 * angle) for n in budget.chain)]
-    for row in np.transpose(curves).tolist():
-        yield [*about, *(f"{value:.15g}" for value in row)]
+    curves += [split.total.curve, *(causes.get(name, 0.0 * angle) for name in budget.chain)]
+    for sample in np.transpose(curves).tolist():
+        yield [*label, *(f"{value:.15g}" for value in sample)]
 
 
-def _whose(excerpt: Excerpt, quantity: str) -> list[str]:
-    about = OBSERVABLES[quantity]
-    return [quantity, about.units, str(excerpt.cylinder) if about.per_cylinder else "all"]
+def _label(excerpt: Excerpt, quantity: str) -> list[str]:
+    observable = OBSERVABLES[quantity]
+    cylinder = str(excerpt.cylinder) if observable.per_cylinder else "all"
+    return [quantity, observable.units, cylinder]
 
 
-def _cells(size: Size, peak: float) -> list[str]:
+def _values(size: Size, peak: float) -> list[str]:
     shares = (percent(size.largest, peak), percent(size.rms, peak))
     values = (peak, size.largest, size.rms, *shares, math.degrees(size.angle))
     return [f"{value:.12g}" for value in values]

@@ -1,9 +1,9 @@
-"""A formula that someone wrote in Python: what it stands for, what it asks for, what it answers."""
+"""A formula that a user wrote in Python: its quantity, its parameters and its values."""
 
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,21 +19,21 @@ from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.function import named
 from crankmbs.scene.sentences import did_you_mean
 
-__all__ = ["CLOSED_FORM", "Formula", "formulas_of", "formulated"]
+__all__ = ["CLOSED_FORM", "Formula", "formulas_of", "formulated", "variables_of"]
 
 
 CLOSED_FORM = "closed form"
 
 _SHORT = {name.removeprefix("piston "): name for name in OBSERVABLES if name.startswith("piston ")}
-_NAMES = _SHORT | {name: name for name in (*OBSERVABLES, *NUMBERS)}
-_ELSEWHERE = {
+_QUANTITY_NAMES = _SHORT | {name: name for name in (*OBSERVABLES, *NUMBERS)}
+_WORDS_OF_RESULT = {
     "crank_angle": "theta, or for phi, of the cylinder compared",
     "crank_speed": "omega",
     "crank_acceleration": "alpha",
-}  # what a result calls otherwise
-_LISTED = f"{', '.join((*QUANTITIES, *NUMBERS))}, and the variables of a result"
-_TAKEN = ("run", "lecture", CLOSED_FORM, *LECTURES)
-_KNOWS = {
+}  # names of a result, and the words for them
+_NAMES_LISTED = f"{', '.join((*QUANTITIES, *NUMBERS))}, and the variables of a result"
+_RESERVED_LABELS = ("run", "lecture", CLOSED_FORM, *LECTURES)
+_LIFTED_BY = {
     "constant speed": {"omega", "alpha"},
     "two-mass rod": {"rod_inertia", "reduced_inertia", "reduced_slope"},
     "gravity": {"gravity_x", "gravity_y", "generalized_force"},
@@ -44,7 +44,7 @@ _KNOWS = {
 
 @dataclass(frozen=True)
 class Formula:
-    """label : under which it is shown; quantity : that it stands for; words : that it asks for."""
+    """label : under which it is shown; quantity : what it gives; words : what it asks for."""
 
     label: str
     function: Callable[..., Any]
@@ -58,18 +58,20 @@ class Formula:
 
     @property
     def idealized(self) -> frozenset[str]:
-        """The causes of error that it cannot be free of, as it does not ask for what they are
-        about."""
-        return frozenset(cause for cause, words in _KNOWS.items() if not words & set(self.words))
+        """The causes that its error includes, as it asks for none of the words that lift them."""
+        return frozenset(
+            cause for cause, words in _LIFTED_BY.items() if not words & set(self.words)
+        )
 
     def curve(self, excerpt: Excerpt) -> Array:
-        """Its answer on a stretch of a run, shape (n,).
+        """Its values at the samples of a run, shape (n,).
 
         Raises
         ------
-        InputError : it raises, or answers no n finite numbers
+        InputError : it raises, or gives other than n finite numbers
         """
-        answer = self._called(Words(excerpt, one=OBSERVABLES[self.quantity].per_cylinder))
+        per_cylinder = OBSERVABLES[self.quantity].per_cylinder
+        answer = self._evaluate(Words(excerpt, per_cylinder=per_cylinder))
         n = len(excerpt.theta)
         if answer.shape not in ((), (n,)):
             raise InputError(
@@ -82,13 +84,13 @@ class Formula:
                 )
             )
         values = np.array(np.broadcast_to(answer, n))
-        wrong = np.flatnonzero(~np.isfinite(values))
-        if len(wrong):
-            at = excerpt.theta[wrong[0]]
+        not_finite = np.flatnonzero(~np.isfinite(values))
+        if len(not_finite):
+            theta = excerpt.theta[not_finite[0]]
             raise InputError(
-                f"{self.label}: must give finite numbers; {values[wrong[0]]} came at {len(wrong)} "
-                f"of {n} samples, first at theta = {at:.6g} rad; give there what the formula tends "
-                "to"
+                f"{self.label}: must give finite numbers; {values[not_finite[0]]} came at "
+                f"{len(not_finite)} of {n} samples, first at theta = {theta:.6g} rad; give there "
+                "what the formula tends to"
             )
         return values
 
@@ -97,27 +99,27 @@ class Formula:
 
         Raises
         ------
-        InputError : it raises, or answers no single finite number
+        InputError : it raises, or gives other than a single finite number
         """
         per_cylinder = NUMBERS[self.quantity].per_cylinder
-        answer = self._called(Words(excerpt, one=per_cylinder))
+        answer = self._evaluate(Words(excerpt, per_cylinder=per_cylinder))
         if answer.shape != () or not np.isfinite(answer):
-            came = f"an array of shape {answer.shape}" if answer.shape else str(answer)
-            raise InputError(f"{self.label}: the {self.quantity} is one finite number; {came} came")
+            text = f"an array of shape {answer.shape}" if answer.shape else str(answer)
+            raise InputError(f"{self.label}: the {self.quantity} is one finite number; {text} came")
         return float(answer)
 
-    def _called(self, words: Words) -> Array:
-        """What the function answers, as numbers; numpy's warnings are ours to put in a sentence."""
-        given = {name: words[name] for name in self.words}
-        given = {k: v.copy() if isinstance(v, np.ndarray) else v for k, v in given.items()}
+    def _evaluate(self, words: Words) -> Array:
+        """What the function returns, as numbers, without numpy's warnings; callers check it."""
+        values = {name: words[name] for name in self.words}
+        arguments = {k: v.copy() if isinstance(v, np.ndarray) else v for k, v in values.items()}
         try:
             with np.errstate(all="ignore"):
-                answer = self.function(**given)
+                answer = self.function(**arguments)
         except Exception as error:  # whatever the function of a user may raise
-            what = f"{type(error).__name__}: {error}".rstrip(": ")
+            exception = f"{type(error).__name__}: {error}".rstrip(": ")
             raise InputError(
-                f"{self.label}: {named(self.function)} raises {what}; it is called with "
-                f"{', '.join(_described(*pair) for pair in given.items()) or 'nothing'}"
+                f"{self.label}: {named(self.function)} raises {exception}; it is called with "
+                f"{', '.join(_described(*pair) for pair in arguments.items()) or 'nothing'}"
             ) from error
         try:
             return np.asarray(answer).astype(np.float64, casting="same_kind")
@@ -127,26 +129,32 @@ class Formula:
             ) from None
 
 
-def formulas_of(given: Mapping[str, Callable[..., Any]] | None) -> tuple[Formula, ...]:
-    """The formulas behind functions, by their labels.
+def formulas_of(functions: Mapping[str, Callable[..., Any]] | None) -> tuple[Formula, ...]:
+    """Formulas from functions by their labels.
 
     Raises
     ------
     InputError : no such mapping; a label that is taken, no function, one that names no quantity, a
         parameter that is no word
     """
-    if given is None:
+    if functions is None:
         return ()
-    if not isinstance(given, Mapping):
+    if not isinstance(functions, Mapping):
         raise InputError(
             'formulas must be functions by their labels, such as {"my series": function}; '
-            f"{shown(given)} came"
+            f"{shown(functions)} came"
         )
-    return tuple(formulated(label, function) for label, function in given.items())
+    return tuple(formulated(label, function) for label, function in functions.items())
+
+
+def variables_of(formulas: Sequence[Formula]) -> tuple[str, ...]:
+    """The variables of a result that formulas stand for, beside the lectures' quantities."""
+    quantities = dict.fromkeys(formula.quantity for formula in formulas)
+    return tuple(quantity for quantity in quantities if quantity not in QUANTITIES)
 
 
 def formulated(label: str, function: Callable[..., Any]) -> Formula:
-    """The formula behind one function.
+    """The formula from one function.
 
     It stands for the quantity that its name begins with, or else its label; a piston's also without
     "piston". Its parameters name what it asks for; one that is no word must have a default.
@@ -163,17 +171,17 @@ def formulated(label: str, function: Callable[..., Any]) -> Formula:
     """
     if not isinstance(label, str) or not label.strip():
         raise InputError(f"a formula's label must be a text; {shown(label)} came")
-    if label in _TAKEN:
+    if label in _RESERVED_LABELS:
         raise InputError(f"{label}: this is what another curve is called; choose another label")
     if not callable(function):
         raise InputError(f"{label}: must be a function; {shown(function)} came")
     quantity = _quantity(named(function)) or _quantity(label)
     if quantity is None:
-        first = _spaced(named(function)) if named(function) != "<lambda>" else _spaced(label)
+        name = _spaced(named(function)) if named(function) != "<lambda>" else _spaced(label)
         raise InputError(
             f"{label}: a formula stands for the quantity that its function's name begins with, or "
             f"its label; {shown(named(function))} names none"
-            + (did_you_mean(first, list(_NAMES)) or f"; there are {_LISTED}")
+            + (did_you_mean(name, list(_QUANTITY_NAMES)) or f"; there are {_NAMES_LISTED}")
         )
     return Formula(label, function, quantity, _words(label, function))
 
@@ -187,33 +195,34 @@ def _words(label: str, function: Callable[..., Any]) -> tuple[str, ...]:
             "of your own, whose parameters say what it asks for"
         ) from None
     words = []
-    for each in parameters:
-        if each.kind in (each.VAR_POSITIONAL, each.VAR_KEYWORD):
+    for parameter in parameters:
+        if parameter.kind in (parameter.VAR_POSITIONAL, parameter.VAR_KEYWORD):
             continue
-        if each.name in WORDS and each.kind != each.POSITIONAL_ONLY:
-            words.append(each.name)
-        elif each.default is each.empty:
+        if parameter.name in WORDS and parameter.kind != parameter.POSITIONAL_ONLY:
+            words.append(parameter.name)
+        elif parameter.default is parameter.empty:
             raise InputError(
-                f"{label}: the parameter {each.name} of {named(function)} {_no_word(each.name)}"
+                f"{label}: the parameter {parameter.name} of {named(function)} "
+                f"{_no_word(parameter.name)}"
             )
     return tuple(words)
 
 
 def _no_word(name: str) -> str:
-    """Why a parameter can be given nothing, and the way out."""
+    """Why a parameter has no value, and the way out."""
     if name in WORDS:
         return "must be given by name; leave out the / behind it"
-    if name in _ELSEWHERE:
-        return f"is nothing it can be given; ask for {_ELSEWHERE[name]}"
-    near = did_you_mean(name, list(WORDS)) or f"; there are {', '.join(WORDS)}"
-    return f"is nothing it can be given{near}"
+    if name in _WORDS_OF_RESULT:
+        return f"is nothing it can be given; ask for {_WORDS_OF_RESULT[name]}"
+    hint = did_you_mean(name, list(WORDS)) or f"; there are {', '.join(WORDS)}"
+    return f"is nothing it can be given{hint}"
 
 
 def _quantity(text: str) -> str | None:
     """The quantity that a name begins with, the longest of several."""
     spaced = _spaced(text)
-    fitting = [name for name in _NAMES if f"{spaced} ".startswith(f"{name} ")]
-    return _NAMES[max(fitting, key=len)] if fitting else None
+    matches = [name for name in _QUANTITY_NAMES if f"{spaced} ".startswith(f"{name} ")]
+    return _QUANTITY_NAMES[max(matches, key=len)] if matches else None
 
 
 def _spaced(text: str) -> str:

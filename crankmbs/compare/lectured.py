@@ -1,7 +1,7 @@
-"""What the lectures answer for a scene at given crank angles: truncated, or exact for two masses.
+"""The lectures' formulas for a scene at crank angles: truncated, or exact for two masses.
 
 Their model: gas and inertia force of the reciprocating mass act along the cylinder, the rod is two
-masses on a bar without mass, the crank a mass at its radius, nothing has weight.
+masses on a massless bar, the crank is a mass at its radius, and there is no gravity.
 """
 
 from __future__ import annotations
@@ -43,8 +43,8 @@ class Gear(NamedTuple):
 
 
 class Motion(NamedTuple):
-    """Of a piston at cycle angles: its displacement; velocity over omega; of its acceleration the
-    parts over omega^2 and over alpha."""
+    """Of a piston at cycle angles: displacement; velocity over omega; the factors of omega^2 and of
+    alpha in its acceleration."""
 
     displacement: Array
     velocity: Array
@@ -53,7 +53,7 @@ class Motion(NamedTuple):
 
 
 class RodForces(NamedTuple):
-    """Over the net force on a piston pin, at cycle angles."""
+    """Forces over the net force on a piston pin, at cycle angles."""
 
     side_thrust: Array
     rod: Array
@@ -62,52 +62,52 @@ class RodForces(NamedTuple):
 
 
 class Formulas(NamedTuple):
-    """A choice among the lectures' formulas: how the piston moves, and how its force goes on."""
+    """A choice among the lectures' formulas: the piston's motion, the forces in the train."""
 
     motion: Callable[[Array, Gear], Motion]
     forces: Callable[[Array, Gear], RodForces]
 
 
 def _exact_motion(phi: Array, gear: Gear) -> Motion:
-    where = gear._asdict()
-    velocity = np.asarray(lecture.piston_velocity(phi, omega=1.0, **where))
+    lengths = gear._asdict()
+    velocity = np.asarray(lecture.piston_velocity(phi, omega=1.0, **lengths))
     return Motion(
-        np.asarray(lecture.piston_displacement(phi, **where)),
+        np.asarray(lecture.piston_displacement(phi, **lengths)),
         velocity,
-        np.asarray(lecture.piston_acceleration(phi, omega=1.0, alpha=0.0, **where)),
+        np.asarray(lecture.piston_acceleration(phi, omega=1.0, alpha=0.0, **lengths)),
         velocity,
     )
 
 
 def _truncated_motion(phi: Array, gear: Gear) -> Motion:
-    where = gear._asdict()
+    lengths = gear._asdict()
     return Motion(
-        np.asarray(lecture.piston_displacement_series(phi, **where)),
-        np.asarray(lecture.piston_velocity_series(phi, omega=1.0, **where)),
-        np.asarray(lecture.piston_acceleration_series(phi, omega=1.0, **where)),
+        np.asarray(lecture.piston_displacement_series(phi, **lengths)),
+        np.asarray(lecture.piston_velocity_series(phi, omega=1.0, **lengths)),
+        np.asarray(lecture.piston_acceleration_series(phi, omega=1.0, **lengths)),
         0.0,
     )
 
 
 def _exact_forces(phi: Array, gear: Gear) -> RodForces:
-    where = gear._asdict()
-    rod = lecture.rod_force(phi, net_force=1.0, **where)
+    lengths = gear._asdict()
+    rod = lecture.rod_force(phi, net_force=1.0, **lengths)
     return RodForces(
-        np.asarray(lecture.side_thrust(phi, net_force=1.0, **where)),
+        np.asarray(lecture.side_thrust(phi, net_force=1.0, **lengths)),
         np.asarray(rod),
-        np.asarray(lecture.tangential_force(phi, rod_force=rod, **where)),
-        np.asarray(lecture.radial_force(phi, rod_force=rod, **where)),
+        np.asarray(lecture.tangential_force(phi, rod_force=rod, **lengths)),
+        np.asarray(lecture.radial_force(phi, rod_force=rod, **lengths)),
     )
 
 
 def _truncated_forces(phi: Array, gear: Gear) -> RodForces:
-    where = gear._asdict()
+    lengths = gear._asdict()
     central = {"crank_radius": gear.crank_radius, "rod_length": gear.rod_length}
     return RodForces(
-        np.asarray(lecture.side_thrust_series(phi, net_force=1.0, **where)),
+        np.asarray(lecture.side_thrust_series(phi, net_force=1.0, **lengths)),
         np.asarray(lecture.rod_force_series(phi, net_force=1.0, **central)),
-        np.asarray(lecture.tangential_force_series(phi, net_force=1.0, **where)),
-        np.asarray(lecture.radial_force_series(phi, net_force=1.0, **where)),
+        np.asarray(lecture.tangential_force_series(phi, net_force=1.0, **lengths)),
+        np.asarray(lecture.radial_force_series(phi, net_force=1.0, **lengths)),
     )
 
 
@@ -150,36 +150,36 @@ def lectured(
     scene, pressure = train.scene, train.pressure
     phi, gear = cycle_angles(scene, theta), gear_of(scene)
     difference = np.zeros_like(phi)
-    for k, each in enumerate(pressure or ()):
-        difference[:, k] = each(phi[:, k])
-    at = formulas.motion(phi, gear), formulas.forces(phi, gear)
-    found = of_cylinders(scene, at, phi, difference, (omega[:, None], alpha[:, None]))
-    throw_x, throw_y = found["crank pin force x"], found["crank pin force y"]
+    for k, pressure_at in enumerate(pressure or ()):
+        difference[:, k] = pressure_at(phi[:, k])
+    factors = formulas.motion(phi, gear), formulas.forces(phi, gear)
+    answer = of_cylinders(scene, factors, phi, difference, (omega[:, None], alpha[:, None]))
+    throw_x, throw_y = answer["crank pin force x"], answer["crank pin force y"]
     bearing_x, bearing_y = _main_bearing(scene, theta, omega, alpha, throw_x, throw_y)
-    return found | {"main bearing force x": bearing_x, "main bearing force y": bearing_y}
+    return answer | {"main bearing force x": bearing_x, "main bearing force y": bearing_y}
 
 
-def gear_of(scene: Scene) -> Gear:
-    """The gear of any cylinder, or of each where they are unlike.
+def gear_of(scene: Scene, cylinder: int | None = None) -> Gear:
+    """The gear of every cylinder, or of one by its number.
 
     >>> gear_of(load_scene("propeller")).crank_radius
     0.046
     """
-    return Gear(*bodies_of(scene)[:3])
+    return Gear(*bodies_of(scene, cylinder)[:3])
 
 
 def of_cylinders(
     scene: Scene,
-    at: tuple[Motion, RodForces],
+    factors: tuple[Motion, RodForces],
     phi: Array,
     difference: Array,
     motion: tuple[Array, Array | float],
 ) -> dict[str, Array]:
-    """What a choice of formulas says of cylinders, each for itself.
+    """The quantities of cylinders by a choice of formulas, each cylinder by itself.
 
     Parameters
     ----------
-    at : what its formulas give at the cycle angles
+    factors : what its formulas give at the cycle angles
     phi : cycle angles [rad], of any shape
     difference : pressure difference across the piston [Pa]; motion : omega [rad/s] and alpha
         [rad/s2]; shapes that broadcast with that of phi. All but displacement is linear in alpha,
@@ -187,12 +187,12 @@ def of_cylinders(
 
     Returns
     -------
-    dict over those QUANTITIES that a cylinder has, of the shape of all together
+    dict over those QUANTITIES that a cylinder has, of the shape they broadcast to
     """
-    (moved, forces), (speed, rate) = at, motion
+    (piston, forces), (omega, alpha) = factors, motion
     bodies = bodies_of(scene)
     r, masses = bodies.crank_radius, bodies.masses
-    mass = lecture.reciprocating_mass(
+    reciprocating = lecture.reciprocating_mass(
         piston_mass=bodies.piston_mass, rod_piston_pin_mass=masses.piston_pin
     )
     gas = np.asarray(
@@ -200,28 +200,28 @@ def of_cylinders(
             gas_pressure=difference, ambient_pressure=0.0, piston_area=bodies.piston_area
         )
     )
-    acceleration = moved.square * speed**2 + moved.alpha * rate
+    acceleration = piston.square * omega**2 + piston.alpha * alpha
 
-    def force_with(moving: Array | float) -> Array:
-        inertia = lecture.inertia_force(reciprocating_mass=moving, piston_acceleration=acceleration)
+    def force_with(mass: Array | float) -> Array:
+        inertia = lecture.inertia_force(reciprocating_mass=mass, piston_acceleration=acceleration)
         return np.asarray(lecture.net_force(gas_force=gas, inertia_force=inertia))
 
-    net = force_with(mass)
+    net = force_with(reciprocating)
     side_thrust, tangential = net * forces.side_thrust, net * forces.tangential
-    turning_x, turning_y = _inertia_at_throw(masses.crank_pin, r, phi, speed, rate)
+    turning_x, turning_y = _inertia_at_throw(masses.crank_pin, r, phi, omega, alpha)
     throw_x, throw_y = net + turning_x, turning_y - side_thrust
     drive = np.asarray(lecture.crank_torque(tangential_force=tangential, crank_radius=r))
     from_gas = gas * forces.tangential
     return {
-        "piston displacement": moved.displacement,
-        "piston velocity": moved.velocity * speed,
+        "piston displacement": piston.displacement,
+        "piston velocity": piston.velocity * omega,
         "piston acceleration": acceleration,
         "net force": net,
         "side thrust": side_thrust,
         "rod force": net * forces.rod,
         "tangential force": tangential,
         "radial force": net * forces.radial,
-        "torque": drive - masses.crank_pin * r**2 * rate,
+        "torque": drive - masses.crank_pin * r**2 * alpha,
         "gas torque": np.asarray(lecture.crank_torque(tangential_force=from_gas, crank_radius=r)),
         "piston pin force x": force_with(bodies.piston_mass),
         "piston pin force y": -side_thrust,
@@ -237,7 +237,7 @@ def _inertia_at_throw(
     omega: Array,
     alpha: Array | float,
 ) -> tuple[Array, Array]:
-    """Force that a mass turning at the crank radius needs: inwards, and forwards with alpha."""
+    """Force on a mass turning at the crank radius: inwards, and forwards with alpha."""
     inwards = np.asarray(
         lecture.rotating_inertia_force(rotating_mass=mass, crank_radius=radius, omega=omega)
     )
@@ -249,8 +249,8 @@ def _inertia_at_throw(
 def turning_crank(
     scene: Scene, theta: Array, omega: Array, alpha: Array | float
 ) -> tuple[Array, Array]:
-    """What the main bearing gives to the crank's own reduced mass, in the engine's frame [N], at
-    crank angles [rad], speeds [rad/s] and accelerations [rad/s2] whose shapes broadcast."""
+    """Force of the main bearing on the crank's reduced mass, in the engine's frame [N], at crank
+    angles [rad], speeds [rad/s] and accelerations [rad/s2] whose shapes broadcast."""
     crank = scene.crank
     mass = lecture.reduced_web_mass(
         web_mass=crank.mass, center_of_mass=crank.center_of_mass, crank_radius=crank.radius
@@ -261,8 +261,8 @@ def turning_crank(
 def _main_bearing(
     scene: Scene, theta: Array, omega: Array, alpha: Array, throw_x: Array, throw_y: Array
 ) -> tuple[Array, Array]:
-    """Every throw's force turned into the engine's frame, and the crank's own."""
-    own_x, own_y = turning_crank(scene, theta, omega, alpha)
+    """Every throw's force in the engine's frame, and the crank's."""
+    crank_x, crank_y = turning_crank(scene, theta, omega, alpha)
     bank = np.array([cylinder.bank for cylinder in scene.cylinders])
     sin, cos = np.sin(bank), np.cos(bank)
-    return own_x + throw_x @ cos - throw_y @ sin, own_y + throw_x @ sin + throw_y @ cos
+    return crank_x + throw_x @ cos - throw_y @ sin, crank_y + throw_x @ sin + throw_y @ cos

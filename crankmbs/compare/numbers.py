@@ -1,4 +1,4 @@
-"""Single numbers of a run that a formula may stand for, beside the formula's."""
+"""Single numbers of a run that a formula may stand for, and what the formula gives for them."""
 
 from __future__ import annotations
 
@@ -12,11 +12,10 @@ __all__ = ["NUMBERS", "Number", "NumberOf"]
 
 
 class NumberOf(NamedTuple):
-    """units; how it is found among the measures of a run, None where there is none; lacking : why
-    there may be none."""
+    """units; estimate : read from measures, None where they lack it; lacking : why they may."""
 
     units: str
-    found: Callable[[Measures, int], Estimate | None]
+    estimate: Callable[[Measures, int], Estimate | None]
     lacking: str = ""
     per_cylinder: bool = False
 
@@ -36,7 +35,7 @@ NUMBERS = {
 
 @dataclass(frozen=True)
 class Number:
-    """One number by a formula, and as the run has it.
+    """One number by a formula and by the run.
 
     value [units] : by the formula; simulated [units] : of the run, with its error
     """
@@ -58,6 +57,6 @@ class Number:
 
     @property
     def percent(self) -> float:
-        """The error in percent of the run's; no number where that is 0."""
+        """The error in percent of the run's value; NaN where that is 0."""
         run = self.simulated.value
         return 100.0 * self.error / abs(run) if run else float("nan")

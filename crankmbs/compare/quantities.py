@@ -56,9 +56,9 @@ QUANTITIES = {
 }
 
 OBSERVABLES = {
-    name.replace("_", " "): Quantity(about.units, per_cylinder=about.per_cylinder)
-    for name, about in EVERY.items()
-    if name not in ("time", "crank_angle", "fuel") and about.of in ("", "cylinder")
+    name.replace("_", " "): Quantity(variable.units, per_cylinder=variable.per_cylinder)
+    for name, variable in EVERY.items()
+    if name not in ("time", "crank_angle", "fuel") and variable.of in ("", "cylinder")
 } | QUANTITIES
 """What a formula may stand for: the lectures' quantities, and the variables of a result."""
 
@@ -88,7 +88,7 @@ def observed(
     Returns
     -------
     dict over QUANTITIES: shape (n, cylinders), those of the whole engine (n,); "gas torque" is
-    the gas force's power over omega, no number where the crank stands still
+    the gas force's power over omega, not finite where the crank stands still
     """
     phi = cycle_angles(scene, theta)
     return observed_cylinders(scene, variables, phi, omega[:, None], alpha[:, None]) | {
@@ -100,8 +100,8 @@ def observed(
 def observed_cylinders(
     scene: Scene, variables: Mapping[str, Array], phi: Array, omega: Array, alpha: Array
 ) -> dict[str, Array]:
-    """Those quantities that a cylinder has, as `observed` makes them, at cycle angles of any shape
-    [rad]; the others in shapes that broadcast with it."""
+    """The quantities of `observed` that a cylinder has, at cycle angles of any shape [rad]; omega,
+    alpha and the variables in shapes that broadcast with it."""
     sin_phi, cos_phi = np.sin(phi), np.cos(phi)
     square = omega**2
     bodies = bodies_of(scene)

@@ -1,4 +1,4 @@
-"""An error budget: of every quantity the formula, the run and the causes of their difference."""
+"""An error budget: for every quantity the formula, the run and the causes of their difference."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from crankmbs.numerics.arrays import Array
 
 __all__ = ["Budget", "Cause", "Split"]
 
-_NOTHING = 1e-12  # of the larger of formula and run: rounding, and no cause
-_ABSENT = 1e-9  # of the formula: a run's peak so small has no percent
+_NOTHING = 1e-12  # of the larger of formula and run: rounding, not a cause
+_ABSENT = 1e-9  # of the formula's peak: a run's peak below it is rounding, no base for percents
 
 
 @dataclass(frozen=True)
@@ -63,37 +63,37 @@ class Split:
         )
 
     def share(self, cause: Cause) -> float:
-        """The peak of a cause in percent of the run's; 0 where it is but rounding, not a number
-        where the run's is, beside the formula's."""
-        answered = float(np.max(np.abs(self.values)))
-        if cause.size.largest <= _NOTHING * max(answered, self.peak):
+        """The peak of a cause in percent of the run's; 0 where it is rounding, NaN where the
+        run's is, beside the formula's."""
+        formula_peak = float(np.max(np.abs(self.values)))
+        if cause.size.largest <= _NOTHING * max(formula_peak, self.peak):
             return 0.0
-        return percent(cause.size.largest, self.peak if self.peak > _ABSENT * answered else 0.0)
+        return percent(cause.size.largest, self.peak if self.peak > _ABSENT * formula_peak else 0.0)
 
     def sentence(self) -> str:
-        """How far the formula is off, and what its causes are worth, the largest first.
+        """The largest error of the formula and of each of its causes, the largest first.
 
-        The peaks of causes lie at different angles: they do not add up to that of the error.
+        The causes peak at different angles, so their peaks do not add up to that of the error.
         """
         total = self.share(self.total)
-        about = self.quantity if self.is_lecture else f"{self.quantity} by {self.reference}"
+        subject = self.quantity if self.is_lecture else f"{self.quantity} by {self.reference}"
         if math.isnan(total):
-            whose = "lecture" if self.is_lecture else "formula"
-            return f"{about}: the run has none, the {whose} has"
-        worth = [cause for cause in self.causes if self.share(cause) > 0.0]
-        worth.sort(key=self.share, reverse=True)
+            source = "lecture" if self.is_lecture else "formula"
+            return f"{subject}: the run has none, the {source} has"
+        contributing = [cause for cause in self.causes if self.share(cause) > 0.0]
+        contributing.sort(key=self.share, reverse=True)
         parts: list[str] = []
-        for cause in worth:
+        for cause in contributing:
             up_to = "" if parts else "costs up to "
             parts.append(
                 f"{self.named(cause)} {up_to}{_readable(self.share(cause))} %, {_where(cause)}"
             )
         if not total:
-            return f"{about}: right but for rounding"
-        if len(worth) < len(self.causes):
+            return f"{subject}: right but for rounding"
+        if len(contributing) < len(self.causes):
             parts.append("no other cause contributes")
-        off = f"off by up to {_readable(total)} % of the peak, {_where(self.total)}"
-        return f"{about}: {off}: {'; '.join(parts)}"
+        largest = f"off by up to {_readable(total)} % of the peak, {_where(self.total)}"
+        return f"{subject}: {largest}: {'; '.join(parts)}"
 
     def at_largest(self) -> dict[str, float]:
         """What each cause adds where the error is largest, in percent of the run's peak, signed:
@@ -125,8 +125,8 @@ class Split:
 
 @dataclass(frozen=True)
 class Budget:
-    """The error of every quantity by the lectures' formulas, and of every other formula's; chain :
-    the causes in their order; left_out : quantity, missing cause (or all) and reason."""
+    """The errors of the lectures' formulas and of the user's, cause by cause; chain : the causes in
+    their order; left_out : quantity, missing cause (or all) and reason."""
 
     excerpt: Excerpt
     chain: tuple[str, ...]

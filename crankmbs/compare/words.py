@@ -1,4 +1,4 @@
-"""What a formula may ask for: the names of its parameters, and what each is given."""
+"""What a formula may ask for: the names of its parameters, and the value of each."""
 
 from __future__ import annotations
 
@@ -19,32 +19,32 @@ __all__ = ["WORDS", "Word", "Words"]
 
 
 class Words:
-    """The values of the words on a stretch of a run.
+    """The values of the words at the samples of a run.
 
-    one : of the cylinder compared, shape (n,), or of every cylinder, shape (n, cylinders), for a
-        quantity of the whole engine
+    per_cylinder : for a quantity of the cylinder compared, of shape (n,); else for one of the whole
+        engine, with shape (n, cylinders) of what every cylinder has
     """
 
-    def __init__(self, excerpt: Excerpt, *, one: bool) -> None:
-        self._excerpt, self._one = excerpt, one
+    def __init__(self, excerpt: Excerpt, *, per_cylinder: bool) -> None:
+        self._excerpt, self._per_cylinder = excerpt, per_cylinder
         self.scene, self.theta = excerpt.result.scene, excerpt.theta
         self.omega, self.alpha, self.mean = excerpt.omega, excerpt.alpha, excerpt.mean_speed
         self.reduced = reduce(excerpt.train, self.theta)
 
-    def seen(self, curves: Array) -> Array:
-        """The columns of what every cylinder has that are looked at."""
-        return curves[:, self._excerpt.cylinder - 1] if self._one else curves
+    def of_cylinder(self, curves: Array) -> Array:
+        """The cylinder's column; for the whole engine all of them."""
+        return curves[:, self._excerpt.cylinder - 1] if self._per_cylinder else curves
 
-    def of_run(self, name: str) -> Array:
-        """A variable of the run, of every cylinder; zero where the scene has none of the kind."""
+    def curve(self, name: str) -> Array:
+        """A variable that every cylinder has; zero where the scene has none of the kind."""
         data = self._excerpt.result.data
-        nothing = np.zeros((len(self.theta), len(self.scene.cylinders)))
-        return self.seen(data[name].values[self._excerpt.samples] if name in data else nothing)
+        zeros = np.zeros((len(self.theta), len(self.scene.cylinders)))
+        return self.of_cylinder(data[name].values[self._excerpt.samples] if name in data else zeros)
 
     @property
     def bodies(self) -> Bodies:
-        """Those of the cylinder; for the whole engine of every cylinder."""
-        return bodies_of(self.scene, self._excerpt.cylinder if self._one else None)
+        """Lengths and masses of the cylinder, or of every one for the whole engine."""
+        return bodies_of(self.scene, self._excerpt.cylinder if self._per_cylinder else None)
 
     def area(self, area: Array | float) -> Array | float | None:
         """An area; None where the scene has none."""
@@ -53,7 +53,7 @@ class Words:
     def gravity(self, axis: int) -> float:
         """Gravity along X (0) or Y (1), of the cylinder or, for the whole engine, of the engine."""
         cylinder = self.scene.cylinders[self._excerpt.cylinder - 1]
-        return gravity_vector(self.scene, cylinder.bank if self._one else 0.0)[axis]
+        return gravity_vector(self.scene, cylinder.bank if self._per_cylinder else 0.0)[axis]
 
     def __getitem__(self, name: str) -> Array | float:
         """The value of a word.
@@ -82,7 +82,7 @@ class Word(NamedTuple):
 
 WORDS = {
     "theta": Word("rad", "crank angle, unwrapped", lambda w: w.theta),
-    "phi": Word("rad", "cycle angle", lambda w: w.seen(cycle_angles(w.scene, w.theta))),
+    "phi": Word("rad", "cycle angle", lambda w: w.of_cylinder(cycle_angles(w.scene, w.theta))),
     "omega": Word("rad/s", "the run's crank speed", lambda w: w.omega),
     "alpha": Word("rad/s^2", "the run's crank acceleration", lambda w: w.alpha),
     "mean_omega": Word("rad/s", "mean of the crank speed over time", lambda w: w.mean),
@@ -93,21 +93,21 @@ WORDS = {
         "the scene has no [start]",
     ),
     "gas_pressure": Word(
-        "Pa", "pressure of the head end less ambient", lambda w: w.of_run("gas_pressure")
+        "Pa", "pressure of the head end less ambient", lambda w: w.curve("gas_pressure")
     ),
     "crank_end_pressure": Word(
-        "Pa", "pressure of the crank end less ambient", lambda w: w.of_run("crank_end_pressure")
+        "Pa", "pressure of the crank end less ambient", lambda w: w.curve("crank_end_pressure")
     ),
     "gas_force": Word(
-        "N", "gas force on the piston towards the crank", lambda w: w.of_run("gas_force")
+        "N", "gas force on the piston towards the crank", lambda w: w.curve("gas_force")
     ),
     "friction_force": Word(
-        "N", "wall's friction on the piston towards the crank", lambda w: w.of_run("friction_force")
+        "N", "wall's friction on the piston towards the crank", lambda w: w.curve("friction_force")
     ),
     "applied_force": Word(
         "N",
         "force from outside on the piston towards the crank",
-        lambda w: w.of_run("applied_force"),
+        lambda w: w.curve("applied_force"),
     ),
     "reduced_inertia": Word(
         "kg m^2", "J(theta), of the whole crank train", lambda w: w.reduced.inertia
