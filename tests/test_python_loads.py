@@ -9,6 +9,7 @@ import pytest
 
 from crankmbs import (
     Crank,
+    Force,
     InputError,
     Load,
     Piston,
@@ -174,6 +175,30 @@ def test_multibody_confirms():
         apart = np.max(np.abs(a.values - b.values))
         assert apart <= a.error_estimate + b.error_estimate
     assert check.data["crank_speed"].error_estimate < 1e-2
+
+
+@pytest.mark.parametrize("formulation", FREE)
+@pytest.mark.parametrize("behind", [0.001, 0.004, 0.016])
+def test_a_jump_right_behind_a_dead_centre_is_not_passed_over(behind, formulation):
+    """There the force has no torque, so that what is before the jump gives nothing away."""
+
+    def jumps(t, angle, displacement, velocity):
+        return 200.0 if (angle - behind) % (2.0 * math.pi) > math.pi else -100.0
+
+    machine = wheel(until="1 rev", piston=0.1)
+    known = (behind, behind + math.pi)
+    hidden, told = (
+        simulate(
+            replace(machine, force=(Force(jumps, kink_angles=kinks),)),
+            formulation=each,
+            rtol=1e-9,
+        )
+        for kinks, each in (((), formulation), (known, "crank_angle"))
+    )
+    for name in ("time", "crank_speed"):
+        off = np.abs(hidden.data[name].values - told.data[name].values).max()
+        stated = [one.data[name].attrs["error_estimate"] for one in (hidden, told)]
+        assert off <= 2.0 * sum(stated), name
 
 
 def fails_late(t, theta, omega):

@@ -88,6 +88,12 @@ class CrankTrain:
         return *self.scene.torque, *self.pushes
 
     @cached_property
+    def has_functions(self) -> bool:
+        """Whether a load is a function of Python, which may do what it does not declare."""
+        functions = (load.parts.function for load in self.loads)
+        return any(not function.declared for function in functions if function is not None)
+
+    @cached_property
     def rubs(self) -> bool:
         """Whether something resists either sense of rotation, or with the speed: friction, or
         forces that change on the way back or with the piston's velocity."""

@@ -63,6 +63,7 @@ class Handover:
         period = self.grid.train.scene.period
         kinks = max(min(_KINKS * self.local, _MOST_MISSED[self.grid.checks]), FINEST_STEP)
         tolerance = max(0.01 * self.local, FINEST_STEP)
+        hesitates = self.grid.train.has_functions
         turned_back, vain = plan.start, 0  # hand-overs that did not carry it through a period
 
         def is_fast(at: State, branch: Branch) -> bool:
@@ -72,7 +73,7 @@ class Handover:
         over_time, slow = not self.by_angle or state.omega == 0.0, False
         while True:
             begin, rounds = state, 0
-            effort = minimal.Effort(tolerance, allowed, self.before)
+            effort = minimal.Effort(tolerance, allowed, self.before, hesitates=hesitates)
             found: Any = (
                 minimal.advance(self.reduced, state, plan, effort, is_fast)
                 if over_time

@@ -34,7 +34,7 @@ from crankmbs.numerics.collocation import gauss
 from crankmbs.numerics.once import once
 from crankmbs.scene.scene import Scene
 
-__all__ = ["Lead", "evaluations", "first_grid", "has_functions", "run", "staggered"]
+__all__ = ["Lead", "evaluations", "first_grid", "run", "staggered"]
 
 _PASSES = 12  # at most; each asks for less of an error, or begins elsewhere
 _BETTERED = 0.5  # of the least error: what is not below has not been bettered by finer steps
@@ -66,12 +66,6 @@ def evaluations(cost_cap: float) -> int:
     return int(min(cost_cap * _EVALUATIONS, 1e18))
 
 
-def has_functions(train: CrankTrain) -> bool:
-    """Whether a load is a function of Python, which may do what it does not declare."""
-    functions = (load.parts.function for load in train.loads)
-    return any(not function.declared for function in functions if function is not None)
-
-
 def run(
     train: CrankTrain,
     rtol: float,
@@ -88,7 +82,7 @@ def run(
     """
     grid, local, begin = lead or Lead(first_grid(train, rtol), rtol, begin_at_start)
     setup = Setup(begin, plan_of(train.scene), evaluations(cost_cap), refines=True)
-    functions = has_functions(train)
+    functions = train.has_functions
     best: Assembled | None = None
     least, rounded = math.inf, False
     finest = FINEST_CELL if by_angle else 100.0 * FINEST_STEP

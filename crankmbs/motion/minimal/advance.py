@@ -35,17 +35,24 @@ __all__ = ["Effort", "advance"]
 _MOST_STEPS = 4096  # of one segment
 _FINEST, _RADAU = 2.3e-14, 1e-13  # tolerances of a step relative to a value, SciPy's; of Radau
 _BEYOND = 1.02  # of the way to a knot: a step that goes there, so that it is passed
+_FIRST = 1e-3  # of the step that could be: the first one behind a knot, where it hesitates
 _LEAVES = 1e-12  # of a step: a motion that leaves a limit before has not set out
 
 
 class Effort(NamedTuple):
     """Relative tolerance of each step, the evaluations that are allowed, the steps of a first pass,
-    which are halved here, and how many the first segment may have."""
+    which are halved here, and how many the first segment may have.
+
+    hesitates : whether the first step behind a knot is far shorter than it could be. A jump of a
+        function of Python right behind a dead centre, where its force has no torque, lies else
+        between the first two places at which a step knows the torque, and is passed over unseen
+    """
 
     tolerance: float
     allowed: int
     before: StepSizes | None = None
     room: int = 1
+    hesitates: bool = False
 
 
 def advance(
@@ -63,7 +70,7 @@ def advance(
     -------
     how the motion ends; None where the crank angle takes over
     """
-    tolerance, allowed, before, room = effort
+    tolerance, allowed, before, room, hesitates = effort
     scale = reduced.torque_scale + abs(state.mode.held)
     evaluations, most, h = 0, 0.0, math.inf
     while evaluations < allowed:
@@ -90,6 +97,7 @@ def advance(
             (max(low, state.mode.low), min(high, state.mode.high)),
             room,
             before,
+            hesitates,
         )
         walk = _Walk(equation, control, state, h, most)
         with np.errstate(all="ignore"):
@@ -118,7 +126,7 @@ def advance(
 @dataclass(frozen=True)
 class _Control:
     """Tolerance of a step, speed [rad/s] to which it is relative, end in time [s], crank angles
-    [rad] at which a segment ends, most steps, and the steps that are halved."""
+    [rad] at which a segment ends, most steps, the steps that are halved, and as in `Effort`."""
 
     tolerance: float
     speed: float
@@ -126,6 +134,7 @@ class _Control:
     angles: tuple[float, float]
     room: int
     before: StepSizes | None
+    hesitates: bool
 
 
 class _Step(NamedTuple):
@@ -150,6 +159,7 @@ class _Walk:
         self._equation, self._control = equation, control
         self._time, self._y = begin.time, np.array([begin.theta, begin.omega, 0.0])
         self._h, self._most, self._evaluations = h, most, 0
+        self._at_knot = begin.theta in (equation.piece.low, equation.piece.high)
         self._steps: list[tuple[float, float, Array]] = []
         branch = equation.branch
         self._speeds = 0.0, branch.omega_low, branch.omega_high
@@ -177,7 +187,7 @@ class _Walk:
         step = self._tried(width)
         if step is None:
             return False
-        self._h, begin = step.h, self._time
+        self._h, begin, self._at_knot = step.h, self._time, False
         if step.x > _LEAVES:
             self._steps.append((begin, step.width, step.row))
             self._time = begin + step.x * step.width
@@ -229,7 +239,8 @@ class _Walk:
         reach = math.inf
         if square > 0.0:
             reach = _BEYOND * 2.0 * distance / (abs(omega) + math.sqrt(square))
-        width = min(self._h, reach, control.bound - self._time)
+        first = _FIRST if control.hesitates and self._at_knot else 1.0
+        width = min(first * self._h, reach, control.bound - self._time)
         return control.before.halved(self._time, width) if control.before else width
 
     def _landed(self, step: _Step) -> bool:
@@ -243,5 +254,5 @@ class _Walk:
             return False
         sense = math.copysign(1.0, self._y[1])
         piece = self._equation.pieces.around(step.limit, sense)
-        self._equation = replace(self._equation, piece=piece)
+        self._equation, self._at_knot = replace(self._equation, piece=piece), True
         return True

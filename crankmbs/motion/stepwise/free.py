@@ -15,7 +15,7 @@ from crankmbs.motion.base import Samples, Solution, State
 from crankmbs.motion.crank_angle.grid import FINEST_CELL, Grid
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.free.handover import Handover
-from crankmbs.motion.free.passes import first_grid, has_functions, staggered
+from crankmbs.motion.free.passes import first_grid, staggered
 from crankmbs.motion.minimal.entering import enter
 from crankmbs.motion.minimal.reduced import Reduced
 from crankmbs.motion.minimal.step_sizes import StepSizes
@@ -51,7 +51,7 @@ class Free:
         scene = train.scene
         assert scene.start is not None
         self._train, self._start = train, scene.start
-        self._functions = has_functions(train)
+        self._functions = train.has_functions
         # as in a run: twice where rounding is left, or what functions do undeclared
         self._share = 2.0 if self._functions or scene.run.rtol <= _NEAR else 1.0
         self._by_angle = scene.run.formulation != "minimal"  # which is time throughout
