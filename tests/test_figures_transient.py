@@ -55,9 +55,9 @@ def test_what_happens_after_many_reversals_is_marked():
     assert len(speed.lines) == 2 + 8  # the speed, its zero, and the marks
 
 
-def test_a_crank_that_turns_back_has_its_fuel_cut_marked():
+def test_a_crank_that_turns_back_has_its_fuel_cut_and_its_rest_marked():
     speed, _ = plot(simulate(load_scene("run_down")), "transient").axes
-    assert {"fuel cut", "reversal"} == set(words(speed))
+    assert {"fuel cut", "reversal", "rest"} == set(words(speed))
 
 
 def test_it_is_drawn_where_the_speed_varies_strongly(start, tmp_path):
