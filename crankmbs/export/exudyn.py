@@ -147,6 +147,7 @@ def _refused(scene: Scene) -> str:
 
 
 def _refused_load(scene: Scene) -> str:
+    """Which torque or force on a piston it does not express, and the way out."""
     for number, load in enumerate(scene.torque, start=1):
         if not isinstance(load, Constant | Viscous | Quadratic):
             kind = "a function of Python" if load.parts.function else f'kind = "{load.kind}"'

@@ -22,8 +22,12 @@ MOST_EVENTS = 10_000
 """More decisions on the fuel are left out, all of them; of other events the first are kept."""
 
 _AT_REST = {
-    *(Ending.REST, Ending.STUCK, Ending.STICKS, Ending.UNMOVED),
-    *(Ending.SLOWED, Ending.LAW_RESTS),
+    Ending.REST,
+    Ending.STUCK,
+    Ending.STICKS,
+    Ending.UNMOVED,
+    Ending.SLOWED,
+    Ending.LAW_RESTS,
 }
 _SAME = 1e-7  # rad: decisions so near one another are one
 
