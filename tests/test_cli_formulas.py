@@ -139,7 +139,7 @@ def test_what_is_no_formula_is_refused_before_anything_runs(mine, tmp_path, form
     [
         ("def torque(phi:\n", "mine.py, line 1: SyntaxError: "),
         ("\nimport nothing_of_the_kind\n", "mine.py, line 2: ModuleNotFoundError: No module"),
-        ("x = 1\n\nraise ValueError\n", "mine.py, line 3: ValueError; mend the file"),
+        ("x = 1\n\nraise ValueError\n", "mine.py, line 3: ValueError; correct the file"),
         ("x = '\0'\n", "mine.py: "),
     ],
 )

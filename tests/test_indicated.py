@@ -135,7 +135,7 @@ def test_a_mean_cycle_lowers_the_peak(tmp_path):
     expected = np.mean(values.max(axis=1)) - values.mean(axis=0).max()
     assert there.cylinders[0].lowered / 1e5 == pytest.approx(expected, abs=1e-3)
     assert expected > 1.0
-    assert f"mean cycle's peak is {expected:.3g} bar below their mean" in str(there)
+    assert f"mean cycle's peak is {expected:.3g} bar below the mean of the peaks" in str(there)
 
 
 def test_smoothing_is_on_request_and_says_what_it_moved(tmp_path):

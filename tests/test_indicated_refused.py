@@ -58,7 +58,7 @@ MESSAGES = {
         "alone"
     ),
     "over time": (
-        "file a.csv: the record stands over time, and no column is left for the signal of a wheel; "
+        "file a.csv: the record is over time, and no column is left for the signal of a wheel; "
         'the columns are "Time", "PCYL1"; record the wheel beside the pressure, or export the '
         "pressures over the crank angle"
     ),
@@ -128,7 +128,7 @@ MESSAGES = {
         "it out, or export every cycle at the same angles"
     ),
     "cycles at other angles": (
-        "file a.csv, line 903: cycle 2 does not stand at the angles of the first, 950 degrees "
+        "file a.csv, line 903: cycle 2 is not at the angles of the first, 950 degrees "
         "came; resample the cycles to the same angles, or check stroke"
     ),
     "missing everywhere": (
@@ -136,20 +136,20 @@ MESSAGES = {
         "every cycle; choose other columns, or export it again"
     ),
     "upside down": (
-        "file a.csv: PCYL1 stands upside down: its largest excursion goes down, to -67.82 bar; "
+        "file a.csv: PCYL1 is upside down: its largest excursion is downwards, to -67.82 bar; "
         'give invert=True, or the names of the pressures alone, such as columns="PCYL1..4"'
     ),
     "a peak beside the dead centre": (
-        "file a.csv: the peak of the pressure lies at 77 degrees, beside no multiple of 360: "
+        "file a.csv: the peak of the pressure lies at 77 degrees, not near a multiple of 360: "
         'the angles do not count from a dead centre of this cylinder; give firing_tdc="... '
         "deg\", the file's angle of the firing dead centre"
     ),
     "two peaks": (
-        "file a.csv: the pressure is as high at -360 degrees as 360 degrees behind; give "
+        "file a.csv: the pressure is as high at -360 degrees as 360 degrees later; give "
         "stroke=2 or stroke=4 with firing_tdc"
     ),
     "an odd lag": (
-        "file a.csv: the cylinder of pressure column 2 fires 51 degrees behind the first one, "
+        "file a.csv: the cylinder of pressure column 2 fires 51 degrees after the first one, "
         "which no even firing has; give scene=..., whose layout says when it fires or "
         'columns="PCYL1" where the others are no pressures'
     ),

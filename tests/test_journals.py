@@ -177,7 +177,7 @@ def test_a_sweep_has_the_journals_of_every_case():
         (
             DIESEL,
             {"bearings__journal_positions": ("-50 mm", "110 mm", "150 mm", "250 mm", "350 mm")},
-            "throw 2 at 0.1 m must stand between journals 2 and 3; they are at 0.11 and 0.15 m",
+            "throw 2 at 0.1 m must lie between journals 2 and 3; they are at 0.11 and 0.15 m",
         ),
         (
             DIESEL,
@@ -203,13 +203,13 @@ def test_a_sweep_has_the_journals_of_every_case():
         (
             VEE,
             {"layout__cylinders__2__position": "90 mm"},
-            "layout__cylinders__2__position: the rod must stand between the journals beside its "
+            "layout__cylinders__2__position: the rod must lie between the journals beside its "
             "throw, -0.05 and 0.08 m; 0.09 m came",
         ),
         (
             VEE,
             {"bearings__journal_positions": ("20 mm", "80 mm")},
-            "throw 1 at 0.015 m must stand between journals 1 and 2",
+            "throw 1 at 0.015 m must lie between journals 1 and 2",
         ),
     ],
 )

@@ -206,8 +206,8 @@ HEAD = "crank_angle_deg,pressure_bar_1,pressure_bar_2\n"
         (
             '"a.csv"\ncycles = "mean"',
             "crank_angle_deg,pressure_bar\n0,1\n300,2\n600,2\n720,1\n1000,2\n1300,2\n",
-            'gas: a.csv: for cycles = "mean" the rows of every cycle must stand at the angles of '
-            "the first; those of cycle 2 do not; resample the file, or give cycles = "
+            'gas: a.csv: for cycles = "mean" the rows of every cycle must be at the angles of '
+            "the first; those of cycle 2 are not; resample the file, or give cycles = "
             '"sequence"',
         ),
     ],

@@ -60,7 +60,7 @@ def test_table_and_speed_are_those_put_in(tmp_path, options):
     found = read_pressure(written(tmp_path, text_of(**options)), **given)
     angle = np.degrees(found.table.x) - 360.0
     exact = pressure_of(FIRED, angle)
-    right = float(str(found).split("mean cycle are right to ")[1].split()[0])
+    right = float(str(found).split("mean cycle are then right to ")[1].split()[0])
     assert right < 0.5
     steepest = np.abs(np.gradient(exact, angle)).max()
     apart = np.abs(np.array(found.table.y) / BAR - exact).max()
@@ -277,7 +277,7 @@ def test_the_commands(tmp_path, monkeypatch):
     assert 'speed = { file = "gas_speed.csv", interpolation = "cubic" }' in result.stdout
     result = crankmbs_("speed", "record.txt", "--wheel", "60-2", "-o", "speed.csv")
     assert result.exit_code == 0, result.output
-    assert "crank angle 0 lies 0 degrees behind the first rising edge" in result.stdout
+    assert "crank angle 0 lies 0 degrees after the first rising edge" in result.stdout
     assert refused("speed", "record.txt").startswith("file record.txt: which wheel")
     (tmp_path / "scene.toml").write_text(SCENE)
     result = crankmbs_("run", "scene.toml", "--no-figures")

@@ -129,7 +129,7 @@ def test_a_killed_sweep_is_resumed_from_its_last_block_to_the_same_bytes(whole, 
         load_sweep(out)
     (out / f"measures/0.{'0' * 32}.partial").write_bytes(b"half")
     kept = {file: file.stat().st_mtime_ns for file in blocks(out)}
-    assert "is there already; give --resume" in refused(*PLAIN, "-o", str(out))
+    assert "exists already; give --resume" in refused(*PLAIN, "-o", str(out))
     assert crankmbs_(*PLAIN, "-o", str(out), "--resume").exit_code == 0
     assert files(out) == whole
     assert all(file.stat().st_mtime_ns == at for file, at in kept.items())

@@ -67,7 +67,7 @@ def _run(path: Path) -> ModuleType:
         with _beside(path):
             exec(code, vars(module))
     except Exception as error:  # whatever the file of a user may raise
-        raise InputError(f"--formula: {path}{_line(error, path)}; mend the file") from error
+        raise InputError(f"--formula: {path}{_line(error, path)}; correct the file") from error
     return module
 
 

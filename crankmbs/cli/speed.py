@@ -30,7 +30,7 @@ def speed(
         int, typer.Option(help="4: the speed comes again after two revolutions; 2: after one.")
     ] = 4,
     firing_tdc: Annotated[
-        str | None, typer.Option(help="Crank angle 0, behind the first edge after the first gap.")
+        str | None, typer.Option(help="Crank angle 0, after the first edge after the first gap.")
     ] = None,
     columns: Annotated[str | None, typer.Option(help="The column of the wheel.")] = None,
     index: Annotated[

@@ -142,7 +142,7 @@ def _check_free(out: Path, resume: bool) -> None:
         raise InputError(f"--resume: there is no {out} to resume; leave it out")
     if not resume and unfinished(out):
         raise InputError(
-            f"{out}: is there already; give --resume for a sweep that was interrupted, "
+            f"{out}: exists already; give --resume for a sweep that was interrupted, "
             "or another folder with -o"
         )
 

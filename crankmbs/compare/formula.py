@@ -211,7 +211,7 @@ def _words(label: str, function: Callable[..., Any]) -> tuple[str, ...]:
 def _no_word(name: str) -> str:
     """Why a parameter has no value, and the way out."""
     if name in WORDS:
-        return "must be given by name; leave out the / behind it"
+        return "must be given by name; leave out the / after it"
     if name in _WORDS_OF_RESULT:
         return f"is nothing it can be given; ask for {_WORDS_OF_RESULT[name]}"
     hint = did_you_mean(name, list(WORDS)) or f"; there are {', '.join(WORDS)}"

@@ -213,6 +213,6 @@ def _no_rows(
     return (
         f"file {name}: no rows of at least two numbers{given} were found in its first "
         f"{len(lines)} lines"
-        f"{f' behind the {skip} skipped' if skip else ''}; the last of them is {last}; give "
+        f"{f' after the {skip} skipped' if skip else ''}; the last of them is {last}; give "
         "separator, decimal and skip, or export the table alone"
     )

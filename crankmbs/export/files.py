@@ -39,7 +39,7 @@ def export(what: Scene | Result, to: str, file: str | Path) -> tuple[Path, ...]:
     Raises
     ------
     InputError : none of these, another ending; what a file or a script cannot express
-    OutputError : the file cannot be written, or for "toml" one of the files is there already
+    OutputError : the file cannot be written, or for "toml" one of the files exists already
 
     >>> [file.name for file in export(load_scene("torque_driven"), "toml", "mine.toml")]
     ['mine.toml']
@@ -81,7 +81,7 @@ def copy_scene(
     Raises
     ------
     InputError : another ending; a scene that is none with these values
-    OutputError : the file cannot be written, or one of the files is there already
+    OutputError : the file cannot be written, or one of the files exists already
     """
     target = _ending(Path(file), "toml")
     return _new(edited_files(Path(path), target, crank or {}, remark), target)

@@ -35,7 +35,7 @@ def firing_angle(angle: Array, mean: Array, period: float, where: str) -> float:
     nominal = 360.0 * round((peak - 5.0) / 360.0)
     if not -_BEFORE < peak - nominal < _BEHIND:
         raise UndecidedError(
-            f"{where}: the peak of the pressure lies at {peak:.4g} degrees, beside no multiple of "
+            f"{where}: the peak of the pressure lies at {peak:.4g} degrees, not near a multiple of "
             "360: the angles do not count from a dead centre of this cylinder",
             ('firing_tdc="... deg", the file\'s angle of the firing dead centre',),
         )
@@ -61,7 +61,7 @@ def peak_or_given(record: Record, options: Options, where: str) -> float:
     before = _off_by(peak - given - _USUAL, 360.0) + _USUAL
     if not -_BEFORE < before < _BEHIND:
         raise InputError(
-            f"{where}: the peak of the pressure lies {peak % 360.0:.4g} degrees behind the first "
+            f"{where}: the peak of the pressure lies {peak % 360.0:.4g} degrees after the first "
             f"edge of a revolution, {before:.4g} degrees from the dead centre given, {given:g}; "
             "correct firing_tdc, or leave it out"
         )
@@ -75,7 +75,7 @@ def _check_alone(angle: Array, mean: Array, period: float, at: float, where: str
     other = np.interp(at + 360.0, angle, mean, period=period)
     if other - np.min(mean) > 0.5 * (np.max(mean) - np.min(mean)):
         raise UndecidedError(
-            f"{where}: the pressure is as high at {at:.4g} degrees as 360 degrees behind",
+            f"{where}: the pressure is as high at {at:.4g} degrees as 360 degrees later",
             ("stroke=2", "stroke=4 with firing_tdc"),
         )
 
@@ -94,7 +94,7 @@ def flank(angle: Array, mean: Array, period: float, level: float) -> float:
 
 
 def lags(angle: Array, means: Sequence[Array], period: float) -> list[float]:
-    """By how much [deg] each cylinder fires behind the first, within a period."""
+    """By how much [deg] each cylinder fires after the first, within a period."""
     level = _FLANK * min(float(np.ptp(mean)) for mean in means)
     at = [flank(angle, mean, period, level) for mean in means]
     return [(each - at[0]) % period for each in at]
@@ -124,7 +124,7 @@ def places(
         if _off(each, nominal, period) > _APART:
             raise UndecidedError(
                 f"{where}: the cylinder of pressure column {number} fires {each:.4g} degrees "
-                "behind the first one, which no even firing has",
+                "after the first one, which no even firing has",
                 (
                     "scene=..., whose layout says when it fires",
                     'columns="PCYL1" where the others are no pressures',

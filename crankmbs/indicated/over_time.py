@@ -58,7 +58,7 @@ def record_over_time(
     *,
     geometry: bool,
 ) -> Record:
-    """The cycles of a record over time, at even angles from the first edge behind a gap.
+    """The cycles of a record over time, at even angles from the first edge after a gap.
 
     at : place of the time; stroke : 2 or 4 where it is known; geometry : whether the compression
         ratio is known, with which the pressure shows its dead centre and reference
@@ -149,7 +149,7 @@ def _columns(
     if not others:
         listed = ", ".join(shown(heading.name) for heading in headings)
         raise InputError(
-            f"{where}: the record stands over time, and no column is left for the signal of a "
+            f"{where}: the record is over time, and no column is left for the signal of a "
             f"wheel; the columns are {listed}; record the wheel beside the pressure, or export the "
             "pressures over the crank angle"
         )
@@ -197,12 +197,12 @@ def _ask(
         needs.append('reference="absolute" ("gauge 1 bar", "inlet 1 bar")')
     if options.firing_tdc is None and not geometry:
         needs.append(
-            'firing_tdc="25 deg", where behind the first edge after the gap a dead centre lies, or '
+            'firing_tdc="25 deg", by which a dead centre follows the first edge after the gap, or '
             "a scene and compression_ratio, with which the pressure shows it"
         )
     *most, last = needs
     raise UndecidedError(
-        f"{where}: the record stands over time, and some of what it needs is not said",
+        f"{where}: the record is over time, and some of what it needs is not said",
         ("; ".join([*most, f"and {last}"]) if most else last,),
     )
 
@@ -257,7 +257,7 @@ def _check_compression(values: Array, name: str, seen: Array, where: str) -> Non
         raise InputError(
             f"{where}: in the cycle from {begin:.6g} s on the pressure of column {shown(name)} "
             f"never compresses: it rises by {reach[weak[0]] / BAR:.3g} bar, in the others by "
-            f"{usual / BAR:.3g}; cut the record before or behind"
+            f"{usual / BAR:.3g}; cut the record before or after that"
         )
 
 
@@ -269,13 +269,15 @@ def _words(
     assumed: int | None,
 ) -> list[str]:
     said = [
-        f"the record stands over time: {shown(names[columns.wheel])} is the wheel, angles count "
-        f"from its first {rotation.wheel.edge} edge "
-        + ("behind the gap" if columns.mark is None else "at the index"),
+        f"the record is over time: {shown(names[columns.wheel])} is the wheel, angles "
+        f"count from its first {rotation.wheel.edge} edge "
+        + ("after the gap" if columns.mark is None else "at the index"),
         *rotation.words(),
     ]
     if assumed is not None and options.stroke is None:
-        said.append(f"read as cycles of {rotation.period:g} degrees; stroke=2 is for two strokes")
+        said.append(
+            f"read as cycles of {rotation.period:g} degrees; stroke=2 is for a two-stroke engine"
+        )
     if options.delay:
-        said.append(f"the pressures are moved {1e3 * options.delay:g} ms back, the sensor's delay")
+        said.append(f"the sensor's delay, {1e3 * options.delay:g} ms, is taken off its times")
     return said

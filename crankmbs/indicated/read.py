@@ -57,7 +57,7 @@ def read_pressure(file: str | Path, scene: Scene | None = None, **options: Any) 
     reference : "absolute"; "gauge", with the ambient "gauge 1 bar" made absolute; "inlet 1 bar", or
         "inlet" with an intake's column; "polytrope 1.32"
     firing_tdc : the file's angle of the (first cylinder's) firing dead centre, "0.35 deg"; over
-        time, modulo 360 degrees, from the wheel's first edge behind the gap
+        time, modulo 360 degrees, from the wheel's first edge after the gap
     wheel : of a record over time, "60-2", teeth less the missing ones, or "60-2 falling"; of an
         encoder "360", with index : the column of its mark
     sensor : from volts to pressure, "(V/5 - 0.115)/0.00385 bar" or "0.5 V = 0 bar, 4.5 V = 100 bar"
@@ -175,7 +175,7 @@ def _by_pressure(
         if abs(centre.middle) < _SETTLED:
             found[3].append(
                 f"the dead centre is taken where the pressure shows it, {first % 360.0:.2f} +- "
-                f"{centre.half:.2f} degrees behind the first edge of a revolution, by "
+                f"{centre.half:.2f} degrees after the first edge of a revolution, by "
                 f"{'its motored peak' if centre.how.startswith('motored') else 'its compression'};"
                 " firing_tdc says where it is known"
             )
@@ -278,8 +278,8 @@ def _cut(
         start, phi, cycles = cut_cycles(record.angle, values, record.period, firing, consecutive)
         if len(cycles) < len(values):
             said.append(
-                f"cylinder {channel.cylinder}: cut between its gas exchanges, {len(values)} cycles "
-                f"give {len(cycles)} whole ones"
+                f"cylinder {channel.cylinder}: cut during the gas exchange, {len(values)} recorded "
+                f"cycles give {len(cycles)} whole ones"
             )
         intake = _intake(record, channel.cylinder, start)
         raws.append(
@@ -318,7 +318,7 @@ def _check_sign(channel: Channel, mean: Array, where: str) -> None:
     middle = float(np.median(mean))
     if middle - np.min(mean) > 1.5 * (np.max(mean) - middle):
         raise InputError(
-            f"{where}: {channel.name} stands upside down: its largest excursion goes down, to "
+            f"{where}: {channel.name} is upside down: its largest excursion is downwards, to "
             f"{np.min(mean) / BAR:.4g} bar; give invert=True, or the names of the pressures alone, "
             'such as columns="PCYL1..4"'
         )
@@ -327,7 +327,7 @@ def _check_sign(channel: Channel, mean: Array, where: str) -> None:
 def _of_layout(
     channels: Sequence[Channel], scene: Scene | None, period: float
 ) -> list[float] | None:
-    """By how much [deg] each cylinder fires behind the first, by the scene's layout."""
+    """By how much [deg] each cylinder fires after the first, by the scene's layout."""
     if scene is None or max(channel.cylinder for channel in channels) > len(scene.cylinders):
         return None
     phases = [np.degrees(scene.cylinders[each.cylinder - 1].phase) for each in channels]
@@ -347,7 +347,7 @@ def _lag_words(
     said = []
     for k in range(1, len(channels)):
         text = (
-            f"cylinder {channels[k].cylinder} fires {nominal[k]:.6g} degrees behind cylinder "
+            f"cylinder {channels[k].cylinder} fires {nominal[k]:.6g} degrees after cylinder "
             f"{channels[0].cylinder}, {measured[k]:.4g} by the flanks of their compression"
         )
         if known is not None and abs(known[k] - nominal[k]) > 1e-6:

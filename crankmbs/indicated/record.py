@@ -1,6 +1,6 @@
 """The axis: rows and columns of a sheet to cycles of each cylinder over one period.
 
-Cycles stand in columns, in rows under a heading of angles, or one behind the other; the resolution
+Cycles stand in columns, in rows under a heading of angles, or one after the other; the resolution
 may change within the cycle, but alike in every one.
 """
 
@@ -98,7 +98,7 @@ def record_of(sheet: Sheet, options: Options, stroke: int | None) -> Record:
 
 
 class _Axis:
-    """Rows over the crank angle, one cycle or one behind the other."""
+    """Rows over the crank angle, one cycle or one after the other."""
 
     def __init__(
         self, sheet: Sheet, angle: Array, columns: Sequence[Column], stroke: int | None
@@ -127,7 +127,7 @@ class _Axis:
             channels.append(Channel(name, kind, cylinder, values, columns[0].reference))
         if closing:
             self._said.append(
-                f"the closing rows, {period:g} degrees behind the first, are dropped; they lie up "
+                f"the closing rows, {period:g} degrees after the first, are dropped; they lie up "
                 f"to {apart / BAR:.3g} bar from it"
             )
         apart_in_columns = any(len(columns) > 1 for columns in grouped.values())
@@ -218,7 +218,7 @@ class _Axis:
             if np.max(off) > 1e-3:
                 row = k + int(np.argmax(off > 1e-3))
                 raise InputError(
-                    f"{self._at(row)}: cycle {number + 1} does not stand at the angles of the "
+                    f"{self._at(row)}: cycle {number + 1} is not at the angles of the "
                     f"first, {self._angle[row]:g} degrees came; resample the cycles to the same "
                     "angles, or check stroke"
                 )
@@ -275,7 +275,7 @@ def _is_axis(angle: Array) -> bool:
 def _across(
     sheet: Sheet, options: Options, stroke: int | None, axis: tuple[Array, int, int]
 ) -> Record:
-    """Cycles in rows, one behind the other."""
+    """Cycles in rows, one after the other."""
     angle, first, row = axis
     words = [cell.strip("[]() ").lower() for cells in sheet.above for cell in cells]
     units = [word for word in words if word in PRESSURE_UNITS]
@@ -290,5 +290,5 @@ def _across(
     upright = sheet._replace(values=values.reshape(-1, 1))
     tiled = np.tile(angle, len(values))
     record = _Axis(upright, tiled, [column], options.stroke or stroke).record()
-    record.said.insert(0, f"{len(values)} cycles stand in rows, {len(angle)} angles in columns")
+    record.said.insert(0, f"{len(values)} cycles in rows, {len(angle)} angles in columns")
     return record

@@ -90,7 +90,7 @@ def refer(
         return (
             np.full(cycles, value),
             True,
-            f"the pressures are gauge; {value / BAR:g} bar are added",
+            f"the pressures are gauge; {value / BAR:g} bar is added",
         )
     if kind == "polytrope":
         if shape is None or shape.ratio is None:
@@ -101,7 +101,7 @@ def refer(
         assert value is not None
         added = by_polytrope(raw.phi, raw.pressure, shape, value)
         rest = f"the compression is a polytrope of {value:g} from 100 to 40 degrees before"
-        return added, True, _of_cycles(added, rest)
+        return added, True, _of_cycles(added, f"{rest} the dead centre")
     if value is None and raw.intake is None:
         raise InputError(
             f"{where}: the file has no column of the intake's pressure; give it, such as "
@@ -109,20 +109,21 @@ def refer(
         )
     if value is not None:
         added = by_inlet(raw.phi, raw.pressure, period, value)
-        rest = f"the inlet's {value / BAR:g} bar"
+        rest = f"is the inlet's {value / BAR:g} bar"
     else:
         assert raw.intake is not None
         inlet = float(np.mean(raw.intake[_at(raw, period)]))
         added = by_inlet(raw.phi, raw.pressure, period, inlet)
-        rest = f"the {inlet / BAR:.4g} bar of the intake's column"
-    return added, True, _of_cycles(added, f"{rest} stand within 10 degrees of the bottom")
+        rest = f"is the {inlet / BAR:.4g} bar of the intake's column"
+    mean = "its mean within 10 degrees of the bottom dead centre"
+    return added, True, _of_cycles(added, f"{mean} {rest}")
 
 
 def _of_cycles(added: Array, why: str) -> str:
     spread = ""
     if len(added) > 1:
         spread = f", cycle by cycle, from {np.min(added) / BAR:.4g} to {np.max(added) / BAR:.4g}"
-    return f"{np.mean(added) / BAR:.4g} bar are added{spread}, so that {why}"
+    return f"{np.mean(added) / BAR:.4g} bar is added{spread}, so that {why}"
 
 
 def _at(raw: Raw, period: float) -> np.ndarray:

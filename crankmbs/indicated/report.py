@@ -40,16 +40,17 @@ def said_of(cylinder: CylinderPressure, shape: Shape | None, referenced: bool) -
 def _size(cylinder: CylinderPressure, who: str) -> str:
     mean = cylinder.mean
     at = cylinder.angle[np.argmax(mean)]
-    burns = {True: "fired", False: "motored", None: "fired or motored, which is not clear"}
+    burns = {True: "fired", False: "motored", None: "fired or motored (not clear which)"}
     work = ""
     if cylinder.imep is not None:
         work = f"; imep {np.mean(cylinder.imep) / BAR:.4g} bar"
-    side = "behind" if at >= 0.0 else "before"
+    side = "after" if at >= 0.0 else "before"
     named = "" if cylinder.name == who else f"{cylinder.name}, "
     return (
-        f"{who}: {named}{burns[cylinder.fired]}; the mean cycle goes from "
-        f"{np.min(mean) / BAR:.4g} to {np.max(mean) / BAR:.5g} bar, its peak {abs(at):.4g} "
-        f"degrees {side} the firing dead centre, {cylinder.firing:g} degrees of the file{work}"
+        f"{who}: {named}{burns[cylinder.fired]}; the mean cycle ranges "
+        f"from {np.min(mean) / BAR:.4g} to {np.max(mean) / BAR:.5g} bar and peaks {abs(at):.4g} "
+        f"degrees {side} the firing dead centre, which is {cylinder.firing:g} degrees of the file"
+        f"{work}"
     )
 
 
@@ -62,14 +63,15 @@ def _scatter(cylinder: CylinderPressure, who: str) -> str:
     if cylinder.imep is not None:
         share = np.std(cylinder.imep, ddof=1) / abs(np.mean(cylinder.imep))
         text += f", the imep by {100.0 * share:.3g} %"
-    return f"{text}; the mean cycle's peak is {cylinder.lowered / BAR:.3g} bar below their mean"
+    lowered = f"{cylinder.lowered / BAR:.3g} bar below the mean of the peaks"
+    return f"{text}; the mean cycle's peak is {lowered}"
 
 
 def _noise(cylinder: CylinderPressure, who: str) -> str:
-    text = f"{who}: no noise is seen"
+    text = f"{who}: no noise"
     if cylinder.noise > _EPSILON * np.ptp(cylinder.mean):
-        text = f"{who}: noise of a row {cylinder.noise / BAR:.2g} bar (standard deviation)"
-    return f"{text}; a cycle ends {cylinder.closure / BAR:.2g} bar from where the next one begins"
+        text = f"{who}: noise of {cylinder.noise / BAR:.2g} bar a sample (standard deviation)"
+    return f"{text}; a cycle ends {cylinder.closure / BAR:.2g} bar off the beginning of the next"
 
 
 def _dead_centre(cylinder: CylinderPressure, who: str, shape: Shape | None) -> Iterator[str]:
@@ -79,15 +81,15 @@ def _dead_centre(cylinder: CylinderPressure, who: str, shape: Shape | None) -> I
         if shape is None or shape.ratio is None:
             needs = "stroke, rod length and compression_ratio"
         yield (
-            f"{who}: the dead centre is not checked: a fired cycle shows it by its compression, "
-            f"for which it needs {needs}"
+            f"{who}: the dead centre is not checked: in a fired cycle the compression shows it, "
+            f"which takes {needs}"
         )
         return
     there = cylinder.firing + found.middle
     if found.how.startswith("motored"):
         basis = (
             f"{who}: the motored peak lies at {found.peak:.3f} degrees, the middle of the chord at "
-            f"70 % {found.skew:+.2f} degrees beside it"
+            f"70 % {found.skew:+.2f} degrees from it"
         )
     else:
         basis = f"{who}: {found.how}"
@@ -113,7 +115,7 @@ def _suspicions(cylinder: CylinderPressure, who: str, referenced: bool) -> Itera
     if at < (_LATE if cylinder.fired else _EARLY):
         yield (
             f"warning: {who}: its peak lies {-at:.3g} degrees before the dead centre: "
-            "check the dead centre, and the sense in which the angle counts"
+            "check the dead centre, and the sign of the angle"
         )
     if imep is not None and cylinder.fired is not None:
         work = float(np.mean(imep))
@@ -125,7 +127,7 @@ def _suspicions(cylinder: CylinderPressure, who: str, referenced: bool) -> Itera
             )
             yield (
                 f"warning: {who}: {sense} the piston, imep {work / BAR:.3g} bar: check the dead "
-                "centre, and the sense in which the angle counts"
+                "centre, and the sign of the angle"
             )
     below = int(np.sum(np.min(cylinder.pressure, axis=1) < 0.0))
     if referenced and below:
@@ -138,6 +140,6 @@ def _suspicions(cylinder: CylinderPressure, who: str, referenced: bool) -> Itera
         )
     if abs(cylinder.closure) > _MOVED * np.ptp(mean) + 5.0 * cylinder.noise:
         yield (
-            f"warning: {who}: a cycle ends {cylinder.closure / BAR:.2g} bar from where the next "
-            "begins, over 1 % of its range: the signal drifts, or rows are missing"
+            f"warning: {who}: a cycle ends {cylinder.closure / BAR:.2g} bar off the beginning of "
+            "the next, over 1 % of its range: the signal drifts, or rows are missing"
         )

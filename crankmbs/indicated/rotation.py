@@ -88,10 +88,10 @@ class Rotation(NamedTuple):
         wheel, inner = self.wheel, self.teeth[1:-1] if self.wheel.missing else self.teeth
         said = [
             f"{self.cycles} whole cycles from {self.begin:.6g} to {self.end:.6g} s, at a mean of "
-            f"{self.mean_speed / 6.0:.5g} rpm; beyond order {self.orders} the teeth stand up to "
-            f"{np.max(np.abs(inner)):.2g} degrees off their places, which is taken off; angles of "
-            f"the mean cycle are right to {self.angle_error:.2g} degrees by that, and an eccentric "
-            "wheel does not show"
+            f"{self.mean_speed / 6.0:.5g} rpm; beyond order {self.orders} the teeth are up to "
+            f"{np.max(np.abs(inner)):.2g} degrees out of place, which is corrected; angles of the "
+            f"mean cycle are then right to {self.angle_error:.2g} degrees; an eccentric wheel "
+            "cannot be seen"
         ]
         if wheel.missing:
             first, last = (
@@ -99,8 +99,8 @@ class Rotation(NamedTuple):
                 for each in self.teeth[[0, -1]]
             )
             said.append(
-                f"by the other teeth the first edge behind the gap comes {first}, the last one "
-                f"before it {last}"
+                f"judged by the other teeth, the first edge after the gap comes {first}, the last "
+                f"one before it {last}"
             )
         return said
 
@@ -133,7 +133,7 @@ class Rotation(NamedTuple):
 def rotation_of(time: Array, first: Index, wheel: Wheel, stroke: int, where: str) -> Rotation:
     """The rotation from the times [s] of a wheel's edges.
 
-    first : the places of the first edges behind the gaps; stroke : 2 or 4
+    first : the places of the first edges after the gaps; stroke : 2 or 4
 
     Raises
     ------

@@ -115,7 +115,7 @@ def read_speed(file: str | Path, wheel: Any = None, **options: Any) -> MeasuredS
         time
     wheel : "60-2", the teeth less the missing ones; "60-2 falling" for the falling edges
     stroke : 2 or 4, default 4: the speed comes again after one revolution or two
-    firing_tdc : where crank angle 0 lies, behind the first edge after the first gap, "25 deg";
+    firing_tdc : where crank angle 0 lies, after the first edge after the first gap, "25 deg";
         default 0
     columns : the column of the wheel, where others are beside it; index : of an encoder's mark;
         separator, decimal, skip : as in `Gas`
@@ -153,7 +153,7 @@ def read_speed(file: str | Path, wheel: Any = None, **options: Any) -> MeasuredS
     rotation = _rotation(sheet, wanted, wheel_of(wanted.wheel))
     zero = 0.0 if wanted.firing_tdc is None else float(np.degrees(wanted.firing_tdc))
     found = speed_of(rotation, zero, name)
-    about = f"crank angle 0 lies {zero:g} degrees behind the first {rotation.wheel.edge} edge"
+    about = f"crank angle 0 lies {zero:g} degrees after the first {rotation.wheel.edge} edge"
     said = (*rotation.words(), *found.sentences, about)
     return MeasuredSpeed(found.table, found.error, found.half_order_error, name, said)
 
@@ -184,7 +184,7 @@ def _teeth_times(sheet: Sheet, heading: Heading, at: int) -> Array:
         k = int(bad[0])
         raise InputError(
             f"file {sheet.name}, line {sheet.first + k + 1}: the times of the teeth must rise; "
-            f"{shown(float(time[k + 1]))} s came behind {shown(float(time[k]))} s; cut the record "
+            f"{shown(float(time[k + 1]))} s came after {shown(float(time[k]))} s; cut the record "
             "there"
         )
     return np.asarray(time)

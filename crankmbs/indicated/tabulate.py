@@ -1,4 +1,4 @@
-"""The table for a scene: the mean cycle, or some cycles one behind the other, over the cycle angle.
+"""The table for a scene: the mean cycle, or some cycles one after the other, over the cycle angle.
 
 Cycle angle 360 degrees (0 of a two-stroke cycle) puts the throw on the cylinder axis; the file's
 dead centre is the true one, which with an offset lies beside it.
@@ -45,7 +45,7 @@ def table_of(
     words = f"cycle angle {zero:g} degrees is the firing dead centre"
     if top:
         words = (
-            f"the true firing dead centre stands at a cycle angle of {zero + top:.5g} degrees, as "
+            f"the true firing dead centre is at a cycle angle of {zero + top:.5g} degrees, as "
             "the offset asks for"
         )
     if cycles == "mean":

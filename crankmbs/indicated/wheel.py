@@ -91,7 +91,7 @@ def edges(time: Array, signal: Array, *, falling: bool = False) -> Array:
 
 
 def first_edges(time: Array, wheel: Wheel, where: str) -> Index:
-    """The places of the first edges behind the gaps.
+    """The places of the first edges after the gaps.
 
     time : of the edges, shape (n,) [s]
 
@@ -163,5 +163,6 @@ def _check_revolutions(time: Array, ratio: Array, first: Index, wheel: Wheel, wh
             f"{where}: between {time[a]:.6g} and {time[b]:.6g} s the wheel shows {b - a} "
             f"{wheel.edge} edges, and {wheel} has {wheel.edges}: teeth {what} near "
             f"{time[k]:.6g} s, where an interval spans {ratio[k]:.2g} pitches; cut the record "
-            'before or behind, check wheel, or take its other edges, such as wheel="60-2 falling"'
+            "before or after that, check wheel, or take its other edges, such as "
+            'wheel="60-2 falling"'
         )

@@ -171,7 +171,7 @@ class Balances(NamedTuple):
         return np.asarray(room[0])
 
     def put(self, names: list[str], out: Array) -> None:
-        """Variables of equal powers, one behind the other, at the samples, shape (rows,
+        """Variables of equal powers, one after the other, at the samples, shape (rows,
         samples)."""
         if self.by_parts and names[0] in self.parts:
             self._join(names, out)

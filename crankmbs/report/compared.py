@@ -86,8 +86,8 @@ def advice(budget: Budget) -> str:
     best = min(cures, key=worst.without, default=None)
     if best is None or worst.without(best) > _HELPS * error:
         return (
-            f"no single refinement mends {whose}, which is off by {digits(error, most=3)} %: take "
-            "the closed form at the crank's own speed and acceleration"
+            f"no single refinement removes {whose}, which is off by {digits(error, most=3)} %: "
+            "take the closed form at the crank's own speed and acceleration"
         )
     left = worst.without(best)
     own = best.name == "series" and not worst.is_lecture

@@ -185,7 +185,7 @@ def _journals(bearings: Bearings, throws: list[float]) -> list[float]:
     for k, place in enumerate(throws):
         if not sign * given[k] < sign * place < sign * given[k + 1]:
             raise InputError(
-                f"bearings.journal_positions: throw {k + 1} at {place:.6g} m must stand between "
+                f"bearings.journal_positions: throw {k + 1} at {place:.6g} m must lie between "
                 f"journals {k + 1} and {k + 2}; they are at {given[k]:.6g} and {given[k + 1]:.6g} m"
             )
     return list(given)
@@ -204,7 +204,7 @@ def _shares(
             share = (place - before) / (after - before)
             if not 0.0 <= share <= 1.0:
                 raise InputError(
-                    f"layout.cylinders[{k + 1}].position: the rod must stand between the journals "
+                    f"layout.cylinders[{k + 1}].position: the rod must lie between the journals "
                     f"beside its throw, {before:.6g} and {after:.6g} m; {place:.6g} m came"
                 )
         rows[number][k], rows[number + 1][k] = 1.0 - share, share

@@ -63,8 +63,8 @@ def mean_cycle(table: Table, period: float) -> Table:
     for number, (angle, _) in enumerate(cycles[1:], start=2):
         if len(angle) != len(first) or np.max(np.abs(angle - first)) > SAME_ANGLE:
             raise InputError(
-                f'{table.source}: for cycles = "mean" the rows of every cycle must stand at the '
-                f"angles of the first; those of cycle {number} do not; resample the file, or give "
+                f'{table.source}: for cycles = "mean" the rows of every cycle must be at the '
+                f"angles of the first; those of cycle {number} are not; resample the file, or give "
                 'cycles = "sequence"'
             )
     mean = np.mean([value for _, value in cycles], axis=0)

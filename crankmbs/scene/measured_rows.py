@@ -80,7 +80,7 @@ def read_measured(path: Path, how: HowRead) -> Table | CylinderTable:
         if len(missing):
             raise InputError(
                 f"file {name}: column {shown(headings[k].name)} has no number in row "
-                f"{missing[0] + 1} behind its headings; crankmbs pressure deals with missing cells"
+                f"{missing[0] + 1} below its headings; crankmbs pressure deals with missing cells"
             )
     x = tuple((sheet.values[:, angle] * angle_factor(headings[angle])).tolist())
     y = tuple(tuple((sheet.values[:, k] * (headings[k].pressure or 1.0)).tolist()) for k in places)

@@ -9,7 +9,7 @@ __all__ = ["template"]
 _TEMPLATE = """\
 # A scene says what the machine is, not how to solve it. Run it: crankmbs run <this file>
 # A quantity is one number and one unit. A bare number is SI; angles and speeds need a unit.
-# A key behind "#" is optional.
+# A key after "#" is optional.
 title = {title}
 #source = "where the numbers come from"
 
