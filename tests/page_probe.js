@@ -37,7 +37,7 @@
   const middle = 0.5 * (shown.angles[77] + shown.angles[78]);
   const [, csv] = page.taken.dataFile(given, shown);
   return csv.text().then((data) => JSON.stringify({
-    data, files: page.taken.sceneFiles(given, values, shown),
+    data,
     mean: shown.mean, gain: shown.gain, fluctuation: shown.fluctuation, leads: shown.leads,
     settled: shown.settled, prescribed: shown.prescribed, angles: shown.angles,
     lead: shown.leadAt(middle), ahead: shown.timeTo(middle),

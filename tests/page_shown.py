@@ -1,5 +1,5 @@
 """What must be true of what the page says and shows as numbers and arrows: Python's motion, the law
-of Newton for every drawn body, the scene handed out."""
+of Newton for every drawn body."""
 
 import dataclasses
 import io
@@ -7,7 +7,7 @@ import math
 from functools import cache
 
 import numpy as np
-from page_cases import CASES, CURVES, POLARS, SAID, cycle_of, frame, of_cylinder, same, truth
+from page_cases import CASES, CURVES, POLARS, SAID, frame, of_cylinder, same, truth
 from page_drawing import drawing_holds
 
 from crankmbs import flywheel
@@ -16,16 +16,12 @@ from crankmbs.mechanics.train import crank_train
 from crankmbs.mechanics.variables import EVERY, SUMS
 
 
-def wrong(name, said, read):
-    """The names of the guards that what a case says does not hold.
-
-    read : of files { name: text }, the scene in them
-    """
+def wrong(name, said):
+    """The names of the guards that what a case says does not hold."""
     scene, data = truth(name)
     about = (scene, data, CASES[name][2])
     guards = {
         "data": lambda: data_hold(said["data"], data),
-        "files": lambda: files_hold(said, name, read),
         "cycle": lambda: cycle_holds(said, *about),
         "curves": lambda: curves_hold(said, *about),
         "polars": lambda: polars_hold(said, *about),
@@ -35,21 +31,6 @@ def wrong(name, said, read):
         "flywheel": lambda: flywheel_holds(said["even"], scene),
     }
     return [guard for guard, holds in guards.items() if not holds()]
-
-
-_HELD: dict[str, dict[str, str]] = {}
-
-
-def files_hold(said, name, read):
-    """Whether the scene in the files that are handed out has the data that are; files that are not
-    those for which this was so hold another scene."""
-    if name in _HELD:
-        return _HELD[name] == said["files"]
-    data = cycle_of(read(said["files"]), name)
-    if not data_hold(said["data"], data):
-        return False
-    _HELD[name] = said["files"]
-    return True
 
 
 def data_hold(text, data):

@@ -2,7 +2,6 @@
 
 import io
 import re
-import zipfile
 from contextlib import contextmanager
 from dataclasses import replace
 
@@ -82,16 +81,6 @@ class Opened:
         names = content.decode().splitlines()[0].split(",")
         rows = np.loadtxt(io.BytesIO(content), delimiter=",", skiprows=1)
         return dict(zip(names, rows.T, strict=True))
-
-    def scene(self, folder):
-        """The scene in the file that the page hands out."""
-        name, content = self.visit.saved("#toml")
-        if name.endswith(".zip"):
-            zipfile.ZipFile(io.BytesIO(content)).extractall(folder)
-            name = name.replace(".zip", ".toml")
-        else:
-            (folder / name).write_bytes(content)
-        return load_scene(folder / name)
 
 
 def unit_square(curve):

@@ -7,31 +7,17 @@ from page_shown import wrong
 from page_shown_mutants import DRAWING, SHOWN
 from playwright.sync_api import Error
 
-from crankmbs import InputError, load_scene
 from crankmbs.page.script import FOLDER
 
 pytestmark = pytest.mark.slow
 
 
 @pytest.fixture(scope="module")
-def read(tmp_path_factory):
-    """Reads a scene that the page hands out."""
-
-    def take(files):
-        folder = tmp_path_factory.mktemp("scene")
-        for name, text in files.items():
-            (folder / name).write_text(text, encoding="utf-8")
-        return load_scene(folder / "mine.toml")
-
-    return take
-
-
-@pytest.fixture(scope="module")
-def true(page, read):
+def true(page):
     """What is wrong with each case as the page has it, and the scenes that its knobs give; the
     cycles are kept."""
     script = shown_script()
-    found = {case: wrong(case, probe(page.page, script, case), read) for case in CASES}
+    found = {case: wrong(case, probe(page.page, script, case)) for case in CASES}
     return found, {case: scene_of(page.page, script, case) for case in CASES}
 
 
@@ -41,19 +27,19 @@ def test_what_is_shown_is_true(true, case):
 
 
 @pytest.mark.parametrize("module", SHOWN)
-def test_what_is_shown_wrongly_is_seen(page, read, true, module):
+def test_what_is_shown_wrongly_is_seen(page, true, module):
     source = (FOLDER / f"{module}.js").read_text(encoding="utf-8")
     script = shown_script()
     survivors = []
     for find, replace, case in SHOWN[module]:
         assert source.count(find) == 1, f"{find!r} stands {source.count(find)} times"
         assert script.count(find) == 1, f"{find!r} stands in another module too"
-        if not seen(page, read, script.replace(find, replace), case, (module, true[1])):
+        if not seen(page, script.replace(find, replace), case, (module, true[1])):
             survivors.append((find, replace))
     assert survivors == []
 
 
-def seen(page, read, script, case, about):
+def seen(page, script, case, about):
     """Whether a mutant breaks a guard or ends in an error, but not as it is no script.
 
     about : its module, and the scenes that the knobs give without it
@@ -63,8 +49,8 @@ def seen(page, read, script, case, about):
     try:
         if module == "turned":
             return scene_of(page.page, script, case) != scenes[case]
-        return wrong(case, probe(page.page, script, case, **how), read) != []
-    except (Error, InputError) as error:
+        return wrong(case, probe(page.page, script, case, **how)) != []
+    except Error as error:
         return "SyntaxError" not in str(error)
 
 

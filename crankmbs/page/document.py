@@ -25,7 +25,6 @@ from crankmbs.scene.parts import LIGHT_CRANK
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.sentences import RULES
 from crankmbs.scene.whole import NO_INERTIA, OPEN_LOOP, UNCOVERED
-from crankmbs.scene.write import scene_files
 
 __all__ = ["given_of", "page_of", "policy", "shown_scene"]
 
@@ -60,7 +59,7 @@ def page_of(scene: Scene, stem: str) -> str:
 
     Parameters
     ----------
-    stem : name of the files that it hands out
+    stem : name of the file of data that it hands out
 
     Raises
     ------
@@ -114,7 +113,6 @@ def _given(scene: Scene, stem: str, choices: tuple[Choice, ...]) -> dict[str, An
     return {
         **given_of(scene),
         "stem": stem,
-        "files": scene_files(scene, stem),
         "knobs": [dataclasses.asdict(knob) for knob in knobs_of(scene)],
         "words": [{"name": choice.name, "words": choice.words} for choice in choices],
         "own": {choice.name: choice.own for choice in choices},

@@ -73,12 +73,7 @@ function cycleOf(gas, source, shape, fired) {
 }
 
 /** The cycle angle [rad] in one machine at which the piston has swept the same fraction of the
- * same stroke as at a cycle angle in another. */
-export function carriedAngle(phi, from, to) {
-  return carrying(from, to)(phi);
-}
-
-/** The same for many angles of the same two machines, as a function of the angle. */
+ * same stroke as at a cycle angle in another, as a function of the latter. */
 function carrying(from, to) {
   const centres = deadCentres(from);
   const swept = sweptIn(from);

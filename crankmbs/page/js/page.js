@@ -15,7 +15,7 @@ import { Refused } from "./refused.js";
 import { Stage } from "./stage.js";
 import { Address, numberOf } from "./state.js";
 import { write } from "./svg.js";
-import { dataFile, save, sceneFile } from "./taken.js";
+import { dataFile, save } from "./taken.js";
 import { Turner } from "./turned.js";
 import { firstView, keysOf, tellingPose } from "./view.js";
 import { deadCentreMarks } from "./words.js";
@@ -68,7 +68,6 @@ class Page {
     });
     this.press("play", () => this.play(!this.player.playing));
     this.press("reset", () => this.reset());
-    this.press("toml", () => save(...sceneFile(given, this.values, this.cycle)));
     this.press("csv", () => save(...dataFile(given, this.cycle)));
     this.press("large", enlarge);
     this.press("more", () => { unfold(); this.redraw(); });
