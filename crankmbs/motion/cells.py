@@ -186,14 +186,6 @@ class Cells:
         low[at], high[at - 1] = x, x
         return self.part(parts, low, high)
 
-    def cut_where_it_turns(self) -> Cells:
-        """The cells with ends where the speed changes its sign between theirs."""
-        k = np.flatnonzero(self.speed[:, 0] * self.speed[:, -1] < 0.0)
-        if len(k) == 0:
-            return self
-        x = self._polynomials.inverse(self.speed, k, np.zeros(len(k)))
-        return self._cut(k, x)
-
     def inner(self) -> Array:
         """Places of nodes, and of the ends a hair inside, shape (m, n): there everything counts as
         it is in the cell."""
