@@ -131,6 +131,10 @@ MESSAGES = {
         "file a.csv, line 903: cycle 2 is not at the angles of the first, 950 degrees "
         "came; resample the cycles to the same angles, or check stroke"
     ),
+    "rows missing at the peak": (
+        "file a.csv, line 352: from -11 degrees the next row is 44 degrees on, where others are 1 "
+        "degrees apart: rows are missing; export the cycle with all of them"
+    ),
     "missing everywhere": (
         "file a.csv: column PCYL1 has more than 3 missing cells in a row, at -261 degrees, in "
         "every cycle; choose other columns, or export it again"

@@ -91,7 +91,7 @@ def test_a_bad_way_to_read(read, tmp_path, lines, message):
         (
             "2,0;2,5",
             "-9999;2,5",
-            'gas.pressure: file gas.csv: column "PCYL1" has no number in row 2 behind its '
+            'gas.pressure: file gas.csv: column "PCYL1" has no number in row 2 below its '
             "headings; crankmbs pressure deals with missing cells",
         ),
         (

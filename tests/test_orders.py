@@ -9,6 +9,8 @@ import pytest
 
 from crankmbs import Motion, Run, engine_orders, load_scene, orders, simulate
 from crankmbs.mechanics.harmonics import closed_orders
+from crankmbs.scene.forces import ConstantForce, Damper
+from crankmbs.scene.parts import Friction
 from validation.case import CASES
 
 BANKED = load_scene(CASES.parent / "scenes" / "banked_crank.toml")
@@ -90,6 +92,16 @@ def test_orders_at_constant_speed_are_the_closed_forms(speed, every):
         apart = np.abs(wave - row.closed).max()
         assert apart < 1e-10 * np.abs(row.closed).max()
         assert apart <= 2.0 * row.orders.error
+
+
+def test_friction_and_forces_on_the_pistons_are_no_inertia():
+    forces = (ConstantForce(force=700.0), Damper(coefficient=30.0))
+    friction = Friction(ring_force=200.0, viscous=20.0)
+    found = engine_orders(simulate(driven(BANKED, friction=friction, force=forces)))
+    row = found.rows[1]
+    assert row.quantity == "inertia torque"
+    wave = row.orders.amplitude * np.exp(1j * row.orders.phase)
+    assert np.abs(wave - row.closed).max() < 1e-9 * np.abs(row.closed).max()
 
 
 def test_two_strokes_have_whole_orders():

@@ -55,6 +55,11 @@ WRONG = {
     "no unit": ("a.csv", text([FULL, EXACT], ["CA", "PCYL1"]), {}),
     "no such column": ("a.csv", GOOD, {"columns": "PCYL7"}),
     "no reference": ("a.csv", of(FULL, EXACT - 4.0, units=("deg", "bar")), {}),
+    "rows missing at the peak": (
+        "a.csv",
+        of(np.delete(FULL, np.arange(350, 393)), np.delete(EXACT, np.arange(350, 393))),
+        {},
+    ),
     "a word in a cell": ("a.csv", changed(50, "-313,0;over"), {}),
     "another row": ("a.csv", changed(50, "-313,0;1,0;2,0"), {}),
     "a footer": ("a.csv", GOOD + "end of file\n", {}),

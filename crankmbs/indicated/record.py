@@ -26,6 +26,8 @@ __all__ = ["Channel", "Record", "record_of"]
 
 _FEWEST = 90  # columns from which a row of rising numbers may be the crank angle
 _NEAR = 1e-6  # degrees: two angles of the axis closer than this are one
+_ASIDE = 3  # steps on either side of one
+_WIDEST = 4.5  # times as wide as those: more than the three rows that a gap of cells may have
 _STROKES = "stroke=4 with the whole cycle of 720 degrees", "stroke=2"
 
 
@@ -111,6 +113,7 @@ class _Axis:
         grid = self._angle[begins[0] : begins[0] + length]
         closing = len(grid) > 2 and abs(grid[-1] - grid[0] - period) < _NEAR
         count = length - closing
+        self._check_steps(grid[:count], begins[0], period)
         grouped: dict[tuple[str, int], list[Column]] = {}
         for column in self._columns:
             grouped.setdefault((column.kind, column.cylinder), []).append(column)
@@ -158,6 +161,26 @@ class _Axis:
         if len(drops):
             return self._by_drops(drops)
         return self._by_period()
+
+    def _check_steps(self, grid: Array, first: int, period: float) -> None:
+        """Refuse a cycle without some of its rows: a step much wider than those on either side. The
+        resolution may change, to steps that go on.
+
+        first : row at which the cycle begins
+        """
+        steps = np.diff(np.append(grid, grid[0] + period))
+        if len(steps) <= 2 * _ASIDE:
+            return
+        aside = np.array([np.roll(steps, k) for k in range(-_ASIDE, _ASIDE + 1) if k])
+        usual = np.maximum(aside[:_ASIDE].min(axis=0), aside[_ASIDE:].min(axis=0))
+        wide = np.flatnonzero(steps > _WIDEST * usual)
+        if len(wide):
+            k = wide[0]
+            raise InputError(
+                f"{self._at(first + int(k))}: from {grid[k]:g} degrees the next row is "
+                f"{steps[k]:g} degrees on, where others are {usual[k]:g} degrees apart: rows are "
+                "missing; export the cycle with all of them"
+            )
 
     def _by_drops(self, drops: np.ndarray) -> tuple[list[int], int, float]:
         """The angle begins again with every cycle."""

@@ -19,6 +19,8 @@ from crankmbs.result import Result
 
 __all__ = ["EngineOrder", "EngineOrders", "engine_orders"]
 
+_ON_PISTONS = ("gas_force", "friction_force", "applied_force")  # towards the crank
+
 
 @dataclass(frozen=True)
 class EngineOrder:
@@ -49,8 +51,9 @@ class EngineOrders:
 def engine_orders(result: Result, highest: float = 12.0) -> EngineOrders:
     """Orders of torque and frame force over the last whole cycle of a run, or its settled period.
 
-    "torque" is that of all rods on the crank; "inertia torque" what of it is neither the gas's nor
-    that of the weights of rods and pistons. Closed forms are `crankmbs.mechanics.harmonics` at the
+    "torque" is that of all rods on the crank; "inertia torque" what of it comes neither from the
+    gas, the friction and the forces from outside on the pistons nor from the weights of rods and
+    pistons. Closed forms are `crankmbs.mechanics.harmonics` at the
     mean speed: what a run differs by is the part of its changing speed.
 
     Raises
@@ -90,8 +93,9 @@ def _inertia_torque(result: Result) -> Callable[[Mapping[str, Array]], Array]:
 
     def torque(variables: Mapping[str, Array]) -> Array:
         per_speed = variables["piston_velocity"] / variables["crank_speed"][:, None]
-        gas = (variables["gas_force"] * per_speed).sum(axis=1)
+        forces = sum(variables[name] for name in _ON_PISTONS if name in variables)
         weights = reduce(parts, variables["crank_angle"]).torque
-        return np.asarray(variables["crank_torque"].sum(axis=1) - gas - weights)
+        torque = variables["crank_torque"] - forces * per_speed
+        return np.asarray(torque.sum(axis=1) - weights)
 
     return torque

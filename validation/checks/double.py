@@ -82,7 +82,7 @@ def mean_pressures(case: Case) -> Outcome:
             name: float(np.abs(result.cycles[name].values - values).max()) / largest
             for name, values in exact.items()
         }
-        apart |= _of_measures(result, exact, largest)
+        apart |= _of_measures(scene, result, exact, largest)
         name = max(apart, key=lambda each: apart[each])
         if apart[name] > worst:
             worst, said = apart[name], f"seed {seed}, {name}"
@@ -148,10 +148,12 @@ def _driven(scene: Scene) -> Scene:
     return replace(scene, start=None, motion=motion, run=run)
 
 
-def _of_measures(result: Result, exact: dict[str, Array], largest: float) -> dict[str, float]:
+def _of_measures(
+    scene: Scene, result: Result, exact: dict[str, Array], largest: float
+) -> dict[str, float]:
     """By how much the measures are off: pressures over the largest, powers over the speed times
     area times radius at it."""
-    found, scene = result.measures(), result.scene
+    found = result.measures()
     apart, radius = {}, scene.crank.radius
     for end, name, area in (
         ("head_end", "imep", scene.piston.gas_area or 0.0),
