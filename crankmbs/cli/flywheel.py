@@ -124,13 +124,21 @@ def _report(name: str, scene: Scene, wheel: Flywheel) -> str:
     ]
     if wheel.status != 0:
         return "\n".join(lines)
+    moving = []
+    if wheel.moving > _NOTHING * wheel.lecture.value:
+        rest = wheel.lecture.value - wheel.moving, wheel.lecture.error
+        moving = [
+            _row("less rods and pistons, their mean [kg m^2]", (wheel.moving, 0.0)),
+            _row("crank and flywheel by the formula [kg m^2]", rest),
+        ]
     rows = [
         _row("inertia of crank and flywheel [kg m^2]", wheel.inertia),
         _row("of which beyond the scene's [kg m^2]", (wheel.added, wheel.inertia.error)),
         _row("coefficient of fluctuation, (max - min)/mean [1]", wheel.fluctuation),
         _row("mean speed [rpm]", wheel.mean_speed, 1.0 / RPM),
         _row("W, excess of work at that constant speed [J]", wheel.work),
-        _row("inertia by W / (fluctuation omega^2) [kg m^2]", wheel.lecture),
+        _row("the formula's inertia, W / (fluctuation omega^2) [kg m^2]", wheel.lecture),
+        *moving,
         _row("which is off by [%]", wheel.lecture_error, 100.0, most=3),
     ]
     heading = ["over the settled cycle", "value, to 6 digits", "num. error"]

@@ -42,8 +42,8 @@ class Flywheel:
     fluctuation, mean_speed [1, rad/s] : of the settled cycle with it
     work [J] : W, greatest excess of work in a cycle at that constant speed; its error is the
         difference from twice the spacing and what may lie between samples
-    lecture [kg m2] : crank inertia by the lecture's J = W / (fluctuation omega^2), the mean of rods
-        and pistons taken off
+    lecture [kg m2] : inertia of the whole engine by the lecture's J = W / (fluctuation omega^2)
+    moving [kg m2] : the mean of rods and pistons over the angle, which is in it
     result : the settled cycle with the inertia, or the last one tried
     status, message : 0 found; 1 or -1 out of reach; and a sentence
     """
@@ -54,14 +54,15 @@ class Flywheel:
     mean_speed: Estimate
     work: Estimate
     lecture: Estimate
+    moving: float
     result: Result
     status: int
     message: str
 
     @property
     def lecture_error(self) -> Estimate:
-        """Relative error of the lecture's inertia."""
-        ratio = self.lecture.value / self.inertia.value
+        """Relative error of the lecture's inertia, less that of rods and pistons."""
+        ratio = (self.lecture.value - self.moving) / self.inertia.value
         spread = self.lecture.error + abs(ratio) * self.inertia.error
         return Estimate(ratio - 1.0, spread / self.inertia.value)
 
@@ -151,7 +152,10 @@ def excess(even: Result, loads: tuple[Torque, ...] = ()) -> tuple[float, float]:
     >>> excess(simulate(load_scene("yi_diesel")))[0] > 0.0
     True
     """
-    return _range(even, loads, 1)[0], 2.0 * float(even.data["kinetic_energy"].values.mean())
+    energy = even.data["kinetic_energy"].values[
+        :-1
+    ]  # the last sample is the first of the next period
+    return _range(even, loads, 1)[0], 2.0 * float(energy.mean())
 
 
 def _range(even: Result, loads: tuple[Torque, ...], stride: int) -> tuple[float, float]:
@@ -284,7 +288,8 @@ class _Search:
             fluctuation=found,
             mean_speed=mean,
             work=work,
-            lecture=Estimate(whole.value - rest, whole.error),
+            lecture=whole,
+            moving=rest,
             result=result,
             status=status,
             message=said,

@@ -13,6 +13,8 @@ from crankmbs.figures.style import COLOURS, STYLE, footer, legend, logarithmic, 
 
 __all__ = ["flywheel_figure", "save_flywheel_figure"]
 
+_NOTHING = 1e-9  # of the crank's inertia
+
 
 @rc_context(STYLE)
 def flywheel_figure(found: Flywheel, curve: Sequence[tuple[float, float]]) -> Figure:
@@ -24,11 +26,10 @@ def flywheel_figure(found: Flywheel, curve: Sequence[tuple[float, float]]) -> Fi
     inertia, fluctuation = zip(*curve, strict=True)
     ax.plot(inertia, [100.0 * each for each in fluctuation], color=COLOURS[0], label="settled")
     work, speed = found.work.value, found.mean_speed.value
-    moving = work / (found.fluctuation.value * speed**2) - found.lecture.value  # rods and pistons
-    formula = [100.0 * work / ((each + moving) * speed**2) for each in inertia]
+    at, wanted = found.inertia.value, 100.0 * found.fluctuation.value
+    formula = [100.0 * work / ((each + found.moving) * speed**2) for each in inertia]
     dashes = (0, (5, 3))
     ax.plot(inertia, formula, color=COLOURS[1], linestyle=dashes, label=r"W / (J $\omega^2$)")
-    at, wanted = found.inertia.value, 100.0 * found.fluctuation.value
     ax.plot([at], [wanted], "o", color="black", label=f"{wanted:.4g} % with {at:.4g} kg m$^2$")
     own = at - found.added
     if min(inertia) <= own <= max(inertia):
@@ -40,7 +41,10 @@ def flywheel_figure(found: Flywheel, curve: Sequence[tuple[float, float]]) -> Fi
     ax.set_xlabel("inertia of crank and flywheel [kg m$^2$]")
     ax.set_ylabel("fluctuation of the speed [%]")
     legend(figure, ax)
-    footer(figure, found.result, "settled cycles")
+    about = "settled cycles"
+    if found.moving > _NOTHING * at:
+        about += f"; J has {found.moving:.3g} kg m\u00b2 of rods and pistons in it"
+    footer(figure, found.result, about)
     return figure
 
 
