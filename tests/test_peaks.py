@@ -24,8 +24,8 @@ def test_no_reading_of_the_run_lies_beyond_a_peak(result):
     series = {
         "highest speed": (speed, 1.0),
         "crank pin": (force, 1.0),
-        "gas and inertia torque, max": (torque, 1.0),
-        "gas and inertia torque, min": (torque, -1.0),
+        "torque of the rods, max": (torque, 1.0),
+        "torque of the rods, min": (torque, -1.0),
     }
     found = {one.name: one for one in run_peaks(result)}
     for name, (values, sign) in series.items():

@@ -1,6 +1,7 @@
 """The tables that `run` prints: which angle stands in which column, which window a table names."""
 
 import math
+from dataclasses import replace
 
 import pytest
 
@@ -112,3 +113,24 @@ def test_a_run_that_turns_back_has_no_cycle():
     (run,) = tables(result, found)
     assert run.headings[0] == "over the whole run, 0 to 1.48631 s"
     assert "turns back" in unsteady(found)
+
+
+def test_each_end_and_each_stroke_has_its_row():
+    scene = load_scene("steam_engine")
+    result = simulate(scene)
+    rows = {row[0]: row[1] for row in peak_rows(result.measures(), scene.period)}
+    for end, name in (("head end", "gas_pressure"), ("crank end", "crank_end_pressure")):
+        peak = float(result.data[name].max()) / 1e5
+        assert float(rows[f"gauge pressure, {end} [bar]"]) == pytest.approx(peak, rel=1e-3)
+    compressor = load_scene("two_stage_compressor")
+    low, high = compressor.layout.cylinders
+    layout = Layout(cylinders=(replace(low, radius=0.02), replace(high, radius=0.03)))
+    run = Run(until="1 cycle")
+    motion = Motion(speed=90.0)
+    unlike = replace(compressor, layout=layout, start=None, torque=(), motion=motion, run=run)
+    result = simulate(unlike)
+    found = {row[0]: row[1] for row in measure_rows(result.measures(), unlike)}
+    speed = result.measures().mean_speed.value
+    for number, gear in enumerate(unlike.running_gear, start=1):
+        value = float(found[f"mean piston speed, cylinder {number} [m/s]"])
+        assert value == pytest.approx(gear.stroke * speed / math.pi, rel=1e-5)

@@ -18,7 +18,7 @@ from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 from crankmbs.scene.scene import Scene
 
-__all__ = ["Peak", "Quantity", "extremes_of", "run_peaks"]
+__all__ = ["Peak", "Quantity", "extremes_of", "run_peaks", "torque_of_rods"]
 
 _BLOCK = 512  # cells whose variables are in memory together: some ten cycles
 
@@ -64,22 +64,37 @@ class Peak:
 
 
 def extremes_of(scene: Scene) -> tuple[Quantity, ...]:
-    """What has peaks beside the joints: the torque of gas and inertia, its largest and least value,
-    and with gas the pressure in every cylinder.
+    """What has peaks beside the joints: the torque of the rods, its largest and least value, and
+    with gas the pressure in every cylinder, of a double-acting one at either end.
 
     >>> [one.name for one in extremes_of(load_scene("propeller"))][2]
     'gauge pressure'
     """
     found = [
-        Quantity(f"gas and inertia torque, {word}", "N m", None, None, _torque, sign)
+        Quantity(f"{torque_of_rods(scene)}, {word}", "N m", None, None, _torque, sign)
         for word, sign in (("max", 1.0), ("min", -1.0))
     ]
-    if scene.gas is not None:
-        found += [
-            Quantity("gauge pressure", "Pa", k, cylinder.phase, partial(_pressure, k))
-            for k, cylinder in enumerate(scene.cylinders, start=1)
-        ]
+    ends = {} if scene.gas is None else {"gauge pressure": "gas_pressure"}
+    if scene.double_acting:
+        ends = {
+            "gauge pressure, head end": "gas_pressure",
+            "gauge pressure, crank end": "crank_end_pressure",
+        }
+    found += [
+        Quantity(words, "Pa", k, cylinder.phase, partial(_pressure, name, k))
+        for words, name in ends.items()
+        for k, cylinder in enumerate(scene.cylinders, start=1)
+    ]
     return tuple(found)
+
+
+def torque_of_rods(scene: Scene) -> str:
+    """What the torque of the rods on the crank is called.
+
+    >>> torque_of_rods(load_scene("propeller")), torque_of_rods(load_scene("coasting"))
+    ('gas and inertia torque', 'torque of the rods')
+    """
+    return "torque of the rods" if scene.gas is None else "gas and inertia torque"
 
 
 def run_peaks(result: Result) -> tuple[Peak, ...]:
@@ -117,8 +132,8 @@ def _torque(variables: Mapping[str, Array]) -> Array:
     return np.asarray(variables["crank_torque"].sum(axis=1))
 
 
-def _pressure(cylinder: int, variables: Mapping[str, Array]) -> Array:
-    return variables["gas_pressure"][:, cylinder - 1]
+def _pressure(name: str, cylinder: int, variables: Mapping[str, Array]) -> Array:
+    return variables[name][:, cylinder - 1]
 
 
 def _speed(variables: Mapping[str, Array]) -> Array:

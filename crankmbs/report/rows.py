@@ -14,7 +14,7 @@ from typing import NamedTuple
 from crankmbs.digits import digits, error_digits
 from crankmbs.display import displayed
 from crankmbs.measures import Estimate, JointForce, Measures
-from crankmbs.measures.peaks import Peak, run_peaks
+from crankmbs.measures.peaks import Peak, run_peaks, torque_of_rods
 from crankmbs.measures.span import TURNS_BACK
 from crankmbs.result import Result
 from crankmbs.scene.scene import Scene
@@ -47,6 +47,7 @@ _WHOLE_RUN = [
     "cycle",
 ]
 _MPA = 1e6  # Pa in N/mm2
+_SAME = 1e-9  # of the stroke: no more than rounding
 
 
 class Table(NamedTuple):
@@ -109,13 +110,13 @@ def measure_rows(measures: Measures, scene: Scene) -> list[list[str]]:
     """
     rows = [
         _row("mean speed", "rad/s", measures.mean_speed),
-        _row("mean piston speed", "m/s", _piston_speed(measures.mean_speed, scene)),
+        *_piston_speeds(measures.mean_speed, scene),
     ]
     if measures.steady:
         rows.append(_row("coefficient of fluctuation, (max - min)/mean", "1", measures.fluctuation))
     rows += [
         _row(f"drift of the speed over the {measures.window.kind}", "rad/s", measures.speed_gain),
-        _row("mean gas and inertia torque", "N m", measures.crank_torque),
+        _row(f"mean {torque_of_rods(scene)}", "N m", measures.crank_torque),
         _row("mean load torque (drive, where positive)", "N m", measures.external_torque),
     ]
     if measures.indicated_power is not None:
@@ -213,10 +214,17 @@ def _specific(measures: Measures) -> list[list[str]]:
     ]
 
 
-def _piston_speed(speed: Estimate, scene: Scene) -> Estimate:
-    """Twice the stroke a revolution, of unlike cylinders the longest [m/s]."""
-    per_radian = max(gear.stroke for gear in scene.running_gear) / math.pi
-    return Estimate(abs(speed.value) * per_radian, speed.error * per_radian)
+def _piston_speeds(speed: Estimate, scene: Scene) -> list[list[str]]:
+    """Twice the stroke a revolution, of cylinders of unlike strokes each [m/s]."""
+    strokes = [gear.stroke for gear in scene.running_gear]
+    alike = max(strokes) - min(strokes) <= _SAME * max(strokes)
+    rows = []
+    for number, stroke in enumerate(strokes[:1] if alike else strokes, start=1):
+        per_radian = stroke / math.pi
+        mean = Estimate(abs(speed.value) * per_radian, speed.error * per_radian)
+        name = "mean piston speed" + ("" if alike else f", cylinder {number}")
+        rows.append(_row(name, "m/s", mean))
+    return rows
 
 
 def _words(one: JointForce | Peak) -> str:
