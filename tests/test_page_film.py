@@ -15,6 +15,7 @@ from crankmbs.page.export import encoded
 from crankmbs.page.film import film_of
 from crankmbs.page.refusals import early_end
 from crankmbs.scene.fuel import Fuel
+from crankmbs.scene.loads import Constant as ConstantTorque
 from crankmbs.scene.python_load import Load
 from crankmbs.scene.run import Extent
 
@@ -128,6 +129,38 @@ def test_what_the_page_cannot_compute_is_a_film_and_nothing_else_is():
         assert said.partition(": ")[2].partition("'")[0] in page
         assert len(page) < 1e6
     assert 'id="time"' not in page_of(free, "mine")
+
+
+def test_each_film_asks_about_what_its_run_shows():
+    free, driven = load_scene("yi_diesel_free"), load_scene("yi_diesel")
+    run = replace(free.run, until=Extent(value=2.0, unit="cycle"))
+    burning = replace(fuelled("yi_diesel_free", motored=POLYTROPE), run=run)
+    speed = {"from": 100.0, "to": -50.0, "over": 0.01}
+    down, up = load_scene("run_down"), load_scene("run_up")
+    governor = replace(up.fuel.governor, ki=0.0)
+    up = replace(up, run=replace(up.run, until=Extent(value=0.3, unit="s")))
+    proportional = replace(up, fuel=replace(up.fuel, governor=governor))
+    step = replace(free, run=run, torque=(ConstantTorque(torque=-20.0, after=0.01),))
+    rings = replace(down.friction, ring_pressure=0.0)
+    dry = replace(down, gas=None, fuel=None, friction=rings)
+    asked = {
+        "How does the governor catch the engine?": (up, "mean speed is and has been from 900 rpm"),
+        "How does the governor catch the engine? ": (proportional, "mean speed is from 900 rpm"),
+        "Why does the crank stop where it does?": (down, "until friction holds it"),
+        "Why does the crank come to rest?": (dry, "friction take"),
+        "Why does the speed not rise evenly": (load_scene("torque_driven"), "mid-stroke"),
+        "Where does the crank turn back?": (
+            replace(driven, motion=replace(driven.motion, speed=speed)),
+            "retraces its stroke",
+        ),
+        "What does uneven firing do": (replace(burning, fuel=Fuel(scatter=0.1)), "the steps below"),
+        "How does the speed change": (step, "A dashed line"),
+        "How does the speed change ": (fold(free), "where the pistons stand"),
+    }
+    for question, (scene, words) in asked.items():
+        idea = film_of(scene).idea
+        assert idea.question.startswith(question.strip())
+        assert words in idea.sentence
 
 
 def refused(scene):

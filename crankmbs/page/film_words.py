@@ -68,8 +68,9 @@ def idea_of(result: Result, *, fuel_varies: bool) -> Idea:
     """
     scene, words = result.scene, event_words(result)
     rests = result.sampled("crank_speed")[-1] == 0.0
-    if fuel_varies and scene.fuel is not None and scene.fuel.governor is not None:
-        return _governed(result, scene.fuel.governor)
+    governor = None if scene.fuel is None else scene.fuel.governor
+    if fuel_varies and governor is not None and governor.kp + governor.ki > 0.0:
+        return _governed(scene, governor)
     if rests and scene.start is not None:
         thrown = scene.gas is not None and scene.friction is not None and "reversal" in words
         return _STOPS if thrown else _SLOWS
@@ -86,17 +87,14 @@ def _starts_at_rest(scene: Scene) -> bool:
     return scene.start is not None and scene.start.speed == 0.0
 
 
-def _governed(result: Result, governor: Governor) -> Idea:
-    begins, words = "", event_words(result)
-    if _starts_at_rest(result.scene) and "first firing" in words:
-        fires = result.event_table.values("time")[words.index("first firing")]
-        begins = (
-            "While the engine is cranked, each compression slows the crank and each expansion "
-            f"drives it. It first fires at {fires:.3g} s. "
-        )
+def _governed(scene: Scene, governor: Governor) -> Idea:
+    cranked = (
+        "Each compression slows the cranked engine, each expansion drives it. Once it fires, the"
+    )
+    begins = cranked if _starts_at_rest(scene) else "The"
     how = " and ".join(["is"] * (governor.kp > 0.0) + ["has been"] * (governor.ki > 0.0))
     return Idea(
         "How does the governor catch the engine?",
-        f"{begins}Each firing gets its share of the fuel, the steps below the speed. The governor "
-        f"sets it by how far the mean speed {how} from {governor.speed / RPM:.6g} rpm.",
+        f"{begins} governor sets the share of the fuel, the steps below, "
+        f"by how far the mean speed {how} from {governor.speed / RPM:.6g} rpm.",
     )
