@@ -1,6 +1,6 @@
 /** A run between its frames, as the stage takes a cycle: its crank train and where that is. */
 import { countUpTo } from "./arrays.js";
-import { Loop } from "./geometry.js";
+import { Loop, runningGear } from "./geometry.js";
 
 const NO_GAS = { gas_pressure: 0 };
 
@@ -8,9 +8,8 @@ export class Track {
   /** given : { scene, time, angle, speed, pressure_time, pressure, fuel, decimals } in SI units,
    * the pressures cylinder by cylinder; decimals : that are shown in s, deg and rpm */
   constructor(given) {
-    const { crank, rod, piston, cylinders } = given.scene;
-    const gears = cylinders.map(({ own }) => {
-      const part = own ?? { radius: crank.radius, rod, piston };
+    const { cylinders } = given.scene;
+    const gears = runningGear(given.scene).map((part) => {
       const shape = { radius: part.radius, length: part.rod.length, offset: part.piston.offset };
       return { ...part, shape, loop: new Loop(shape) };
     });
