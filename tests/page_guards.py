@@ -8,6 +8,7 @@ import numpy as np
 from crankmbs import load_scene
 from crankmbs.mechanics.axes import closed_loops, displacements
 from crankmbs.page import exported
+from crankmbs.page.film import film_of
 from crankmbs.scene.drives import Motion, Oscillation, Ramp, SpeedFile, Start
 from crankmbs.scene.forces import (
     ConstantForce,
@@ -248,6 +249,9 @@ def tasks(angles):
     around = np.linspace(0.2, 12.0, 24)
     found += [("freeing", {"scene": exported(s), "angles": around}) for s in FREED.values()]
     still = balanced()
+    film = film_of(uneven(misfiring(driven(RISE))))
+    times = np.random.default_rng(5).uniform(0.0, film.given["time"][-1], 40)
+    found.append(("replayed", {"film": film.given, "times": times}))
     found.append(("answer", {"scene": exported(still), "angles": np.array([0.0, still.period])}))
     return found + [
         ("answer", {"scene": exported(scene), "angles": angles[name]})

@@ -152,6 +152,7 @@ DRAWING = {
     "drag": "listens; tests drag crank, piston and rim and compare with what was dragged to",
     "explicit": "steps as one would write them oneself; tests of the lesson find their orders",
     "figure": "listens and hands on; tests turn every slider of the lessons",
+    "film": "listens and hands on; tests compare its numbers with Python's",
     "format": "writes numbers; its sentences are compared with Python's",
     "labels": "writes names beside what `stage` draws, whose guards look at their rows",
     "knobs": "listens; typed numbers and refusals are compared with Python's",
@@ -174,6 +175,7 @@ DRAWING = {
     "shapes": "hands curves on",
     "state": "reads and writes the address; compared with Python's sentences, and read back",
     "svg": "writes elements",
+    "time_plot": "draws a run over time; tests read its events and its cursor",
     "view": "names what is looked at first",
 }
 """Modules that only draw, write or listen: no law of mechanics is in them, with who looks."""

@@ -266,8 +266,12 @@ def test_page_writes_one_file():
     assert "<svg" in Path("mine.html").read_text()
 
 
-def test_what_the_page_cannot_show_names_the_command_that_can():
-    assert refused("page", "torque_driven") == (
-        "the page cannot show this scene. rest: the crank starts from rest, where time must be the "
-        "variable; run it with crankmbs run"
+def test_page_replays_a_run_that_it_cannot_compute_and_refuses_one_that_does_not_move():
+    assert crankmbs_("page", "torque_driven").stdout.startswith("wrote torque_driven.html")
+    assert "This page replays one run" in Path("torque_driven.html").read_text()
+    text = (models_folder() / "torque_driven.toml").read_text()
+    Path("still.toml").write_text(text.replace('"0.1 N m"', '"0 N m"'))
+    assert refused("page", "still.toml") == (
+        "the page cannot replay this run: at rest at 0 degrees: no torque moves the crank from here"
     )
+    assert not Path("still.html").exists()

@@ -74,6 +74,16 @@ def test_names_of_forces_stand_beside_a_cylinder_that_leans(browser, tmp_path, n
             assert right <= stage[1] + 1.0
 
 
+@pytest.mark.parametrize("name", ["compressor", "propeller"])
+def test_a_long_legend_takes_nothing_from_the_plot_of_a_phone(browser, tmp_path, name):
+    """That of the compressor has five entries, the other two."""
+    with opened(browser, tmp_path, name, size=PHONE, everything=False) as visited:
+        entries = len(visited.settle().page.locator("#upper .entry").all())
+        assert entries == {"compressor": 5, "propeller": 2}[name]
+        (plot,) = boxes(visited, "#upper svg")
+        assert plot["height"] > 110.0
+
+
 def test_the_mechanism_is_larger_than_the_plot(page):
     stage, plot = boxes(page, "#stage", "#upper svg")
     assert stage["width"] * stage["height"] > 2.0 * plot["width"] * plot["height"]

@@ -1,4 +1,4 @@
-"""What the page leaves to Python, and its modules as one script."""
+"""Why a run is replayed and not computed by the page, and its modules as one script."""
 
 import math
 from dataclasses import replace
@@ -21,7 +21,7 @@ def fold(scene):
     return replace(scene, rod=replace(scene.rod, length=radius), piston=piston)
 
 
-def test_every_refusal_has_its_reason_and_the_command_that_can():
+def test_what_the_page_cannot_compute_has_its_reason():
     free, driven = load_scene("yi_diesel_free"), load_scene("yi_diesel")
     governor = Governor(speed=300.0, kp=0.01, ki=0.01)
     burning = fuelled("yi_diesel_free", motored=POLYTROPE)
@@ -39,7 +39,6 @@ def test_every_refusal_has_its_reason_and_the_command_that_can():
     for reason, scene in refused.items():
         (said,) = refusals(scene)
         assert said.startswith(f"{reason}: ")
-        assert said.endswith("; run it with crankmbs run")
 
 
 def test_a_script_holds_no_markup_and_modules_that_cannot_be_joined_are_named(

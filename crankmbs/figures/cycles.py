@@ -11,6 +11,7 @@ from crankmbs.figures.cylinders import one_curve_each, whose
 from crankmbs.figures.style import COLOURS, STYLE, footer, keep_flat, legend, line_of, panels
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
+from crankmbs.result.event_words import event_words
 from crankmbs.scene.units import BAR, RPM
 
 __all__ = ["FEWEST_CYCLES", "cycles_figure", "mark_events"]
@@ -67,7 +68,7 @@ def mark_events(ax: Axes, result: Result, at: Array) -> None:
     at : shape (events,), where each stands on the panel's axis
     """
     low, high = ax.get_xlim()
-    words = _words(result)
+    words = event_words(result)
     inside = [k for k, word in enumerate(words) if word and low <= at[k] <= high]
     often = {k: [words[j] for j in inside if j < k].count(words[k]) for k in inside}
     shown = sorted(sorted(inside, key=often.__getitem__)[:_MOST_MARKS])  # each word at least once
@@ -92,28 +93,3 @@ def mark_events(ax: Axes, result: Result, at: Array) -> None:
             bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5, "alpha": 0.8},
         )
         named[words[k]] = float(at[k])
-
-
-def _words(result: Result) -> list[str]:
-    """What stands beside each event; nothing at decisions on the fuel but the first that fires of a
-    fuel that is waited for and the first that does not after it is cut."""
-    kinds, loads, shares = map(result.event_table.values, ("kind", "load", "share"))
-    scene, fired_from, cut = result.scene, False, False
-    if scene.fuel is not None:
-        fired_from = scene.fuel.after > 0.0 or scene.fuel.from_speed is not None
-        cut = scene.fuel.until is not None or scene.fuel.until_speed is not None
-    names = [load.name for load in scene.torque]
-    names = [f"{name} {k}" if names.count(name) > 1 else name for k, name in enumerate(names, 1)]
-    words = [
-        f"{names[load - 1]} {kind.removeprefix('load ')}" if load else kind
-        for kind, load in zip(kinds.tolist(), loads.tolist(), strict=True)
-    ]
-    fuel = np.flatnonzero(kinds == "fuel")
-    fired = fuel[shares[fuel] > 0.0]
-    for k in fuel.tolist():
-        words[k] = ""
-    if fired_from and len(fired):
-        words[fired[0]] = "first firing"
-    if cut and len(fired) and fired[-1] < fuel[-1]:
-        words[fuel[fuel > fired[-1]][0]] = "fuel cut"
-    return words

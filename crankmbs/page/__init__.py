@@ -1,7 +1,7 @@
 """The page that computes in the browser: its document, its modules in JavaScript, and a scene as
 they take it.
 
-What only Python can run is named in refusals, with the command that does.
+What only Python can run is named in refusals; the page replays it (`film`).
 """
 
 from crankmbs.page.document import given_of, page_of, policy

@@ -12,10 +12,10 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from crankmbs.design.freed import NEAR_REST, UNEVEN
-from crankmbs.errors import InputError
 from crankmbs.mechanics.variables import EVERY
 from crankmbs.motion.ending import Ending
 from crankmbs.page.export import encoded, exported, rules
+from crankmbs.page.film import film_of
 from crankmbs.page.knobs import FIRING_ORDERS, Choice, choices_of, first_of, knobs_of
 from crankmbs.page.refusals import early_end, refusals, settling
 from crankmbs.page.script import joined
@@ -55,7 +55,8 @@ _FLUCTUATION = (
 
 
 def page_of(scene: Scene, stem: str) -> str:
-    """A scene's page as HTML that needs no network; everything on it is computed in the browser.
+    """A scene's page as HTML that needs no network: computed in the browser as its knobs turn, or,
+    where the browser cannot run the scene, the run of `simulate`, replayed.
 
     Parameters
     ----------
@@ -63,16 +64,36 @@ def page_of(scene: Scene, stem: str) -> str:
 
     Raises
     ------
-    InputError : a scene that the browser cannot run, with the reasons
+    InputError : a scene whose run cannot be replayed either, with the reasons
 
     >>> page_of(load_scene("propeller"), "mine").startswith("<!DOCTYPE html>")
     True
     """
     reasons = refusals(scene) or early_end(scene)
     if reasons:
-        raise InputError(f"the page cannot show this scene. {'. '.join(reasons)}")
+        film = film_of(scene)
+        return _rendered(
+            "film", scene, stem, film.given, film=film, reason=reasons[0].partition(": ")[2]
+        )
     shown = shown_scene(scene)
-    script = f"{joined('page')}.start();"
+    choices = choices_of(shown)
+    return _rendered(
+        "page",
+        scene,
+        stem,
+        _given(shown, stem, choices),
+        prescribed=scene.motion is not None,
+        uneven="" if scene.fuel is None else UNEVEN,
+        choices={choice.name: choice for choice in choices},
+        plain=_PLAIN,
+        first=first_of(shown),
+        settles=shown.settles and not scene.settles,
+    )
+
+
+def _rendered(name: str, scene: Scene, stem: str, given: dict[str, Any], **words: Any) -> str:
+    """A template filled in with a scene, with the module of its name and what that takes."""
+    script = f"{joined(name)}.start();"
     style = (_FOLDER / "page.css").read_text(encoding="utf-8")
     environment = Environment(
         loader=FileSystemLoader(_FOLDER),
@@ -81,20 +102,14 @@ def page_of(scene: Scene, stem: str) -> str:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    choices = choices_of(shown)
-    return environment.get_template("page.html").render(
+    return environment.get_template(f"{name}.html").render(
         scene=scene,
         stem=stem,
-        prescribed=scene.motion is not None,
-        uneven="" if scene.fuel is None else UNEVEN,
-        choices={choice.name: choice for choice in choices},
-        plain=_PLAIN,
-        first=first_of(shown),
-        settles=shown.settles and not scene.settles,
         policy=policy(script, style),
         script=Markup(script),
         style=Markup(style),
-        given=Markup(encoded(_given(shown, stem, choices))),
+        given=Markup(encoded(given)),
+        **words,
     )
 
 

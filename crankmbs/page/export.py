@@ -30,7 +30,7 @@ from crankmbs.scene.scene import Scene
 from crankmbs.scene.speed_rows import over_angle, repeats
 from crankmbs.scene.torque import Torque
 
-__all__ = ["encoded", "exported", "rules"]
+__all__ = ["encoded", "exported", "machine", "rules"]
 
 _STAGES = range(3, 10)  # of the Gauss rules that the passes take, and those that check them
 _FRICTION = ("ring_force", "ring_pressure", "viscous")
@@ -45,7 +45,7 @@ def exported(scene: Scene) -> dict[str, Any]:
     """
     train = crank_train(scene)
     return {
-        **_machine(scene),
+        **machine(scene),
         "gas": exported_gas(scene, train),
         "loads": [_load(load) for load in scene.torque],
         "force": [_force(force) for force in scene.force],
@@ -98,7 +98,12 @@ def encoded(value: object) -> str:
     return text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
 
 
-def _machine(scene: Scene) -> dict[str, Any]:
+def machine(scene: Scene) -> dict[str, Any]:
+    """Crank, rods, pistons and cylinders as the modules in JavaScript take them, in SI units.
+
+    >>> machine(load_scene("run_up"))["rod"]["length"]
+    0.153333333333
+    """
     crank, gravity, friction = scene.crank, scene.gravity, scene.friction
     return {
         "crank": {

@@ -1,4 +1,4 @@
-"""What of a scene the browser cannot run, each with its reason and the command that can."""
+"""Why the browser cannot run a scene with its knobs, so that the page replays the run."""
 
 from __future__ import annotations
 
@@ -14,8 +14,6 @@ from crankmbs.simulate import simulate
 
 __all__ = ["early_end", "refusals", "settling"]
 
-_ON = "run it with crankmbs run"
-
 
 def refusals(scene: Scene) -> tuple[str, ...]:
     """Why the browser cannot run a scene, one sentence each; none where it can.
@@ -25,22 +23,22 @@ def refusals(scene: Scene) -> tuple[str, ...]:
 
     >>> refusals(load_scene("propeller"))
     ()
-    >>> refusals(load_scene("torque_driven"))[0].partition(";")[0]
+    >>> refusals(load_scene("torque_driven"))[0]
     'rest: the crank starts from rest, where time must be the variable'
     """
-    return tuple(f"{reason}; {_ON}" for reason in _reasons(scene))
+    return tuple(_reasons(scene))
 
 
 def early_end(scene: Scene) -> tuple[str, ...]:
     """Why a run that does not settle ends before its last cycle, which the page shows of it.
 
-    >>> early_end(load_scene("run_down"))[0].startswith("end: at rest at 4406.69 degrees")
-    True
+    >>> early_end(load_scene("run_down"))[0].partition(": friction")[0]
+    'end: the run ends before its time, at rest at 4406.69 degrees'
     """
     if scene.start is None or settling(scene) is not None:
         return ()
     result = simulate(replace(scene, run=replace(scene.run, every=None)))
-    return (f"end: {result.message}; {_ON}",) if result.status else ()
+    return (f"end: the run ends before its time, {result.message}",) if result.status else ()
 
 
 def settling(scene: Scene) -> Scene | None:
@@ -60,7 +58,7 @@ def settling(scene: Scene) -> Scene | None:
 
 def _reasons(scene: Scene) -> Iterator[str]:
     if scene.run.formulation == "multibody":
-        yield "multibody: asked for by name, and the page solves one rotation"
+        yield "multibody: the scene asks for the multibody model, and the page solves one rotation"
     if any(load.parts.function is not None for load in scene.torque):
         yield "function: a load is a function of Python"
     yield from _of_forces(scene)
@@ -78,10 +76,7 @@ def _of_forces(scene: Scene) -> Iterator[str]:
         if force.law.given is not None:
             yield "function: a force on a piston is a function of Python"
         elif not force.is_steady:
-            yield (
-                "force: the page has the same forces on the pistons in every cycle, and one "
-                "changes with time or has a window; leave that out"
-            )
+            yield "force: a force on the pistons changes with time or has a window"
 
 
 def _of_fuel(scene: Scene) -> Iterator[str]:
@@ -90,7 +85,7 @@ def _of_fuel(scene: Scene) -> Iterator[str]:
     if scene.settles:
         yield "settled fuel: the page settles what burns alike in every cycle"
     if scene.fuel.governor is not None:
-        yield "governor: it decides each share of the fuel anew"
+        yield "governor: the governor decides each share of the fuel anew"
     if scene.fuel.scatter > 0.0:
         yield "random firing: scatter draws each share of the fuel from Python's random numbers"
 

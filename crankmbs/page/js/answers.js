@@ -2,24 +2,17 @@
 import { pressuresOf } from "./gas.js";
 import { Engine } from "./engine.js";
 import { setFree } from "./freed.js";
+import { valuesOf } from "./given.js";
 import { LECTURES, lecturedAt } from "./lecture.js";
 import { measuredSpan, measuresOf } from "./measures.js";
 import { reactionsAt } from "./reactions.js";
+import { Track } from "./track.js";
 
 const FINE = { stages: 7, tolerance: 1e-12 };
 
-/** Values as Python wrote them, arrays from base64 doubles; seen : the different ones so far. */
-export function decoded(value, seen = []) {
-  if (Array.isArray(value)) return value.map((each) => decoded(each, seen));
-  if (value === null || typeof value !== "object") return value;
-  if ("again" in value) return seen[value.again];
-  if ("f64" in value) return seen[seen.push(doubles(value.f64)) - 1];
-  return Object.fromEntries(Object.entries(value).map(([key, each]) => [key, decoded(each, seen)]));
-}
-
-function doubles(text) {
-  const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
-  return new Float64Array(bytes.buffer);
+/** Values as Python wrote them. */
+export function decoded(value) {
+  return valuesOf(value);
 }
 
 /** One engine for many scenes. */
@@ -103,4 +96,15 @@ export function carried(_, { scene, shape }) {
   const plain = ({ knots, coefficients }) => [Array.from(knots), Array.from(coefficients)];
   const [made, more, below] = [pressure, combustion, crank_end].map((each) => each.map(plain));
   return { pressure: made, combustion: more, crank_end: below };
+}
+
+/** A run as the page replays it, at times [s]: the time, angle and speed that are shown there, the
+ * share of the fuel, and where the pistons are under which pressures. */
+export function replayed(_, { film, times }) {
+  const track = new Track(film);
+  return columns(Array.from(times, (time) => {
+    const at = track.shown(time);
+    const { angle, speed } = track.to(at);
+    return { time: at, angle, speed, fuel: track.fuelAt(at), ...track.at(angle) };
+  }));
 }

@@ -26,8 +26,8 @@ export function valueAt({ clientY }, svg, { box, y }) {
 
 /** Draw the axes of a frame into a group.
  *
- * about : { type in pixels, shape, marks at dead centres, overAngle, last whether the angles stand
- * below, name, left where it stands }
+ * about : { type in pixels, shape, marks at dead centres, overAngle, last whether the values to the
+ * right stand below, name, left where it stands }
  */
 export function drawAxes(group, { box, right, up, x, y }, about) {
   const pen = new Pen(group);
@@ -71,14 +71,15 @@ function angles({ pen, lines }, box, right, { x, type, marks, last }) {
 }
 
 /** Another quantity to the right. */
-function abscissa({ pen, lines }, box, right, { x, type, shape }) {
+function abscissa({ pen, lines }, box, right, { x, type, shape, last }) {
   const count = Math.max((box.right - box.left) / (5 * type), 2);
   const { ticks, step } = roundTicks(x.low, x.high, count);
   for (const tick of ticks) {
     lines[styleOf(tick, step)] += upright(box, right(tick));
     const place = { x: right(tick), y: box.bottom + 1.15 * type, class: "tick" };
-    pen.add("text", place, readable(tick, digitsOf(step)));
+    if (last) pen.add("text", place, readable(tick, digitsOf(step)));
   }
+  if (!last) return;
   const middle = { x: 0.5 * (box.left + box.right), y: box.bottom + 2.3 * type };
   const { text: name, unit } = shape.right;
   const text = unit ? `${name} [${unit}]` : name;

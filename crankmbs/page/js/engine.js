@@ -9,7 +9,7 @@ import { settleFree } from "./freed.js";
 import { appliedMarks, appliedTo } from "./applied.js";
 import { frictionMarks } from "./friction.js";
 import { Firing, decisionAngles } from "./fuel.js";
-import { Loop, topPosition } from "./geometry.js";
+import { Loop, runningGear, topPosition } from "./geometry.js";
 import { DIAGRAM, SEEN, pressuresOf } from "./gas.js";
 import { Travel } from "./motion.js";
 import { readCell } from "./path.js";
@@ -62,8 +62,8 @@ export class Engine {
   }
 
   /** What moves in every cylinder, with the forces from outside on its piston. */
-  gears({ crank, rod, piston, cylinders, friction, force }) {
-    const parts = cylinders.map(({ own }) => own ?? { radius: crank.radius, rod, piston });
+  gears({ friction, force, ...machine }) {
+    const parts = runningGear(machine);
     const shapes = this.shapes(parts.map((each) =>
       [each.radius, each.rod.length, each.piston.offset]));
     const loops = this.loops(shapes);

@@ -101,3 +101,8 @@ export function throwAngles(above, below, shape) {
   const lead = leadAt(x, above, below, shape);
   return [along + lead, along - lead + 2 * Math.PI];
 }
+
+/** The radius, rod and piston of every cylinder: its own, or those that all have. */
+export function runningGear({ crank, rod, piston, cylinders }) {
+  return cylinders.map(({ own }) => own ?? { radius: crank.radius, rod, piston });
+}

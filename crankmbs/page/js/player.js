@@ -4,7 +4,7 @@ const SECONDS = 7; // that a cycle takes at first
 const SLOWER = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000];
 
 export class Player {
-  /** on : { cycle() the cycle shown, move(theta) } */
+  /** on : { cycle() the cycle shown, move(theta) }, and finish() of what does not begin again */
   constructor(on) {
     this.on = on;
     this.playing = false;
@@ -42,8 +42,11 @@ export class Player {
     const passed = this.before === null ? 0 : Math.min(now - this.before, 100) / 1000;
     this.before = now;
     const cycle = this.on.cycle();
-    this.time = (this.time + passed / this.slower) % cycle.duration;
+    this.time += passed / this.slower;
+    const ends = this.on.finish && this.time >= cycle.duration;
+    this.time = ends ? cycle.duration : this.time % cycle.duration;
     this.on.move(cycle.angleAt(this.time));
-    requestAnimationFrame(this.turn);
+    if (ends) this.on.finish();
+    else requestAnimationFrame(this.turn);
   }
 }

@@ -1,0 +1,158 @@
+/** The crank speed over a whole run, with its events and, where it varies, the fuel; the cursor can
+ * be dragged. */
+import { drawAxes, frameOf } from "./axis.js";
+import { readable } from "./format.js";
+import { Pen, add, lineOf, set, watched } from "./svg.js";
+
+const RPM = Math.PI / 30;
+const LETTER = 0.55; // of the type: how wide a letter is
+const LINE = 1.2; // of the type: a row of words
+const STRIP = 0.24; // of the height, for the fuel
+const HEAD = 0.5; // of the speed's axis, at most kept free for words
+const SLIP = 8; // px that a finger moves across before it moves the cursor: else it scrolls
+
+export class TimePlot {
+  /** root : a figure with an svg; given : { time, speed, marks, fuel } of a run, its marks each
+   * { time [s], words }; onMove : of the time that is asked for */
+  constructor(root, { time, speed, marks, fuel }, onMove) {
+    Object.assign(this, { marks, onMove, frame: null, strip: null, at: null });
+    this.held = this.from = null;
+    this.svg = root.querySelector("svg");
+    root.classList.toggle("strip", fuel !== null);
+    this.curve = { x: Array.from(time), y: Array.from(speed, (each) => each / RPM) };
+    this.fuel = fuel && stepsOf(fuel, time[time.length - 1]);
+    this.axes = [add(this.svg, "g"), add(this.svg, "g")];
+    this.events = add(this.svg, "g", { class: "events" });
+    const lines = add(this.svg, "g", { transform: "scale(0.1)" });
+    this.line = add(lines, "path", { class: "curve simulated" });
+    this.steps = add(lines, "path", { class: "curve fuel" });
+    this.cursor = add(this.svg, "g", { class: "cursor" });
+    watched(this.svg, (size) => this.draw(size));
+    this.svg.addEventListener("pointerdown", (event) => this.press(event));
+    this.svg.addEventListener("pointermove", (event) => this.move(event));
+    for (const end of ["pointerup", "pointercancel"]) {
+      this.svg.addEventListener(end, (event) => this.release(event));
+    }
+  }
+
+  draw({ width, height, type }) {
+    if (width < 50 || height < 50) return;
+    const { curve, fuel } = this;
+    set(this.svg, { viewBox: `0 0 ${width} ${height}`, "aria-label": this.described() });
+    const foot = height - 2.6 * type;
+    const box = { left: 4.4 * type, right: width - 1.7 * type, top: 1.3 * type, bottom: foot };
+    const below = { ...box, top: foot - STRIP * height };
+    if (fuel) box.bottom = below.top - 1.7 * type;
+    const labels = this.labels(box, type);
+    const rows = Math.max(0, ...labels.map(({ row }) => row + 1));
+    const share = Math.min((LINE * type * rows) / (box.bottom - box.top), HEAD);
+    const [low, high] = [Math.min(...curve.y), Math.max(...curve.y)];
+    const holds = { y: [high + (share / (1 - share)) * (high - low)] };
+    const shape = { curves: [curve], right: { text: "time", unit: "s" } };
+    const about = { type, shape, marks: [], overAngle: false, left: box.left };
+    this.frame = frameOf(box, [curve], { shape, overAngle: true, holds });
+    drawAxes(this.axes[0], this.frame, { ...about, last: !fuel, name: "crank speed [rpm]" });
+    set(this.line, { d: lineOf(curve, this.frame) });
+    if (fuel) {
+      this.strip = frameOf(below, [fuel], { shape, overAngle: true, holds: { y: [0] } });
+      drawAxes(this.axes[1], this.strip, { ...about, last: true, name: "share of the fuel" });
+      set(this.steps, { d: lineOf(fuel, this.strip) });
+    }
+    Object.assign(this, { type, foot });
+    this.drawEvents(labels);
+    if (this.at) this.place(...this.at);
+  }
+
+  /** The words of events, each once where several stand close, each in the highest row in which
+   * nothing is under it. */
+  labels(box, type) {
+    const { curve: { x }, marks } = this;
+    const scale = (box.right - box.left) / (x[x.length - 1] - x[0]);
+    const found = [];
+    for (const { time, words } of marks) {
+      const at = box.left + (time - x[0]) * scale;
+      const wide = LETTER * type * words.length + 0.6 * type;
+      const flip = at + wide > box.right;
+      const [from, to] = flip ? [at - wide, at] : [at, at + wide];
+      const near = found.filter((each) => each.from < to && from < each.to);
+      if (near.some((each) => each.words === words)) continue;
+      const free = (row) => near.every((each) => each.row !== row);
+      let row = 0;
+      while (!free(row)) row++;
+      const place = { x: at + (flip ? -0.3 : 0.3) * type, y: box.top + (row + 0.9) * LINE * type };
+      found.push({ words, from, to, row, place: { ...place, class: flip ? "end" : "name" } });
+    }
+    return found;
+  }
+
+  drawEvents(labels) {
+    const { right, box } = this.frame;
+    const pen = new Pen(this.events);
+    const below = this.strip ? [this.strip.box] : [];
+    for (const { time } of this.marks) {
+      for (const { top, bottom } of [box, ...below]) {
+        pen.add("line", { x1: right(time), x2: right(time), y1: top, y2: bottom });
+      }
+    }
+    for (const { words, place } of labels) pen.add("text", place, words);
+    pen.end();
+  }
+
+  /** Put the cursor at a time [s] and speed [rpm]. */
+  place(time, speed) {
+    this.at = [time, speed];
+    if (!this.frame) return;
+    const { right, up, box } = this.frame;
+    const pen = new Pen(this.cursor);
+    const x = right(time);
+    pen.add("line", { x1: x, x2: x, y1: box.top, y2: this.foot });
+    pen.add("circle", { cx: x, cy: up(speed), r: 0.3 * this.type });
+    pen.end();
+  }
+
+  press(event) {
+    if (!this.frame || !event.isPrimary || event.button !== 0) return;
+    event.preventDefault();
+    this.svg.setPointerCapture?.(event.pointerId);
+    this.held = event.pointerId;
+    this.from = event.pointerType === "touch" ? event.clientX : null;
+    this.move(event);
+  }
+
+  move(event) {
+    if (this.held !== event.pointerId) return;
+    if (this.from !== null && Math.abs(event.clientX - this.from) < SLIP) return;
+    this.from = null;
+    const { box, x } = this.frame;
+    const { left } = this.svg.getBoundingClientRect();
+    const part = (event.clientX - left - box.left) / (box.right - box.left);
+    this.onMove(x.low + part * (x.high - x.low));
+  }
+
+  /** A tap moves the cursor, too; a finger that scrolled does not. */
+  release(event) {
+    if (event.type === "pointerup") {
+      this.from = null;
+      this.move(event);
+    }
+    this.held = null;
+  }
+
+  described() {
+    const { curve: { y }, marks } = this;
+    const [low, high] = [Math.min(...y), Math.max(...y)].map((each) => readable(each, 0));
+    const events = marks.map(({ time, words }) => `${words} at ${readable(time, 3)} s`);
+    return [`crank speed over time: ${low} to ${high} rpm`, ...events].join(", ");
+  }
+}
+
+/** The line of shares, each from when it is decided to the next, the last to the end of the run. */
+function stepsOf({ time, share }, end) {
+  const x = [];
+  const y = [];
+  time.forEach((each, k) => {
+    x.push(each, k + 1 < time.length ? time[k + 1] : end);
+    y.push(share[k], share[k]);
+  });
+  return { x, y };
+}

@@ -1,0 +1,86 @@
+/** A run between its frames, as the stage takes a cycle: its crank train and where that is. */
+import { countUpTo } from "./arrays.js";
+import { Loop, runningGear } from "./geometry.js";
+
+const NO_GAS = { gas_pressure: 0 };
+
+export class Track {
+  /** given : { scene, time, angle, speed, pressure_time, pressure, fuel, decimals } in SI units,
+   * the pressures cylinder by cylinder; decimals : that are shown in s, deg and rpm */
+  constructor(given) {
+    const { cylinders } = given.scene;
+    const gears = runningGear(given.scene).map((part) => {
+      const shape = { radius: part.radius, length: part.rod.length, offset: part.piston.offset };
+      return { ...part, shape, loop: new Loop(shape) };
+    });
+    this.given = given;
+    this.train = { gears, cylinders };
+    this.begin = given.time[0];
+    this.end = given.time[given.time.length - 1];
+    this.leads = [0]; // no ring turns at a mean speed
+    this.samples = Array.from(given.pressure_time, (time) => {
+      const pressures = this.pressuresAt(time);
+      return { cylinders: cylinders.map((_, k) => ({ gas_pressure: pressures(k) })) };
+    });
+    if (!this.samples.length) this.samples = [{ cylinders: cylinders.map(() => NO_GAS) }];
+    this.to(this.begin);
+  }
+
+  /** Go to a time [s]: { angle [rad], speed [rad/s] } there, by the cubic in time that has both at
+   * the frames beside it. */
+  to(time) {
+    const { time: at, angle, speed } = this.given;
+    const k = cellOf(at, time);
+    const h = at[k + 1] - at[k];
+    const s = (time - at[k]) / h;
+    const rise = (angle[k + 1] - angle[k]) / h;
+    const bend = 3 * rise - 2 * speed[k] - speed[k + 1];
+    const twist = speed[k] + speed[k + 1] - 2 * rise;
+    this.pressures = this.pressuresAt(time);
+    return {
+      angle: angle[k] + h * s * (speed[k] + s * (bend + s * twist)),
+      speed: speed[k] + s * (2 * bend + 3 * s * twist),
+    };
+  }
+
+  /** The time [s] that is shown at another, cut to the digits shown, so that angle and speed can be
+   * those at exactly this time. */
+  shown(time) {
+    const unit = 10 ** this.given.decimals.time;
+    return Math.max(Math.floor(time * unit + 1e-6) / unit, this.begin);
+  }
+
+  /** The share of the fuel decided last at a time [s]; null before the first decision. */
+  fuelAt(time) {
+    const { fuel } = this.given;
+    const k = fuel ? countUpTo(fuel.time, time) : 0;
+    return k ? fuel.share[k - 1] : null;
+  }
+
+  /** The crank train at an angle [rad], with the pressures of the time gone to. */
+  at(theta) {
+    const { gears, cylinders } = this.train;
+    return {
+      cylinders: cylinders.map(({ phase }, k) => ({
+        piston_position: gears[k].loop.at(theta + phase).x,
+        gas_pressure: this.pressures(k),
+      })),
+    };
+  }
+
+  /** The gas pressure of each cylinder [Pa] at a time [s], on lines between the frames. */
+  pressuresAt(time) {
+    const { pressure_time: at, pressure } = this.given;
+    if (!at.length) return () => 0;
+    const k = cellOf(at, time);
+    const s = (time - at[k]) / (at[k + 1] - at[k]);
+    return (cylinder) => {
+      const n = cylinder * at.length + k;
+      return pressure[n] + s * (pressure[n + 1] - pressure[n]);
+    };
+  }
+}
+
+function cellOf(at, time) {
+  return Math.min(Math.max(countUpTo(at, time) - 1, 0), at.length - 2);
+}
