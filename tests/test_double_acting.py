@@ -343,3 +343,10 @@ def test_what_cannot_be_is_refused(sentence):
 def test_a_file_of_the_crank_end_has_what_belongs_to_files():
     gas = Gas(pressure=1e5, crank_end=BELOW, ambient=1e5, interpolation="linear", stroke=2)
     assert gas.interpolation == "linear"
+
+
+def test_gravity_and_fuel_are_said():
+    rows = dict(machine_rows(load_scene("run_up")))
+    assert rows["gravity"] == "none"
+    assert rows["fuel"] == "governor at 900 rpm; from 150 rpm"
+    assert dict(machine_rows(STEAM))["gravity"].startswith("9.81 m/s^2")

@@ -295,3 +295,11 @@ def test_what_takes_like_cylinders_alone_says_so(scene):
         scene_of(scene, ["rod_ratio"], [0.25])
     with pytest.raises(InputError, match="a scene of the cylinder that was measured"):
         of_scene(scene)
+
+
+def test_a_throw_that_contradicts_itself_is_refused_without_bearings():
+    twin = load_scene("two_stage_compressor")
+    low, high = twin.layout.cylinders
+    shared = Layout(cylinders=(replace(low, throw=1), replace(high, throw=1, radius=0.03)))
+    with pytest.raises(InputError, match="cylinders of one throw share a pin, so its radius"):
+        replace(twin, layout=shared)

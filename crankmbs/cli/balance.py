@@ -130,15 +130,22 @@ def _report(name: str, weights: Balance) -> str:
             "counterweight, mass times radius, for the rotating mass and "
             f"{100.0 * weights.share:g} % of the reciprocating mass:",
             *(
-                f"  {f'opposite {throw}':40}  {digits(moment)} kg m"
+                f"  {f'opposite {throw}':41}  {digits(moment)} kg m"
                 for throw, moment in _throws(weights)
             ),
-            f"  opposite the crank's own centre of mass   {digits(weights.of_crank)} kg m",
+            f"  {_of_crank(weights):41}  {digits(abs(weights.of_crank))} kg m",
             "",
             table(["over the last cycle", "order", *_ERRORS], rows),
             "moving parts on the frame, engine's X and Y; rocking about the middle of the crank",
         ]
     )
+
+
+def _of_crank(weights: Balance) -> str:
+    """Where the part for the crank's own unbalance stands; a counterweight that it has counts."""
+    if weights.of_crank < 0.0:
+        return "less the counterweight that the crank has"
+    return "opposite the crank's own centre of mass"
 
 
 def _throws(weights: Balance) -> list[tuple[str, float]]:

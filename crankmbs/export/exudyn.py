@@ -78,8 +78,9 @@ def exudyn_script(scene: Scene, stem: str) -> str:
     train = crank_train(scene)
     if Forces(train).jumps:
         raise InputError(
-            "a script for exudyn cannot express this scene: its multibody run is cut where forces "
-            "or loads jump, and begins anew there"
+            "a script for exudyn cannot express the gas pressure or a force over the angle: it "
+            "jumps (two rows at one angle), where a run must be cut and begun anew; give rows "
+            "without jumps, of an indicator diagram a table"
         )
     result = simulate(scene)
     if result.status != 0:

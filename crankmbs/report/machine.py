@@ -44,7 +44,7 @@ def machine_rows(scene: Scene) -> list[tuple[str, str]]:
     >>> [name for name, _ in machine_rows(load_scene("coasting"))][2:5]
     ['crank', 'rod', 'piston']
     """
-    heads, ends = (dict.fromkeys(of(scene) or ()) for of in (pressures_of, crank_ends_of))
+    heads, ends = pressures_of(scene) or (), crank_ends_of(scene) or ()
     common = RunningGear(scene.crank.radius, scene.rod, scene.piston)
     at_head = "in the head end" if ends else "across the piston"
     rows = [
@@ -57,9 +57,11 @@ def machine_rows(scene: Scene) -> list[tuple[str, str]]:
         *_unlike(scene, common),
         ("cylinders", _cylinders(scene)),
         ("gas", _gas(scene)),
-        *(("pressure", _pressure(scene, pressure, at_head)) for pressure in heads),
-        *(("", _pressure(scene, pressure, "in the crank end")) for pressure in ends),
+        *(("pressure", said) for said in _pressures(scene, heads, at_head)),
+        *(("", said) for said in _pressures(scene, ends, "in the crank end")),
         *(("", remark) for remark in remarks(scene)),
+        ("fuel", _fuel(scene)),
+        ("gravity", _gravity(scene)),
         ("friction", _friction(scene)),
         ("bearings", _shells(scene)),
         *(("", said) for said in journal_remarks(scene)),
@@ -126,20 +128,20 @@ def _dead_centres(gear: RunningGear) -> str:
     text = f"cycle angles {at} deg, stroke {gear.stroke * 1e3:.6g} mm"
     area = gear.piston.gas_area
     if area is not None:
-        text += f", displaced {gear.stroke * area * 1e6:.6g} cm^3 a cylinder"
+        text += f", displaces {gear.stroke * area * 1e6:.6g} cm^3"
     return text
 
 
 def _cylinders(scene: Scene) -> str:
     fired = scene.gas is not None and scene.gas.stroke == 4
     each = [
-        f"phase {math.degrees(c.phase):.6g} deg"
+        f"{number}: phase {math.degrees(c.phase):.6g} deg"
         + (f", bank {math.degrees(c.bank):.6g} deg" if c.bank else "")
         + f", throw at {math.degrees(c.phase + c.bank) % 360.0:.6g} deg"
         + (f", fires at {(360.0 - math.degrees(c.phase)) % 720.0:.6g} deg" if fired else "")
-        for c in scene.cylinders
+        for number, c in enumerate(scene.cylinders, start=1)
     ]
-    return f"{len(each)}: " + "; ".join(each)
+    return "; ".join(each)
 
 
 def _gas(scene: Scene) -> str:
@@ -176,6 +178,18 @@ def _tables(gas: Gas, given: PressureGiven) -> str:
     return f"{text}, {'the mean' if gas.cycles == 'mean' else 'a sequence'} of {cycles} cycles"
 
 
+def _pressures(scene: Scene, pressures: tuple[PeriodicPressure, ...], where: str) -> list[str]:
+    """Each pressure once, of several with the cylinders that have it."""
+    of: dict[PeriodicPressure, list[int]] = {}
+    for number, pressure in enumerate(pressures, start=1):
+        of.setdefault(pressure, []).append(number)
+    return [
+        ("" if len(of) == 1 else f"cylinder {', '.join(map(str, numbers))}: ")
+        + _pressure(scene, pressure, where)
+        for pressure, numbers in of.items()
+    ]
+
+
 def _pressure(scene: Scene, pressure: PeriodicPressure, where: str) -> str:
     assert scene.gas is not None
     ambient = scene.gas.ambient
@@ -185,6 +199,33 @@ def _pressure(scene: Scene, pressure: PeriodicPressure, where: str) -> str:
         f"{given}; at most {peak / BAR:.6g} bar {where}, at a cycle angle of "
         f"{math.degrees(angle):.6g} deg"
     )
+
+
+def _gravity(scene: Scene) -> str:
+    gravity = scene.gravity
+    if gravity is None:
+        return "none"
+    return (
+        f"{gravity.acceleration:.6g} m/s^2, pulling at {math.degrees(gravity.angle):.6g} deg from X"
+    )
+
+
+def _fuel(scene: Scene) -> str:
+    fuel = scene.fuel
+    if fuel is None:
+        return ""
+    parts = [
+        f"cylinder {one.cylinder} misfires in cycles {one.cycles}" for one in fuel.misfire or ()
+    ]
+    if fuel.scatter:
+        parts.append(f"scatter {100.0 * fuel.scatter:.6g} %, seed {fuel.seed}")
+    if fuel.governor is not None:
+        parts.append(f"governor at {fuel.governor.speed / RPM:.6g} rpm")
+    times = {"from": fuel.after or None, "until": fuel.until}
+    speeds = {"from": fuel.from_speed, "until": fuel.until_speed}
+    parts += [f"{word} {time:.6g} s" for word, time in times.items() if time is not None]
+    parts += [f"{word} {v / RPM:.6g} rpm" for word, v in speeds.items() if v is not None]
+    return "; ".join(parts) or "every firing whole"
 
 
 def _friction(scene: Scene) -> str:

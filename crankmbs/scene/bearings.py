@@ -93,10 +93,9 @@ def throws_of(scene: Scene) -> Throws | None:
     >>> throws_of(scene).rods
     ((0.5,), (0.5,))
     """
-    bearings = scene.bearings
+    bearings, numbers = scene.bearings, _numbers(scene)
     if bearings is None:
         return None
-    numbers = _numbers(scene)
     count = max(numbers) + 1
     places = [cylinder.position for cylinder in scene.cylinders]
     if count > 1 and None in places:

@@ -49,9 +49,9 @@ exhaust_pressure = "1.08 bar"
 peak_pressure = "58 bar"
 #pre_expansion = 1.2            # volume after / before combustion at constant pressure
 
-#[gravity]
+#[gravity]                      # left out: none
 #acceleration = "9.81 m/s^2"
-#angle = "90 deg"               # where it pulls, from X; default 180 deg, an upright engine
+#angle = "90 deg"               # where it pulls, from X; left out: 180 deg, an upright engine
 
 [start]                         # the crank is free ...
 angle = "0 deg"
