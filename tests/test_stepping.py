@@ -298,7 +298,7 @@ def test_nothing_grows_with_the_number_of_steps():
     try:
         for steps in (100, 300):
             for _ in range(steps):
-                stepper.advance(2e-3, load=-1.0)
+                stepper.advance(1e-3, load=-1.0)
             sizes.append(len(pickle.dumps(stepper.save())))
             held_then.append(held())
     finally:
