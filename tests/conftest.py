@@ -3,7 +3,7 @@
 import pytest
 from browser import started
 from guards import COLLECTED, quick_guards
-from lesson_visit import lesson, written  # noqa: F401
+from lesson_visit import kept, lesson, written  # noqa: F401
 from page_engine import engine
 from scene_texts import GAS
 

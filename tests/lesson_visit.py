@@ -1,6 +1,8 @@
 """A lesson that is open in the browser, and the fixture that opens it."""
 
 import re
+from contextlib import ExitStack
+from functools import cache
 
 import pytest
 from browser import visiting
@@ -73,3 +75,16 @@ def lesson(browser, written):
     yield opened
     for manager in visits:
         manager.__exit__(None, None, None)
+
+
+@pytest.fixture(scope="module")
+def kept(browser, written):
+    """Opens lessons that stay open, for tests that change nothing that another one looks at."""
+    with ExitStack() as visits:
+
+        @cache
+        def opened(name):
+            visit = visits.enter_context(visiting(browser, size=LAPTOP, offline=True))
+            return Opened(visit, written(name))
+
+        yield opened

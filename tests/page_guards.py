@@ -234,29 +234,38 @@ FREED = {
 
 
 def tasks(angles):
-    """What is asked of an engine, by name and arguments, the quickest first: lectures, pressures
-    carried over, and the guards by their names at crank angles."""
-    found = [("lectured", lecture(name)) for name in ("untruncated lecture", S1)]
-    found.append(("lectured", lecture(S1, uneven)))
+    """What is asked of an engine, the name of what answers and its arguments by what a mutant's
+    `by` calls it: lectures, pressures carried over, and the guards by their names at crank angles.
+    """
+    found = {
+        "lectured": ("lectured", lecture("untruncated lecture")),
+        "lectured S1": ("lectured", lecture(S1)),
+        "lectured uneven": ("lectured", lecture(S1, uneven)),
+    }
     shape = {"radius": 0.044, "length": 0.14, "offset": 0.011}
-    scenes = [joined_by(*pair) for pair in JOINED]
-    scenes += [jumping(), *(GUARDS[name] for name in ("started", "affine", "both ends"))]
-    found += [("carried", {"scene": exported(scene), "shape": shape}) for scene in scenes]
-    names, balancing = ("affine", "started", "pushed"), ("affine", "settling")
-    found += [("dragged", {"scene": longer(GUARDS[n]), "angles": angles[n][::3]}) for n in names]
-    scenes = [braked(), *(GUARDS[name] for name in balancing)]
-    found += [("balancing", {"scene": exported(scene), "speed": 345.0}) for scene in scenes]
+    scenes = {" ".join(pair): joined_by(*pair) for pair in JOINED}
+    scenes |= {"jumping": jumping()}
+    scenes |= {name: GUARDS[name] for name in ("started", "affine", "both ends")}
+    for name, scene in scenes.items():
+        found[f"carried {name}"] = "carried", {"scene": exported(scene), "shape": shape}
+    for name in ("affine", "started", "pushed"):
+        asked = {"scene": longer(GUARDS[name]), "angles": angles[name][::3]}
+        found[f"dragged {name}"] = "dragged", asked
+    scenes = {"braked": braked()} | {name: GUARDS[name] for name in ("affine", "settling")}
+    for name, scene in scenes.items():
+        found[f"balancing {name}"] = "balancing", {"scene": exported(scene), "speed": 345.0}
     around = np.linspace(0.2, 12.0, 24)
-    found += [("freeing", {"scene": exported(s), "angles": around}) for s in FREED.values()]
+    for name, scene in FREED.items():
+        found[f"freeing {name}"] = "freeing", {"scene": exported(scene), "angles": around}
     still = balanced()
     film = film_of(uneven(misfiring(driven(RISE))))
     times = np.random.default_rng(5).uniform(0.0, film.given["time"][-1], 40)
-    found.append(("replayed", {"film": film.given, "times": times}))
-    found.append(("answer", {"scene": exported(still), "angles": np.array([0.0, still.period])}))
-    return found + [
-        ("answer", {"scene": exported(scene), "angles": angles[name]})
-        for name, scene in GUARDS.items()
-    ]
+    found["replayed"] = "replayed", {"film": film.given, "times": times}
+    ends = np.array([0.0, still.period])
+    found["answer balanced"] = "answer", {"scene": exported(still), "angles": ends}
+    for name, scene in GUARDS.items():
+        found[f"answer {name}"] = "answer", {"scene": exported(scene), "angles": angles[name]}
+    return found
 
 
 def longer(scene):

@@ -97,7 +97,7 @@ def expected(scene, speed=None):
     """
     shown = shown_scene(scene)
     period = shown.settled_period if shown.settles else scene.period
-    run = replace(shown.run, every=Extent(value=period / 360.0, unit="rad"), rtol=1e-11)
+    run = replace(shown.run, every=Extent(value=period / 360.0, unit="rad"), rtol=1e-10)
     if speed is not None:
         shown = replace(shown, start=replace(shown.start, speed=speed))
         run = replace(run, until=Extent(value=period, unit="rad"))

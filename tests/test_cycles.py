@@ -58,17 +58,22 @@ def unbalanced(cycles):
 SCENES = {
     "propeller": until(load_scene("propeller"), 2.6, "cycle"),
     "begins between two knots": until(
-        replace(FOUR, start=replace(FOUR.start, angle=0.123456)), 2.2, "cycle"
+        replace(FOUR, gas=THIN_GAS, start=replace(FOUR.start, angle=0.123456)), 2.2, "cycle"
     ),
-    "fuel and loads": fuelled(FUELS["all at once"], cycles=2.3, torque=LOADS),
+    "fuel and loads": fuelled(FUELS["all at once"], cycles=2.3, gas=THIN_GAS, torque=LOADS),
     "friction": fuelled(
         FUELS["scatter"],
         cycles=2.2,
+        gas=THIN_GAS,
         torque=LOADS[1:],
         friction=Friction(ring_force=40.0, ring_pressure=0.02, viscous=30.0),
     ),
     "backwards": fuelled(
-        FUELS["scatter"], cycles=2.0, torque=LOADS[1:], start=replace(FOUR.start, speed=-300.0)
+        FUELS["scatter"],
+        cycles=2.0,
+        gas=THIN_GAS,
+        torque=LOADS[1:],
+        start=replace(FOUR.start, speed=-300.0),
     ),
 }
 
@@ -222,7 +227,7 @@ def test_multibody_has_the_same_cycles():
 
 @pytest.mark.slow
 def test_settled_under_a_governor_the_mean_is_its_speed():
-    cycles = simulate(fuelled(Fuel(governor=GOVERNOR), cycles=150.0)).cycles
+    cycles = simulate(fuelled(Fuel(governor=GOVERNOR), cycles=150.0, gas=THIN_GAS)).cycles
     assert cycles.sizes["cycle"] == 150
     assert float(cycles["mean_speed"][-1]) == pytest.approx(GOVERNOR.speed, rel=1e-9)
     assert np.ptp(cycles["fuel"].values[-1]) < 1e-6

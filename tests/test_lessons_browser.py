@@ -6,6 +6,7 @@ Over 300 lines, as its tests share the browser and the lessons opened in it.
 import math
 import re
 from dataclasses import replace
+from functools import cache
 from importlib import import_module
 
 import numpy as np
@@ -25,8 +26,8 @@ PHONE, LARGE = (390, 844), (1920, 1080)
 
 @pytest.mark.parametrize("size", [PHONE, LAPTOP, LARGE], ids=str)
 @pytest.mark.parametrize("name", LESSONS)
-def test_a_lesson_fits_every_screen(lesson, name, size):
-    opened = lesson(name, size)
+def test_a_lesson_fits_every_screen(kept, lesson, name, size):
+    opened = kept(name) if size == LAPTOP else lesson(name, size)
     wide = "[document.documentElement.scrollWidth, document.documentElement.clientWidth]"
     scrolled, width = opened.page.evaluate(wide)
     assert scrolled <= width
@@ -50,8 +51,8 @@ def test_names_of_arrows_stand_within_their_drawing(lesson, name, figure):
 
 
 @pytest.mark.parametrize("name", LESSONS)
-def test_formulas_are_set_in_the_font_that_is_embedded(lesson, name):
-    opened = lesson(name)
+def test_formulas_are_set_in_the_font_that_is_embedded(kept, name):
+    opened = kept(name)
     devtools = opened.page.context.new_cdp_session(opened.page)
     devtools.send("DOM.enable")
     devtools.send("CSS.enable")
@@ -83,8 +84,8 @@ KNOBS = [
 
 
 @pytest.mark.parametrize(("name", "figure", "knob", "value"), KNOBS, ids=str)
-def test_a_slider_moves_the_curve(lesson, name, figure, knob, value):
-    opened = lesson(name)
+def test_a_slider_moves_the_curve(kept, name, figure, knob, value):
+    opened = kept(name)
     before = opened.curve(figure)
     opened.type(figure, knob, value)
     assert opened.curve(figure) != before
@@ -128,6 +129,7 @@ def test_displacement_says_what_python_has(lesson):
     assert opened.said("half.lead") == pytest.approx(80.0 - math.sqrt(80.0**2 - r * r), abs=0.006)
 
 
+@cache
 def numbers_of(name):
     """The numbers that Python computes for a lesson, by their ids."""
     module = import_module(f"crankmbs.lessons.{name}")
@@ -152,8 +154,8 @@ SAID = [
 
 
 @pytest.mark.parametrize(("name", "place", "number", "close"), SAID, ids=str)
-def test_words_that_follow_a_figure_say_what_python_has(lesson, name, place, number, close):
-    assert lesson(name).said(place) == pytest.approx(numbers_of(name)[number], abs=close)
+def test_words_that_follow_a_figure_say_what_python_has(kept, name, place, number, close):
+    assert kept(name).said(place) == pytest.approx(numbers_of(name)[number], abs=close)
 
 
 def test_cylinders_in_a_row_rock_as_python_has_it(lesson):
@@ -223,9 +225,9 @@ def test_a_typed_answer_is_checked_with_its_unit(lesson, typed, verdict, text):
 
 
 @pytest.mark.parametrize("name", LESSONS)
-def test_every_answer_of_python_is_right_and_its_double_is_wrong(lesson, name):
+def test_every_answer_of_python_is_right_and_its_double_is_wrong(kept, name):
     module = import_module(f"crankmbs.lessons.{name}")
-    opened = lesson(name)
+    opened = kept(name)
     for question in module.lesson(load_scene(module.SCENE)).questions:
         wanted = question.wanted
         for factor, verdict in ((1.0, "right"), (2.0, "wrong")):

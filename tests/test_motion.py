@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from functools import cache
 from itertools import pairwise
 
 import numpy as np
@@ -31,6 +32,11 @@ def scene(name, **changes):
     return load_scene(name).with_(run__until=SCENES[name], **changes)
 
 
+@cache
+def solved(name, formulation):
+    return simulate(scene(name), formulation=formulation)
+
+
 @pytest.mark.parametrize("stages", [1, 4, 7])
 def test_polynomials_through_values_are_those_polynomials(stages):
     through, degree = ends_and_nodes(stages), np.arange(stages + 2)
@@ -58,7 +64,7 @@ def test_the_inverse_of_a_monotone_polynomial():
 @pytest.mark.parametrize("formulation", FREE)
 @pytest.mark.parametrize("name", SCENES)
 def test_at_its_samples_it_is_the_samples(name, formulation):
-    result = simulate(scene(name), formulation=formulation)
+    result = solved(name, formulation)
     motion, data = result.passes.answer, result.data
     states = motion.at(data["time"].values, in_time=True)
     turned = float(np.max(np.abs(data["crank_angle"].values)))
@@ -72,7 +78,7 @@ def test_at_its_samples_it_is_the_samples(name, formulation):
 @pytest.mark.parametrize("name", ["propeller", "run_up", "run_down"])
 def test_the_acceleration_is_the_rate_of_the_speed(name, formulation):
     """By central differences, but across what jumps: the median is smooth."""
-    motion = simulate(scene(name), formulation=formulation).passes.answer
+    motion = solved(name, formulation).passes.answer
     rng, h = np.random.default_rng(1), 1e-6
     time = rng.uniform(motion.begin + h, motion.end - h, 200)
     before, here, after = (motion.at(time + d, in_time=True) for d in (-h, 0.0, h))

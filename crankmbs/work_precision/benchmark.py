@@ -63,7 +63,7 @@ def work_precision(scene: Scene, beside: Beside | None = None) -> WorkPrecision:
     ------
     CrankmbsError : the scene cannot be run
 
-    >>> work_precision(load_scene("torque_driven").with_(run__until="60 deg")).quantities[:2]
+    >>> work_precision(load_scene("yi_diesel").with_(run__until="60 deg")).quantities[:2]
     ('end', 'motion')
     """
     reference = reference_of(scene)
