@@ -48,8 +48,8 @@ def test_the_settled_cycle_with_it_fluctuates_as_wanted(wanted):
     whole = found.inertia.value + found.moving
     assert found.lecture.value == pytest.approx(whole, rel=0.01)
     crank = replace(DIESEL.crank, inertia=0.0)
-    even = {"start": None, "motion": Motion(speed=mean), "run": Run(until="1 cycle"), "torque": ()}
-    even = simulate(replace(DIESEL, crank=crank, **even))
+    motion, run = Motion(speed=mean), Run(until="1 cycle")
+    even = simulate(replace(DIESEL, crank=crank, start=None, motion=motion, run=run, torque=()))
     energy = even.data.kinetic_energy.values[:-1].mean()
     assert found.moving == pytest.approx(2.0 * energy / mean**2, rel=1e-9)
 
