@@ -3,6 +3,7 @@
 import csv
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import h5py
 import numpy as np
@@ -26,8 +27,10 @@ from crankmbs import (
     load_scene,
     simulate,
 )
+from crankmbs.mechanics.train import crank_train
 from crankmbs.motion import events as kept
 from crankmbs.motion.account import Rows, beside
+from crankmbs.motion.base import State
 from crankmbs.scene.parts import Friction
 
 HEAVY = {"piston": Piston(mass=2.0), "rod": Rod(length=0.14, mass=1.0)}
@@ -228,3 +231,17 @@ def test_the_error_is_the_largest_difference_and_unknown_of_one_alone():
     rows = [Rows({"x": np.array([1.0, math.nan])}, {}), Rows({"x": np.array([1.5, 2.0])}, {})]
     assert beside(rows, 2.0).errors["x"] == pytest.approx(1.0)
     assert beside(rows[:1], 1.0).errors["x"] == math.inf
+
+
+def test_a_piece_too_short_to_turn_the_crank_does_not_hide_a_reversal():
+    """Just before it turns back, a crank may slow down to nothing within a digit of its angle."""
+    turning = [
+        (State(0.0, -7.0, -1.0, 0.0), State(1.0, -7.2, -1e-8, 0.0)),
+        (State(1.0, -7.2, -1e-8, 0.0), State(1.1, -7.2, 0.0, 0.0)),
+        (State(1.1, -7.2, 0.0, 0.0), State(2.0, -7.1, 1.0, 0.0)),
+    ]
+    log = kept.Log(crank_train(load_scene("coasting")))
+    for begin, end in turning:
+        log.add(SimpleNamespace(begin=begin, end=end, decisions=()))
+    (event,) = log.events
+    assert (event.kind, event.number, event.time) == (kept.Kind.REVERSAL, 1, 1.1)

@@ -80,7 +80,9 @@ class Log:
         if begin.omega == 0.0 == end.omega and begin.theta == end.theta:
             self._come_to_rest(begin)
         else:
-            sense = math.copysign(1.0, end.theta - begin.theta)
+            # the speed keeps its sign in a piece, of which the angle may not change by a digit
+            turns = begin.omega + end.omega or end.theta - begin.theta
+            sense = math.copysign(1.0, turns)
             if self._rests:
                 self._note(begin._replace(omega=0.0), Kind.START, int(sense))
             elif begin.omega == 0.0 and sense == -self._sense:
