@@ -293,7 +293,7 @@ def test_the_command_solves():
     assert (done.exit_code, "1 found" in done.stdout) == (0, True), done.output
     done = crankmbs_("solve", "yi_diesel", *vary, "--for", "peak side force = 1 N")
     assert done.exit_code == 3
-    assert "nowhere in the range; the nearest in the scan" in done.stdout
+    assert "no value in the range gives this; the nearest of those tried:" in done.stdout
     condition = ["--subject-to", "peak side force <= 5 kN"]
     done = crankmbs_("solve", "yi_diesel", *vary, "--minimize", "peak crank pin force", *condition)
     assert done.exit_code == 0, done.output

@@ -70,7 +70,7 @@ def _roots(answer: Solved) -> str:
     roots = answer.roots or ((answer.nearest,) if answer.nearest else ())
     of = answer.measure.about.units
     rows = [[*cells(root.value, answer.units), *cells(root.reached, of)] for root in roots]
-    said = answer.message if answer.roots else f"{answer.message}; the nearest in the scan"
+    said = answer.message if answer.roots else f"{answer.message}; the nearest of those tried:"
     return f"{said}\n\n{table(heading, rows)}" if rows else answer.message
 
 

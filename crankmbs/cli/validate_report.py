@@ -45,8 +45,8 @@ def full_report(comparison: Comparison, split: Budget) -> str:
     """Every reference, and every formula's causes wherever they are largest."""
     return "\n\n".join(
         [
-            "each reference: largest difference from the run, in % of its peak; at: of the last\n"
-            + table(*comparison_table(comparison)),
+            "each reference: largest difference from the run, in % of its peak; at [deg]: "
+            "where that of the last reference is\n" + table(*comparison_table(comparison)),
             "each cause at its largest; these lie at different angles and do not add:",
             *(textwrap.fill(row.sentence(), _WIDTH) for row in split.ranked),
         ]

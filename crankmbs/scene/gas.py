@@ -20,7 +20,7 @@ from crankmbs.scene.measured_rows import HowRead, read_measured, sign_of
 from crankmbs.scene.pressure_rows import check_rows
 from crankmbs.scene.schema import SAVED, Float, dumped, folder_of, part, si, to_si
 from crankmbs.scene.tables import CylinderTable, Table, read_columns, undumped
-from crankmbs.scene.units import DEGREE
+from crankmbs.scene.units import BAR, DEGREE
 
 __all__ = ["Gas", "Indicator", "Polytrope", "PressureGiven", "tables_of"]
 
@@ -63,7 +63,8 @@ class Indicator:
         if self.peak_pressure < reached * (1.0 - 1e-12):
             raise InputError(
                 "peak_pressure must be at least what compression reaches, intake_pressure * "
-                f"compression_ratio^n_compression = {reached:.6g} Pa; {self.peak_pressure:.6g} came"
+                f"compression_ratio^n_compression = {reached / BAR:.6g} bar; "
+                f"{self.peak_pressure / BAR:.6g} bar came"
             )
 
 

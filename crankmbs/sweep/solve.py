@@ -160,7 +160,7 @@ class _Search:
         roots.sort(key=lambda root: root.value.value)
         status, message, nearest = 0, f"{len(roots)} found", None
         if not roots:
-            status, message = 1, "the measure is so nowhere in the range"
+            status, message = 1, "no value in the range gives this"
             if np.isfinite(off).any():
                 k = int(np.nanargmin(np.abs(off)))
                 value = Estimate(self._value(float(shares[k])), 0.0)
