@@ -340,4 +340,5 @@ def _run(scene: Scene) -> str:
 def _extent(extent: Extent) -> str:
     if extent.unit == "rad":
         return f"{math.degrees(extent.value):.6g} deg"
-    return f"{extent.value:.6g} {extent.unit}{'s' if extent.unit == 'cycle' and extent.value != 1.0 else ''}"
+    many = extent.unit == "cycle" and extent.value != 1.0
+    return f"{extent.value:.6g} {extent.unit}{'s' if many else ''}"
