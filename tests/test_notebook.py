@@ -66,6 +66,15 @@ def test_a_comparison_and_a_budget_show_themselves_as_tables(short):
     assert "the error of the side thrust falls from" in text
 
 
+def test_what_is_printed_of_them_is_a_line(short):
+    texts = [repr(crankmbs.compare(short)), repr(crankmbs.budget(short))]
+    texts.append(repr(crankmbs.confirm(short)))
+    assert "closed form" in texts[0]
+    assert "the error of the" in texts[1] or "off by up to" in texts[1]
+    assert "exudyn's rigid bodies agree to" in texts[2]
+    assert all("\n" not in text and len(text) < 400 for text in texts)
+
+
 def test_a_result_shows_its_measures_with_errors_and_a_figure(short):
     text, speed = shown(short), short.measures().mean_speed
     assert "reached the end of the run" in text

@@ -59,6 +59,12 @@ class Comparison:
         """The references that could be evaluated, in their order."""
         return tuple(dict.fromkeys(row.reference for row in self.rows))
 
+    def __repr__(self) -> str:
+        return (
+            f"<Comparison over the {self.excerpt.window.kind}: {len(self.simulated)} quantities "
+            f"with {', '.join(self.references)}>"
+        )
+
     def _repr_html_(self) -> str:
         from crankmbs.report.html import comparison_html
 

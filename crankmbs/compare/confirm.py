@@ -102,6 +102,9 @@ class Confirmation:
     window: tuple[float, float]
     missing: tuple[str, ...] = ()
 
+    def __repr__(self) -> str:
+        return f"<Confirmation: {self.sentence}>"
+
     @property
     def difference(self) -> float:
         """The largest difference over the last period, relative to the peak of its quantity."""

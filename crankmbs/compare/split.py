@@ -138,6 +138,10 @@ class Budget:
         """The splits, the largest error in percent of its quantity's peak first."""
         return tuple(sorted(self.splits, key=lambda split: -(split.share(split.total) or 0.0)))
 
+    def __repr__(self) -> str:
+        largest = self.ranked[0].sentence() if self.splits else "nothing to split"
+        return f"<Budget of {len(self.splits)} quantities; {largest}>"
+
     def _repr_html_(self) -> str:
         from crankmbs.report.html import budget_html
 
