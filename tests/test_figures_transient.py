@@ -39,6 +39,12 @@ def test_a_start_is_marked_where_it_happens(start):
     assert np.array_equal(loads.get_ydata(), start.sampled("external_torque"))
 
 
+def test_an_event_at_the_begin_of_the_first_cycle_is_in_it(start):
+    speeds, _ = plot(start, "cycles").axes
+    assert words(speeds) == ["speed table on", "first firing", "speed table off", "fuel cut"]
+    assert speeds.texts[0].xy[0] == pytest.approx(0.5)
+
+
 def test_what_happens_after_many_reversals_is_marked():
     """The crank swings under its weight, and is then driven."""
     scene = load_scene("coasting")
@@ -58,6 +64,24 @@ def test_what_happens_after_many_reversals_is_marked():
 def test_a_crank_that_turns_back_has_its_fuel_cut_and_its_rest_marked():
     speed, _ = plot(simulate(load_scene("run_down")), "transient").axes
     assert {"fuel cut", "reversal", "rest"} == set(words(speed))
+
+
+def test_cycles_are_steps_and_events_stand_in_the_cycle_that_holds_them():
+    result = simulate(load_scene("run_down"))
+    speeds, pressures = plot(result, "cycles").axes
+    cycles, events = result.cycle_table, result.event_table
+    count = cycles.length
+    imep = cycles.values("imep")[:, 0]
+    number, drawn = pressures.lines[0].get_xydata().T
+    assert np.array_equal(number[::2], np.arange(count) + 0.5)
+    assert np.array_equal(number[1::2], np.arange(count) + 1.5)
+    assert drawn == pytest.approx(np.repeat(imep * 1e-5, 2))
+    (cut,) = speeds.texts  # no cycle holds the reversals and the rest
+    assert cut.get_text() == "fuel cut"
+    time = events.values("time")[events.values("share") == 0.0][0]
+    begin, duration = cycles.values("time")[2], cycles.values("duration")[2]
+    assert cut.xy[0] == 2.5 + (time - begin) / duration
+    assert speeds.lines[0].get_color() not in [line.get_color() for line in pressures.lines]
 
 
 def test_it_is_drawn_where_the_speed_varies_strongly(start, tmp_path):
