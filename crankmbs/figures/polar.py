@@ -8,6 +8,7 @@ piston; the load on the earlier body is its opposite.
 from __future__ import annotations
 
 import math
+import textwrap
 from dataclasses import dataclass
 
 import numpy as np
@@ -43,6 +44,7 @@ _CYLINDER = ("X, from crank to head", "Y, 90 deg ahead of X")
 ENGINE = ("engine's X", "engine's Y, 90 deg ahead of X")
 THROW = ("radial, outwards along the throw", "tangential, in the sense of +theta")
 _CLOSE = 0.02  # of the curve's size: marks nearer than this share one label
+_WIDEST = 9  # letters in a line of a label: two angles
 _GAP, _LINE, _LETTER = 0.04, 0.045, 0.017  # of the axes: to the labels; their height and width
 
 
@@ -53,8 +55,8 @@ class _Mark:
     angles: list[int]
 
     @property
-    def text(self) -> str:
-        return ", ".join(map(str, sorted(self.angles)))
+    def lines(self) -> list[str]:
+        return textwrap.wrap(", ".join(map(str, sorted(self.angles))), _WIDEST)
 
 
 @rc_context(STYLE)
@@ -176,7 +178,7 @@ def _frame(ax: Axes, left: Array, up: Array, marks: list[_Mark]) -> None:
     """
     low, high = min(float(left.min()), 0.0), max(float(left.max()), 0.0)
     bottom, top = min(float(up.min()), 0.0), max(float(up.max()), 0.0)
-    letters = max((len(mark.text) for mark in marks), default=0)
+    letters = max((len(line) for mark in marks for line in mark.lines), default=0)
     share = 1.0 - 2.0 * (_GAP + _LETTER * letters)
     span = max((high - low) / share, 1.1 * (top - bottom)) or 1.0
     middle = np.array([0.5 * (low + high), 0.5 * (bottom + top)])
@@ -193,17 +195,18 @@ def _frame(ax: Axes, left: Array, up: Array, marks: list[_Mark]) -> None:
 def _label(ax: Axes, marks: list[_Mark], at: float, side: float, span: float) -> None:
     """Write the labels of one side below one another, each joined to its mark by a thin line."""
     ordered = sorted(marks, key=lambda mark: -mark.up)
-    low, high = ax.get_ylim()
-    height = high
+    low, free = ax.get_ylim()
+    heights = [_LINE * span * len(mark.lines) for mark in ordered]
     for k, mark in enumerate(ordered):
-        below = _LINE * span * (len(ordered) - k - 1)
-        height = max(min(mark.up, height - _LINE * span), low + below + 0.5 * _LINE * span)
+        half, below = 0.5 * heights[k], sum(heights[k + 1 :])
+        height = max(min(mark.up, free - half), low + below + half)
+        free = height - half
         ax.plot([mark.left, at], [mark.up, height], color="0.4", linewidth=0.7, zorder=3)
         ax.plot(mark.left, mark.up, "o", color="black", markersize=6, zorder=4)
         ax.text(
             at,
             height,
-            f" {mark.text} ",
+            "\n".join(f" {line} " for line in mark.lines),
             ha="right" if side > 0.0 else "left",
             va="center",
             fontsize=12,
