@@ -112,6 +112,16 @@ def test_the_indicator_diagram_encloses_the_work_of_the_gas():
     assert work == pytest.approx(float(result.cycles["gas_work"].values[-1, 0]), rel=1e-3)
 
 
+def test_cylinders_of_one_indicator_diagram_share_a_loop():
+    result = simulate(load_scene("yi_diesel_free").with_(run__until="2 cycles"))
+    over_angle, over_volume = plot(result, "pressure").axes
+    names = [line.get_label() for line in over_angle.lines]
+    assert names[:4] == [f"cylinder {k}" for k in range(1, 5)]
+    (loop,) = over_volume.lines
+    assert loop.get_label() == "cylinders 1, 2, 3, 4"
+    assert [text.get_text() for text in over_volume.get_legend().texts] == [loop.get_label()]
+
+
 def test_without_gas_there_is_no_indicator_diagram():
     with pytest.raises(InputError, match=r"this one has none"):
         plot(simulate(load_scene("coasting")), "pressure")

@@ -53,11 +53,11 @@ def _draw_pins(view: View, shell: Axes, pin: Axes) -> None:
     force, cycles = _force(view, "crank_pin_force"), _cycles(view)
     swung = force * np.exp(1j * view.values("rod_angle"))
     curves = _parts(swung)
-    draw_polar(shell, curves, cycles[0], alike(view, *curves, cycles), _ROD)
+    draw_polar(shell, curves, cycles[0], alike(view, cycles, *curves), _ROD)
     shell.set_title("big-end shells: load, swinging with the rod")
     turned = -force * np.exp(-1j * np.radians(np.transpose(cycles)))
     curves = _parts(turned)
-    labels = alike(view, *curves, cycles)
+    labels = alike(view, cycles, *curves)
     throws = view.scene.throws
     if throws is not None and throws.shared:
         count = len(throws.unbalances)

@@ -75,7 +75,7 @@ def crank_pin_figure(view: View) -> Figure:
     """Force of the crank on the rod: in the cylinder's frame, and turning with the crank."""
     figure, (fixed, turning) = panels(1, 2, 14.0, 8.0)
     x, y, cycles = _columns(view, "crank_pin_force")
-    groups = alike(view, x, y, cycles)
+    groups = alike(view, cycles, x, y)
     draw_polar(fixed, (x, y), cycles[0], groups, _CYLINDER)
     fixed.set_title("crank pin: crank on rod, cylinder's frame")
     angle = [np.radians(cycle) for cycle in cycles]
@@ -92,7 +92,7 @@ def piston_pin_figure(view: View) -> Figure:
     """Force of the rod on the piston in the cylinder's frame."""
     figure, (ax,) = panels(1, 1, 8.0, 8.0)
     x, y, cycles = _columns(view, "piston_pin_force")
-    draw_polar(ax, (x, y), cycles[0], alike(view, x, y, cycles), _CYLINDER)
+    draw_polar(ax, (x, y), cycles[0], alike(view, cycles, x, y), _CYLINDER)
     ax.set_title("piston pin: rod on piston, cylinder's frame")
     _finish(figure, ax, view)
     return figure
@@ -104,18 +104,21 @@ def _columns(view: View, name: str) -> tuple[list[Array], list[Array], list[Arra
     return list(x.T), list(y.T), [view.cycle_degrees(k) for k in range(count)]
 
 
-def alike(view: View, x: list[Array], y: list[Array], cycles: list[Array]) -> dict[int, str]:
-    """Which cylinders' curves are drawn, and whose each is: those of equal forces at the same cycle
-    angle coincide."""
+def alike(view: View, cycles: list[Array], *panels: list[Array]) -> dict[int, str]:
+    """Which cylinders' curves are drawn, and whose each is: those of equal values at the same cycle
+    angle coincide.
+
+    cycles : cycle angle of each cylinder [deg]; panels : a curve of each cylinder
+    """
     if not view.whole:
-        return {k: whose([k]) for k in range(len(x))}
+        return {k: whose([k]) for k in range(len(cycles))}
     period = math.degrees(view.scene.period)
 
     def side_by_side(curves: list[Array]) -> Array:
         pairs = zip(cycles, curves, strict=True)
         return np.stack([np.interp(cycles[0], *pair, period=period) for pair in pairs], axis=-1)
 
-    groups = one_curve_each(side_by_side(x), side_by_side(y))
+    groups = one_curve_each(*map(side_by_side, panels))
     return {group[0]: whose(group) for group in groups}
 
 
