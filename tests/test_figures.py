@@ -35,6 +35,8 @@ from crankmbs.figures import (
     speed_figure,
     torque_figure,
 )
+from crankmbs.figures.polar import draw_polar
+from crankmbs.figures.style import panels
 
 pytestmark = pytest.mark.slow
 
@@ -184,6 +186,26 @@ def test_labels_of_a_polar_diagram_do_not_overlap(one):
         assert area.x0 <= box.x0
         assert box.x1 <= area.x1
         assert not any(box.overlaps(other) for other in boxes[k + 1 :])
+
+
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_many_marks_on_one_spot_leave_the_curve_its_size(sense):
+    """A press: its force is there for some degrees in a turn, so most marks lie on the origin."""
+    degrees = np.arange(0.0, 721.0)
+    force = 60e3 * np.exp(-(((degrees % 360.0 - 180.0) / 12.0) ** 2))
+    figure, (ax,) = panels(1, 1, 8.0, 8.0)
+    draw_polar(ax, ([force], [0.5 * sense * force]), degrees, {0: ""}, ("up", "left"))
+    figure.draw_without_rendering()
+    low, high = ax.get_ylim()
+    assert high - low < 120.0  # kN
+    two, many = sorted(ax.texts, key=lambda text: len(text.get_text()))
+    assert two.get_text() == " 180, 540 "
+    assert many.get_text().split() == ["0,", "90,", "270,", "360,", "450,", "630"]
+    assert not two.get_window_extent().overlaps(many.get_window_extent())
+    area, box = ax.get_window_extent(), many.get_window_extent()
+    assert area.x0 <= box.x0
+    assert box.x1 <= area.x1
+    assert area.y0 <= box.y0
 
 
 def test_crank_pin_turning_with_the_crank_is_the_fixed_one_turned(one):

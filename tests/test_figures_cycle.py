@@ -25,7 +25,7 @@ def test_ticks_beyond_a_cycle_start_again():
     shown = [text.get_text() for text in ax.get_xticklabels()]
     labels = dict(zip(ax.get_xticks(), shown, strict=True))
     assert labels[540.0] == "540"
-    assert labels[720.0] == "720"
+    assert labels[720.0] == "0"
     assert labels[810.0] == "90"
 
 
@@ -44,7 +44,7 @@ def test_a_cycle_is_shown_from_the_gas_exchange_wherever_the_run_ends(speed, unt
     assert np.nanmax(degrees) >= 720.0
     assert torque == pytest.approx(expected, abs=0.5, nan_ok=True)  # of 300 N m, between samples
     assert view.begun == (None if begun is None else pytest.approx(begun))
-    words = "" if begun is None else f", begun at {begun:g}"
+    words = "" if begun is None else f", which began at {begun:g} deg"
     assert ax.get_xlabel() == f"crank angle [deg], last cycle{words}"
 
 

@@ -53,9 +53,9 @@ def run_up(until, every):
 def test_a_run_sampled_in_time_shows_its_speed_over_time(until):
     view = run_up(until, "1 ms")
     whole, last = speed_figure(view).axes
-    time = view.result.data["time"].values
+    time = whole.lines[0].get_xdata()
     assert whole.get_xlabel() == "time [s], whole run"
-    assert whole.lines[0].get_xdata() == pytest.approx(time)
+    assert set(view.result.data["time"].values) <= set(time)
     assert whole.lines[0].get_ydata() == pytest.approx(
         np.minimum(100.0 + 1000.0 * time, 300.0) * 30.0 / math.pi
     )

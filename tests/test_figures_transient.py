@@ -34,9 +34,31 @@ def test_a_start_is_marked_where_it_happens(start):
     assert at["fuel cut"] == times[(shares == 0.0) & (times > fired[-1])][0]
     assert 0.5 < at["fuel cut"] < 0.6
     gas, loads = torque.lines[:2]
-    assert np.array_equal(gas.get_xdata(), start.sampled("time"))
-    assert np.array_equal(gas.get_ydata(), start.sampled("crank_torque").sum(axis=1))
-    assert np.array_equal(loads.get_ydata(), start.sampled("external_torque"))
+    sampled = np.isin(gas.get_xdata(), start.sampled("time"))
+    assert np.array_equal(gas.get_xdata()[sampled], start.sampled("time"))
+    assert np.array_equal(gas.get_ydata()[sampled], start.sampled("crank_torque").sum(axis=1))
+    assert np.array_equal(loads.get_ydata()[sampled], start.sampled("external_torque"))
+
+
+def test_a_crank_that_turns_back_is_drawn_between_its_samples():
+    """Samples one degree apart lie up to 26 ms apart, and pass over the peak of the pressure."""
+    result = simulate(load_scene("run_down"))
+    reversal = result.event_table.values("time")[-5]
+    peak = float(result.interp(time=[reversal]).gas_pressure.values[0].max()) * 1e-5
+    over_time, _ = plot(result, "pressure").axes
+    drawn = [line.get_xydata() for line in over_time.lines]
+    near = [xy[np.abs(xy[:, 0] - reversal) < 0.01, 1] for xy in drawn]
+    assert max(values.max() for values in near) == pytest.approx(peak, rel=2e-3)
+    for axes in (over_time, *plot(result, "speed").axes, *plot(result, "transient").axes):
+        time = axes.lines[0].get_xdata()
+        assert np.max(np.diff(time)) <= np.ptp(time) / 500.0 * (1.0 + 1e-9)
+        assert set(result.sampled("time")[-100:]) <= set(time)
+
+
+def test_an_event_at_the_begin_of_the_first_cycle_is_in_it(start):
+    speeds, _ = plot(start, "cycles").axes
+    assert words(speeds) == ["speed table on", "first firing", "speed table off", "fuel cut"]
+    assert speeds.texts[0].xy[0] == pytest.approx(0.5)
 
 
 def test_what_happens_after_many_reversals_is_marked():
@@ -58,6 +80,24 @@ def test_what_happens_after_many_reversals_is_marked():
 def test_a_crank_that_turns_back_has_its_fuel_cut_and_its_rest_marked():
     speed, _ = plot(simulate(load_scene("run_down")), "transient").axes
     assert {"fuel cut", "reversal", "rest"} == set(words(speed))
+
+
+def test_cycles_are_steps_and_events_stand_in_the_cycle_that_holds_them():
+    result = simulate(load_scene("run_down"))
+    speeds, pressures = plot(result, "cycles").axes
+    cycles, events = result.cycle_table, result.event_table
+    count = cycles.length
+    imep = cycles.values("imep")[:, 0]
+    number, drawn = pressures.lines[0].get_xydata().T
+    assert np.array_equal(number[::2], np.arange(count) + 0.5)
+    assert np.array_equal(number[1::2], np.arange(count) + 1.5)
+    assert drawn == pytest.approx(np.repeat(imep * 1e-5, 2))
+    (cut,) = speeds.texts  # no cycle holds the reversals and the rest
+    assert cut.get_text() == "fuel cut"
+    time = events.values("time")[events.values("share") == 0.0][0]
+    begin, duration = cycles.values("time")[2], cycles.values("duration")[2]
+    assert cut.xy[0] == 2.5 + (time - begin) / duration
+    assert speeds.lines[0].get_color() not in [line.get_color() for line in pressures.lines]
 
 
 def test_it_is_drawn_where_the_speed_varies_strongly(start, tmp_path):
@@ -86,6 +126,16 @@ def test_the_indicator_diagram_encloses_the_work_of_the_gas():
     volume, pressure = diagram.lines[0].get_xydata().T
     work = np.trapezoid(pressure, volume) * 0.1  # bar cm^3 in J
     assert work == pytest.approx(float(result.cycles["gas_work"].values[-1, 0]), rel=1e-3)
+
+
+def test_cylinders_of_one_indicator_diagram_share_a_loop():
+    result = simulate(load_scene("yi_diesel_free").with_(run__until="2 cycles"))
+    over_angle, over_volume = plot(result, "pressure").axes
+    names = [line.get_label() for line in over_angle.lines]
+    assert names[:4] == [f"cylinder {k}" for k in range(1, 5)]
+    (loop,) = over_volume.lines
+    assert loop.get_label() == "cylinders 1, 2, 3, 4"
+    assert [text.get_text() for text in over_volume.get_legend().texts] == [loop.get_label()]
 
 
 def test_without_gas_there_is_no_indicator_diagram():

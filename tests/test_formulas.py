@@ -260,3 +260,14 @@ def test_the_figure_draws_a_formula_beside_the_others(four):
     legend = [text.get_text() for text in figure.legends[0].get_texts()]
     assert {"my thrust", "crank speed"} <= set(legend)
     assert speeds.get_ylabel() == "[rad/s]"
+
+
+def test_the_caption_names_the_authors_of_the_formulas_drawn_and_no_others(four):
+    found = compare(four, {"crank speed": lambda theta, mean_omega: mean_omega})
+    captions = [
+        comparison_figure(found, (name,)).get_supxlabel()
+        for name in ("crank speed", "side thrust", "piston displacement")
+    ]
+    assert "S0" not in captions[0]
+    for caption in captions[1:]:
+        assert "formula minus run; S0: Grega; S1: Yi, Win and Htay" in caption

@@ -278,3 +278,13 @@ def test_a_reading_at_an_angle_and_exudyn_have_every_journal():
     (journals,) = [row for row in bodies.period if row.quantity == "main journal"]
     assert journals.share <= 1.0
     assert journals.largest[0] < 1e-5 * journals.peak
+
+
+def test_journals_of_one_curve_are_drawn_once_and_every_panel_names_its_own():
+    """Throws 1 and 4 of an inline four fire one turn apart, and so do 2 and 3."""
+    figure = simulate(DIESEL).plot("bearings")
+    names = [[text.get_text() for text in ax.get_legend().texts] for ax in figure.axes]
+    journals, pins = ["journals 1, 5", "journals 2, 4", "journal 3"], ["cylinders 1, 2, 3, 4"]
+    assert names == [journals, journals, pins, pins]
+    assert not figure.legends
+    assert "on the curve of journal 1" in figure.get_supxlabel()

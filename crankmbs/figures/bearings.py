@@ -7,6 +7,8 @@ the other, seen from another body.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
@@ -14,7 +16,7 @@ from matplotlib.figure import Figure
 
 from crankmbs.figures.cylinders import one_curve_each
 from crankmbs.figures.polar import ENGINE, THROW, alike, draw_polar
-from crankmbs.figures.style import STYLE, footer, legend, panels
+from crankmbs.figures.style import STYLE, footer, panels
 from crankmbs.figures.view import View
 from crankmbs.numerics.arrays import Array
 
@@ -30,18 +32,18 @@ def bearings_figure(view: View) -> Figure:
     figure, axes = panels(2, 2, 15.0, 16.0)
     _draw_journals(view, *axes[:2])
     _draw_pins(view, *axes[2:])
-    shared = "pin_force_x" in view.result.variables
-    below = axes[2:] if shared else axes[2:3]
-    legend(figure, axes[0], *(below if len(view.scene.cylinders) > 1 else ()))
-    marks = "crank angle [deg] above, below cycle angle of cylinder 1"
-    footer(figure, view.result, f"marks: {marks}, {view.window.kind}")
+    for ax in axes if len(view.scene.cylinders) > 1 else axes[:2]:
+        columns = min(len(ax.get_legend_handles_labels()[1]), 4)
+        ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.1), ncols=columns)
+    above = "above crank angle [deg], on the curve of journal 1"
+    below = "below cycle angle of cylinder 1 [deg], on its curve or its pin's"
+    footer(figure, view.result, f"marks: {above}; {below}; {view.window.kind}")
     return figure
 
 
 def _draw_journals(view: View, shell: Axes, journal: Axes) -> None:
     force = _force(view, "main_journal_force")
-    groups = one_curve_each(force.real, force.imag)
-    labels = {group[0]: _named("journal", group) for group in groups}
+    labels = {group[0]: _named("journal", group) for group in _shared(view, force)}
     turning = force * np.exp(-1j * np.radians(view.degrees))[:, None]
     draw_polar(shell, _parts(-force), view.degrees, labels, ENGINE)
     draw_polar(journal, _parts(turning), view.degrees, labels, _CRANK)
@@ -49,15 +51,35 @@ def _draw_journals(view: View, shell: Axes, journal: Axes) -> None:
     journal.set_title("main journals: load, turning with the crank")
 
 
+def _shared(view: View, force: Array) -> list[list[int]]:
+    """Journals, counted from 0, of one curve each: those of equal forces at the same crank angle
+    or, in a cycle of two turns, one turn on."""
+    forces, count = [force], force.shape[1]
+    if view.whole:
+        period = math.degrees(view.scene.period)
+        for later in np.arange(360.0, period - 1.0, 360.0):
+            moved = [
+                np.interp(view.degrees + later, view.degrees, f, period=period) for f in force.T
+            ]
+            forces.append(np.stack(moved, axis=1))
+    every = np.concatenate(forces, axis=1)
+    groups: list[list[int]] = []
+    for group in one_curve_each(every.real, every.imag):
+        known = {k for one in groups for k in one}
+        journals = sorted({k % count for k in group} - known)
+        groups += [journals] if journals else []
+    return groups
+
+
 def _draw_pins(view: View, shell: Axes, pin: Axes) -> None:
     force, cycles = _force(view, "crank_pin_force"), _cycles(view)
     swung = force * np.exp(1j * view.values("rod_angle"))
     curves = _parts(swung)
-    draw_polar(shell, curves, cycles[0], alike(view, *curves, cycles), _ROD)
+    draw_polar(shell, curves, cycles[0], alike(view, cycles, *curves), _ROD)
     shell.set_title("big-end shells: load, swinging with the rod")
     turned = -force * np.exp(-1j * np.radians(np.transpose(cycles)))
     curves = _parts(turned)
-    labels = alike(view, *curves, cycles)
+    labels = alike(view, cycles, *curves)
     throws = view.scene.throws
     if throws is not None and throws.shared:
         count = len(throws.unbalances)

@@ -48,7 +48,7 @@ FAMILIES = {
 
 _SHOWN = {"m": (1e-3, "mm"), "m/s^2": (1.0, "m/s$^2$")}  # unit -> divisor and unit on an axis
 _UNTRUNCATED, *_ = LECTURES
-_ABOUT = "error: formula minus run; S0: Grega; S1: Yi, Win and Htay"
+_AUTHORS = {"S0": "Grega", "S1": "Yi, Win and Htay"}
 _ABSENT = 1e-9  # of the error: a peak so small has no percent
 _APART = 0.02  # of the larger: curves nearer than this are one line
 _UNSEEN = 1e-3  # of the largest of a panel's causes: no line can be told from zero
@@ -111,7 +111,10 @@ def comparison_figure(comparison: Comparison, quantities: tuple[str, ...]) -> Fi
         columns.append((name, {"run": comparison.simulated[name]}, _errors(truncated or rows)))
     own = comparison.excerpt.result.formulation == "multibody"
     headline = comparison_headline(every, independent=own)
-    return _figure(comparison.excerpt, columns, headline, _ABOUT)
+    drawn = {name for *_, errors in columns for label in errors for name in label.split(" and ")}
+    authors = [f"{name}: {author}" for name, author in _AUTHORS.items() if name in drawn]
+    about = "; ".join(["error: formula minus run", *authors])
+    return _figure(comparison.excerpt, columns, headline, about)
 
 
 def _errors(rows: list[Deviation]) -> dict[str, Array]:

@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 
 from crankmbs.figures.cylinders import one_curve_each, whose
 from crankmbs.figures.style import COLOURS, STYLE, footer, keep_flat, legend, line_of, panels
+from crankmbs.motion.labels import Table
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 from crankmbs.result.event_words import event_words
@@ -19,13 +20,15 @@ __all__ = ["FEWEST_CYCLES", "cycles_figure", "mark_events"]
 FEWEST_CYCLES = 4  # fewer are seen in the figures of the run
 _MOST_MARKS = 8  # events that can be told apart in a panel
 _LABEL = 0.1  # of a panel's width, what the words of an event take
+_HAIR = 1e-9  # of a cycle: an event at its begin or end may be so far outside by rounding
 _HEAD = 0.3  # of a panel's height, kept free above the curve for them
 
 
 @rc_context(STYLE)
 def cycles_figure(result: Result) -> Figure:
-    """Mean, least and largest speed of each cycle and, with gas, the mean effective pressures; the
-    events of the run at the place where they lie between the cycles."""
+    """Mean, least and largest speed of each cycle and, with gas, the mean effective pressures, as
+    steps over the cycles they belong to; the events that lie in one of these at their place in it.
+    """
     cycles = result.cycle_table
     number = cycles.values("cycle")
     with_gas, double = "imep" in cycles.variables, result.scene.double_acting
@@ -33,10 +36,10 @@ def cycles_figure(result: Result) -> Figure:
     least, largest, mean = (
         cycles.values(f"{name}_speed") / RPM for name in ("least", "largest", "mean")
     )
-    axes[0].fill_between(
-        number, least, largest, color=COLOURS[4], alpha=0.4, label="least to largest"
-    )
-    axes[0].plot(number, mean, color=COLOURS[0], label="mean")
+    edges = np.stack([number - 0.5, number + 0.5], axis=1).ravel()
+    between = np.repeat(least, 2), np.repeat(largest, 2)
+    axes[0].fill_between(edges, *between, color=COLOURS[4], alpha=0.4, label="least to largest")
+    axes[0].plot(edges, np.repeat(mean, 2), color="black", label="mean")
     axes[0].set_ylabel("crank speed [rpm]")
     if with_gas:
         names = {"imep": "head end", "imep_crank_end": "crank end"} if double else {"imep": ""}
@@ -45,12 +48,10 @@ def cycles_figure(result: Result) -> Figure:
             for group in one_curve_each(imep):
                 label = f"{whose(group)} {end}".rstrip()
                 line = line_of(group[0] + k * imep.shape[1])
-                axes[1].plot(number, imep[:, group[0]], **line, label=label)
+                axes[1].plot(edges, np.repeat(imep[:, group[0]], 2), **line, label=label)
         keep_flat(axes[1], np.concatenate([cycles.values(name) / BAR for name in names]))
         axes[1].set_ylabel("indicated mean\neffective pressure [bar]")
-    begins = cycles.values("time")
-    at = np.interp(result.event_table.values("time"), begins, number, np.nan, number[-1])
-    mark_events(axes[0], result, np.asarray(at))
+    mark_events(axes[0], result, _among(result.event_table.values("time"), cycles))
     for ax in axes:
         ax.locator_params("x", integer=True)
     axes[-1].set_xlabel("cycle")
@@ -58,6 +59,15 @@ def cycles_figure(result: Result) -> Figure:
     figure.align_ylabels(axes)
     footer(figure, result, "cycle by cycle")
     return figure
+
+
+def _among(time: Array, cycles: Table) -> Array:
+    """Where times [s] lie on an axis on which cycle n covers n - 1/2 to n + 1/2; NaN in none."""
+    begins, durations = cycles.values("time"), cycles.values("duration")
+    k = np.maximum(np.searchsorted(begins, time, side="right") - 1, 0)
+    share = (time - begins[k]) / durations[k]
+    inside = (share >= -_HAIR) & (share <= 1.0 + _HAIR)
+    return np.where(inside, cycles.values("cycle")[k] - 0.5 + share, np.nan)
 
 
 def mark_events(ax: Axes, result: Result, at: Array) -> None:

@@ -8,6 +8,7 @@ piston; the load on the earlier body is its opposite.
 from __future__ import annotations
 
 import math
+import textwrap
 from dataclasses import dataclass
 
 import numpy as np
@@ -43,6 +44,7 @@ _CYLINDER = ("X, from crank to head", "Y, 90 deg ahead of X")
 ENGINE = ("engine's X", "engine's Y, 90 deg ahead of X")
 THROW = ("radial, outwards along the throw", "tangential, in the sense of +theta")
 _CLOSE = 0.02  # of the curve's size: marks nearer than this share one label
+_WIDEST = 9  # letters in a line of a label: two angles
 _GAP, _LINE, _LETTER = 0.04, 0.045, 0.017  # of the axes: to the labels; their height and width
 
 
@@ -53,8 +55,8 @@ class _Mark:
     angles: list[int]
 
     @property
-    def text(self) -> str:
-        return ", ".join(map(str, sorted(self.angles)))
+    def lines(self) -> list[str]:
+        return textwrap.wrap(", ".join(map(str, sorted(self.angles))), _WIDEST)
 
 
 @rc_context(STYLE)
@@ -73,7 +75,7 @@ def crank_pin_figure(view: View) -> Figure:
     """Force of the crank on the rod: in the cylinder's frame, and turning with the crank."""
     figure, (fixed, turning) = panels(1, 2, 14.0, 8.0)
     x, y, cycles = _columns(view, "crank_pin_force")
-    groups = alike(view, x, y, cycles)
+    groups = alike(view, cycles, x, y)
     draw_polar(fixed, (x, y), cycles[0], groups, _CYLINDER)
     fixed.set_title("crank pin: crank on rod, cylinder's frame")
     angle = [np.radians(cycle) for cycle in cycles]
@@ -90,7 +92,7 @@ def piston_pin_figure(view: View) -> Figure:
     """Force of the rod on the piston in the cylinder's frame."""
     figure, (ax,) = panels(1, 1, 8.0, 8.0)
     x, y, cycles = _columns(view, "piston_pin_force")
-    draw_polar(ax, (x, y), cycles[0], alike(view, x, y, cycles), _CYLINDER)
+    draw_polar(ax, (x, y), cycles[0], alike(view, cycles, x, y), _CYLINDER)
     ax.set_title("piston pin: rod on piston, cylinder's frame")
     _finish(figure, ax, view)
     return figure
@@ -102,18 +104,21 @@ def _columns(view: View, name: str) -> tuple[list[Array], list[Array], list[Arra
     return list(x.T), list(y.T), [view.cycle_degrees(k) for k in range(count)]
 
 
-def alike(view: View, x: list[Array], y: list[Array], cycles: list[Array]) -> dict[int, str]:
-    """Which cylinders' curves are drawn, and whose each is: those of equal forces at the same cycle
-    angle coincide."""
+def alike(view: View, cycles: list[Array], *panels: list[Array]) -> dict[int, str]:
+    """Which cylinders' curves are drawn, and whose each is: those of equal values at the same cycle
+    angle coincide.
+
+    cycles : cycle angle of each cylinder [deg]; panels : a curve of each cylinder
+    """
     if not view.whole:
-        return {k: whose([k]) for k in range(len(x))}
+        return {k: whose([k]) for k in range(len(cycles))}
     period = math.degrees(view.scene.period)
 
     def side_by_side(curves: list[Array]) -> Array:
         pairs = zip(cycles, curves, strict=True)
         return np.stack([np.interp(cycles[0], *pair, period=period) for pair in pairs], axis=-1)
 
-    groups = one_curve_each(side_by_side(x), side_by_side(y))
+    groups = one_curve_each(*map(side_by_side, panels))
     return {group[0]: whose(group) for group in groups}
 
 
@@ -176,7 +181,7 @@ def _frame(ax: Axes, left: Array, up: Array, marks: list[_Mark]) -> None:
     """
     low, high = min(float(left.min()), 0.0), max(float(left.max()), 0.0)
     bottom, top = min(float(up.min()), 0.0), max(float(up.max()), 0.0)
-    letters = max((len(mark.text) for mark in marks), default=0)
+    letters = max((len(line) for mark in marks for line in mark.lines), default=0)
     share = 1.0 - 2.0 * (_GAP + _LETTER * letters)
     span = max((high - low) / share, 1.1 * (top - bottom)) or 1.0
     middle = np.array([0.5 * (low + high), 0.5 * (bottom + top)])
@@ -193,17 +198,18 @@ def _frame(ax: Axes, left: Array, up: Array, marks: list[_Mark]) -> None:
 def _label(ax: Axes, marks: list[_Mark], at: float, side: float, span: float) -> None:
     """Write the labels of one side below one another, each joined to its mark by a thin line."""
     ordered = sorted(marks, key=lambda mark: -mark.up)
-    low, high = ax.get_ylim()
-    height = high
+    low, free = ax.get_ylim()
+    heights = [_LINE * span * len(mark.lines) for mark in ordered]
     for k, mark in enumerate(ordered):
-        below = _LINE * span * (len(ordered) - k - 1)
-        height = max(min(mark.up, height - _LINE * span), low + below + 0.5 * _LINE * span)
+        half, below = 0.5 * heights[k], sum(heights[k + 1 :])
+        height = max(min(mark.up, free - half), low + below + half)
+        free = height - half
         ax.plot([mark.left, at], [mark.up, height], color="0.4", linewidth=0.7, zorder=3)
         ax.plot(mark.left, mark.up, "o", color="black", markersize=6, zorder=4)
         ax.text(
             at,
             height,
-            f" {mark.text} ",
+            "\n".join(f" {line} " for line in mark.lines),
             ha="right" if side > 0.0 else "left",
             va="center",
             fontsize=12,

@@ -7,6 +7,7 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from crankmbs.figures.curves import over_time
 from crankmbs.figures.cycles import mark_events
 from crankmbs.figures.cylinders import one_curve_each, whose
 from crankmbs.figures.style import (
@@ -39,7 +40,8 @@ def speed_figure(view: View) -> Figure:
     whole = in_time or view.window.first > 0
     figure, axes = panels(1 + whole, 1, 10.0, 7.0 if whole else 5.0)
     if whole:
-        time, angle, speed = map(view.result.sampled, ("time", "crank_angle", "crank_speed"))
+        source = over_time(view.result).__getitem__ if in_time else view.result.sampled
+        time, angle, speed = map(source, ("time", "crank_angle", "crank_speed"))
         _speed(axes[0], time if in_time else np.degrees(angle) / 360.0, speed)
         axes[0].set_xlabel(f"{'time [s]' if in_time else 'crank angle [rev]'}, whole run")
         if view.result.keep is not None:

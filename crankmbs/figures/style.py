@@ -151,13 +151,14 @@ def crank_axis(axes: list[Axes], view: View) -> int:
     step = next((s for s in (1, 5, 15, 30, 90, 180) if span <= 8.5 * s), 360)
     ticks = np.arange(math.ceil(view.low / step) * step, view.high + 1e-6, step)
     period = round(math.degrees(view.scene.period))
+    names = ticks if view.high <= period + 1e-6 else ticks % period  # 0 again where a cycle begins
     labels = view.dead_centre_labels()
     size = _small()
     below = _lines_below(labels, size, span / axes[0].get_window_extent().width)
     for ax in axes:
         mark_points(ax)
         ax.set_xlim(view.low, view.high)
-        ax.set_xticks(ticks, [f"{tick if tick <= period else tick - period:g}" for tick in ticks])
+        ax.set_xticks(ticks, [f"{name:g}" for name in names])
         ax.tick_params(labelbottom=ax is axes[-1])
         for at in labels:
             ax.axvline(at, color=_GREY, linewidth=1.0, linestyle=(0, (6, 4)), zorder=1)
@@ -173,7 +174,7 @@ def crank_axis(axes: list[Axes], view: View) -> int:
             fontsize=size,
             color="0.35",
         )
-    begun = "" if view.begun is None else f", begun at {round(view.begun, 1):g}"
+    begun = "" if view.begun is None else f", which began at {round(view.begun, 1):g} deg"
     axes[-1].set_xlabel(f"crank angle [deg], {view.window.kind}{begun}")
     return max((below[at] + text.count("\n") + 1 for at, text in labels.items()), default=0)
 

@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
+from crankmbs.figures.curves import over_time
 from crankmbs.figures.cycles import mark_events
 from crankmbs.figures.style import COLOURS, STYLE, footer, legend, panels
 from crankmbs.result import Result
@@ -25,9 +26,8 @@ def varies_strongly(result: Result) -> bool:
 @rc_context(STYLE)
 def transient_figure(result: Result) -> Figure:
     """Crank speed, and the torque of gas and inertia beside that of loads and drive, over time."""
-    time, speed, torque, outside = map(
-        result.sampled, ("time", "crank_speed", "crank_torque", "external_torque")
-    )
+    names = "time", "crank_speed", "crank_torque", "external_torque"
+    time, speed, torque, outside = map(over_time(result).__getitem__, names)
     figure, axes = panels(2, 1, 10.0, 8.0)
     axes[0].plot(time, speed / RPM, color=COLOURS[0], linewidth=1.2)
     axes[0].set_ylabel("crank speed [rpm]")

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from crankmbs.figures.curves import over_time
 from crankmbs.measures import Span, last_span
 from crankmbs.measures.span import TURNS_BACK
 from crankmbs.mechanics.geometry import dead_centres
@@ -30,12 +31,13 @@ class View:
     four-stroke, wherever the run ends. Where the crank turns back, curves are over time, as angles
     come again.
 
-    degrees : shape (n,), at its samples: crank angle less whole periods
+    degrees : shape (n,), at its points: crank angle less whole periods
     along : shape (n,), what curves are drawn over: degrees, or time [s]
     low, high [deg, or s] : the stretch of it shown
     over_time : whether curves are drawn over time
     whole : a last cycle, turned through in one sense
     begun [deg] : where such a cycle begins if it is cut at ``low``; None: nothing is cut
+    curves : variables over time, with points between the samples; else none
     """
 
     result: Result
@@ -47,6 +49,7 @@ class View:
     over_time: bool
     whole: bool
     begun: float | None
+    curves: dict[str, Array]
 
     @property
     def scene(self) -> Scene:
@@ -55,6 +58,8 @@ class View:
 
     def values(self, name: str) -> Array:
         """A variable over the cycle, shape (n,) or (n, cylinders)."""
+        if self.over_time:
+            return self.curves[name]
         return self.result.sampled(name)[self.window.first :]
 
     def drawn(self, degrees: Array, values: Array) -> tuple[Array, Array]:
@@ -160,11 +165,12 @@ def last_view(result: Result) -> View:
     shift = math.floor(low / period + 1e-9) * period
     if low == high:  # the crank stands still
         low, high = low - DEGREE, high + DEGREE
-    degrees, bounds = np.degrees(angle - shift), (low - shift, high - shift)
-    along, (low, high) = degrees, map(math.degrees, bounds)
-    over_time = window.kind == TURNS_BACK
-    if over_time:
-        along = result.sampled("time")[window.first :]
+    in_time = window.kind == TURNS_BACK
+    curves = over_time(result, window.first) if in_time else {}
+    degrees = np.degrees(curves.get("crank_angle", angle) - shift)
+    along, (low, high) = degrees, map(math.degrees, (low - shift, high - shift))
+    if in_time:
+        along = curves["time"]
         low, high = float(along[0]), float(along[-1])
     return View(
         result=result,
@@ -173,7 +179,8 @@ def last_view(result: Result) -> View:
         along=along,
         low=low,
         high=high,
-        over_time=over_time,
+        over_time=in_time,
         whole=whole,
         begun=begun,
+        curves=curves,
     )
