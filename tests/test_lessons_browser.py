@@ -49,6 +49,25 @@ def test_names_of_arrows_stand_within_their_drawing(lesson, name, figure):
             assert box[along] + box[size] <= stage[along] + stage[size] + 2.0
 
 
+@pytest.mark.parametrize("size", [PHONE, LAPTOP], ids=str)
+@pytest.mark.parametrize(
+    ("name", "figures"), [("forces", ("along", "side")), ("polar", ("pin", "bearing", "turning"))]
+)
+def test_the_scale_of_the_forces_stands_whole_below_the_drawing(lesson, name, figures, size):
+    opened = lesson(name, size)
+    for figure in figures:
+        stage, flywheel, bar, text = (
+            opened.page.locator(f"#{figure} .stage{what}").bounding_box()
+            for what in ("", " .flywheel", " .scale path", " .scale text")
+        )
+        for box in (bar, text):
+            assert box["x"] >= stage["x"] - 1.0
+            assert box["x"] + box["width"] <= stage["x"] + stage["width"] + 1.0
+            assert box["y"] >= flywheel["y"] + flywheel["height"]
+            assert box["y"] + box["height"] <= stage["y"] + stage["height"] + 1.0
+        assert bar["x"] + bar["width"] < text["x"]
+
+
 @pytest.mark.parametrize("name", LESSONS)
 def test_formulas_are_set_in_the_font_that_is_embedded(lesson, name):
     opened = lesson(name)

@@ -74,6 +74,15 @@ def test_names_of_forces_stand_beside_a_cylinder_that_leans(browser, tmp_path, n
             assert right <= stage[1] + 1.0
 
 
+@pytest.mark.parametrize("size", [PHONE, LAPTOP], ids=str)
+@pytest.mark.parametrize("name", ["propeller", "two_stage_compressor"])
+def test_the_scale_of_the_forces_leaves_the_ring_free(browser, tmp_path, name, size):
+    with opened(browser, tmp_path, name, size=size, everything=False) as visited:
+        places = ("#stage .ring .track", "#stage .scale path", "#stage .scale text")
+        ring, bar, text = boxes(visited.settle(), *places)
+        assert min(bar["y"], text["y"]) >= ring["y"] + ring["height"]
+
+
 @pytest.mark.parametrize("name", ["compressor", "propeller"])
 def test_a_long_legend_takes_nothing_from_the_plot_of_a_phone(browser, tmp_path, name):
     """That of the compressor has five entries, the other two."""
