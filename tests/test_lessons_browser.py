@@ -30,6 +30,11 @@ def test_a_lesson_fits_every_screen(lesson, name, size):
     wide = "[document.documentElement.scrollWidth, document.documentElement.clientWidth]"
     scrolled, width = opened.page.evaluate(wide)
     assert scrolled <= width
+    for one in opened.page.locator(".plot:visible").all():
+        svg = one.locator("svg").bounding_box()
+        for box in (text.bounding_box() for text in one.locator("svg text.name").all()):
+            assert svg["x"] <= box["x"]
+            assert box["x"] + box["width"] <= svg["x"] + svg["width"]
     for one in opened.page.locator(".formula").all():
         inner, outer = one.locator("math").bounding_box(), one.bounding_box()
         assert inner["x"] + inner["width"] <= outer["x"] + outer["width"] + 1.0
