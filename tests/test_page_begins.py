@@ -75,6 +75,15 @@ def test_names_of_forces_stand_beside_a_cylinder_that_leans(browser, tmp_path, n
 
 
 @pytest.mark.parametrize("size", [PHONE, LAPTOP], ids=str)
+@pytest.mark.parametrize("everything", [False, True])
+def test_the_number_of_a_knob_is_seen_whole(browser, tmp_path, everything, size):
+    with opened(browser, tmp_path, "propeller", size=size, everything=everything) as visited:
+        for entry in visited.settle().page.locator(".knob:visible input.entry").all():
+            wide, seen = entry.evaluate("(each) => [each.scrollWidth, each.clientWidth]")
+            assert wide <= seen, entry.input_value()
+
+
+@pytest.mark.parametrize("size", [PHONE, LAPTOP], ids=str)
 @pytest.mark.parametrize("name", ["propeller", "two_stage_compressor"])
 def test_the_scale_of_the_forces_leaves_the_ring_free(browser, tmp_path, name, size):
     with opened(browser, tmp_path, name, size=size, everything=False) as visited:
