@@ -257,6 +257,15 @@ def test_every_answer_of_python_is_right_and_its_double_is_wrong(lesson, name):
             assert verdict in reply.get_attribute("class"), (question.name, reply.inner_text())
 
 
+def test_a_share_in_place_of_percent_is_told_its_unit(lesson):
+    share = numbers_of("fluctuation")["fluctuation"] / 100.0
+    opened = lesson("fluctuation")
+    for typed, verdict in ((f"{share:.6g}", "unclear"), (f"{share:.6g} %", "wrong")):
+        reply = opened.answer("ask_own", typed)
+        assert verdict in reply.get_attribute("class")
+        assert ("In %, please." in reply.inner_text()) == (verdict == "unclear")
+
+
 def test_a_number_that_cannot_be_keeps_the_picture_and_says_why(lesson):
     opened = lesson("displacement")
     before = opened.curve("half")
