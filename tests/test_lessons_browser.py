@@ -31,7 +31,8 @@ def test_a_lesson_fits_every_screen(lesson, name, size):
     scrolled, width = opened.page.evaluate(wide)
     assert scrolled <= width
     for one in opened.page.locator(".plot:visible").all():
-        svg = one.locator("svg").bounding_box()
+        svg, plot = one.locator("svg").bounding_box(), one.bounding_box()
+        assert svg["y"] + svg["height"] >= plot["y"] + plot["height"] - 1.0  # no gap below
         for box in (text.bounding_box() for text in one.locator("svg text.name").all()):
             assert svg["x"] <= box["x"]
             assert box["x"] + box["width"] <= svg["x"] + svg["width"]
