@@ -31,6 +31,12 @@ def test_a_lesson_fits_every_screen(kept, lesson, name, size):
     wide = "[document.documentElement.scrollWidth, document.documentElement.clientWidth]"
     scrolled, width = opened.page.evaluate(wide)
     assert scrolled <= width
+    for one in opened.page.locator(".plot:visible").all():
+        svg, plot = one.locator("svg").bounding_box(), one.bounding_box()
+        assert svg["y"] + svg["height"] >= plot["y"] + plot["height"] - 1.0  # no gap below
+        for box in (text.bounding_box() for text in one.locator("svg text.name").all()):
+            assert svg["x"] <= box["x"]
+            assert box["x"] + box["width"] <= svg["x"] + svg["width"]
     for one in opened.page.locator(".formula").all():
         inner, outer = one.locator("math").bounding_box(), one.bounding_box()
         assert inner["x"] + inner["width"] <= outer["x"] + outer["width"] + 1.0
@@ -48,6 +54,25 @@ def test_names_of_arrows_stand_within_their_drawing(lesson, name, figure):
         for along, size in (("x", "width"), ("y", "height")):
             assert box[along] >= stage[along] - 2.0
             assert box[along] + box[size] <= stage[along] + stage[size] + 2.0
+
+
+@pytest.mark.parametrize("size", [PHONE, LAPTOP], ids=str)
+@pytest.mark.parametrize(
+    ("name", "figures"), [("forces", ("along", "side")), ("polar", ("pin", "bearing", "turning"))]
+)
+def test_the_scale_of_the_forces_stands_whole_below_the_drawing(lesson, name, figures, size):
+    opened = lesson(name, size)
+    for figure in figures:
+        stage, flywheel, bar, text = (
+            opened.page.locator(f"#{figure} .stage{what}").bounding_box()
+            for what in ("", " .flywheel", " .scale path", " .scale text")
+        )
+        for box in (bar, text):
+            assert box["x"] >= stage["x"] - 1.0
+            assert box["x"] + box["width"] <= stage["x"] + stage["width"] + 1.0
+            assert box["y"] >= flywheel["y"] + flywheel["height"]
+            assert box["y"] + box["height"] <= stage["y"] + stage["height"] + 1.0
+        assert bar["x"] + bar["width"] < text["x"]
 
 
 @pytest.mark.parametrize("name", LESSONS)
@@ -233,6 +258,15 @@ def test_every_answer_of_python_is_right_and_its_double_is_wrong(kept, name):
         for factor, verdict in ((1.0, "right"), (2.0, "wrong")):
             reply = opened.answer(question.name, f"{factor * wanted.value:.9g} {wanted.unit}")
             assert verdict in reply.get_attribute("class"), (question.name, reply.inner_text())
+
+
+def test_a_share_in_place_of_percent_is_told_its_unit(lesson):
+    share = numbers_of("fluctuation")["fluctuation"] / 100.0
+    opened = lesson("fluctuation")
+    for typed, verdict in ((f"{share:.6g}", "unclear"), (f"{share:.6g} %", "wrong")):
+        reply = opened.answer("ask_own", typed)
+        assert verdict in reply.get_attribute("class")
+        assert ("In %, please." in reply.inner_text()) == (verdict == "unclear")
 
 
 def test_a_number_that_cannot_be_keeps_the_picture_and_says_why(lesson):

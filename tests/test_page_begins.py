@@ -74,6 +74,24 @@ def test_names_of_forces_stand_beside_a_cylinder_that_leans(browser, tmp_path, n
             assert right <= stage[1] + 1.0
 
 
+@pytest.mark.parametrize("size", [PHONE, LAPTOP], ids=str)
+@pytest.mark.parametrize("everything", [False, True])
+def test_the_number_of_a_knob_is_seen_whole(browser, tmp_path, everything, size):
+    with opened(browser, tmp_path, "propeller", size=size, everything=everything) as visited:
+        for entry in visited.settle().page.locator(".knob:visible input.entry").all():
+            wide, seen = entry.evaluate("(each) => [each.scrollWidth, each.clientWidth]")
+            assert wide <= seen, entry.input_value()
+
+
+@pytest.mark.parametrize("size", [PHONE, LAPTOP], ids=str)
+@pytest.mark.parametrize("name", ["propeller", "two_stage_compressor"])
+def test_the_scale_of_the_forces_leaves_the_ring_free(browser, tmp_path, name, size):
+    with opened(browser, tmp_path, name, size=size, everything=False) as visited:
+        places = ("#stage .ring .track", "#stage .scale path", "#stage .scale text")
+        ring, bar, text = boxes(visited.settle(), *places)
+        assert min(bar["y"], text["y"]) >= ring["y"] + ring["height"]
+
+
 @pytest.mark.parametrize("name", ["compressor", "propeller"])
 def test_a_long_legend_takes_nothing_from_the_plot_of_a_phone(browser, tmp_path, name):
     """That of the compressor has five entries, the other two."""

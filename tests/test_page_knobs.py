@@ -20,7 +20,7 @@ from crankmbs import (
     load_scene,
     shipped_scenes,
 )
-from crankmbs.page.knobs import FIRING_ORDERS, choices_of, knobs_of
+from crankmbs.page.knobs import FIRING_ORDERS, choices_of, first_of, knobs_of
 
 SINGLE, DIESEL = load_scene("propeller"), load_scene("yi_diesel_free")
 RPM = np.pi / 30.0
@@ -46,6 +46,29 @@ def test_only_knobs_that_mean_something_are_there():
     assert {k.name for k in knobs_of(load_scene("torque_driven"))} == everywhere | {
         "flywheel", "load", "counterweight",
     }  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("propeller", "the load takes it evenly"),
+        ("turning_moment", "the load takes it evenly"),  # its table over the angle is the engine
+        ("two_stage_compressor", "The torque of the drive is even"),
+        ("coasting", "Pistons and rods speed up"),
+    ],
+)
+def test_the_first_sentence_says_who_drives(name, said):
+    scene = load_scene(name)
+    first = first_of(scene)
+    assert first.question == "Why does the speed swing?"
+    assert said in first.sentence
+
+
+def test_who_drives_does_not_depend_on_the_sense():
+    scene = load_scene("two_stage_compressor")
+    backwards = dataclasses.replace(scene.start, speed=-scene.start.speed)
+    braked = dataclasses.replace(scene, start=backwards, torque=(Viscous(coefficient=1.0),))
+    assert "the load takes it evenly" in first_of(braked).sentence
 
 
 def test_only_choices_that_mean_something_are_there():

@@ -92,7 +92,7 @@ def _along(scene: Scene) -> Section:
 
 def _side(scene: Scene) -> Section:
     own = scene.rod.moment_of_inertia / _two_masses(scene)
-    label = "rod inertia, of two masses'"
+    label = "rod inertia / that of two masses"
     return Section(
         title="The rod is not two masses",
         before="The tilted rod presses the piston against the wall. The lectures put two masses in "

@@ -72,10 +72,8 @@ def first_of(scene: Scene) -> First:
     wanted: tuple[str, ...]
     if scene.motion is None:
         question = "Why does the speed swing?"
-        sentence = (
-            "The torque comes in pulses, the load takes it evenly; crank, rods and pistons store "
-            "the difference. Make the flywheel heavier: the swing becomes small, never zero."
-        )
+        heavier = "Make the flywheel heavier: the swing becomes small, never zero."
+        sentence = f"{_why_it_swings(scene)} {heavier}"
         wanted = ("flywheel", "load", "speed", "rod_mass", "rod_ratio")
     elif scene.unlike:
         question = "What do the forces become at another speed?"
@@ -92,6 +90,20 @@ def first_of(scene: Scene) -> First:
         )
         wanted = ("rod_ratio", "speed", "rod_mass", "offset", "pressure")
     return First(question, sentence, tuple(name for name in wanted if name in there)[:3])
+
+
+def _why_it_swings(scene: Scene) -> str:
+    """What comes in pulses, by who drives: the pistons, or the torques from outside that do not
+    depend on the crank angle."""
+    assert scene.start is not None
+    angle, speed = scene.start.angle, scene.start.speed
+    even = [load for load in scene.torque if load.parts.over_angle is None]
+    stored = "crank, rods and pistons store the difference."
+    if not scene.torque and scene.gas is None:
+        return "Pistons and rods speed up and slow down twice a turn; their energy is the crank's."
+    if sum(float(load(0.0, angle, speed)) for load in even) * speed > 0.0:
+        return f"The torque of the drive is even, the work comes in pulses; {stored}"
+    return f"The torque comes in pulses, the load takes it evenly; {stored}"
 
 
 def knobs_of(scene: Scene) -> tuple[Knob, ...]:

@@ -104,7 +104,7 @@ function valley(cycle) {
   return diagram({
     title: "acceleration near bottom dead centre",
     right: { text: "angle after top dead centre", unit: "degrees" },
-    up: { text: "acceleration less that at bottom dead centre, over rω²", unit: "" },
+    up: { text: "rise from bottom dead centre, over rω²", unit: "" },
     curves: [
       { name: "piston", x: angles, y: angles.map((at) => scaled(at * DEGREE)) },
       {
@@ -133,7 +133,7 @@ function fork(cycle) {
   return diagram({
     title: "crank angle of the least acceleration",
     right: { text: "rod ratio r/l", unit: "" },
-    up: { text: "crank angle of the least acceleration", unit: "degrees" },
+    up: { text: "crank angle", unit: "degrees" },
     curves: [
       { name: "exact", x: ratios, y: exact },
       { name: "truncated formula", style: "exact", x: ratios, y: truncated },

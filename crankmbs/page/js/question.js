@@ -18,8 +18,12 @@ export function judged(typed, { values, unit, tolerance, units, hint }) {
     return { verdict: "unclear", text: `“${match[2]}” does not fit here: answer ${wanted}.` };
   }
   const found = Number(match[1].replace(",", ".")) * factor;
-  const off = Math.min(...values.map((value) => Math.abs(found / value - 1)));
+  const awayOf = (number) => Math.min(...values.map((value) => Math.abs(number / value - 1)));
+  const off = awayOf(found);
   if (off <= tolerance) return { verdict: "right", text: "Right." };
+  if (unit === "%" && !match[2] && awayOf(100 * found) <= tolerance) {
+    return { verdict: "unclear", text: "In %, please." };
+  }
   return { verdict: "wrong", text: off <= 5 * tolerance ? `Close, but not there. ${hint}` : hint };
 }
 

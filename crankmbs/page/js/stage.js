@@ -12,6 +12,7 @@ const LEAD = (14 * Math.PI) / 180; // the ring's magnified lead, at most
 const TICKS = 24;
 const UNITS = 1000; // of the drawing per metre
 const SMALL = 0.85; // of the page's type: letters in the drawing
+const FOOT = 1.8; // of the letters' height, below the drawing: the scale of the forces
 const SHORTEST = 0.01; // of the largest force: what has an arrow
 
 export class Stage {
@@ -96,14 +97,17 @@ export class Stage {
     const { root, sizes, parts, axle } = this;
     const drawn = scaledBox(sizes.bounds);
     const words = { letters: this.letters, type: SMALL * this.size.type, lean: this.lean };
-    const { left, top, width, height, scale } = boxBeside(drawn, this.size, words);
-    set(root, { viewBox: `${left} ${top} ${width} ${height}` });
+    const foot = this.letters ? FOOT * words.type : 0;
+    const size = { ...this.size, height: Math.max(this.size.height - foot, 0) };
+    const { left, top, width, height, scale } = boxBeside(drawn, size, words);
+    const high = height + foot / scale;
+    set(root, { viewBox: `${left} ${top} ${width} ${high}` });
     // lines are about as wide on every screen; a new value would be a new style for every part
     root.style.setProperty("--px", (1 / scale).toPrecision(2));
     this.type = (SMALL * this.size.type) / scale;
     const middle = left + 0.5 * width; // what is wider than the drawing is room beside it
     const half = (0.5 * this.size.width) / scale;
-    const above = top + 0.5 * (height - this.size.height / scale);
+    const above = top + 0.5 * (high - this.size.height / scale);
     this.sides = { left: drawn.left, right: drawn.left + drawn.width };
     this.edge = { left: middle - half, right: middle + half, top: above };
     parts.forEach((part, k) => this.fitCylinder(part, sizes.each[k]));
@@ -125,7 +129,7 @@ export class Stage {
     set(this.pointer, { d: tick(0, 0.9) });
   }
 
-  /** A bar as long as a round force. */
+  /** A bar as long as a round force, below the drawing. */
   fitScale() {
     const { largest, bar, type } = this;
     const pen = new Pen(bar);
@@ -134,12 +138,12 @@ export class Stage {
     const long = this.lengthOf(newtons);
     const { left, top, height } = scaledBox(this.sizes.bounds);
     const size = newtons >= 1000 ? `${general(newtons / 1000)} kN` : `${general(newtons)} N`;
-    const text = `${size} on the ${this.body} (length: root of the force)`;
-    const far = this.edge.right - LETTER * type * text.length; // all of the words in the drawing
-    const [x, y] = [Math.min(left + 0.4 * type, far), top + height - 0.5 * type];
-    pen.add("path", { d: `M${x} ${y - 0.3 * type}v${0.3 * type}h${long}v${-0.3 * type}` });
-    const at = { x, y: y - 0.6 * type, "font-size": type };
-    pen.add("text", at, text);
+    const text = `${size} (length ∝ √force)`;
+    const wide = long + LETTER * type * (text.length + 1);
+    const x = Math.max(Math.min(left, this.edge.right - wide), this.edge.left);
+    const y = top + height + (FOOT - 0.5) * type;
+    pen.add("path", { d: `M${x} ${y - 0.4 * type}v${0.4 * type}h${long}v${-0.4 * type}` });
+    pen.add("text", { x: x + long + 0.5 * type, y, "font-size": type }, text);
     return pen.end();
   }
 
