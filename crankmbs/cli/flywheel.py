@@ -126,10 +126,9 @@ def _report(name: str, scene: Scene, wheel: Flywheel) -> str:
         return "\n".join(lines)
     moving = []
     if wheel.moving > _NOTHING * wheel.lecture.value:
-        rest = wheel.lecture.value - wheel.moving, wheel.lecture.error
         moving = [
             _row("less rods and pistons, their mean [kg m^2]", (wheel.moving, 0.0)),
-            _row("crank and flywheel by the formula [kg m^2]", rest),
+            _row("crank and flywheel by the formula [kg m^2]", wheel.lecture_crank),
         ]
     rows = [
         _row("inertia of crank and flywheel [kg m^2]", wheel.inertia),

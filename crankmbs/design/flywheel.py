@@ -60,10 +60,16 @@ class Flywheel:
     message: str
 
     @property
+    def lecture_crank(self) -> Estimate:
+        """Inertia of the crank by the lecture's formula [kg m2], without rods and pistons."""
+        return Estimate(self.lecture.value - self.moving, self.lecture.error)
+
+    @property
     def lecture_error(self) -> Estimate:
-        """Relative error of the lecture's inertia, less that of rods and pistons."""
-        ratio = (self.lecture.value - self.moving) / self.inertia.value
-        spread = self.lecture.error + abs(ratio) * self.inertia.error
+        """Relative error of the crank's inertia by the lecture's formula."""
+        value, error = self.lecture_crank
+        ratio = value / self.inertia.value
+        spread = error + abs(ratio) * self.inertia.error
         return Estimate(ratio - 1.0, spread / self.inertia.value)
 
 

@@ -165,7 +165,7 @@ def _flywheel(scene: Scene, result: Result) -> Question:
         wanted=wanted,
         hint="The fluctuation falls as the inverse of the whole inertia; rods and pistons help.",
         answer=f"$J=W/(\\delta\\omega_m^2)$, less what rods and pistons have, is "
-        f"{exact('inertia_formula', found.lecture.value, 'kg m²')}. Found by runs: {wanted}.",
+        f"{exact('inertia_formula', found.lecture_crank.value, 'kg m²')}. Found by runs: {wanted}.",
         tolerance=0.03,
     )
 
