@@ -201,6 +201,26 @@ def test_a_jump_right_behind_a_dead_centre_is_not_passed_over(behind, formulatio
         assert off <= 2.0 * sum(stated), name
 
 
+@pytest.mark.parametrize("formulation", FREE)
+@pytest.mark.parametrize("before", [-3e-4, 1e-4, 9e-4, 4e-3])
+def test_a_bend_right_before_or_behind_a_knot_is_in_the_stated_error(before, formulation):
+    """All cells end at the knot, so that no node may lie between it and the bend."""
+
+    def rectified(t, theta, omega):
+        return 40.0 * abs(math.sin(theta + before)) - 25.0
+
+    knots = [k * math.pi for k in range(2)]
+    bends = [angle - before for angle in knots]
+    hidden, told = (
+        simulate(wheel(Load(rectified, kink_angles=known)), formulation=each)
+        for known, each in ((knots, formulation), ([*knots, *bends], "crank_angle"))
+    )
+    for name in ("time", "crank_speed"):
+        off = np.abs(hidden.data[name].values - told.data[name].values).max()
+        stated = [one.data[name].attrs["error_estimate"] for one in (hidden, told)]
+        assert off <= sum(stated), name
+
+
 def fails_late(t, theta, omega):
     return math.sqrt(1.0 - theta)
 

@@ -24,7 +24,7 @@ from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.collocation import Rule, gauss
 from crankmbs.numerics.lagrange import ends_and_nodes
 
-__all__ = ["FINEST_CELL", "Grid", "Terms", "grid_of", "largest_of_row"]
+__all__ = ["FINEST_CELL", "Grid", "Terms", "edges_apart", "grid_of", "largest_of_row"]
 
 
 FINEST_CELL = 3e-14
@@ -350,11 +350,18 @@ class Grid:
 def grid_of(train: CrankTrain, rule: Rule, widest: float = WIDEST) -> Grid:
     """The coarsest grid of a crank train: with the edges that it must have, no cell wider than
     ``widest`` [rad]."""
-    marks = np.unique(np.concatenate([[0.0], edges_of(train), [train.period]]))
-    marks = marks[np.append(True, np.diff(marks) > _SLIVER)]
-    marks[-1] = train.period
+    marks = edges_apart(np.array([0.0, train.period]), edges_of(train))
     grid = Grid(train, marks, rule)
     return grid.split(np.maximum(np.ceil(np.diff(marks) / widest - 1e-9), 1).astype(np.intp))
+
+
+def edges_apart(*marks: Array) -> Array:
+    """All marks [rad] in order, one where rounding alone sets them apart; the last stays."""
+    edges = np.unique(np.concatenate([part.ravel() for part in marks]))
+    last = edges[-1]
+    edges = edges[np.append(True, np.diff(edges) > _SLIVER)]
+    edges[-1] = last
+    return edges
 
 
 def largest_of_row(table: Array) -> Array:

@@ -14,7 +14,7 @@ from crankmbs.mechanics.variables import VARIABLES
 from crankmbs.motion.account import Account
 from crankmbs.motion.assemble import Assembled, assemble
 from crankmbs.motion.base import Solution, State
-from crankmbs.motion.crank_angle.grid import FINEST_CELL, Grid, grid_of
+from crankmbs.motion.crank_angle.grid import FINEST_CELL, Grid, edges_apart, grid_of
 from crankmbs.motion.cycles import MOST_CYCLES, Cycles, cycles_of
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.events import events_of
@@ -41,6 +41,7 @@ _BETTERED = 0.5  # of the least error: what is not below has not been bettered b
 _EVALUATIONS = 50_000  # over time, for which a second of the cost cap stands: as measured
 _PLACES = np.array([0.225, 0.725])  # of new edges in a cell: an old edge is then at 0.55 of a new
 # cell, where no Gauss rule of few nodes takes a jump to be
+_BESIDE = np.array([5e-3, 5e-5])  # of a cell: new edges near a knot, which every grid has as an edge
 # what a pass may say that has not seen yet, or by its errors never, that the crank is at rest
 _RESTING = {Ending.REST, Ending.SWING, Ending.COMPLETE}
 _BROKEN = (Ending.COSTLY, Ending.FAILED)
@@ -161,11 +162,15 @@ def _given(state: State, _grid: Grid, _local: float) -> State:
 
 @once
 def staggered(grid: Grid) -> Grid:
-    """Cells halved, and with edges beside those that are no knots: a jump that nobody has declared,
-    and that hides between the end of a cell and its first node, then lies amid the nodes."""
+    """Cells halved, and with edges beside those that are no knots: a jump or a bend that nobody has
+    declared, and that hides between the end of a cell and its first node, then lies amid the nodes.
+    Near a knot, where all cells end, they are narrow, so that little can hide."""
     knots = grid_of(grid.train, grid.rule, math.inf).edges
-    inside = grid.edges[:-1, None] + np.diff(grid.edges)[:, None] * _PLACES
-    return Grid(grid.train, np.unique(np.concatenate([knots, inside.ravel()])), grid.rule)
+    start, width = grid.edges[:-1, None], np.diff(grid.edges)[:, None]
+    behind, before = np.isin(grid.edges[:-1], knots), np.isin(grid.edges[1:], knots)
+    places = (start + width * _PLACES, (start + width * _BESIDE)[behind])
+    places = (*places, (start + width * (1.0 - _BESIDE))[before])
+    return Grid(grid.train, edges_apart(knots, *places), grid.rule)
 
 
 def _stated_twice(by_order: Assembled, by_place: Assembled) -> Assembled:
