@@ -361,7 +361,7 @@ def edges_apart(*marks: Array) -> Array:
     last = edges[-1]
     edges = edges[np.append(True, np.diff(edges) > _SLIVER)]
     edges[-1] = last
-    return edges
+    return np.asarray(edges)
 
 
 def largest_of_row(table: Array) -> Array:

@@ -41,7 +41,7 @@ _BETTERED = 0.5  # of the least error: what is not below has not been bettered b
 _EVALUATIONS = 50_000  # over time, for which a second of the cost cap stands: as measured
 _PLACES = np.array([0.225, 0.725])  # of new edges in a cell: an old edge is then at 0.55 of a new
 # cell, where no Gauss rule of few nodes takes a jump to be
-_BESIDE = np.array([5e-3, 5e-5])  # of a cell: new edges near a knot, which every grid has as an edge
+_BESIDE = np.array([5e-3, 5e-5])  # of a cell: edges near a knot, where all grids have one
 # what a pass may say that has not seen yet, or by its errors never, that the crank is at rest
 _RESTING = {Ending.REST, Ending.SWING, Ending.COMPLETE}
 _BROKEN = (Ending.COSTLY, Ending.FAILED)
@@ -168,9 +168,13 @@ def staggered(grid: Grid) -> Grid:
     knots = grid_of(grid.train, grid.rule, math.inf).edges
     start, width = grid.edges[:-1, None], np.diff(grid.edges)[:, None]
     behind, before = np.isin(grid.edges[:-1], knots), np.isin(grid.edges[1:], knots)
-    places = (start + width * _PLACES, (start + width * _BESIDE)[behind])
-    places = (*places, (start + width * (1.0 - _BESIDE))[before])
-    return Grid(grid.train, edges_apart(knots, *places), grid.rule)
+    edges = edges_apart(
+        knots,
+        start + width * _PLACES,
+        (start + width * _BESIDE)[behind],
+        (start + width * (1.0 - _BESIDE))[before],
+    )
+    return Grid(grid.train, edges, grid.rule)
 
 
 def _stated_twice(by_order: Assembled, by_place: Assembled) -> Assembled:
