@@ -54,6 +54,20 @@ def started():
         opened.close()
 
 
+def resize(page, size):
+    """Another screen for an open page, and the frames in which its plots follow."""
+    width, height = size
+    if page.viewport_size != {"width": width, "height": height}:
+        page.set_viewport_size({"width": width, "height": height})
+        drawn(page)
+
+
+def drawn(page):
+    """Wait until what changed the layout is observed and drawn."""
+    frame = "requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done)))"
+    page.evaluate(f"() => new Promise((done) => {frame})")
+
+
 class Visit:
     """A page in the browser, and what it asks for and complains of."""
 

@@ -35,9 +35,8 @@ _PROBE = """([script, text, { changed, fine, size }]) => {
   window.cycles ??= new Map();
   const number = (scene) => {
     const key = JSON.stringify([fine, scene]);
-    if (!cycles.has(key)) {
-      cycles.set(key, cycle.cycleOf(new engine.Engine(given.rules), scene, given.endings, { fine }));
-    }
+    const own = new engine.Engine(given.rules);
+    if (!cycles.has(key)) cycles.set(key, cycle.cycleOf(own, scene, given.endings, { fine }));
     return [...cycles.keys()].indexOf(key);
   };
   const told = (each) => ({

@@ -15,9 +15,6 @@ from crankmbs.scene.run import Extent
 
 PASSES = "() => !document.getElementById('numbers').textContent.includes('…')"
 
-FOLLOWED = """() => new Promise((done) =>
-  requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done))))"""
-
 
 @contextmanager
 def opened(browser, folder, scene, address="", *, everything=True, **options):
@@ -72,11 +69,6 @@ class Opened:
     def go(self, address):
         """To another address of the page."""
         self.page.evaluate("(text) => { location.hash = text }", address)
-
-    def resize(self, size):
-        """Another screen, and the frames in which plots follow it."""
-        self.page.set_viewport_size({"width": size[0], "height": size[1]})
-        self.page.evaluate(FOLLOWED)
 
     def settle(self):
         """Wait for the second pass."""

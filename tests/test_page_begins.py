@@ -3,6 +3,7 @@ moves its place, a refused knob that does not lie, a finger that scrolls, a link
 """
 
 import pytest
+from browser import resize
 from page_scenes import SHOWN
 from page_visit import opened
 
@@ -24,7 +25,7 @@ def page(browser, tmp_path):
 def on_screens(page, sizes=(PHONE, LAPTOP)):
     """Each size of a screen, the open page laid out in it: styles and observers alone do that."""
     for size in sizes:
-        page.resize(size)
+        resize(page.page, size)
         yield size
 
 

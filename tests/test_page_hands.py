@@ -6,7 +6,8 @@ import re
 
 import numpy as np
 import pytest
-from page_visit import FOLLOWED, opened
+from browser import drawn, resize
+from page_visit import opened
 
 from crankmbs import flywheel, load_scene
 
@@ -196,7 +197,7 @@ def test_nothing_scrolls_sideways_and_no_plot_is_empty(browser, tmp_path, name):
             if large:
                 visited.page.click("#large")
             for size in (PHONE, LAPTOP, LARGE):
-                visited.resize(size)
+                resize(visited.page, size)
                 assert visited.page.evaluate("document.documentElement.scrollWidth") <= size[0]
                 for plot in ("#upper svg", "#lower svg", "#stage"):
                     box = visited.page.locator(plot).bounding_box()
@@ -212,7 +213,7 @@ def test_every_axis_says_its_scale_and_its_numbers_do_not_touch(page):
     for large in (False, True):
         if large:
             page.page.click("#large")
-            page.page.evaluate(FOLLOWED)
+            drawn(page.page)
         for plot in ("upper", "lower"):
             for axes in page.page.locator(f"#{plot} svg > g:nth-child(-n + 2)").all():
                 boxes = [each.bounding_box() for each in axes.locator("text.end").all()]
