@@ -4,6 +4,7 @@ import json
 import re
 from functools import cache
 from importlib import import_module
+from weakref import WeakKeyDictionary
 
 from crankmbs import load_scene
 from crankmbs.lessons import LESSONS
@@ -31,6 +32,13 @@ _PROBE = """([script, text, { changed, fine, size }]) => {
   const given = answers.decoded(JSON.parse(text));
   const turner = new turned.Turner(given);
   const figures = lesson.start();
+  window.cycles ??= new Map();
+  const number = (scene) => {
+    const key = JSON.stringify([fine, scene]);
+    const own = new engine.Engine(given.rules);
+    if (!cycles.has(key)) cycles.set(key, cycle.cycleOf(own, scene, given.endings, { fine }));
+    return [...cycles.keys()].indexOf(key);
+  };
   const told = (each) => ({
     name: each.tagName, text: each.textContent,
     ...Object.fromEntries(Array.from(each.attributes, ({ name, value }) => [name, value])),
@@ -45,7 +53,8 @@ _PROBE = """([script, text, { changed, fine, size }]) => {
     const made = figures[spec.name];
     const values = { ...spec.values, ...changed[spec.name] };
     const scene = made.scene ? made.scene(turner, values, given) : turner.scene(values);
-    const shown = cycle.cycleOf(new engine.Engine(given.rules), scene, given.endings, { fine });
+    const solved = number(scene);
+    const shown = [...cycles.values()][solved];
     const shapes = made.shapes(shown, values, given);
     return [spec.name, {
       values, scene: { ...scene, gas: null, loads: null }, levels: made.levels?.(shown) ?? null,
@@ -53,11 +62,17 @@ _PROBE = """([script, text, { changed, fine, size }]) => {
       shapes: shapes.map(({ curves, differences, of, holdsBelow }) =>
         ({ curves, differences, holdsBelow, now: of(shown.angles[100]) })),
       drawing: drawing(made, shown, shown.angles[100]), at: shown.at(shown.angles[100]),
-      samples: shown.samples, angles: shown.angles, mean: shown.mean, rows: shown.rows,
-      fluctuation: shown.fluctuation, textbook: given.textbook ?? null,
+      solved, textbook: given.textbook ?? null,
     }];
   })));
 }"""
+
+_CYCLE = """(number) => {
+  const { samples, angles, mean, rows, fluctuation } = [...cycles.values()][number];
+  return JSON.stringify({ samples, angles, mean, rows, fluctuation });
+}"""
+_SOLVED: WeakKeyDictionary = WeakKeyDictionary()
+"""The cycles that a page has solved and told of, by their numbers there."""
 
 
 @cache
@@ -91,6 +106,16 @@ def lesson_script(name):
 
 def probe(page, script, name):
     """What all figures of a lesson draw and say: figure -> what; of the lesson on errors with the
-    second pass, whose own error does not show beside those that it is about."""
+    second pass, whose own error does not show beside those that it is about.
+
+    A cycle is solved and told of once, as no formula of a lesson has a part in it.
+    """
     asked = {"changed": CHANGED, "fine": name == "trust", "size": SIZE}
-    return json.loads(page.evaluate(_PROBE, [script, given(name), asked]))
+    figures = json.loads(page.evaluate(_PROBE, [script, given(name), asked]))
+    cycles = _SOLVED.setdefault(page, {})
+    for figure in figures.values():
+        number = figure.pop("solved")
+        if number not in cycles:
+            cycles[number] = json.loads(page.evaluate(_CYCLE, number))
+        figure |= cycles[number]
+    return figures

@@ -5,7 +5,7 @@ from contextlib import ExitStack
 from functools import cache
 
 import pytest
-from browser import visiting
+from browser import resize, visiting
 
 from crankmbs.lessons import write_lesson
 
@@ -79,7 +79,8 @@ def lesson(browser, written):
 
 @pytest.fixture(scope="module")
 def kept(browser, written):
-    """Opens lessons that stay open, for tests that change nothing that another one looks at."""
+    """Opens lessons that stay open, for tests that change nothing that another one looks at; they
+    stand on the screen of a size, as styles and observers alone lay them out."""
     with ExitStack() as visits:
 
         @cache
@@ -87,4 +88,9 @@ def kept(browser, written):
             visit = visits.enter_context(visiting(browser, size=LAPTOP, offline=True))
             return Opened(visit, written(name))
 
-        yield opened
+        def sized(name, size=LAPTOP):
+            lesson = opened(name)
+            resize(lesson.page, size)
+            return lesson
+
+        yield sized

@@ -8,7 +8,15 @@ import h5py
 import numpy as np
 import pytest
 from test_events import HEAVY
-from test_fuel import FOUR, FUELS, GOVERNOR, THIN_GAS, exact, fuelled
+from test_fuel import (
+    FOUR,
+    FUELS,
+    GOVERNOR,
+    THIN_GAS,
+    assert_as_the_oracle_has_it,
+    exact,
+    fuelled,
+)
 from test_windows import FREE, wheel
 
 from crankmbs import (
@@ -161,11 +169,13 @@ def test_a_cycle_in_which_it_turns_back_is_none(formulation):
 
 @pytest.mark.slow
 def test_the_oracle_has_the_same_cycle():
-    """Its time, speeds every twelve degrees, the load's work by Simpson's rule, the shares."""
-    scene = fuelled(FUELS["all at once"], cycles=1.1, gas=THIN_GAS)
+    """Its time, speeds every twelve degrees, the load's work by Simpson's rule, the shares; and
+    the samples of a run as exact as it is by default."""
+    scene = fuelled(FUELS["all at once"], cycles=1.1, gas=THIN_GAS).with_(run__every="12 deg")
     found = simulate(scene, rtol=1e-10).cycles
     angles = np.linspace(0.0, PERIOD, 61)[1:]
     motion, shares = exact(scene, angles)
+    assert_as_the_oracle_has_it(simulate(scene).data.isel(time=slice(61)), motion, shares)
     time, speed = motion.time.astype(float), motion.omega.astype(float)
     assert float(found["duration"][0]) == pytest.approx(time[-1], rel=1e-9)
     speed = np.concatenate([[scene.start.speed], speed])

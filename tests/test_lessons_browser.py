@@ -26,8 +26,8 @@ PHONE, LARGE = (390, 844), (1920, 1080)
 
 @pytest.mark.parametrize("size", [PHONE, LAPTOP, LARGE], ids=str)
 @pytest.mark.parametrize("name", LESSONS)
-def test_a_lesson_fits_every_screen(kept, lesson, name, size):
-    opened = kept(name) if size == LAPTOP else lesson(name, size)
+def test_a_lesson_fits_every_screen(kept, name, size):
+    opened = kept(name, size)
     wide = "[document.documentElement.scrollWidth, document.documentElement.clientWidth]"
     scrolled, width = opened.page.evaluate(wide)
     assert scrolled <= width
@@ -43,9 +43,30 @@ def test_a_lesson_fits_every_screen(kept, lesson, name, size):
         assert 10.0 < inner["height"] < 110.0  # built up, and not one line of letters
 
 
+@pytest.mark.parametrize("name", LESSONS)
+def test_on_a_laptop_the_first_figure_and_its_words_stand_in_view(kept, name):
+    page = kept(name, LAPTOP).page
+    for each in (page.locator(".board").first, page.locator("figure .player").first):
+        box = each.bounding_box()
+        assert box["y"] + box["height"] <= LAPTOP[1]
+    assert page.locator(".words").first.bounding_box()["y"] < 0.5 * LAPTOP[1]
+
+
+@pytest.mark.parametrize("name", LESSONS)
+def test_on_a_phone_the_mechanism_of_the_first_figure_stands_in_view(kept, name):
+    box = kept(name, PHONE).page.locator(".machine").first.bounding_box()
+    assert box["y"] + box["height"] <= PHONE[1]
+
+
+@pytest.mark.parametrize("name", LESSONS)
+def test_no_word_that_follows_a_figure_is_left_out(kept, name):
+    places = kept(name).page.locator("[data-say]")
+    assert all(text.strip() for text in places.all_inner_texts())
+
+
 @pytest.mark.parametrize(("name", "figure"), [("forces", "along"), ("polar", "pin")])
-def test_names_of_arrows_stand_within_their_drawing(lesson, name, figure):
-    opened = lesson(name, PHONE)
+def test_names_of_arrows_stand_within_their_drawing(kept, name, figure):
+    opened = kept(name, PHONE)
     stage = opened.page.locator(f"#{figure} .stage").bounding_box()
     names = opened.page.locator(f"#{figure} .arrows text").all()
     assert names
@@ -60,8 +81,8 @@ def test_names_of_arrows_stand_within_their_drawing(lesson, name, figure):
 @pytest.mark.parametrize(
     ("name", "figures"), [("forces", ("along", "side")), ("polar", ("pin", "bearing", "turning"))]
 )
-def test_the_scale_of_the_forces_stands_whole_below_the_drawing(lesson, name, figures, size):
-    opened = lesson(name, size)
+def test_the_scale_of_the_forces_stands_whole_below_the_drawing(kept, name, figures, size):
+    opened = kept(name, size)
     for figure in figures:
         stage, flywheel, bar, text = (
             opened.page.locator(f"#{figure} .stage{what}").bounding_box()
@@ -206,8 +227,8 @@ def test_a_weight_balances_the_v_twin_at_90_degrees_only(lesson):
 
 
 @pytest.mark.parametrize(("method", "order"), [("Euler", 1), ("Heun", 2), ("Runge-Kutta", 4)])
-def test_half_the_step_is_worth_the_order(lesson, method, order):
-    opened = lesson("trust")
+def test_half_the_step_is_worth_the_order(kept, method, order):
+    opened = kept("trust")
     opened.choose("order", "method", method)
     opened.type("order", "size", 0.5)
     assert math.log2(opened.said("order.times")) == pytest.approx(order, abs=0.35)
@@ -240,8 +261,9 @@ ANSWERS = [
 
 
 @pytest.mark.parametrize(("typed", "verdict", "text"), ANSWERS, ids=str)
-def test_a_typed_answer_is_checked_with_its_unit(lesson, typed, verdict, text):
-    opened = lesson("displacement")
+def test_a_typed_answer_is_checked_with_its_unit(kept, typed, verdict, text):
+    opened = kept("displacement")
+    opened.page.locator("#ask_lead details").evaluate("(each) => { each.open = false }")
     reply = opened.answer("ask_lead", typed)
     assert verdict in reply.get_attribute("class")
     assert text in reply.inner_text()
@@ -260,9 +282,9 @@ def test_every_answer_of_python_is_right_and_its_double_is_wrong(kept, name):
             assert verdict in reply.get_attribute("class"), (question.name, reply.inner_text())
 
 
-def test_a_share_in_place_of_percent_is_told_its_unit(lesson):
+def test_a_share_in_place_of_percent_is_told_its_unit(kept):
     share = numbers_of("fluctuation")["fluctuation"] / 100.0
-    opened = lesson("fluctuation")
+    opened = kept("fluctuation")
     for typed, verdict in ((f"{share:.6g}", "unclear"), (f"{share:.6g} %", "wrong")):
         reply = opened.answer("ask_own", typed)
         assert verdict in reply.get_attribute("class")

@@ -4,19 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from lesson_visit import LAPTOP
-from test_lessons_browser import PHONE, numbers_of
+from test_lessons_browser import numbers_of
 
 from crankmbs import load_scene, simulate
-from crankmbs.lessons import LESSONS
 
 pytestmark = pytest.mark.slow
-
-
-@pytest.mark.parametrize("name", LESSONS)
-def test_no_word_that_follows_a_figure_is_left_out(lesson, name):
-    places = lesson(name).page.locator("[data-say]")
-    assert all(text.strip() for text in places.all_inner_texts())
 
 
 def test_the_valley_begins_with_one_floor_and_splits(lesson):
@@ -51,21 +43,6 @@ def test_a_polar_is_drawn_in_a_square_with_its_ray_and_dots(lesson):
         assert box["width"] / box["height"] == pytest.approx(1.0, abs=0.25)
         assert opened.page.locator(f"#{figure} .cursor line").count() == 1
         assert opened.page.locator(f"#{figure} path.curve.dots").count() == 1
-
-
-def test_on_a_laptop_the_first_figure_and_its_words_stand_in_view(lesson):
-    for name in LESSONS:
-        page = lesson(name).page
-        for each in (page.locator(".board").first, page.locator("figure .player").first):
-            box = each.bounding_box()
-            assert box["y"] + box["height"] <= LAPTOP[1], name
-        assert page.locator(".words").first.bounding_box()["y"] < 0.5 * LAPTOP[1]
-
-
-def test_on_a_phone_the_mechanism_of_the_first_figure_stands_in_view(lesson):
-    for name in LESSONS:
-        box = lesson(name, PHONE).page.locator(".machine").first.bounding_box()
-        assert box["y"] + box["height"] <= PHONE[1], name
 
 
 def test_an_angle_at_which_it_is_also_so_is_right(lesson):

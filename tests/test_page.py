@@ -14,20 +14,17 @@ import numpy as np
 import pytest
 from browser import visiting
 from page_cases import press
+from page_scenes import SHOWN
 from page_visit import assert_same, expected, opened
 from turned import turned
 
-from crankmbs import Fuel, InputError, Misfire, load_scene, shipped_scenes, simulate
+from crankmbs import Fuel, InputError, Misfire, load_scene, simulate
 from crankmbs.design.rebalance import rebalanced
-from crankmbs.page import page_of, refusals
+from crankmbs.page import page_of
 from crankmbs.page.knobs import knobs_of
-from crankmbs.page.refusals import early_end
 from crankmbs.scene.run import Extent
 
 pytestmark = pytest.mark.slow
-
-SHIPPED = {name: load_scene(name) for name in shipped_scenes()}
-SHOWN = [name for name, one in SHIPPED.items() if not refusals(one) and not early_end(one)]
 
 
 @pytest.fixture

@@ -3,11 +3,9 @@ moves its place, a refused knob that does not lie, a finger that scrolls, a link
 """
 
 import pytest
+from browser import resize
+from page_scenes import SHOWN
 from page_visit import opened
-
-from crankmbs import load_scene, shipped_scenes
-from crankmbs.page import refusals
-from crankmbs.page.refusals import early_end
 
 pytestmark = pytest.mark.slow
 
@@ -16,17 +14,19 @@ ENDS = """what => [...document.querySelectorAll(what)].map((each) => {
     const { left, right } = each.getBoundingClientRect();
     return [left, right];
 })"""
-SHOWN = [
-    name
-    for name, scene in ((name, load_scene(name)) for name in shipped_scenes())
-    if not refusals(scene) and not early_end(scene)
-]
 
 
 @pytest.fixture
 def page(browser, tmp_path):
     with opened(browser, tmp_path, "propeller", size=LAPTOP, everything=False) as visited:
         yield visited.settle()
+
+
+def on_screens(page, sizes=(PHONE, LAPTOP)):
+    """Each size of a screen, the open page laid out in it: styles and observers alone do that."""
+    for size in sizes:
+        resize(page.page, size)
+        yield size
 
 
 def boxes(page, *places):
@@ -36,60 +36,57 @@ def boxes(page, *places):
     return [{**box, "y": box["y"] + scrolled} for box in found]
 
 
-@pytest.mark.parametrize("size", [PHONE, LAPTOP], ids=str)
 @pytest.mark.parametrize("name", SHOWN)
-def test_it_begins_with_a_question_the_mechanism_a_plot_and_three_knobs(
-    browser, tmp_path, name, size
-):
-    with opened(browser, tmp_path, name, size=size, everything=False) as visited:
-        visited.settle()
-        assert visited.text("#idea h2").endswith("?")
+def test_it_begins_with_a_question_the_mechanism_a_plot_and_three_knobs(browser, tmp_path, name):
+    with opened(browser, tmp_path, name, size=PHONE, everything=False) as visited:
+        assert visited.settle().text("#idea h2").endswith("?")
         assert not visited.page.is_visible("#lower")
-        assert len(visited.page.locator("#numbers div:visible").all()) <= 4
         knobs = visited.page.locator(".knob:visible").all()
-        assert len(knobs) <= 3
-        parts = boxes(visited, "#idea", "#stage", "#upper svg", "#angle")
-        for box in [*parts, *(knob.bounding_box() for knob in knobs)]:
-            assert box["x"] >= 0.0
-            assert box["x"] + box["width"] <= size[0]
-            assert box["y"] >= 0.0
-            assert box["y"] + box["height"] <= size[1]
+        for wide, high in on_screens(visited):
+            assert len(visited.page.locator("#numbers div:visible").all()) <= 4
+            assert len(visited.page.locator(".knob:visible").all()) == len(knobs) <= 3
+            parts = boxes(visited, "#idea", "#stage", "#upper svg", "#angle")
+            for box in [*parts, *(knob.bounding_box() for knob in knobs)]:
+                assert box["x"] >= 0.0
+                assert box["x"] + box["width"] <= wide
+                assert box["y"] >= 0.0
+                assert box["y"] + box["height"] <= high
         visited.page.click("#more")
-        assert visited.page.is_visible("#lower")
-        assert len(visited.page.locator(".knob:visible").all()) >= len(knobs)
+        for _ in on_screens(visited):
+            assert visited.page.is_visible("#lower")
+            assert len(visited.page.locator(".knob:visible").all()) >= len(knobs)
 
 
-@pytest.mark.parametrize("size", [PHONE, LAPTOP], ids=str)
 @pytest.mark.parametrize("name", ["v_twin", "two_stage_compressor"])
-def test_names_of_forces_stand_beside_a_cylinder_that_leans(browser, tmp_path, name, size):
-    with opened(browser, tmp_path, name, size=size, everything=False) as visited:
-        visited.settle()
-        walls, names, (stage,) = (
-            visited.page.evaluate(ENDS, what)
-            for what in ("#stage .cylinder .wall", "#stage .arrows text", "#stage")
-        )
-        assert len(names) >= 2
-        for left, right in names:
-            assert left >= max(end for _, end in walls)
-            assert right <= stage[1] + 1.0
+def test_names_of_forces_stand_beside_a_cylinder_that_leans(browser, tmp_path, name):
+    with opened(browser, tmp_path, name, size=PHONE, everything=False) as visited:
+        for _ in on_screens(visited.settle()):
+            walls, names, (stage,) = (
+                visited.page.evaluate(ENDS, what)
+                for what in ("#stage .cylinder .wall", "#stage .arrows text", "#stage")
+            )
+            assert len(names) >= 2
+            for left, right in names:
+                assert left >= max(end for _, end in walls)
+                assert right <= stage[1] + 1.0
 
 
-@pytest.mark.parametrize("size", [PHONE, LAPTOP], ids=str)
 @pytest.mark.parametrize("everything", [False, True])
-def test_the_number_of_a_knob_is_seen_whole(browser, tmp_path, everything, size):
-    with opened(browser, tmp_path, "propeller", size=size, everything=everything) as visited:
-        for entry in visited.settle().page.locator(".knob:visible input.entry").all():
-            wide, seen = entry.evaluate("(each) => [each.scrollWidth, each.clientWidth]")
-            assert wide <= seen, entry.input_value()
+def test_the_number_of_a_knob_is_seen_whole(browser, tmp_path, everything):
+    with opened(browser, tmp_path, "propeller", size=PHONE, everything=everything) as visited:
+        for _ in on_screens(visited.settle()):
+            for entry in visited.page.locator(".knob:visible input.entry").all():
+                wide, seen = entry.evaluate("(each) => [each.scrollWidth, each.clientWidth]")
+                assert wide <= seen, entry.input_value()
 
 
-@pytest.mark.parametrize("size", [PHONE, LAPTOP], ids=str)
 @pytest.mark.parametrize("name", ["propeller", "two_stage_compressor"])
-def test_the_scale_of_the_forces_leaves_the_ring_free(browser, tmp_path, name, size):
-    with opened(browser, tmp_path, name, size=size, everything=False) as visited:
-        places = ("#stage .ring .track", "#stage .scale path", "#stage .scale text")
-        ring, bar, text = boxes(visited.settle(), *places)
-        assert min(bar["y"], text["y"]) >= ring["y"] + ring["height"]
+def test_the_scale_of_the_forces_leaves_the_ring_free(browser, tmp_path, name):
+    with opened(browser, tmp_path, name, size=PHONE, everything=False) as visited:
+        for _ in on_screens(visited.settle()):
+            places = ("#stage .ring .track", "#stage .scale path", "#stage .scale text")
+            ring, bar, text = boxes(visited, *places)
+            assert min(bar["y"], text["y"]) >= ring["y"] + ring["height"]
 
 
 @pytest.mark.parametrize("name", ["compressor", "propeller"])

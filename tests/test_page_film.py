@@ -6,10 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from page_engine import engine
-from page_scenes import POLYTROPE, fuelled
+from page_scenes import FILMS, POLYTROPE, fuelled
 from test_page_script import fold
 
-from crankmbs import InputError, load_scene, simulate
+from crankmbs import InputError, load_scene, shipped_scenes, simulate
 from crankmbs.page import joined, page_of, refusals
 from crankmbs.page.export import encoded
 from crankmbs.page.film import film_of
@@ -21,7 +21,6 @@ from crankmbs.scene.run import Extent
 
 pytestmark = pytest.mark.slow
 
-FILMS = ("run_up", "run_down", "torque_driven")
 RPM = math.pi / 30.0
 REPLAYED = "([script, task]) => eval(script).replayed(null, eval(script).decoded(JSON.parse(task)))"
 
@@ -129,6 +128,8 @@ def test_what_the_page_cannot_compute_is_a_film_and_nothing_else_is():
         assert said.partition(": ")[2].partition("'")[0] in page
         assert len(page) < 1e6
     assert 'id="time"' not in page_of(free, "mine")
+    shipped = {name: load_scene(name) for name in shipped_scenes()}
+    assert {name for name, one in shipped.items() if refusals(one) or early_end(one)} == set(FILMS)
 
 
 def test_each_film_asks_about_what_its_run_shows():

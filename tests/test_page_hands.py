@@ -6,6 +6,7 @@ import re
 
 import numpy as np
 import pytest
+from browser import drawn, resize
 from page_visit import opened
 
 from crankmbs import flywheel, load_scene
@@ -189,35 +190,36 @@ def test_the_first_pass_comes_at_once_and_its_error_after_the_second(page):
 
 
 @pytest.mark.parametrize("name", ["propeller", "yi_diesel_free"])
-@pytest.mark.parametrize("size", [PHONE, LAPTOP, LARGE], ids=str)
-@pytest.mark.parametrize("large", [False, True])
-def test_nothing_scrolls_sideways_and_no_plot_is_empty(browser, tmp_path, name, size, large):
-    with opened(browser, tmp_path, name, size=size) as visited:
-        if large:
-            visited.page.click("#large")
+def test_nothing_scrolls_sideways_and_no_plot_is_empty(browser, tmp_path, name):
+    with opened(browser, tmp_path, name, size=PHONE) as visited:
         visited.settle()
-        assert visited.page.evaluate("document.documentElement.scrollWidth") <= size[0]
-        for plot in ("#upper svg", "#lower svg", "#stage"):
-            box = visited.page.locator(plot).bounding_box()
-            assert box["width"] > 250.0
-            assert box["height"] > 120.0
-            assert box["x"] >= 0.0
-            assert box["x"] + box["width"] <= size[0]
+        for large in (False, True):
+            if large:
+                visited.page.click("#large")
+            for size in (PHONE, LAPTOP, LARGE):
+                resize(visited.page, size)
+                assert visited.page.evaluate("document.documentElement.scrollWidth") <= size[0]
+                for plot in ("#upper svg", "#lower svg", "#stage"):
+                    box = visited.page.locator(plot).bounding_box()
+                    assert box["width"] > 250.0
+                    assert box["height"] > 120.0
+                    assert box["x"] >= 0.0
+                    assert box["x"] + box["width"] <= size[0]
 
 
-@pytest.mark.parametrize("large", [False, True])
-def test_every_axis_says_its_scale_and_its_numbers_do_not_touch(page, large):
-    """Two ticks at least, also in the strip of a low plot."""
+def test_every_axis_says_its_scale_and_its_numbers_do_not_touch(page):
+    """Two ticks at least, also in the strip of a low plot, and in large letters."""
     page.page.select_option("[data-state=upper]", "piston velocity")
-    if large:
-        page.page.click("#large")
-        page.page.wait_for_timeout(200)
-    for plot in ("upper", "lower"):
-        for axes in page.page.locator(f"#{plot} svg > g:nth-child(-n + 2)").all():
-            boxes = [each.bounding_box() for each in axes.locator("text.end").all()]
-            assert len(boxes) >= 2
-            middles = sorted(box["y"] + 0.5 * box["height"] for box in boxes)
-            assert np.diff(middles).min() > 0.7 * boxes[0]["height"]
+    for large in (False, True):
+        if large:
+            page.page.click("#large")
+            drawn(page.page)
+        for plot in ("upper", "lower"):
+            for axes in page.page.locator(f"#{plot} svg > g:nth-child(-n + 2)").all():
+                boxes = [each.bounding_box() for each in axes.locator("text.end").all()]
+                assert len(boxes) >= 2
+                middles = sorted(box["y"] + 0.5 * box["height"] for box in boxes)
+                assert np.diff(middles).min() > 0.7 * boxes[0]["height"]
 
 
 def test_on_a_laptop_all_knobs_stand_above_the_fold(page):

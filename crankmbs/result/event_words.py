@@ -13,7 +13,7 @@ def event_words(result: Result) -> list[str]:
     """What stands beside each event; nothing at decisions on the fuel but the first that fires of a
     fuel that is waited for and the first that does not after it is cut.
 
-    >>> event_words(simulate(load_scene("run_up")))[0]
+    >>> event_words(simulate(load_scene("run_up").with_(run__until="0.1 s")))[0]
     'speed table on'
     """
     kinds, loads, shares = map(result.event_table.values, ("kind", "load", "share"))
