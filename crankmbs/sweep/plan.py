@@ -135,9 +135,9 @@ def check_possible(plan: Plan) -> None:
             first = values if not reasons else first
             reasons[str(error)] += 1
     if reasons:
-        said, where = next(iter(reasons)), zip(plan.cases.names, first, strict=True)
-        at = ", ".join(f"{name} = {shown(value)}" for name, value in where)
+        reason, place = next(iter(reasons)), zip(plan.cases.names, first, strict=True)
+        at = ", ".join(f"{name} = {shown(value)}" for name, value in place)
         raise InputError(
             f"{reasons.total()} of {plan.cases.count} scenes cannot be built; the first at {at}: "
-            f"{said}"
+            f"{reason}"
         )
