@@ -45,7 +45,7 @@ def result_html(result: Result) -> str:
     parts = [
         _head(result.scene, f"status {result.status}"),
         _table([], about),
-        *(_table(*one) for one in tables(result, measures)),
+        *(_table(*rows) for rows in tables(result, measures)),
         _picture(png(speed_figure(last_view(result)), _DPI), "crank speed over the crank angle"),
     ]
     return str(Markup("<div>{}</div>").format(Markup("\n").join(parts)))
@@ -108,8 +108,8 @@ def _stretch(excerpt: Excerpt) -> str:
     return f"{excerpt.window.kind}, cylinder {excerpt.cylinder} of {count}"
 
 
-def _head(scene: Scene, what: str) -> Markup:
-    return Markup("<p><b>{}</b>, {}</p>").format(scene.title or "a scene without a title", what)
+def _head(scene: Scene, kind: str) -> Markup:
+    return Markup("<p><b>{}</b>, {}</p>").format(scene.title or "a scene without a title", kind)
 
 
 def _table(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Markup:
