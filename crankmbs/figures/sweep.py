@@ -98,9 +98,9 @@ def sweep_figure(data: xr.Dataset, show: str, limit: str | None = None) -> Figur
     """
     data = _varied(data)
     columns = {
-        str(name): Column(one.attrs["units"], one.attrs["long_name"])
-        for name, one in data.data_vars.items()
-        if "units" in one.attrs
+        str(name): Column(variable.attrs["units"], variable.attrs["long_name"])
+        for name, variable in data.data_vars.items()
+        if "units" in variable.attrs
     }
     reading = reading_of(show, columns)
     values, error = reading.of_sweep(data)
@@ -138,12 +138,12 @@ def _varied(data: xr.Dataset) -> xr.Dataset:
 def _over(data: xr.Dataset, drawn: _Drawn, knobs: list[str]) -> Figure:
     if len(knobs) == 1:
         return _curve(_axis(data, knobs[0]), drawn)
-    y, x, *others = knobs
-    rest = drawn.values.stack(panel=others).transpose("panel", y, x) if others else None
+    y, x, *further = knobs
+    rest = drawn.values.stack(panel=further).transpose("panel", y, x) if further else None
     count = 1 if rest is None else rest.sizes["panel"]
     if count > _MOST:
         raise InputError(
-            f"{', '.join(others)}: {count} panels are too many; at most {_MOST} are drawn, vary "
+            f"{', '.join(further)}: {count} panels are too many; at most {_MOST} are drawn, vary "
             "fewer values beside the first two"
         )
     columns = min(count, _COLUMNS)
@@ -159,7 +159,7 @@ def _over(data: xr.Dataset, drawn: _Drawn, knobs: list[str]) -> Figure:
             ax, (_axis(data, x), _axis(data, y)), drawn._replace(values=table), levels
         )
         if rest is not None:
-            ax.set_title(_where(data, others, rest["panel"].values[k]), fontsize=11)
+            ax.set_title(_where(data, further, rest["panel"].values[k]), fontsize=11)
     figure.colorbar(filled, ax=axes, ticks=levels)
     figure.suptitle(drawn.label, fontsize=14)
     return figure

@@ -40,7 +40,7 @@ def save_figure(outcome: WorkPrecision, folder: Path) -> Path:
 def work_precision_figure(outcome: WorkPrecision) -> Figure:
     """Wall time over relative error: lower and further left is better.
 
-    Grey is below what the reference states of its own error; what lies there is drawn on its edge.
+    Grey is below the error that the reference states; what lies there is drawn on its edge.
     """
     names = outcome.quantities
     rows = -(-len(names) // _COLUMNS)
@@ -98,7 +98,7 @@ def _styles(outcome: WorkPrecision) -> dict[str, dict[str, Any]]:
 
 
 def _errors(outcome: WorkPrecision) -> list[float]:
-    """All errors, those below the reference's own set to it."""
+    """All errors, those below the reference's set to it."""
     floors = outcome.reference.floors
     return [max(error, floors[name]) for row in outcome.rows for name, error in row.errors.items()]
 

@@ -36,19 +36,19 @@ IDEA = (
 )
 
 
-def lesson(own: Scene) -> Lesson:
+def lesson(machine: Scene) -> Lesson:
     """The lesson about a scene.
 
     Raises
     ------
     InputError : a scene whose cylinders differ
     """
-    if not any(choice.name == "cylinders" for choice in choices_of(own)):
+    if not any(choice.name == "cylinders" for choice in choices_of(machine)):
         raise InputError(
             "gas: the lesson balance gives every number of cylinders the same gas, and fuel to "
             "none; a scene with one pressure or fuel for all is needed"
         )
-    scene = dataclasses.replace(even(own), fuel=None, gravity=None)
+    scene = dataclasses.replace(even(machine), fuel=None, gravity=None)
     spacing = _spacing(scene)
     four = dataclasses.replace(scene, layout=Layout(firing_order=FIRING_ORDERS["4"]))
     questions = [_second_order(four), _rocking(scene, spacing), _counterweight(scene)]
@@ -59,7 +59,7 @@ def lesson(own: Scene) -> Lesson:
         sections=(_shake(), _couple(), _torque(), _twin()),
         questions=tuple(questions),
         scene=scene,
-        about=f"The machine: {named(own)}, at constant speed, also with other cylinders.",
+        about=f"The machine: {named(machine)}, at constant speed, also with other cylinders.",
         error=simulate(four).error.estimated,
         more={"spacing": spacing},
     )
@@ -247,7 +247,7 @@ def _lowest_torque(four: Scene) -> Question:
         name: amplitude(simulate(run), "external_torque", 2.0) for name, run in runs.items()
     }
     both, gas, inertia = (
-        simulated(f"torque_{name}", found, "N m") for name, found in estimates.items()
+        simulated(f"torque_{name}", value, "N m") for name, value in estimates.items()
     )
     return Question(
         name="ask_torque",

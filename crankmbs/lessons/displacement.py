@@ -23,16 +23,16 @@ IDEA = (
 _SHARE = 0.02  # of the stroke: the correction asked for in the last question
 
 
-def lesson(own: Scene) -> Lesson:
+def lesson(machine: Scene) -> Lesson:
     """The lesson about a scene."""
-    scene = one_cylinder(own)
+    scene = one_cylinder(machine)
     result = simulate(scene)
     return Lesson(
         idea=IDEA,
         sections=(_half(scene), _series(scene)),
         questions=(_lead(result), _middle(result), _long_rod(result)),
         scene=scene,
-        about=f"One cylinder of {named(own)}: no gas, no offset, constant speed.",
+        about=f"One cylinder of {named(machine)}: no gas, no offset, constant speed.",
         error=result.error.estimated,
     )
 

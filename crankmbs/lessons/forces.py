@@ -44,14 +44,14 @@ IDEA = (
 )
 
 
-def lesson(own: Scene) -> Lesson:
+def lesson(machine: Scene) -> Lesson:
     """The lesson about a scene.
 
     Raises
     ------
     InputError : a rod without mass, or no gas
     """
-    scene = held(own, "forces")
+    scene = held(machine, "forces")
     if not _two_masses(scene) > 0.0:
         raise InputError(
             "rod.mass: the lesson forces swings a rod that has mass, its center_of_mass between "
@@ -63,7 +63,7 @@ def lesson(own: Scene) -> Lesson:
         sections=(_along(scene), _side(scene), _worth(scene)),
         questions=(_greatest(result), _missing(result, budget(result)), _torque(result)),
         scene=scene,
-        about=f"The machine: {named(own)}, at constant speed.",
+        about=f"The machine: {named(machine)}, at constant speed.",
         error=result.error.estimated,
     )
 
@@ -91,7 +91,7 @@ def _along(scene: Scene) -> Section:
 
 
 def _side(scene: Scene) -> Section:
-    own = scene.rod.moment_of_inertia / _two_masses(scene)
+    share = scene.rod.moment_of_inertia / _two_masses(scene)
     label = "rod inertia / that of two masses"
     return Section(
         title="The rod is not two masses",
@@ -104,7 +104,7 @@ def _side(scene: Scene) -> Section:
             caption="Side thrust of the wall on the piston with a rigid rod and with the lecture's "
             "two masses; below, their difference.",
             plots=("Side thrust on the piston",),
-            knobs=(Knob("share", label, "", min(0.6, own), max(1.2, own), own, 3),),
+            knobs=(Knob("share", label, "", min(0.6, share), max(1.2, share), share, 3),),
             forces="piston",
         ),
         after=r"A rod with less inertia than $m\,a\,b$ needs a smaller couple "
@@ -183,16 +183,16 @@ def _missing(result: Result, split: Budget) -> Question:
     omega = float(result.data["crank_speed"].values[0])
     row = split.split("side thrust")
     cause = row.cause("two-mass rod")
-    found = Estimate(
+    missing = Estimate(
         cause.size.largest, 2.0 * float(result.data["side_force"].attrs["error_estimate"])
     )
     where = Estimate(math.degrees(cause.size.angle), _SPACING)
-    share = Estimate(row.share(cause), 100.0 * found.error / row.peak)
+    share = Estimate(row.share(cause), 100.0 * missing.error / row.peak)
     sine = (r + abs(e)) / l
     cosine = math.sqrt(1.0 - sine**2)
     swing = r / l * omega**2 / cosine  # at 270 degrees, where beta' is 0
     couple = (_two_masses(scene) - scene.rod.moment_of_inertia) * swing
-    wanted = simulated("missing", found, "N")
+    wanted = simulated("missing", missing, "N")
     return Question(
         name="ask_missing",
         asked="By how many newtons, at most, is the side thrust wrong because of the two masses?",

@@ -31,14 +31,14 @@ _ENERGY = "The balance of energy"
 _SLOW = 0.24  # coefficient of fluctuation by energy with which the first figure begins
 
 
-def lesson(own: Scene) -> Lesson:
+def lesson(machine: Scene) -> Lesson:
     """The lesson about a scene.
 
     Raises
     ------
     InputError : a machine that does not settle
     """
-    scene = free(own, "omega")
+    scene = free(machine, "omega")
     every = Extent(value=math.radians(0.1), unit="rad")
     result = settled(changed(scene, run={"every": every}))
     return Lesson(
@@ -46,7 +46,7 @@ def lesson(own: Scene) -> Lesson:
         sections=(_moment(scene, result), _energy(scene, result), _speed(scene)),
         questions=(_swing(result), _fluctuation(result), _inertia(result)),
         scene=scene,
-        about=f"The machine: {named(own)}; its settled motion.",
+        about=f"The machine: {named(machine)}; its settled motion.",
         error=result.error.estimated,
     )
 
@@ -88,10 +88,10 @@ def _moment(scene: Scene, result: Result) -> Section:
 def _speed_knob(scene: Scene, result: Result) -> Knob:
     """A slider of the speed that begins where the crank follows the gas: so slow that the energy
     makes the speed swing a lot."""
-    own = speed_of(scene) / RPM
-    slow = own * min(1.0, math.sqrt(_energy_swing(result) / _SLOW))
-    first = math.copysign(float(f"{abs(slow):.2g}"), own)
-    low, high = sorted((0.85 * first, 1.25 * own))
+    speed = speed_of(scene) / RPM
+    slow = speed * min(1.0, math.sqrt(_energy_swing(result) / _SLOW))
+    first = math.copysign(float(f"{abs(slow):.2g}"), speed)
+    low, high = sorted((0.85 * first, 1.25 * speed))
     return Knob("speed", "speed", "rpm", low, high, first, 0)
 
 
@@ -172,7 +172,7 @@ def _swing(result: Result) -> Question:
 
 
 def _fluctuation(result: Result) -> Question:
-    found = measure(result)
+    measures = measure(result)
     wanted = exact("from_energy", _energy_swing(result), "%", 100.0)
     return Question(
         name="ask_fluctuation",
@@ -182,8 +182,8 @@ def _fluctuation(result: Result) -> Question:
         hint="Twice the mean kinetic energy is J times the square of the speed; the second figure "
         "shows both energies.",
         answer=f"By {wanted}, the swing over twice the mean energy. The run has "
-        f"{simulated('fluctuation', found.fluctuation, '%', 100.0)}: what the inertia of rods and "
-        "pistons adds, or takes away, is no small part.",
+        f"{simulated('fluctuation', measures.fluctuation, '%', 100.0)}: what the inertia of rods "
+        "and pistons adds, or takes away, is no small part.",
         tolerance=0.03,
     )
 

@@ -21,21 +21,21 @@ IDEA = (
 )
 
 
-def lesson(own: Scene) -> Lesson:
+def lesson(machine: Scene) -> Lesson:
     """The lesson about a scene.
 
     Raises
     ------
     InputError : no gas, or no speed
     """
-    scene = held(own, "polar")
+    scene = held(machine, "polar")
     result = simulate(scene)
     return Lesson(
         idea=IDEA,
         sections=(_bearing(scene), _pin(scene), _turning(scene)),
         questions=(_greatest(result), _where(result), _mean(result)),
         scene=scene,
-        about=f"The machine: {named(own)}, at constant speed.",
+        about=f"The machine: {named(machine)}, at constant speed.",
         error=result.error.estimated,
     )
 
@@ -129,10 +129,10 @@ def _greatest(result: Result) -> Question:
 
 
 def _where(result: Result) -> Question:
-    found = _joint(result, "crank pin")
-    degrees = math.degrees(found.crank_angle)
+    load = _joint(result, "crank pin")
+    degrees = math.degrees(load.crank_angle)
     wanted = exact("pin_angle", degrees, "°")
-    peak = simulated("pin_peak", found.peak, "kN", 1e-3)
+    peak = simulated("pin_peak", load.peak, "kN", 1e-3)
     return Question(
         name="ask_where",
         asked="At which crank angle is the crank pin of the first cylinder loaded most?",
@@ -144,8 +144,8 @@ def _where(result: Result) -> Question:
 
 
 def _mean(result: Result) -> Question:
-    found = _joint(result, "main bearing")
-    wanted = simulated("bearing_mean", found.mean, "kN", 1e-3)
+    load = _joint(result, "main bearing")
+    wanted = simulated("bearing_mean", load.mean, "kN", 1e-3)
     return Question(
         name="ask_mean",
         asked="How large is the force of the main bearing on average over time? Guess from the "
@@ -153,6 +153,6 @@ def _mean(result: Result) -> Question:
         wanted=wanted,
         hint="The spike is short: what counts is where the curve stays.",
         answer=f"{wanted}, far less than the peak of "
-        f"{simulated('bearing_again', found.peak, 'kN', 1e-3)}: a bearing is made for both.",
+        f"{simulated('bearing_again', load.peak, 'kN', 1e-3)}: a bearing is made for both.",
         tolerance=0.1,
     )

@@ -21,20 +21,20 @@ _METHODS = ("Euler", "Heun", "Runge-Kutta")
 _ERRORS = "Numerical analysis, as textbooks have it"
 
 
-def lesson(own: Scene) -> Lesson:
+def lesson(machine: Scene) -> Lesson:
     """The lesson about a scene.
 
     Raises
     ------
     InputError : a machine that does not settle
     """
-    scene = free(own, "trust")
+    scene = free(machine, "trust")
     return Lesson(
         idea=IDEA,
         sections=(_step(), _order(), _stated()),
         questions=(_halved(), _digits(), _richardson()),
         scene=scene,
-        about=f"The machine: {named(own)}; its settled motion.",
+        about=f"The machine: {named(machine)}; its settled motion.",
         error=settled(scene).error.estimated,
     )
 
@@ -43,8 +43,8 @@ def _size(value: float) -> Knob:
     return Knob("size", "step", "°", 0.5, 20.0, value, 2)
 
 
-def _method(own: str) -> Choice:
-    return Choice("method", "method", _METHODS, own)
+def _method(name: str) -> Choice:
+    return Choice("method", "method", _METHODS, name)
 
 
 def _step() -> Section:
