@@ -10,7 +10,7 @@ from crankmbs.digits import digits
 
 __all__ = ["budget_headline", "comparison_headline"]
 
-_OWN = "the formula"  # its label would leave no room for the number
+_FORMULA = "the formula"  # its label would leave no room for the number
 
 
 def comparison_headline(rows: Sequence[Deviation], *, independent: bool) -> tuple[str, str]:
@@ -22,7 +22,7 @@ def comparison_headline(rows: Sequence[Deviation], *, independent: bool) -> tupl
     lectures = [row for row in rows if row.reference != CLOSED_FORM] or rows
     row = max(lectures, key=lambda each: _weight(_share(each)))
     lecture = row.reference in (CLOSED_FORM, *LECTURES)
-    name = row.reference.partition(" (")[0] if lecture else _OWN
+    name = row.reference.partition(" (")[0] if lecture else _FORMULA
     if math.isnan(_share(row)):
         size = f"{digits(row.size.largest, most=3)} {OBSERVABLES[row.quantity].units}"
         return f"{_capital(row.quantity)}: the run has none, {name} up to {size}", ""
@@ -38,7 +38,7 @@ def budget_headline(splits: Sequence[Split]) -> tuple[str, str]:
     """The formula's largest error, and the cause that is worth most."""
     split = max(splits, key=lambda each: _weight(each.share(each.total)))
     share, quantity = split.share(split.total), _capital(split.quantity)
-    formula = "the lecture" if split.is_lecture else _OWN
+    formula = "the lecture" if split.is_lecture else _FORMULA
     if math.isnan(share):
         return f"{quantity}: the run has none, {formula} has", ""
     if share == 0.0:

@@ -18,7 +18,7 @@ __all__ = ["save_figure", "work_precision_figure"]
 
 _COLUMNS = 3  # panels side by side
 _TITLES = {END: "state at the end", MOTION: "motion over the run"}
-_OWN = {"crank_angle": "#D55E00", "minimal": "#0072B2", "multibody": "#009E73"}
+_COLORS = {"crank_angle": "#D55E00", "minimal": "#0072B2", "multibody": "#009E73"}
 _PEERS = ("black", "0.45", "#56B4E9", "#CC79A7", "#E69F00", "#7A5230", "#8A8AC0", "#5B8C5A")
 _MARKS = "^vsDPX<>"
 
@@ -88,7 +88,7 @@ def _styles(outcome: WorkPrecision) -> dict[str, dict[str, Any]]:
         else:
             name, _, part = contender.partition(",")
             styles[contender] = {
-                "color": _OWN.get(name, _OWN["crank_angle"]),
+                "color": _COLORS.get(name, _COLORS["crank_angle"]),
                 "marker": "o",
                 "linewidth": 2.5,
                 "linestyle": {"": "-", " end only": "--"}.get(part, ":"),

@@ -171,14 +171,14 @@ class Section:
 class Question:
     """A question whose answer is typed, in the unit shown or another; words as in a section.
 
-    name : its id; wanted : the number asked for; tolerance : relative; hint : where it is missed
+    name : its id; solution : the right number; tolerance : relative; hint : where it is missed
     also : other right numbers, in the same unit
     answer : in full, which opens when it is right or on a click
     """
 
     name: str
-    asked: str
-    wanted: Number
+    text: str
+    solution: Number
     hint: str
     answer: str
     tolerance: float = 0.01
@@ -189,10 +189,10 @@ class Question:
         """What the scripts take of it."""
         return {
             "name": self.name,
-            "values": [self.wanted.value, *self.also],
-            "unit": self.wanted.unit,
+            "values": [self.solution.value, *self.also],
+            "unit": self.solution.unit,
             "tolerance": self.tolerance,
-            "units": _UNITS[self.wanted.unit],
+            "units": _UNITS[self.solution.unit],
             "hint": self.hint,
         }
 
@@ -218,7 +218,7 @@ class Lesson:
     def texts(self) -> list[str]:
         """All words in which numbers may stand."""
         sections = [t for s in self.sections for t in (s.before, s.figure.caption, s.after)]
-        return [*sections, *(text for q in self.questions for text in (q.asked, q.answer))]
+        return [*sections, *(text for q in self.questions for text in (q.text, q.answer))]
 
 
 def _powers(number: str) -> str:
