@@ -65,11 +65,11 @@ def simulate(
     functions = functions_of(scene)
     begin = clock.perf_counter()
     choice = choose(scene, formulation or scene.run.formulation)
-    one = chosen(choice)
-    asked = max(scene.run.rtol, one.least_rtol) if rtol is None else rtol
-    assembled = one.run(crank_train(scene), asked, cost_cap)
+    solver = chosen(choice)
+    tolerance = max(scene.run.rtol, solver.least_rtol) if rtol is None else rtol
+    assembled = solver.run(crank_train(scene), tolerance, cost_cap)
     solution = assembled.solution
-    found = Result.unlabelled(
+    result = Result.unlabelled(
         labelled(assembled),
         scene=scene,
         formulation=choice.formulation,
@@ -77,31 +77,31 @@ def simulate(
         status=solution.status,
         message=why(solution.status, solution.message, functions),
         cost=Cost(clock.perf_counter() - begin, solution.evaluations, solution.steps),
-        error=Error(asked, assembled.relative_error),
+        error=Error(tolerance, assembled.relative_error),
         decay=solution.decay,
         keep=solution.keep,
         motion=assembled.motion,
     )
-    if scene.settles and found.status == 1 and solution.unsettled not in _HUNTING:
-        found = dataclasses.replace(found, message=_slowing(found) or found.message)
-    return found
+    if scene.settles and result.status == 1 and solution.unsettled not in _HUNTING:
+        result = dataclasses.replace(result, message=_slowing(result) or result.message)
+    return result
 
 
-def _slowing(found: Result) -> str:
+def _slowing(result: Result) -> str:
     """Of a motion that does not settle, as it slows down: where and when the crank stops, and
     whether it turns back there, in a sentence; empty where it does not slow down.
 
     The scene is run on from its start, for twice the cycles that its drift lets expect, and for
     twice as many again, until it stops.
     """
-    speed = found.sampled("crank_speed")
+    speed = result.sampled("crank_speed")
     begin, end = abs(float(speed[0])), float(speed[-1] * np.sign(speed[0]))
-    stop, scene, status = _stop(found), found.scene, 0
+    stop, scene, status = _stop(result), result.scene, 0
     count = 2.0 * math.ceil(begin / (begin - end)) if 0.0 < end < begin else math.inf
     while stop is None and status == 0 and count < _MOST_CYCLES:
         until, every = (Extent(value=size, unit="cycle") for size in (count, 1.0))
         run = dataclasses.replace(scene.run, until=until, every=every)
-        on = simulate(dataclasses.replace(scene, run=run), formulation=found.formulation)
+        on = simulate(dataclasses.replace(scene, run=run), formulation=result.formulation)
         stop, status, count = _stop(on), on.status, 2.0 * count
     if stop is None:
         return ""
@@ -110,11 +110,11 @@ def _slowing(found: Result) -> str:
     return Ending.SLOWS_DOWN.said(angle, time=time, then=then)[1]
 
 
-def _stop(found: Result) -> tuple[float, float, bool] | None:
+def _stop(result: Result) -> tuple[float, float, bool] | None:
     """Time [s] and crank angle [rad] at which a crank that turns first stops, to rest there or to
     turn back, and whether it does; None where it goes on."""
     before, stop = 0.0, None
-    for cells in found.passes.answer.cells:
+    for cells in result.passes.answer.cells:
         sense = cells.acting.sense
         if stop is None and before and sense != before:
             stop = float(cells.time[0, 0]), float(cells.angle[0, 0])
@@ -122,8 +122,8 @@ def _stop(found: Result) -> tuple[float, float, bool] | None:
             return *stop, True
         if sense:
             before, stop = sense, None
-    last = found.passes.answer.cells[-1]
-    if stop is None and before and found.status == 1 and last.speed[-1, -1] == 0.0:
+    last = result.passes.answer.cells[-1]
+    if stop is None and before and result.status == 1 and last.speed[-1, -1] == 0.0:
         stop = float(last.time[-1, -1]), float(last.angle[-1, -1])
     return None if stop is None else (*stop, False)
 
@@ -131,7 +131,7 @@ def _stop(found: Result) -> tuple[float, float, bool] | None:
 def functions_of(scene: Scene) -> list[tuple[str, Function]]:
     """The functions among the loads, each with where it stands in the scene; none has failed
     yet."""
-    found = []
+    functions = []
     loads = crank_train(scene).loads
     for number, load in enumerate(loads, start=1):
         place = place_of(loads, number)
@@ -139,12 +139,12 @@ def functions_of(scene: Scene) -> list[tuple[str, Function]]:
             raise InputError(f"{place}: {load.lacks}")
         if load.parts.function is not None:
             load.parts.function.failure = ""
-            found.append((place, load.parts.function))
-    return found
+            functions.append((place, load.parts.function))
+    return functions
 
 
 def why(status: int, message: str, functions: list[tuple[str, Function]]) -> str:
     """How a run ended, by its status and message; where it broke off after a function had failed,
     what that did."""
-    failed = [f"{place}: {one.failure}" for place, one in functions if one.failure]
+    failed = [f"{place}: {function.failure}" for place, function in functions if function.failure]
     return message if status >= 0 or not failed else f"{message}; {failed[0]}"

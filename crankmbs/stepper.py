@@ -65,7 +65,7 @@ class Snapshot:
 class Stepper:
     """The motion of a scene from its start on, one step after the other.
 
-    Between two steps a model of the user's own takes the state and sets what follows: a torque that
+    Between two steps a model of the user takes the state and sets what follows: a torque that
     is held over the step, and the share of the combustion. `crankmbs.simulate` gives the same
     motion within both errors. Of ``[run]`` rtol and formulation count: a step errs so little that a
     run of some revolutions comes near it; nothing is refined afterwards, and the errors say what
@@ -107,7 +107,7 @@ class Stepper:
         Parameters
         ----------
         dt [s] : above 0
-        load [N m] : torque on the crank beside the scene's own, held over this step; positive
+        load [N m] : torque on the crank beside the scene's, held over this step; positive
             drives, so that what brakes is below 0
         fuel : share of the combustion that cylinders take which decide in this step, 0 to 100, in
             place of governor, misfires, scatter and windows; None leaves it to the scene. A
@@ -157,8 +157,8 @@ class Stepper:
         >>> stepper.data["crank_pin_force_x"].shape
         (1, 4)
         """
-        found = dataset(labelled(self._steps.assembled(self._now)), COORDINATES)
-        return found.drop_vars("energy_residual") if self.scene.motion is not None else found
+        present = dataset(labelled(self._steps.assembled(self._now)), COORDINATES)
+        return present.drop_vars("energy_residual") if self.scene.motion is not None else present
 
     def save(self) -> Snapshot:
         """Where it stands now, to go back to.
@@ -227,10 +227,10 @@ def _steps(scene: Scene) -> Steps:
     return Free(train)
 
 
-def _check_number(name: str, what: str, value: object) -> None:
+def _check_number(name: str, kind: str, value: object) -> None:
     number = isinstance(value, Real) and not isinstance(value, bool)
     if not number or not math.isfinite(value):  # type: ignore[arg-type]
-        raise InputError(f"{name}: must be {what}, a finite number; {shown(value)} came")
+        raise InputError(f"{name}: must be {kind}, a finite number; {shown(value)} came")
 
 
 _SCENE = TypeAdapter(Scene)

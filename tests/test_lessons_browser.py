@@ -276,9 +276,9 @@ def test_every_answer_of_python_is_right_and_its_double_is_wrong(kept, name):
     module = import_module(f"crankmbs.lessons.{name}")
     opened = kept(name)
     for question in module.lesson(load_scene(module.SCENE)).questions:
-        wanted = question.wanted
+        solution = question.solution
         for factor, verdict in ((1.0, "right"), (2.0, "wrong")):
-            reply = opened.answer(question.name, f"{factor * wanted.value:.9g} {wanted.unit}")
+            reply = opened.answer(question.name, f"{factor * solution.value:.9g} {solution.unit}")
             assert verdict in reply.get_attribute("class"), (question.name, reply.inner_text())
 
 

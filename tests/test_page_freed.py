@@ -70,7 +70,7 @@ def ends(scene):
         yield from ({knob.name: knob.low}, {knob.name: knob.high})
     for choice in choices_of(scene):
         if choice.name != "speed_is":
-            yield {choice.name: [word for word in choice.words if word != choice.own][-1]}
+            yield {choice.name: [word for word in choice.words if word != choice.value][-1]}
 
 
 @pytest.mark.parametrize("name", DRIVEN)

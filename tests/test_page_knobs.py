@@ -78,7 +78,7 @@ def test_only_choices_that_mean_something_are_there():
     assert "cylinders" not in {c.name for c in choices_of(dataclasses.replace(DIESEL, gas=of_each))}
     of_all = load_scene("turning_moment")
     assert "cylinders" not in {c.name for c in choices_of(of_all)}  # its table is that of three
-    assert next(c.own for c in choices_of(load_scene("grega_lecture"))) == "two-mass"
+    assert next(c.value for c in choices_of(load_scene("grega_lecture"))) == "two-mass"
 
 
 def test_another_rod_keeps_its_shape():

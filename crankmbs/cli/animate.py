@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-import typer
+from typer import Exit, Option, echo
 
 from crankmbs.cli.folder import writable
 from crankmbs.cli.options import SceneName
@@ -17,14 +17,13 @@ __all__ = ["animate"]
 def animate(
     scene: SceneName,
     out: Annotated[
-        Path | None,
-        typer.Option("--out", "-o", metavar="FILE", help=".gif or .mp4; default NAME.gif."),
+        Path | None, Option("--out", "-o", metavar="FILE", help=".gif or .mp4; default NAME.gif.")
     ] = None,
-    length: Annotated[float | None, typer.Option(help="Seconds of a cycle; default 6.")] = None,
-    width: Annotated[int | None, typer.Option(help="Pixels, a multiple of 32.")] = None,
-    cylinder: Annotated[int | None, typer.Option(help="The one shown alone; default all.")] = None,
+    length: Annotated[float | None, Option(help="Seconds of a cycle; default 6.")] = None,
+    width: Annotated[int | None, Option(help="Pixels, a multiple of 32.")] = None,
+    cylinder: Annotated[int | None, Option(help="The one shown alone; default all.")] = None,
     forces: Annotated[
-        str | None, typer.Option(help="Arrows of the forces on piston, rod or crank.")
+        str | None, Option(help="Arrows of the forces on piston, rod or crank.")
     ] = None,
 ) -> None:
     """Film the mechanism and its speed over the last cycle, for slides."""
@@ -42,6 +41,6 @@ def animate(
         result = simulate(loaded)
     with progress("filming"):
         save_animation(result, file, filming)
-    typer.echo(f"{result}\n\nwrote {file}, {file.stat().st_size / 1e6:.1f} MB")
+    echo(f"{result}\n\nwrote {file}, {file.stat().st_size / 1e6:.1f} MB")
     if result.status != 0:
-        raise typer.Exit(3)
+        raise Exit(3)

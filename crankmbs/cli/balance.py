@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import textwrap
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
+from typer import Exit, Option, echo
 
-from crankmbs.cli.folder import writable, wrote
+from crankmbs.cli.folder import results_folder, wrote
 from crankmbs.cli.loads import loads_table
 from crankmbs.cli.options import CostCap, NoFigures, Out, SceneName, WrittenScene
 from crankmbs.cli.progress import progress
-from crankmbs.cli.text import table
+from crankmbs.cli.text import heading, table
 from crankmbs.digits import digits, error_digits
 from crankmbs.errors import InputError
 from crankmbs.storage.files import together
@@ -28,9 +27,7 @@ _ERRORS = ["before", "num. error", "after", "num. error"]
 
 def balance(
     scene: SceneName,
-    share: Annotated[
-        str, typer.Option(help="Share of the reciprocating mass that is balanced.")
-    ] = "50%",
+    share: Annotated[str, Option(help="Share of the reciprocating mass that is balanced.")] = "50%",
     cost_cap: CostCap = 10.0,
     write: WrittenScene = None,
     out: Out = None,
@@ -43,10 +40,10 @@ def balance(
 
     path, part_of = scene_path(scene), _share(share)
     machine = load_scene(path)
-    folder = writable(Path("results", path.stem) if out is None else out)
+    folder = results_folder(path, out)
     with progress("balancing"):
         weights = balanced(machine, part_of, cost_cap=cost_cap)
-        said = [_report(path.stem, weights), "", *_crank(machine, weights, cost_cap)]
+        lines = [_report(path.stem, weights), "", *_crank(machine, weights, cost_cap)]
     written = ["balance.csv"]
     with together(folder) as part:
         (part / "balance.csv").write_text(_csv(weights), encoding="utf-8")
@@ -54,14 +51,14 @@ def balance(
             from crankmbs.figures import save_balance_figure  # matplotlib only here
 
             written.append(save_balance_figure(weights, part).name)
-    said += ["", wrote(folder, written)]
+    lines += ["", wrote(folder, written)]
     if write is not None:
         remark = f"with counterweights for {100.0 * weights.share:g} % of the reciprocating mass"
         files = copy_scene(path, write, _pasted(machine, weights), remark)
-        said.append(f"wrote {', '.join(map(str, files))}")
-    typer.echo("\n".join(said))
+        lines.append(f"wrote {', '.join(map(str, files))}")
+    echo("\n".join(lines))
     if weights.result.status != 0:
-        raise typer.Exit(3)
+        raise Exit(3)
 
 
 def _pasted(scene: Scene, weights: Balance) -> dict[str, str]:
@@ -113,7 +110,6 @@ def _share(text: str) -> float:
 
 
 def _report(name: str, weights: Balance) -> str:
-    title = weights.result.scene.title
     rows = [
         [
             f"{force.quantity}, {force.direction} [{force.units}]",
@@ -125,7 +121,7 @@ def _report(name: str, weights: Balance) -> str:
     ]
     return "\n".join(
         [
-            f"{name}: {title}" if title else name,
+            heading(name, weights.result.scene.title),
             "",
             "counterweight, mass times radius, for the rotating mass and "
             f"{100.0 * weights.share:g} % of the reciprocating mass:",

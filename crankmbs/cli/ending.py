@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TextIO
 
-import typer
+from typer import Exit, echo
 
 from crankmbs.errors import CrankmbsError
 
@@ -33,7 +33,7 @@ def ending() -> Iterator[None]:
         raise _exit(130, "interrupted") from None
     except BrokenPipeError:  # head, or a pager that was left
         _close(sys.stdout)
-        raise typer.Exit(141) from None
+        raise Exit(141) from None
     except OSError as error:
         if error.filename is not None:  # no error of the output
             raise
@@ -42,12 +42,12 @@ def ending() -> Iterator[None]:
         raise _exit(2, f"error: {why}; send it elsewhere") from None
 
 
-def _exit(status: int, message: str) -> typer.Exit:
+def _exit(status: int, message: str) -> Exit:
     try:
-        typer.echo(message, err=True)
+        echo(message, err=True)
     except OSError:  # stderr is as full
         _close(sys.stderr)
-    return typer.Exit(status)
+    return Exit(status)
 
 
 def _close(stream: TextIO) -> None:

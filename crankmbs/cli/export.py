@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-import typer
+from typer import Exit, Option, echo
 
 from crankmbs.cli.options import SceneName
 from crankmbs.cli.progress import progress
@@ -15,10 +15,10 @@ __all__ = ["export"]
 
 def export(
     scene: SceneName,
-    to: Annotated[str, typer.Option(help="toml, matlab or exudyn.")],
+    to: Annotated[str, Option(help="toml, matlab or exudyn.")],
     out: Annotated[
         Path | None,
-        typer.Option("--out", "-o", metavar="FILE", help="Default NAME.toml, NAME.mat or NAME.py."),
+        Option("--out", "-o", metavar="FILE", help="Default NAME.toml, NAME.mat or NAME.py."),
     ] = None,
 ) -> None:
     """Copy a scene as it is, write its result for MATLAB, or its bodies as a script for exudyn."""
@@ -35,7 +35,7 @@ def export(
         result = simulate(loaded) if to == "matlab" else None
         copied = to == "toml"
         written = copy_scene(path, target) if copied else exported(result or loaded, to, target)
-    typer.echo(f"wrote {', '.join(map(str, written))}")
+    echo(f"wrote {', '.join(map(str, written))}")
     if result is not None and result.status != 0:
-        typer.echo(result.message)
-        raise typer.Exit(3)
+        echo(result.message)
+        raise Exit(3)

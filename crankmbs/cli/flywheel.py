@@ -7,13 +7,13 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
+from typer import Exit, Option, echo
 
-from crankmbs.cli.folder import writable, wrote_into
+from crankmbs.cli.folder import results_folder, wrote_into
 from crankmbs.cli.loads import loads_table
 from crankmbs.cli.options import NoFigures, Out, SceneName, WrittenScene
 from crankmbs.cli.progress import progress
-from crankmbs.cli.text import table
+from crankmbs.cli.text import heading, table
 from crankmbs.digits import digits, error_digits
 from crankmbs.errors import InputError, shown
 from crankmbs.scene.units import RPM
@@ -33,7 +33,7 @@ _SHARE = re.compile(r"\s*(\d+\.?\d*(?:[eE][+-]?\d+)?|\.\d+)\s*(%?)\s*")
 def flywheel(
     scene: SceneName,
     fluctuation: Annotated[
-        str, typer.Option(help='Wanted (max - min)/mean of the speed, as "1 %" or 0.01.')
+        str, Option(help='Wanted (max - min)/mean of the speed, as "1 %" or 0.01.')
     ] = "1 %",
     write: WrittenScene = None,
     out: Out = None,
@@ -52,24 +52,24 @@ def flywheel(
         )
     path = scene_path(scene)
     machine = load_scene(path)
-    folder = None if no_figures else writable(Path("results", path.stem) if out is None else out)
+    folder = None if no_figures else results_folder(path, out)
     with progress("sizing"):
         wheel = sized(machine, number)
-    said = [_report(path.stem, machine, wheel)]
+    lines = [_report(path.stem, machine, wheel)]
     if wheel.status == 0:
         with progress("loads"):
-            said += ["", loads, ""] if (loads := _loads(machine, wheel)) else [""]
+            lines += ["", loads, ""] if (loads := _loads(machine, wheel)) else [""]
         if folder is not None:
-            said.append(wrote_into(folder, [_drawn(machine, wheel, folder)]))
+            lines.append(wrote_into(folder, [_drawn(machine, wheel, folder)]))
         if write is not None:
-            said.append(f"wrote {', '.join(map(str, _written(path, machine, wheel, write)))}")
-    typer.echo("\n".join(said))
+            lines.append(f"wrote {', '.join(map(str, _written(path, machine, wheel, write)))}")
+    echo("\n".join(lines))
     if wheel.status != 0:
-        raise typer.Exit(3)
+        raise Exit(3)
 
 
 def _loads(scene: Scene, wheel: Flywheel) -> str:
-    """Bearing loads with the scene's own inertia, if it has any, and with this one."""
+    """Bearing loads with the scene's inertia, if it has any, and with the one that was sized."""
     from crankmbs.design.flywheel import fluctuations
     from crankmbs.measures import measure
 
@@ -116,9 +116,8 @@ def _written(path: Path, scene: Scene, wheel: Flywheel, file: Path) -> tuple[Pat
 
 
 def _report(name: str, scene: Scene, wheel: Flywheel) -> str:
-    title = f"{name}: {scene.title}" if scene.title else name
     lines = [
-        f"{title}\n",
+        f"{heading(name, scene.title)}\n",
         f"{'flywheel':<12} {wheel.message}",
         f"{'load':<12} {_load(scene, wheel)}",
     ]
@@ -140,8 +139,8 @@ def _report(name: str, scene: Scene, wheel: Flywheel) -> str:
         *moving,
         _row("which is off by [%]", wheel.lecture_error, 100.0, most=3),
     ]
-    heading = ["over the settled cycle", "value, to 6 digits", "num. error"]
-    return "\n".join([*lines, "", table(heading, rows)])
+    headings = ["over the settled cycle", "value, to 6 digits", "num. error"]
+    return "\n".join([*lines, "", table(headings, rows)])
 
 
 def _load(scene: Scene, wheel: Flywheel) -> str:

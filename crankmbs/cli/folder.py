@@ -10,7 +10,7 @@ from pathlib import Path
 
 from crankmbs.errors import OutputError
 
-__all__ = ["writable", "wrote", "wrote_into"]
+__all__ = ["results_folder", "writable", "wrote", "wrote_into"]
 
 _OURS = {".png", ".csv", ".nc"}
 
@@ -30,6 +30,11 @@ def writable(folder: Path) -> Path:
         for each in missing:
             with suppress(OSError):  # not made, or another run writes there by now
                 each.rmdir()
+
+
+def results_folder(scene: Path, out: Path | None) -> Path:
+    """The folder that --out names, else results/NAME of the scene; it can be written."""
+    return writable(Path("results", scene.stem) if out is None else out)
 
 
 def wrote_into(folder: Path, names: Sequence[str]) -> str:

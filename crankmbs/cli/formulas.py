@@ -85,6 +85,6 @@ def _line(error: Exception, path: Path) -> str:
     """Where in a file it went wrong, and what."""
     lines = [f.lineno for f in traceback.extract_tb(error.__traceback__) if f.filename == str(path)]
     line = error.lineno if isinstance(error, SyntaxError) else lines[-1] if lines else None
-    what = error.msg if isinstance(error, SyntaxError) else str(error)
-    said = f"{type(error).__name__}: {what}" if what else type(error).__name__
-    return f", line {line}: {said}" if line else f": {said}"
+    text = error.msg if isinstance(error, SyntaxError) else str(error)
+    message = f"{type(error).__name__}: {text}" if text else type(error).__name__
+    return f", line {line}: {message}" if line else f": {message}"

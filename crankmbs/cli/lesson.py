@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-import typer
+from typer import Argument, Option, echo
 
 from crankmbs.cli.folder import writable
 from crankmbs.cli.progress import progress
@@ -16,16 +16,17 @@ __all__ = ["lesson", "lessons"]
 def lesson(
     name: Annotated[
         str | None,
-        typer.Argument(
+        Argument(
             metavar="NAME", help="Its name, as lessons lists them; without it all, with an index."
         ),
     ] = None,
     out: Annotated[
-        Path, typer.Option("--out", "-o", metavar="DIR", help="Folder of the page.")
+        Path,
+        Option("--out", "-o", metavar="DIR", help="Folder of the page."),
     ] = Path("lessons"),
     scene: Annotated[
         str | None,
-        typer.Option("--scene", metavar="SCENE", help="Which it is about; default its own."),
+        Option("--scene", metavar="SCENE", help="Which it is about; default its own."),
     ] = None,
 ) -> None:
     """Write a lesson: figures that compute while you drag them, formulas, and questions."""
@@ -38,7 +39,7 @@ def lesson(
     writable(out)
     with progress(f"lesson {name}" if name else "lessons"):
         file = write_lesson(name, out, about) if name else write_lessons(out, about)
-    typer.echo(f"wrote {file}; open it in a browser")
+    echo(f"wrote {file}; open it in a browser")
 
 
 def lessons() -> None:
@@ -47,4 +48,4 @@ def lessons() -> None:
 
     width = max(map(len, LESSONS))
     for number, (name, title) in enumerate(LESSONS.items(), start=1):
-        typer.echo(f"{number}  {name:<{width}}  {title}")
+        echo(f"{number}  {name:<{width}}  {title}")

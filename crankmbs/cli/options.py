@@ -5,28 +5,45 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-import typer
+from typer import Argument, Option
 
-__all__ = ["CostCap", "NoFigures", "Out", "Rtol", "SceneName", "Until", "WrittenScene"]
+__all__ = [
+    "CostCap",
+    "Decimal",
+    "Index",
+    "NoFigures",
+    "Out",
+    "Rtol",
+    "SceneName",
+    "Separator",
+    "Skip",
+    "Until",
+    "WrittenScene",
+]
 
 
 SceneName = Annotated[
-    str, typer.Argument(metavar="SCENE", help="A scene file, or the name of a shipped scene.")
+    str, Argument(metavar="SCENE", help="A scene file, or the name of a shipped scene.")
 ]
 
 CostCap = Annotated[
-    float, typer.Option(help="Seconds, as steps, after which multibody and minimal give up.")
+    float, Option(help="Seconds, as steps, after which multibody and minimal give up.")
 ]
 
-Rtol = Annotated[float | None, typer.Option(help="Relative global error asked for.")]
-Until = Annotated[
-    str | None, typer.Option(help='End: "20 cycles", "10 rev", "0.75 s" or "settled".')
-]
-Out = Annotated[Path | None, typer.Option(help="Folder of the results; default results/NAME.")]
+Rtol = Annotated[float | None, Option(help="Relative global error asked for.")]
+Until = Annotated[str | None, Option(help='End: "20 cycles", "10 rev", "0.75 s" or "settled".')]
+Out = Annotated[Path | None, Option(help="Folder of the results; default results/NAME.")]
 WrittenScene = Annotated[
     Path | None,
-    typer.Option(
+    Option(
         "-o", "--write", metavar="FILE", help="Write the scene with the answer in place, .toml."
     ),
 ]
-NoFigures = Annotated[bool, typer.Option("--no-figures", help="Draw no figures.")]
+NoFigures = Annotated[bool, Option("--no-figures", help="Draw no figures.")]
+
+Index = Annotated[
+    str | None, Option(help="The column of an encoder's mark; its pulses: --wheel 360.")
+]
+Separator = Annotated[str | None, Option(help='";", ",", "|", tab or blank; else it is found.')]
+Decimal = Annotated[str | None, Option(help='"." or ","; else it is found.')]
+Skip = Annotated[int, Option(help="Lines at the beginning to leave out.")]

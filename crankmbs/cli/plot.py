@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-import typer
+from typer import Argument, Option, echo
 
 from crankmbs.cli.folder import writable, wrote
 from crankmbs.errors import InputError
@@ -15,34 +15,32 @@ __all__ = ["plot"]
 
 
 def plot(
-    sweep: Annotated[Path, typer.Argument(metavar="SWEEP", help="The folder that sweep wrote.")],
+    sweep: Annotated[Path, Argument(metavar="SWEEP", help="The folder that sweep wrote.")],
     show: Annotated[
         list[str] | None,
-        typer.Option(help='Such as "peak crank pin force" or "side thrust by S1"; often.'),
+        Option(help='Such as "peak crank pin force" or "side thrust by S1"; often.'),
     ] = None,
     limit: Annotated[
-        str | None, typer.Option(help='Of what is shown, "1 %" or "20 kN": a line is drawn there.')
+        str | None, Option(help='Of what is shown, "1 %" or "20 kN": a line is drawn there.')
     ] = None,
     out: Annotated[
         Path | None,
-        typer.Option(
-            "-o", "--out", help="Folder of the figures, or one PNG file; default results/NAME."
-        ),
+        Option("-o", "--out", help="Folder of the figures, or one PNG file; default results/NAME."),
     ] = None,
 ) -> None:
     """Draw measures of a sweep over what was varied: curves, contours or small multiples."""
     from crankmbs.sweep.store import load_sweep
 
-    data, shown = load_sweep(sweep), show or ["fluctuation"]
+    data, names = load_sweep(sweep), show or ["fluctuation"]
     out = Path("results", sweep.stem) if out is None else out
     file = out.name if out.suffix == ".png" else None
-    if file and len(shown) > 1:
-        raise InputError(f"--out {out}: is one file, and {len(shown)} figures come; give a folder")
+    if file and len(names) > 1:
+        raise InputError(f"--out {out}: is one file, and {len(names)} figures come; give a folder")
     folder = writable(out.parent if file else out)
     from crankmbs.figures import sweep_figure  # matplotlib only here
 
     drawn = {}
-    for words in shown:
+    for words in names:
         try:
             drawn[file or f"{'_'.join(words.split())}.png"] = sweep_figure(data, words, limit)
         except InputError as error:
@@ -50,4 +48,4 @@ def plot(
     with together(folder) as part:
         for name, figure in drawn.items():
             figure.savefig(part / name, format="png")
-    typer.echo(f"wrote {out}" if file else wrote(folder, [*drawn]))
+    echo(f"wrote {out}" if file else wrote(folder, [*drawn]))

@@ -13,7 +13,7 @@ _PATIENCE = 1.0  # s
 
 
 @contextmanager
-def progress(what: str) -> Iterator[None]:
+def progress(task: str) -> Iterator[None]:
     """Show a bar and the time elapsed on a terminal's stderr, from the second second on.
 
     How far the work has come is not known, so the bar only moves; it is gone when the work is.
@@ -31,7 +31,7 @@ def progress(what: str) -> Iterator[None]:
         console=Console(stderr=True),
         transient=True,
     )
-    bar.add_task(what, total=None)
+    bar.add_task(task, total=None)
     timer = Timer(_PATIENCE, bar.start)
     timer.daemon = True
     timer.start()

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from crankmbs.cli.text import table
+from crankmbs.cli.text import heading, table
 from crankmbs.digits import digits, error_digits
 from crankmbs.measures import Measures
 from crankmbs.measures.plausible import warnings
@@ -25,15 +25,14 @@ __all__ = ["comparison", "report"]
 
 def report(name: str, result: Result, measures: Measures) -> str:
     """The run in words, then its measures, peaks and specific loads as tables."""
-    title = f"{name}: {result.scene.title}" if result.scene.title else name
     parts = [
-        f"{title}\n",
+        f"{heading(name, result.scene.title)}\n",
         _about(result, measures),
-        *(f"{'warning':<12} {said}" for said in warnings(result.scene)),
+        *(f"{'warning':<12} {remark}" for remark in warnings(result.scene)),
     ]
     for rows in tables(result, measures):
         parts += ["", table(*rows)]
-    parts += [textwrap.fill(said, 100) for said in journal_remarks(result.scene)]
+    parts += [textwrap.fill(remark, 100) for remark in journal_remarks(result.scene)]
     return "\n".join(parts)
 
 
@@ -74,9 +73,9 @@ _FIRST = 5  # events that are printed
 def _about(result: Result, measures: Measures) -> str:
     time, angle, speed = map(result.sampled, ("time", "crank_angle", "crank_speed"))
     turned = (angle[-1] - angle[0]) / (2.0 * math.pi)
-    kept = "" if result.scene.run.every is not None else "; only the last cycle is kept"
+    extent = "" if result.scene.run.every is not None else "; only the last cycle is kept"
     sense = ", backwards" if turned < 0.0 else ""
-    samples = f"{len(time)}, {time[0]:.6g} to {time[-1]:.6g} s, {turned:.6g} rev{sense}{kept}"
+    samples = f"{len(time)}, {time[0]:.6g} to {time[-1]:.6g} s, {turned:.6g} rev{sense}{extent}"
     return "\n".join(
         [
             *(
@@ -86,7 +85,7 @@ def _about(result: Result, measures: Measures) -> str:
             f"{'end':<12} {result.message}",
             f"{'samples':<12} {samples}",
             f"{'last sample':<12} {math.degrees(angle[-1]):.6g} deg, {speed[-1] / RPM:.6g} rpm",
-            *([f"{'speed':<12} {said}"] if (said := unsteady(measures)) else []),
+            *([f"{'speed':<12} {fault}"] if (fault := unsteady(measures)) else []),
             *_events(result),
             _error_line(result),
             f"{'energy':<12} closes to {measures.energy_closure:.1e} of the peak kinetic energy",

@@ -6,7 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-import typer
+from typer import Argument, echo
 
 from crankmbs.cli.options import SceneName
 from crankmbs.errors import InputError, OutputError
@@ -24,11 +24,11 @@ def scenes() -> None:
     width = max(map(len, shipped), default=0)
     for name, path in shipped.items():
         title = tomllib.loads(path.read_text(encoding="utf-8"))["title"]
-        typer.echo(f"{name:<{width}}  {title}")
+        echo(f"{name:<{width}}  {title}")
 
 
 def new(
-    name: Annotated[str, typer.Argument(metavar="NAME", help="Name or path of the new scene.")],
+    name: Annotated[str, Argument(metavar="NAME", help="Name or path of the new scene.")],
 ) -> None:
     """Write a commented scene to start from."""
     from crankmbs.scene.template import template
@@ -39,7 +39,7 @@ def new(
     if path.exists():
         raise OutputError(f"{path}: exists already and is not overwritten; choose another name")
     text_in_one_move(path, template(path.stem))
-    typer.echo(f"wrote {path}; check it with: crankmbs check {path}")
+    echo(f"wrote {path}; check it with: crankmbs check {path}")
 
 
 def check(scene: SceneName) -> None:
@@ -50,4 +50,4 @@ def check(scene: SceneName) -> None:
 
     path = scene_path(scene)
     loaded = load_scene(path)
-    typer.echo(describe(str(path), loaded, choose(loaded, loaded.run.formulation)))
+    echo(describe(str(path), loaded, choose(loaded, loaded.run.formulation)))

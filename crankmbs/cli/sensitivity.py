@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Annotated
 
-import typer
+from typer import Exit, Option, echo
 
 from crankmbs.cli.options import SceneName
 from crankmbs.cli.progress import progress
 from crankmbs.cli.sweep import varied
-from crankmbs.cli.text import cells, table, with_unit
+from crankmbs.cli.text import cells, heading, table, with_unit
 from crankmbs.digits import digits
 from crankmbs.errors import InputError
 
@@ -24,7 +24,7 @@ def sensitivity(
     scene: SceneName,
     vary: Annotated[
         list[str],
-        typer.Option(
+        Option(
             metavar="NAME[=RANGE]",
             help='"crank.inertia" for the derivative there, "gas.shift", "gas.scale" or '
             '"gas.offset" of a pressure table; or with ranges for all, '
@@ -32,12 +32,11 @@ def sensitivity(
         ),
     ],
     measures: Annotated[
-        list[str] | None,
-        typer.Option("--of", metavar="MEASURE", help='"peak crank pin force"; often.'),
+        list[str] | None, Option("--of", metavar="MEASURE", help='"peak crank pin force"; often.')
     ] = None,
-    n: Annotated[int, typer.Option("--n", help="Of Sobol indices, a power of two.")] = 256,
-    seed: Annotated[int, typer.Option(help="From which the design of indices is drawn.")] = 1,
-    workers: Annotated[int | None, typer.Option(help="Processes, for indices.")] = None,
+    n: Annotated[int, Option("--n", help="Of Sobol indices, a power of two.")] = 256,
+    seed: Annotated[int, Option(help="From which the design of indices is drawn.")] = 1,
+    workers: Annotated[int | None, Option(help="Processes, for indices.")] = None,
 ) -> None:
     """Show derivatives of measures at a scene, or what share of their spread is whose."""
     from crankmbs.scene.read import load_scene, scene_path
@@ -50,20 +49,17 @@ def sensitivity(
             "one kind"
         )
     path = scene_path(scene)
-    loaded, wanted = load_scene(path), measures or ["fluctuation"]
-    title = f"{path.stem}: {loaded.title}" if loaded.title else path.stem
+    loaded, words = load_scene(path), measures or ["fluctuation"]
     with progress("solving"):
         if ranges:
-            indices = sobol_indices(
-                loaded, varied(ranges), wanted, n=n, seed=seed, executor=workers
-            )
-            said = "\n\n".join(_indices(shares) for shares in indices)
+            indices = sobol_indices(loaded, varied(ranges), words, n=n, seed=seed, executor=workers)
+            report = "\n\n".join(_indices(shares) for shares in indices)
             lacks = any(shares.status for shares in indices)
         else:
-            said, lacks = _derivatives(loaded, vary, wanted), False
-    typer.echo(f"{title}\n\n{said}")
+            report, lacks = _derivatives(loaded, vary, words), False
+    echo(f"{heading(path.stem, loaded.title)}\n\n{report}")
     if lacks:
-        raise typer.Exit(3)
+        raise Exit(3)
 
 
 def _derivatives(scene: Scene, names: list[str], measures: list[str]) -> str:
@@ -94,5 +90,5 @@ def _indices(shares: SobolIndices) -> str:
         [name, *cells(first), *cells(total)]
         for name, first, total in zip(shares.knobs, shares.first, shares.total, strict=True)
     ]
-    heading = ["knob", "first order", "num. error", "total", "num. error"]
-    return f"{shares.measure.words}, {shares.message}\n\n{table(heading, rows)}"
+    headings = ["knob", "first order", "num. error", "total", "num. error"]
+    return f"{shares.measure.words}, {shares.message}\n\n{table(headings, rows)}"

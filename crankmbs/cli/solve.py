@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Annotated
 
-import typer
+from typer import Exit, Option, echo
 
+from crankmbs.cli.options import SceneName
 from crankmbs.cli.progress import progress
 from crankmbs.cli.sweep import varied
-from crankmbs.cli.text import cells, table, with_unit
+from crankmbs.cli.text import cells, heading, table, with_unit
 from crankmbs.display import displayed
 from crankmbs.errors import InputError
 
@@ -21,22 +22,19 @@ __all__ = ["solve"]
 
 
 def solve(
-    scene: Annotated[
-        str, typer.Argument(metavar="SCENE", help="A scene file, or the name of a shipped scene.")
-    ],
+    scene: SceneName,
     vary: Annotated[
-        list[str],
-        typer.Option(metavar="NAME=RANGE", help='Such as "crank.inertia=0.05..0.5 kg m^2".'),
+        list[str], Option(metavar="NAME=RANGE", help='Such as "crank.inertia=0.05..0.5 kg m^2".')
     ],
-    wanted: Annotated[
-        str | None, typer.Option("--for", metavar="CONDITION", help='"fluctuation = 1 %".')
+    condition: Annotated[
+        str | None, Option("--for", metavar="CONDITION", help='"fluctuation = 1 %".')
     ] = None,
     least: Annotated[
-        str | None, typer.Option("--minimize", metavar="MEASURE", help='"peak crank pin force".')
+        str | None, Option("--minimize", metavar="MEASURE", help='"peak crank pin force".')
     ] = None,
     subject_to: Annotated[
         list[str] | None,
-        typer.Option(metavar="CONDITION", help='With --minimize, "fluctuation <= 2 %"; often.'),
+        Option(metavar="CONDITION", help='With --minimize, "fluctuation <= 2 %"; often.'),
     ] = None,
 ) -> None:
     """Find the value with which a measure is what is wanted, or values with which it is least."""
@@ -44,34 +42,33 @@ def solve(
     from crankmbs.sweep.minimize import minimize
     from crankmbs.sweep.solve import solve as solved
 
-    if (wanted is None) == (least is None) or (subject_to and least is None):
+    if (condition is None) == (least is None) or (subject_to and least is None):
         raise InputError(
             'give --for "fluctuation = 1 %" or --minimize "peak crank pin force", the latter '
             'perhaps with --subject-to "fluctuation <= 2 %"'
         )
     path = scene_path(scene)
     loaded, ranges = load_scene(path), varied(vary)
-    title = f"{path.stem}: {loaded.title}" if loaded.title else path.stem
     with progress("solving"):
-        if wanted is not None:
-            answer = solved(loaded, ranges, wanted)
-            status, said = answer.status, _roots(answer)
+        if condition is not None:
+            answer = solved(loaded, ranges, condition)
+            status, report = answer.status, _roots(answer)
         else:
             lowest = minimize(loaded, ranges, str(least), subject_to or [])
-            status, said = lowest.status, _minimum(lowest)
-    typer.echo(f"{title}\n\n{said}")
+            status, report = lowest.status, _minimum(lowest)
+    echo(f"{heading(path.stem, loaded.title)}\n\n{report}")
     if status != 0:
-        raise typer.Exit(3)
+        raise Exit(3)
 
 
 def _roots(answer: Solved) -> str:
     measure = _named(answer.measure)
-    heading = [with_unit(answer.knob, answer.units), "num. error", measure, "num. error"]
+    headings = [with_unit(answer.knob, answer.units), "num. error", measure, "num. error"]
     roots = answer.roots or ((answer.nearest,) if answer.nearest else ())
     of = answer.measure.about.units
     rows = [[*cells(root.value, answer.units), *cells(root.reached, of)] for root in roots]
-    said = answer.message if answer.roots else f"{answer.message}; the nearest of those tried:"
-    return f"{said}\n\n{table(heading, rows)}" if rows else answer.message
+    message = answer.message if answer.roots else f"{answer.message}; the nearest of those tried:"
+    return f"{message}\n\n{table(headings, rows)}" if rows else answer.message
 
 
 def _minimum(answer: Minimum) -> str:
@@ -90,9 +87,9 @@ def _minimum(answer: Minimum) -> str:
         for condition in answer.conditions
         for of in (condition.measure.about.units,)
     ]
-    said = f"{answer.message}, in {answer.evaluations} runs"
+    message = f"{answer.message}, in {answer.evaluations} runs"
     headings = [f"least of {answer.measure.words}", "value", "num. error", ""]
-    return f"{said}\n\n{table(headings, rows)}"
+    return f"{message}\n\n{table(headings, rows)}"
 
 
 def _named(reading: Reading) -> str:

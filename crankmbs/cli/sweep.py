@@ -10,9 +10,10 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
+from typer import Option, echo
 
-from crankmbs.cli.text import cells, table, with_unit
+from crankmbs.cli.options import SceneName
+from crankmbs.cli.text import cells, heading, table, with_unit
 from crankmbs.errors import InputError, shown
 
 if TYPE_CHECKING:
@@ -34,65 +35,54 @@ _RANGE = '"crank.inertia=0.05..0.5 kg m^2:40"'
 
 
 def sweep(
-    scene: Annotated[
-        str, typer.Argument(metavar="SCENE", help="A scene file, or the name of a shipped scene.")
-    ],
-    out: Annotated[Path, typer.Option("-o", "--out", metavar="FOLDER", help="Such as sweep.zarr.")],
+    scene: SceneName,
+    out: Annotated[Path, Option("-o", "--out", metavar="FOLDER", help="Such as sweep.zarr.")],
     vary: Annotated[
         list[str] | None,
-        typer.Option(metavar="NAME=VALUES", help=f"Such as {_RANGE}; may be given often."),
+        Option(metavar="NAME=VALUES", help=f"Such as {_RANGE}; may be given often."),
     ] = None,
     sample: Annotated[
-        str | None, typer.Option(help="sobol or latin: cases spread over the ranges.")
+        str | None, Option(help="sobol or latin: cases spread over the ranges.")
     ] = None,
-    n: Annotated[int, typer.Option("--n", help="How many cases a sample has.")] = 1024,
-    seed: Annotated[int, typer.Option(help="From which a sample is drawn.")] = 1,
+    n: Annotated[int, Option("--n", help="How many cases a sample has.")] = 1024,
+    seed: Annotated[int, Option(help="From which a sample is drawn.")] = 1,
     cases: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="A CSV file with a row for each case.")
+        Path | None, Option(metavar="FILE", help="A CSV file with a row for each case.")
     ] = None,
-    keep: Annotated[str, typer.Option(help="measures, or series: every sample too.")] = "measures",
+    keep: Annotated[str, Option(help="measures, or series: every sample too.")] = "measures",
     strict: Annotated[
-        bool,
-        typer.Option("--strict", help="Run nothing if any scene cannot be built."),
+        bool, Option("--strict", help="Run nothing if any scene cannot be built.")
     ] = False,
-    resume: Annotated[bool, typer.Option("--resume", help="Resume what was interrupted.")] = False,
+    resume: Annotated[bool, Option("--resume", help="Resume what was interrupted.")] = False,
     workers: Annotated[
-        int | None, typer.Option(help="How many compute; default one for each processor.")
+        int | None, Option(help="How many compute; default one for each processor.")
     ] = None,
     cluster: Annotated[
-        str | None,
-        typer.Option(metavar="ADDRESS", help='A Dask scheduler, such as "tcp://host:8786".'),
+        str | None, Option(metavar="ADDRESS", help='A Dask scheduler, such as "tcp://host:8786".')
     ] = None,
 ) -> None:
     """Run a scene with some of its numbers varied, and store the measures of each case."""
     from crankmbs.scene.read import load_scene, scene_path
-    from crankmbs.sweep.cluster import cluster_executor
     from crankmbs.sweep.plan import check_possible, plan_of
-    from crankmbs.sweep.run import fill
     from crankmbs.sweep.summary import summary
 
     path = scene_path(scene)
-    wanted = _wanted(vary or [], cases, (sample, n, seed))
+    cases_of = _cases(vary or [], cases, (sample, n, seed))
     with _as_options():
-        plan = plan_of(load_scene(path), wanted(), keep)
+        plan = plan_of(load_scene(path), cases_of(), keep)
     if workers is not None and cluster is not None:
         raise InputError("--workers and --cluster both say where cases are computed; give one")
     _check_free(out, resume)
     if strict:
         check_possible(plan)
     if plan.series:
-        typer.echo(f"series of {plan.cases.count} cases take {_bytes(plan.bytes)} before packing")
-    with ExitStack() as stack:
-        there = stack.enter_context(cluster_executor(cluster)) if cluster else workers
-        report = stack.enter_context(_progress(plan.cases.count))
-        stack.enter_context(_as_options())
-        stack.enter_context(_resumable(out))
-        fill(plan, out, there, report)
-    title = f"{path.stem}: {plan.scene.title}" if plan.scene.title else path.stem
-    typer.echo(f"{title}\n\n{_report(plan, summary(out))}\n\nwrote {out}")
+        echo(f"series of {plan.cases.count} cases take {_bytes(plan.bytes)} before packing")
+    _fill(plan, out, workers, cluster)
+    title = heading(path.stem, plan.scene.title)
+    echo(f"{title}\n\n{_report(plan, summary(out))}\n\nwrote {out}")
 
 
-def varied(given: list[str]) -> dict[str, str]:
+def varied(texts: list[str]) -> dict[str, str]:
     """Names and their values, as the option --vary has them.
 
     Raises
@@ -102,24 +92,24 @@ def varied(given: list[str]) -> dict[str, str]:
     >>> varied(["rod.length=0.14..0.2 m:25"])
     {'rod.length': '0.14..0.2 m:25'}
     """
-    found: dict[str, str] = {}
-    for one in given:
-        name, sign, values = one.partition("=")
+    ranges: dict[str, str] = {}
+    for text in texts:
+        name, sign, values = text.partition("=")
         name = name.strip()
         if not sign or not name or not values.strip():
             raise InputError(
-                f"--vary: must be a name and its values, as {_RANGE}; {shown(one)} came"
+                f"--vary: must be a name and its values, as {_RANGE}; {shown(text)} came"
             )
-        if name in found:
+        if name in ranges:
             raise InputError(f"--vary: {name} is varied twice; give it once")
-        found[name] = values.strip()
-    return found
+        ranges[name] = values.strip()
+    return ranges
 
 
-def _wanted(
+def _cases(
     vary: list[str], cases: Path | None, drawn: tuple[str | None, int, int]
 ) -> Callable[[], object]:
-    """What makes the cases from the options."""
+    """A function that makes the cases from the options."""
     ranges, (method, n, seed) = varied(vary), drawn
     if (cases is None) == (not ranges):
         came = "neither" if cases is None else "both"
@@ -133,6 +123,19 @@ def _wanted(
     from crankmbs.sweep.sample import Sample
 
     return lambda: Sample(ranges, n, method, seed)
+
+
+def _fill(plan: Plan, out: Path, workers: int | None, cluster: str | None) -> None:
+    """Compute the cases here or on the cluster, with a bar and a way to resume."""
+    from crankmbs.sweep.cluster import cluster_executor
+    from crankmbs.sweep.run import fill
+
+    with ExitStack() as stack:
+        executor = stack.enter_context(cluster_executor(cluster)) if cluster else workers
+        report = stack.enter_context(_progress(plan.cases.count))
+        stack.enter_context(_as_options())
+        stack.enter_context(_resumable(out))
+        fill(plan, out, executor, report)
 
 
 def _check_free(out: Path, resume: bool) -> None:
@@ -168,7 +171,7 @@ def _resumable(out: Path) -> Iterator[None]:
 
         if unfinished(out):
             name = shlex.quote(str(out))
-            typer.echo(f"{name} has all finished blocks; --resume computes the others", err=True)
+            echo(f"{name} has all finished blocks; --resume computes the others", err=True)
         raise
 
 
@@ -205,8 +208,8 @@ def _progress(count: int) -> Iterator[Callable[[int], None]]:
 
 def _report(plan: Plan, summary: Summary) -> str:
     lines = [f"{plan.cases.count} cases over {', '.join(plan.cases.names)}"]
-    for status, (count, said) in sorted(summary.ended.items(), key=lambda item: item[0] != 0):
-        first = "" if status == 0 else f"; the first: {said}"
+    for status, (count, message) in sorted(summary.ended.items(), key=lambda item: item[0] != 0):
+        first = "" if status == 0 else f"; the first: {message}"
         lines.append(f"{count} {_ENDED[status]}{first}")
     if summary.bounds:
         headings = ["over all cases", "least", "largest", "num. error at most"]

@@ -7,7 +7,12 @@ from collections.abc import Sequence
 from crankmbs.digits import digits, error_digits
 from crankmbs.display import displayed
 
-__all__ = ["cells", "table", "with_unit"]
+__all__ = ["cells", "heading", "table", "with_unit"]
+
+
+def heading(name: str, title: str) -> str:
+    """The first line of a report: the scene's name, and its title if it has one."""
+    return f"{name}: {title}" if title else name
 
 
 def table(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
+from typer import Exit, Option, echo
 
 from crankmbs.cli.folder import writable, wrote
 from crankmbs.cli.options import CostCap, NoFigures, Rtol, SceneName, Until
@@ -18,48 +18,47 @@ if TYPE_CHECKING:
 
 __all__ = ["validate"]
 
+_FURTHER = "--verbose prints every reference and cause, --out DIR writes tables and figures"
+
 
 def validate(
     scene: SceneName,
     formulation: Annotated[
         str | None,
-        typer.Option(help="Which run is compared; default multibody, where it serves the scene."),
+        Option(help="Which run is compared; default multibody, where it serves the scene."),
     ] = None,
     rtol: Rtol = None,
     until: Until = None,
     cost_cap: CostCap = 10.0,
-    cylinder: Annotated[int, typer.Option(help="Number of the cylinder compared.")] = 1,
+    cylinder: Annotated[int, Option(help="Number of the cylinder compared.")] = 1,
     formula: Annotated[
         list[str] | None,
-        typer.Option(
+        Option(
             metavar="FILE:NAME",
             help="A function of your own to compare, mine.py:torque_series; may be given often.",
         ),
     ] = None,
     causes: Annotated[
         str | None,
-        typer.Option(help='Order of the causes, "series, constant speed, solver"; the rest last.'),
+        Option(help='Order of the causes, "series, constant speed, solver"; the rest last.'),
     ] = None,
     verbose: Annotated[
-        bool, typer.Option("--verbose", help="Print every reference and every cause.")
+        bool, Option("--verbose", help="Print every reference and every cause.")
     ] = False,
-    out: Annotated[
-        Path | None, typer.Option(help="Write tables and figures into this folder.")
-    ] = None,
+    out: Annotated[Path | None, Option(help="Write tables and figures into this folder.")] = None,
     no_figures: NoFigures = False,
 ) -> None:
     """Show how far lecture formulas and your own are off a run, and why."""
     from crankmbs.cli.formulas import named_formulas
     from crankmbs.cli.run import override
-    from crankmbs.cli.validate_report import full_report, validation_report
-    from crankmbs.compare import budget, check_comparable, checked_chain, compare
-    from crankmbs.scene.read import load_scene, scene_path
+    from crankmbs.cli.validate_report import validation_report
+    from crankmbs.compare import budget, check_comparable, compare
+    from crankmbs.scene.read import load_scene
     from crankmbs.simulate import simulate
 
-    loaded = override(load_scene(scene_path(scene)), {"rtol": rtol, "until": until})
+    loaded = override(load_scene(scene), rtol=rtol, until=until)
     check_comparable(loaded, cylinder)
-    chain = None if causes is None else [name.strip() for name in causes.split(",")]
-    checked_chain(chain, loaded)
+    chain = _chain(causes, loaded)
     formulas = named_formulas(formula or ())
     folder = None if out is None else writable(out)
     chosen = formulation or _independent(loaded)
@@ -67,15 +66,20 @@ def validate(
         result = simulate(loaded, formulation=chosen, rtol=rtol, cost_cap=cost_cap)
     comparison = compare(result, formulas, cylinder=cylinder)
     split = budget(result, formulas, cylinder=cylinder, chain=chain)
-    last = "--verbose prints every reference and cause, --out DIR writes tables and figures"
-    if folder is not None:  # before anything is printed: a screen may fail
-        written = _written(comparison, split, folder, figures=not no_figures)
-        last = wrote(folder, [file.name for file in written])
-    said = [validation_report(comparison, split)]
-    said += [full_report(comparison, split)] if verbose else []
-    typer.echo("\n\n".join([*said, last]))
+    report = validation_report(comparison, split, verbose=verbose)
+    files = folder and _save(comparison, split, folder, figures=not no_figures)
+    echo(f"{report}\n\n{files or _FURTHER}")  # a screen may fail: files first
     if result.status != 0:
-        raise typer.Exit(3)
+        raise Exit(3)
+
+
+def _chain(causes: str | None, scene: Scene) -> list[str] | None:
+    """The names of --causes, checked before anything runs."""
+    from crankmbs.compare import checked_chain
+
+    chain = None if causes is None else [name.strip() for name in causes.split(",")]
+    checked_chain(chain, scene)
+    return chain
 
 
 def _independent(scene: Scene) -> str:
@@ -86,8 +90,8 @@ def _independent(scene: Scene) -> str:
     return "multibody" if "multibody" in names else names[0]
 
 
-def _written(comparison: Comparison, split: Budget, folder: Path, *, figures: bool) -> list[Path]:
-    """Write tables and figures, which appear together."""
+def _save(comparison: Comparison, split: Budget, folder: Path, *, figures: bool) -> str:
+    """Write tables and figures, which appear together; return what was written."""
     from crankmbs.compare import save_budget, save_budget_peaks, save_comparison, save_numbers
 
     with together(folder) as part:
@@ -100,4 +104,4 @@ def _written(comparison: Comparison, split: Budget, folder: Path, *, figures: bo
 
             with progress("figures"):
                 written += save_validation(comparison, split, part)
-    return written
+    return wrote(folder, [file.name for file in written])

@@ -19,17 +19,18 @@ from crankmbs.report.compared import (
 )
 from crankmbs.scene.units import RPM
 
-__all__ = ["full_report", "validation_report"]
+__all__ = ["validation_report"]
 
 _WIDTH = 100
 _, _S0, _ = LECTURES
 
 
-def validation_report(comparison: Comparison, split: Budget) -> str:
-    """The largest error of each formula with its causes, and how far to believe the run."""
+def validation_report(comparison: Comparison, split: Budget, *, verbose: bool) -> str:
+    """The largest error of each formula with its causes, and how far to believe the run; verbose:
+    every reference and every cause, too."""
     parts = [
         _about(comparison),
-        _own(comparison, split),
+        _user_formulas(comparison, split),
         _numbers(comparison),
         _lectures(comparison, split),
         textwrap.fill(f"advice: {advice(split)}", _WIDTH) if split.splits else "",
@@ -37,11 +38,12 @@ def validation_report(comparison: Comparison, split: Budget) -> str:
             textwrap.fill(line, _WIDTH)
             for line in left_out_lines((*comparison.left_out, *split.left_out))
         ),
+        _full(comparison, split) if verbose else "",
     ]
     return "\n\n".join(part for part in parts if part)
 
 
-def full_report(comparison: Comparison, split: Budget) -> str:
+def _full(comparison: Comparison, split: Budget) -> str:
     """Every reference, and every formula's causes wherever they are largest."""
     return "\n\n".join(
         [
@@ -83,7 +85,7 @@ def _numerical(comparison: Comparison) -> str:
 
 
 def _believed(comparison: Comparison) -> str:
-    """What the closed form is evaluated at, and how near a run with its own forces is to it."""
+    """Where the closed form is evaluated, and how near multibody's joint forces are to it."""
     at = "at the run's own angle, speed and acceleration"
     if comparison.excerpt.result.formulation != "multibody":
         return f"Newton-Euler {at}; gives this run its joint forces, multibody has its own"
@@ -96,8 +98,8 @@ def _believed(comparison: Comparison) -> str:
     return f"Newton-Euler {at}: the run is within {error_digits(share)} % of it ({quantity})"
 
 
-def _own(comparison: Comparison, split: Budget) -> str:
-    """Each formula of one's own, with its causes where it has a budget."""
+def _user_formulas(comparison: Comparison, split: Budget) -> str:
+    """Each formula of the user, with its causes where it has a budget."""
     formulas = [row for row in split.ranked if not row.is_lecture]
     by = dict.fromkeys(row.reference for row in formulas)
     parts = []
@@ -139,7 +141,7 @@ def _rows(splits: Sequence[Split], beside: Comparison | None = None) -> list[str
     """The table of these formulas, and what it leaves out."""
     budget = budget_table(splits, beside)
     lines = [table(*budget)] if budget.rows else []
-    return [*lines, *([textwrap.fill(said, _WIDTH)] if (said := exact_words(splits)) else [])]
+    return [*lines, *([textwrap.fill(exact, _WIDTH)] if (exact := exact_words(splits)) else [])]
 
 
 def _numbers(comparison: Comparison) -> str:

@@ -6,12 +6,12 @@ import textwrap
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import typer
+from typer import Exit, echo
 
-from crankmbs.cli.folder import writable, wrote
+from crankmbs.cli.folder import results_folder, wrote
 from crankmbs.cli.options import Out, SceneName
 from crankmbs.cli.progress import progress
-from crankmbs.cli.text import table
+from crankmbs.cli.text import heading, table
 from crankmbs.digits import error_digits
 from crankmbs.storage.files import together
 
@@ -24,7 +24,7 @@ __all__ = ["measure_scene", "work_precision"]
 def work_precision(scene: SceneName, out: Out = None) -> None:
     """Measure speed against error of every formulation that serves the scene."""
     if not measure_scene(scene, out=out):
-        raise typer.Exit(3)
+        raise Exit(3)
 
 
 def measure_scene(name: str, *, out: Path | None, beside: Beside | None = None) -> bool:
@@ -44,19 +44,19 @@ def measure_scene(name: str, *, out: Path | None, beside: Beside | None = None) 
 
     path = scene_path(name)
     scene = load_scene(path)
-    folder = writable(Path("results", path.stem) if out is None else out)
+    folder = results_folder(path, out)
     with progress("speed against error"):
         outcome = work_precision(scene, beside)
     with together(folder) as part, progress("figure"):  # before anything is printed
         from crankmbs.figures.work_precision import save_figure  # matplotlib only when it is used
 
         written = [save_work_precision(outcome, part), save_figure(outcome, part)]
-    typer.echo(f"{path.stem}: {scene.title}\n\n{_errors(outcome)}\n")
+    echo(f"{heading(path.stem, scene.title)}\n\n{_errors(outcome)}\n")
     if scene.motion is None:  # a prescribed motion is exact in all of them
-        typer.echo(f"{_times(outcome)}\n")
+        echo(f"{_times(outcome)}\n")
     for sentence in _sentences(outcome):
-        typer.echo(textwrap.fill(sentence, 100, subsequent_indent="  "))
-    typer.echo(f"\n{wrote(folder, [file.name for file in written])}")
+        echo(textwrap.fill(sentence, 100, subsequent_indent="  "))
+    echo(f"\n{wrote(folder, [file.name for file in written])}")
     return outcome.reference.result.status == 0
 
 

@@ -1,4 +1,4 @@
-"""A run against the exact closed form, the lectures' formulas and a user's own; the error budget of
+"""A run against the exact closed form, the lectures' formulas and the user's; the error budget of
 formulas; and two runs of one scene compared.
 
 The formulas themselves belong in lecture and mechanics, the measures of a run in measures.

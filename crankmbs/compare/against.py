@@ -1,4 +1,4 @@
-"""A run against the exact closed form, the lectures' formulas and a user's own."""
+"""A run against the exact closed form, the lectures' formulas and the user's."""
 
 from __future__ import annotations
 
@@ -92,19 +92,19 @@ def compare(
     *,
     cylinder: int = 1,
 ) -> Comparison:
-    """Compare a run with the closed form, with the lectures and with formulas of one's own, over
+    """Compare a run with the closed form, with the lectures and with formulas of the user, over
     its last whole cycle.
 
-    Every reference is evaluated at the run's own crank angles. "closed form" is Newton-Euler at
-    the run's own theta, omega and alpha, with the rigid rod and gravity: exact, so that the error
+    Every reference is evaluated at the crank angles of the run. "closed form" is Newton-Euler at
+    its theta, omega and alpha, with the rigid rod and gravity: exact, so that the error
     is the run's. The lectures take the time mean of the speed, the two-mass rod and no gravity,
     and count displacement from l + r: the error is theirs (`budget` splits it into causes). S0
     and S1, the sources of `crankmbs.lecture`, truncate the motion after the second harmonic; S1
     truncates the forces on rod and crank too.
-    Only "multibody" has joint forces of its own; other formulations take them from the closed form
+    Only "multibody" computes joint forces itself; other formulations take them from the closed form
     and agree with it to rounding.
 
-    A formula of one's own is a function that asks, by the names of its parameters, for what it
+    A formula of the user is a function that asks, by the names of its parameters, for what it
     needs of `crankmbs.compare.WORDS`: theta, phi, omega, alpha, gas_force, crank_radius,
     rod_length, ..., in SI units, curves of shape (n,); for a quantity of the whole engine phi and
     what acts on the pistons have shape (n, cylinders). It stands for the quantity that its name

@@ -27,7 +27,7 @@ class _Evaluation(NamedTuple):
     """A formula's values by quantity, and what it idealizes.
 
     errors : its values minus the closed form under these idealizations, at constant speed (True)
-        and at the run's own; empty where it is the closed form
+        and at the run's; empty where it is the closed form
     """
 
     reference: str
@@ -51,7 +51,7 @@ def budget(
         truncated formula
             series          exact closed form, lecture's datum, mean speed, two-mass rod
             datum           the same, displacement from the true top dead centre
-            constant speed  the same, at the run's own omega and alpha
+            constant speed  the same, at the run's omega and alpha
             two-mass rod    with the rigid rod, whose couple (m a b - I) beta'' two masses lack
             gravity         with gravity
             friction        with the pistons' friction, where the scene has any
@@ -60,7 +60,7 @@ def budget(
 
     so that they add up to formula minus run, to rounding. The mean speed is the time mean.
 
-    A formula of one's own idealizes what it does not ask for: the constant speed without omega and
+    A formula of the user idealizes what it does not ask for: the constant speed without omega and
     alpha, the two-mass rod without rod_inertia (or the reduced inertia, or its slope), gravity
     without gravity_x and gravity_y (or the generalized force), friction without friction_force,
     forces without applied_force;

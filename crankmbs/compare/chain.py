@@ -61,7 +61,7 @@ class Idealized:
     """The answers under idealizations, each evaluated once.
 
     An idealization is named like the cause that lifts it. With "series" the answer includes
-    the formula's own error, without "solver" the run's.
+    the error of the formula, without "solver" that of the run.
     """
 
     def __init__(self, excerpt: Excerpt) -> None:
@@ -80,7 +80,7 @@ class Idealized:
 
     @cached_property
     def closed_form(self) -> Answer:
-        """The exact closed form at the run's own motion."""
+        """The exact closed form at the motion of the run."""
         return self.excerpt.newton_euler(self.excerpt.result.scene)
 
     def exact(self, idealized: frozenset[str]) -> Answer:
@@ -93,7 +93,7 @@ class Idealized:
     @cached_property
     def truncated(self) -> dict[bool, Answer]:
         """S1's formulas minus the closed form under all its idealizations, at constant speed (True)
-        and at the run's own.
+        and at the run's.
 
         Raises
         ------
@@ -130,7 +130,7 @@ class Idealized:
 
     @cached_property
     def _solver(self) -> Answer:
-        """Run minus closed form, at the run's own motion."""
+        """Run minus closed form, at the motion of the run."""
         return {name: self.run[name] - self.closed_form[name] for name in self.closed_form}
 
 

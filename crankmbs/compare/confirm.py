@@ -92,7 +92,7 @@ class Confirmation:
     period : differences over the last period, which exudyn integrates from the motion's state at
         its begin; of a prescribed speed its equations alone. Empty where nothing moves
     states : differences of its accelerations and joint forces at states all over the run, under the
-        run's own load torque
+        run's load torque
     window [s] : begin and end of that period
     missing : what could not be compared, in sentences
     """
@@ -271,11 +271,11 @@ def _rows(
         for title, names in rows.items()
     } | {"crank angle": turned}
     units = {title: EVERY[names[0]].units for title, names in rows.items()}
-    found = []
+    compared = []
     for title, names in rows.items():
         most = max(size for other, size in peaks.items() if units.get(other) == units[title])
         size = np.sqrt(sum((ours[name] - theirs[name]) ** 2 for name in names))
-        found.append(
+        compared.append(
             Difference(
                 quantity=title,
                 units=units[title],
@@ -289,7 +289,7 @@ def _rows(
                 formulations=("the run", "exudyn"),
             )
         )
-    return tuple(found)
+    return tuple(compared)
 
 
 def _forces(scene: Scene) -> dict[str, tuple[str, ...]]:
@@ -329,10 +329,10 @@ def differences(result: Result, check: Result) -> tuple[Difference, ...]:
     rows = {**base, **_MOTION, **_forces(result.scene)}
     n = min(result.data.sizes["time"], check.data.sizes["time"])
     # where only the end is kept the samples agree from the end, else from the start
-    kept = slice(-n, None)
+    common = slice(-n, None)
     if result.scene.run.every is not None:
-        kept = slice(_shared(result, check, plan))
-    return tuple(_difference(result, check, kept, *row) for row in rows.items())
+        common = slice(_shared(result, check, plan))
+    return tuple(_difference(result, check, common, *row) for row in rows.items())
 
 
 def _shared(result: Result, check: Result, plan: Plan) -> int:
@@ -347,16 +347,16 @@ def _shared(result: Result, check: Result, plan: Plan) -> int:
 
 
 def _difference(
-    result: Result, check: Result, kept: slice, title: str, names: tuple[str, ...]
+    result: Result, check: Result, common: slice, title: str, names: tuple[str, ...]
 ) -> Difference:
     ours = [result.data[name].values for name in names]
     theirs = [check.data[name].values for name in names]
-    size = np.sqrt(sum((a[kept] - b[kept]) ** 2 for a, b in zip(ours, theirs, strict=True)))
+    size = np.sqrt(sum((a[common] - b[common]) ** 2 for a, b in zip(ours, theirs, strict=True)))
     length = np.sqrt(sum(a**2 for a in ours))
     return Difference(
         quantity=title,
         units=str(result.data[names[0]].attrs["units"]),
-        crank_angle=result.data["crank_angle"].values[kept],
+        crank_angle=result.data["crank_angle"].values[common],
         size=size.reshape(len(size), -1),
         peak=float(np.max(length)),
         errors=(_stated(result, names), _stated(check, names)),

@@ -43,7 +43,7 @@ class Excerpt:
 
     samples : shape (n,), their indices; those within 0.6 degrees of a rod square to its
         cylinder, where it folds onto the crank and the formulas lose their digits, are left out
-    theta, omega, alpha : shape (n,) [rad, rad/s, rad/s2], the run's own
+    theta, omega, alpha : shape (n,) [rad, rad/s, rad/s2], of the run
     mean_speed [rad/s] : time mean
     cylinder : number of the one that is compared
     others : further variables of the result to compare, by their names in OBSERVABLES
@@ -67,7 +67,7 @@ class Excerpt:
         return self._quantities(variables, self.omega, self.alpha)
 
     def newton_euler(self, scene: Scene, *, constant_speed: bool = False) -> Answer:
-        """The exact closed form at the run's own theta, at its own or its mean speed; ``scene`` may
+        """The exact closed form at the run's theta, at its speed or the mean of it; ``scene`` may
         differ. The applied forces on the pistons are the run's."""
         omega, alpha = self._speeds(constant_speed)
         loads = {}
@@ -78,7 +78,7 @@ class Excerpt:
         return self._quantities(variables, omega, alpha)
 
     def lecture(self, formulas: Formulas, *, constant_speed: bool) -> Answer:
-        """The lectures' formulas at the run's own theta, at its mean or its own speed."""
+        """The lectures' formulas at the run's theta, at its speed or the mean of it."""
         omega, alpha = self._speeds(constant_speed)
         return self.of_cylinder(lectured(formulas, self.train, self.theta, omega, alpha))
 
@@ -93,7 +93,7 @@ class Excerpt:
         return size_of(curve, self.angles(quantity), self.result.scene.period)
 
     def _speeds(self, constant_speed: bool) -> tuple[Array, Array]:
-        """omega and alpha: the run's own, or its mean speed and 0."""
+        """omega and alpha: the run's, or its mean speed and 0."""
         if not constant_speed:
             return self.omega, self.alpha
         zeros = np.zeros_like(self.alpha)
@@ -101,8 +101,8 @@ class Excerpt:
 
     def _quantities(self, variables: dict[str, Array], omega: Array, alpha: Array) -> Answer:
         answer = observed(self.result.scene, variables, self.theta, omega, alpha)
-        others = {name: variables.get(name.replace(" ", "_")) for name in self.others}
-        answer |= {name: curve for name, curve in others.items() if curve is not None}
+        further = {name: variables.get(name.replace(" ", "_")) for name in self.others}
+        answer |= {name: curve for name, curve in further.items() if curve is not None}
         return self.of_cylinder(answer)
 
     def of_cylinder(self, answer: Answer) -> Answer:

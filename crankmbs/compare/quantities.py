@@ -1,4 +1,4 @@
-"""What is compared: the lectures' quantities, how they follow from a run's own variables, and these
+"""What is compared: the lectures' quantities, how they follow from a run's variables, and these
 variables themselves.
 
 The lectures' net force, rod force, tangential and radial force belong to a rod without mass. A

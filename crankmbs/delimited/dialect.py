@@ -79,7 +79,7 @@ def find_dialect(
     >>> find_dialect(["angle;p", "0,5;1,02", "1;1,03"])
     Dialect(separator=';', decimal=',')
     """
-    best, found = (0, 0), None
+    best, dialect = (0, 0), None
     for sign in _SEPARATORS if separator is None else (separator,):
         for point in (".", ",") if decimal is None else (decimal,):
             rows = [split(line, sign) for line in lines]
@@ -88,5 +88,5 @@ def find_dialect(
                 good = [cells for cells in good if any("," in cell for cell in cells)]
             score = (len(good), min(map(len, good), default=0))
             if score > best:
-                best, found = score, Dialect(sign, point)
-    return found
+                best, dialect = score, Dialect(sign, point)
+    return dialect

@@ -1,6 +1,6 @@
 """Text to rows: where the table begins, what stands above it, and its numbers, missing ones as NaN.
 
-Millions of rows are read by NumPy's own reader; only where that cannot read a cell, cell by cell.
+Millions of rows are read by NumPy's reader; only where that cannot read a cell, cell by cell.
 """
 
 from __future__ import annotations
@@ -68,8 +68,8 @@ def read_sheet(
 
     Parameters
     ----------
-    separator : ";", ",", "|", a tab or a blank; None: found
-    decimal : "." or ","; None: found
+    separator : ";", ",", "|", a tab or a blank; None: detected
+    decimal : "." or ","; None: detected
     skip : lines at the beginning that are left out; least : numbers of a row
 
     Raises
@@ -208,10 +208,10 @@ def _no_rows(
         return f"file {name} is empty: it needs headings and rows of crank angle and pressure"
     written = [line for line in lines[skip:] if line.strip()]
     last = shown(written[-1]) if written else "nothing"
-    given = f", separated by {named(separator)}s" if separator else ""
-    given += f', with the decimal sign "{decimal}"' if decimal else ""
+    stated = f", separated by {named(separator)}s" if separator else ""
+    stated += f', with the decimal sign "{decimal}"' if decimal else ""
     return (
-        f"file {name}: no rows of at least two numbers{given} were found in its first "
+        f"file {name}: no rows of at least two numbers{stated} were found in its first "
         f"{len(lines)} lines"
         f"{f' after the {skip} skipped' if skip else ''}; the last of them is {last}; give "
         "separator, decimal and skip, or export the table alone"

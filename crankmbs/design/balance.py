@@ -47,7 +47,7 @@ class Balance:
     share : of the reciprocating mass
     per_throw : opposite each cylinder's throw, for its rod's mass at the crank pin and the share of
         its reciprocating mass
-    of_crank : opposite the crank's own centre of mass; negative: as much less of what it has
+    of_crank : opposite the crank's centre of mass; negative: as much less of what it has
     remaining : orders 1 and 2 of the force and, where cylinders have places, rocking moment
     result : the run they are taken from
     before, after : shape (n, 2) [N], force on the frame along X and Y at the samples of ``result``
@@ -73,8 +73,8 @@ class Balance:
         ------
         InputError : the counterweights do not lie along the crank's reference line
 
-        >>> found = balance(load_scene("propeller"), 0.5).crank
-        >>> f"{found['mass']:.4g} kg at {1e3 * found['center_of_mass']:.4g} mm"
+        >>> crank = balance(load_scene("propeller"), 0.5).crank
+        >>> f"{crank['mass']:.4g} kg at {1e3 * crank['center_of_mass']:.4g} mm"
         '5 kg at -16.54 mm'
         """
         scene = self.result.scene
@@ -97,10 +97,10 @@ def balance(scene: Scene, share: float = 0.5, *, cost_cap: float = 10.0) -> Bala
 
     per_throw = r (m_B + share m_A),  m_A = m_piston + m_rod a / l,  m_B = m_rod (l - a) / l
 
-    opposite each throw, in its plane, and m c opposite the crank's own centre of mass. What the
+    opposite each throw, in its plane, and m c opposite the crank's centre of mass. What the
     frame feels before is `frame_force` and `rocking_moment` of a run over its last whole cycle;
-    after, with what the counterweights add to it in the same motion: their own inertia is not in
-    it, which at a prescribed speed is exact.
+    after, with what the counterweights add to it in the same motion, but for their moment of
+    inertia, which at a prescribed speed is exact.
 
     Parameters
     ----------
@@ -111,8 +111,8 @@ def balance(scene: Scene, share: float = 0.5, *, cost_cap: float = 10.0) -> Bala
     ------
     InputError : the share; what `crankmbs.orders` refuses of the run
 
-    >>> found = balance(load_scene("yi_diesel"), 0.5)
-    >>> print(found.remaining[0].after.value < found.remaining[0].before.value)
+    >>> weights = balance(load_scene("yi_diesel"), 0.5)
+    >>> print(weights.remaining[0].after.value < weights.remaining[0].before.value)
     True
     """
     if not 0.0 <= share <= 1.0:

@@ -38,7 +38,7 @@ class Flywheel:
 
     inertia [kg m2] : of the crank and all that turns with it, as ``crank.inertia``; its error is
         what the fluctuation's is worth
-    added [kg m2] : of that beyond the scene's own
+    added [kg m2] : of that beyond the scene's
     fluctuation, mean_speed [1, rad/s] : of the settled cycle with it
     work [J] : W, greatest excess of work in a cycle at that constant speed; its error is the
         difference from twice the spacing and what may lie between samples
@@ -95,8 +95,8 @@ def flywheel(scene: Scene, fluctuation: float = 0.01) -> Flywheel:
     InputError : no scene, no such fluctuation, a load under which nothing settles, a prescribed
         speed that comes to rest or turns back
 
-    >>> found = flywheel(load_scene("yi_diesel_free"), 0.01)
-    >>> print(round(found.inertia.value, 3))
+    >>> wheel = flywheel(load_scene("yi_diesel_free"), 0.01)
+    >>> print(round(wheel.inertia.value, 3))
     0.44
     """
     if not isinstance(scene, Scene):
@@ -110,12 +110,12 @@ def flywheel(scene: Scene, fluctuation: float = 0.01) -> Flywheel:
             "fluctuation must be a number above 0 and below 2, such as 0.01 for 1 %; "
             f"{shown(fluctuation)} came"
         )
-    return _search(scene, float(fluctuation)).found(scene.crank.moment_of_inertia)
+    return _search(scene, float(fluctuation)).solved(scene.crank.moment_of_inertia)
 
 
 def fluctuations(scene: Scene, inertias: Sequence[float]) -> list[Measures | None]:
     """Measures of the settled cycle with each crank inertia [kg m2], as `flywheel` has it; None
-    where none is found.
+    where there is none.
 
     >>> light, heavy = fluctuations(load_scene("turning_moment"), [0.1, 0.3])
     >>> light.fluctuation.value > heavy.fluctuation.value
@@ -125,10 +125,10 @@ def fluctuations(scene: Scene, inertias: Sequence[float]) -> list[Measures | Non
     return [search.tried(inertia).measures for inertia in inertias]
 
 
-def _search(scene: Scene, wanted: float) -> _Search:
+def _search(scene: Scene, fluctuation: float) -> _Search:
     freed = _freed(scene)
     over_speed = any(load.parts.over_speed or load.parts.function for load in freed.torque)
-    return _Search(freed, wanted, simulate if over_speed else _balanced)
+    return _Search(freed, fluctuation, simulate if over_speed else _balanced)
 
 
 def excess_at(scene: Scene, speed: float) -> tuple[float, float]:
@@ -210,13 +210,13 @@ class _Trial(NamedTuple):
 
 
 class _Search:
-    """The inertia with which a machine's settled speed fluctuates as wanted."""
+    """The inertia with which a machine's settled speed has a given fluctuation."""
 
     def __init__(self, scene: Scene, wanted: float, settle: Callable[[Scene], Result]) -> None:
         self._scene, self._wanted, self._settle = scene, wanted, settle
 
-    def found(self, own: float) -> Flywheel:
-        """What is found, beside the scene's own inertia [kg m2]."""
+    def solved(self, present: float) -> Flywheel:
+        """The answer for a scene whose crank has the inertia `present` [kg m2]."""
         assert self._scene.start is not None
         work, rest = self._lecture(self._scene.start.speed)
         whole = work.value / (self._wanted * self._scene.start.speed**2)
@@ -227,10 +227,10 @@ class _Search:
             if trial.measures is None:
                 low, step = trial.inertia, math.inf
             else:
-                found = trial.measures.fluctuation
-                off = found.value / self._wanted - 1.0
-                if abs(off) <= max(_CLOSE, _LEFT * found.error / found.value):
-                    return self._answer(trial, own, rest, off)
+                fluctuation = trial.measures.fluctuation
+                off = fluctuation.value / self._wanted - 1.0
+                if abs(off) <= max(_CLOSE, _LEFT * fluctuation.error / fluctuation.value):
+                    return self._answer(trial, present, rest, off)
                 low, high = (trial.inertia, high) if off > 0.0 else (low, trial.inertia)
                 step = self._step(trial, before, rest)
             if high <= floor or low >= _WIDE * whole:
@@ -240,7 +240,7 @@ class _Search:
             near_floor = high < 4.0 * floor or after <= floor
             other = after if inside else floor if near_floor else math.sqrt(low * high)
             before, trial = trial if trial.measures else before, self.tried(other)
-        return self._answer(trial, own, rest, math.nan)
+        return self._answer(trial, present, rest, math.nan)
 
     def tried(self, inertia: float) -> _Trial:
         """The settled cycle with a crank inertia [kg m2]."""
@@ -249,13 +249,13 @@ class _Search:
         return _Trial(inertia, result, measure(result) if result.status == 0 else None)
 
     def _step(self, trial: _Trial, before: _Trial | None, rest: float) -> float:
-        """To the inertia with the wanted fluctuation: 1 / fluctuation is nearly linear in it."""
+        """To the inertia with that fluctuation: 1 / fluctuation is nearly linear in it."""
         assert trial.measures is not None
-        found = trial.measures.fluctuation.value
-        missing = 1.0 / self._wanted - 1.0 / found
+        fluctuation = trial.measures.fluctuation.value
+        missing = 1.0 / self._wanted - 1.0 / fluctuation
         if before is None or before.measures is None:
-            return missing * found * (trial.inertia + rest)
-        rise = 1.0 / found - 1.0 / before.measures.fluctuation.value
+            return missing * fluctuation * (trial.inertia + rest)
+        rise = 1.0 / fluctuation - 1.0 / before.measures.fluctuation.value
         apart = trial.inertia - before.inertia
         return missing * apart / rise if rise * apart > 0.0 else math.inf
 
@@ -267,36 +267,37 @@ class _Search:
         error = abs(work - coarse) + beyond
         return Estimate(work, error), doubled / speed**2 - self._scene.crank.moment_of_inertia
 
-    def _answer(self, trial: _Trial, own: float, rest: float, off: float) -> Flywheel:
+    def _answer(self, trial: _Trial, present: float, rest: float, off: float) -> Flywheel:
         """The answer from the last trial; ``off`` its relative error, NaN where it is none."""
         inertia, result, measures = trial
         none = Estimate(math.nan, math.nan)
-        found = measures.fluctuation if measures else none
+        fluctuation = measures.fluctuation if measures else none
         mean = measures.mean_speed if measures else none
-        error = (abs(off) + found.error / found.value) * (inertia + rest)
+        error = (abs(off) + fluctuation.error / fluctuation.value) * (inertia + rest)
         assert self._scene.start is not None
         speed = mean.value if measures else self._scene.start.speed
         work, rest = self._lecture(speed)
         whole = Estimate(*(part / (self._wanted * speed**2) for part in work))
-        status, said = 0, f"the speed fluctuates by {100.0 * self._wanted:.6g} % of its mean"
+        status, message = 0, f"the speed fluctuates by {100.0 * self._wanted:.6g} % of its mean"
         if math.isnan(off):
             status = result.status or 1
-            said = (
+            message = (
                 f"out of reach: with {inertia:.4g} kg m^2 {result.message}"
                 if measures is None
                 else f"out of reach: even with {inertia:.4g} kg m^2, near the least that the crank "
-                f"can have, the speed fluctuates by {100.0 * found.value:.4g} % of its mean only"
+                "can have, the speed fluctuates by "
+                f"{100.0 * fluctuation.value:.4g} % of its mean only"
             )
             inertia = math.nan
         return Flywheel(
             inertia=Estimate(inertia, error),
-            added=inertia - own,
-            fluctuation=found,
+            added=inertia - present,
+            fluctuation=fluctuation,
             mean_speed=mean,
             work=work,
             lecture=whole,
             moving=rest,
             result=result,
             status=status,
-            message=said,
+            message=message,
         )

@@ -54,8 +54,8 @@ def freed(scene: Scene) -> Scene:
     InputError : a free crank; fuel, whose cycles differ; a crank without inertia, or with so little
         that it comes near rest; what `mean_prescribed` refuses
 
-    >>> found = freed(load_scene("yi_diesel"))
-    >>> print(f"{found.torque[0].torque:.4f} N m, from {found.start.speed:.2f} rad/s")
+    >>> free = freed(load_scene("yi_diesel"))
+    >>> print(f"{free.torque[0].torque:.4f} N m, from {free.start.speed:.2f} rad/s")
     -21.8274 N m, from 412.70 rad/s
     """
     if not isinstance(scene, Scene):
@@ -69,10 +69,10 @@ def freed(scene: Scene) -> Scene:
     run = replace(scene.run, until=Extent(value=scene.settled_period, unit="rad"))
     if run.formulation == "kinetostatic":
         run = replace(run, formulation="auto")
-    found, rests = balanced(replace(scene, crank=crank, motion=None, start=start, run=run))
+    settled, rests = balanced(replace(scene, crank=crank, motion=None, start=start, run=run))
     if rests:
         raise InputError(NEAR_REST.format(came=crank.inertia))
-    return found
+    return settled
 
 
 def mean_prescribed(scene: Scene) -> float:
@@ -113,19 +113,19 @@ def mean_prescribed(scene: Scene) -> float:
 
 def balanced(scene: Scene) -> tuple[Scene, bool]:
     """A free scene with one more constant load, that which makes it repeat itself at a mean speed,
-    start.speed; none of its own loads depends on the speed. It starts in that motion.
+    start.speed; none of its other loads depends on the speed. It starts in that motion.
 
     Besides, whether it comes near rest on the way, where its energy would be gone within half a
-    degree, or no such motion is found: then the mean speed may not be reached.
+    degree, or there is no such motion: then the mean speed may not be reached.
 
     Over the angle E = E_0 + (E - E_0)(theta), the same at every speed: E_0 is the one with which a
     period takes as long as at the mean speed. What viscous friction and dampers take depends on the
     motion, as a force of Python may: load and E_0 are then sought together, run by run.
     """
-    found, rests = _at_any_speed(scene)
+    settled, rests = _at_any_speed(scene)
     train = crank_train(scene)
     depends = train.drags or any(push.parts.function is not None for push in train.pushes)
-    return _with_drag(scene, found) if depends else (found, rests)
+    return _with_drag(scene, settled) if depends else (settled, rests)
 
 
 def _at_any_speed(scene: Scene) -> tuple[Scene, bool]:
@@ -145,13 +145,13 @@ def _at_any_speed(scene: Scene) -> tuple[Scene, bool]:
     mean = float(terms.width @ (terms.torque @ grid.rule.weights)) / period
     given = sum(float(load.parts.over_time(0.0)) for load in scene.torque if load.parts.over_time)
     loads = (*scene.torque, Constant(torque=-mean - given))
-    one = period_of(grid, terms, branch_of(loads, 0.0, 0.0, rising=True), sense)
-    least, wanted = -float(one.shift.min()), period / abs(start.speed)
+    cycle = period_of(grid, terms, branch_of(loads, 0.0, 0.0, rising=True), sense)
+    least, duration = -float(cycle.shift.min()), period / abs(start.speed)
 
     def late(above: float) -> float:
-        return float((1.0 / np.sqrt(least + above + one.shift)) @ one.weight) - wanted
+        return float((1.0 / np.sqrt(least + above + cycle.shift)) @ cycle.weight) - duration
 
-    most = 0.5 * float(terms.inertia.max()) * start.speed**2 + float(np.ptp(one.shift))
+    most = 0.5 * float(terms.inertia.max()) * start.speed**2 + float(np.ptp(cycle.shift))
     above = _LEAST * most
     if late(above) > 0.0:
         above = float(brentq(late, above, 2.0 * most, xtol=1e-300, rtol=1e-15))
@@ -167,13 +167,13 @@ def _with_drag(scene: Scene, guess: Scene) -> tuple[Scene, bool]:
     energy = 0.5 * float(inertia_alone(guess, guess.start.angle)) * guess.start.speed**2
     whole = Extent(value=period, unit="rad")
     run = replace(scene.run, until=whole, every=whole, formulation="crank_angle")
-    given = guess.torque[-1](0.0, 0.0, 0.0)
+    constant = guess.torque[-1](0.0, 0.0, 0.0)
 
-    def trial(found: Array) -> Scene:
-        return _from(scene, given + found[0] * energy / period, math.exp(found[1]) * energy)
+    def trial(x: Array) -> Scene:
+        return _from(scene, constant + x[0] * energy / period, math.exp(x[1]) * energy)
 
-    def off(found: Array) -> list[float]:
-        result = simulate(replace(trial(found), run=run), rtol=_RTOL)
+    def off(x: Array) -> list[float]:
+        result = simulate(replace(trial(x), run=run), rtol=_RTOL)
         if result.status != 0:
             return [1.0, 1.0]  # it comes to rest: as wrong as can be
         kinetic, time = (result.data[name].values for name in ("kinetic_energy", "time"))

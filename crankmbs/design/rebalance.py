@@ -77,16 +77,16 @@ def rebalanced(
         start=Start(angle=scene.start.angle, speed=mean_speed),
         run=Run(until=SETTLED, rtol=scene.run.rtol),
     )
-    found = _scaled(free, math.exp(_share(free, abs(mean_speed), mean)))
-    return replace(found, run=scene.run)
+    scaled = _scaled(free, math.exp(_share(free, abs(mean_speed), mean)))
+    return replace(scaled, run=scene.run)
 
 
-def _share(scene: Scene, wanted: float, mean: Callable[[Scene], float]) -> float:
+def _share(scene: Scene, mean_speed: float, mean: Callable[[Scene], float]) -> float:
     """The logarithm of the share."""
     share, slope = 0.0, -0.5  # of a quadratic load: mean speed as share^(-1/2)
     before: tuple[float, float] | None = None
     for _ in range(_MOST):
-        off = math.log(mean(_scaled(scene, math.exp(share))) / wanted)
+        off = math.log(mean(_scaled(scene, math.exp(share))) / mean_speed)
         if abs(off) <= scene.run.rtol:
             return share
         if before is not None and share != before[0]:
@@ -97,16 +97,16 @@ def _share(scene: Scene, wanted: float, mean: Callable[[Scene], float]) -> float
         share -= max(min(off / slope, math.log(_FARTHEST)), -math.log(_FARTHEST))
     raise InputError(
         f"settled_speed: no share of the loads was found with which the motion settles to "
-        f"{wanted:.6g} rad/s; give loads that grow with the speed"
+        f"{mean_speed:.6g} rad/s; give loads that grow with the speed"
     )
 
 
 def _scaled(scene: Scene, share: float) -> Scene:
     assert scene.start is not None
     speed = scene.start.speed
-    given = [math.copysign(1.0, speed) * _at(load, speed) for load in scene.torque]
-    side = -1.0 if any(torque < 0.0 for torque in given) else 1.0
-    pairs = zip(scene.torque, given, strict=True)
+    torques = [math.copysign(1.0, speed) * _at(load, speed) for load in scene.torque]
+    side = -1.0 if any(torque < 0.0 for torque in torques) else 1.0
+    pairs = zip(scene.torque, torques, strict=True)
     loads = (load.scaled(share, 1.0) if side * torque > 0.0 else load for load, torque in pairs)
     return replace(scene, torque=tuple(loads))
 

@@ -1,4 +1,4 @@
-"""A scene and its result for other programs: TOML, MATLAB, and exudyn as a script of its own."""
+"""A scene and its result for other programs: TOML, MATLAB, and exudyn as a script."""
 
 from crankmbs.export.files import copy_scene, export
 

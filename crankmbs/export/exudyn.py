@@ -1,4 +1,4 @@
-"""The multibody model of a scene as a script of its own, which needs numpy and exudyn alone."""
+"""The multibody model of a scene as a script, which needs numpy and exudyn alone."""
 
 from __future__ import annotations
 
@@ -110,8 +110,8 @@ def _run(text: str) -> dict[str, Array]:
     """The columns that a script gives."""
     names: dict[str, Any] = {"__name__": "script"}
     exec(compile(text, "script", "exec"), names)  # what was written here, nothing of others
-    found: dict[str, Array] = names["run"]()
-    return found
+    columns: dict[str, Array] = names["run"]()
+    return columns
 
 
 def _errors(
@@ -164,8 +164,8 @@ def _refused_load(scene: Scene) -> str:
                 "angle, which are smooth"
             )
     for name, loads in (("torque", scene.torque), ("force", scene.force)):
-        for number, one in enumerate(loads, start=1):
-            if one.has_window:
+        for number, torque in enumerate(loads, start=1):
+            if torque.has_window:
                 return f"the window of {name}[{number}]; leave out when it sets in and ends"
     return ""
 
@@ -219,9 +219,9 @@ def _parameters(train: CrankTrain, stem: str, end: float, steps: int) -> str:
     )
 
 
-def _mechanism(found: Mechanism) -> str:
-    rows = ["Mechanism(", f"    gravity={found.gravity!r},"]
-    for name, parts in list(found._asdict().items())[1:]:
+def _mechanism(mechanism: Mechanism) -> str:
+    rows = ["Mechanism(", f"    gravity={mechanism.gravity!r},"]
+    for name, parts in list(mechanism._asdict().items())[1:]:
         rows += [f"    {name}=(", *(f"        {part!r}," for part in parts), "    ),"]
     return "\n".join([*rows, ")"])
 

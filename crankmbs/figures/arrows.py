@@ -47,18 +47,18 @@ def forces_on(body: str, scene: Scene, parts: Mechanism, data: dict[str, Array])
     """
     draw = {"piston": _on_piston, "rod": _on_rod, "crank": _on_crank}[body]
     count = len(scene.cylinders)
-    found = [force for k in range(count) for force in draw(k, scene, parts, data)]
+    forces = [force for k in range(count) for force in draw(k, scene, parts, data)]
     if body == "crank":
         force = np.stack([data["main_bearing_force_x"], data["main_bearing_force_y"]], axis=-1)
-        found.append(Force("bearings on crank", "bearing", None, np.zeros_like(force), force))
-    return found
+        forces.append(Force("bearings on crank", "bearing", None, np.zeros_like(force), force))
+    return forces
 
 
 def _on_piston(k: int, scene: Scene, parts: Mechanism, data: dict[str, Array]) -> list[Force]:
     pin, corners = parts.piston_pin[:, k], parts.piston[:, k]
     none = np.zeros_like(data["side_force"])
     side = in_engine_frame(scene, none, data["side_force"])[:, k]
-    found = [
+    forces = [
         Force("wall on piston", "wall", k, pin, side),
         replace(_of_pin("rod on piston", k, scene, data, "piston_pin_force"), at=pin),
     ]
@@ -66,15 +66,15 @@ def _on_piston(k: int, scene: Scene, parts: Mechanism, data: dict[str, Array]) -
         rubs = in_engine_frame(scene, -data["friction_force"], none)[:, k]
         away = np.where(data["side_force"][:, k, None] > 0.0, -0.5, 0.5)
         at = pin + away * (corners[:, 0] - corners[:, 3])  # on the side that the wall presses
-        found.append(Force("friction on piston", "bearing", k, at, rubs))
+        forces.append(Force("friction on piston", "bearing", k, at, rubs))
     if "applied_force" in data:
         given = in_engine_frame(scene, -data["applied_force"], none)[:, k]
-        found.append(Force("applied force on piston", "bearing", k, pin, given))
+        forces.append(Force("applied force on piston", "bearing", k, pin, given))
     if "gas_force" in data:
         gas = in_engine_frame(scene, -data["gas_force"], none)[:, k]
         crown = 0.5 * (corners[:, 1] + corners[:, 2])
-        found.append(Force("gas on piston", "gas", k, crown, gas, pushes=crown - pin))
-    return found
+        forces.append(Force("gas on piston", "gas", k, crown, gas, pushes=crown - pin))
+    return forces
 
 
 def _on_rod(k: int, scene: Scene, parts: Mechanism, data: dict[str, Array]) -> list[Force]:
@@ -102,7 +102,7 @@ def largest(forces: list[Force]) -> float:
 
 
 class Arrows:
-    """Arrows of some forces on axes of their own; newtons : of the longest, one crank radius and a
+    """Arrows of some forces on their axes; newtons : of the longest, one crank radius and a
     fifth; radius : of the crank, in the axes' unit."""
 
     def __init__(self, ax: Axes, forces: list[Force], radius: float, newtons: float) -> None:

@@ -16,13 +16,13 @@ __all__ = ["balance_figure", "save_balance_figure"]
 
 
 @rc_context(STYLE)
-def balance_figure(found: Balance) -> Figure:
+def balance_figure(balance: Balance) -> Figure:
     """Over the last cycle, X upwards and Y to the left as the engine stands."""
     figure, (ax,) = panels(1, 1, 8.0, 8.0)
-    first = last_span(found.result).first
+    first = last_span(balance.result).first
     paths = {
-        "before": found.before[first:],
-        f"after, share {100 * found.share:g} %": found.after[first:],
+        "before": balance.before[first:],
+        f"after, share {100 * balance.share:g} %": balance.after[first:],
     }
     scale, unit = force_scale(*paths.values())
     for k, (label, path) in enumerate(paths.items()):
@@ -36,15 +36,15 @@ def balance_figure(found: Balance) -> Figure:
     ax.set_xlabel(f"force on the frame along Y [{unit}]")
     ax.set_ylabel(f"force on the frame along X [{unit}]")
     legend(figure, ax)
-    footer(figure, found.result, "force on the frame over the last cycle")
+    footer(figure, balance.result, "force on the frame over the last cycle")
     return figure
 
 
-def save_balance_figure(found: Balance, folder: Path) -> Path:
+def save_balance_figure(balance: Balance, folder: Path) -> Path:
     """Draw the force on the frame before and after balancing into balance.png.
 
     Raises
     ------
     OutputError : the folder cannot be made or written
     """
-    return save(balance_figure(found), folder / "balance.png")
+    return save(balance_figure(balance), folder / "balance.png")

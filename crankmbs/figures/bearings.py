@@ -65,7 +65,7 @@ def _shared(view: View, force: Array) -> list[list[int]]:
     every = np.concatenate(forces, axis=1)
     groups: list[list[int]] = []
     for group in one_curve_each(every.real, every.imag):
-        known = {k for one in groups for k in one}
+        known = {k for members in groups for k in members}
         journals = sorted({k % count for k in group} - known)
         groups += [journals] if journals else []
     return groups
@@ -108,5 +108,5 @@ def _parts(force: Array) -> tuple[list[Array], list[Array]]:
     return list(force.real.T), list(force.imag.T)
 
 
-def _named(what: str, group: list[int]) -> str:
-    return f"{what}{'s' * (len(group) > 1)} {', '.join(str(k + 1) for k in group)}"
+def _named(part: str, group: list[int]) -> str:
+    return f"{part}{'s' * (len(group) > 1)} {', '.join(str(k + 1) for k in group)}"

@@ -60,12 +60,12 @@ _STYLES: dict[str, dict[str, Any]] = {
     "S0 and S1": line_of(0) | {"color": line_of(2)["color"]},
     **{name: line_of(k) for k, name in enumerate((*CAUSES, REST))},
 }
-_OWN = 5  # the first line for formulas of one's own: dashed, of a colour that no reference has
+_USER = 5  # the first line for formulas of the user: dashed, of a colour that no reference has
 
 
 def save_validation(comparison: Comparison, budget: Budget, folder: Path) -> list[Path]:
     """Draw comparison and budget of every family into PNG files, which appear together; what only
-    formulas of one's own stand for into comparison_formulas.png, their budgets into
+    formulas of the user stand for into comparison_formulas.png, their budgets into
     budget_formula_1.png, ... in their order.
 
     Raises
@@ -76,10 +76,10 @@ def save_validation(comparison: Comparison, budget: Budget, folder: Path) -> lis
     for family, quantities in FAMILIES.items():
         drawn[f"comparison_{family}.png"] = comparison_figure(comparison, quantities)
         drawn[f"budget_{family}.png"] = budget_figure(budget, quantities)
-    others = tuple(name for name in comparison.simulated if name not in QUANTITIES)
-    drawn["comparison_formulas.png"] = comparison_figure(comparison, others)
-    own = [split for split in budget.splits if not split.is_lecture]
-    for k, split in enumerate(own, start=1):
+    further = tuple(name for name in comparison.simulated if name not in QUANTITIES)
+    drawn["comparison_formulas.png"] = comparison_figure(comparison, further)
+    users = [split for split in budget.splits if not split.is_lecture]
+    for k, split in enumerate(users, start=1):
         figure = budget_figure(budget, (split.quantity,), split.reference)
         drawn[f"budget_formula_{k}.png"] = figure
     files = []
@@ -93,7 +93,7 @@ def save_validation(comparison: Comparison, budget: Budget, folder: Path) -> lis
 
 @rc_context(SLIDE)
 def comparison_figure(comparison: Comparison, quantities: tuple[str, ...]) -> Figure | None:
-    """The error of the truncated lectures and of one's own formulas, in percent of the run's peak,
+    """The error of the truncated lectures and of the user's formulas, in percent of the run's peak,
     below a strip of the run.
 
     Formulas that cannot be told apart share a curve. The headline is the largest error. None where
@@ -109,8 +109,8 @@ def comparison_figure(comparison: Comparison, quantities: tuple[str, ...]) -> Fi
         truncated = [row for row in rows if row.reference not in (CLOSED_FORM, _UNTRUNCATED)]
         every += truncated + [row for row in rows if row.reference == CLOSED_FORM]
         columns.append((name, {"run": comparison.simulated[name]}, _errors(truncated or rows)))
-    own = comparison.excerpt.result.formulation == "multibody"
-    headline = comparison_headline(every, independent=own)
+    independent = comparison.excerpt.result.formulation == "multibody"
+    headline = comparison_headline(every, independent=independent)
     drawn = {name for *_, errors in columns for label in errors for name in label.split(" and ")}
     authors = [f"{name}: {author}" for name, author in _AUTHORS.items() if name in drawn]
     about = "; ".join(["error: formula minus run", *authors])
@@ -139,7 +139,7 @@ def budget_figure(
 ) -> Figure | None:
     """Formula and run above, below their difference and the causes it is made of.
 
-    reference : the label of a formula of one's own; by default the truncated lecture is drawn
+    reference : the label of a formula of the user; by default the truncated lecture is drawn
 
     The headline is the largest error in percent of its quantity's peak, and its largest cause. A
     cause that could not be told from zero is not drawn; the footer names those that no panel has.
@@ -153,7 +153,7 @@ def budget_figure(
     ]
     if not splits:
         return None
-    whose = "lecture" if reference is None else "formula"
+    source = "lecture" if reference is None else "formula"
     columns = [
         (
             split.quantity,
@@ -164,7 +164,7 @@ def budget_figure(
     ]
     drawn = {label for _, _, errors in columns for label in errors}
     unseen = [cause.name for cause in splits[0].causes if cause.name not in drawn]
-    about = f"error: {whose} minus run, and its causes"
+    about = f"error: {source} minus run, and its causes"
     if unseen:
         about += f" (too small: {', '.join(unseen)})"
     return _figure(budget.excerpt, columns, budget_headline(splits), about)
@@ -185,9 +185,9 @@ def _figure(
     """A column for each quantity: its curves above, below twice as high its errors in percent of
     the run's peak, one crank-angle axis."""
     n = len(columns)
-    labels = dict.fromkeys(label for _, *both in columns for lines in both for label in lines)
-    own = [label for label in labels if label not in _STYLES]
-    styles = _STYLES | {label: line_of(_OWN + k) for k, label in enumerate(own)}
+    labels = dict.fromkeys(label for _, *pair in columns for lines in pair for label in lines)
+    users = [label for label in labels if label not in _STYLES]
+    styles = _STYLES | {label: line_of(_USER + k) for k, label in enumerate(users)}
     figure, axes = slide(n, headline, [label for label in styles if label in labels])
     view = last_view(excerpt.result)
     degrees = view.degrees[excerpt.samples - excerpt.window.first]

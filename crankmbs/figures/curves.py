@@ -32,10 +32,10 @@ def over_time(result: Result, first: int = 0) -> dict[str, Array]:
     if not wide.size:
         return values
     added = [np.linspace(time[k], time[k + 1], int(pieces[k]) + 1)[1:-1] for k in wide]
-    found = interp(result, time=np.concatenate(added))
-    places = np.repeat(wide + 1, [len(one) for one in added])
+    between = interp(result, time=np.concatenate(added))
+    places = np.repeat(wide + 1, [len(times) for times in added])
     return {
-        name: np.insert(v, places, found[name].values, axis=0)
+        name: np.insert(v, places, between[name].values, axis=0)
         for name, v in values.items()
-        if name in found
+        if name in between
     }

@@ -41,9 +41,9 @@ def whose(cylinders: list[int]) -> str:
     return f"cylinder{'s' if len(cylinders) > 1 else ''} {numbers}"
 
 
-def _coincide(curves: list[Array], one: int, other: int) -> bool:
+def _coincide(curves: list[Array], first: int, second: int) -> bool:
     return all(
-        bool(np.all(np.abs(panel[:, one] - panel[:, other]) <= _seen(panel))) for panel in curves
+        bool(np.all(np.abs(panel[:, first] - panel[:, second]) <= _seen(panel))) for panel in curves
     )
 
 

@@ -1,4 +1,4 @@
-"""How far two runs of one scene differ, beside what each says about its own error."""
+"""How far two runs of one scene differ, beside the error that each states."""
 
 from __future__ import annotations
 

@@ -17,23 +17,25 @@ _NOTHING = 1e-9  # of the crank's inertia
 
 
 @rc_context(STYLE)
-def flywheel_figure(found: Flywheel, curve: Sequence[tuple[float, float]]) -> Figure:
-    """Settled cycles and the textbook's formula over the inertia, with the one that is found.
+def flywheel_figure(wheel: Flywheel, curve: Sequence[tuple[float, float]]) -> Figure:
+    """Settled cycles and the textbook's formula over the inertia, and the answer.
 
     curve : inertia [kg m2] and fluctuation [1] of settled cycles
     """
     figure, (ax,) = panels(1, 1, 9.0, 6.0)
     inertia, fluctuation = zip(*curve, strict=True)
     ax.plot(inertia, [100.0 * each for each in fluctuation], color=COLOURS[0], label="settled")
-    work, speed = found.work.value, found.mean_speed.value
-    at, wanted = found.inertia.value, 100.0 * found.fluctuation.value
-    formula = [100.0 * work / ((each + found.moving) * speed**2) for each in inertia]
+    work, speed = wheel.work.value, wheel.mean_speed.value
+    at, percent = wheel.inertia.value, 100.0 * wheel.fluctuation.value
+    formula = [100.0 * work / ((each + wheel.moving) * speed**2) for each in inertia]
     dashes = (0, (5, 3))
     ax.plot(inertia, formula, color=COLOURS[1], linestyle=dashes, label=r"W / (J $\omega^2$)")
-    ax.plot([at], [wanted], "o", color="black", label=f"{wanted:.4g} % with {at:.4g} kg m$^2$")
-    own = at - found.added
-    if min(inertia) <= own <= max(inertia):
-        ax.axvline(own, color="0.55", linewidth=1.0, label=f"the scene's {own:.4g} kg m$^2$")
+    ax.plot([at], [percent], "o", color="black", label=f"{percent:.4g} % with {at:.4g} kg m$^2$")
+    present = at - wheel.added
+    if min(inertia) <= present <= max(inertia):
+        ax.axvline(
+            present, color="0.55", linewidth=1.0, label=f"the scene's {present:.4g} kg m$^2$"
+        )
     ax.set_xscale("log")
     ax.set_yscale("log")
     for axis in (ax.xaxis, ax.yaxis):
@@ -42,14 +44,14 @@ def flywheel_figure(found: Flywheel, curve: Sequence[tuple[float, float]]) -> Fi
     ax.set_ylabel("fluctuation of the speed [%]")
     legend(figure, ax)
     about = "settled cycles"
-    if found.moving > _NOTHING * at:
-        about += f"; J has {found.moving:.3g} kg m\u00b2 of rods and pistons in it"
-    footer(figure, found.result, about)
+    if wheel.moving > _NOTHING * at:
+        about += f"; J has {wheel.moving:.3g} kg m\u00b2 of rods and pistons in it"
+    footer(figure, wheel.result, about)
     return figure
 
 
 def save_flywheel_figure(
-    found: Flywheel, curve: Sequence[tuple[float, float]], folder: Path
+    wheel: Flywheel, curve: Sequence[tuple[float, float]], folder: Path
 ) -> Path:
     """Draw the fluctuation over the inertia into flywheel.png.
 
@@ -57,4 +59,4 @@ def save_flywheel_figure(
     ------
     OutputError : the folder cannot be made or written
     """
-    return save(flywheel_figure(found, curve), folder / "flywheel.png")
+    return save(flywheel_figure(wheel, curve), folder / "flywheel.png")

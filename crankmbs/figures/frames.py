@@ -59,7 +59,7 @@ class Frames:
         return f"ring: the mean speed, the crank's lead {times}"
 
     def lead_in_words(self, frame: int) -> str:
-        """By how much the crank is ahead of the mean speed or behind, in its own sense."""
+        """By how much the crank is ahead of the mean speed or behind, in the sense of rotation."""
         lead = math.degrees(self.leads[frame]) * math.copysign(1.0, self.mean)
         decimals = min(max(2 + math.floor(math.log10(self.magnified)), 1), 6)
         return f"{abs(lead):.{decimals}f} deg {'ahead' if lead >= 0.0 else 'behind'}"
@@ -67,10 +67,10 @@ class Frames:
     @property
     def pace(self) -> str:
         """The slow motion in words."""
-        times, what = (
+        times, manner = (
             (self.slower, "slower") if self.slower >= 1.0 else (1.0 / self.slower, "faster")
         )
-        return f"{digits(times, most=2)} times {what} than the machine"
+        return f"{digits(times, most=2)} times {manner} than the machine"
 
 
 def round_below(value: float) -> float:
@@ -97,6 +97,6 @@ def frames_of(result: Result, rate: float, length: float | None = None) -> Frame
     slower = float(f"{(_LASTS if length is None else length) / window.duration:.2g}")
     count = max(2, round(window.duration * slower * rate))
     at = np.arange(count, dtype=np.float64) * (window.duration / count)
-    found = result.passes.answer.at(window.begin + at, in_time=True)
+    samples = result.passes.answer.at(window.begin + at, in_time=True)
     mean = window.angle / window.duration
-    return Frames(at, found.theta, found.omega, mean, slower)
+    return Frames(at, samples.theta, samples.omega, mean, slower)

@@ -10,27 +10,27 @@ from crankmbs.digits import digits
 
 __all__ = ["budget_headline", "comparison_headline"]
 
-_OWN = "the formula"  # its label would leave no room for the number
+_FORMULA = "the formula"  # its label would leave no room for the number
 
 
 def comparison_headline(rows: Sequence[Deviation], *, independent: bool) -> tuple[str, str]:
-    """The largest error of a lecture or of one's own formula; how exact the run is, if its forces
-    are its own.
+    """The largest error of a lecture or of a user's formula; how exact the run is, if it computes
+    its forces itself.
 
     rows : the quantities of the slide against every reference
     """
     lectures = [row for row in rows if row.reference != CLOSED_FORM] or rows
     row = max(lectures, key=lambda each: _weight(_share(each)))
     lecture = row.reference in (CLOSED_FORM, *LECTURES)
-    name = row.reference.partition(" (")[0] if lecture else _OWN
+    name = row.reference.partition(" (")[0] if lecture else _FORMULA
     if math.isnan(_share(row)):
         size = f"{digits(row.size.largest, most=3)} {OBSERVABLES[row.quantity].units}"
         return f"{_capital(row.quantity)}: the run has none, {name} up to {size}", ""
     first = f"{_capital(row.quantity)}: {name} is off by up to {_percent(_share(row))}"
     second = _where(row.size.angle) + ("" if lecture else f": {row.reference}")
-    own = [_share(each) for each in rows if each.reference == CLOSED_FORM]
-    if independent and not any(map(math.isnan, own)):
-        second += f"; the run is within {digits(max(own), most=2)} % of the closed form"
+    shares = [_share(each) for each in rows if each.reference == CLOSED_FORM]
+    if independent and not any(map(math.isnan, shares)):
+        second += f"; the run is within {digits(max(shares), most=2)} % of the closed form"
     return first, second
 
 
@@ -38,14 +38,14 @@ def budget_headline(splits: Sequence[Split]) -> tuple[str, str]:
     """The formula's largest error, and the cause that is worth most."""
     split = max(splits, key=lambda each: _weight(each.share(each.total)))
     share, quantity = split.share(split.total), _capital(split.quantity)
-    whose = "the lecture" if split.is_lecture else _OWN
+    formula = "the lecture" if split.is_lecture else _FORMULA
     if math.isnan(share):
-        return f"{quantity}: the run has none, {whose} has", ""
+        return f"{quantity}: the run has none, {formula} has", ""
     if share == 0.0:
-        return f"{quantity}: {whose} is right but for rounding", ""
+        return f"{quantity}: {formula} is right but for rounding", ""
     cause = max(split.causes, key=split.share)
     worth = f"{split.named(cause)} costs up to {_percent(split.share(cause))}"
-    first = f"{quantity}: {whose} is off by up to {_percent(share)}"
+    first = f"{quantity}: {formula} is off by up to {_percent(share)}"
     return first, f"{_where(split.total.size.angle)}; {worth}"
 
 

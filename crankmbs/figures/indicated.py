@@ -27,35 +27,39 @@ __all__ = ["pressure_figure", "save_indicated_figures", "scatter_figure", "volum
 
 
 @rc_context(STYLE)
-def pressure_figure(found: Indicated) -> Figure:
+def pressure_figure(indicated: Indicated) -> Figure:
     """The mean cycle of each cylinder from its firing dead centre, and the band of its cycles."""
     figure, (ax,) = panels(1, 1, 10.0, 5.5)
-    for k, each in enumerate(found.cylinders):
+    for k, each in enumerate(indicated.cylinders):
         line = line_of(k)
         if len(each.pressure) > 1:
             low, high = np.min(each.pressure, axis=0), np.max(each.pressure, axis=0)
             ax.fill_between(each.angle, low / BAR, high / BAR, color=line["color"], alpha=0.25)
         ax.plot(each.angle, each.mean / BAR, **line, label=_name(each))
     ax.axvline(0.0, color="0.55", linewidth=1.0, linestyle=(0, (6, 4)), zorder=1)
-    half = 90 * found.stroke
+    half = 90 * indicated.stroke
     ax.set_xticks(np.arange(-half, half + 1, 90))
     ax.set_xlim(-half, half)
     ax.set_xlabel("crank angle from the firing dead centre [deg]")
-    ax.set_ylabel(_pressure(found))
+    ax.set_ylabel(_pressure(indicated))
     legend(figure, ax)
-    _footer(figure, found, "mean cycles, and the band of all" if _several(found) else "the cycle")
+    _footer(
+        figure,
+        indicated,
+        "mean cycles, and the band of all" if _several(indicated) else "the cycle",
+    )
     return figure
 
 
 @rc_context(STYLE)
-def volume_figure(found: Indicated) -> Figure:
+def volume_figure(indicated: Indicated) -> Figure:
     """The mean cycle over the volume, with its imep: over V / V_clearance, both logarithmic, where
     the compression ratio is known and the pressure absolute, and over the travel."""
-    shape = found.shape
+    shape = indicated.shape
     assert shape is not None
-    with_log = shape.ratio is not None and found.absolute
+    with_log = shape.ratio is not None and indicated.absolute
     figure, axes = panels(1, 1 + with_log, 10.0 if with_log else 7.0, 5.5)
-    for k, each in enumerate(found.cylinders):
+    for k, each in enumerate(indicated.cylinders):
         assert each.imep is not None
         angle = np.radians(np.append(each.angle, each.angle[0]))
         mean = np.append(each.mean, each.mean[0]) / BAR
@@ -64,7 +68,7 @@ def volume_figure(found: Indicated) -> Figure:
         if with_log:
             axes[1].loglog(shape.volume(angle), np.maximum(mean, 1e-3), **line_of(k))
     axes[0].set_xlabel("piston travel over the stroke [1]")
-    axes[0].set_ylabel(_pressure(found))
+    axes[0].set_ylabel(_pressure(indicated))
     if with_log:
         axes[1].set_xlabel("volume over the clearance volume [1]")
         logarithmic(axes[1].xaxis)
@@ -72,16 +76,16 @@ def volume_figure(found: Indicated) -> Figure:
     handles, labels = axes[0].get_legend_handles_labels()
     columns = 2 if with_log and len(labels) > 1 else 1
     figure.legend(handles, labels, loc="outside upper center", ncols=columns)
-    _footer(figure, found, "mean cycles")
+    _footer(figure, indicated, "mean cycles")
     return figure
 
 
 @rc_context(STYLE)
-def scatter_figure(found: Indicated) -> Figure:
+def scatter_figure(indicated: Indicated) -> Figure:
     """Peak and, with a geometry, imep of each cycle."""
-    with_imep = found.shape is not None
+    with_imep = indicated.shape is not None
     figure, axes = panels(1 + with_imep, 1, 10.0, 3.2 * (1 + with_imep))
-    for k, each in enumerate(found.cylinders):
+    for k, each in enumerate(indicated.cylinders):
         number = np.arange(1, len(each.pressure) + 1)
         colour = COLOURS[k % len(COLOURS)]
         axes[0].plot(number, each.peaks / BAR, ".-", color=colour, lw=0.8, label=_name(each))
@@ -94,11 +98,11 @@ def scatter_figure(found: Indicated) -> Figure:
     axes[-1].set_xlabel("cycle")
     figure.align_ylabels(axes)
     legend(figure, axes[0])
-    _footer(figure, found, "cycle by cycle")
+    _footer(figure, indicated, "cycle by cycle")
     return figure
 
 
-def save_indicated_figures(found: Indicated, folder: Path, stem: str) -> list[Path]:
+def save_indicated_figures(indicated: Indicated, folder: Path, stem: str) -> list[Path]:
     """Draw measured pressures into STEM_angle.png, with a geometry STEM_pv.png, and of several
     cycles STEM_cycles.png, which appear together.
 
@@ -107,29 +111,29 @@ def save_indicated_figures(found: Indicated, folder: Path, stem: str) -> list[Pa
     OutputError : the folder cannot be made or written
     """
     draw = {"angle": pressure_figure}
-    if found.shape is not None:
+    if indicated.shape is not None:
         draw["pv"] = volume_figure
-    if any(len(each.pressure) > 1 for each in found.cylinders):
+    if any(len(each.pressure) > 1 for each in indicated.cylinders):
         draw["cycles"] = scatter_figure
     with together(folder) as part:
         for name, figure in draw.items():
-            save(figure(found), part / f"{stem}_{name}.png")
+            save(figure(indicated), part / f"{stem}_{name}.png")
     return [folder / f"{stem}_{name}.png" for name in draw]
 
 
-def _several(found: Indicated) -> bool:
-    return any(len(each.pressure) > 1 for each in found.cylinders)
+def _several(indicated: Indicated) -> bool:
+    return any(len(each.pressure) > 1 for each in indicated.cylinders)
 
 
 def _name(cylinder: CylinderPressure) -> str:
     return f"cylinder {cylinder.number}"
 
 
-def _pressure(found: Indicated) -> str:
-    return f"cylinder pressure, {'absolute' if found.absolute else 'gauge'} [bar]"
+def _pressure(indicated: Indicated) -> str:
+    return f"cylinder pressure, {'absolute' if indicated.absolute else 'gauge'} [bar]"
 
 
-def _footer(figure: Figure, found: Indicated, about: str) -> None:
-    name = PurePath(found.source).name
+def _footer(figure: Figure, indicated: Indicated, about: str) -> None:
+    name = PurePath(indicated.source).name
     lines = textwrap.wrap(name, 80, max_lines=1, placeholder=" ...")
     caption(figure, [*lines, about])

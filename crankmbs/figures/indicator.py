@@ -19,7 +19,7 @@ __all__ = ["indicator_figure"]
 def indicator_figure(view: View) -> Figure:
     """Gauge pressure of each cylinder in the last cycle, over the crank angle and, as indicator
     diagram, over the volume that its piston has displaced from the top dead centre; of
-    double-acting cylinders that of both ends, each over its own area times the displacement. The
+    double-acting cylinders that of both ends, each over its area times the displacement. The
     area of a loop is the work of a cycle; cylinders of one loop share it."""
     pistons = [gear.piston for gear in view.scene.running_gear]
     displacement = view.values("piston_displacement")

@@ -56,8 +56,8 @@ class Machine:
             Ring(ax, RADIUS * radius, throw, frames.magnified * frames.leads),
         ]
         if newtons > 0.0:
-            own = [force for force in forces if force.cylinder in (None, *cylinders)]
-            self._moving.append(Arrows(ax, own, radius, newtons))
+            acting = [force for force in forces if force.cylinder in (None, *cylinders)]
+            self._moving.append(Arrows(ax, acting, radius, newtons))
             if forces[0].cylinder in cylinders:  # once for all drawings
                 draw_bar(ax, radius, newtons)
 

@@ -49,7 +49,7 @@ _PLAIN = Look()
 
 
 class Drawing:
-    """Some cylinders of a machine on axes of their own, movable from sample to sample.
+    """Some cylinders of a machine on their axes, movable from sample to sample.
 
     Parameters
     ----------

@@ -19,12 +19,12 @@ _WIDTH = 0.18  # of an order: two bars side by side leave a gap to the next half
 
 
 @rc_context(STYLE)
-def orders_figure(result: Result, found: EngineOrders) -> Figure:
+def orders_figure(result: Result, orders: EngineOrders) -> Figure:
     """One panel a quantity that is more than rounding: amplitudes of the run, and of inertia at
     constant speed."""
-    largest = {row.quantity: float(np.max(row.orders.amplitude)) for row in found.rows}
-    zero = negligible(largest, {row.quantity: row.units for row in found.rows})
-    rows = [row for row in found.rows if row.quantity not in zero]
+    largest = {row.quantity: float(np.max(row.orders.amplitude)) for row in orders.rows}
+    zero = negligible(largest, {row.quantity: row.units for row in orders.rows})
+    rows = [row for row in orders.rows if row.quantity not in zero]
     figure, axes = panels(len(rows), 1, 10.0, 2.6 * len(rows))
     for ax, row in zip(axes, rows, strict=True):
         order = row.orders.order
@@ -39,15 +39,15 @@ def orders_figure(result: Result, found: EngineOrders) -> Figure:
     legend(figure, axes[-1])
     figure.align_ylabels(axes)
     nothing = f"; {', '.join(sorted(zero))}: none" if zero else ""
-    footer(figure, result, f"orders over the {found.window.kind}{nothing}")
+    footer(figure, result, f"orders over the {orders.window.kind}{nothing}")
     return figure
 
 
-def save_orders_figure(result: Result, found: EngineOrders, folder: Path) -> Path:
+def save_orders_figure(result: Result, orders: EngineOrders, folder: Path) -> Path:
     """Draw the orders of a run into orders.png.
 
     Raises
     ------
     OutputError : the folder cannot be made or written
     """
-    return save(orders_figure(result, found), folder / "orders.png")
+    return save(orders_figure(result, orders), folder / "orders.png")

@@ -76,12 +76,12 @@ def plot(result: Result, kind: str = "speed", joint: str = "crank_pin") -> Figur
     return _POLAR[joint](last_view(result)) if kind == "polar" else _KINDS[kind](result)
 
 
-def _check_word(what: str, word: str, known: list[str]) -> None:
+def _check_word(option: str, word: str, known: list[str]) -> None:
     if word in known:
         return
     near = did_you_mean(word, known) if isinstance(word, str) else ""
     *most, last = map(shown, known)
-    raise InputError(f"{what} must be {', '.join(most)} or {last}; {shown(word)} came{near}")
+    raise InputError(f"{option} must be {', '.join(most)} or {last}; {shown(word)} came{near}")
 
 
 def _cycles(result: Result) -> Figure:

@@ -96,8 +96,10 @@ def forces_figure(view: View) -> Figure:
     crank_axis(axes, view)
     legend(figure, axes[0])
     figure.align_ylabels(axes)
-    said = {"gas_force": "gas", "applied_force": "applied force", "side_force": "side force"}
-    footer(figure, view.result, " and ".join(word for name, word in said.items() if name in names))
+    titles = {"gas_force": "gas", "applied_force": "applied force", "side_force": "side force"}
+    footer(
+        figure, view.result, " and ".join(word for name, word in titles.items() if name in names)
+    )
     return figure
 
 

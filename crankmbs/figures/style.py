@@ -76,7 +76,7 @@ class _Shown(Figure):
 
 
 def png(figure: Figure, dpi: float | Literal["figure"] = "figure") -> bytes:
-    """The figure as the bytes of a PNG file, by default with its own dots per inch."""
+    """The figure as the bytes of a PNG file, by default with the figure's dots per inch."""
     file = io.BytesIO()
     figure.savefig(file, format="png", dpi=dpi)
     return file.getvalue()

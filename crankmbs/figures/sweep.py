@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
+from matplotlib.axis import XAxis, YAxis
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
@@ -58,25 +59,15 @@ class _Axis(NamedTuple):
     words: list[str]
     log: bool
 
-    def along_x(self, ax: Axes) -> None:
-        ax.set_xlabel(self.label)
+    def along(self, axis: XAxis | YAxis) -> None:
+        axis.set_label_text(self.label)
         if self.words:
-            ax.set_xticks(self.at, self.words)
+            axis.set_ticks(self.at, self.words)
         elif self.log:
-            ax.set_xscale("log")
-            logarithmic(ax.xaxis)
+            getattr(axis.axes, f"set_{axis.axis_name}scale")("log")
+            logarithmic(axis)
         else:
-            ax.xaxis.set_major_locator(MaxNLocator(6, steps=_ROUND))
-
-    def along_y(self, ax: Axes) -> None:
-        ax.set_ylabel(self.label)
-        if self.words:
-            ax.set_yticks(self.at, self.words)
-        elif self.log:
-            ax.set_yscale("log")
-            logarithmic(ax.yaxis)
-        else:
-            ax.yaxis.set_major_locator(MaxNLocator(6, steps=_ROUND))
+            axis.set_major_locator(MaxNLocator(6, steps=_ROUND))
 
 
 @rc_context(STYLE)
@@ -98,9 +89,9 @@ def sweep_figure(data: xr.Dataset, show: str, limit: str | None = None) -> Figur
     """
     data = _varied(data)
     columns = {
-        str(name): Column(one.attrs["units"], one.attrs["long_name"])
-        for name, one in data.data_vars.items()
-        if "units" in one.attrs
+        str(name): Column(variable.attrs["units"], variable.attrs["long_name"])
+        for name, variable in data.data_vars.items()
+        if "units" in variable.attrs
     }
     reading = reading_of(show, columns)
     values, error = reading.of_sweep(data)
@@ -138,12 +129,12 @@ def _varied(data: xr.Dataset) -> xr.Dataset:
 def _over(data: xr.Dataset, drawn: _Drawn, knobs: list[str]) -> Figure:
     if len(knobs) == 1:
         return _curve(_axis(data, knobs[0]), drawn)
-    y, x, *others = knobs
-    rest = drawn.values.stack(panel=others).transpose("panel", y, x) if others else None
+    y, x, *further = knobs
+    rest = drawn.values.stack(panel=further).transpose("panel", y, x) if further else None
     count = 1 if rest is None else rest.sizes["panel"]
     if count > _MOST:
         raise InputError(
-            f"{', '.join(others)}: {count} panels are too many; at most {_MOST} are drawn, vary "
+            f"{', '.join(further)}: {count} panels are too many; at most {_MOST} are drawn, vary "
             "fewer values beside the first two"
         )
     columns = min(count, _COLUMNS)
@@ -159,7 +150,7 @@ def _over(data: xr.Dataset, drawn: _Drawn, knobs: list[str]) -> Figure:
             ax, (_axis(data, x), _axis(data, y)), drawn._replace(values=table), levels
         )
         if rest is not None:
-            ax.set_title(_where(data, others, rest["panel"].values[k]), fontsize=11)
+            ax.set_title(_where(data, further, rest["panel"].values[k]), fontsize=11)
     figure.colorbar(filled, ax=axes, ticks=levels)
     figure.suptitle(drawn.label, fontsize=14)
     return figure
@@ -170,7 +161,7 @@ def _curve(axis: _Axis, drawn: _Drawn) -> Figure:
     marker = "o" if len(axis.at) < 40 else ""
     line = "" if axis.words else "-"
     ax.plot(axis.at, drawn.values, color=COLOURS[0], marker=marker or None, linestyle=line)
-    axis.along_x(ax)
+    axis.along(ax.xaxis)
     figure.suptitle(drawn.label, fontsize=14)
     _limited(ax, drawn)
     return figure
@@ -196,8 +187,8 @@ def _contours(ax: Axes, at: tuple[_Axis, _Axis], drawn: _Drawn, levels: Array) -
         ax.contour(x.at, y.at, table, [limit], colors=COLOURS[1])
         ax.plot([], [], color=COLOURS[1], label=_amount(drawn))  # beside it, it is cut at an edge
         ax.legend(loc="upper right")
-    x.along_x(ax)
-    y.along_y(ax)
+    x.along(ax.xaxis)
+    y.along(ax.yaxis)
     return filled
 
 
@@ -215,7 +206,7 @@ def _over_cases(data: xr.Dataset, drawn: _Drawn) -> Figure:
     for ax, name in zip(axes, names, strict=False):
         axis = _axis(data, name)
         ax.plot(*_apart(axis.at, drawn.values.values), ".", color=COLOURS[0], markersize=4)
-        axis.along_x(ax)
+        axis.along(ax.xaxis)
         _limited(ax, drawn)
     for ax in axes[len(names) :]:
         ax.set_visible(False)

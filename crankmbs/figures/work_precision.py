@@ -18,7 +18,7 @@ __all__ = ["save_figure", "work_precision_figure"]
 
 _COLUMNS = 3  # panels side by side
 _TITLES = {END: "state at the end", MOTION: "motion over the run"}
-_OWN = {"crank_angle": "#D55E00", "minimal": "#0072B2", "multibody": "#009E73"}
+_COLORS = {"crank_angle": "#D55E00", "minimal": "#0072B2", "multibody": "#009E73"}
 _PEERS = ("black", "0.45", "#56B4E9", "#CC79A7", "#E69F00", "#7A5230", "#8A8AC0", "#5B8C5A")
 _MARKS = "^vsDPX<>"
 
@@ -40,7 +40,7 @@ def save_figure(outcome: WorkPrecision, folder: Path) -> Path:
 def work_precision_figure(outcome: WorkPrecision) -> Figure:
     """Wall time over relative error: lower and further left is better.
 
-    Grey is below what the reference states of its own error; what lies there is drawn on its edge.
+    Grey is below the error that the reference states; what lies there is drawn on its edge.
     """
     names = outcome.quantities
     rows = -(-len(names) // _COLUMNS)
@@ -88,7 +88,7 @@ def _styles(outcome: WorkPrecision) -> dict[str, dict[str, Any]]:
         else:
             name, _, part = contender.partition(",")
             styles[contender] = {
-                "color": _OWN.get(name, _OWN["crank_angle"]),
+                "color": _COLORS.get(name, _COLORS["crank_angle"]),
                 "marker": "o",
                 "linewidth": 2.5,
                 "linestyle": {"": "-", " end only": "--"}.get(part, ":"),
@@ -98,7 +98,7 @@ def _styles(outcome: WorkPrecision) -> dict[str, dict[str, Any]]:
 
 
 def _errors(outcome: WorkPrecision) -> list[float]:
-    """All errors, those below the reference's own set to it."""
+    """All errors, those below the reference's set to it."""
     floors = outcome.reference.floors
     return [max(error, floors[name]) for row in outcome.rows for name, error in row.errors.items()]
 

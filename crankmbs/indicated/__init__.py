@@ -3,7 +3,7 @@
 Reading, checking and referencing a signal belong here; what a run makes of it does not.
 """
 
-from crankmbs.indicated.found import CylinderPressure, Indicated
+from crankmbs.indicated.findings import CylinderPressure, Indicated
 from crankmbs.indicated.read import read_pressure
 from crankmbs.indicated.speed import MeasuredSpeed, read_speed
 

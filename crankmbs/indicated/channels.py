@@ -168,10 +168,10 @@ def _numbers(name: str) -> tuple[int, int]:
     if match:
         cycle = int(match[1] or match[2])
         low = low[: match.start()] + low[match.end() :]
-    found = [int(each) for each in re.findall(r"[0-9]+", low)]
-    cylinder = found[0] if found else 0
-    if not cycle and len(found) > 1:
-        cycle = found[1]
+    numbers = [int(each) for each in re.findall(r"[0-9]+", low)]
+    cylinder = numbers[0] if numbers else 0
+    if not cycle and len(numbers) > 1:
+        cycle = numbers[1]
     return cylinder, cycle
 
 

@@ -12,7 +12,7 @@ from crankmbs.indicated.dead_centre import (
     is_fired,
     motored_dead_centre,
 )
-from crankmbs.indicated.found import CylinderPressure
+from crankmbs.indicated.findings import CylinderPressure
 from crankmbs.indicated.options import Options
 from crankmbs.indicated.quality import closure, mean_effective_pressure, noise, smoothed
 from crankmbs.indicated.referencing import Raw

@@ -99,9 +99,9 @@ def motored_dead_centre(
     at, spread = peak_of(phi, mean, noise)
     off = _FIT + _SIGMAS * spread
     least, most = _LOSS if loss_angle is None else (loss_angle, loss_angle)
-    given = "" if loss_angle is None else f", the loss angle of {loss_angle:g} degrees as given"
+    source = "" if loss_angle is None else f", the loss angle of {loss_angle:g} degrees as given"
     return DeadCentre(
-        at + least - off, at + most + off, f"motored{given}", at, _skew(phi, mean, at)
+        at + least - off, at + most + off, f"motored{source}", at, _skew(phi, mean, at)
     )
 
 
@@ -116,9 +116,9 @@ def fired_dead_centre(phi: Array, mean: Array, shape: Shape) -> DeadCentre | Non
     angle, pressure = phi[window], mean[window]
     if np.min(pressure) <= -_OFFSETS[0]:
         return None
-    found = [_shift(angle, pressure + c, shape, n) for n in EXPONENTS for c in _OFFSETS]
+    centres = [_shift(angle, pressure + c, shape, n) for n in EXPONENTS for c in _OFFSETS]
     peak = float(phi[np.argmax(mean)])
-    return DeadCentre(min(found), max(found), "fired, from its compression", peak)
+    return DeadCentre(min(centres), max(centres), "fired, from its compression", peak)
 
 
 def _shift(phi: Array, pressure: Array, shape: Shape, exponent: float) -> float:

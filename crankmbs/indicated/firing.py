@@ -57,12 +57,12 @@ def peak_or_given(record: Record, options: Options, where: str) -> float:
     _check_alone(record.angle, mean, record.period, peak, where)
     if options.firing_tdc is None:
         return peak
-    given = float(np.degrees(options.firing_tdc))
-    before = _off_by(peak - given - _USUAL, 360.0) + _USUAL
+    centre = float(np.degrees(options.firing_tdc))
+    before = _off_by(peak - centre - _USUAL, 360.0) + _USUAL
     if not -_BEFORE < before < _BEHIND:
         raise InputError(
             f"{where}: the peak of the pressure lies {peak % 360.0:.4g} degrees after the first "
-            f"edge of a revolution, {before:.4g} degrees from the dead centre given, {given:g}; "
+            f"edge of a revolution, {before:.4g} degrees from the dead centre given, {centre:g}; "
             "correct firing_tdc, or leave it out"
         )
     return (peak - before) % record.period
@@ -104,7 +104,7 @@ def places(
     measured: Sequence[float], period: float, known: Sequence[float] | None, where: str
 ) -> list[float]:
     """The lags [deg] that the measured ones stand for: that of the scene's layout where it is near,
-    else the nearest even one; of cylinders each over its own angle all are 0.
+    else the nearest even one; 0 for all where each cylinder runs over its cycle angle.
 
     known : those of the layout, modulo the period
 
@@ -115,10 +115,10 @@ def places(
     near = [_off(each, 0.0, period) for each in measured]
     if max(near, default=0.0) < _APART:
         return [0.0] * len(measured)
-    found = []
+    intended = []
     for number, each in enumerate(measured, start=1):
         if known is not None and _off(each, known[number - 1], period) <= _APART:
-            found.append(known[number - 1])
+            intended.append(known[number - 1])
             continue
         nominal = min((g for g in _GRID if g < period), key=lambda g: _off(each, g, period))
         if _off(each, nominal, period) > _APART:
@@ -130,8 +130,8 @@ def places(
                     'columns="PCYL1" where the others are no pressures',
                 ),
             )
-        found.append(float(nominal))
-    return found
+        intended.append(float(nominal))
+    return intended
 
 
 def cut_cycles(

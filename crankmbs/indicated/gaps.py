@@ -21,27 +21,27 @@ def without_gaps(record: Record, channel: Channel, where: str) -> tuple[Array, b
     ------
     InputError : nothing is left
     """
-    values, said = channel.values, []
+    values, remarks = channel.values, []
     missing = np.isnan(values)
     if not missing.any():
         return values, False, []
     values = values.copy()
     bad = np.flatnonzero(missing.any(axis=1))
-    kept = np.ones(len(values), dtype=bool)
+    whole = np.ones(len(values), dtype=bool)
     for cycle in bad:
         if _longest(missing[cycle]) > _LONGEST:
-            kept[cycle] = False
+            whole[cycle] = False
             continue
         gap = missing[cycle]
         values[cycle, gap] = np.interp(
             record.angle[gap], record.angle[~gap], values[cycle, ~gap], period=record.period
         )
         at = record.angle[np.flatnonzero(gap)[0]]
-        said.append(
+        remarks.append(
             f"{channel.name}: {int(gap.sum())} missing cells of cycle {cycle + 1}, from {at:g} "
             "degrees, lie now on straight lines between their neighbours"
         )
-    out = np.flatnonzero(~kept)
+    out = np.flatnonzero(~whole)
     if len(out) == len(values):
         at = record.angle[np.flatnonzero(missing[0])[0]]
         raise InputError(
@@ -50,11 +50,11 @@ def without_gaps(record: Record, channel: Channel, where: str) -> tuple[Array, b
         )
     if len(out):
         listed = ", ".join(str(k + 1) for k in out[:10]) + (" ..." if len(out) > 10 else "")
-        said.append(
+        remarks.append(
             f"{channel.name}: {len(out)} of {len(values)} cycles have more than {_LONGEST} missing "
             f"cells in a row and are left out: {listed}"
         )
-    return values[kept], bool(len(out)), said
+    return values[whole], bool(len(out)), remarks
 
 
 def _longest(missing: np.ndarray) -> int:

@@ -83,16 +83,16 @@ def record_over_time(
     rotation = turned(time, signals[columns.wheel], marks, options.wheel, strokes, where)
     delay = options.delay or 0.0
     begin, count, grid = _grid(rotation, time, delay)
-    seen = rotation.time_at(begin + np.arange(count * len(grid)) * (grid[1] - grid[0])) + delay
+    instants = rotation.time_at(begin + np.arange(count * len(grid)) * (grid[1] - grid[0])) + delay
     channels = []
     for number, k in enumerate(columns.pressures, start=1):
         pascals = _pressure(signals[k], headings[k], options)
-        values = CubicSpline(time, pascals)(seen).reshape(count, len(grid))
-        _check_compression(values, names[k], seen, where)
+        values = CubicSpline(time, pascals)(instants).reshape(count, len(grid))
+        _check_compression(values, names[k], instants, where)
         reference = headings[k].reference
         channels.append(Channel(names[k], "cycle", number, values, reference))
-    said = _words(rotation, names, columns, options, strokes if stroke is None else None)
-    return Record(grid, strokes, tuple(channels), True, said, rotation)
+    remarks = _words(rotation, names, columns, options, strokes if stroke is None else None)
+    return Record(grid, strokes, tuple(channels), True, remarks, rotation)
 
 
 def turned(
@@ -242,7 +242,7 @@ def _pressure(signal: Array, heading: Heading, options: Options) -> Array:
     return signal * PRESSURE_UNITS[options.unit]
 
 
-def _check_compression(values: Array, name: str, seen: Array, where: str) -> None:
+def _check_compression(values: Array, name: str, instants: Array, where: str) -> None:
     reach = np.ptp(values, axis=1)
     usual = float(np.median(reach))
     if usual < _FLAT:
@@ -253,7 +253,7 @@ def _check_compression(values: Array, name: str, seen: Array, where: str) -> Non
         )
     weak = np.flatnonzero(reach < _WEAK * usual)
     if len(weak):
-        begin = seen.reshape(values.shape)[weak[0], 0]
+        begin = instants.reshape(values.shape)[weak[0], 0]
         raise InputError(
             f"{where}: in the cycle from {begin:.6g} s on the pressure of column {shown(name)} "
             f"never compresses: it rises by {reach[weak[0]] / BAR:.3g} bar, in the others by "
@@ -268,16 +268,16 @@ def _words(
     options: Options,
     assumed: int | None,
 ) -> list[str]:
-    said = [
+    sentences = [
         f"the record is over time: {shown(names[columns.wheel])} is the wheel, angles "
         f"count from its first {rotation.wheel.edge} edge "
         + ("after the gap" if columns.mark is None else "at the index"),
         *rotation.words(),
     ]
     if assumed is not None and options.stroke is None:
-        said.append(
+        sentences.append(
             f"read as cycles of {rotation.period:g} degrees; stroke=2 is for a two-stroke engine"
         )
     if options.delay:
-        said.append(f"the sensor's delay, {1e3 * options.delay:g} ms, is taken off its times")
-    return said
+        sentences.append(f"the sensor's delay, {1e3 * options.delay:g} ms, is taken off its times")
+    return sentences

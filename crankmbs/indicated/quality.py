@@ -48,13 +48,13 @@ def noise(phi: Array, pressure: Array) -> float:
     inside = np.abs(phi) > _GAS_EXCHANGE if np.max(phi) > 300.0 else np.full(phi.shape, True)
     differences = np.apply_along_axis(np.convolve, 1, pressure[:64], _FOURTH, "valid")
     whole = even[:-3] & even[1:-2] & even[2:-1] & even[3:] & inside[2:-2]
-    found = np.abs(differences[:, whole])
-    return float(_NORMAL * np.median(found)) if found.size > 20 else 0.0
+    sizes = np.abs(differences[:, whole])
+    return float(_NORMAL * np.median(sizes)) if sizes.size > 20 else 0.0
 
 
 def closure(pressure: Array) -> Array:
     """How far each cycle's last row lies from the first of the next one, beyond the step before
-    it; the cycle's own first where there is no next: shape (cycles,) [Pa]."""
+    it; the first of the same cycle where there is no next: shape (cycles,) [Pa]."""
     following = np.append(pressure[1:, 0], pressure[-1, 0])
     return np.asarray(following - (2.0 * pressure[:, -1] - pressure[:, -2]))
 

@@ -14,8 +14,8 @@ from crankmbs.delimited.dialect import named
 from crankmbs.errors import InputError, UndecidedError
 from crankmbs.indicated.cylinders import cylinder_of
 from crankmbs.indicated.dead_centre import DeadCentre, fired_dead_centre
+from crankmbs.indicated.findings import CylinderPressure, Indicated
 from crankmbs.indicated.firing import cut_cycles, firing_angle, lags, peak_or_given, places
-from crankmbs.indicated.found import CylinderPressure, Indicated
 from crankmbs.indicated.gaps import without_gaps
 from crankmbs.indicated.options import Options
 from crankmbs.indicated.over_time import record_over_time, time_column
@@ -80,29 +80,29 @@ def read_pressure(file: str | Path, scene: Scene | None = None, **options: Any) 
     >>> read_pressure("a.csv").cylinders[0].peaks.tolist()
     [300000.0]
     """
-    wanted = Options(**options)
-    sheet = _sheet(Path(file), wanted)
+    settings = Options(**options)
+    sheet = _sheet(Path(file), settings)
     where = f"file {sheet.name}"
     known = scene.gas.stroke if scene is not None and scene.gas is not None else None
     header = of_header(sheet.above, sheet.dialect.decimal)
-    shape = shape_of(scene, header, wanted.compression_ratio)
-    record = _record(sheet, wanted, known, shape)
-    said = [_read_as(sheet, record), *record.said]
+    shape = shape_of(scene, header, settings.compression_ratio)
+    record = _record(sheet, settings, known, shape)
+    sentences = [_read_as(sheet, record), *record.said]
     if header:
-        said += [_header_words(header)]
+        sentences += [_header_words(header)]
     if scene is not None:
-        said += differences(header, scene)
-    given = _Given(record, wanted, scene, shape, where)
-    first = None if record.rotation is None else peak_or_given(record, wanted, where)
-    cylinders, firsts, absolute, more = _cylinders(given, first)
-    if first is not None and wanted.firing_tdc is None:
-        cylinders, firsts, absolute, more = _by_pressure(given, first)
-    said += more
+        sentences += differences(header, scene)
+    source = _Source(record, settings, scene, shape, where)
+    first = None if record.rotation is None else peak_or_given(record, settings, where)
+    cylinders, firsts, absolute, remarks = _cylinders(source, first)
+    if first is not None and settings.firing_tdc is None:
+        cylinders, firsts, absolute, remarks = _by_pressure(source, first)
+    sentences += remarks
     aligned = len(cylinders) > 1 and len({each.firing for each in cylinders}) == 1
-    table, words = table_of(record, cylinders, firsts, shape, wanted.cycles, where)
+    table, words = table_of(record, cylinders, firsts, shape, settings.cycles, where)
     speed = _speed(record, cylinders[0].firing, shape, sheet.name)
     for cylinder in cylinders:
-        said += said_of(cylinder, shape, absolute)
+        sentences += said_of(cylinder, shape, absolute)
     return Indicated(
         source=sheet.name,
         stroke=record.stroke,
@@ -112,13 +112,13 @@ def read_pressure(file: str | Path, scene: Scene | None = None, **options: Any) 
         cylinders=tuple(cylinders),
         shape=shape,
         table=table,
-        sentences=(*said, *_no_geometry(shape), *(speed.sentences if speed else ()), words),
+        sentences=(*sentences, *_no_geometry(shape), *(speed.sentences if speed else ()), words),
         speed=speed,
     )
 
 
-class _Given(NamedTuple):
-    """What a file's cylinders are found from."""
+class _Source(NamedTuple):
+    """What a file's cylinders are made of."""
 
     record: Record
     options: Options
@@ -137,7 +137,7 @@ def _record(sheet: Sheet, options: Options, stroke: int | None, shape: Shape | N
 
 
 def _cylinders(
-    given: _Given, first: float | None
+    source: _Source, first: float | None
 ) -> tuple[list[CylinderPressure], list[int], bool, list[str]]:
     """The cylinders, the row at which the cycles of each begin, whether they are absolute, and what
     was done.
@@ -145,21 +145,21 @@ def _cylinders(
     first : the file's angle [deg] of the first cylinder's firing dead centre; None: as the options
         or the peak have it
     """
-    record, options, scene, shape, where = given
-    raws, firsts, measured, said = _cut(record, options, scene, where, first)
+    record, options, scene, shape, where = source
+    raws, firsts, measured, remarks = _cut(record, options, scene, where, first)
     reference, why = decide([raw for raw, _ in raws], options, shape, record.period, where)
     cylinders, absolute = [], True
     for (raw, firing), lag in zip(raws, measured, strict=True):
         added, absolute, words = refer(raw, reference, shape, record.period, where)
         look = "warning: " if "though" in why else ""
-        said.append(f"{look}cylinder {raw.number}: {words} ({why})")
-        found = cylinder_of(raw, added, shape, record.period, options, absolute)
-        cylinders.append(replace(found, firing=firing, lag=lag))
-    return cylinders, firsts, absolute, said
+        remarks.append(f"{look}cylinder {raw.number}: {words} ({why})")
+        cylinder = cylinder_of(raw, added, shape, record.period, options, absolute)
+        cylinders.append(replace(cylinder, firing=firing, lag=lag))
+    return cylinders, firsts, absolute, remarks
 
 
 def _by_pressure(
-    given: _Given, first: float
+    source: _Source, first: float
 ) -> tuple[list[CylinderPressure], list[int], bool, list[str]]:
     """The same with the dead centre where the pressure has it, from a guess [deg].
 
@@ -168,21 +168,21 @@ def _by_pressure(
     UndecidedError : the pressure does not show it
     """
     for _ in range(_ROUNDS):
-        found = _cylinders(given, first)
-        centre = _centre(found[0][0], given.shape if found[2] else None)
+        cylinders, firsts, absolute, remarks = _cylinders(source, first)
+        centre = _centre(cylinders[0], source.shape if absolute else None)
         if centre is None or not _PEAKS[0] < centre.peak < _PEAKS[1]:
             break
         if abs(centre.middle) < _SETTLED:
-            found[3].append(
+            remarks.append(
                 f"the dead centre is taken where the pressure shows it, {first % 360.0:.2f} +- "
                 f"{centre.half:.2f} degrees after the first edge of a revolution, by "
                 f"{'its motored peak' if centre.how.startswith('motored') else 'its compression'};"
                 " firing_tdc says where it is known"
             )
-            return found
-        first = (first + centre.middle) % given.record.period
+            return cylinders, firsts, absolute, remarks
+        first = (first + centre.middle) % source.record.period
     raise UndecidedError(
-        f"{given.where}: where the dead centre lies is not said, and the pressure does not show "
+        f"{source.where}: where the dead centre lies is not said, and the pressure does not show "
         "it: a fired cycle has it in its compression alone, which must be a polytrope",
         ('firing_tdc="25 deg"', "a scene, compression_ratio and another reference"),
     )
@@ -191,11 +191,11 @@ def _by_pressure(
 def _centre(cylinder: CylinderPressure, shape: Shape | None) -> DeadCentre | None:
     """The dead centre by a peak that is surely motored, symmetric and alike in every cycle, else by
     the compression."""
-    found = cylinder.dead_centre
+    centre = cylinder.dead_centre
     alike = np.std(cylinder.peaks) < _ALIKE * np.mean(cylinder.peaks)
-    motored = found is not None and found.how.startswith("motored")
-    if found is not None and motored and alike and abs(found.skew) < _SYMMETRIC:
-        return found
+    motored = centre is not None and centre.how.startswith("motored")
+    if centre is not None and motored and alike and abs(centre.skew) < _SYMMETRIC:
+        return centre
     if shape is None or shape.ratio is None:
         return None
     return fired_dead_centre(cylinder.angle, cylinder.mean, shape)
@@ -251,14 +251,14 @@ def _cut(
 ) -> tuple[list[tuple[Raw, float]], list[int], list[float], list[str]]:
     """Each cylinder's cycles from gas exchange to gas exchange, with its firing angle; the row at
     which each begins; measured lags; what was done."""
-    channels, said = _pressures(record, where)
+    channels, remarks = _pressures(record, where)
     sign = -1.0 if options.invert else 1.0
     filled, joined = [], []
     for channel in channels:
         values, torn, words = without_gaps(record, channel, where)
         filled.append(sign * values)
         joined.append(record.consecutive and not torn)
-        said += words
+        remarks += words
     means = [np.mean(values, axis=0) for values in filled]
     for channel, mean in zip(channels, means, strict=True):
         _check_sign(channel, mean, where)
@@ -271,13 +271,13 @@ def _cut(
     measured = lags(record.angle, means, record.period)
     known = _of_layout(channels, scene, record.period)
     nominal = places(measured, record.period, known, where)
-    said += _lag_words(channels, measured, nominal, known)
+    remarks += _lag_words(channels, measured, nominal, known)
     raws, firsts = [], []
     for channel, values, consecutive, lag in zip(channels, filled, joined, nominal, strict=True):
         firing = first + lag
         start, phi, cycles = cut_cycles(record.angle, values, record.period, firing, consecutive)
         if len(cycles) < len(values):
-            said.append(
+            remarks.append(
                 f"cylinder {channel.cylinder}: cut during the gas exchange, {len(values)} recorded "
                 f"cycles give {len(cycles)} whole ones"
             )
@@ -289,7 +289,7 @@ def _cut(
             )
         )
         firsts.append(start if len(cycles) < len(values) or start == 0 else -start)
-    return raws, firsts, measured, said
+    return raws, firsts, measured, remarks
 
 
 def _pressures(record: Record, where: str) -> tuple[list[Channel], list[str]]:
@@ -297,7 +297,7 @@ def _pressures(record: Record, where: str) -> tuple[list[Channel], list[str]]:
     of_kind: dict[str, list[Channel]] = {}
     for channel in record.channels:
         of_kind.setdefault(channel.kind, []).append(channel)
-    said = [
+    remarks = [
         f"{kind} of the cycles: {', '.join(each.name for each in channels)}, not in the table"
         for kind, channels in of_kind.items()
         if kind not in ("cycle", "other") and (kind != "mean" or "cycle" in of_kind)
@@ -310,8 +310,8 @@ def _pressures(record: Record, where: str) -> tuple[list[Channel], list[str]]:
             'such as columns="PCYL1"'
         )
     if "cycle" not in of_kind:
-        said.append("the file has mean cycles alone: their peaks are below those of the cycles")
-    return sorted(chosen, key=lambda channel: channel.cylinder), said
+        remarks.append("the file has mean cycles alone: their peaks are below those of the cycles")
+    return sorted(chosen, key=lambda channel: channel.cylinder), remarks
 
 
 def _check_sign(channel: Channel, mean: Array, where: str) -> None:
@@ -344,7 +344,7 @@ def _lag_words(
         return []
     if not any(nominal):
         return ["every column runs over its own cylinder's angle: all peak together"]
-    said = []
+    sentences = []
     for k in range(1, len(channels)):
         text = (
             f"cylinder {channels[k].cylinder} fires {nominal[k]:.6g} degrees after cylinder "
@@ -352,14 +352,14 @@ def _lag_words(
         )
         if known is not None and abs(known[k] - nominal[k]) > 1e-6:
             text = f"warning: {text}, and {known[k]:.6g} by the scene's layout: check firing_order"
-        said.append(text)
-    return said
+        sentences.append(text)
+    return sentences
 
 
 def _intake(record: Record, cylinder: int, start: int) -> Array | None:
-    """The intake's mean cycle, of this cylinder where each has one, over its own angles."""
-    found = [each for each in record.channels if each.kind == "intake"]
-    if not found:
+    """The intake's mean cycle, of this cylinder where each has one, over the cylinder's angles."""
+    intakes = [each for each in record.channels if each.kind == "intake"]
+    if not intakes:
         return None
-    own = [each for each in found if each.cylinder == cylinder]
-    return np.asarray(np.roll(np.nanmean((own or found)[0].values, axis=0), -start))
+    same = [each for each in intakes if each.cylinder == cylinder]
+    return np.asarray(np.roll(np.nanmean((same or intakes)[0].values, axis=0), -start))

@@ -43,31 +43,31 @@ def decide(
     ------
     UndecidedError : nothing of these
     """
-    said = {raw.said for raw in raws}
+    units = {raw.said for raw in raws}
     if options.reference is not None:
         against = {"absolute": "gauge", "gauge": "absolute"}.get(options.reference.kind)
-        though = f", though the unit says {against}" if against in said else ""
+        though = f", though the unit says {against}" if against in units else ""
         return options.reference, f"as given{though}"
-    if len(said) == 1 and "" not in said:
-        return Reference(said.pop()), "as the unit says"
-    levels = ", ".join(f"{np.mean(_low(raw, period)) / BAR:.3g}" for raw in raws)
-    seen = f"the gas exchange lies at {levels} bar"
+    if len(units) == 1 and "" not in units:
+        return Reference(units.pop()), "as the unit says"
+    bars = ", ".join(f"{np.mean(_low(raw, period)) / BAR:.3g}" for raw in raws)
+    levels = f"the gas exchange lies at {bars} bar"
     if shape is not None and shape.ratio is not None:
         ranges = [offset_range(raw.phi, raw.pressure.mean(axis=0), shape) for raw in raws]
         low, high = min(r[0] for r in ranges), max(r[1] for r in ranges)
         least, most = max(r[0] for r in ranges), min(r[1] for r in ranges)
         interval = f"{low / BAR:.2f} to {high / BAR:.2f}"
         zero = all(r[0] - _NEAR <= 0.0 <= r[1] + _NEAR for r in ranges)
-        one = all(r[0] - _NEAR <= _AMBIENT <= r[1] + _NEAR for r in ranges)
-        if zero != one and high - low < 2.0 * _AMBIENT and least <= most + 2.0 * _NEAR:
+        ambient = all(r[0] - _NEAR <= _AMBIENT <= r[1] + _NEAR for r in ranges)
+        if zero != ambient and high - low < 2.0 * _AMBIENT and least <= most + 2.0 * _NEAR:
             kind = "absolute" if zero else "gauge"
             return Reference(kind), (
                 f"as the compression shows: a polytrope of 1.28 to 1.40 asks for {interval} bar "
                 "more"
             )
-        seen += f", and a polytrope of 1.28 to 1.40 asks for {interval} bar more"
+        levels += f", and a polytrope of 1.28 to 1.40 asks for {interval} bar more"
     raise UndecidedError(
-        f"{where}: the file does not say what its pressures are measured from; {seen}", REFERENCES
+        f"{where}: the file does not say what its pressures are measured from; {levels}", REFERENCES
     )
 
 

@@ -1,4 +1,4 @@
-"""What was found, in sentences."""
+"""The findings of a measured file in sentences."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from crankmbs.indicated.found import CylinderPressure
+from crankmbs.indicated.findings import CylinderPressure
 from crankmbs.indicated.shape import Shape
 from crankmbs.scene.units import BAR
 
@@ -21,23 +21,23 @@ _MOVED = 0.01  # of the range: how far a cycle may miss the next one's beginning
 
 def said_of(cylinder: CylinderPressure, shape: Shape | None, referenced: bool) -> Iterator[str]:
     """The sentences of one cylinder."""
-    who = f"cylinder {cylinder.number}"
-    yield _size(cylinder, who)
+    name = f"cylinder {cylinder.number}"
+    yield _size(cylinder, name)
     if len(cylinder.pressure) > 1:
-        yield _scatter(cylinder, who)
-    yield _noise(cylinder, who)
-    yield from _dead_centre(cylinder, who, shape)
-    yield from _suspicions(cylinder, who, referenced)
+        yield _scatter(cylinder, name)
+    yield _noise(cylinder, name)
+    yield from _dead_centre(cylinder, name, shape)
+    yield from _suspicions(cylinder, name, referenced)
     if cylinder.moved is not None:
         peak, angle, imep = cylinder.moved
         work = "" if math.isnan(imep) else f" and the imep by {imep / BAR:+.2g} bar"
         yield (
-            f"{who}: smoothing moves the peak of the mean cycle by {peak / BAR:+.3g} bar and "
+            f"{name}: smoothing moves the peak of the mean cycle by {peak / BAR:+.3g} bar and "
             f"{angle:+.2g} degrees{work}"
         )
 
 
-def _size(cylinder: CylinderPressure, who: str) -> str:
+def _size(cylinder: CylinderPressure, name: str) -> str:
     mean = cylinder.mean
     at = cylinder.angle[np.argmax(mean)]
     burns = {True: "fired", False: "motored", None: "fired or motored (not clear which)"}
@@ -45,19 +45,19 @@ def _size(cylinder: CylinderPressure, who: str) -> str:
     if cylinder.imep is not None:
         work = f"; imep {np.mean(cylinder.imep) / BAR:.4g} bar"
     side = "after" if at >= 0.0 else "before"
-    named = "" if cylinder.name == who else f"{cylinder.name}, "
+    named = "" if cylinder.name == name else f"{cylinder.name}, "
     return (
-        f"{who}: {named}{burns[cylinder.fired]}; the mean cycle ranges "
+        f"{name}: {named}{burns[cylinder.fired]}; the mean cycle ranges "
         f"from {np.min(mean) / BAR:.4g} to {np.max(mean) / BAR:.5g} bar and peaks {abs(at):.4g} "
         f"degrees {side} the firing dead centre, which is {cylinder.firing:g} degrees of the file"
         f"{work}"
     )
 
 
-def _scatter(cylinder: CylinderPressure, who: str) -> str:
+def _scatter(cylinder: CylinderPressure, name: str) -> str:
     peaks = cylinder.peaks
     text = (
-        f"{who}: over {len(peaks)} cycles the peak scatters by {np.std(peaks, ddof=1) / BAR:.3g} "
+        f"{name}: over {len(peaks)} cycles the peak scatters by {np.std(peaks, ddof=1) / BAR:.3g} "
         f"bar (standard deviation)"
     )
     if cylinder.imep is not None:
@@ -67,54 +67,53 @@ def _scatter(cylinder: CylinderPressure, who: str) -> str:
     return f"{text}; the mean cycle's peak is {lowered}"
 
 
-def _noise(cylinder: CylinderPressure, who: str) -> str:
-    text = f"{who}: no noise"
+def _noise(cylinder: CylinderPressure, name: str) -> str:
+    text = f"{name}: no noise"
     if cylinder.noise > _EPSILON * np.ptp(cylinder.mean):
-        text = f"{who}: noise of {cylinder.noise / BAR:.2g} bar a sample (standard deviation)"
+        text = f"{name}: noise of {cylinder.noise / BAR:.2g} bar a sample (standard deviation)"
     return f"{text}; a cycle ends {cylinder.closure / BAR:.2g} bar off the beginning of the next"
 
 
-def _dead_centre(cylinder: CylinderPressure, who: str, shape: Shape | None) -> Iterator[str]:
-    found = cylinder.dead_centre
-    if found is None:
+def _dead_centre(cylinder: CylinderPressure, name: str, shape: Shape | None) -> Iterator[str]:
+    centre = cylinder.dead_centre
+    if centre is None:
         needs = "a reference that makes its pressures absolute"
         if shape is None or shape.ratio is None:
             needs = "stroke, rod length and compression_ratio"
         yield (
-            f"{who}: the dead centre is not checked: in a fired cycle the compression shows it, "
+            f"{name}: the dead centre is not checked: in a fired cycle the compression shows it, "
             f"which takes {needs}"
         )
         return
-    there = cylinder.firing + found.middle
-    if found.how.startswith("motored"):
+    angle = cylinder.firing + centre.middle
+    if centre.how.startswith("motored"):
         basis = (
-            f"{who}: the motored peak lies at {found.peak:.3f} degrees, the middle of the chord at "
-            f"70 % {found.skew:+.2f} degrees from it"
+            f"{name}: the motored peak lies at {centre.peak:.3f} degrees, the middle of the chord "
+            f"at 70 % {centre.skew:+.2f} degrees from it"
         )
     else:
-        basis = f"{who}: {found.how}"
-    where = (
-        f"the true dead centre lies {found.middle:+.2f} +- {found.half:.2f} degrees from the file's"
-    )
-    if "as given" in found.how:
-        where += f", with the loss angle{found.how.split('loss angle')[1]}"
-    elif found.how.startswith("motored"):
-        where += ", for a loss angle from 0.2 to 1.2 degrees, which loss_angle narrows"
-    if found.low <= 0.0 <= found.high:
-        yield f"{basis}; {where}: the file's may be right"
+        basis = f"{name}: {centre.how}"
+    middle = f"{centre.middle:+.2f} +- {centre.half:.2f} degrees"
+    place = f"the true dead centre lies {middle} from the file's"
+    if "as given" in centre.how:
+        place += f", with the loss angle{centre.how.split('loss angle')[1]}"
+    elif centre.how.startswith("motored"):
+        place += ", for a loss angle from 0.2 to 1.2 degrees, which loss_angle narrows"
+    if centre.low <= 0.0 <= centre.high:
+        yield f"{basis}; {place}: the file's may be right"
         return
     yield (
-        f"warning: {basis}; {where}; the file's is kept, "
-        f'firing_tdc="{there:.2f} deg" takes the one found'
+        f"warning: {basis}; {place}; the file's is kept, "
+        f'firing_tdc="{angle:.2f} deg" takes the one found'
     )
 
 
-def _suspicions(cylinder: CylinderPressure, who: str, referenced: bool) -> Iterator[str]:
+def _suspicions(cylinder: CylinderPressure, name: str, referenced: bool) -> Iterator[str]:
     mean, imep = cylinder.mean, cylinder.imep
     at = float(cylinder.angle[np.argmax(mean)])
     if at < (_LATE if cylinder.fired else _EARLY):
         yield (
-            f"warning: {who}: its peak lies {-at:.3g} degrees before the dead centre: "
+            f"warning: {name}: its peak lies {-at:.3g} degrees before the dead centre: "
             "check the dead centre, and the sign of the angle"
         )
     if imep is not None and cylinder.fired is not None:
@@ -126,7 +125,7 @@ def _suspicions(cylinder: CylinderPressure, who: str, referenced: bool) -> Itera
                 else ("motored, and the gas gives work to")
             )
             yield (
-                f"warning: {who}: {sense} the piston, imep {work / BAR:.3g} bar: check the dead "
+                f"warning: {name}: {sense} the piston, imep {work / BAR:.3g} bar: check the dead "
                 "centre, and the sign of the angle"
             )
     below = int(np.sum(np.min(cylinder.pressure, axis=1) < 0.0))
@@ -134,12 +133,12 @@ def _suspicions(cylinder: CylinderPressure, who: str, referenced: bool) -> Itera
         cycle, row = np.unravel_index(np.argmin(cylinder.pressure), cylinder.pressure.shape)
         low, deg = cylinder.pressure[cycle, row], cylinder.angle[row]
         yield (
-            f"warning: {who}: an absolute pressure falls to {low / BAR:.3g} bar, {deg:.4g} degrees "
-            f"from the dead centre in cycle {cycle + 1}, below zero in {below} of "
+            f"warning: {name}: an absolute pressure falls to {low / BAR:.3g} bar, {deg:.4g} "
+            f"degrees from the dead centre in cycle {cycle + 1}, below zero in {below} of "
             f"{len(cylinder.pressure)} cycles: check the reference, and the signal for spikes"
         )
     if abs(cylinder.closure) > _MOVED * np.ptp(mean) + 5.0 * cylinder.noise:
         yield (
-            f"warning: {who}: a cycle ends {cylinder.closure / BAR:.2g} bar off the beginning of "
+            f"warning: {name}: a cycle ends {cylinder.closure / BAR:.2g} bar off the beginning of "
             "the next, over 1 % of its range: the signal drifts, or rows are missing"
         )

@@ -84,9 +84,9 @@ class Rotation(NamedTuple):
         return np.asarray(CubicSpline(self.angle, self.time)(angle))
 
     def words(self) -> list[str]:
-        """What was found, in sentences."""
+        """The wheel's findings in sentences."""
         wheel, inner = self.wheel, self.teeth[1:-1] if self.wheel.missing else self.teeth
-        said = [
+        sentences = [
             f"{self.cycles} whole cycles from {self.begin:.6g} to {self.end:.6g} s, at a mean of "
             f"{self.mean_speed / 6.0:.5g} rpm; beyond order {self.orders} the teeth are up to "
             f"{np.max(np.abs(inner)):.2g} degrees out of place, which is corrected; angles of the "
@@ -98,11 +98,11 @@ class Rotation(NamedTuple):
                 f"{abs(each):.2g} degrees {'late' if each > 0.0 else 'early'}"
                 for each in self.teeth[[0, -1]]
             )
-            said.append(
+            sentences.append(
                 f"judged by the other teeth, the first edge after the gap comes {first}, the last "
                 f"one before it {last}"
             )
-        return said
+        return sentences
 
     @property
     def mean_speed(self) -> float:
@@ -192,7 +192,9 @@ def _fit(
     """Least squares over one revolution; what is left over is taken for independent errors."""
     empty = _Series(orders, constant, np.empty(0), np.empty(0))
     basis = empty.basis(place[good])
-    found, *_ = np.linalg.lstsq(basis, values[good], rcond=None)
-    left = values[good] - basis @ found
-    variance = float(left @ left) / max(len(left) - basis.shape[1], 1)
-    return empty._replace(coefficients=found, covariance=variance * np.linalg.inv(basis.T @ basis))
+    coefficients, *_ = np.linalg.lstsq(basis, values[good], rcond=None)
+    residual = values[good] - basis @ coefficients
+    variance = float(residual @ residual) / max(len(residual) - basis.shape[1], 1)
+    return empty._replace(
+        coefficients=coefficients, covariance=variance * np.linalg.inv(basis.T @ basis)
+    )

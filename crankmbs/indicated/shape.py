@@ -75,8 +75,8 @@ class Shape(NamedTuple):
 def shape_of(scene: Scene | None, header: dict[str, float], ratio: float | None) -> Shape | None:
     """The geometry that is used: the scene's, else the header's; None where neither has one."""
     if scene is not None:
-        found = of_scene(scene)
-        return found._replace(ratio=ratio or found.ratio or header.get("compression ratio"))
+        shape = of_scene(scene)
+        return shape._replace(ratio=ratio or shape.ratio or header.get("compression ratio"))
     if "stroke" not in header or "rod length" not in header:
         return None
     radius, rod, offset = 0.5 * header["stroke"], header["rod length"], header.get("offset", 0.0)
@@ -119,19 +119,19 @@ def of_header(above: Sequence[Sequence[str]], decimal: str) -> dict[str, float]:
     >>> of_header([["Bore", "85,25", "mm"], ["Compression ratio", "18"]], ",")
     {'bore': 0.08525, 'compression ratio': 18.0}
     """
-    found: dict[str, float] = {}
+    header: dict[str, float] = {}
     for cells in above:
         line = " ".join(cells).replace(",", ".") if decimal == "," else " ".join(cells)
         for name, label in _LABELS.items():
             match = re.search(_LINE.format(label=label), line, re.IGNORECASE)
-            if match is None or name in found:
+            if match is None or name in header:
                 continue
             unit = (match[3] or match[1] or "").strip().lower()
             if name == "compression ratio":
-                found[name] = float(match[2])
+                header[name] = float(match[2])
             elif unit in ("mm", "cm", "m", "in", "inch"):
-                found[name] = quantity(f"{match[2]} {unit}", "length")
-    return found
+                header[name] = quantity(f"{match[2]} {unit}", "length")
+    return header
 
 
 def differences(header: dict[str, float], scene: Scene) -> Iterator[str]:

@@ -40,7 +40,7 @@ class MeasuredSpeed:
     error, half_order_error [rad/s] : three standard deviations where they are largest, by what the
         teeth are off and the highest fitted order; of the half orders alone, which no error of the
         wheel touches
-    source : the file; sentences : what was found and done
+    source : the file; sentences : what was read and done
     """
 
     table: Table
@@ -134,28 +134,28 @@ def read_speed(file: str | Path, wheel: Any = None, **options: Any) -> MeasuredS
     >>> round(read_speed("teeth.csv", "36-1").table.y[0] * 30 / np.pi)
     3000
     """
-    given = {"wheel": wheel, "stroke": 4, **options}
-    wanted = Options(**given)
+    values = {"wheel": wheel, "stroke": 4, **options}
+    settings = Options(**values)
     name = str(file)
     sheet = read_sheet(
         name,
         decode(content_of(Path(file), _MOST), name),
-        separator=wanted.separator,
-        decimal=wanted.decimal,
-        skip=wanted.skip,
+        separator=settings.separator,
+        decimal=settings.decimal,
+        skip=settings.skip,
         least=1,
     )
-    if wanted.wheel is None:
+    if settings.wheel is None:
         raise UndecidedError(
             f"file {name}: which wheel has these teeth is not said",
             ('wheel="60-2", the teeth less the missing ones',),
         )
-    rotation = _rotation(sheet, wanted, wheel_of(wanted.wheel))
-    zero = 0.0 if wanted.firing_tdc is None else float(np.degrees(wanted.firing_tdc))
-    found = speed_of(rotation, zero, name)
+    rotation = _rotation(sheet, settings, wheel_of(settings.wheel))
+    zero = 0.0 if settings.firing_tdc is None else float(np.degrees(settings.firing_tdc))
+    measured = speed_of(rotation, zero, name)
     about = f"crank angle 0 lies {zero:g} degrees after the first {rotation.wheel.edge} edge"
-    said = (*rotation.words(), *found.sentences, about)
-    return MeasuredSpeed(found.table, found.error, found.half_order_error, name, said)
+    sentences = (*rotation.words(), *measured.sentences, about)
+    return MeasuredSpeed(measured.table, measured.error, measured.half_order_error, name, sentences)
 
 
 def _rotation(sheet: Sheet, options: Options, wheel: Wheel) -> Rotation:

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from crankmbs.errors import InputError
-from crankmbs.indicated.found import CylinderPressure
+from crankmbs.indicated.findings import CylinderPressure
 from crankmbs.indicated.record import Record
 from crankmbs.indicated.shape import Shape
 from crankmbs.numerics.arrays import Array
@@ -52,12 +52,12 @@ def table_of(
         return _mean(cylinders, firsts, angle, period), f"the table holds the mean cycle; {words}"
     sequence = _sequence(cylinders, firsts, where)
     first, last = _wanted(cycles, sequence.shape[1], where)
-    kept = sequence[:, first - 1 : last]
-    count = kept.shape[1]
+    chosen = sequence[:, first - 1 : last]
+    count = chosen.shape[1]
     long = np.concatenate([angle + k * period for k in range(count)])
     which = f"cycle {first}" if first == last else f"cycles {first} to {last}"
     return (
-        _tabulated(long, kept.reshape(len(cylinders), -1)),
+        _tabulated(long, chosen.reshape(len(cylinders), -1)),
         f"the table holds {which} of {sequence.shape[1]}; {words}",
     )
 
@@ -105,10 +105,10 @@ def _wanted(cycles: str, count: int, where: str) -> tuple[int, int]:
     if cycles == "all":
         return 1, count
     first, _, last = cycles.partition("-")
-    found = int(first), int(last or first)
-    if found[1] > count:
+    numbers = int(first), int(last or first)
+    if numbers[1] > count:
         raise InputError(f"{where}: cycles must be among the {count} whole ones; {cycles} came")
-    return found
+    return numbers
 
 
 def _tabulated(angle: Array, rows: Array) -> Table | CylinderTable:

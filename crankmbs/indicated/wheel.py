@@ -157,11 +157,11 @@ def _check_revolutions(time: Array, ratio: Array, first: Index, wheel: Wheel, wh
         if b - a == wheel.edges and ratio[wide] < _EVEN[1] and ratio[narrow] > _EVEN[0]:
             continue
         missing = b - a < wheel.edges or (b - a == wheel.edges and ratio[wide] >= _EVEN[1])
-        what = "are missing" if missing else "are doubled"
+        fault = "are missing" if missing else "are doubled"
         k = wide if missing else narrow
         raise InputError(
             f"{where}: between {time[a]:.6g} and {time[b]:.6g} s the wheel shows {b - a} "
-            f"{wheel.edge} edges, and {wheel} has {wheel.edges}: teeth {what} near "
+            f"{wheel.edge} edges, and {wheel} has {wheel.edges}: teeth {fault} near "
             f"{time[k]:.6g} s, where an interval spans {ratio[k]:.2g} pitches; cut the record "
             "before or after that, check wheel, or take its other edges, such as "
             'wheel="60-2 falling"'

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from crankmbs.errors import InputError
-from crankmbs.indicated.found import Indicated
+from crankmbs.indicated.findings import Indicated
 from crankmbs.scene.tables import CylinderTable, Table
 from crankmbs.scene.units import BAR
 from crankmbs.storage.files import text_in_one_move
@@ -19,16 +19,16 @@ __all__ = ["gas_lines", "write_table"]
 _MOST = 32_000_000  # bytes that a scene reads
 
 
-def gas_lines(found: Indicated, name: str) -> list[str]:
+def gas_lines(indicated: Indicated, name: str) -> list[str]:
     """What [gas] of a scene says of the table."""
     lines = [f'pressure = "{name}"']
-    lines += ['ambient = "1 bar"'] if found.absolute else ["absolute = false"]
-    lines += ["stroke = 2"] if found.stroke == 2 else []
-    lines += ["aligned = true"] if found.aligned else []
-    return lines + (['cycles = "sequence"'] if found.cycles == "sequence" else [])
+    lines += ['ambient = "1 bar"'] if indicated.absolute else ["absolute = false"]
+    lines += ["stroke = 2"] if indicated.stroke == 2 else []
+    lines += ["aligned = true"] if indicated.aligned else []
+    return lines + (['cycles = "sequence"'] if indicated.cycles == "sequence" else [])
 
 
-def write_table(found: Indicated, path: Path) -> Path:
+def write_table(indicated: Indicated, path: Path) -> Path:
     """Write the table as CSV, in degrees and bar.
 
     Raises
@@ -36,8 +36,8 @@ def write_table(found: Indicated, path: Path) -> Path:
     InputError : larger than a scene reads, or an absolute pressure below zero
     OutputError : the file cannot be written
     """
-    table = found.table
-    if found.absolute:
+    table = indicated.table
+    if indicated.absolute:
         _refuse_negative(table, path)
     columns = [np.degrees(table.x)]
     if isinstance(table, CylinderTable):
@@ -46,7 +46,7 @@ def write_table(found: Indicated, path: Path) -> Path:
     else:
         names = ["pressure_bar"]
         columns.append(np.array(table.y) / BAR)
-    head = [*_wrapped(found), "as [gas] of a scene:", *gas_lines(found, path.name)]
+    head = [*_wrapped(indicated), "as [gas] of a scene:", *gas_lines(indicated, path.name)]
     stream = io.StringIO()
     stream.writelines(f"# {line}\n" for line in head)
     stream.write(",".join(["crank_angle_deg", *names]) + "\n")
@@ -76,8 +76,8 @@ def _refuse_negative(table: Table | CylinderTable, path: Path) -> None:
     )
 
 
-def _wrapped(found: Indicated) -> list[str]:
-    lines = [f"cylinder pressure from {found.source}"]
-    for sentence in found.sentences:
+def _wrapped(indicated: Indicated) -> list[str]:
+    lines = [f"cylinder pressure from {indicated.source}"]
+    for sentence in indicated.sentences:
         lines += textwrap.wrap(" ".join(sentence.split()), 96)
     return lines

@@ -14,9 +14,9 @@ Real = float | NDArray[np.float64]
 
 def require(holds: ArrayLike, what: str, rule: str, came: Real, way_out: str) -> None:
     """Raise InputError unless the rule holds for every entry; name the first that breaks it."""
-    kept = np.asarray(holds, dtype=bool)
-    if not kept.all():
-        wrong = np.broadcast_to(came, kept.shape)[~kept][0]
+    satisfied = np.asarray(holds, dtype=bool)
+    if not satisfied.all():
+        wrong = np.broadcast_to(came, satisfied.shape)[~satisfied][0]
         raise InputError(f"{what}: {rule}, got {wrong:.6g}; {way_out}")
 
 

@@ -27,7 +27,7 @@ def accumulated_torque(crank_torque: ArrayLike) -> AccumulatedTorque:
 
     The first journal carries nothing and the last one all; a pin carries the journal before it and
     half of its own throw. Exact for a massless crank or a constant speed: what accelerates the
-    crank's own inertia is not taken off on the way.
+    crank's inertia is not taken off on the way.
 
     Parameters
     ----------

@@ -43,7 +43,7 @@ def mean_piston_speed(*, stroke: Real, omega: Real) -> Real:
 
     Exact.
     Source: S0-F9, S2-F13 (S n / 30, n in 1/min); S2-V4 calls 5 to 15 m/s usual.
-    Misprint: S1-V5 takes 7 m/s, which its own stroke and speed make 9.81 m/s.
+    Misprint: S1-V5 takes 7 m/s, which its stroke and speed make 9.81 m/s.
     Arguments: stroke z [m]; omega [rad/s].
     Returns: [m/s].
 

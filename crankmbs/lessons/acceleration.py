@@ -33,16 +33,16 @@ IDEA = (
 )
 
 
-def lesson(own: Scene) -> Lesson:
+def lesson(machine: Scene) -> Lesson:
     """The lesson about a scene."""
-    scene = one_cylinder(own)
+    scene = one_cylinder(machine)
     result = finely(scene)
     return Lesson(
         idea=IDEA,
         sections=(_motion(scene), _valley(scene), _fork(scene)),
         questions=(_minimum(result), _fastest(result), _shortest(result)),
         scene=scene,
-        about=f"One cylinder of {named(own)}: no gas, no offset, constant speed.",
+        about=f"One cylinder of {named(machine)}: no gas, no offset, constant speed.",
         error=result.error.estimated,
     )
 
@@ -138,10 +138,10 @@ def _minimum(result: Result) -> Question:
     ratio = scene.crank.radius / scene.rod.length
     formula = lecture.acceleration_minimum_angle(rod_ratio=ratio)
     series = lecture.acceleration_minimum_angle_series(rod_ratio=ratio)
-    found = peak_angle(result, "piston_acceleration", 90.0, 180.0, -1.0)
+    lowest = peak_angle(result, "piston_acceleration", 90.0, 180.0, -1.0)
     depth = peak(result, "piston_acceleration", sign=-1.0)
     half = sample(result, "piston_acceleration", len(result.data["time"]) // 2)
-    wanted = exact("minimum_exact", math.degrees(formula), "°")
+    solution = exact("minimum_exact", math.degrees(formula), "°")
     split = (
         ", and again as far on the other side. "
         f"{simulated('least', depth, 'm/s²', most=6)} there against "
@@ -150,12 +150,12 @@ def _minimum(result: Result) -> Question:
     )
     return Question(
         name="ask_minimum",
-        asked=f"This engine has a rod ratio of {ratio:.4g}. At which crank angle before or at "
+        text=f"This engine has a rod ratio of {ratio:.4g}. At which crank angle before or at "
         "bottom dead centre is its acceleration least?",
-        wanted=wanted,
+        solution=solution,
         hint=f"Put the slider of the fork at {ratio:.4g}, or look at the dots in the valley.",
         answer=f"At {exact('minimum_series', math.degrees(series), '°')} by the truncated formula, "
-        f"{wanted} exactly; simulated {simulated('minimum', found, '°', most=5)}"
+        f"{solution} exactly; simulated {simulated('minimum', lowest, '°', most=5)}"
         + (split if ratio > _LIMIT else "."),
         tolerance=0.005,
     )
@@ -168,20 +168,20 @@ def _fastest(result: Result) -> Question:
     formula = lecture.maximum_piston_speed(omega=omega, **gear)
     angle = lecture.maximum_speed_angle(**gear)
     fastest = simulated("speed", peak(result, "piston_velocity"), "m/s", most=6)
-    found = peak_angle(result, "piston_velocity", 0.0, 180.0)
-    wanted = exact("speed_exact", formula, "m/s", most=6)
+    angle_of_run = peak_angle(result, "piston_velocity", 0.0, 180.0)
+    solution = exact("speed_exact", formula, "m/s", most=6)
     return Question(
         name="ask_speed",
-        asked="What is the greatest speed of the piston? The crank radius is "
+        text="What is the greatest speed of the piston? The crank radius is "
         f"{exact('radius', gear['crank_radius'], 'mm', 1e3)}, the speed "
         f"{exact('turning', omega, 'rad/s')}, the rod ratio "
         f"{exact('ratio', gear['crank_radius'] / gear['rod_length'], '')}.",
-        wanted=wanted,
+        solution=solution,
         hint="Near the crank angle at which the rod is square to the crank.",
         answer=f"{exact('speed_root', root, 'm/s', most=6)} by "
         r"$r\omega\sqrt{1+\lambda^2}$, which is the speed where the rod is square to the crank; "
-        f"{wanted} exactly, at {exact('speed_angle', math.degrees(angle), '°')}. Simulated: "
-        f"{fastest}, at {simulated('fastest_at', found, '°')}.",
+        f"{solution} exactly, at {exact('speed_angle', math.degrees(angle), '°')}. Simulated: "
+        f"{fastest}, at {simulated('fastest_at', angle_of_run, '°')}.",
         tolerance=0.004,
     )
 
@@ -190,15 +190,14 @@ def _shortest(result: Result) -> Question:
     scene = result.scene
     r = scene.crank.radius
     run = finely(changed(scene, rod={"length": r / _LIMIT}))
-    found = peak_angle(run, "piston_acceleration", 90.0, 180.0, -1.0)
-    wanted = exact("rod_exact", r / _LIMIT, "mm", 1e3)
+    lowest = peak_angle(run, "piston_acceleration", 90.0, 180.0, -1.0)
+    solution = exact("rod_exact", r / _LIMIT, "mm", 1e3)
     return Question(
         name="ask_rod",
-        asked="What is the shortest rod with which the acceleration is least at bottom dead "
-        "centre?",
-        wanted=wanted,
+        text="What is the shortest rod with which the acceleration is least at bottom dead centre?",
+        solution=solution,
         hint="The fork gives the rod ratio; the truncated formula would say four crank radii.",
         answer=f"{exact('rod_series', r / _LIMIT_SERIES, 'mm', 1e3)} by the truncated formula, "
-        f"{wanted} by the exact one. With the latter the simulated minimum is at "
-        f"{simulated('limit_angle', found, '°', most=5)}.",
+        f"{solution} by the exact one. With the latter the simulated minimum is at "
+        f"{simulated('limit_angle', lowest, '°', most=5)}.",
     )

@@ -9,7 +9,6 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from crankmbs.errors import InputError
@@ -17,7 +16,7 @@ from crankmbs.lessons.markup import formula, prose
 from crankmbs.lessons.pieces import Lesson
 from crankmbs.lessons.runs import named
 from crankmbs.lessons.sources import TITLES
-from crankmbs.page import FOLDER, encoded, given_of, joined, policy, refusals
+from crankmbs.page import FOLDER, encoded, filled, given_of, joined, refusals
 from crankmbs.page.knobs import knobs_of
 from crankmbs.scene.scene import Scene
 
@@ -80,22 +79,9 @@ def _neighbour(titles: dict[str, str], at: int) -> tuple[str, str] | None:
     return list(titles.items())[at] if 0 <= at < len(titles) else None
 
 
-def _rendered(template: str, script: str, **fields: Any) -> str:
-    environment = Environment(
-        loader=FileSystemLoader(_HERE),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.filters.update(prose=prose, formula=formula)
-    style = _style()
-    return environment.get_template(template).render(
-        policy=policy(script, style, fonts=True),
-        script=Markup(script),
-        style=Markup(style),
-        **fields,
-    )
+def _rendered(template: str, script: str, **words: Any) -> str:
+    words |= {"prose": prose, "formula": formula}
+    return filled(_HERE / template, script, _style(), fonts=True, **words)
 
 
 @cache

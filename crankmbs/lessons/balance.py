@@ -36,19 +36,19 @@ IDEA = (
 )
 
 
-def lesson(own: Scene) -> Lesson:
+def lesson(machine: Scene) -> Lesson:
     """The lesson about a scene.
 
     Raises
     ------
     InputError : a scene whose cylinders differ
     """
-    if not any(choice.name == "cylinders" for choice in choices_of(own)):
+    if not any(choice.name == "cylinders" for choice in choices_of(machine)):
         raise InputError(
             "gas: the lesson balance gives every number of cylinders the same gas, and fuel to "
             "none; a scene with one pressure or fuel for all is needed"
         )
-    scene = dataclasses.replace(even(own), fuel=None, gravity=None)
+    scene = dataclasses.replace(even(machine), fuel=None, gravity=None)
     spacing = _spacing(scene)
     four = dataclasses.replace(scene, layout=Layout(firing_order=FIRING_ORDERS["4"]))
     questions = [_second_order(four), _rocking(scene, spacing), _counterweight(scene)]
@@ -59,7 +59,7 @@ def lesson(own: Scene) -> Lesson:
         sections=(_shake(), _couple(), _torque(), _twin()),
         questions=tuple(questions),
         scene=scene,
-        about=f"The machine: {named(own)}, at constant speed, also with other cylinders.",
+        about=f"The machine: {named(machine)}, at constant speed, also with other cylinders.",
         error=simulate(four).error.estimated,
         more={"spacing": spacing},
     )
@@ -175,18 +175,18 @@ def _second_order(four: Scene) -> Question:
     ratio = float(lecture.rod_ratio(crank_radius=scene.crank.radius, rod_length=scene.rod.length))
     unit = scene.piston.mass * scene.crank.radius * omega**2
     first, second = (amplitude(run, "frame_force_x", order) for order in (1.0, 2.0))
-    wanted = simulated("second", second, "kN", 1e-3)
+    solution = simulated("second", second, "kN", 1e-3)
     return Question(
         name="ask_second",
-        asked="How hard do four pistons shake the frame in the second order? Each has "
+        text="How hard do four pistons shake the frame in the second order? Each has "
         f"{exact('mass', scene.piston.mass, 'kg')} with its share of the rod; the crank radius is "
         f"{exact('radius', scene.crank.radius, 'mm', 1e3)}, the rod ratio {exact('ratio', ratio)}, "
         f"the speed {exact('turning', omega, 'rad/s')}.",
-        wanted=wanted,
+        solution=solution,
         hint="All four are alike in the second order, so their forces add up.",
         answer=f"First order: {_force('first', first.value)}. The second orders add up to "
         f"$4\\,m_A r\\omega^2\\lambda$ = "
-        f"{exact('second_lecture', 4.0 * unit * ratio, 'kN', 1e-3)}; simulated {wanted}, because "
+        f"{exact('second_lecture', 4.0 * unit * ratio, 'kN', 1e-3)}; simulated {solution}, because "
         r"the lectures' series drops $\lambda^3/4$ and what follows.",
         tolerance=0.03,
     )
@@ -203,15 +203,15 @@ def _rocking(scene: Scene, spacing: float) -> Question:
     omega = float(run.data["crank_speed"].values[0])
     unit = run.scene.piston.mass * scene.crank.radius * omega**2
     formula = exact("couple_lecture", math.sqrt(3.0) * unit * spacing, "N m")
-    wanted = simulated("couple_first", amplitude(run, "rocking_moment_y", 1.0), "N m")
+    solution = simulated("couple_first", amplitude(run, "rocking_moment_y", 1.0), "N m")
     return Question(
         name="ask_couple",
-        asked=f"How large is the first order of the couple of three cylinders, "
+        text=f"How large is the first order of the couple of three cylinders, "
         f"{exact('spacing', spacing, 'mm', 1e3)} apart?",
-        wanted=wanted,
+        solution=solution,
         hint="Only the outer two have a lever. Their forces stand 120 degrees apart, and so does "
         "one lever from minus the other: the root of 3 comes in.",
-        answer=f"$\\sqrt{{3}}\\,m_A r\\omega^2 z$ = {formula}; simulated {wanted}. No "
+        answer=f"$\\sqrt{{3}}\\,m_A r\\omega^2 z$ = {formula}; simulated {solution}. No "
         "counterweight that turns with the crank takes all of it away.",
         tolerance=0.02,
     )
@@ -224,16 +224,16 @@ def _counterweight(scene: Scene) -> Question:
     before, after = simulate(pair), simulate(changed(pair, crank=weight))
     omega = float(before.data["crank_speed"].values[0])
     ratio = float(lecture.rod_ratio(crank_radius=r, rod_length=scene.rod.length))
-    wanted = exact("counterweight", mass, "kg")
+    solution = exact("counterweight", mass, "kg")
     first = simulated("twin_before", amplitude(before, "frame_force_x", 1.0), "kN", 1e-3)
     second = simulated("twin_second", amplitude(after, "frame_force_y", 2.0), "kN", 1e-3)
     left = exact("twin_lecture", math.sqrt(2.0) * mass * r * omega**2 * ratio, "kN", 1e-3)
     return Question(
         name="ask_weight",
-        asked="Which counterweight, at the crank radius, balances the V-twin at 90 degrees?",
-        wanted=wanted,
+        text="Which counterweight, at the crank radius, balances the V-twin at 90 degrees?",
+        solution=solution,
         hint="At 90 degrees the two pistons together are like one that turns with the pin.",
-        answer=f"{wanted}: one piston with its share of the rod. First order before: {first}, "
+        answer=f"{solution}: one piston with its share of the rod. First order before: {first}, "
         f"after: {_force('twin_after', amplitude(after, 'frame_force_x', 1.0).value)}. The second "
         f"order is left, across the engine: $\\sqrt{{2}}\\,m_A r\\omega^2\\lambda$ = {left}; "
         f"simulated {second}.",
@@ -247,15 +247,15 @@ def _lowest_torque(four: Scene) -> Question:
         name: amplitude(simulate(run), "external_torque", 2.0) for name, run in runs.items()
     }
     both, gas, inertia = (
-        simulated(f"torque_{name}", found, "N m") for name, found in estimates.items()
+        simulated(f"torque_{name}", value, "N m") for name, value in estimates.items()
     )
     return Question(
         name="ask_torque",
-        asked="In the second order the torque of four cylinders' gas has "
+        text="In the second order the torque of four cylinders' gas has "
         f"{Number('gas_asked', gas.value, 'N m')}, their moving masses "
         f"{Number('inertia_asked', inertia.value, 'N m')}. They work against one another. What is "
         "left?",
-        wanted=both,
+        solution=both,
         hint="The second stick in the figure of the torque, with four cylinders.",
         answer=f"The gas has {gas} in that order and the moving masses {inertia}, almost opposite "
         f"to it: {both} are left. Inertia grows with the square of the speed, gas does not, so "

@@ -23,16 +23,16 @@ IDEA = (
 _SHARE = 0.02  # of the stroke: the correction asked for in the last question
 
 
-def lesson(own: Scene) -> Lesson:
+def lesson(machine: Scene) -> Lesson:
     """The lesson about a scene."""
-    scene = one_cylinder(own)
+    scene = one_cylinder(machine)
     result = simulate(scene)
     return Lesson(
         idea=IDEA,
         sections=(_half(scene), _series(scene)),
         questions=(_lead(result), _middle(result), _long_rod(result)),
         scene=scene,
-        about=f"One cylinder of {named(own)}: no gas, no offset, constant speed.",
+        about=f"One cylinder of {named(machine)}: no gas, no offset, constant speed.",
         error=result.error.estimated,
     )
 
@@ -108,10 +108,10 @@ def _lead(result: Result) -> Question:
     series = exact("brix_series", lecture.brix_correction_series(**gear), "mm", 1e3, 5)
     return Question(
         name="ask_lead",
-        asked="How far past half its stroke is the piston at 90 degrees? The crank radius is "
+        text="How far past half its stroke is the piston at 90 degrees? The crank radius is "
         f"{exact('radius_asked', r, 'mm', 1e3)}, the rod "
         f"{exact('rod_asked', result.scene.rod.length, 'mm', 1e3)} long.",
-        wanted=truth,
+        solution=truth,
         hint="Half of r times the rod ratio is a good start; the exact one has a root.",
         answer=rf"$r\lambda/2$ = {series} by the truncated formula, {formula} by the exact one. "
         f"The simulated piston is {truth} past it.",
@@ -124,16 +124,16 @@ def _middle(result: Result) -> Question:
     angle = math.acos(0.5 * ratio)
     there = simulate(changed(result.scene, motion={"angle": angle}))
     at = simulated("half_stroke", sample(there, "piston_displacement", 0), "mm", 1e3, 6)
-    wanted = exact("half_angle", math.degrees(angle), "°")
+    solution = exact("half_angle", math.degrees(angle), "°")
     return Question(
         name="ask_middle",
-        asked="At which crank angle is the piston at half its stroke?",
-        wanted=wanted,
-        also=(360.0 - wanted.value,),
+        text="At which crank angle is the piston at half its stroke?",
+        solution=solution,
+        also=(360.0 - solution.value,),
         hint="The piston pin is then one rod's length from the crank axis: crank, rod and that "
         "distance make a triangle with two equal sides.",
         answer=r"Where the crank and the rod make an isosceles triangle, $\cos\varphi=\lambda/2$: "
-        f"at {wanted}, not at 90°, and again on the way up. A run that starts there has the "
+        f"at {solution}, not at 90°, and again on the way up. A run that starts there has the "
         f"piston at {at}, and half the stroke is {exact('radius', r, 'mm', 1e3)}.",
         tolerance=0.003,
     )
@@ -146,15 +146,15 @@ def _long_rod(result: Result) -> Question:
     run = simulate(changed(result.scene, rod={"length": length}))
     at = sample(run, "piston_displacement", 90)
     share = Estimate((at.value - r) / (2.0 * r), at.error / (2.0 * r))
-    wanted = exact("rod_exact", length, "mm", 1e3, 5)
+    solution = exact("rod_exact", length, "mm", 1e3, 5)
     return Question(
         name="ask_rod",
-        asked="How long must the rod be to keep the Brix correction at "
+        text="How long must the rod be to keep the Brix correction at "
         f"{100.0 * _SHARE:g} % of the stroke?",
-        wanted=wanted,
+        solution=solution,
         hint="The correction is about a quarter of the rod ratio, of the stroke.",
         answer=rf"$\lambda/4$ = {_SHARE:g} gives "
-        f"{exact('rod_series', r / (4.0 * _SHARE), 'mm', 1e3)}; exactly it is {wanted}, twelve and "
-        "a half crank radii, where an engine has three to four. "
+        f"{exact('rod_series', r / (4.0 * _SHARE), 'mm', 1e3)}; exactly it is {solution}, twelve "
+        "and a half crank radii, where an engine has three to four. "
         f"Simulated with it: {simulated('share', share, '%', 100.0, 6)} of the stroke.",
     )

@@ -37,24 +37,24 @@ IDEA = (
 )
 
 
-def lesson(own: Scene) -> Lesson:
+def lesson(machine: Scene) -> Lesson:
     """The lesson about a scene.
 
     Raises
     ------
     InputError : a machine that does not settle
     """
-    scene = free(own, "fluctuation")
+    scene = free(machine, "fluctuation")
     result = settled(scene)
-    said = textbook(result)
+    formula = textbook(result)
     return Lesson(
         idea=IDEA,
         sections=(_swing(scene), _fall(scene), _cost(scene)),
-        questions=(_own(result, said), _flywheel(scene, result), _lightest(scene)),
+        questions=(_coefficient(result, formula), _flywheel(scene, result), _lightest(scene)),
         scene=scene,
-        about=f"The machine: {named(own)}; its settled motion.",
+        about=f"The machine: {named(machine)}; its settled motion.",
         error=result.error.estimated,
-        more={"textbook": {"work": said.work, "moving": said.moving}},
+        more={"textbook": {"work": formula.work, "moving": formula.moving}},
     )
 
 
@@ -136,36 +136,37 @@ def _cost(scene: Scene) -> Section:
     )
 
 
-def _own(result: Result, said: Textbook) -> Question:
+def _coefficient(result: Result, formula: Textbook) -> Question:
     measures = measure(result)
     inertia = result.scene.crank.moment_of_inertia
-    wanted = simulated("fluctuation", measures.fluctuation, "%", 100.0)
+    solution = simulated("fluctuation", measures.fluctuation, "%", 100.0)
     return Question(
         name="ask_own",
-        asked=f"This engine has {inertia:.4g} kg m². What is its coefficient of fluctuation by the "
-        f"textbook, when W is {exact('work', said.work, 'J')}, rods and pistons add "
-        f"{exact('moving', said.moving, 'kg m²')} on average, and the speed is "
+        text=f"This engine has {inertia:.4g} kg m². What is its coefficient of fluctuation by the "
+        f"textbook, when W is {exact('work', formula.work, 'J')}, rods and pistons add "
+        f"{exact('moving', formula.moving, 'kg m²')} on average, and the speed is "
         f"{simulated('mean_speed', measures.mean_speed, 'rpm', 1.0 / RPM, 6)}?",
-        wanted=wanted,
+        solution=solution,
         hint="W over J times the square of the speed, which is in radians per second there.",
-        answer=f"The run has {wanted}; $W/(J\\omega_m^2)$ gives "
-        f"{exact('formula', said.fluctuation(inertia), '%', 100.0)}.",
+        answer=f"The run has {solution}; $W/(J\\omega_m^2)$ gives "
+        f"{exact('formula', formula.fluctuation(inertia), '%', 100.0)}.",
         tolerance=0.03,
     )
 
 
 def _flywheel(scene: Scene, result: Result) -> Question:
-    own = measure(result).fluctuation.value
-    asked = _WANTED if own > 1.2 * _WANTED else float(f"{0.5 * own:.1g}")
-    found = flywheel(scene, asked)
-    wanted = simulated("inertia", found.inertia, "kg m²")
+    present = measure(result).fluctuation.value
+    limit = _WANTED if present > 1.2 * _WANTED else float(f"{0.5 * present:.1g}")
+    wheel = flywheel(scene, limit)
+    solution = simulated("inertia", wheel.inertia, "kg m²")
     return Question(
         name="ask_flywheel",
-        asked=f"Which inertia of crank and flywheel keeps the speed within {100.0 * asked:g} %?",
-        wanted=wanted,
+        text=f"Which inertia of crank and flywheel keeps the speed within {100.0 * limit:g} %?",
+        solution=solution,
         hint="The fluctuation falls as the inverse of the whole inertia; rods and pistons help.",
         answer=f"$J=W/(\\delta\\omega_m^2)$, less what rods and pistons have, is "
-        f"{exact('inertia_formula', found.lecture_crank.value, 'kg m²')}. Found by runs: {wanted}.",
+        f"{exact('inertia_formula', wheel.lecture_crank.value, 'kg m²')}. "
+        f"Found by runs: {solution}.",
         tolerance=0.03,
     )
 
@@ -184,9 +185,9 @@ def _lightest(scene: Scene) -> Question:
     (fastest, pin), (even, even_pin) = numbers["free"], numbers["held"]
     return Question(
         name="ask_lightest",
-        asked=f"With {inertia:g} kg m² only, constant speed says {even} for the greatest piston "
+        text=f"With {inertia:g} kg m² only, constant speed says {even} for the greatest piston "
         "acceleration. How large is it in fact?",
-        wanted=fastest,
+        solution=fastest,
         hint="Put the slider of the last figure there, and read the peak as it swings.",
         answer=f"{fastest}. The greatest load of the crank pin is {pin}, at constant speed "
         f"{even_pin}: where the crank runs faster than its mean, inertia is greater than constant "

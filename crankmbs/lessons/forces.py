@@ -44,14 +44,14 @@ IDEA = (
 )
 
 
-def lesson(own: Scene) -> Lesson:
+def lesson(machine: Scene) -> Lesson:
     """The lesson about a scene.
 
     Raises
     ------
     InputError : a rod without mass, or no gas
     """
-    scene = held(own, "forces")
+    scene = held(machine, "forces")
     if not _two_masses(scene) > 0.0:
         raise InputError(
             "rod.mass: the lesson forces swings a rod that has mass, its center_of_mass between "
@@ -63,7 +63,7 @@ def lesson(own: Scene) -> Lesson:
         sections=(_along(scene), _side(scene), _worth(scene)),
         questions=(_greatest(result), _missing(result, budget(result)), _torque(result)),
         scene=scene,
-        about=f"The machine: {named(own)}, at constant speed.",
+        about=f"The machine: {named(machine)}, at constant speed.",
         error=result.error.estimated,
     )
 
@@ -91,7 +91,7 @@ def _along(scene: Scene) -> Section:
 
 
 def _side(scene: Scene) -> Section:
-    own = scene.rod.moment_of_inertia / _two_masses(scene)
+    share = scene.rod.moment_of_inertia / _two_masses(scene)
     label = "rod inertia / that of two masses"
     return Section(
         title="The rod is not two masses",
@@ -104,7 +104,7 @@ def _side(scene: Scene) -> Section:
             caption="Side thrust of the wall on the piston with a rigid rod and with the lecture's "
             "two masses; below, their difference.",
             plots=("Side thrust on the piston",),
-            knobs=(Knob("share", label, "", min(0.6, own), max(1.2, own), own, 3),),
+            knobs=(Knob("share", label, "", min(0.6, share), max(1.2, share), share, 3),),
             forces="piston",
         ),
         after=r"A rod with less inertia than $m\,a\,b$ needs a smaller couple "
@@ -162,14 +162,14 @@ def _greatest(result: Result) -> Question:
         for name in ("untruncated lecture", "S1 (motion and forces truncated)")
     )
     where = math.degrees(answers.excerpt.size("side thrust", np.maximum(two.values, 0.0)).angle)
-    wanted = simulated("side_peak", thrust, "kN", 1e-3, 5)
+    solution = simulated("side_peak", thrust, "kN", 1e-3, 5)
     return Question(
         name="ask_thrust",
-        asked="How hard does the piston press against the wall, at most, on the side on which it "
+        text="How hard does the piston press against the wall, at most, on the side on which it "
         "does so after firing?",
-        wanted=wanted,
+        solution=solution,
         hint="Drag the cursor of the side thrust to its peak, and read the rigid rod's value.",
-        answer=f"{wanted} at "
+        answer=f"{solution} at "
         f"{simulated('side_angle', at, '°')}, just after firing. The lecture says "
         f"{exact('side_two_masses', two.values.max(), 'kN', 1e-3, 5)} with two masses, at "
         f"{simulated('side_two_angle', Estimate(where, _SPACING), '°')}, and "
@@ -183,26 +183,26 @@ def _missing(result: Result, split: Budget) -> Question:
     omega = float(result.data["crank_speed"].values[0])
     row = split.split("side thrust")
     cause = row.cause("two-mass rod")
-    found = Estimate(
+    missing = Estimate(
         cause.size.largest, 2.0 * float(result.data["side_force"].attrs["error_estimate"])
     )
     where = Estimate(math.degrees(cause.size.angle), _SPACING)
-    share = Estimate(row.share(cause), 100.0 * found.error / row.peak)
+    share = Estimate(row.share(cause), 100.0 * missing.error / row.peak)
     sine = (r + abs(e)) / l
     cosine = math.sqrt(1.0 - sine**2)
     swing = r / l * omega**2 / cosine  # at 270 degrees, where beta' is 0
     couple = (_two_masses(scene) - scene.rod.moment_of_inertia) * swing
-    wanted = simulated("missing", found, "N")
+    solution = simulated("missing", missing, "N")
     return Question(
         name="ask_missing",
-        asked="By how many newtons, at most, is the side thrust wrong because of the two masses?",
-        wanted=wanted,
+        text="By how many newtons, at most, is the side thrust wrong because of the two masses?",
+        solution=solution,
         hint="The strip below the side thrust shows it, with the slider where the rod has it.",
         tolerance=0.02,
         answer=f"At {simulated('missing_angle', where, '°')} the rod swings hardest, "
         rf"$|\varepsilon|=\lambda\omega^2/\cos\beta$, and the couple too much is "
         f"{exact('couple', couple, 'N m')}: {exact('missing_formula', couple / l / cosine, 'N')} "
-        f"at the wall. The error budget finds {wanted}, "
+        f"at the wall. The error budget finds {solution}, "
         f"{simulated('missing_share', share, '%', most=3)} of the peak.",
     )
 
@@ -220,9 +220,9 @@ def _torque(result: Result) -> Question:
     number = measure(result).crank_torque
     return Question(
         name="ask_torque",
-        asked="Does the error reach the power? What is the mean torque of one cylinder with two "
+        text="Does the error reach the power? What is the mean torque of one cylinder with two "
         f"masses, when it is {simulated('mean_asked', number, 'N m', most=5)} with the rigid rod?",
-        wanted=simulated("mean_wanted", number, "N m", most=5),
+        solution=simulated("mean_wanted", number, "N m", most=5),
         hint="How much work does it take to swing a rod to and fro, over a cycle?",
         answer=f"The same, so no. The greatest torque is {rigid}, with two masses {two}; "
         f"the mean is {mean} and {mean_two}. Swinging the rod to and fro takes no work over a "

@@ -74,11 +74,11 @@ def with_inertia(scene: Scene, inertia: float) -> Scene:
 
 
 def flywheel_knob(scene: Scene) -> Knob:
-    """A slider of the flywheel in which the scene's own lies."""
-    own = scene.crank.moment_of_inertia
-    least = max(own / 6.0, 1.001 * scene.crank.mass * scene.crank.center_of_mass**2)
-    digits = max(1, 2 - math.floor(math.log10(own)))
-    return Knob("flywheel", "flywheel", "kg m²", least, 6.0 * own, own, digits)
+    """A slider of the flywheel in which that of the scene lies."""
+    inertia = scene.crank.moment_of_inertia
+    least = max(inertia / 6.0, 1.001 * scene.crank.mass * scene.crank.center_of_mass**2)
+    digits = max(1, 2 - math.floor(math.log10(inertia)))
+    return Knob("flywheel", "flywheel", "kg m²", least, 6.0 * inertia, inertia, digits)
 
 
 @dataclasses.dataclass(frozen=True)

@@ -26,7 +26,7 @@ def prose(text: str) -> Markup:
 
 
 def formula(tex: str) -> Markup:
-    """A formula on a line of its own."""
+    """A formula on a separate line."""
     return Markup(_mathml(tex, "block"))
 
 

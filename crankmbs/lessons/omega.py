@@ -31,14 +31,14 @@ _ENERGY = "The balance of energy"
 _SLOW = 0.24  # coefficient of fluctuation by energy with which the first figure begins
 
 
-def lesson(own: Scene) -> Lesson:
+def lesson(machine: Scene) -> Lesson:
     """The lesson about a scene.
 
     Raises
     ------
     InputError : a machine that does not settle
     """
-    scene = free(own, "omega")
+    scene = free(machine, "omega")
     every = Extent(value=math.radians(0.1), unit="rad")
     result = settled(changed(scene, run={"every": every}))
     return Lesson(
@@ -46,7 +46,7 @@ def lesson(own: Scene) -> Lesson:
         sections=(_moment(scene, result), _energy(scene, result), _speed(scene)),
         questions=(_swing(result), _fluctuation(result), _inertia(result)),
         scene=scene,
-        about=f"The machine: {named(own)}; its settled motion.",
+        about=f"The machine: {named(machine)}; its settled motion.",
         error=result.error.estimated,
     )
 
@@ -88,10 +88,10 @@ def _moment(scene: Scene, result: Result) -> Section:
 def _speed_knob(scene: Scene, result: Result) -> Knob:
     """A slider of the speed that begins where the crank follows the gas: so slow that the energy
     makes the speed swing a lot."""
-    own = speed_of(scene) / RPM
-    slow = own * min(1.0, math.sqrt(_energy_swing(result) / _SLOW))
-    first = math.copysign(float(f"{abs(slow):.2g}"), own)
-    low, high = sorted((0.85 * first, 1.25 * own))
+    speed = speed_of(scene) / RPM
+    slow = speed * min(1.0, math.sqrt(_energy_swing(result) / _SLOW))
+    first = math.copysign(float(f"{abs(slow):.2g}"), speed)
+    low, high = sorted((0.85 * first, 1.25 * speed))
     return Knob("speed", "speed", "rpm", low, high, first, 0)
 
 
@@ -159,31 +159,31 @@ def _energy_swing(result: Result) -> float:
 
 
 def _swing(result: Result) -> Question:
-    wanted = simulated("swing", _range(result, lambda v: v["kinetic_energy"]), "J")
+    solution = simulated("swing", _range(result, lambda v: v["kinetic_energy"]), "J")
     return Question(
         name="ask_swing",
-        asked="By how many joules does the kinetic energy swing over a cycle?",
-        wanted=wanted,
+        text="By how many joules does the kinetic energy swing over a cycle?",
+        solution=solution,
         hint="Read the greatest and the least value with the cursor of the second figure.",
-        answer=f"By {wanted}, between the angles at which the torque of the gas crosses that of "
+        answer=f"By {solution}, between the angles at which the torque of the gas crosses that of "
         "the load.",
         tolerance=0.02,
     )
 
 
 def _fluctuation(result: Result) -> Question:
-    found = measure(result)
-    wanted = exact("from_energy", _energy_swing(result), "%", 100.0)
+    measures = measure(result)
+    solution = exact("from_energy", _energy_swing(result), "%", 100.0)
     return Question(
         name="ask_fluctuation",
-        asked="How much would the speed fluctuate by that swing alone, if the inertia were "
+        text="How much would the speed fluctuate by that swing alone, if the inertia were "
         "constant?",
-        wanted=wanted,
+        solution=solution,
         hint="Twice the mean kinetic energy is J times the square of the speed; the second figure "
         "shows both energies.",
-        answer=f"By {wanted}, the swing over twice the mean energy. The run has "
-        f"{simulated('fluctuation', found.fluctuation, '%', 100.0)}: what the inertia of rods and "
-        "pistons adds, or takes away, is no small part.",
+        answer=f"By {solution}, the swing over twice the mean energy. The run has "
+        f"{simulated('fluctuation', measures.fluctuation, '%', 100.0)}: what the inertia of rods "
+        "and pistons adds, or takes away, is no small part.",
         tolerance=0.03,
     )
 
@@ -192,13 +192,13 @@ def _inertia(result: Result) -> Question:
     def inertia(variables: Mapping[str, Array]) -> Array:
         return np.asarray(2.0 * variables["kinetic_energy"] / variables["crank_speed"] ** 2)
 
-    wanted = simulated("inertia_swing", _range(result, inertia), "kg m²")
+    solution = simulated("inertia_swing", _range(result, inertia), "kg m²")
     least = -largest(result, lambda variables: -inertia(variables)).value
     return Question(
         name="ask_inertia",
-        asked="By how much does the inertia that the crank feels change over a turn?",
-        wanted=wanted,
+        text="By how much does the inertia that the crank feels change over a turn?",
+        solution=solution,
         hint="The text above the last figure gives its least and its greatest value.",
-        answer=f"By {wanted}, above a least of {least:.4g} kg m².",
+        answer=f"By {solution}, above a least of {least:.4g} kg m².",
         tolerance=0.03,
     )

@@ -100,14 +100,14 @@ class Formula:
     @property
     def about(self) -> str:
         """How exact the formula is."""
-        said = [part for part in self._paragraphs if part.startswith(("Exact", "Approximate"))]
-        return self.note or _symbols(" ".join(said))
+        exactness = [part for part in self._paragraphs if part.startswith(("Exact", "Approximate"))]
+        return self.note or _symbols(" ".join(exactness))
 
     @property
     def sources(self) -> str:
         """Where it is from, by title."""
-        found = [part for part in self._paragraphs if part.startswith("Source")]
-        return self.source or sources_in(" ".join(found))
+        paragraphs = [part for part in self._paragraphs if part.startswith("Source")]
+        return self.source or sources_in(" ".join(paragraphs))
 
     @property
     def _paragraphs(self) -> list[str]:
@@ -123,7 +123,7 @@ class Figure:
     forces : the body whose forces are shown, or "none"; cylinder : number of that shown, from 1
     angle : at which it stands first [deg], None for a telling one; ring : at the mean speed
     machine : whether the mechanism is shown; plays : whether it has a crank angle
-    drawing : what a drawing of its own shows in place of the mechanism; beside : whether its plots
+    drawing : what a drawing shows in place of the mechanism; beside : whether its plots
     stand side by side
     """
 
@@ -148,7 +148,7 @@ class Figure:
         return {
             "name": self.name,
             "knobs": [vars(knob) for knob in self.knobs],
-            "values": {**values, **{choice.name: choice.own for choice in self.choices}},
+            "values": {**values, **{choice.name: choice.value for choice in self.choices}},
             "forces": self.forces,
             "cylinder": self.cylinder,
             "angle": self.angle,
@@ -169,16 +169,16 @@ class Section:
 
 @dataclass(frozen=True)
 class Question:
-    """A question whose answer is typed, in the unit shown or with its own; words as in a section.
+    """A question whose answer is typed, in the unit shown or another; words as in a section.
 
-    name : its id; wanted : the number asked for; tolerance : relative; hint : where it is missed
+    name : its id; solution : the right number; tolerance : relative; hint : where it is missed
     also : other right numbers, in the same unit
     answer : in full, which opens when it is right or on a click
     """
 
     name: str
-    asked: str
-    wanted: Number
+    text: str
+    solution: Number
     hint: str
     answer: str
     tolerance: float = 0.01
@@ -189,10 +189,10 @@ class Question:
         """What the scripts take of it."""
         return {
             "name": self.name,
-            "values": [self.wanted.value, *self.also],
-            "unit": self.wanted.unit,
+            "values": [self.solution.value, *self.also],
+            "unit": self.solution.unit,
             "tolerance": self.tolerance,
-            "units": _UNITS[self.wanted.unit],
+            "units": _UNITS[self.solution.unit],
             "hint": self.hint,
         }
 
@@ -218,7 +218,7 @@ class Lesson:
     def texts(self) -> list[str]:
         """All words in which numbers may stand."""
         sections = [t for s in self.sections for t in (s.before, s.figure.caption, s.after)]
-        return [*sections, *(text for q in self.questions for text in (q.asked, q.answer))]
+        return [*sections, *(text for q in self.questions for text in (q.text, q.answer))]
 
 
 def _powers(number: str) -> str:

@@ -21,21 +21,21 @@ IDEA = (
 )
 
 
-def lesson(own: Scene) -> Lesson:
+def lesson(machine: Scene) -> Lesson:
     """The lesson about a scene.
 
     Raises
     ------
     InputError : no gas, or no speed
     """
-    scene = held(own, "polar")
+    scene = held(machine, "polar")
     result = simulate(scene)
     return Lesson(
         idea=IDEA,
         sections=(_bearing(scene), _pin(scene), _turning(scene)),
         questions=(_greatest(result), _where(result), _mean(result)),
         scene=scene,
-        about=f"The machine: {named(own)}, at constant speed.",
+        about=f"The machine: {named(machine)}, at constant speed.",
         error=result.error.estimated,
     )
 
@@ -117,42 +117,42 @@ def _joint(result: Result, name: str) -> JointForce:
 
 
 def _greatest(result: Result) -> Question:
-    wanted = simulated("bearing_peak", _joint(result, "main bearing").peak, "kN", 1e-3)
+    solution = simulated("bearing_peak", _joint(result, "main bearing").peak, "kN", 1e-3)
     return Question(
         name="ask_peak",
-        asked="How large is the greatest force of the main bearing?",
-        wanted=wanted,
+        text="How large is the greatest force of the main bearing?",
+        solution=solution,
         hint="The point farthest from the middle, or the peak of the curve of its size.",
-        answer=f"{wanted}.",
+        answer=f"{solution}.",
         tolerance=0.015,
     )
 
 
 def _where(result: Result) -> Question:
-    found = _joint(result, "crank pin")
-    degrees = math.degrees(found.crank_angle)
-    wanted = exact("pin_angle", degrees, "°")
-    peak = simulated("pin_peak", found.peak, "kN", 1e-3)
+    load = _joint(result, "crank pin")
+    degrees = math.degrees(load.crank_angle)
+    solution = exact("pin_angle", degrees, "°")
+    peak = simulated("pin_peak", load.peak, "kN", 1e-3)
     return Question(
         name="ask_where",
-        asked="At which crank angle is the crank pin of the first cylinder loaded most?",
-        wanted=wanted,
+        text="At which crank angle is the crank pin of the first cylinder loaded most?",
+        solution=solution,
         hint="Drag the crank until the dot of the second figure is farthest from the middle.",
-        answer=f"At {wanted}, with {peak}.",
+        answer=f"At {solution}, with {peak}.",
         tolerance=0.015,
     )
 
 
 def _mean(result: Result) -> Question:
-    found = _joint(result, "main bearing")
-    wanted = simulated("bearing_mean", found.mean, "kN", 1e-3)
+    load = _joint(result, "main bearing")
+    solution = simulated("bearing_mean", load.mean, "kN", 1e-3)
     return Question(
         name="ask_mean",
-        asked="How large is the force of the main bearing on average over time? Guess from the "
+        text="How large is the force of the main bearing on average over time? Guess from the "
         "curve of its size.",
-        wanted=wanted,
+        solution=solution,
         hint="The spike is short: what counts is where the curve stays.",
-        answer=f"{wanted}, far less than the peak of "
-        f"{simulated('bearing_again', found.peak, 'kN', 1e-3)}: a bearing is made for both.",
+        answer=f"{solution}, far less than the peak of "
+        f"{simulated('bearing_again', load.peak, 'kN', 1e-3)}: a bearing is made for both.",
         tolerance=0.1,
     )

@@ -129,16 +129,16 @@ def even(scene: Scene) -> Scene:
 def ratio_knob(
     scene: Scene, low: float = 0.1, high: float = 0.6, first: float | None = None
 ) -> Knob:
-    """A slider of the rod ratio in which the scene's own lies; it begins there, or at first."""
-    own = scene.crank.radius / scene.rod.length
-    begin = own if first is None else first
-    return Knob("rod_ratio", "rod ratio r/l", "", min(low, own), max(high, own), begin, 3)
+    """A slider of the rod ratio in which that of the scene lies; it begins there, or at first."""
+    ratio = scene.crank.radius / scene.rod.length
+    begin = ratio if first is None else first
+    return Knob("rod_ratio", "rod ratio r/l", "", min(low, ratio), max(high, ratio), begin, 3)
 
 
 def speed_knob(scene: Scene) -> Knob:
     """A slider of the speed."""
-    own = abs(speed_of(scene)) / RPM
-    return Knob("speed", "speed", "rpm", 0.25 * own, 2.0 * own, own, 0)
+    speed = abs(speed_of(scene)) / RPM
+    return Knob("speed", "speed", "rpm", 0.25 * speed, 2.0 * speed, speed, 0)
 
 
 def finely(scene: Scene, degrees: float = 0.01) -> Result:

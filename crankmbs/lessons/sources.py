@@ -34,9 +34,9 @@ def sources_in(text: str) -> str:
     >>> sources_in("Source: S0-F28, S1 Eq. 25 before its truncation.")
     'Grega; Yi, Win, Htay, Eq. 25'
     """
-    found: dict[str, list[str]] = {}
+    equations_of: dict[str, list[str]] = {}
     for key, equations in _KEY.findall(text):
-        found.setdefault(key, [])
+        equations_of.setdefault(key, [])
         if equations:
-            found[key].append(equations)
-    return "; ".join(", ".join([TITLES[key][0], *where]) for key, where in found.items())
+            equations_of[key].append(equations)
+    return "; ".join(", ".join([TITLES[key][0], *where]) for key, where in equations_of.items())

@@ -21,20 +21,20 @@ _METHODS = ("Euler", "Heun", "Runge-Kutta")
 _ERRORS = "Numerical analysis, as textbooks have it"
 
 
-def lesson(own: Scene) -> Lesson:
+def lesson(machine: Scene) -> Lesson:
     """The lesson about a scene.
 
     Raises
     ------
     InputError : a machine that does not settle
     """
-    scene = free(own, "trust")
+    scene = free(machine, "trust")
     return Lesson(
         idea=IDEA,
         sections=(_step(), _order(), _stated()),
         questions=(_halved(), _digits(), _richardson()),
         scene=scene,
-        about=f"The machine: {named(own)}; its settled motion.",
+        about=f"The machine: {named(machine)}; its settled motion.",
         error=settled(scene).error.estimated,
     )
 
@@ -43,8 +43,8 @@ def _size(value: float) -> Knob:
     return Knob("size", "step", "°", 0.5, 20.0, value, 2)
 
 
-def _method(own: str) -> Choice:
-    return Choice("method", "method", _METHODS, own)
+def _method(name: str) -> Choice:
+    return Choice("method", "method", _METHODS, name)
 
 
 def _step() -> Section:
@@ -131,8 +131,8 @@ def _stated() -> Section:
 def _halved() -> Question:
     return Question(
         name="ask_halved",
-        asked="By how many times does half the step reduce the error of a method of order 4?",
-        wanted=exact("halved", 16.0),
+        text="By how many times does half the step reduce the error of a method of order 4?",
+        solution=exact("halved", 16.0),
         hint="The error goes with the step to the power of the order.",
         answer="By 2 to the power of 4, sixteen times, at twice the cost.",
         tolerance=0.001,
@@ -142,9 +142,9 @@ def _halved() -> Question:
 def _digits() -> Question:
     return Question(
         name="ask_digits",
-        asked="Heun's method has three correct digits with 200 steps. How many steps does it take "
+        text="Heun's method has three correct digits with 200 steps. How many steps does it take "
         "for five?",
-        wanted=exact("steps", 2000.0),
+        solution=exact("steps", 2000.0),
         hint="It has order 2, and two digits are a factor of 100 in the error.",
         answer="A hundredth of the error takes a tenth of the step: 2000 steps.",
         tolerance=0.02,
@@ -154,9 +154,9 @@ def _digits() -> Question:
 def _richardson() -> Question:
     return Question(
         name="ask_richardson",
-        asked="Two runs of order 2 with steps of 2° and 1° end at 3196.4 and 3199.1 rpm. How "
+        text="Two runs of order 2 with steps of 2° and 1° end at 3196.4 and 3199.1 rpm. How "
         "large, about, is the error of the second?",
-        wanted=exact("off", (3199.1 - 3196.4) / 3.0, "rpm"),
+        solution=exact("off", (3199.1 - 3196.4) / 3.0, "rpm"),
         hint="The error of the first is four times that of the second.",
         answer="Their difference is three times the error of the second: 2.7 / 3 = 0.9 rpm.",
         tolerance=0.03,

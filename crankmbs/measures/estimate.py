@@ -48,14 +48,14 @@ def estimates(passes: Passes, read: Callable[[Motion], Numbers]) -> dict[str, tu
     infinite where nothing checks it.
     """
     answer = read(passes.answer)
-    others = [read(motion) for motion in passes.checks]
-    found = {}
+    checks = [read(motion) for motion in passes.checks]
+    measured = {}
     for name, number in answer.items():
         value, size = np.atleast_1d(number.value), np.atleast_1d(number.size)
         error = np.full(len(value), math.inf)
-        if others:
-            apart = [np.abs(np.atleast_1d(one[name].value) - value) for one in others]
+        if checks:
+            apart = [np.abs(np.atleast_1d(check[name].value) - value) for check in checks]
             error = passes.share * np.max(apart, axis=0) + ROUNDING * size
         pairs = zip(value.tolist(), error.tolist(), strict=True)
-        found[name] = tuple(Estimate(*pair) for pair in pairs)
-    return found
+        measured[name] = tuple(Estimate(*pair) for pair in pairs)
+    return measured

@@ -42,8 +42,8 @@ def interp(
     InputError : neither or both, no finite numbers, outside what is kept of the run; an angle that
         a crank which turns back passes twice
 
-    >>> found = interp(simulate(load_scene("propeller")), time=[0.1, 0.20001])
-    >>> found.sizes["time"]
+    >>> data = interp(simulate(load_scene("propeller")), time=[0.1, 0.20001])
+    >>> data.sizes["time"]
     2
     """
     if (time is None) == (crank_angle is None):
@@ -51,40 +51,40 @@ def interp(
         raise InputError(f"give time or crank_angle, exactly one of the two; {came} came")
     in_time = crank_angle is None
     name, unit = ("time", "s") if in_time else ("crank_angle", "rad")
-    wanted = _inside(result, name, unit, time if in_time else crank_angle)
+    places = _inside(result, name, unit, time if in_time else crank_angle)
     if not in_time and not result.passes.answer.turns_one_way:
         raise InputError("the crank rests or turns back, and an angle has no one time; give time")
-    return read_at(result, result.passes, wanted, in_time=in_time)
+    return read_at(result, result.passes, places, in_time=in_time)
 
 
-def read_at(result: Result, passes: Passes, wanted: Array, *, in_time: bool) -> xr.Dataset:
+def read_at(result: Result, passes: Passes, places: Array, *, in_time: bool) -> xr.Dataset:
     """Every variable of passes over a result, or a part of them, at times [s], or else at crank
     angles [rad], shape (n,), as `interp` gives it."""
     import xarray as xr
 
-    values, errors = read_with_errors(result, passes, wanted, in_time=in_time)
+    values, errors = read_with_errors(result, passes, places, in_time=in_time)
     rows = {}
-    for variable, found in values.items():
+    for variable, value in values.items():
         sampled = result.data[variable]
         attributes = {**sampled.attrs, "error_estimate": errors[variable]}
-        rows[variable] = (sampled.dims, found, attributes)
+        rows[variable] = (sampled.dims, value, attributes)
     coordinates = {name: rows.pop(name) for name in ("time", "crank_angle")}
     numbers = {str(of): result.data[of] for of in result.data.dims if of != "time"}
     return xr.Dataset(rows, {**coordinates, **numbers})
 
 
 def read_with_errors(
-    result: Result, passes: Passes, wanted: Array, *, in_time: bool
+    result: Result, passes: Passes, places: Array, *, in_time: bool
 ) -> tuple[dict[str, Array], dict[str, float]]:
     """The same as arrays, (n,) or (n, cylinders), and the error of each."""
 
     def read(motion: Motion) -> dict[str, Array]:
-        return variables_at(motion.train, motion.at(wanted, in_time=in_time))
+        return variables_at(motion.train, motion.at(places, in_time=in_time))
 
-    values, others = read(passes.answer), [read(motion) for motion in passes.checks]
+    values, checks = read(passes.answer), [read(motion) for motion in passes.checks]
     sampled, errors = result.variables, {}
-    for variable, found in values.items():
-        apart = [float(np.max(np.abs(one[variable] - found))) for one in others]
+    for variable, value in values.items():
+        apart = [float(np.max(np.abs(check[variable] - value))) for check in checks]
         stated = float(sampled[variable][2]["error_estimate"])
         errors[variable] = stated + passes.share * max(apart, default=0.0)
     return values, errors
@@ -93,10 +93,10 @@ def read_with_errors(
 def _inside(result: Result, name: str, unit: str, given: ArrayLike | None) -> Array:
     """What is asked for, shape (n,), none of it outside the samples."""
     try:
-        wanted = np.atleast_1d(np.asarray(given, dtype=np.float64))
+        places = np.atleast_1d(np.asarray(given, dtype=np.float64))
     except (TypeError, ValueError):
         raise InputError(f"{name} must be numbers [{unit}]; {shown(given)} came") from None
-    if wanted.ndim != 1 or wanted.size == 0 or not np.all(np.isfinite(wanted)):
+    if places.ndim != 1 or places.size == 0 or not np.all(np.isfinite(places)):
         raise InputError(f"{name} must be finite numbers [{unit}] in a row; {shown(given)} came")
     values = result.data[name].values
     low, high = float(values.min()), float(values.max())
@@ -104,10 +104,10 @@ def _inside(result: Result, name: str, unit: str, given: ArrayLike | None) -> Ar
     begin = float((first.time if unit == "s" else first.angle)[0, 0])
     low, high = (max(low, begin), high) if values[-1] >= values[0] else (low, min(high, begin))
     hair = _HAIR * max(abs(low), abs(high))
-    outside = wanted[(wanted < low - hair) | (wanted > high + hair)]
+    outside = places[(places < low - hair) | (places > high + hair)]
     if outside.size:
         raise InputError(
             f"{name} must be within what is kept of the run, {low:.9g} to {high:.9g} {unit}; "
             f"{outside[0]:.9g} {unit} came"
         )
-    return np.clip(wanted, low, high)
+    return np.clip(places, low, high)

@@ -146,8 +146,8 @@ class Nodes:
         count = len(values)
         top, block = np.full(count, -np.inf), np.zeros(count, np.intp)
         cell, place, ends = np.zeros(count, np.intp), np.zeros(count), np.zeros(count, bool)
-        for number, one in enumerate(self._blocks):
-            high, k, x, at_end = _highest(one.cells, one.of(values))
+        for number, part in enumerate(self._blocks):
+            high, k, x, at_end = _highest(part.cells, part.of(values))
             more = high > top
             top, block = np.where(more, high, top), np.where(more, number, block)
             cell, place = np.where(more, k, cell), np.where(more, x, place)

@@ -42,8 +42,8 @@ class Quantity(NamedTuple):
     def peak(self, value: Estimate, time: float, angle: float, scene: Scene) -> Peak:
         """Its peak, at a time [s] and crank angle [rad], of its value times the sign."""
         cycle = None if self.phase is None else (angle + self.phase) % scene.period
-        found = Estimate(self.sign * value.value, value.error)
-        return Peak(self.name, self.units, self.number, found, time, angle, cycle)
+        signed = Estimate(self.sign * value.value, value.error)
+        return Peak(self.name, self.units, self.number, signed, time, angle, cycle)
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ def extremes_of(scene: Scene) -> tuple[Quantity, ...]:
     >>> [one.name for one in extremes_of(load_scene("propeller"))][2]
     'gauge pressure'
     """
-    found = [
+    quantities = [
         Quantity(f"{torque_of_rods(scene)}, {word}", "N m", None, None, _torque, sign)
         for word, sign in (("max", 1.0), ("min", -1.0))
     ]
@@ -80,12 +80,12 @@ def extremes_of(scene: Scene) -> tuple[Quantity, ...]:
             "gauge pressure, head end": "gas_pressure",
             "gauge pressure, crank end": "crank_end_pressure",
         }
-    found += [
+    quantities += [
         Quantity(words, "Pa", k, cylinder.phase, partial(_pressure, name, k))
         for words, name in ends.items()
         for k, cylinder in enumerate(scene.cylinders, start=1)
     ]
-    return tuple(found)
+    return tuple(quantities)
 
 
 def torque_of_rods(scene: Scene) -> str:
@@ -112,7 +112,7 @@ def run_peaks(result: Result) -> tuple[Peak, ...]:
     quantities = (*_speeds(), *_joints(scene), *extremes_of(scene))
     blocks = list(_blocks(passes.answer))
     tops = [_tops(block, quantities) for block in blocks]
-    best = np.argmax([one.value for one in tops], axis=0).tolist()
+    best = np.argmax([top.value for top in tops], axis=0).tolist()
     checks = {
         b: [_tops(_between(check, blocks[b]), quantities) for check in passes.checks]
         for b in set(best)
@@ -185,5 +185,5 @@ def _shared(cells: Cells, block: Motion) -> Cells | None:
 
 def _tops(motion: Motion, quantities: tuple[Quantity, ...]) -> Tops:
     return nodes_of(motion).tops(
-        lambda variables: np.array([one.sign * one.of(variables) for one in quantities])
+        lambda variables: np.array([each.sign * each.of(variables) for each in quantities])
     )

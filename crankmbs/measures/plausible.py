@@ -1,4 +1,4 @@
-"""Numbers far outside what machines have: said, not refused, for a machine may be one's own.
+"""Numbers far outside what machines have: said, not refused, for a machine may be unusual.
 
 Each rule is one function of the scene that gives its sentences; its limits stand above it with
 their reason. They are wide: what they catch is a unit or a sign, not a bold design.
@@ -38,14 +38,14 @@ def warnings(scene: Scene) -> tuple[str, ...]:
     ()
     """
     common = RunningGear(scene.crank.radius, scene.rod, scene.piston)
-    found = []
+    sentences = []
     for number, gear in enumerate(scene.running_gear, start=1):
         area = gear.piston.gas_area
         sized = _Sized(gear, gear.stroke if area is None else math.sqrt(4.0 * area / math.pi))
         where = "" if gear == common else f"cylinder[{number}]: "
-        found += [f"{where}{said}" for rule in _OF_GEAR for said in rule(sized)]
-    found += [said for rule in _OF_SCENE for said in rule(scene)]
-    return tuple(dict.fromkeys(found))
+        sentences += [f"{where}{sentence}" for rule in _OF_GEAR for sentence in rule(sized)]
+    sentences += [sentence for rule in _OF_SCENE for sentence in rule(scene)]
+    return tuple(dict.fromkeys(sentences))
 
 
 # The longest strokes are those of ships' two-stroke engines, 3.5 m; model engines have 5 mm.

@@ -81,7 +81,7 @@ def passes_over(result: Result, window: Span) -> Passes:
     turned = abs(window.angle)
     answer = result.passes.answer.last(turned) or result.passes.answer
     checks = [motion.last(turned) for motion in result.passes.checks]
-    return Passes(answer, tuple(one for one in checks if one), result.passes.share)
+    return Passes(answer, tuple(check for check in checks if check), result.passes.share)
 
 
 def _ending(result: Result, kind: str, wanted: float) -> Span | None:

@@ -50,7 +50,7 @@ class Measures:
     imep [Pa] : work of the gas in a cycle, the mean of several, over the displaced volume, per
         cylinder; of double-acting ones that of the head end; None without gas or without a whole
         cycle
-    imep_crank_end [Pa] : the same of the crank end, over its own volume, stroke times the piston's
+    imep_crank_end [Pa] : the same of the crank end, over its volume, stroke times the piston's
         area less the rod's; None where cylinders are single-acting
     indicated_power_head_end, indicated_power_crank_end [W] : the parts of the indicated power; None
         where cylinders are single-acting
@@ -113,34 +113,36 @@ def measure(result: Result) -> Measures:
     """
     window, scene = measured_span(result), result.scene
     passes = passes_over(result, window)
-    found = estimates(passes, partial(_numbers, scene, window))
-    joints = zip(joints_of(scene), found["peaks"], found["means"], found["angles"], strict=True)
+    numbers = estimates(passes, partial(_numbers, scene, window))
+    joints = zip(
+        joints_of(scene), numbers["peaks"], numbers["means"], numbers["angles"], strict=True
+    )
 
     def single(name: str) -> Estimate | None:
-        return found[name][0] if name in found else None
+        return numbers[name][0] if name in numbers else None
 
     return Measures(
         window=window,
-        mean_speed=found["mean_speed"][0],
-        fluctuation=found["fluctuation"][0],
-        speed_gain=found["speed_gain"][0],
+        mean_speed=numbers["mean_speed"][0],
+        fluctuation=numbers["fluctuation"][0],
+        speed_gain=numbers["speed_gain"][0],
         joints=tuple(
             joint.labelled(scene, peak, mean, angle.value) for joint, peak, mean, angle in joints
         ),
-        crank_torque=found["crank_torque"][0],
-        external_torque=found["external_torque"][0],
+        crank_torque=numbers["crank_torque"][0],
+        external_torque=numbers["external_torque"][0],
         indicated_power=single("indicated_power"),
-        imep=found.get("imep"),
-        imep_crank_end=found.get("imep_crank_end"),
+        imep=numbers.get("imep"),
+        imep_crank_end=numbers.get("imep_crank_end"),
         indicated_power_head_end=single("indicated_power_head_end"),
         indicated_power_crank_end=single("indicated_power_crank_end"),
         friction_power=single("friction_power"),
         mechanical_efficiency=single("mechanical_efficiency"),
         force_power=single("force_power"),
         peaks=tuple(
-            one.peak(value, time.value, angle.value, scene)
-            for one, value, time, angle in zip(
-                extremes_of(scene), *(found[f"other {name}"] for name in _PLACES), strict=True
+            quantity.peak(value, time.value, angle.value, scene)
+            for quantity, value, time, angle in zip(
+                extremes_of(scene), *(numbers[f"other {name}"] for name in _PLACES), strict=True
             )
         ),
         energy_closure=_energy_closure(result),
@@ -197,15 +199,15 @@ def _numbers(scene: Scene, window: Span, motion: Motion) -> Numbers:
     """Everything that is measured of one motion."""
     nodes, mean = nodes_of(motion), _mean_speed(motion, window)
     duration = motion.end - motion.begin
-    found, forces = nodes.tops(partial(_sought, scene)), _forces(scene, nodes.variables)
-    tops = found.value
+    largest, forces = nodes.tops(partial(_sought, scene)), _forces(scene, nodes.variables)
+    tops = largest.value
     variables, speed = nodes.variables, nodes.variables["crank_speed"]
     torque = {
         "crank_torque": variables["crank_torque"].sum(axis=1),
         "external_torque": variables["external_torque"],
     }
     over = nodes.magnitude(forces) / duration if duration else _last(_magnitudes(forces))
-    sizes = found.sizes[: len(forces)]
+    sizes = largest.sizes[: len(forces)]
     for k, joint in enumerate(joints_of(scene)):
         if joint.of != "cylinder":
             sizes[k] = sizes.max()  # a sum of the pins'
@@ -215,12 +217,12 @@ def _numbers(scene: Scene, window: Span, motion: Motion) -> Numbers:
         "fluctuation": _fluctuation(tops[-2:], mean),
         "speed_gain": _speed_gain(motion),
         "peaks": Number(tops[: len(forces)], sizes),
-        "angles": Number(found.angle[: len(forces)], np.abs(found.angle[: len(forces)])),
+        "angles": Number(largest.angle[: len(forces)], np.abs(largest.angle[: len(forces)])),
         "means": Number(over, late * sizes),
     }
     others = slice(len(forces), -2)
-    for name, values in zip(_PLACES, (tops, found.time, found.angle), strict=True):
-        numbers[f"other {name}"] = Number(values[others], found.sizes[others])
+    for name, values in zip(_PLACES, (tops, largest.time, largest.angle), strict=True):
+        numbers[f"other {name}"] = Number(values[others], largest.sizes[others])
     turned = motion.turned
     for name, values in torque.items():
         if turned and duration:
@@ -282,7 +284,7 @@ def powers(scene: Scene, works: Works, cycles: float, duration: float | Array) -
     if scene.friction is not None:
         numbers["friction_power"] = rubbed.summed.over(-duration)
         gained, lost = (
-            Estimate(float(one.summed.value[0]), 0.0) for one in (of_gas, rubbed.over(-1.0))
+            Estimate(float(work.summed.value[0]), 0.0) for work in (of_gas, rubbed.over(-1.0))
         )
         share = efficiency(gained if scene.gas is not None else None, lost)
         if share is not None:
@@ -329,7 +331,7 @@ def _speeds(variables: dict[str, Array]) -> Array:
 def _sought(scene: Scene, variables: dict[str, Array]) -> Array:
     """Whose largest values are measured: the force of every joint, torque and pressures, and the
     speeds."""
-    others = [one.sign * one.of(variables) for one in extremes_of(scene)]
+    others = [quantity.sign * quantity.of(variables) for quantity in extremes_of(scene)]
     forces = _magnitudes(_forces(scene, variables))
     return np.concatenate([forces, others, _speeds(variables)])
 

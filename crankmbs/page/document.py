@@ -26,7 +26,7 @@ from crankmbs.scene.scene import Scene
 from crankmbs.scene.sentences import RULES
 from crankmbs.scene.whole import NO_INERTIA, OPEN_LOOP, UNCOVERED
 
-__all__ = ["given_of", "page_of", "policy", "shown_scene"]
+__all__ = ["filled", "given_of", "page_of", "policy", "shown_scene"]
 
 _FOLDER = Path(__file__).parent
 _NUMBERS = ("finite_number", "float_type", "greater_than_equal", "less_than_equal")
@@ -95,20 +95,23 @@ def _rendered(name: str, scene: Scene, stem: str, given: dict[str, Any], **words
     """A template filled in with a scene, with the module of its name and what that takes."""
     script = f"{joined(name)}.start();"
     style = (_FOLDER / "page.css").read_text(encoding="utf-8")
+    words |= {"scene": scene, "stem": stem, "given": Markup(encoded(given))}
+    return filled(_FOLDER / f"{name}.html", script, style, **words)
+
+
+def filled(template: Path, script: str, style: str, *, fonts: bool = False, **words: Any) -> str:
+    """A page from a template; fonts : whether the style brings some; words : what it shows."""
     environment = Environment(
-        loader=FileSystemLoader(_FOLDER),
+        loader=FileSystemLoader(template.parent),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    return environment.get_template(f"{name}.html").render(
-        scene=scene,
-        stem=stem,
-        policy=policy(script, style),
+    return environment.get_template(template.name).render(
+        policy=policy(script, style, fonts=fonts),
         script=Markup(script),
         style=Markup(style),
-        given=Markup(encoded(given)),
         **words,
     )
 
@@ -130,7 +133,7 @@ def _given(scene: Scene, stem: str, choices: tuple[Choice, ...]) -> dict[str, An
         "stem": stem,
         "knobs": [dataclasses.asdict(knob) for knob in knobs_of(scene)],
         "words": [{"name": choice.name, "words": choice.words} for choice in choices],
-        "own": {choice.name: choice.own for choice in choices},
+        "own": {choice.name: choice.value for choice in choices},
         "first": first_of(scene).knobs,
         "compression": None if indicator is None else indicator.compression_ratio,
         "units": {name: variable.units for name, variable in EVERY.items()},
@@ -153,7 +156,7 @@ def given_of(scene: Scene) -> dict[str, Any]:
             "open_loop": OPEN_LOOP,
             "light_crank": LIGHT_CRANK,
             "no_inertia": NO_INERTIA,
-            "uncovered": [_uncovered(*one) for one in enumerate(scene.force, start=1)],
+            "uncovered": [_uncovered(*numbered) for numbered in enumerate(scene.force, start=1)],
             "fold": _FOLD,
             "fluctuation": _FLUCTUATION,
             **{kind: RULES[kind] for kind in _NUMBERS},

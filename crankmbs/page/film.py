@@ -95,8 +95,8 @@ def _frames(motion: Motion, events: Array) -> tuple[Array, int, tuple[float, flo
     inside = events[(events > begin) & (events < end)]
     first = np.unique(np.concatenate([np.linspace(begin, end, _FEWEST), inside[:_MOST]]))
     peak = float(np.max(np.abs(motion.at(first, in_time=True).omega))) / RPM
-    wanted = max(_SPEED_DIGITS - math.floor(math.log10(peak or 1.0)) - 1, 1)
-    for digits in (wanted, wanted - 1):
+    most = max(_SPEED_DIGITS - math.floor(math.log10(peak or 1.0)) - 1, 1)
+    for digits in (most, most - 1):
         allowed = _SHARE * 10.0**-digits, _SHARE * 10.0**-_ANGLE_DIGITS
         time = _refined(motion, first, allowed)
         if time is not None:
@@ -143,8 +143,8 @@ def _numerical(result: Result) -> tuple[float, float]:
     """Estimated error of speed [rpm] and angle [deg] at equal time. At samples in angle the time
     errs, by which the speed at equal time is wrong, too."""
     error = {
-        name: float(one[2]["error_estimate"])
-        for name, one in result.variables.items()
+        name: float(variable[2]["error_estimate"])
+        for name, variable in result.variables.items()
         if name in ("time", "crank_angle", "crank_speed")
     }
     late = float(np.max(np.abs(result.sampled("crank_acceleration")))) * error["time"]

@@ -47,7 +47,7 @@ def exported_gas(scene: Scene, train: CrankTrain) -> dict[str, Any] | None:
         "pressure": [_cycle(each) for each in train.pressure],
         "combustion": [_cycle(each) for each in train.combustion or ()],
         "crank_end": [_cycle(each) for each in train.crank_end or ()],
-        "sources": sources.found,
+        "sources": sources.exported,
         "fired": fired,
         "motored": motored,
         "below": [] if gas.crank_end is None else sources.numbers(gas.crank_end, fires=False),
@@ -73,7 +73,7 @@ class _Sources:
 
     def __init__(self, scene: Scene, gas: Gas) -> None:
         self._scene, self._gas = scene, gas
-        self.found: list[dict[str, Any]] = []
+        self.exported: list[dict[str, Any]] = []
 
     def numbers(
         self, given: PressureGiven | Indicator | Polytrope | None, *, fires: bool
@@ -93,19 +93,19 @@ class _Sources:
         assert given is not None
         rows = rows_of(self._scene, gas, given)
         once = {
-            id(one): self._number(
+            id(row): self._number(
                 {
                     "kind": "rows",
-                    "angle": one.angle,
-                    "value": one.value,
-                    "jumps": bool(one.jumps),
+                    "angle": row.angle,
+                    "value": row.value,
+                    "jumps": bool(row.jumps),
                     "interpolation": gas.interpolation,
                 }
             )
-            for one in rows
+            for row in rows
         }
-        return [once[id(one)] for one in rows]
+        return [once[id(row)] for row in rows]
 
     def _number(self, source: dict[str, Any]) -> int:
-        self.found.append(source)
-        return len(self.found) - 1
+        self.exported.append(source)
+        return len(self.exported) - 1

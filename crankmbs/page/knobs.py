@@ -45,12 +45,12 @@ class Knob:
 
 @dataclasses.dataclass(frozen=True)
 class Choice:
-    """A choice among words, of which one is the scene's own."""
+    """A choice among words; value : the scene's."""
 
     name: str
     label: str
     words: tuple[str, ...]
-    own: str
+    value: str
 
 
 @dataclasses.dataclass(frozen=True)
@@ -69,27 +69,27 @@ def first_of(scene: Scene) -> First:
     'Why does the speed swing?'
     """
     there = [knob.name for knob in knobs_of(scene)]
-    wanted: tuple[str, ...]
+    names: tuple[str, ...]
     if scene.motion is None:
         question = "Why does the speed swing?"
         heavier = "Make the flywheel heavier: the swing becomes small, never zero."
         sentence = f"{_why_it_swings(scene)} {heavier}"
-        wanted = ("flywheel", "load", "speed", "rod_mass", "rod_ratio")
+        names = ("flywheel", "load", "speed", "rod_mass", "rod_ratio")
     elif scene.unlike:
         question = "What do the forces become at another speed?"
         sentence = (
             "The forces of inertia grow with the square of the speed, those of the gas do not. "
             "Turn the crank faster: in each cylinder they take over at another speed."
         )
-        wanted = ("speed", "pressure", "counterweight")
+        names = ("speed", "pressure", "counterweight")
     else:
         question = "What does the length of the rod change?"
         sentence = (
             "A short rod tilts more: the piston is thrown harder at the top than at the bottom, "
             "and pressed harder against the wall. Make the rod ratio larger and watch both."
         )
-        wanted = ("rod_ratio", "speed", "rod_mass", "offset", "pressure")
-    return First(question, sentence, tuple(name for name in wanted if name in there)[:3])
+        names = ("rod_ratio", "speed", "rod_mass", "offset", "pressure")
+    return First(question, sentence, tuple(name for name in names if name in there)[:3])
 
 
 def _why_it_swings(scene: Scene) -> str:
@@ -131,8 +131,8 @@ def choices_of(scene: Scene) -> tuple[Choice, ...]:
         words = (AS_GIVEN, *FIRING_ORDERS)
         choices.append(Choice("cylinders", "cylinders", words, AS_GIVEN))
     if _can_be_free(scene):
-        own = "free" if scene.motion is None else "prescribed"
-        choices.append(Choice("speed_is", "speed", ("free", "prescribed"), own))
+        kind = "free" if scene.motion is None else "prescribed"
+        choices.append(Choice("speed_is", "speed", ("free", "prescribed"), kind))
     if scene.settles and scene.torque:
         choices.append(Choice("load_is", "load", ("given", "rebalanced"), "given"))
     return tuple(choices)
@@ -167,7 +167,7 @@ def _can_be_free(scene: Scene) -> bool:
 
 
 def _heaviest(scene: Scene) -> float:
-    """The heaviest flywheel [kg m2]: a few times the scene's own; of a prescribed speed, whose
+    """The heaviest flywheel [kg m2]: a few times the scene's; of a prescribed speed, whose
     scene may have none, at least the one with which it would swing by a hundredth."""
     most = 4.0 * scene.crank.moment_of_inertia
     if scene.motion is not None:

@@ -16,7 +16,7 @@ _EXPORT = re.compile(r"^export (?=(?:async )?(?:function|class|const) (\w+))", r
 def joined(name: str) -> str:
     """A module and all that it imports, as one script that gives what the module exports.
 
-    Each module is a function of its own, so that their names do not meet.
+    Each module is a function, so that their names do not meet.
 
     Raises
     ------

@@ -90,8 +90,8 @@ def advice(budget: Budget) -> str:
             "take the closed form at the crank's own speed and acceleration"
         )
     left = worst.without(best)
-    own = best.name == "series" and not worst.is_lecture
-    remedy = "the exact formula in its place" if own else _REMEDIES[best.name]
+    of_user = best.name == "series" and not worst.is_lecture
+    remedy = "the exact formula in its place" if of_user else _REMEDIES[best.name]
     to = f"{digits(left, most=2)} %" if left >= _LEAST else "nothing"
     return f"with {remedy} the error of {whose} falls from {digits(error, most=3)} % to {to}"
 
@@ -101,11 +101,11 @@ def comparison_table(comparison: Comparison) -> Table:
     references = comparison.references
     rows = []
     for quantity in comparison.simulated:
-        found = {row.reference: row for row in comparison.rows if row.quantity == quantity}
-        peak = next(iter(found.values())).peak
-        last = list(found.values())[-1]
+        compared = {row.reference: row for row in comparison.rows if row.quantity == quantity}
+        peak = next(iter(compared.values())).peak
+        last = list(compared.values())[-1]
         shares = (
-            _share(percent(found[name].size.largest, peak)) if name in found else ""
+            _share(percent(compared[name].size.largest, peak)) if name in compared else ""
             for name in references
         )
         where = f"{math.degrees(last.size.angle):.0f}"
@@ -122,8 +122,8 @@ def worst_variable(result: Result) -> str:
     peaks = {name: peak(result.sampled(name)) for name in names}
     errors = {name: float(data[name].attrs["error_estimate"]) for name in names}
     angle = result.sampled("crank_angle")
-    found = relative_errors(peaks, errors, peak(angle - angle[0]))
-    return max(found, key=found.__getitem__).replace("_", " ")
+    relative = relative_errors(peaks, errors, peak(angle - angle[0]))
+    return max(relative, key=relative.__getitem__).replace("_", " ")
 
 
 def left_out_lines(entries: Sequence[LeftOut]) -> list[str]:

@@ -38,14 +38,14 @@ def result_html(result: Result) -> str:
         ("formulation", result.formulation),
         *(("", reason) for reason in result.reasons),
         ("end", result.message),
-        *([("speed", said)] if (said := unsteady(measures)) else []),
+        *([("speed", text)] if (text := unsteady(measures)) else []),
         ("num. error", f"{error.estimated:.1e} relative, {error.asked:.0e} asked for"),
-        *(("warning", said) for said in warnings(result.scene)),
+        *(("warning", text) for text in warnings(result.scene)),
     ]
     parts = [
         _head(result.scene, f"status {result.status}"),
         _table([], about),
-        *(_table(*one) for one in tables(result, measures)),
+        *(_table(*rows) for rows in tables(result, measures)),
         _picture(png(speed_figure(last_view(result)), _DPI), "crank speed over the crank angle"),
     ]
     return str(Markup("<div>{}</div>").format(Markup("\n").join(parts)))
@@ -65,7 +65,7 @@ def scene_html(scene: Scene) -> str:
     rows = [
         *(row for row in machine_rows(scene) if row[0] != "title"),
         *(("formulation" if k == 0 else "", text) for k, text in enumerate(how)),
-        *(("warning", said) for said in warnings(scene)),
+        *(("warning", sentence) for sentence in warnings(scene)),
     ]
     picture = _picture(png(machine_figure(scene), _DPI), "the machine, to scale")
     parts = [_head(scene, "scene"), _table([], rows), picture]
@@ -78,9 +78,9 @@ def comparison_html(comparison: Comparison) -> str:
     >>> comparison_html(compare(simulate(load_scene("propeller")))).count("<table>")
     1
     """
-    said = "largest difference from the run, in % of its peak; the angle is the last reference's"
+    text = "largest difference from the run, in % of its peak; the angle is the last reference's"
     parts = [
-        _head(comparison.excerpt.result.scene, f"{_stretch(comparison.excerpt)}: {said}"),
+        _head(comparison.excerpt.result.scene, f"{_stretch(comparison.excerpt)}: {text}"),
         _table(*comparison_table(comparison)),
         *(Markup("<p>{}</p>").format(line) for line in left_out_lines(comparison.left_out)),
     ]
@@ -93,8 +93,8 @@ def budget_html(budget: Budget) -> str:
     >>> budget_html(budget(simulate(load_scene("propeller")))).count("<table>")
     1
     """
-    said = "formula less run, in % of its peak, where it is largest; the causes add up to it there"
-    parts = [_head(budget.excerpt.result.scene, f"{_stretch(budget.excerpt)}: {said}")]
+    text = "formula less run, in % of its peak, where it is largest; the causes add up to it there"
+    parts = [_head(budget.excerpt.result.scene, f"{_stretch(budget.excerpt)}: {text}")]
     for reference in dict.fromkeys(split.reference for split in budget.ranked):
         splits = [split for split in budget.ranked if split.reference == reference]
         parts += [Markup("<p>{}</p>").format(reference), _table(*budget_table(splits))]
@@ -108,8 +108,8 @@ def _stretch(excerpt: Excerpt) -> str:
     return f"{excerpt.window.kind}, cylinder {excerpt.cylinder} of {count}"
 
 
-def _head(scene: Scene, what: str) -> Markup:
-    return Markup("<p><b>{}</b>, {}</p>").format(scene.title or "a scene without a title", what)
+def _head(scene: Scene, kind: str) -> Markup:
+    return Markup("<p><b>{}</b>, {}</p>").format(scene.title or "a scene without a title", kind)
 
 
 def _table(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Markup:

@@ -33,7 +33,7 @@ def describe(path: str, scene: Scene, choice: Choice) -> str:
         *machine_rows(scene),
         ("formulation", choice.formulation),
         *(("", reason) for reason in choice.reasons),
-        *(("warning", said) for said in warnings(scene)),
+        *(("warning", text) for text in warnings(scene)),
     ]
     return "\n".join(f"{name:<12} {text}" for name, text in rows)
 
@@ -57,18 +57,18 @@ def machine_rows(scene: Scene) -> list[tuple[str, str]]:
         *_unlike(scene, common),
         ("cylinders", _cylinders(scene)),
         ("gas", _gas(scene)),
-        *(("pressure", said) for said in _pressures(scene, heads, at_head)),
-        *(("", said) for said in _pressures(scene, ends, "in the crank end")),
+        *(("pressure", text) for text in _pressures(scene, heads, at_head)),
+        *(("", text) for text in _pressures(scene, ends, "in the crank end")),
         *(("", remark) for remark in remarks(scene)),
         ("fuel", _fuel(scene)),
         ("gravity", _gravity(scene)),
         ("friction", _friction(scene)),
         ("bearings", _shells(scene)),
-        *(("", said) for said in journal_remarks(scene)),
+        *(("", text) for text in journal_remarks(scene)),
         ("motion", _motion(scene)),
-        *(("", said) for said in speed_remarks(scene)),
+        *(("", text) for text in speed_remarks(scene)),
         *((f"torque[{k}]", _load(scene, load)) for k, load in enumerate(scene.torque, start=1)),
-        *((f"force[{k}]", _force(one)) for k, one in enumerate(scene.force, start=1)),
+        *((f"force[{k}]", _force(force)) for k, force in enumerate(scene.force, start=1)),
         ("run", _run(scene)),
     ]
     return [(name, text) for name, text in rows if text]
@@ -84,7 +84,7 @@ def _crank(scene: Scene) -> str:
 
 
 def _unlike(scene: Scene, common: RunningGear) -> list[tuple[str, str]]:
-    """The throw, rod and piston of each cylinder that has its own."""
+    """The throw, rod and piston of each cylinder that differs."""
     return [
         row
         for number, gear in enumerate(scene.running_gear, start=1)
@@ -215,7 +215,8 @@ def _fuel(scene: Scene) -> str:
     if fuel is None:
         return ""
     parts = [
-        f"cylinder {one.cylinder} misfires in cycles {one.cycles}" for one in fuel.misfire or ()
+        f"cylinder {misfire.cylinder} misfires in cycles {misfire.cycles}"
+        for misfire in fuel.misfire or ()
     ]
     if fuel.scatter:
         parts.append(f"scatter {100.0 * fuel.scatter:.6g} %, seed {fuel.seed}")

@@ -64,22 +64,22 @@ def tables(result: Result, measures: Measures) -> list[Table]:
     >>> [table.headings[0] for table in tables(result, result.measures())]
     ['over the last cycle', 'over the whole run, 0 to 1 s']
     """
-    window, scene, found = measures.window.kind, result.scene, []
+    window, scene, parts = measures.window.kind, result.scene, []
     if window != TURNS_BACK:
         rows = measure_rows(measures, scene)
-        found.append(Table([f"over the {window}", "value, to 6 digits", _ERROR], rows))
+        parts.append(Table([f"over the {window}", "value, to 6 digits", _ERROR], rows))
     if not measures.steady:
         motion, of = result.passes.answer, "whole run"
         if result.scene.run.every is None:
             of = "what is kept of the run"
         name = f"over the {of}, {motion.begin:.6g} to {motion.end:.6g} s"
-        return [*found, Table([name, *_WHOLE_RUN], _of_run(run_peaks(result), scene))]
-    found.append(Table([f"over the {window}", *FORCE_HEADINGS], peak_rows(measures, scene.period)))
+        return [*parts, Table([name, *_WHOLE_RUN], _of_run(run_peaks(result), scene))]
+    parts.append(Table([f"over the {window}", *FORCE_HEADINGS], peak_rows(measures, scene.period)))
     specific = _specific(measures)
     if specific:
         name = f"specific load over the {window} [N/mm2]"
-        found.append(Table([name, "peak", _ERROR, "mean", _ERROR], specific))
-    return found
+        parts.append(Table([name, "peak", _ERROR, "mean", _ERROR], specific))
+    return parts
 
 
 def unsteady(measures: Measures) -> str:
@@ -167,10 +167,10 @@ def peak_rows(measures: Measures, period: float) -> list[list[str]]:
         ]
         for joint in measures.joints
     ]
-    for one in measures.peaks:
-        name = _named(one.name, one.number, peaks[one.name], one.units)
-        angles = _angles(one.crank_angle, one.cycle_angle, period)
-        rows.append([name, *_cells(one.units, one.value), *angles, "", ""])
+    for top in measures.peaks:
+        name = _named(top.name, top.number, peaks[top.name], top.units)
+        angles = _angles(top.crank_angle, top.cycle_angle, period)
+        rows.append([name, *_cells(top.units, top.value), *angles, "", ""])
     return rows
 
 
@@ -186,13 +186,13 @@ def _of_run(peaks: tuple[Peak, ...], scene: Scene) -> list[list[str]]:
     assert start is not None
     return [
         [
-            _named(_words(one), one.number, counts[one.name], one.units),
-            *_cells(one.units, one.value),
-            f"{one.time:.6g}",
-            *_angles(one.crank_angle, one.cycle_angle, scene.period),
-            str(int(abs(one.crank_angle - start.angle) / scene.period) + 1),
+            _named(_words(top), top.number, counts[top.name], top.units),
+            *_cells(top.units, top.value),
+            f"{top.time:.6g}",
+            *_angles(top.crank_angle, top.cycle_angle, scene.period),
+            str(int(abs(top.crank_angle - start.angle) / scene.period) + 1),
         ]
-        for one in peaks
+        for top in peaks
     ]
 
 
@@ -204,9 +204,9 @@ def _specific(measures: Measures) -> list[list[str]]:
             _named(joint.joint, joint.number, counts[joint.joint], "1"),
             *(
                 cell
-                for one in (joint.specific_peak, joint.specific_mean)
-                if one is not None
-                for cell in _both(one, _MPA)
+                for estimate in (joint.specific_peak, joint.specific_mean)
+                if estimate is not None
+                for cell in _both(estimate, _MPA)
             ),
         ]
         for joint in measures.joints
@@ -227,8 +227,8 @@ def _piston_speeds(speed: Estimate, scene: Scene) -> list[list[str]]:
     return rows
 
 
-def _words(one: JointForce | Peak) -> str:
-    name = one.joint if isinstance(one, JointForce) else one.name
+def _words(load: JointForce | Peak) -> str:
+    name = load.joint if isinstance(load, JointForce) else load.name
     return "|side force|" if name == "side force" else name
 
 

@@ -74,7 +74,7 @@ def write_saved(
 ) -> None:
     """Write result.nc: the variables, the account of the way and the passes of the motion where
     there are, and the fields of a result by name."""
-    about: dict[str, Any] = {one.name: given.get(one.name) for one in fields(_About)}
+    about: dict[str, Any] = {field.name: given.get(field.name) for field in fields(_About)}
     if passes is not None:
         about["share"] = passes.share
         variables = with_passes(variables, passes)
@@ -124,12 +124,12 @@ def read_saved(path: str | Path) -> dict[str, Any]:
         _check_labels(data, about.scene)
     except OutputError:
         raise
-    except _NO_RESULT:  # HDF5's own words name its inner calls
+    except _NO_RESULT:  # HDF5's message names its inner calls
         raise OutputError(
             f"{file}: no readable result of crankmbs; give the result.nc that save wrote"
         ) from None
-    kept = {"left_out", "share"}
-    given = {name: value for name, value in vars(about).items() if name not in kept}
+    derived = {"left_out", "share"}
+    given = {name: value for name, value in vars(about).items() if name not in derived}
     return {**given, "data": data, "keep": keep, "motion": motion}
 
 

@@ -67,16 +67,16 @@ _LOADS = ("load", "force")
 
 def with_account(variables: Labelled, account: Account) -> Labelled:
     """The variables with the rows of an account beside them."""
-    found = dict(variables)
+    data = dict(variables)
     for stored, rows in ((_EVENTS, account.events), (_CYCLES, account.cycles)):
         if rows.count:
-            found |= stored.variables(rows)
-            found[stored.rows] = ((stored.rows,), np.arange(1, rows.count + 1), {})
+            data |= stored.variables(rows)
+            data[stored.rows] = ((stored.rows,), np.arange(1, rows.count + 1), {})
     for of in _LOADS:
-        if f"cycle_{of}_work" in found:
-            count = found[f"cycle_{of}_work"][1].shape[1]
-            found[of] = ((of,), np.arange(1, count + 1), {})
-    return found
+        if f"cycle_{of}_work" in data:
+            count = data[f"cycle_{of}_work"][1].shape[1]
+            data[of] = ((of,), np.arange(1, count + 1), {})
+    return data
 
 
 def account_in(

@@ -30,8 +30,8 @@ class _Column(NamedTuple):
 def write_csv(variables: Labelled, file: Path) -> None:
     """Write time, crank angle and every variable as CSV, in SI units."""
     columns = _columns(variables)
-    table = np.column_stack([one.values for one in columns])
-    header = ",".join(one.heading for one in columns)
+    table = np.column_stack([column.values for column in columns])
+    header = ",".join(column.heading for column in columns)
     np.savetxt(file, table, fmt="%.12g", delimiter=",", header=header, comments="")
 
 
@@ -39,19 +39,19 @@ def data_frame(variables: Labelled) -> pd.DataFrame:
     """The columns of `write_csv` over the crank angle, all angles in degrees."""
     import pandas as pd
 
-    columns = [_in_degrees(one) for one in _columns(variables)]
+    columns = [_in_degrees(column) for column in _columns(variables)]
     angle = columns.pop(1)
     frame = pd.DataFrame(
-        {one.heading: one.values for one in columns},
+        {column.heading: column.values for column in columns},
         index=pd.Index(angle.values, name=angle.heading),
     )
-    frame.attrs["error_estimate"] = {one.heading: one.error for one in (angle, *columns)}
+    frame.attrs["error_estimate"] = {column.heading: column.error for column in (angle, *columns)}
     return frame
 
 
 def _columns(variables: Labelled) -> list[_Column]:
     """Time, crank angle, then the variables in their order."""
-    found = []
+    columns = []
     first = ("time", "crank_angle")
     for name in (*first, *(name for name in variables if name not in first)):
         dims, values, attrs = variables[name]
@@ -60,14 +60,14 @@ def _columns(variables: Labelled) -> list[_Column]:
         units, error = attrs["units"], float(attrs["error_estimate"])
         if len(dims) > 1:
             for number, column in zip(variables[dims[1]][1], values.T, strict=True):
-                found.append(_Column(f"{name} {number}", units, column, error))
+                columns.append(_Column(f"{name} {number}", units, column, error))
         else:
-            found.append(_Column(name, units, values, error))
-    return found
+            columns.append(_Column(name, units, values, error))
+    return columns
 
 
-def _in_degrees(one: _Column) -> _Column:
-    if not one.units.startswith("rad"):
-        return one
+def _in_degrees(column: _Column) -> _Column:
+    if not column.units.startswith("rad"):
+        return column
     per = math.degrees(1.0)
-    return _Column(one.name, f"deg{one.units[3:]}", one.values * per, one.error * per)
+    return _Column(column.name, f"deg{column.units[3:]}", column.values * per, column.error * per)

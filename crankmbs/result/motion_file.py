@@ -45,12 +45,12 @@ DIMS = {
 
 def with_passes(variables: Labelled, passes: Passes) -> Labelled:
     """The variables with the cells of every pass beside them, from the first sample on."""
-    found, begin = dict(variables), float(variables["time"][1][0])
+    data, begin = dict(variables), float(variables["time"][1][0])
     for number, motion in enumerate((passes.answer, *passes.checks)):
         rows = _rows(motion.after(begin))
         for name, row in rows.items():
-            found[f"motion_{number}_{name}"] = (_dims(number, name), row, {})
-    return found
+            data[f"motion_{number}_{name}"] = (_dims(number, name), row, {})
+    return data
 
 
 def _rows(motion: Motion) -> dict[str, Array]:
@@ -62,8 +62,8 @@ def _rows(motion: Motion) -> dict[str, Array]:
         outside = cells.outside
         if functions and cells.acting.loads is not None:
             places = np.tile(cells.places, m)
-            found = samples_in(cells, motion.train, np.repeat(np.arange(m), n), places)
-            outside = found.own["external_torque"]
+            states = samples_in(cells, motion.train, np.repeat(np.arange(m), n), places)
+            outside = states.own["external_torque"]
         unknown = np.full(m * n, np.nan)
         for name in _OF_NODES[:-1]:
             row: Array | None = getattr(cells, name)
@@ -93,9 +93,9 @@ def passes_in(data: xr.Dataset, scene: Scene, share: float) -> tuple[Passes, xr.
             name: np.asarray(data[f"motion_{number}_{name}"].values, dtype=np.float64)
             for name in (*_OF_NODES, *_OF_CELLS)
         }
-        one = train.perturbed if number == 1 else train  # the pass that betters the answer
-        motions.append(Motion(one, list(_stretches(one, rows))))
-    dims = [f"motion_{k}_{what}" for k in range(_MOST) for what in ("node", "cell")]
+        machine = train.perturbed if number == 1 else train  # the pass that betters the answer
+        motions.append(Motion(machine, list(_stretches(machine, rows))))
+    dims = [f"motion_{k}_{kind}" for k in range(_MOST) for kind in ("node", "cell")]
     return Passes(motions[0], tuple(motions[1:]), share), data.drop_dims(dims, errors="ignore")
 
 

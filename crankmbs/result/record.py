@@ -94,8 +94,8 @@ class Result:
             return variables
         every = {**self.data.coords, **self.data.data_vars}
         return {
-            str(name): (tuple(map(str, one.dims)), one.values, one.attrs)
-            for name, one in every.items()
+            str(name): (tuple(map(str, variable.dims)), variable.values, variable.attrs)
+            for name, variable in every.items()
         }
 
     def sampled(self, name: str) -> Array:
@@ -280,8 +280,10 @@ class Result:
         target = Path(folder)
         account = None if self.keep is None else self._account
         with together(target) as part:
-            kept = self.motion is not None and all(f.law.given is None for f in self.scene.force)
-            passes = self.passes if kept else None
+            readable = self.motion is not None and all(
+                f.law.given is None for f in self.scene.force
+            )
+            passes = self.passes if readable else None
             write_saved(vars(self), self.variables, account, passes, part / "result.nc")
             write_csv(self.variables, part / "motion.csv")
             if self.keep is not None and self.event_table.length:

@@ -123,7 +123,7 @@ def throws_of(scene: Scene) -> Throws | None:
 
 
 def _numbers(scene: Scene) -> tuple[int, ...]:
-    """The throw of each cylinder, from 0; where none is given each its own, along the crank."""
+    """The throw of each cylinder, from 0; where none is given, one for each along the crank."""
     cylinders = scene.cylinders
     given = [cylinder.throw for cylinder in cylinders]
     if None in given:
@@ -228,10 +228,10 @@ def _unbalances(
     )
     apart = sum(each) - whole
     if abs(apart) > _CLOSES * max(abs(whole), *map(abs, given)):
-        came = sum(each)
+        total = sum(each)
         raise InputError(
             "bearings.throw_unbalance: together, each along its throw, they are the crank's mass * "
             f"center_of_mass, {whole:.6g} kg m along its reference line; "
-            f"{came.real:.6g} along it and {came.imag:.6g} kg m across came"
+            f"{total.real:.6g} along it and {total.imag:.6g} kg m across came"
         )
     return each

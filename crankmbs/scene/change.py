@@ -152,8 +152,8 @@ def _below(old: Any, change: _Leaf | _Changes, place: tuple[str, ...]) -> Any:
     if hasattr(type(old), "__pydantic_fields__") or (isinstance(old, tuple) and old):
         return _rebuilt(old, change, place)
     name, part = _names(change)[0], "__".join(place)
-    there = f"is one value, {shown(old)}" if old not in (None, ()) else "is not there"
-    raise InputError(f"{name}: in this scene {part} {there}; give {part} as a whole")
+    state = f"is one value, {shown(old)}" if old not in (None, ()) else "is not there"
+    raise InputError(f"{name}: in this scene {part} {state}; give {part} as a whole")
 
 
 def _called(part: Any) -> str:

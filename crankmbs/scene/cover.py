@@ -10,11 +10,11 @@ from crankmbs.scene.units import DEGREE
 __all__ = ["check_angles", "check_times"]
 
 
-def check_times(table: Table, begin: float, end: float, what: str) -> None:
+def check_times(table: Table, begin: float, end: float, span: str) -> None:
     """Refuse a table over time that does not reach from one time to another [s]."""
     if table.x[0] > begin or table.x[-1] < end:
         raise InputError(
-            f"{table.source}: the table must cover {what}, {begin:g} to {end:g} s; it goes from "
+            f"{table.source}: the table must cover {span}, {begin:g} to {end:g} s; it goes from "
             f"{table.x[0]:g} to {table.x[-1]:g} s"
         )
 

@@ -75,13 +75,13 @@ def mean_cycle(table: Table, period: float) -> Table:
 
 def _cycles(table: Table, period: float, count: int) -> list[tuple[Array, Array]]:
     """Angles, less the periods before, and values of each cycle. Of two rows where one cycle ends
-    the first is its own; a single one is the next cycle's, behind the last the first's again."""
+    the first belongs to it; a single one begins the next, behind the last the first again."""
     x, y = np.array(table.x), np.array(table.y)
     if x[1] == x[0]:  # before the jump where all begins: the end of the last cycle
         closing = np.count_nonzero(x > x[0] + count * period - SAME_ANGLE)
-        kept = slice(1, len(x) - closing)
+        inner = slice(1, len(x) - closing)
         end, before = x[0] + count * period, y[len(y) - closing] if closing == 2 else y[0]
-        x, y = np.append(x[kept], [end, end]), np.append(y[kept], [before, y[1]])
+        x, y = np.append(x[inner], [end, end]), np.append(y[inner], [before, y[1]])
     cycles = []
     for cycle in range(count):
         begin, end = x[0] + cycle * period, x[0] + (cycle + 1) * period

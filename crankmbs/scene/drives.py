@@ -85,8 +85,8 @@ class SpeedFile:
     kind: Literal["time_table", "angle_table"] = "time_table"
 
     def __post_init__(self) -> None:
-        what = "times" if self.kind == "time_table" else "crank angles"
-        check_abscissae(self.file, what, jumps=False)
+        abscissae = "times" if self.kind == "time_table" else "crank angles"
+        check_abscissae(self.file, abscissae, jumps=False)
         if self.kind == "angle_table":
             check_over_angle(self.file, self.interpolation)
         elif self.file.x[0] > 0.0:

@@ -42,10 +42,10 @@ def edited_files(
     SceneError, InputError : a bad scene, or one that is bad with these values
     """
     scene = load_scene(path)
-    wanted = scene.with_(**{f"crank__{key}": value for key, value in crank.items()})
+    edited = scene.with_(**{f"crank__{key}": value for key, value in crank.items()})
     text = _set(path.read_bytes().decode("utf-8-sig"), crank, remark)
-    if not _is(text, path, wanted):
-        files = scene_files(wanted, target.stem)
+    if not _is(text, path, edited):
+        files = scene_files(edited, target.stem)
         return {name: part.encode() for name, part in files.items()}
     tables: dict[str, bytes] = {}
     if target.resolve().parent != path.resolve().parent:
@@ -73,9 +73,9 @@ def _set(text: str, crank: Mapping[str, str], remark: str) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _is(text: str, path: Path, wanted: Scene) -> bool:
+def _is(text: str, path: Path, edited: Scene) -> bool:
     try:
-        return parse_scene(text, path) == wanted
+        return parse_scene(text, path) == edited
     except ValueError:
         return False
 

@@ -58,8 +58,8 @@ class Law(NamedTuple):
     @property
     def period(self) -> float | None:
         """Crank angle [rad] after which it comes again, where that is no single revolution."""
-        found = self.over_angle or self.given
-        return None if found is None else found.period
+        repeating = self.over_angle or self.given
+        return None if repeating is None else repeating.period
 
 
 @part

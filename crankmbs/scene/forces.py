@@ -95,7 +95,7 @@ class ConstantForce(PistonForce):
 
 @dataclass(frozen=True)
 class _TravelFile(CsvFile):
-    """Reads a CSV file of the force over the travel, the same on both ways or each its own."""
+    """Reads a CSV file of the force over the travel, one for both ways or one for each."""
 
     def __call__(self, value: Any, info: ValidationInfo) -> Any:
         if isinstance(value, CylinderTable):

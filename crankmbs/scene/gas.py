@@ -192,7 +192,7 @@ class Gas:
     pressure: a table of crank angle [rad] and pressure [Pa] or a constant [Pa], one for each
     cylinder or for all; absolute: whether the pressure is; ambient [Pa]: crankcase side; stroke: 4
     (period 720 degrees) or 2 (360); zero: the cycle angle of the table's 0; aligned: whether each
-    of several columns runs over its own cylinder's cycle angle, else all over that of cylinder 1;
+    of several columns runs over the cycle angle of its cylinder, else all over that of cylinder 1;
     cycles: what is made of a file longer than a period, its mean cycle or the sequence of them;
     interpolation between the rows, two of which at one angle are a jump; closing [Pa]: a closing
     row so near the first is dropped, by default 1 % of the range; motored: the pressure without

@@ -158,7 +158,7 @@ def pick(headings: Sequence[Heading], columns: str, where: str) -> list[int]:
     [1, 2]
     """
     known = [heading.name for heading in headings]
-    found: list[int] = []
+    indices: list[int] = []
     for name in _expanded(columns):
         low = name.lower()
         places = [k for k, each in enumerate(known) if each.lower() == low]
@@ -171,8 +171,8 @@ def pick(headings: Sequence[Heading], columns: str, where: str) -> list[int]:
                 f"{where}: no column is named {shown(name)}; the columns are {listed}"
                 f"{did_you_mean(name, known)}"
             )
-        found += [k for k in places if k not in found]
-    return found
+        indices += [k for k in places if k not in indices]
+    return indices
 
 
 def _expanded(columns: str) -> list[str]:

@@ -19,7 +19,7 @@ _SEPARATORS = {"tab": "\t", "semicolon": ";", "comma": ",", "blank": " ", "bar":
 
 
 class HowRead(NamedTuple):
-    """How a file is read: the columns of pressures by name, and what is not left to be found."""
+    """How a file is read: the columns of pressures by name, and what is not to be detected."""
 
     columns: str | None = None
     separator: str | None = None

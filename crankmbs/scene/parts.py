@@ -188,7 +188,7 @@ class RunningGear(NamedTuple):
 class Cylinder:
     """phase [rad]: its cycle angle at crank angle 0; bank [rad]: its axis from the engine's X;
     position [m]: of its rod along the crank, in the sense of X turned into Y; throw: number of the
-    throw on whose pin its rod is, from 1; left out, each has its own.
+    throw on whose pin its rod is, from 1; left out, each has another.
 
     radius [m] of its throw, rod and piston: where they are unlike those of [crank], [rod] and
     [piston], key by key.
@@ -203,7 +203,7 @@ class Cylinder:
     piston: OwnPiston | None = None
 
     def running_gear(self, radius: float, rod: Rod, piston: Piston) -> RunningGear:
-        """What moves in it, where a machine has these unless it has its own.
+        """What moves in this cylinder, of a machine with these where the cylinder has no others.
 
         Raises
         ------
@@ -219,9 +219,9 @@ class Cylinder:
         return RunningGear(radius if self.radius is None else self.radius, rod, piston)
 
 
-def _given(own: OwnRod | OwnPiston) -> dict[str, Any]:
-    """What one cylinder has of its own."""
-    return {name: value for name, value in vars(own).items() if value is not None}
+def _given(part: OwnRod | OwnPiston) -> dict[str, Any]:
+    """The values that one cylinder sets."""
+    return {name: value for name, value in vars(part).items() if value is not None}
 
 
 @part

@@ -98,9 +98,9 @@ def close(table: Table, period: float) -> Period:
     first, last = _ends(table, period)
     jumps = len(first) == 2 or len(last) == 2
     before = last[0] if len(last) > len(first) else first[0]
-    kept = slice(len(first) - 1, len(table.x) - len(last))
-    angle = np.append(table.x[kept], table.x[0] + period)
-    return Period(angle, np.append(table.y[kept], before), jumps)
+    inner = slice(len(first) - 1, len(table.x) - len(last))
+    angle = np.append(table.x[inner], table.x[0] + period)
+    return Period(angle, np.append(table.y[inner], before), jumps)
 
 
 def interpolate(rows: Period, interpolation: str) -> tuple[Array, Array]:

@@ -10,16 +10,14 @@ from pydantic import PlainSerializer, PlainValidator
 
 from crankmbs.numerics.function import named
 from crankmbs.scene.force import Given, Law, PistonForce
-from crankmbs.scene.python_load import KeptName, check_period, function_of, within_period
+from crankmbs.scene.python_load import KeptName, Numbers, OfFunction, function_of, within_period
 from crankmbs.scene.schema import Float, part, si
 
 __all__ = ["Force"]
 
-Numbers = tuple[Float, ...]
-
 
 @part
-class Force(PistonForce):
+class Force(OfFunction, PistonForce):
     """The force [N] on a piston, positive towards the crank, that a function(t, cycle_angle,
     displacement, velocity) gives, of time [s], cycle angle [rad], and the piston's displacement
     from its top dead centre [m] and its velocity towards the crank [m/s], four floats in, one out;
@@ -27,7 +25,7 @@ class Force(PistonForce):
 
     kink_times [s], kink_angles [rad], kink_displacements [m] : where it bends or jumps, the angles
         every ``period``, without one every revolution; that it jumps with the sense of the
-        velocity is always allowed for. What is not declared is found by finer cells, and costs
+        velocity is always allowed for. What is not declared takes finer cells, and costs
         accuracy that the stated errors know of
     period [rad] : declares that it does not depend on t and repeats over the cycle angle; any
         multiple of half a revolution, or a whole part of two revolutions
@@ -48,10 +46,6 @@ class Force(PistonForce):
     kink_displacements: Numbers = ()
     period: Annotated[Float, Gt(0), si("angle")] | None = None
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        check_period(self.period)
-
     @cached_property
     def law(self) -> Law:
         if isinstance(self.function, KeptName):
@@ -59,16 +53,6 @@ class Force(PistonForce):
         angles, period = within_period(self.kink_angles, self.period)
         declared = self.kink_times, angles, self.kink_displacements
         return Law(given=Given(self.function, *declared, period))
-
-    @property
-    def words(self) -> str:
-        return named(self.function)
-
-    @property
-    def lacks(self) -> str | None:
-        if not isinstance(self.function, KeptName):
-            return None
-        return self.function.lacks("force anew with crankmbs.Force")
 
 
 PistonForce.unwritten["function"] = Force

@@ -16,8 +16,9 @@ from crankmbs.numerics.function import Function, named
 from crankmbs.scene.angle_rows import is_of_halves
 from crankmbs.scene.schema import SAVED, Float, part, si
 from crankmbs.scene.torque import Parts, Torque
+from crankmbs.scene.windowed import Windowed
 
-__all__ = ["KeptName", "Load", "check_period", "function_of", "within_period"]
+__all__ = ["KeptName", "Load", "Numbers", "OfFunction", "function_of", "within_period"]
 
 Numbers = tuple[Float, ...]
 
@@ -84,13 +85,35 @@ def within_period(
     return inside, whole if given else None
 
 
+class OfFunction(Windowed):
+    """What a torque and a force of a function share: its period is checked, its name is known."""
+
+    function: Any
+    period: float | None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        check_period(self.period)
+
+    @property
+    def words(self) -> str:
+        return named(self.function)
+
+    @property
+    def lacks(self) -> str | None:
+        if not isinstance(self.function, KeptName):
+            return None
+        name = type(self).__name__
+        return self.function.lacks(f"{name.lower()} anew with crankmbs.{name}")
+
+
 @part
-class Load(Torque):
+class Load(OfFunction, Torque):
     """The torque [N m] that a function(t, theta, omega) gives, of time [s], crank angle [rad] and
     speed [rad/s], three floats in, one out; it must be pure.
 
     kink_times [s], kink_angles [rad], kink_speeds [rad/s] : where it bends or jumps, the angles
-        every ``period``, without one every revolution; what is not declared is found by finer
+        every ``period``, without one every revolution; what is not declared takes finer
         cells, and costs accuracy that the stated errors know of
     period [rad] : declares that it does not depend on t and repeats over the crank angle; any
         multiple of half a revolution, or a whole part of two revolutions
@@ -111,10 +134,6 @@ class Load(Torque):
     kink_speeds: Numbers = ()
     period: Annotated[Float, Gt(0), si("angle")] | None = None
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        check_period(self.period)
-
     @cached_property
     def parts(self) -> Parts[Cycle]:
         if isinstance(self.function, KeptName):
@@ -122,16 +141,6 @@ class Load(Torque):
         angles, period = within_period(self.kink_angles, self.period)
         known = self.kink_times, angles, self.kink_speeds
         return Parts(function=Function(self.function, *known, period))
-
-    @property
-    def words(self) -> str:
-        return named(self.function)
-
-    @property
-    def lacks(self) -> str | None:
-        if not isinstance(self.function, KeptName):
-            return None
-        return self.function.lacks("load anew with crankmbs.Load")
 
     def _scaled(self, share: float, faster: float) -> dict[str, Any]:
         function: Callable[[float, float, float], float] = self.function

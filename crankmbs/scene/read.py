@@ -10,7 +10,7 @@ from typing import Any
 from pydantic import TypeAdapter, ValidationError
 
 from crankmbs.errors import InputError, SceneError, shown
-from crankmbs.scene.own import by_layout
+from crankmbs.scene.cylinder_tables import by_layout
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.sentences import did_you_mean, sentence
 from crankmbs.scene.shipped import shipped_scenes

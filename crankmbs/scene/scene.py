@@ -103,14 +103,14 @@ class Scene:
         """The angle [rad] after which a settled motion repeats itself: the least common multiple
         of the periods of the engine, of a sequence of cycles, of misfires "every n" and of loads
         over the angle."""
-        own = [self.load_period]
+        periods = [self.load_period]
         if self.gas is not None and self.gas.cycles == "sequence":
-            one = self.gas.period
+            cycle = self.gas.period
             tables = self.gas.tables + tables_of(self.gas.crank_end)
-            own += [cycles_in(table, one) * one for table in tables]
+            periods += [cycles_in(table, cycle) * cycle for table in tables]
         misfires = (self.fuel.misfire if self.fuel else None) or ()
-        own += [self.period * one.every for one in misfires if one.every]
-        return common_period(own)
+        periods += [self.period * misfire.every for misfire in misfires if misfire.every]
+        return common_period(periods)
 
     @property
     def end(self) -> tuple[float, bool]:
@@ -150,11 +150,11 @@ class Scene:
         """The scene with rods of two masses at their pins."""
         layout, rod = self.layout, replace(self.rod, inertia="two-mass")
         if layout.cylinders is not None:
-            own = [
+            cylinders = [
                 c if c.rod is None else replace(c, rod=replace(c.rod, inertia=None))
                 for c in layout.cylinders
             ]
-            layout = replace(layout, cylinders=tuple(own))
+            layout = replace(layout, cylinders=tuple(cylinders))
         return replace(self, rod=rod, layout=layout)
 
     @cached_property

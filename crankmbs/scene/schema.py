@@ -108,10 +108,10 @@ def dimension_of(owner: type[Any], name: str) -> str | None:
 
 
 def _dimensions(annotations: Sequence[Any]) -> Iterator[str]:
-    for one in annotations:
-        if isinstance(one, BeforeValidator) and isinstance(one.func, Quantity):
-            yield one.func.dimension
-        yield from _dimensions(typing.get_args(one))
+    for annotation in annotations:
+        if isinstance(annotation, BeforeValidator) and isinstance(annotation.func, Quantity):
+            yield annotation.func.dimension
+        yield from _dimensions(typing.get_args(annotation))
 
 
 def to_si(value: Any, dimension: str, info: ValidationInfo) -> float:

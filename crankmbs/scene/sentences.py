@@ -42,7 +42,7 @@ _IN_PYTHON = {
 
 
 class PartError(InputError):
-    """A part below another one, of a class that its own keys tell, could not be built."""
+    """A part below another one, of a class that its keys tell, could not be built."""
 
     def __init__(self, error: ValidationError, root: type[Any], came: Mapping[str, Any]) -> None:
         super().__init__("a part could not be built")
@@ -217,7 +217,7 @@ def _parts_at(root: type[Any], loc: Sequence[int | str]) -> list[type[Any]]:
         if _is_tag(step):
             parts = [each for each in parts if each.__name__ == step]
         else:
-            parts = [found for each in parts for found in _parts_of_key(each, step)]
+            parts = [part for each in parts for part in _parts_of_key(each, step)]
     return parts
 
 

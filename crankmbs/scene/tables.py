@@ -93,7 +93,7 @@ class Table:
         return Table(tuple(x * v for v in self.x), tuple(y * v for v in self.y), self.source)
 
 
-def check_abscissae(table: Table, what: str, *, jumps: bool) -> None:
+def check_abscissae(table: Table, abscissae: str, *, jumps: bool) -> None:
     """Refuse a table of fewer than two rows, or whose rows do not follow one another.
 
     what : name of its abscissae; jumps : whether two of them may be equal
@@ -109,7 +109,7 @@ def check_abscissae(table: Table, what: str, *, jumps: bool) -> None:
         third = k > 0 and x[k - 1] == a == b
         if b < a or third or (b == a and not jumps):
             rule = "not decrease (two equal ones are a jump)" if jumps else "strictly increase"
-            raise InputError(f"{table.source}: {what} must {rule}; row {k + 2} breaks this")
+            raise InputError(f"{table.source}: {abscissae} must {rule}; row {k + 2} breaks this")
 
 
 @dataclass(frozen=True)
@@ -175,10 +175,10 @@ def read_table(path: Path, x_units: dict[str, float], y_units: dict[str, float])
     """
     rows = _rows(path)
     header = rows[0][1]
-    found = [name for name in x_units if name in header]
-    quantities = {name.rpartition("_")[0] for name in found}
-    several = len(quantities) == len(found) > 1
-    given = {found[0]: x_units[found[0]]} if several else x_units
+    names = [name for name in x_units if name in header]
+    quantities = {name.rpartition("_")[0] for name in names}
+    several = len(quantities) == len(names) > 1
+    given = {names[0]: x_units[names[0]]} if several else x_units
     x, y = _values(path, rows, [_column(path, header, given), _column(path, header, y_units)])
     return Table(x, y, source=str(path))
 
@@ -253,8 +253,8 @@ def _values(
                 f"file {path}, line {number}: {len(cells)} cells under a header of {len(header)}; "
                 "commas separate the columns, the decimal sign is a point"
             )
-        for kept, (i, factor) in zip(values, columns, strict=True):
-            kept.append(factor * _number(path, number, header[i], cells[i : i + 1]))
+        for numbers, (i, factor) in zip(values, columns, strict=True):
+            numbers.append(factor * _number(path, number, header[i], cells[i : i + 1]))
     return [tuple(column) for column in values]
 
 
@@ -276,13 +276,13 @@ def _cells(path: Path, line: int, text: str) -> list[str]:
 
 
 def _column(path: Path, header: list[str], units: dict[str, float]) -> tuple[int, float]:
-    found = [name for name in header if name in units]
-    if len(found) != 1:
+    names = [name for name in header if name in units]
+    if len(names) != 1:
         raise InputError(
             f"file {path}: the header must name exactly one column {' | '.join(units)}, with "
             f"commas between the columns; {shown(','.join(header))} came"
         )
-    return header.index(found[0]), units[found[0]]
+    return header.index(names[0]), units[names[0]]
 
 
 def _number(path: Path, line: int, name: str, cells: list[str]) -> float:

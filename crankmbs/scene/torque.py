@@ -42,8 +42,8 @@ class Parts(NamedTuple, Generic[P]):
     def period(self) -> float | None:
         """Crank angle [rad] after which it comes again; None of what does not depend on it, or is
         not known to come again."""
-        found = self.over_angle or self.function
-        return None if found is None else found.period
+        repeating = self.over_angle or self.function
+        return None if repeating is None else repeating.period
 
     def __call__(self, t: ArrayLike, theta: ArrayLike, omega: ArrayLike) -> Array:
         """Their sum [N m] at times, crank angles and speeds of one shape; on a jump that after

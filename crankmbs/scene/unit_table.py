@@ -77,10 +77,10 @@ def factor(unit: str, si: str) -> float | None:
     >>> factor("kN m", "N m"), factor("kN", "N m")
     (1000.0, None)
     """
-    found, asked = _product(unit), _product(si)
-    if found is None or asked is None or found[1] != asked[1]:
+    product, target = _product(unit), _product(si)
+    if product is None or target is None or product[1] != target[1]:
         return None
-    return found[0] / asked[0]
+    return product[0] / target[0]
 
 
 @cache
@@ -93,12 +93,12 @@ def _product(text: str) -> tuple[float, tuple[int, ...]] | None:
     powers: tuple[int, ...] = (0, 0, 0)
     while at < len(text):
         match = _FACTORS.match(text, at)
-        one = match and _single(match[2])
-        if not match or not one:
+        base = match and _single(match[2])
+        if not match or not base:
             return None
         power = int(match[3] or 1) * (-1 if match[1] == "/" else 1)
-        size *= one[0] ** power
-        powers = tuple(p + power * q for p, q in zip(powers, one[1], strict=True))
+        size *= base[0] ** power
+        powers = tuple(p + power * q for p, q in zip(powers, base[1], strict=True))
         at = match.end()
     return size, powers
 
@@ -108,8 +108,8 @@ def _single(name: str) -> tuple[float, tuple[int, ...]] | None:
     if name in _BASE:
         return 1.0, _BASE[name]
     if name in UNITS:
-        size, other = UNITS[name]
-        known = _product(other)
+        size, text = UNITS[name]
+        known = _product(text)
         return known and (size * known[0], known[1])
     for prefix, size in PREFIXES.items():
         rest = name.removeprefix(prefix)

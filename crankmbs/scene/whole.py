@@ -87,8 +87,8 @@ def _uneven(fuel: Fuel) -> str:
 def _check_loop(scene: Scene) -> None:
     """Refuse cylinders whose crank cannot turn, or whose gas has nothing to press on."""
     for number, cylinder in enumerate(scene.cylinders, start=1):
-        own = (cylinder.radius, cylinder.rod, cylinder.piston) != (None, None, None)
-        where = f"layout.cylinders[{number}]: " if own else ""
+        special = (cylinder.radius, cylinder.rod, cylinder.piston) != (None, None, None)
+        where = f"layout.cylinders[{number}]: " if special else ""
         try:
             gear = cylinder.running_gear(scene.crank.radius, scene.rod, scene.piston)
             _check_gear(gear, gas=scene.gas is not None)
@@ -257,9 +257,9 @@ def _check_tables(scene: Scene) -> None:
             last = end if load.until is None else min(end, load.until)
         else:
             last = 0.0  # where it ends shows on the way
-        what = "its window" if load.has_window else "the run"
+        span = "its window" if load.has_window else "the run"
         begin = load.after or 0.0
-        check_times(load.table_over_time, begin, max(begin, last), what)
+        check_times(load.table_over_time, begin, max(begin, last), span)
 
 
 def _check_speed(scene: Scene, speed: SpeedFile, end: float) -> None:

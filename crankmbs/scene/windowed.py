@@ -58,9 +58,9 @@ class Windowed(ABC):
         """What a reader is told of when it acts; nothing where it does throughout."""
         speeds = [("from", self.from_speed), ("until", self.until_speed)]
         times = [("after", self.after), ("until", self.until)]
-        said = [f"{word} {t:.6g} s" for word, t in times if t is not None]
-        said += [f"{word} {v / RPM:.6g} rpm" for word, v in speeds if v is not None]
-        return "".join(f", {one}" for one in said)
+        bounds = [f"{word} {t:.6g} s" for word, t in times if t is not None]
+        bounds += [f"{word} {v / RPM:.6g} rpm" for word, v in speeds if v is not None]
+        return "".join(f", {bound}" for bound in bounds)
 
     @property
     def has_window(self) -> bool:

@@ -42,7 +42,7 @@ _UNITS = {
     "viscous": "N s/m",
     **dict.fromkeys(("over", "after", "until"), "s"),
 }
-_PRESSURE = Header("crank_angle_deg", DEGREE, "pressure_Pa", 1.0)  # speeds and loads have their own
+_PRESSURE = Header("crank_angle_deg", DEGREE, "pressure_Pa", 1.0)  # not of speeds and loads
 
 
 def scene_files(scene: Scene, stem: str) -> dict[str, str]:

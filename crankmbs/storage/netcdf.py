@@ -77,13 +77,13 @@ def _check_plain(raw: h5py.File, size: int) -> None:
     promised = 0
     for name in raw:
         plain = isinstance(raw.get(name, getlink=True), h5py.HardLink)
-        found = raw[name] if plain else None
-        if not isinstance(found, h5py.Dataset) or found.external or found.is_virtual:
+        dataset = raw[name] if plain else None
+        if not isinstance(dataset, h5py.Dataset) or dataset.external or dataset.is_virtual:
             raise ValueError(f"{name} lies elsewhere")
-        if found.dtype.kind not in "fi":
+        if dataset.dtype.kind not in "fi":
             raise ValueError(f"{name} has no numbers")
-        if bytes(found.attrs.get("NAME", b"")).startswith(_NO_VARIABLE):
+        if bytes(dataset.attrs.get("NAME", b"")).startswith(_NO_VARIABLE):
             continue  # the length of a dimension, which is never read
-        promised += math.prod(found.shape or ()) * found.dtype.itemsize
+        promised += math.prod(dataset.shape or ()) * dataset.dtype.itemsize
     if promised > size:
         raise ValueError(f"{promised} bytes promised, {size} there")

@@ -137,8 +137,8 @@ def _block(job: Job, ended: dict[int, Ended], together: list[Rows]) -> Block:
                 rows[name][k] = row[name]
     status, message = np.zeros(count, dtype=np.int8), [""] * count
     for some in together:
-        for k, said in zip(some.which, some.messages, strict=True):
-            message[k] = said
-    for k, (_, how, said) in ended.items():
-        status[k], message[k] = how, said
+        for k, text in zip(some.which, some.messages, strict=True):
+            message[k] = text
+    for k, (_, code, text) in ended.items():
+        status[k], message[k] = code, text
     return Block(rows, status, tuple(message))

@@ -160,9 +160,9 @@ def _measured(measures: Measures, scene: Scene) -> Row:
     for joint, dims in _joints(scene).items():
         of_one = [force for force in measures.joints if force.joint.replace(" ", "_") == joint]
         single = not dims
-        for what in ("peak", "mean"):
-            estimates = tuple(getattr(force, what) for force in of_one)
-            _put(row, f"{joint}_{what}", estimates[0] if single else estimates)
+        for statistic in ("peak", "mean"):
+            estimates = tuple(getattr(force, statistic) for force in of_one)
+            _put(row, f"{joint}_{statistic}", estimates[0] if single else estimates)
         angles = np.array([_angle(force, scene.period) for force in of_one])
         row[f"{joint}_peak_angle"] = angles[0] if single else angles
     return row
@@ -201,15 +201,15 @@ def _series(scene: Scene) -> dict[str, Column]:
 
 
 def _sampled(result: Result, most: int) -> Row:
-    came, row = result.data.sizes["time"], {}
-    if came > most:
+    count, row = result.data.sizes["time"], {}
+    if count > most:
         raise InputError(
             f"run: series of all cases are kept in {most} samples, those of the scene that is "
-            f"varied; {came} came; give that scene the longest run"
+            f"varied; {count} came; give that scene the longest run"
         )
     for name in _series(result.scene):
         variable = result.data[name.removeprefix("series_")]
-        rest = np.full((most - came, *variable.shape[1:]), np.nan)
+        rest = np.full((most - count, *variable.shape[1:]), np.nan)
         row[name] = np.concatenate([variable.values, rest])
         row[f"{name}{_ERROR}"] = np.array(variable.attrs["error_estimate"])
     return row

@@ -33,7 +33,7 @@ def fingerprint(value: object) -> str:
     """
     try:
         return _digest(value, {})
-    except Exception:  # whatever the value's own pickling raises
+    except Exception:  # whatever pickling the value raises
         return ""
 
 
@@ -97,9 +97,10 @@ def _named(value: Any) -> list[Any] | None:
         return [value.__qualname__, *_module(value.__module__)]
     if isinstance(value, type):
         members = {
-            name: _ordered(one)
-            for name, one in sorted(vars(value).items())
-            if isinstance(one, FunctionType) or not (name.startswith("__") or name == "_abc_impl")
+            name: _ordered(member)
+            for name, member in sorted(vars(value).items())
+            if isinstance(member, FunctionType)
+            or not (name.startswith("__") or name == "_abc_impl")
         }
         return [value.__qualname__, value.__bases__, members]
     named = value.__globals__

@@ -68,7 +68,7 @@ def sobol_indices(
 
         S_i = Var(E(Y | X_i)) / Var(Y),   S_Ti = 1 - Var(E(Y | all but X_i)) / Var(Y),
 
-    estimated by `scipy.stats.sobol_indices` (Saltelli 2010) on its own design of n (knobs + 2)
+    estimated by `scipy.stats.sobol_indices` (Saltelli 2010) on its design of n (knobs + 2)
     runs, which all measures share. The error is 1.96 standard errors of 400 resamplings of that
     design, 95 % where they are normal, with n below 64 rather less; and 8 times the largest error
     of the measure over its standard deviation, which bounds what that error does to either index.
@@ -92,8 +92,8 @@ def sobol_indices(
 
     >>> scene = load_scene("propeller").with_(run__until="settled")
     >>> vary = {"crank.inertia": "0.2..0.4 kg m^2", "piston.mass": "0.5..0.6 kg"}
-    >>> (found,) = sobol_indices(scene, vary, "fluctuation", n=8)
-    >>> print(found.total[0].value > 0.5 > 0.01 > found.total[1].value)
+    >>> (indices,) = sobol_indices(scene, vary, "fluctuation", n=8)
+    >>> print(indices.total[0].value > 0.5 > 0.01 > indices.total[1].value)
     True
     """
     check_scene(scene)
@@ -114,26 +114,26 @@ def sobol_indices(
     knobs = tuple(interval_of(scene, *item) for item in vary.items())
     plan = Plan(scene, Listed(_design(knobs, n, seed)), series=False)
     data = run_in_memory(plan, executor)
-    return tuple(_found(plan, data, reading, n, seed) for reading in readings)
+    return tuple(_indices_of(plan, data, reading, n, seed) for reading in readings)
 
 
 def _design(knobs: tuple[Interval, ...], n: int, seed: int) -> tuple[Knob, ...]:
     """The knobs at the points for which SciPy asks: n of its A, n of B, then of those mixed."""
     from scipy import stats
 
-    asked: list[Array] = []
+    designs: list[Array] = []
     uniform: Any = stats.uniform()
 
     def recorded(points: Array) -> Array:
-        asked.append(points)
+        designs.append(points)
         return np.asarray(points.sum(axis=0))
 
     stats.sobol_indices(func=recorded, n=n, dists=[uniform] * len(knobs), rng=seed)
-    columns = np.concatenate(asked, axis=1)
+    columns = np.concatenate(designs, axis=1)
     return tuple(knob.taken(knob.at(column)) for knob, column in zip(knobs, columns, strict=True))
 
 
-def _found(plan: Plan, data: xr.Dataset, reading: Reading, n: int, seed: int) -> SobolIndices:
+def _indices_of(plan: Plan, data: xr.Dataset, reading: Reading, n: int, seed: int) -> SobolIndices:
     names, count = plan.cases.names, plan.cases.count
     read, numerical = reading.of_sweep(data)
     values = np.where(data["status"].values == 0, read.values, np.nan)
@@ -142,12 +142,12 @@ def _found(plan: Plan, data: xr.Dataset, reading: Reading, n: int, seed: int) ->
         nothing = (Estimate(math.nan, math.nan),) * len(names)
         return SobolIndices(names, reading, nothing, nothing, count, 1, why)
     deviation = float(np.std(values[: 2 * n]))
-    here, rng = _indices(values, n, np.arange(n)), np.random.default_rng(seed)
-    others = [_indices(values, n, rng.integers(n, size=n)) for _ in range(_RESAMPLES)]
-    error = _CONFIDENCE * np.std(others, axis=0, ddof=1) + _OWN * numerical / deviation
+    estimates, rng = _indices(values, n, np.arange(n)), np.random.default_rng(seed)
+    resampled = [_indices(values, n, rng.integers(n, size=n)) for _ in range(_RESAMPLES)]
+    error = _CONFIDENCE * np.std(resampled, axis=0, ddof=1) + _OWN * numerical / deviation
     first, total = (
-        tuple(Estimate(*pair) for pair in zip(*both, strict=True))
-        for both in zip(here.tolist(), error.tolist(), strict=True)
+        tuple(Estimate(*pair) for pair in zip(*order, strict=True))
+        for order in zip(estimates.tolist(), error.tolist(), strict=True)
     )
     return SobolIndices(names, reading, first, total, count, 0, f"from {count} runs")
 

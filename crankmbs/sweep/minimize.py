@@ -70,7 +70,7 @@ def minimize(
 
     16 points a knob of a Sobol sequence are looked at, and the best of them that fulfils the
     conditions is polished by COBYQA, which takes steps of quadratic models without derivatives:
-    peaks are not smooth. What is found is the least near there.
+    peaks are not smooth. The answer is the least value near there.
 
     Parameters
     ----------
@@ -87,8 +87,8 @@ def minimize(
     InputError : no scene, no range, no such measure
 
     >>> scene = load_scene("yi_diesel").with_(run__until="1 cycles", gas=None, gravity=None)
-    >>> found = minimize(scene, {"piston.offset": "-8..5 mm"}, "peak side force")
-    >>> print(abs(found.values["piston.offset"]) < 1e-5)
+    >>> minimum = minimize(scene, {"piston.offset": "-8..5 mm"}, "peak side force")
+    >>> print(abs(minimum.values["piston.offset"]) < 1e-5)
     True
     """
     check_scene(scene)
@@ -98,7 +98,7 @@ def minimize(
         raise InputError("vary: needs ranges of numbers that are not whole; sweep compares others")
     reading = reading_of(measure, columns_of(scene, series=False))
     conditions = [asked_of(scene, text, "<= >= < >") for text in subject_to]
-    return _Descent(scene, knobs, reading, conditions).found()
+    return _Descent(scene, knobs, reading, conditions).minimum()
 
 
 class _Descent:
@@ -115,20 +115,19 @@ class _Descent:
         self._reading, self._conditions = reading, conditions
         self._known: dict[tuple[float, ...], tuple[Estimate, ...]] = {}
 
-    def found(self) -> Minimum:
-
+    def minimum(self) -> Minimum:
         count = len(self._knobs)
         drawn = 2 ** math.ceil(math.log2(_POINTS * count))
         points = Sample(dict.fromkeys(self._asked.names, ""), drawn).points(range(drawn))
         values = np.array([self._least(point) for point in points])
-        missed = np.array([self._missed(point).max(initial=0.0) for point in points])
+        excess = np.array([self._excess(point).max(initial=0.0) for point in points])
         runs = np.isfinite(values)
         if not runs.any():
             return self._answer(points[0], 1, "no case in the ranges has the measure")
-        missed[~runs] = math.inf
-        start = points[np.lexsort((values, missed))[0]]
+        excess[~runs] = math.inf
+        start = points[np.lexsort((values, excess))[0]]
         scale = float(np.nanmax(np.abs(values))) or 1.0
-        kept = NonlinearConstraint(self._missed, -np.inf, 0.0)
+        constraint = NonlinearConstraint(self._excess, -np.inf, 0.0)
         options: Any = {"maxfev": _MOST * count}
         options |= {"initial_tr_radius": _FIRST, "final_tr_radius": _LAST}
         ended = polished(  # type: ignore[call-overload]
@@ -136,11 +135,11 @@ class _Descent:
             start,
             method="COBYQA",
             bounds=Bounds(np.zeros(count), np.ones(count)),
-            constraints=[kept] if self._conditions else [],
+            constraints=[constraint] if self._conditions else [],
             options=options,
         )
         best = self._best(np.clip(ended.x, 0.0, 1.0))
-        if self._missed(best).max(initial=0.0) > _SLACK:
+        if self._excess(best).max(initial=0.0) > _SLACK:
             return self._answer(best, 1, "nothing in the ranges fulfils the conditions")
         return self._answer(best, 0, f"found{self._at_bounds(best)}")
 
@@ -157,13 +156,14 @@ class _Descent:
         self._least(end)
         fit = [
             np.array(share)
-            for share, (one, *_) in self._known.items()
-            if math.isfinite(one.value) and self._missed(np.array(share)).max(initial=0.0) <= _SLACK
+            for share, (estimate, *_) in self._known.items()
+            if math.isfinite(estimate.value)
+            and self._excess(np.array(share)).max(initial=0.0) <= _SLACK
         ]
         return min(fit, key=self._least, default=end)
 
     def _answer(self, share: Array, status: int, message: str) -> Minimum:
-        reached, *others = self._estimates(share)
+        reached, *rest = self._estimates(share)
         values = self._values(share)
         knobs = self._knobs
         return Minimum(
@@ -172,7 +172,8 @@ class _Descent:
             measure=self._reading,
             reached=reached,
             conditions=tuple(
-                Condition(*given, one) for given, one in zip(self._conditions, others, strict=True)
+                Condition(*wanted, estimate)
+                for wanted, estimate in zip(self._conditions, rest, strict=True)
             ),
             evaluations=len(self._known),
             status=status,
@@ -182,13 +183,15 @@ class _Descent:
     def _least(self, share: Array) -> float:
         return self._estimates(share)[0].value
 
-    def _missed(self, share: Array) -> Array:
+    def _excess(self, share: Array) -> Array:
         """How far each condition is from being fulfilled, over its bound; at most 0 where it is."""
-        missed = []
-        for (_, sign, bound), one in zip(self._conditions, self._estimates(share)[1:], strict=True):
-            beyond = (one.value - bound) / (abs(bound) or 1.0)
-            missed.append(beyond if sign.startswith("<") else -beyond)
-        return np.array(missed)
+        excess = []
+        for (_, sign, bound), estimate in zip(
+            self._conditions, self._estimates(share)[1:], strict=True
+        ):
+            beyond = (estimate.value - bound) / (abs(bound) or 1.0)
+            excess.append(beyond if sign.startswith("<") else -beyond)
+        return np.array(excess)
 
     def _estimates(self, share: Array) -> tuple[Estimate, ...]:
         key = tuple(np.clip(share, 0.0, 1.0).tolist())
@@ -199,4 +202,4 @@ class _Descent:
 
     def _values(self, share: Array) -> tuple[float, ...]:
         pairs = zip(self._knobs, share.tolist(), strict=True)
-        return tuple(float(knob.at(np.array(one))) for knob, one in pairs)
+        return tuple(float(knob.at(np.array(part))) for knob, part in pairs)

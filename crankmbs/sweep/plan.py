@@ -27,7 +27,7 @@ from crankmbs.sweep.scenes import scene_of
 
 __all__ = ["Plan", "check_possible", "plan_of"]
 
-_KEPT = ("measures", "series")
+_KEEP = ("measures", "series")
 _SCENE = TypeAdapter(Scene)
 
 
@@ -96,7 +96,7 @@ class Plan:
             "scene": hashlib.sha256(scene.encode()).hexdigest(),
             "functions": fingerprint(functions),
             "cases": self.cases.fingerprint,
-            "keep": _KEPT[self.series],
+            "keep": _KEEP[self.series],
         }
 
 
@@ -111,7 +111,7 @@ def plan_of(scene: Scene, vary: object, keep: str) -> Plan:
     1
     """
     check_scene(scene)
-    if keep not in _KEPT:
+    if keep not in _KEEP:
         raise InputError(f'keep must be "measures" or "series"; {shown(keep)} came')
     plan = Plan(scene, cases_of(scene, vary), keep == "series")
     dims_of(scene, series=plan.series)  # whether the number of samples is known
@@ -135,9 +135,9 @@ def check_possible(plan: Plan) -> None:
             first = values if not reasons else first
             reasons[str(error)] += 1
     if reasons:
-        said, where = next(iter(reasons)), zip(plan.cases.names, first, strict=True)
-        at = ", ".join(f"{name} = {shown(value)}" for name, value in where)
+        reason, place = next(iter(reasons)), zip(plan.cases.names, first, strict=True)
+        at = ", ".join(f"{name} = {shown(value)}" for name, value in place)
         raise InputError(
             f"{reasons.total()} of {plan.cases.count} scenes cannot be built; the first at {at}: "
-            f"{said}"
+            f"{reason}"
         )

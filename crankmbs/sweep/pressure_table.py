@@ -32,15 +32,15 @@ def table_at(scene: Scene, name: str) -> Table | CylinderTable:
     if gas is not None and isinstance(gas.pressure, Table | CylinderTable):
         if gas.crank_end is None and not isinstance(gas.motored, Table | CylinderTable | tuple):
             return gas.pressure
-        came = "crank_end" if gas.crank_end is not None else "motored"
-        came = f"pressure and {came} came"
+        instead = "crank_end" if gas.crank_end is not None else "motored"
+        instead = f"pressure and {instead} came"
     elif gas is None:
-        came = "the scene has no [gas]"
+        instead = "the scene has no [gas]"
     elif isinstance(gas.pressure, tuple):
-        came = f"a list of {len(gas.pressure)} came, each with errors of its own"
+        instead = f"a list of {len(gas.pressure)} came, each with errors of its own"
     else:
-        came = "an indicator came" if gas.pressure is None else "a constant came"
-    raise InputError(f"{name}: belongs to a single pressure table in [gas]; {came}")
+        instead = "an indicator came" if gas.pressure is None else "a constant came"
+    raise InputError(f"{name}: belongs to a single pressure table in [gas]; {instead}")
 
 
 def corrected(scene: Scene, knobs: dict[str, float]) -> Scene:

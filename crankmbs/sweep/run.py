@@ -34,7 +34,7 @@ def sweep(
     """Run a scene with some of its numbers varied, and store the measures of each case.
 
     With another crank radius, rod length or offset the gas is carried over the volume. Beside the
-    scene's own numbers there are "rod_ratio", r / l at the same stroke, where the rod keeps mass
+    numbers of the scene there are "rod_ratio", r / l at the same stroke, where the rod keeps mass
     and shape, and "settled_speed", to which the loads are scaled.
 
     Parameters
@@ -60,8 +60,8 @@ def sweep(
     OutputError : ``out`` cannot be written
 
     >>> vary = {"crank.inertia": "0.2..0.4 kg m^2:2"}
-    >>> found = sweep(load_scene("propeller").with_(run__until="settled"), vary, executor=1)
-    >>> found["fluctuation"].round(4).values.tolist()
+    >>> data = sweep(load_scene("propeller").with_(run__until="settled"), vary, executor=1)
+    >>> data["fluctuation"].round(4).values.tolist()
     [0.0149, 0.0075]
     """
     plan = plan_of(scene, vary, keep)

@@ -35,12 +35,12 @@ def scene_of(scene: Scene, names: Sequence[str], values: Sequence[object]) -> Sc
     >>> scene_of(load_scene("propeller"), ["rod_ratio"], [0.25]).rod.length
     0.184
     """
-    given = dict(zip(names, values, strict=True))
-    plain = {name: value for name, value in given.items() if name not in DERIVED}
+    knobs = dict(zip(names, values, strict=True))
+    plain = {name: value for name, value in knobs.items() if name not in DERIVED}
     new = changed(scene, plain)
-    if "rod_ratio" in given:
-        new = dataclasses.replace(new, rod=_stretched(new, given["rod_ratio"]))
-    if table := {name: _number(name, given) for name in TABLE_KNOBS if name in given}:
+    if "rod_ratio" in knobs:
+        new = dataclasses.replace(new, rod=_stretched(new, knobs["rod_ratio"]))
+    if table := {name: _number(name, knobs) for name in TABLE_KNOBS if name in knobs}:
         new = corrected(new, table)
     new = carried_over(new, scene)
     if len(new.cylinders) != len(scene.cylinders):
@@ -48,9 +48,9 @@ def scene_of(scene: Scene, names: Sequence[str], values: Sequence[object]) -> Sc
             f"layout: a sweep keeps the number of cylinders, {len(scene.cylinders)}; "
             f"{len(new.cylinders)} came"
         )
-    if "settled_speed" not in given:
+    if "settled_speed" not in knobs:
         return new
-    return rebalanced(new, _number("settled_speed", given), mean_speed_together)
+    return rebalanced(new, _number("settled_speed", knobs), mean_speed_together)
 
 
 def _stretched(scene: Scene, _ratio: object) -> Rod:
@@ -66,8 +66,8 @@ def _stretched(scene: Scene, _ratio: object) -> Rod:
     return dataclasses.replace(rod, length=length, center_of_mass=center, inertia=inertia)
 
 
-def _number(name: str, given: dict[str, object]) -> float:
-    value = given[name]
+def _number(name: str, knobs: dict[str, object]) -> float:
+    value = knobs[name]
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise InputError(f"{name}: must be a number in SI units; {shown(value)} came")
     return float(value)

@@ -48,8 +48,8 @@ def sensitivity(scene: Scene, name: str, measure: str) -> Sensitivity:
 
     Central differences D(h) and D(2 h) give (4 D(h) - D(2 h)) / 3; h is 0.2 % of the number, of a
     pressure table's shift 0.1 degree, of its offset 0.2 % of the largest pressure. The error is the
-    step's, |that - D(h)|; what the measure's own error is worth over h; and where a peak bends, so
-    that slopes on both sides do not come nearer as h does, half their difference.
+    step's, |that - D(h)|; the measure's error over h; and where a peak bends, so that slopes on
+    both sides do not come nearer as h does, half their difference.
 
     Parameters
     ----------
@@ -71,12 +71,12 @@ def sensitivity(scene: Scene, name: str, measure: str) -> Sensitivity:
     step = step_from_zero(scene, knob.name) or _STEP * abs(value)
     if step == 0.0:
         raise InputError(f"{name}: is 0 in this scene, and steps are a share of it; give it a size")
-    asked = Asked(scene, (knob.name,))
-    cases = [asked.at((value + k * step,), (reading,))[0] for k in (-2, -1, 0, 1, 2)]
-    far_low, low, here, high, far_high = (case.value for case in cases)
+    question = Asked(scene, (knob.name,))
+    cases = [question.at((value + k * step,), (reading,))[0] for k in (-2, -1, 0, 1, 2)]
+    far_low, low, middle, high, far_high = (case.value for case in cases)
     near, far = (high - low) / (2.0 * step), (far_high - far_low) / (4.0 * step)
     derivative = (4.0 * near - far) / 3.0
-    bend, far_bend = (high - 2.0 * here + low) / step, (far_high - 2.0 * here + far_low) / step
+    bend, far_bend = (high - 2.0 * middle + low) / step, (far_high - 2.0 * middle + far_low) / step
     bent = abs(2.0 * bend - 0.5 * far_bend)  # 0 of a parabola, else the jump of the slope
     numerical = max(case.error for case in cases) / step
     error = abs(derivative - near) + 0.5 * bent + 2.0 * numerical

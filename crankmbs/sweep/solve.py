@@ -123,8 +123,8 @@ def solve(scene: Scene, vary: dict[str, str], wanted: str) -> Solved:
     InputError : no scene, not one range, or no such measure
 
     >>> scene = load_scene("propeller").with_(run__until="settled")
-    >>> found = solve(scene, {"crank.inertia": "0.2..0.4 kg m^2"}, "fluctuation = 1 %")
-    >>> print(f"{found.roots[0].value.value:.4f} {found.units}")
+    >>> answer = solve(scene, {"crank.inertia": "0.2..0.4 kg m^2"}, "fluctuation = 1 %")
+    >>> print(f"{answer.roots[0].value.value:.4f} {answer.units}")
     0.2994 kg m^2
     """
     check_scene(scene)
@@ -133,12 +133,12 @@ def solve(scene: Scene, vary: dict[str, str], wanted: str) -> Solved:
             'vary must be one name and its range, such as {"crank.inertia": "0.05..0.5 kg m^2"}; '
             f"{shown(vary)} came"
         )
-    ((name, given),) = vary.items()
-    knob = interval_of(scene, name, given)
+    ((name, text),) = vary.items()
+    knob = interval_of(scene, name, text)
     if knob.whole:
         raise InputError(f"{knob.name}: is a whole number, and sweep finds the best of those")
     reading, _, amount = asked_of(scene, wanted, "=")
-    return _Search(Asked(scene, (knob.name,)), knob, reading, amount).found()
+    return _Search(Asked(scene, (knob.name,)), knob, reading, amount).solved()
 
 
 class _Search:
@@ -149,7 +149,7 @@ class _Search:
         self._reading, self._wanted = reading, wanted
         self._known: dict[float, Estimate] = {}
 
-    def found(self) -> Solved:
+    def solved(self) -> Solved:
         shares = self._points()
         estimates = [self._estimate(share) for share in shares.tolist()]
         off = np.array([estimate.value for estimate in estimates]) - self._wanted
@@ -219,8 +219,8 @@ class _Search:
 
     def _root(self, share: float) -> Root:
         step = 1e-4 if share < 0.5 else -1e-4
-        here, there = self._estimate(share), self._estimate(share + step)
-        slope = abs(there.value - here.value) / abs(self._value(share + step) - self._value(share))
+        here, near = self._estimate(share), self._estimate(share + step)
+        slope = abs(near.value - here.value) / abs(self._value(share + step) - self._value(share))
         span = _CLOSE * abs(self._knob.high - self._knob.low)
         error = here.error / slope + span if slope > 0.0 else math.inf
         return Root(Estimate(self._value(share), error), here)

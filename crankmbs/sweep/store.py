@@ -177,9 +177,9 @@ def load_sweep(path: str | Path) -> xr.Dataset:
 def _check_resumable(path: Path, plan: Plan) -> None:
     ours = plan.identity
     theirs: Any = read_group(path).attrs["identity"]
-    other = [said for name, said in _OTHER.items() if theirs.get(name) != (ours[name] or None)]
-    if other:
-        raise InputError(f"{path}: holds a sweep {' and '.join(other)}; give another folder")
+    unlike = [words for name, words in _OTHER.items() if theirs.get(name) != (ours[name] or None)]
+    if unlike:
+        raise InputError(f"{path}: holds a sweep {' and '.join(unlike)}; give another folder")
     if (path / _COMPLETE).exists():
         raise InputError(f"{path}: this sweep is complete; give another folder to compute it anew")
 
@@ -227,7 +227,7 @@ def _lay_out(group: zarr.Group, plan: Plan) -> None:
         over = [knob.name] if knob.name in cases.dims else cases.dims
         add(knob.name, over, {"units": knob.units}, data=_storable(knob.labels), fill_value=None)
     for name, names in arrays.items():
-        labels = {label: [getattr(columns[one], label) for one in names] for label in _LABELS}
+        labels = {label: [getattr(columns[column], label) for column in names] for label in _LABELS}
         over = name.removesuffix("s"), *columns[names[0]].dims
         add_empty(name, "f8", np.nan, over, labels)
     add_empty("message", str, "", (), {})

@@ -67,6 +67,6 @@ def work_precision(scene: Scene, beside: Beside | None = None) -> WorkPrecision:
     ('end', 'motion')
     """
     reference = reference_of(scene)
-    others, absent = beside(scene, reference) if beside else ((), ())
-    rows, failed = play((*formulations_of(scene, reference), *others), reference.start)
+    further, absent = beside(scene, reference) if beside else ((), ())
+    rows, failed = play((*formulations_of(scene, reference), *further), reference.start)
     return WorkPrecision(reference, rows, (*absent, *failed), about_machine())

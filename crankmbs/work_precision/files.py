@@ -23,12 +23,12 @@ def save_work_precision(outcome: WorkPrecision, folder: Path) -> Path:
     ------
     OutputError : the folder cannot be made or written
     """
-    said = (f"reference: {outcome.reference.sentence()}", *outcome.notes, *outcome.machine)
+    remarks = (f"reference: {outcome.reference.sentence()}", *outcome.notes, *outcome.machine)
     names = [f"error_{name.replace(' ', '_')}" for name in outcome.quantities]
 
     def write(file: Path) -> None:
         with file.open("w", encoding="utf-8", newline="") as stream:
-            stream.writelines(f"# {line}\n" for line in said)
+            stream.writelines(f"# {line}\n" for line in remarks)
             rows = csv.writer(stream, lineterminator="\n")
             rows.writerow([*_HEADING, *names, *_COST])
             for row in outcome.rows:

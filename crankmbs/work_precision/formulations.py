@@ -27,20 +27,20 @@ def formulations_of(scene: Scene, reference: Reference) -> tuple[Contender, ...]
     that is what a bare integrator gives.
     """
 
-    def contender(one: Formulation, *, end_only: bool = False) -> Contender:
+    def contender(formulation: Formulation, *, end_only: bool = False) -> Contender:
         return Contender(
-            name=f"{one.name}, end only" if end_only else one.name,
+            name=f"{formulation.name}, end only" if end_only else formulation.name,
             knob="rtol",
-            settings=_LADDER if one.integrates else _ALGEBRA,
-            run=partial(_run, scene, one.name, end_only, reference.result.status),
+            settings=_LADDER if formulation.integrates else _ALGEBRA,
+            run=partial(_run, scene, formulation.name, end_only, reference.result.status),
             reference=reference.trace,
         )
 
     contenders = []
-    for one in serving(scene):
-        contenders.append(contender(one))
-        if one.integrates and one.dense:
-            contenders.append(contender(one, end_only=True))
+    for formulation in serving(scene):
+        contenders.append(contender(formulation))
+        if formulation.integrates and formulation.dense:
+            contenders.append(contender(formulation, end_only=True))
     return tuple(contenders)
 
 

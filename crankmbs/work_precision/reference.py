@@ -15,7 +15,7 @@ from crankmbs.work_precision.trace import Trace, stated, trace_of
 __all__ = ["Reference", "reference_of"]
 
 _RTOL = 1e-13  # the finest that a run can be asked for
-_ROUNDING = 1e-13  # what rounding the scene's own numbers changes over some ten revolutions
+_ROUNDING = 1e-13  # what rounding the scene's numbers changes over some ten revolutions
 _PER_TURN = 10  # samples that the peers give
 
 
@@ -23,8 +23,8 @@ _PER_TURN = 10  # samples that the peers give
 class Reference:
     """A run at the limit of double precision.
 
-    result : on the scene's own samples, which `trace` holds
-    floors : by name, its own error, relative as in `differences`: what it states, or rounding
+    result : on the scene's samples, which `trace` holds
+    floors : by name, its error, relative as in `differences`: what it states, or rounding
     """
 
     result: Result
@@ -60,8 +60,8 @@ def reference_of(scene: Scene) -> Reference:
     """Solve a scene as exactly as double precision lets it: algebra, or the crank angle."""
     result = _run(scene)
     trace = trace_of(result)
-    own = stated(result, trace, _origin(scene))
-    return Reference(result, trace, {name: max(own[name], _ROUNDING) for name in own})
+    floors = stated(result, trace, _origin(scene))
+    return Reference(result, trace, {name: max(floors[name], _ROUNDING) for name in floors})
 
 
 def _run(scene: Scene) -> Result:

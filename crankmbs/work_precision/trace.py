@@ -60,7 +60,7 @@ def trace_of(result: Result) -> Trace:
 
 
 def stated(result: Result, trace: Trace, start: float) -> dict[str, float]:
-    """What a result states of its own error, by the names and scales of `differences`."""
+    """The error that a result states, by the names and scales of `differences`."""
     error = {name: float(values.attrs["error_estimate"]) for name, values in result.data.items()}
     angle = float(result.data["crank_angle"].attrs["error_estimate"]) / _turned(trace, start)
     motion = max(angle, error["crank_speed"] / _peak(trace.omega[:, None]))

@@ -1,4 +1,4 @@
-"""Cylinders each in a table of its own: `[[cylinder]]`, as a file writes them.
+"""A table for each cylinder: `[[cylinder]]`, as a file writes them.
 
 Each table is an entry of `layout.cylinders`, and its pressures are entries of those of `[gas]`.
 """
@@ -27,37 +27,37 @@ def by_layout(raw: dict[str, Any]) -> dict[str, Any]:
     cylinders = raw.get("cylinder")
     if cylinders is None:
         return raw
-    if not isinstance(cylinders, list) or not all(isinstance(one, dict) for one in cylinders):
+    if not isinstance(cylinders, list) or not all(isinstance(table, dict) for table in cylinders):
         raise InputError("cylinder: must be tables, [[cylinder]], one for each")
-    found = {key: value for key, value in raw.items() if key != "cylinder"}
-    layout = dict(found.get("layout") or {})
+    content = {key: value for key, value in raw.items() if key != "cylinder"}
+    layout = dict(content.get("layout") or {})
     twice = [key for key in ("cylinders", "firing_order") if key in layout]
     if twice:
         raise InputError(
             f"layout.{twice[0]}: beside [[cylinder]], whose phase and bank say the same; remove it"
         )
-    gas = found.get("gas")
-    given = [key for key in _PRESSURES if any(key in one for one in cylinders)]
+    gas = content.get("gas")
+    given = [key for key in _PRESSURES if any(key in table for table in cylinders)]
     if given and not isinstance(gas, dict):
         raise InputError(
             f"cylinder: {given[0]} needs [gas], with ambient and stroke; it is not there"
         )
     if isinstance(gas, dict):
-        found["gas"] = gas | {key: _each(key, cylinders, gas) for key in given}
-    own = [{k: v for k, v in one.items() if k not in _PRESSURES} for one in cylinders]
-    found["layout"] = layout | {"cylinders": own}
-    return found
+        content["gas"] = gas | {key: _each(key, cylinders, gas) for key in given}
+    bare = [{k: v for k, v in table.items() if k not in _PRESSURES} for table in cylinders]
+    content["layout"] = layout | {"cylinders": bare}
+    return content
 
 
 def _each(key: str, cylinders: list[dict[str, Any]], gas: dict[str, Any]) -> list[Any]:
-    """A pressure of every cylinder: its own, that of all, or none."""
+    """A pressure of every cylinder: as its table has it, that of all, or none."""
     outside = gas.get("ambient", "0 Pa") if gas.get("absolute", True) else "0 Pa"
-    found = []
+    pressures = []
     for number, cylinder in enumerate(cylinders, start=1):
         value = cylinder.get(key, gas.get(key))
         if value is None or isinstance(value, list | dict):
             raise InputError(
                 f'cylinder[{number}].{key}: this key is missing; give a file, a pressure, or "none"'
             )
-        found.append(outside if value == "none" else value)
-    return found
+        pressures.append(outside if value == "none" else value)
+    return pressures

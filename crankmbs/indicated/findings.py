@@ -1,4 +1,4 @@
-"""What was found in a measured file: its cylinders, the table for a scene, and what was done."""
+"""Findings of a measured file: its cylinders, the table for a scene, and what was done."""
 
 from __future__ import annotations
 
@@ -63,14 +63,14 @@ class CylinderPressure:
 
 @dataclass(frozen=True, eq=False)
 class Indicated:
-    """What `read_pressure` found.
+    """What `read_pressure` returns.
 
     source : the file; stroke : 2 or 4; absolute : whether the pressures are, else gauge
-    aligned : whether the table's columns run each over its own cylinder's cycle angle
+    aligned : whether each column of the table runs over the cycle angle of its cylinder
     table : crank angle [rad] and pressure [Pa], as `Gas.pressure` takes it
     cycles : what it holds, "mean" or "sequence"
     speed : over the crank angle, of a record over time; None otherwise
-    sentences : all that was read, found and done; those that need a look begin with "warning:"
+    sentences : all that was read and done; those that need a look begin with "warning:"
     """
 
     source: str
