@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple
 
 from annotated_types import Ge, Gt, Le
 from pydantic import AfterValidator, BeforeValidator, Strict
 
+from crankmbs.delimited import Sheet, decode, read_sheet
 from crankmbs.errors import InputError, shown
 from crankmbs.indicated.sensor import Sensor, sensor_of
 from crankmbs.indicated.wheel import Wheel, wheel_of
+from crankmbs.scene.content import content_of
 from crankmbs.scene.headings import PRESSURE_UNITS
 from crankmbs.scene.measured_rows import sign_of
 from crankmbs.scene.schema import Float, part, si
@@ -24,6 +27,7 @@ REFERENCES = (
     'reference="inlet 1.0 bar"',
     'reference="polytrope 1.32"',
 )
+_MOST = 400_000_000  # bytes
 _CYCLES = re.compile(r"mean|all|[1-9][0-9]*(-[1-9][0-9]*)?")
 
 
@@ -108,3 +112,15 @@ class Options:
     invert: Annotated[bool, Strict()] = False
     smooth: Annotated[Float, Gt(0), Le(0.5), si("angle")] | None = None
     cycles: Annotated[str, BeforeValidator(_cycles)] = "mean"
+
+    def sheet(self, file: str | Path, least: int = 2) -> Sheet:
+        """The rows of a file that have at least so many numbers."""
+        name = str(file)
+        return read_sheet(
+            name,
+            decode(content_of(Path(file), _MOST), name),
+            separator=self.separator,
+            decimal=self.decimal,
+            skip=self.skip,
+            least=least,
+        )

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from crankmbs.delimited import Sheet, decode, read_sheet
+from crankmbs.delimited import Sheet
 from crankmbs.delimited.dialect import named
 from crankmbs.errors import InputError, UndecidedError
 from crankmbs.indicated.cylinders import cylinder_of
@@ -26,14 +26,12 @@ from crankmbs.indicated.shape import Shape, differences, of_header, shape_of
 from crankmbs.indicated.speed import MeasuredSpeed, speed_of
 from crankmbs.indicated.tabulate import table_of
 from crankmbs.numerics.arrays import Array
-from crankmbs.scene.content import content_of
 from crankmbs.scene.headings import headings_of, is_angle
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.units import BAR
 
 __all__ = ["read_pressure"]
 
-_MOST = 400_000_000  # bytes
 _ROUNDS = 20  # towards the dead centre
 _SETTLED = 0.01  # degrees
 _PEAKS = (-10.0, 60.0)  # degrees from the dead centre where a peak may lie
@@ -81,7 +79,7 @@ def read_pressure(file: str | Path, scene: Scene | None = None, **options: Any) 
     [300000.0]
     """
     settings = Options(**options)
-    sheet = _sheet(Path(file), settings)
+    sheet = settings.sheet(file)
     where = f"file {sheet.name}"
     known = scene.gas.stroke if scene is not None and scene.gas is not None else None
     header = of_header(sheet.above, sheet.dialect.decimal)
@@ -208,14 +206,6 @@ def _speed(record: Record, firing: float, shape: Shape | None, name: str) -> Mea
     top = 0.0 if shape is None else float(np.degrees(shape.top))
     zero = firing - top - (360.0 if record.stroke == 4 else 0.0)
     return speed_of(record.rotation, zero, name)
-
-
-def _sheet(path: Path, options: Options) -> Sheet:
-    name = str(path)
-    source = decode(content_of(path, _MOST), name)
-    return read_sheet(
-        name, source, separator=options.separator, decimal=options.decimal, skip=options.skip
-    )
 
 
 def _read_as(sheet: Sheet, record: Record) -> str:

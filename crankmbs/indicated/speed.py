@@ -11,14 +11,13 @@ from typing import Any
 
 import numpy as np
 
-from crankmbs.delimited import Sheet, decode, read_sheet
+from crankmbs.delimited import Sheet
 from crankmbs.errors import InputError, UndecidedError, shown
 from crankmbs.indicated.options import Options
 from crankmbs.indicated.over_time import clock, edges_in, time_column, turned
 from crankmbs.indicated.rotation import Rotation, rotation_of
 from crankmbs.indicated.wheel import Wheel, first_edges, wheel_of
 from crankmbs.numerics.arrays import Array
-from crankmbs.scene.content import content_of
 from crankmbs.scene.headings import TIME_UNITS, Heading, headings_of, pick
 from crankmbs.scene.tables import Table
 from crankmbs.scene.units import DEGREE, RPM
@@ -27,7 +26,6 @@ from crankmbs.storage.files import text_in_one_move
 __all__ = ["MeasuredSpeed", "motion_line", "read_speed", "speed_of"]
 
 _STEP = 3.0  # degrees: ten rows for the shortest wave that is fitted
-_MOST = 400_000_000  # bytes
 _EVEN = 1.3  # times the median step: a record's samples, and no teeth with a gap
 
 
@@ -134,17 +132,8 @@ def read_speed(file: str | Path, wheel: Any = None, **options: Any) -> MeasuredS
     >>> round(read_speed("teeth.csv", "36-1").table.y[0] * 30 / np.pi)
     3000
     """
-    values = {"wheel": wheel, "stroke": 4, **options}
-    settings = Options(**values)
-    name = str(file)
-    sheet = read_sheet(
-        name,
-        decode(content_of(Path(file), _MOST), name),
-        separator=settings.separator,
-        decimal=settings.decimal,
-        skip=settings.skip,
-        least=1,
-    )
+    settings = Options(**{"wheel": wheel, "stroke": 4, **options})
+    sheet, name = settings.sheet(file, least=1), str(file)
     if settings.wheel is None:
         raise UndecidedError(
             f"file {name}: which wheel has these teeth is not said",
