@@ -71,7 +71,7 @@ _CYCLE = """(number) => {
   const { samples, angles, mean, rows, fluctuation } = [...cycles.values()][number];
   return JSON.stringify({ samples, angles, mean, rows, fluctuation });
 }"""
-_SOLVED: WeakKeyDictionary = WeakKeyDictionary()
+_SOLVED: WeakKeyDictionary[object, dict[int, dict[str, object]]] = WeakKeyDictionary()
 """The cycles that a page has solved and told of, by their numbers there."""
 
 
