@@ -16,8 +16,7 @@ from scipy.io import loadmat
 import crankmbs
 from crankmbs import Constant, Force, InputError, Load, OutputError, export, load_scene, simulate
 from crankmbs.export.exudyn import exudyn_script
-from crankmbs.motion.multibody.mechanism import mechanism_of
-from crankmbs.motion.multibody.model import build
+from crankmbs.motion.multibody.mechanism import build, mechanism_of
 from crankmbs.scene.forces import ConstantForce, Damper, ForceAngleTable, Spring, TravelTable
 from crankmbs.scene.tables import Table
 

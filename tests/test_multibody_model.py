@@ -14,8 +14,8 @@ from crankmbs.mechanics.train import crank_train
 from crankmbs.motion.base import State
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.mode import Mode, begun
-from crankmbs.motion.multibody.forces import Forces
-from crankmbs.motion.multibody.integrate import Limits, Path, integrate
+from crankmbs.motion.multibody.forces import Forces, Limits
+from crankmbs.motion.multibody.integrate import Path, integrate
 from crankmbs.motion.multibody.mechanism import closed
 from crankmbs.motion.multibody.model import Model
 from crankmbs.motion.multibody.runs import Runs
@@ -40,6 +40,7 @@ ASKEW = replace(
     piston=replace(COASTING.piston, offset=0.004),
     layout=Layout(cylinders=(Cylinder(phase=0.3, bank=-0.5), Cylinder(phase=2.0, bank=0.6))),
 )
+ENDLESS = Limits(math.inf, (-math.inf, math.inf), 0)
 V_TWIN = load_scene("v_twin")
 BENT = TimeTable(file=Table((0.0, 0.013, 0.031, 0.1), (0.0, 60.0, -90.0, 10.0)))
 OVER_SPEED = {
@@ -60,8 +61,8 @@ def start_of(scene: Scene) -> State:
 def paths(scene: Scene, step: float, halvings: int) -> list[Path]:
     model = Model(scene)
     limits = Limits(0.05, (-math.inf, math.inf), 10**6)
-    train, start = crank_train(scene), start_of(scene)
-    found = [integrate(train, model, start, limits, step / 2**k) for k in range(halvings)]
+    forces, start = Forces(crank_train(scene)), start_of(scene)
+    found = [integrate(forces, model, start, limits, step / 2**k) for k in range(halvings)]
     model.close()
     return found
 
@@ -71,7 +72,7 @@ def test_accelerations_and_joint_forces_are_those_of_the_reduced_equations(scene
     train, model = crank_train(scene), Model(scene)
     theta, omega = np.linspace(-7.0, 9.0, 50), np.linspace(-90.0, 120.0, 50)
     gas = Forces(train).gas(theta, None)
-    found = model.states(theta, omega, gas, np.full(50, 7.0))
+    found = model.states(theta, omega, gas, torque=np.full(50, 7.0))
     model.close()
     inertia, slope, torque = reduce(train, theta)
     alpha = (torque + 7.0 - 0.5 * slope * omega**2) / inertia
@@ -89,11 +90,11 @@ def test_positions_are_exudyns_own_closed_loop() -> None:
     model = Model(ASKEW)
     theta = np.linspace(0.0, 6.0, 30)
     rest = np.zeros((30, 2))
-    found = model.states(theta, np.full(30, 3.0), rest, np.zeros(30))
+    found = model.states(theta, np.full(30, 3.0), rest, torque=np.zeros(30))
     np.testing.assert_allclose(found.position, closed(ASKEW, theta), atol=1e-15)
     other = replace(ASKEW, rod=replace(ASKEW.rod, length=1.001 * ASKEW.rod.length))
     model.scene = other  # a wrong loop to begin with: exudyn's constraints mend it
-    mended = model.states(theta, np.full(30, 3.0), rest, np.zeros(30))
+    mended = model.states(theta, np.full(30, 3.0), rest, torque=np.zeros(30))
     model.close()
     assert np.abs(closed(other, theta) - closed(ASKEW, theta)).max() > 1e-4
     np.testing.assert_allclose(mended.position, found.position, atol=1e-6)
@@ -139,7 +140,7 @@ def test_torque_is_the_sum_of_all_loads_that_act() -> None:
         Constant(torque=2.0), Viscous(coefficient=0.5), Quadratic(coefficient=0.1), window
     )
     forces, mode = Forces(crank_train(scene)), start_of(scene).mode
-    bounds = forces.bounds(0.0, 0.3, 4.0, mode, (1.0, 1.0))
+    bounds = forces.bounds(State(0.0, 0.3, 4.0, 0.0, mode), 1.0, ENDLESS)
     assert bounds.times[1] == 0.5
     assert forces.load(bounds, mode)(0.0, 0.3, 4.0) == pytest.approx(2.0 - 2.0 - 1.6)
 
@@ -150,13 +151,13 @@ def test_forces_go_on_straight_beyond_what_they_are_cut_at() -> None:
     gas = Gas(pressure=table, absolute=False, stroke=2, interpolation="linear")
     scene = replace(COASTING, gas=gas, piston=replace(COASTING.piston, area=1e-3))
     forces = Forces(crank_train(scene))
-    bounds = forces.bounds(0.0, 1.0, 5.0, Mode(), (1.0, 1.0))
+    bounds = forces.bounds(State(0.0, 1.0, 5.0, 0.0), 1.0, ENDLESS)
     assert bounds.angles == pytest.approx((math.radians(-160.0), math.radians(60.0)))
     (push,) = forces.pushes(bounds, Mode(), 1.0, 1.0)
     edge, slope = math.radians(60.0), 100.0 / math.radians(60.0)
     assert push(0.0, edge + 0.1, 0.0, 0.0) == pytest.approx(200.0 + 0.1 * slope, rel=1e-6)
-    backwards = forces.bounds(0.0, edge, -5.0, Mode(), (-1.0, -1.0))
-    forwards = forces.bounds(0.0, edge, 5.0, Mode(), (1.0, 1.0))
+    backwards = forces.bounds(State(0.0, edge, -5.0, 0.0), -1.0, ENDLESS)
+    forwards = forces.bounds(State(0.0, edge, 5.0, 0.0), 1.0, ENDLESS)
     assert backwards.angles[1] == forwards.angles[0] == pytest.approx(edge)
     assert forces.pushes(forwards, Mode(), edge, 1.0)[0](0.0, edge, 0.0, 0.0) == pytest.approx(
         -100.0
@@ -188,12 +189,12 @@ def test_runs_are_extrapolated_where_their_slopes_agree_to_order_two(
 ) -> None:
     model = Model(COASTING)
     limits = Limits(1.0, (-math.inf, math.inf), 1000)
-    runs = Runs(crank_train(COASTING), model, start_of(COASTING), limits)
+    runs = Runs(Forces(crank_train(COASTING)), model, start_of(COASTING), limits)
     model.close()
     runs.paths = [run_of(1e-3 * share * np.array([1.0, 0.5]), whole=whole) for share in shares]
     runs.shaken = runs.paths[0]
     time = np.linspace(0.0, 1.0, 7)
-    answer, (check, *_) = runs.motions()
+    answer, *checks = runs.motions()
     true = np.abs(answer.at(time)[0] - 3.0 * time).max()
-    stated = np.abs(check.at(time)[0] - answer.at(time)[0]).max()
+    stated = max(np.abs(check.at(time)[0] - answer.at(time)[0]).max() for check in checks)
     assert (true < 1e-15) if clean else (0.02 * stated < true < stated)

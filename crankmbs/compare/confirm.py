@@ -15,7 +15,6 @@ from crankmbs.measures.interpolate import read_with_errors
 from crankmbs.mechanics.knots import repeat
 from crankmbs.mechanics.train import CrankTrain, crank_train
 from crankmbs.mechanics.variables import EVERY
-from crankmbs.mechanics.windows import Phase
 from crankmbs.motion.cells import Cells
 from crankmbs.motion.motion import Motion
 from crankmbs.motion.plan import Plan, plan_of
@@ -204,8 +203,7 @@ def _last_period(
     times = begin + (end - begin) * (np.arange(_PLACES) + 0.5) / _PLACES
     ours, stated = read_with_errors(result, result.passes, times, in_time=True)
     if result.scene.motion is not None:
-        acts = _acts(part, times)
-        theirs = beside.consistent(train, ours, acts, driven=True) | {"time": times}
+        theirs = beside.consistent(train, ours, driven=True) | {"time": times}
         errors = dict.fromkeys(theirs, 0.0)
     else:
         start = part.at(np.array([begin]), in_time=True)
@@ -238,22 +236,11 @@ def _at_states(result: Result, train: CrankTrain) -> tuple[Difference, ...]:
     chosen = np.unique(np.linspace(0, count - 1, _STATES).astype(int))
     names = [name for name, (dims, _, _) in result.variables.items() if dims[0] == "time"]
     ours = {name: result.sampled(name)[chosen] for name in names}
-    acts = _acts(result.passes.answer, ours["time"])
-    theirs = beside.consistent(train, ours, acts, driven=result.scene.motion is not None)
+    theirs = beside.consistent(train, ours, driven=result.scene.motion is not None)
     motion = {name: _MOTION[name] for name in ("crank acceleration", "piston acceleration")}
     rows = {**motion, **_forces(result.scene)}
     none = dict.fromkeys(theirs, 0.0)
     return _rows(rows, ours, theirs, _stated_by(result), none, math.inf)
-
-
-def _acts(motion: Motion, times: Array) -> Array:
-    """Which loads act at times [s] of a motion, shape (m, loads); where they change as before."""
-    cells, loads = motion.cells, len(motion.train.loads)
-    k = np.searchsorted([float(part.time[-1, -1]) for part in cells[:-1]], times)
-    rows = [
-        [phase is Phase.ACTING for phase in part.acting.phases] or [True] * loads for part in cells
-    ]
-    return np.array(rows, dtype=bool).reshape(len(cells), loads)[k]
 
 
 def _rows(

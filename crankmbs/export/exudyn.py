@@ -17,8 +17,16 @@ from crankmbs.mechanics.train import CrankTrain, crank_train
 from crankmbs.motion.multibody.beside import initial
 from crankmbs.motion.multibody.forces import Forces
 from crankmbs.motion.multibody.generalized_alpha import settings_of
-from crankmbs.motion.multibody.mechanism import Body, Guide, Hinge, Mechanism, mechanism_of
-from crankmbs.motion.multibody.model import build
+from crankmbs.motion.multibody.mechanism import (
+    Body,
+    Guide,
+    Hinge,
+    Mechanism,
+    add_body,
+    build,
+    marker,
+    mechanism_of,
+)
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.cycle import NEAR, Cycle
 from crankmbs.scene.force import PistonForce
@@ -98,7 +106,7 @@ def exudyn_script(scene: Scene, stem: str) -> str:
 def _text(train: CrankTrain, stem: str, end: float, steps: int) -> str:
     """All of a script but its head."""
     parameters = _parameters(train, stem, end, steps)
-    sources: list[Any] = [Body, Hinge, Guide, Mechanism, build, settings_of]
+    sources: list[Any] = [Body, Hinge, Guide, Mechanism, marker, add_body, build, settings_of]
     quoted = [inspect.getsource(each) for each in sources]
     quoted[-1] = quoted[-1].replace("settings_of", "settings", 1)
     main = 'if __name__ == "__main__":\n    main()\n'

@@ -11,16 +11,11 @@ As the shares of every load add up to 1, all journals together carry the main be
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from crankmbs.mechanics.axes import axes_of, gravity_vector
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
-
-if TYPE_CHECKING:
-    from crankmbs.mechanics.newton_euler import Powers
 
 __all__ = ["journal_rows", "of_journals", "of_rods"]
 
@@ -42,10 +37,14 @@ def journal_rows(scene: Scene) -> dict[str, int]:
 
 
 def of_journals(
-    scene: Scene, theta: Array, motion: Powers, rods: tuple[Array, Array]
+    scene: Scene,
+    theta: Array,
+    motion: tuple[Array, Array, Array],
+    rods: tuple[Array, Array],
 ) -> dict[str, Array]:
     """The forces of journals and shared pins in the engine's frame, shape (journals, u, n) [N].
 
+    motion : omega^2, alpha and 1, shape (u, n) or (u, 1) each
     rods : the crank's force on each rod in its cylinder's axes, shape (cylinders, u, n)
     """
     found, throws = of_rods(scene, *rods), scene.throws

@@ -115,11 +115,12 @@ def _free(train: CrankTrain, rtol: float, cost_cap: float, *, by_angle: bool) ->
 
 
 def _multibody(train: CrankTrain, rtol: float, cost_cap: float) -> Assembled:
+    from crankmbs.motion import kinetostatic
     from crankmbs.motion.assemble import assemble
     from crankmbs.motion.multibody import driven, free
 
     if train.scene.motion is not None:
-        return _of_law(train, driven.run(train))
+        return _of_law(train, driven.run(train, kinetostatic.run(train)))
     solution, kept = free.run(train, rtol, cost_cap)
     assembled = assemble(train, replace(solution, keep=partial(_account_of, kept)))
     return replace(assembled, motion=partial(_passes_of, kept, solution.samples))

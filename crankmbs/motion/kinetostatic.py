@@ -46,7 +46,9 @@ def run(train: CrankTrain) -> Solution:
     stretches, reached = monotone_stretches(plan, law)
     firings = None if train.law is None else _firings(driven(_way(train, law), stretches))
     stretches = _kept(plan, law, stretches)
-    time, theta = _sample(plan, law, stretches, reached)
+    bound = plan.angle_bounds[float(law.at_time(stretches[-1][1])[0]) > plan.start]
+    final = bound if reached and not plan.until_time else None
+    time, theta = plan.samples(stretches, lambda t: law.at_time(t)[0], law.time_at, final)
     _, omega, alpha = law.at_time(time)
     residual = _energy_residual(driven(_way(train, law), stretches), train, time)
     own = {} if firings is None else {"fuel": firings.at(time)}
@@ -144,37 +146,6 @@ def _kept(
         return stretches
     since = last - math.copysign(plan.last + 2.0 * plan.every, last - first)
     return [(float(law.time_at(since, begin, end)[0]), end)]
-
-
-def _sample(
-    plan: Plan, law: SpeedLaw, stretches: list[tuple[float, float]], reached: bool
-) -> tuple[Array, Array]:
-    times, angles = [np.zeros(1)], [np.array([plan.start])]
-    for begin, end in stretches:
-        if plan.in_time:
-            t = plan.between(begin, end)
-            theta = law.at_time(t)[0]
-        else:
-            turned, bound = (float(q) for q in law.at_time([begin, end])[0])
-            theta = plan.between(turned, bound)
-            # where a stretch begins on a sample, but for rounding, the one before it ends there
-            theta = theta[np.abs(theta - turned) > plan.hair]
-            t = law.time_at(theta, begin, end)
-        times.append(t)
-        angles.append(theta)
-    time, theta = np.concatenate(times), np.concatenate(angles)
-    end = stretches[-1][1]
-    theta_end = float(law.at_time(end)[0])
-    if reached and not plan.until_time:
-        low, high = plan.angle_bounds
-        theta_end = high if theta_end > plan.start else low
-    is_end = (time >= end) if plan.in_time else (time >= end * (1.0 - 1e-12))
-    near = abs(time[-1] - end) if plan.in_time else abs(theta[-1] - theta_end)
-    keep = ~is_end & ~((np.arange(len(time)) == len(time) - 1) & (near <= plan.hair))
-    time, theta = np.append(time[keep], end), np.append(theta[keep], theta_end)
-    first = np.flatnonzero(np.abs(theta - theta_end) > plan.last * (1.0 + 1e-12))
-    begin_at = first[-1] + 1 if len(first) else 0
-    return time[begin_at:], theta[begin_at:]
 
 
 def _energy_residual(pieces: Iterable[Driven], train: CrankTrain, time: Array) -> Array:

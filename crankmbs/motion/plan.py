@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -74,6 +75,45 @@ class Plan:
         first, last = (sign * bound + _ROUNDING * abs(bound) for bound in (begin, end))
         inside = grid[(sign * grid > first) & (sign * grid <= last)]
         return np.asarray(inside if sign > 0 else inside[::-1])
+
+    def samples(
+        self,
+        stretches: Iterable[tuple[float, float]],
+        angle_at: Callable[[Array], Array],
+        time_at: Callable[[Array, float, float], Array],
+        final: float | None,
+    ) -> tuple[Array, Array]:
+        """Times [s] and crank angles [rad] of the samples, the last where the motion ends.
+
+        stretches : their begins and ends [s]; the crank turns one way in each
+        angle_at : crank angles [rad] at times [s]; time_at : when they are passed in a stretch
+        final : crank angle at the end [rad], where that is known
+
+        Raises
+        ------
+        InputError : more than memory holds
+        """
+        times, angles, end = [np.zeros(1)], [np.array([self.start])], 0.0
+        for begin, end in stretches:
+            if self.in_time:
+                times.append(self.between(begin, end))
+                angles.append(angle_at(times[-1]))
+                continue
+            turned, bound = angle_at(np.array([begin, end])).tolist()
+            theta = self.between(turned, bound)
+            # where a stretch begins on a sample, but for rounding, the one before it ends there
+            angles.append(theta[np.abs(theta - turned) > self.hair])
+            times.append(time_at(angles[-1], begin, end))
+        time, theta = np.concatenate(times), np.concatenate(angles)
+        last = float(angle_at(np.array([end]))[0]) if final is None else final
+        near = np.abs(time - end) if self.in_time else np.abs(theta - last)
+        near[:-1] = np.inf
+        others = (time < end * (1.0 - 1e-12)) & (near > self.hair)
+        others[0] = True
+        time, theta = np.append(time[others], end), np.append(theta[others], last)
+        far = np.flatnonzero(np.abs(theta - last) > self.last * (1.0 + 1e-12))
+        first = int(far[-1]) + 1 if len(far) else 0
+        return time[first:], theta[first:]
 
     def is_end(self, value: float, end: float) -> bool:
         """Whether a grid value and the end of the run are one sample."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_left, bisect_right
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -62,6 +63,20 @@ class Piecewise:
             a, b, c = self.pieces[0]
             return np.asarray(a + (b + c * x) * x)
         return self.of_piece(x, x)
+
+    def by_number(self) -> Callable[[float], float]:
+        """The same from number to number.
+
+        >>> Piecewise.through((0.0, 2.0), (1.0, 5.0)).by_number()(1.0)
+        3.0
+        """
+        knots, pieces = self.knots, self.pieces
+
+        def value(x: float) -> float:
+            a, b, c = pieces[bisect_right(knots, x)]
+            return a + (b + c * x) * x
+
+        return value
 
     def of_piece(self, at: Array, x: Array) -> Array:
         """Values at numbers by the parabolas that hold at others, of one shape."""

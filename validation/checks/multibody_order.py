@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from contextlib import closing
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -17,9 +18,8 @@ from crankmbs.mechanics.train import crank_train
 from crankmbs.motion.base import State
 from crankmbs.motion.mode import begun
 from crankmbs.motion.multibody.answer import Answers
-from crankmbs.motion.multibody.forces import EVERYWHERE, Forces
-from crankmbs.motion.multibody.integrate import Limits, integrate
-from crankmbs.motion.multibody.model import Model
+from crankmbs.motion.multibody.forces import EVERYWHERE, Limits
+from crankmbs.motion.multibody.integrate import integrate
 from crankmbs.motion.multibody.runs import Motion
 from crankmbs.scene.scene import Scene
 from validation.adapter import reference_motion, reference_variables
@@ -86,22 +86,20 @@ def _errors(ours: Scene, theirs: Scene, count: int) -> _Errors:
     reference = run(theirs, "crank_angle")  # only its samples' crank angles are used
     motion = reference_motion(reference, theirs)
     exact = reference_variables(theirs, motion.theta, motion.omega, motion.alpha)
-    train, model, time = crank_train(ours), Model(ours), motion.time.astype(np.float64)
+    train, time = crank_train(ours), motion.time.astype(np.float64)
     assert ours.start is not None
     start = State(0.0, ours.start.angle, ours.start.speed, 0.0, begun(train))
     limits = Limits(float(time[-1]), EVERYWHERE, _MOST)
     steps = 2.0 * math.pi / abs(ours.start.speed) / _STEPS_PER_TURN / 2.0 ** np.arange(count)
-    answers = Answers(model, Forces(train), (start,))
-    try:
-        paths = [integrate(train, model, start, limits, float(step)) for step in steps]
+    with closing(Answers(train)) as answers:
+        forces, model = answers.forces, answers.model
+        paths = [integrate(forces, model, start, limits, float(step)) for step in steps]
         angles = motion.theta.astype(np.float64)
         runs = [
-            answers.at(passed, angles, path.at(passed)[1])
-            for path in paths
-            for passed in [Motion((path,), (1.0,)).times(angles, 0.0, float(path.rows[-1, 0]))]
+            answers.free(motion, passed, angles, motion.at(passed)[1])
+            for motion in (Motion((path,), (1.0,), path.states) for path in paths)
+            for passed in [motion.times(angles, 0.0, motion.states[-1].time)]
         ]
-    finally:
-        model.close()
     turned, peak = float(np.ptp(motion.theta)), _length(exact)
     late = [(own["time"] - motion.time) * motion.omega / turned for own in runs]
     missed = [{name: own[name] - exact[name] for name in _BEARING} for own in runs]

@@ -1,75 +1,28 @@
-"""Every variable of a result at samples of a motion, from exudyn's equations at each of them."""
+"""Every variable of a result at states of a motion, from exudyn's equations at each of them."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Protocol
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from crankmbs.mechanics.geometry import top_position
+from crankmbs.mechanics.journals import of_journals
 from crankmbs.mechanics.peaks import peak
-from crankmbs.mechanics.speed import SpeedLaw
+from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.variables import EVERY, SUMS
-from crankmbs.mechanics.windows import Phase
-from crankmbs.motion.base import Samples, Solution, State
+from crankmbs.motion.base import Samples, Solution
+from crankmbs.motion.cells import Cells
 from crankmbs.motion.multibody.forces import Forces
 from crankmbs.motion.multibody.model import Consistent, Model
-from crankmbs.motion.plan import Plan
+from crankmbs.motion.multibody.runs import Motion
 from crankmbs.numerics.arrays import Array
-from crankmbs.numerics.cycle import NEAR
 
-__all__ = ["Answers", "Course", "rounding", "sample", "solution"]
+__all__ = ["Answers", "rounding", "solution"]
 
 _ROUNDING = 1e-12
 
 _MOTION = ("time", "crank_angle", "crank_speed", "crank_acceleration", "energy_residual")
-_GAUSS = np.polynomial.legendre.leggauss(4)
-_NEAR = 1e-9  # of the sample spacing: what is nearer is one
-
-
-class Course(Protocol):
-    """A crank's motion in time.
-
-    stretches : (begin, end) [s] in each of which it turns one way
-    """
-
-    @property
-    def stretches(self) -> list[tuple[float, float]]:
-        """Begins and ends [s] of what turns one way."""
-
-    def at(self, time: Array) -> tuple[Array, Array]:
-        """Crank angle [rad] and speed [rad/s]."""
-
-    def times(self, theta: Array, begin: float, end: float) -> Array:
-        """When it passes angles [rad] in a stretch [s]."""
-
-
-def sample(plan: Plan, course: Course, until: float, end: float | None) -> tuple[Array, Array]:
-    """Times [s] and crank angles [rad] of the samples of a plan, the last one at a time.
-
-    end [rad] : angle there, where that is known
-    """
-    times, angles = [np.zeros(1)], [np.array([plan.start])]
-    for begin, stop in [*course.stretches[:-1], (course.stretches[-1][0], until)]:
-        if plan.in_time:
-            times.append(plan.between(begin, stop))
-            angles.append(course.at(times[-1])[0])
-        else:
-            at_begin, at_stop = course.at(np.array([begin, stop]))[0].tolist()
-            passed = plan.between(at_begin, at_stop)
-            angles.append(passed[np.abs(passed - at_begin) > plan.hair])
-            times.append(course.times(angles[-1], begin, stop))
-    time, theta = np.concatenate(times), np.concatenate(angles)
-    final = float(course.at(np.array([until]))[0][0]) if end is None else end
-    near = np.abs(time - until) if plan.in_time else np.abs(theta - final)
-    near[:-1] = np.inf
-    others = (time < until * (1.0 - 1e-12)) & (near > plan.hair)
-    others[0] = True
-    time, theta = np.append(time[others], until), np.append(theta[others], final)
-    far = np.flatnonzero(np.abs(theta - final) > plan.last * (1.0 + 1e-12))
-    first = int(far[-1]) + 1 if len(far) else 0
-    return time[first:], theta[first:]
 
 
 def rounding(values: dict[str, Array]) -> dict[str, float]:
@@ -94,126 +47,115 @@ def solution(
     said: tuple[int, str],
     cost: tuple[int, int],
 ) -> Solution:
-    """What a run returns; cost : evaluations and steps."""
+    """What a run returns, where something errs beside rounding; cost : evaluations and steps."""
     own = {name: each for name, each in values.items() if name not in _MOTION}
     time, theta, omega, alpha, residual = (values[name] for name in _MOTION)
     samples = Samples(time, theta, omega, alpha, residual, own)
+    errors = {name: errors[name] + least for name, least in rounding(values).items()}
     return Solution(samples, *said, *cost, errors=errors)
 
 
 class Answers:
-    """The variables of a scene.
+    """The variables of a scene."""
 
-    states : at which stretches of one mode begin, and the last one ends
-    """
-
-    def __init__(self, model: Model, forces: Forces, states: Sequence[State]) -> None:
-        self._model, self._forces = model, forces
-        self._scene, self._states = model.scene, states
-        self._edges = np.array([state.time for state in states[1:-1]])
+    def __init__(self, train: CrankTrain) -> None:
+        self.forces, self.model, self._scene = Forces(train), Model(train.scene), train.scene
         self._banks = np.array([cylinder.bank for cylinder in self._scene.cylinders])
+        first = 5 * np.arange(len(self._banks))  # of each cylinder, in the coordinates
+        self._x = np.sort([0, *(first + 3), *(first + 6)])
+        self._turns = np.array([2, *(first + 5)])
 
-    def at(
-        self, time: Array, theta: Array, omega: Array, alpha: Array | None = None
-    ) -> dict[str, Array]:
-        """All variables but the energy residual, shape (m,) or (m, n).
+    def close(self) -> None:
+        """Let go of what exudyn holds."""
+        self.model.close()
 
-        alpha [rad/s2] : of a prescribed motion
+    def free(self, motion: Motion, time: Array, theta: Array, omega: Array) -> dict[str, Array]:
+        """Those of a free crank at times [s], crank angles [rad] and speeds [rad/s], shape (m,),
+        under the loads that act in a motion."""
+        forces, modes = self.forces, [state.mode for state in motion.states]
+        shares = np.array([mode.shares for mode in modes])[motion.before(time, theta)]
+        acts = np.array([forces.acting(mode.loads) for mode in modes])[motion.after(time)]
+        at = {"time": time, "crank_angle": theta, "crank_speed": omega}
+        at |= {"external_torque": forces.torque(time, theta, omega, acts)}
+        at |= {"fuel": shares} if shares.size else {}
+        if self._scene.force:
+            at["applied_force"] = forces.applied(time, theta, omega, _senses(omega), acts)
+        return at | self.consistent(at, driven=False)
+
+    def consistent(self, motion: Mapping[str, Array], *, driven: bool) -> dict[str, Array]:
+        """Those at given states, under the loads that are given there.
+
+        motion : of shape (m,), "crank_angle", "crank_speed"; of a driven crank its
+            "crank_acceleration", else "external_torque"; "fuel" and "applied_force" where there
+            are; "friction_force" where a crank at rest is held
         """
-        shares = self._shares(time, theta)
-        gas = self._forces.gas(theta, shares)
-        senses, acts, torque = _senses(theta, omega), self._acts(time), None
-        friction = self._forces.friction(theta, omega, gas, senses)
-        applied = self._forces.applied(time, theta, omega, senses, acts)
-        if alpha is None:
-            torque = self._forces.torque(time, theta, omega, acts)
-        values = self.under((gas, friction, applied), torque, theta, omega, alpha)
-        return values | {"time": time} | ({} if shares is None else {"fuel": shares})
-
-    def under(
-        self,
-        pushes: tuple[Array, Array, Array],
-        torque: Array | None,
-        theta: Array,
-        omega: Array,
-        alpha: Array | None,
-    ) -> dict[str, Array]:
-        """The same under given forces of gas, friction and from outside [N], and torque [N m]."""
-        gas, friction, applied = pushes
-        along = gas + friction + applied
-        if torque is None:
-            assert alpha is not None
-            found = self._model.driven(theta, omega, alpha, along)
-        else:
-            found = self._model.states(theta, omega, along, torque)
-        values = {"crank_angle": theta, "crank_speed": omega}
-        values |= self._of_bodies(found) | self._of_joints(found)
-        values |= {"gas_force": gas, **self._forces.pressures(theta, gas)}
+        theta, omega = motion["crank_angle"], motion["crank_speed"]
+        gas = self.forces.gas(theta, motion.get("fuel"))
+        friction = self.forces.friction(theta, omega, gas, _senses(omega))
+        rests = omega[:, None] == 0.0
+        friction = np.where(rests, motion.get("friction_force", friction), friction)
+        applied = motion.get("applied_force", np.zeros_like(gas))
+        given = {"alpha": "crank_acceleration"} if driven else {"torque": "external_torque"}
+        known = {name: motion[variable] for name, variable in given.items()}
+        found = self.model.states(theta, omega, gas + friction + applied, **known)
+        values = self._of_bodies(found) | self._of_joints(found)
+        values |= {"gas_force": gas, **self.forces.pressures(theta, gas)}
         values |= {} if self._scene.friction is None else {"friction_force": friction}
         return values | ({"applied_force": applied} if self._scene.force else {})
 
-    def work(self, course: Course, edges: Array, law: SpeedLaw | None = None) -> Array:
-        """Work of gas, friction and torque [J] up to each of some times [s], from the first on, by
-        Gauss's quadrature between them."""
-        nodes, weights = _GAUSS
-        half = 0.5 * np.diff(edges)[:, None]
-        time = (edges[:-1, None] + half * (1.0 + nodes)).ravel()
-        theta, omega = course.at(time)
-        shares = self._shares(time, theta)
-        gas = self._forces.gas(theta, shares)
-        senses, acts = _senses(theta, omega), self._acts(time)
-        along = gas + self._forces.friction(theta, omega, gas, senses)
-        along += self._forces.applied(time, theta, omega, senses, acts)
-        if law is not None:
-            torque = self._model.driven(theta, omega, law.at_time(time)[2], along).torque
+    def residual(self, pieces: Sequence[Cells], time: Array) -> Array:
+        """Energy gained less work done [J] up to the ends of the cells in which times [s] lie, from
+        the begin of the first."""
+        ends = np.concatenate([pieces[0].time[0, :1], *(cells.time[:, -1] for cells in pieces)])
+        gained = np.cumsum(np.concatenate([[0.0], *map(self._gained, pieces)]))
+        return np.asarray(gained[np.minimum(np.searchsorted(ends, time), len(ends) - 1)])
+
+    def _gained(self, cells: Cells) -> Array:
+        """Energy gained in each cell less the work of gas, friction and torque in it [J]."""
+        forces = self.forces
+        time, theta, omega = map(cells.inner_reader(), (cells.time, cells.angle, cells.speed))
+        sense = np.full_like(theta, cells.acting.sense or 1.0)
+        shares = np.repeat(cells.shares, cells.time.shape[1], axis=0)
+        acts = np.tile(forces.acting(cells.acting.phases), (len(time), 1))
+        gas = forces.gas(theta, shares)
+        along = gas + forces.friction(theta, omega, gas, sense)
+        along += forces.applied(time, theta, omega, sense, acts)
+        if cells.acceleration is None:
+            torque = forces.torque(time, theta, omega, acts)
         else:
-            torque = self._forces.torque(time, theta, omega, acts)
-        power = torque * omega + (along * self._forces.sliding(theta, omega)).sum(axis=1)
-        return np.append(0.0, np.cumsum((half * power.reshape(half.size, -1)) @ weights))
-
-    def _acts(self, time: Array) -> Array:
-        """Which loads act at times, shape (m, loads); at an end of a window as after it."""
-        k = np.searchsorted(self._edges, time * (1.0 + 1e-11), side="right")
-        loads = len(self._forces.train.loads)
-        rows = [
-            [phase is Phase.ACTING for phase in state.mode.loads] or [True] * loads
-            for state in self._states
-        ]
-        return np.array(rows, dtype=bool).reshape(len(rows), loads)[k]
-
-    def _shares(self, time: Array, theta: Array) -> Array | None:
-        """The shares of the combustion at samples; at a decision those before it."""
-        if self._forces.train.law is None:
-            return None
-        k = np.searchsorted(self._edges, time, side="right")
-        angles = np.array([state.theta for state in self._states])
-        for _ in range(2):  # where something else is cut at the same angle, too
-            k = np.where((k > 0) & (np.abs(theta - angles[k]) < NEAR), k - 1, k)
-        return np.array([state.mode.shares for state in self._states])[k]
+            alpha = cells.inner_reader()(cells.acceleration)
+            torque = self.model.states(theta, omega, along, alpha=alpha).torque
+        power = torque * omega + (along * forces.sliding(theta, omega)).sum(axis=1)
+        work = (power.reshape(cells.time.shape) * cells.spent) @ cells.weights
+        at, faster = (np.append(row[:1, 0], row[:, -1]) for row in (cells.angle, cells.speed))
+        none = np.zeros((len(at), len(self._banks)))
+        found = self.model.states(at, faster, none, alpha=0.0 * at)
+        return np.asarray(np.diff(self.model.energy(found)) - work)
 
     def _of_bodies(self, found: Consistent) -> dict[str, Array]:
         """Motion of all bodies, energy, and what they do to the frame by the balance of momentum.
 
         force = sum m (g - a)
         moment = torque + sum r x m (g - a) - sum I rate of spin
+
+        Places are complex numbers, of crank, rod 1, piston 1, rod 2, ..., shape (m, 1 + 2 n), and
+        angles those of crank and rods, shape (m, 1 + n).
         """
-        scene, bodies = self._scene, self._model.mechanism.bodies
-        n = len(self._banks)
-        mass = np.array([body.mass for body in bodies])
-        spins = np.array([body.inertia for body in bodies if body.inertia is not None])
-        (r, phi), (v, rate), (a, spin) = (
-            _split(each, n) for each in (found.position, found.velocity, found.acceleration)
+        scene, mass = self._scene, self.model.mass
+        balance = self.model.weight - found.acceleration * mass
+        (r, phi), (v, rate), (a, spin), (pull, turning) = (
+            (each[:, self._x] + 1j * each[:, self._x + 1], each[:, self._turns])
+            for each in (*found[:3], balance)
         )
+        moment = found.torque + (r.conj() * pull).imag.sum(axis=1) + turning.sum(axis=1)
         turn = np.exp(-1j * self._banks)
         pistons = [(each[:, 2::2] * turn).real for each in (r, v, a)]
-        g = complex(*self._model.mechanism.gravity)
-        pull = mass * (g - a)
-        moment = found.torque + (r.conj() * pull).imag.sum(axis=1) - spin @ spins
         tops = np.array([top_position(*gear.shape) for gear in scene.running_gear])
         values = {
+            "crank_angle": phi[:, 0],
+            "crank_speed": rate[:, 0],
             "crank_acceleration": spin[:, 0],
-            "kinetic_energy": 0.5 * ((np.abs(v) ** 2) @ mass + (rate**2) @ spins),
-            "fallen": (r * g.conjugate()).real @ mass,
+            "kinetic_energy": 0.5 * found.velocity**2 @ mass,
             "frame_force_x": pull.real.sum(axis=1),
             "frame_force_y": pull.imag.sum(axis=1),
             "frame_moment": moment,
@@ -231,7 +173,8 @@ class Answers:
         return values
 
     def _of_joints(self, found: Consistent) -> dict[str, Array]:
-        """Joint forces, each cylinder's in its axes, and their moments on the crank."""
+        """Joint forces, each cylinder's in its axes, with their moments on the crank, and what of
+        them each journal carries."""
         scene = self._scene
         forces = found.hinges[..., 0] + 1j * found.hinges[..., 1]
         turn = np.exp(-1j * self._banks)
@@ -240,7 +183,11 @@ class Answers:
         radii = np.array([gear.radius for gear in scene.running_gear])
         lever = radii * np.exp(-1j * (found.position[:, 2:3] + phases))
         torque = -(lever * crank_pin).imag
-        return self._of_journals(found, forces[:, 1::2]) | {
+        theta, omega, alpha = (each[None, :, 2] for each in found[:3])
+        rods = crank_pin.real.T[:, None], crank_pin.imag.T[:, None]
+        motion = omega**2, alpha, np.ones_like(alpha)
+        journals = of_journals(scene, theta[0], motion, rods)
+        return {name: each[:, 0].T for name, each in journals.items()} | {
             "external_torque": found.torque,
             "main_bearing_force_x": forces[:, 0].real,
             "main_bearing_force_y": forces[:, 0].imag,
@@ -254,41 +201,11 @@ class Answers:
             "pin_torque": np.cumsum(torque, axis=1) - 0.5 * torque,
         }
 
-    def _of_journals(self, found: Consistent, rods: Array) -> dict[str, Array]:
-        """What holds each throw as a beam on two supports, from the forces on its rods [N], complex
-        in the engine's frame, and the acceleration of its unbalance."""
-        throws = self._scene.throws
-        if throws is None:
-            return {}
-        (spin, rate), theta = (each[:, 2:3] for each in found[2:0:-1]), found.position[:, 2:3]
-        accelerated = np.array(throws.unbalances) * np.exp(1j * theta) * (1j * spin - rate**2)
-        pull = complex(*self._model.mechanism.gravity) * self._scene.crank.mass
-        own = accelerated - pull / len(throws.unbalances)
-        journals = rods @ np.transpose(throws.rods) + own @ np.transpose(throws.throws)
-        values = {"main_journal_force_x": journals.real, "main_journal_force_y": journals.imag}
-        if throws.shared:
-            which = np.array(throws.numbers)
-            pins = np.stack([rods[:, which == k].sum(axis=1) for k in range(own.shape[1])], axis=1)
-            values |= {"pin_force_x": pins.real, "pin_force_y": pins.imag}
-        return values
 
-
-def _senses(theta: Array, omega: Array) -> Array:
+def _senses(omega: Array) -> Array:
     """The sense in which the crank turns; at rest that in which it came, or goes."""
-    signs = np.sign(omega)
-    moving = np.flatnonzero(signs)
+    moving = np.flatnonzero(omega)
     if len(moving) == 0:
-        return np.ones_like(theta)
-    last = np.searchsorted(moving, np.arange(len(signs)), side="right") - 1
-    return np.asarray(signs[moving[np.maximum(last, 0)]])
-
-
-def _split(rows: Array, n: int) -> tuple[Array, Array]:
-    """Of crank, rod 1, piston 1, rod 2, ...: places as complex numbers, shape (m, 1 + 2 n), and
-    angles of crank and rods, shape (m, 1 + n)."""
-    each = rows[:, 3:].reshape(len(rows), n, 5)
-    places = np.empty((len(rows), 1 + 2 * n), dtype=complex)
-    places[:, 0] = rows[:, 0] + 1j * rows[:, 1]
-    places[:, 1::2] = each[..., 0] + 1j * each[..., 1]
-    places[:, 2::2] = each[..., 3] + 1j * each[..., 4]
-    return places, np.column_stack([rows[:, 2], each[..., 2]])
+        return np.ones_like(omega)
+    last = np.searchsorted(moving, np.arange(len(omega)), side="right") - 1
+    return np.asarray(np.sign(omega[moving[np.maximum(last, 0)]]))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from contextlib import closing
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -14,9 +16,8 @@ from crankmbs.mechanics.windows import Phases
 from crankmbs.motion.base import State
 from crankmbs.motion.mode import Mode
 from crankmbs.motion.multibody.answer import Answers
-from crankmbs.motion.multibody.forces import EVERYWHERE, Bounds, Forces
+from crankmbs.motion.multibody.forces import EVERYWHERE, Bounds
 from crankmbs.motion.multibody.free import follow
-from crankmbs.motion.multibody.model import Model
 from crankmbs.numerics.arrays import Array
 
 __all__ = ["Shares", "consistent", "initial", "integrated"]
@@ -37,18 +38,17 @@ class Shares(NamedTuple):
     def next(self, firing: Firing) -> tuple[float, float]:
         """Crank angles [rad], backwards and forwards, at which they change next."""
         ends = np.concatenate([[-np.inf], self.angles, [np.inf]])
-        k = int(np.searchsorted(self.angles, firing.theta + _NEAR * np.sign(firing.integral)))
+        k = self._number(firing.theta, firing.integral)
         return float(ends[k]), float(ends[k + 1])
 
-    def decided(self, firing: Firing, time: float, theta: float, omega: float) -> Firing:
-        """What holds from a crank angle on, in the sense in which it is passed."""
-        return self.at(time, theta, omega)
+    def decided(self, _: Firing | None, time: float, theta: float, omega: float) -> Firing:
+        """What holds from a crank angle on, in the sense in which it is passed; ``integral`` keeps
+        the sense."""
+        shares = tuple(self.rows[self._number(theta, omega)].tolist())
+        return Firing(shares, time, theta, omega, None, False, theta, theta)
 
-    def at(self, time: float, theta: float, omega: float) -> Firing:
-        """What holds at a state; its ``integral`` is the sense of rotation."""
-        sense = float(np.sign(omega))
-        k = int(np.searchsorted(self.angles, theta + _NEAR * sense))
-        return Firing(tuple(self.rows[k].tolist()), time, theta, sense, None, False, theta, theta)
+    def _number(self, theta: float, sense: float) -> int:
+        return int(np.searchsorted(self.angles, theta + _NEAR * np.sign(sense)))
 
 
 def integrated(
@@ -73,55 +73,30 @@ def integrated(
     mode = Mode(phases)
     if shares is not None:
         law: Any = shares  # it is asked for no more
-        train, firing = replace(train, law=law), shares.at(*state)
+        train, firing = replace(train, law=law), shares.decided(None, *state)
         mode = Mode(phases, *shares.next(firing), firing)
     return follow(train, State(*state, 0.0, mode), times, rtol, steps)
 
 
-def consistent(
-    train: CrankTrain, motion: dict[str, Array], acts: Array, *, driven: bool
-) -> dict[str, Array]:
-    """Accelerations, multipliers and all that follows from them at states of a motion.
-
-    motion : at states of shape (m,), "time", "crank_angle", "crank_speed"; of a driven crank its
-        "crank_acceleration", else "external_torque"; "fuel" and, for a crank at rest,
-        "friction_force" and "applied_force" where there are
-    acts : shape (m, loads), which of the loads do
-    """
-    theta, omega = motion["crank_angle"], motion["crank_speed"]
-    model, forces = Model(train.scene), Forces(train)
-    try:
-        gas = forces.gas(theta, motion.get("fuel"))
-        senses, rests = np.sign(omega), omega[:, None] == 0.0
-        friction = forces.friction(theta, omega, gas, senses)
-        applied = forces.applied(motion["time"], theta, omega, senses, acts)
-        friction = np.where(rests, motion.get("friction_force", 0.0), friction)
-        applied = np.where(rests, motion.get("applied_force", 0.0), applied)
-        torque = None if driven else motion["external_torque"]
-        alpha = motion["crank_acceleration"] if driven else None
-        pushes = gas, friction, applied
-        return Answers(model, forces, ()).under(pushes, torque, theta, omega, alpha)
-    finally:
-        model.close()
+def consistent(train: CrankTrain, motion: Mapping[str, Array], *, driven: bool) -> dict[str, Array]:
+    """Accelerations, multipliers and all that follows from them at states of a motion, as
+    `crankmbs.motion.multibody.answer.Answers.consistent` says."""
+    with closing(Answers(train)) as answers:
+        return answers.consistent(motion, driven=driven)
 
 
 def initial(train: CrankTrain, step: float) -> tuple[Array, Array, Array]:
     """Coordinates at the start of a scene, their velocities and accelerations, from which a run
     with steps of this length [s] does not ring; of a prescribed speed a constant one."""
-    scene, model, forces = train.scene, Model(train.scene), Forces(train)
-    law = None if scene.motion is None else speed_law(scene.motion)
-    if law is not None:
-        theta, omega, _ = (float(each) for each in law.at_time(0.0))
+    scene, anywhere = train.scene, Bounds(EVERYWHERE, EVERYWHERE, EVERYWHERE)
+    if scene.motion is not None:
+        theta, omega, _ = map(float, speed_law(scene.motion).at_time(0.0))
     else:
         assert scene.start is not None
         theta, omega = scene.start.angle, scene.start.speed
-    bounds = Bounds(EVERYWHERE, EVERYWHERE, EVERYWHERE)
-    model.torque, model.pushes = (
-        forces.load(bounds, Mode()),
-        forces.pushes(bounds, Mode(), theta, 1.0),
-    )
-    try:
-        _, *found = model.quiet_start((0.0, theta, omega), step, driven=law is not None)
-    finally:
-        model.close()
+    with closing(Answers(train)) as answers:
+        forces, model = answers.forces, answers.model
+        model.torque = forces.load(anywhere, Mode())
+        model.pushes = forces.pushes(anywhere, Mode(), theta, 1.0)
+        _, *found = model.quiet_start((0.0, theta, omega), step, driven=scene.motion is not None)
     return tuple(found)

@@ -8,38 +8,56 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_left, bisect_right
-from collections.abc import Callable, Sequence
-from copy import copy
+from collections.abc import Callable, Iterable, Sequence
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
-from crankmbs.mechanics.geometry import close_loop, dead_centres
+from crankmbs.mechanics.axes import areas, axes_of, closed_loops, displacements, slides
 from crankmbs.mechanics.knots import KNOT, apart, repeat
-from crankmbs.mechanics.pressure import PeriodicPressure
-from crankmbs.mechanics.train import CrankTrain, merged_knots
-from crankmbs.mechanics.windows import Phase, phase_ends
+from crankmbs.mechanics.pressure import pressures_at
+from crankmbs.mechanics.train import (
+    CrankTrain,
+    crank_angle_knots,
+    friction_knots,
+    knots_over_angle,
+    times_of,
+)
+from crankmbs.mechanics.windows import Phase, Phases, phase_ends
+from crankmbs.motion.base import State
 from crankmbs.motion.mode import Mode
-from crankmbs.motion.multibody.applied import Applied, Push
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.cycle import Cycle
 from crankmbs.numerics.piecewise import Piecewise
-from crankmbs.scene.torque import Torque
+from crankmbs.scene.force import Law
+from crankmbs.scene.parts import Friction
+from crankmbs.scene.torque import Parts
 
-__all__ = ["EVERYWHERE", "Bounds", "Forces"]
+__all__ = ["EVERYWHERE", "Bounds", "Forces", "Limits", "Push"]
 
 Range = tuple[float, float]
-Scalar = Callable[[float], float]
+Push = Callable[[float, float, float, float], float]
+"""A force [N] on a piston towards the crank: of time [s], crank angle [rad], displacement from the
+top dead centre [m] and velocity towards the crank [m/s]."""
 
 EVERYWHERE: Range = (-math.inf, math.inf)
 
-_JUMP = 1e-9  # of the highest pressure: less is rounding
-_MOST_JUMPS = 60  # over the angle in a period: a table of more steps is run over as it is
-_MOST_BENDS = 12  # over time: more are run over
+_TURN = 2.0 * math.pi
+_JUMP = 1e-4  # of the largest value: less is a bend
+_MOST_CUTS = 60  # over the angle in a period: a table of more steps is run over as it is
+_MOST_BENDS = 12  # of a function of time or travel: more are run over
 _SAME = 1e-12  # relative: times nearer than this are one
-_SLOPE = 1e-4  # rad: over which a slope is taken
-_BESIDE = 1e-6  # rad: so far beyond a dead centre a piston slides the other way
+_SHARE = 1e-4  # of a range: over which a slope is taken
+_BESIDE = 1e-6  # rad: so far beyond a cut it is clear on which side a piston is
+
+
+class Limits(NamedTuple):
+    """Time [s] and crank angles [rad] at which a run ends, and steps that it may take."""
+
+    time: float
+    angles: Range
+    steps: int
 
 
 class Bounds(NamedTuple):
@@ -53,100 +71,106 @@ class Bounds(NamedTuple):
 class Forces:
     """The forces of a crank train.
 
-    angles : crank angles [rad] in a period at which a force jumps and a run is cut
-    smooth : whether it is cut at every jump that is known beforehand
+    angles : crank angles [rad] in a period at which a run is cut
+    jumps : whether a force jumps over the angle; smooth : whether it is cut at every such jump
     """
 
     def __init__(self, train: CrankTrain) -> None:
         self.train, scene = train, train.scene
-        self._stops = True
-        self._areas = np.array([gear.piston.gas_area or 0.0 for gear in scene.running_gear])
-        self._phases = np.array([cylinder.phase for cylinder in scene.cylinders])
-        self._shapes = np.array([gear.shape for gear in scene.running_gear]).T
-        gas = [
-            np.unique(np.concatenate([_jumps(each) for each in parts]))
-            for parts in zip(train.pressure or (), *filter(None, [train.combustion]), strict=True)
-        ]
-        self._applied = Applied(train)
-        loads = [load.parts.over_angle for load in scene.torque]
-        jumps = [merged_knots(train, gas)] if gas else []
-        jumps += [_of_load(load, train.period) for load in loads if load is not None]
-        angles = apart(np.concatenate([self._applied.angles, *jumps]))
-        self.smooth = len(angles) <= _MOST_JUMPS
-        self.angles = angles if self.smooth else np.empty(0)
-        if self._sticks:
-            turns = 2.0 * math.pi * np.arange(round(train.period / (2.0 * math.pi)))
-            own = np.array([dead_centres(*gear.shape) for gear in scene.running_gear])
-            centres = np.add.outer(own - self._phases[:, None], turns).ravel()
-            self.angles = apart(np.concatenate([self.angles, np.mod(centres, train.period)]))
+        self._areas, self._crank_ends = areas(scene)
+        self._phases, self._friction = axes_of(scene).phases, scene.friction or Friction()
+        knots = [crank_angle_knots(train), knots_over_angle(train)]
+        angles = apart(np.concatenate(knots))
+        bends = self._bends(angles)
+        hard = angles[bends > _BESIDE]  # by all of a force in a radian
+        self.jumps, self.smooth = bool((bends > _JUMP).any()), len(hard) <= _MOST_CUTS
+        hard = hard if self.smooth else np.empty(0)
+        self.angles = apart(np.concatenate([hard, friction_knots(train)]))
+
+    def _bends(self, knots: Array) -> Array:
+        """By what share of its largest value a force bends at crank angles [rad] within 1e-6."""
+        acts = np.ones((len(knots), len(self.train.loads)), dtype=bool)
+
+        def forces(theta: Array, sense: float) -> Array:
+            motion = np.zeros_like(theta), theta, np.full_like(theta, sense)
+            fuel = (self.gas(theta, np.full((1, len(self._phases)), share)) for share in (0.0, 1.0))
+            of_loads = self.applied(*motion, motion[2], acts), self.torque(*motion, acts)[:, None]
+            return np.hstack([*fuel, *of_loads])
+
+        bends = np.zeros(len(knots))
+        for sense in (1.0, -1.0):
+            below, at, above = (forces(knots + d * _BESIDE, sense) for d in (-1.0, 0.0, 1.0))
+            largest = np.abs(at).max(axis=0, initial=0.0)
+            change = np.abs(above - 2.0 * at + below) / np.where(largest > 0.0, largest, 1.0)
+            bends = np.maximum(bends, change.max(axis=1))
+        return bends
+
+    @cached_property
+    def times(self) -> tuple[float, ...]:
+        """Times [s] at which a load jumps; or bends, where these are few."""
+        scene, laws = self.train.scene, [force.law for force in self.train.scene.force]
+        tables = [*(one.parts.over_time for one in scene.torque), *(law.over_time for law in laws)]
+        found = {time for table in tables if table is not None for time in _cuts_of(table)}
+        given = (law.given.times for law in laws if law.given)
+        return tuple(found.union(times_of(scene.torque), *given))
 
     @property
-    def _sticks(self) -> bool:
-        """Whether a force changes with the sense of sliding."""
-        return self.train.scene.friction is not None or self._applied.switches
+    def is_cut(self) -> bool:
+        """Whether a force jumps or bends anywhere over angle or time."""
+        return bool(len(self.angles) or self.times or not self.smooth)
 
-    @property
-    def blind(self) -> Forces:
-        """The same, over whose bends over speed a run is not cut."""
-        other = copy(self)
-        other._stops = False
-        return other
+    def acting(self, phases: Phases) -> list[bool]:
+        """Which of the loads act, torques first."""
+        return [phase is Phase.ACTING for phase in phases] or [True] * len(self.train.loads)
+
+    def _laws(self, k: int, phases: Phases = ()) -> list[Law]:
+        """The forces from outside that act on the piston of the cylinder k."""
+        scene = self.train.scene
+        pairs = zip(scene.force, self.acting(phases)[len(scene.torque) :], strict=True)
+        return [force.law for force, acts in pairs if acts and force.cylinder in (None, k + 1)]
 
     # on arrays
 
     def gas(self, theta: Array, shares: Array | None) -> Array:
         """Gas forces [N] towards the crank at crank angles (m,), shape (m, n)."""
-        forces = np.zeros((len(theta), len(self._phases)))
-        for k, pressure in enumerate(self.train.pressure or ()):
-            forces[:, k] = self._areas[k] * pressure(theta + self._phases[k])
-        for k, more in enumerate(self.train.combustion or ()):
+        train, angles = self.train, np.add.outer(self._phases, theta)
+        if train.pressure is None:
+            return np.zeros_like(angles.T)
+        pressure = pressures_at(train.pressure, angles).T
+        if train.combustion is not None:
             assert shares is not None
-            forces[:, k] += shares[:, k] * self._areas[k] * more(theta + self._phases[k])
-        return forces
+            pressure = pressure + shares * pressures_at(train.combustion, angles).T
+        return np.asarray(self._areas * pressure)
 
     def pressures(self, theta: Array, gas: Array) -> dict[str, Array]:
         """The pressures [Pa] of the ends of the cylinders under gas forces [N], by variable, shape
         (m, n) each."""
-        net, ends = gas / np.where(self._areas > 0.0, self._areas, 1.0), self.train.crank_end
+        ends, whole = self.train.crank_end, np.where(self._areas > 0.0, self._areas, 1.0)
         if ends is None:
-            return {"gas_pressure": net}
-        pairs = zip(ends, self._phases, strict=True)
-        crank_end = np.array([each(theta + phase) for each, phase in pairs]).T
-        below = np.array([gear.piston.crank_end_area for gear in self.train.scene.running_gear])
-        head = (gas + below * crank_end) / self._areas
+            return {"gas_pressure": gas / whole}
+        crank_end = pressures_at(ends, np.add.outer(self._phases, theta)).T
+        head = (gas + self._crank_ends * crank_end) / whole
         return {"gas_pressure": head, "crank_end_pressure": crank_end}
 
     def friction(self, theta: Array, omega: Array, gas: Array, sense: Array) -> Array:
         """Friction [N] towards the crank, shape (m, n), of pistons that slide in this sense of
         rotation; on a dead centre that after it."""
-        friction = self.train.scene.friction
-        if friction is None:
-            return np.zeros_like(gas)
-        limit = friction.ring_force + friction.ring_pressure * np.abs(gas)
-        dry = self.slides(theta, sense) * limit
-        return np.asarray(-dry - friction.viscous * self.sliding(theta, omega))
-
-    def slides(self, theta: Array, sense: Array) -> Array:
-        """The sign of the pistons' velocities towards the crank just beyond crank angles."""
-        beyond = (theta + _BESIDE * sense)[:, None] + self._phases
-        return np.asarray(-np.sign(close_loop(beyond, *self._shapes).x_1) * sense[:, None])
-
-    @property
-    def jumps(self) -> bool:
-        """Whether a force jumps anywhere over angle or time."""
-        return bool(len(self.angles) or self.times or not self.smooth)
+        scene, rubs = self.train.scene, self._friction
+        signs = np.where(sense >= 0.0, *(slides(scene, theta, side) for side in (1.0, -1.0))).T
+        dry = signs * (rubs.ring_force + rubs.ring_pressure * np.abs(gas))
+        return np.asarray(-dry - rubs.viscous * self.sliding(theta, omega))
 
     def applied(self, time: Array, theta: Array, omega: Array, sense: Array, acts: Array) -> Array:
         """Forces from outside on the pistons [N] towards the crank, shape (m, n), that slide in
         this sense of rotation; acts : shape (m, loads), whether each does."""
-        x = close_loop(theta[:, None] + self._phases, *self._shapes).x
-        slides, velocity = self.slides(theta, sense), self.sliding(theta, omega)
-        return self._applied.forces((time, theta, omega), acts, slides, x, velocity)
+        total, first = np.zeros((len(theta), len(self._phases))), len(self.train.scene.torque)
+        for push, when in zip(self.train.pushes, acts.T[first:], strict=True):
+            total += np.where(when[:, None], push.forces(time, theta, omega, sense), 0.0)
+        return total
 
     def sliding(self, theta: Array, omega: Array) -> Array:
         """Velocities of the pistons towards the crank [m/s], shape (m, n)."""
-        rise = close_loop(theta[:, None] + self._phases, *self._shapes).x_1
-        return np.asarray(-rise * omega[:, None])
+        return np.asarray((-closed_loops(self.train.scene, theta).x_1 * omega).T)
 
     def torque(self, time: Array, theta: Array, omega: Array, acts: Array) -> Array:
         """Torque [N m] of all torques, shape (m,); acts : shape (m, loads), whether each does."""
@@ -157,168 +181,147 @@ class Forces:
 
     # number by number, on one stretch
 
-    def bounds(self, time: float, theta: float, omega: float, mode: Mode, senses: Range) -> Bounds:
+    def bounds(self, state: State, sense: float, limits: Limits, *, stops: bool = True) -> Bounds:
         """What ends the stretch that begins in a state: the next time, angle or speed on either
         side; on one of them that beyond it.
 
-        senses : signs in which the crank angle, and its speed, leave the state
+        sense : sign in which the speed leaves the state, and at rest the crank angle; stops :
+            whether it ends where loads bend over speed
         """
+        time, theta, omega, _, mode = state
         ends = phase_ends(self.train.loads, mode.loads)
-        times, speeds = {*ends[0], *self.times}, set(ends[1])
-        for _, load in self._turning(mode) if self._stops else ():
-            parts = load.parts
-            speeds |= set(parts.over_speed.bends if parts.over_speed else ())
-            speeds |= set(parts.function.speeds if parts.function else ())
-        if self._sticks:
-            speeds.add(0.0)
-        at, period = theta + 2.0 * KNOT * senses[0], self.train.period
-        knots = repeat(self.angles, period, at - 1.5 * period, at + 1.5 * period)
-        low, high = _around(sorted(knots), at, 1.0)
-        angles = max(low, mode.low), min(high, mode.high)
+        speeds = {0.0, *ends[1]}
+        for parts in self._torques(mode) if stops else ():
+            speeds.update(parts.over_speed.bends if parts.over_speed else ())
+            speeds.update(parts.function.speeds if parts.function else ())
+        at = theta + 2.0 * KNOT * math.copysign(1.0, omega or sense)
+        reach = 1.5 * self.train.period
+        low, high = _around(repeat(self.angles, self.train.period, at - reach, at + reach), at)
         return Bounds(
-            _around(sorted(times), time * (1.0 + _SAME), 1.0),
-            angles,
-            _around(sorted(speeds), omega, senses[1]),
+            _around((*ends[0], *self.times, limits.time), time * (1.0 + _SAME)),
+            (max(low, mode.low, limits.angles[0]), min(high, mode.high, limits.angles[1])),
+            _around(speeds, omega, sense),
         )
 
-    @cached_property
-    def times(self) -> tuple[float, ...]:
-        """Times [s] at which a load jumps; or bends, where these are few."""
-        jumps, bends = set[float](), set[float](self._applied.times)
-        for load in self.train.scene.torque:
-            jumps |= set(load.parts.function.times if load.parts.function else ())
-            if load.parts.over_time is not None:
-                jumps |= set(load.parts.over_time.jumps)
-                bends |= set(load.parts.over_time.bends)
-        within = jumps | bends
-        return tuple(within if len(bends) <= _MOST_BENDS else jumps)
-
-    def pushes(self, bounds: Bounds, mode: Mode, theta: float, sense: float) -> list[Push]:
-        """For each cylinder the force of gas, friction and from outside towards the crank."""
-        friction = self.train.scene.friction
-        slides = self.slides(np.array([theta]), np.array([sense]))[0].tolist()
-        found: list[Push] = []
-        for k, phase in enumerate(self._phases.tolist()):
-            gas = _straight(self._gas_by_number(k, phase, mode.shares), *bounds.angles)
-            if friction is None:
-                found.append(_alone(gas))
-            else:
-                rubs = friction.ring_force, friction.ring_pressure, friction.viscous
-                found.append(_rubbed(gas, slides[k], *rubs))
-            more = self._applied.by_number(k, mode, slides[k])
-            found[k] = _together([found[k], *more]) if more else found[k]
-        return found
-
-    def _turning(self, mode: Mode) -> tuple[tuple[int, Torque], ...]:
-        """The torques that act."""
-        numbered = tuple(enumerate(self.train.scene.torque, start=1))
-        return tuple(
-            one for one in numbered if not mode.loads or mode.loads[one[0] - 1] is Phase.ACTING
-        )
+    def _torques(self, mode: Mode) -> list[Parts[Cycle]]:
+        """What the torques that act are the sums of."""
+        pairs = zip(self.train.scene.torque, self.acting(mode.loads), strict=False)
+        return [torque.parts for torque, acts in pairs if acts]
 
     def load(self, bounds: Bounds, mode: Mode) -> Callable[[float, float, float], float]:
         """Torque [N m] of the loads that act, of time [s], crank angle [rad] and speed [rad/s]."""
-        parts = [load.parts for _, load in self._turning(mode)]
-        in_time = [_between(p.over_time, *bounds.times) for p in parts if p.over_time]
-        in_speed = [_between(p.over_speed, *bounds.speeds) for p in parts if p.over_speed]
-        in_angle = [
-            _straight(p.over_angle.by_number(), *bounds.angles) for p in parts if p.over_angle
+        parts = self._torques(mode)
+        terms = [
+            (slot, _straight(part, *bounds[slot]))
+            for each in parts
+            for slot, part in enumerate((each.over_time, each.over_angle, each.over_speed))
+            if part is not None
         ]
-        functions = [p.function.number for p in parts if p.function]
+        return _total(terms, [each.function.number for each in parts if each.function])
 
-        def torque(time: float, theta: float, omega: float) -> float:
-            value = 0.0
-            for function in in_time:
-                value += function(time)
-            for function in in_speed:
-                value += function(omega)
-            for function in in_angle:
-                value += function(theta)
-            for given in functions:
-                value += given(time, theta, omega)
-            return value
+    def pushes(self, bounds: Bounds, mode: Mode, theta: float, sense: float) -> list[Push]:
+        """For each cylinder the force of gas, friction and from outside towards the crank, beyond a
+        crank angle [rad] in a sense of rotation."""
+        at = np.array([theta + _BESIDE * sense])
+        loop = closed_loops(self.train.scene, at)
+        ways = zip(
+            displacements(self.train.scene, loop)[:, 0], -sense * loop.x_1[:, 0], strict=True
+        )
+        return [self._push(k, *way, bounds, mode) for k, way in enumerate(ways)]
 
-        return torque
+    def _push(self, k: int, displacement: float, slides: float, bounds: Bounds, mode: Mode) -> Push:
+        """That on the piston of the cylinder k, which is there and slides with this sign."""
+        rubs, phase = self._friction, float(self._phases[k])
+        viscous, given = rubs.viscous, list[Push]()
+        gas = _straight(self._gas(k, mode.shares), *bounds.angles)
+        terms = [(1, gas)]
+        for law in self._laws(k, mode.loads):
+            way = law.forward if slides > 0.0 else law.back
+            travel = _around(_cuts_of(way), displacement) if way else EVERYWHERE
+            over_angle = law.over_angle and _turned(law.over_angle, phase)
+            ranges = *bounds[:2], travel
+            for slot, part in enumerate((law.over_time, over_angle, way)):
+                if part is not None:
+                    terms.append((slot, _straight(part, *ranges[slot])))
+            viscous += law.viscous
+            if law.given is not None:
+                given.append(_at_cycle_angle(law.given.function, phase))
+        if viscous:
+            terms.append((3, lambda velocity: -viscous * velocity))
+        if rubs.ring_force or rubs.ring_pressure:
+            ring = math.copysign(rubs.ring_force, slides)
+            pressed = math.copysign(rubs.ring_pressure, slides)
+            given.append(lambda _time, theta, _s, _v: -ring - pressed * abs(gas(theta)))
+        return _total(terms, given)
 
-    def _gas_by_number(self, k: int, phase: float, shares: Sequence[float]) -> Scalar:
+    def _gas(self, k: int, shares: Sequence[float]) -> Piecewise | Cycle:
         """The gas force [N] of a cylinder over the crank angle [rad]."""
-        if self.train.pressure is None:
-            return lambda theta: 0.0
-        pressure = self.train.pressure[k]
-        cubics = pressure.coefficients
-        if shares and self.train.combustion is not None:
-            cubics = cubics + shares[k] * self.train.combustion[k].coefficients
-        return Cycle(pressure.knots - phase, self._areas[k] * cubics).by_number()
+        train = self.train
+        if train.pressure is None:
+            return Piecewise((), ((0.0, 0.0, 0.0),))
+        cubics = train.pressure[k].coefficients
+        if train.combustion is not None:
+            cubics = cubics + shares[k] * train.combustion[k].coefficients
+        return _turned(Cycle(train.pressure[k].knots, self._areas[k] * cubics), self._phases[k])
 
 
-def _around(stops: Sequence[float], x: float, sense: float) -> Range:
+def _turned(cycle: Cycle, phase: float) -> Cycle:
+    """A function of the cycle angle over the crank angle."""
+    return Cycle(cycle.knots - phase, cycle.coefficients)
+
+
+def _at_cycle_angle(function: Push, phase: float) -> Push:
+    return lambda time, theta, s, v: function(time, theta + phase, s, v)
+
+
+def _total(
+    terms: list[tuple[int, Callable[[float], float]]], given: Sequence[Callable[..., float]]
+) -> Callable[..., float]:
+    """The sum of functions of one argument, by its number, and of all."""
+    if len(terms) == 1 and not given:
+        slot, alone = terms[0]
+        return lambda *at: alone(at[slot])
+
+    def total(*at: float) -> float:
+        value = 0.0
+        for slot, term in terms:
+            value += term(at[slot])
+        for function in given:
+            value += function(*at)
+        return value
+
+    return total
+
+
+def _around(stops: Iterable[float], x: float, sense: float = 1.0) -> Range:
     """The stops next to a number; of one on a stop those on the side of ``sense``."""
-    k = (bisect_right if sense > 0.0 else bisect_left)(stops, x)
-    ends = [-math.inf, *stops, math.inf]
-    return ends[k], ends[k + 1]
+    ends = [-math.inf, *sorted(stops), math.inf]
+    k = (bisect_right if sense > 0.0 else bisect_left)(ends, x, 1, len(ends) - 1)
+    return ends[k - 1], ends[k]
 
 
-def _straight(function: Scalar, low: float, high: float) -> Scalar:
-    """A function of the angle [rad] between two ends, and straight on beyond."""
-    high -= 2.0 * KNOT
+def _straight(part: Piecewise | Cycle, low: float, high: float) -> Callable[[float], float]:
+    """A function between two ends, number by number, and straight on beyond."""
+    function, scale = part.by_number(), min(high - low, 1.0)
+    if len(part.knots) == 0 or (math.isinf(high) and math.isinf(low)):
+        return function
+    high = min(high - 2.0 * KNOT * scale, math.nextafter(high, low))  # on a jump that after it
     ends = {
         x: (function(x), (function(x + d) - function(x)) / d)
-        for x, d in ((low, _SLOPE), (high, -_SLOPE))
+        for x, d in ((low, _SHARE * scale), (high, -_SHARE * scale))
         if math.isfinite(x)
     }
 
-    def value(theta: float) -> float:
-        if low <= theta <= high:
-            return function(theta)
-        end = low if theta < low else high
-        at, slope = ends[end]
-        return at + slope * (theta - end)
-
-    return value if ends else function
-
-
-def _between(part: Piecewise, begin: float, end: float) -> Scalar:
-    """The pieces of a function from ``begin`` to ``end``; the outer ones go on."""
-    low = bisect_right(part.knots, begin)
-    high = max(bisect_left(part.knots, end), low)
-    knots, pieces = part.knots[low:high], part.pieces[low : high + 1]
-
     def value(x: float) -> float:
-        a, b, c = pieces[bisect_right(knots, x)]
-        return a + (b + c * x) * x
+        if low <= x <= high:
+            return function(x)
+        end = low if x < low else high
+        at, slope = ends[end]
+        return at + slope * (x - end)
 
     return value
 
 
-def _alone(gas: Scalar) -> Push:
-    return lambda _time, theta, _displacement, _speed: gas(theta)
-
-
-def _together(pushes: list[Push]) -> Push:
-    return lambda *at: sum(push(*at) for push in pushes)
-
-
-def _rubbed(gas: Scalar, slides: float, ring: float, pressed: float, viscous: float) -> Push:
-    """A gas force with the friction of a piston that slides with this sign."""
-
-    def along(_time: float, theta: float, _displacement: float, speed: float) -> float:
-        force = gas(theta)
-        return force - slides * (ring + pressed * abs(force)) - viscous * speed
-
-    return along
-
-
-def _jumps(pressure: PeriodicPressure) -> Array:
-    """Cycle angles [rad] at which a pressure jumps."""
-    ends = pressure.piece(np.arange(len(pressure.knots) - 1), np.diff(pressure.knots))
-    begins = pressure.coefficients[-1]
-    rises = np.abs(begins - np.roll(ends, 1)) > _JUMP * np.max(np.abs(begins))
-    return np.asarray(pressure.knots[:-1][rises])
-
-
-def _of_load(load: Cycle, period: float) -> Array:
-    """Crank angles [rad] in a period at which a load over the angle jumps."""
-    knots = load.knots[:-1]
-    rises = np.abs(load(knots) - load(knots - 3.0 * KNOT)) > 1e-6 * load.largest
-    turns = load.period * np.arange(round(period / load.period))
-    return np.asarray(np.mod(np.add.outer(turns, knots[rises]).ravel(), period))
+def _cuts_of(part: Piecewise) -> tuple[float, ...]:
+    """Where a run is cut: at the bends of a function where these are few, else at its jumps."""
+    return part.bends if len(part.bends) <= _MOST_BENDS else part.jumps

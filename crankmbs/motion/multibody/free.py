@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
-from functools import partial
-from itertools import product
+from collections.abc import Callable
+from contextlib import closing
+from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,12 +17,10 @@ from crankmbs.mechanics.variables import EVERY
 from crankmbs.motion.base import Solution, State
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.mode import begun
-from crankmbs.motion.multibody.account import Kept
-from crankmbs.motion.multibody.answer import Answers, rounding, sample, solution
+from crankmbs.motion.multibody.account import Kept, stretches_of
+from crankmbs.motion.multibody.answer import Answers, solution
 from crankmbs.motion.multibody.cost import STEPS_A_SECOND
-from crankmbs.motion.multibody.forces import EVERYWHERE
-from crankmbs.motion.multibody.integrate import Limits
-from crankmbs.motion.multibody.model import Model
+from crankmbs.motion.multibody.forces import EVERYWHERE, Limits
 from crankmbs.motion.multibody.runs import Motion, Runs
 from crankmbs.motion.plan import Plan, plan_of
 from crankmbs.numerics.arrays import Array
@@ -30,12 +29,12 @@ __all__ = ["follow", "run"]
 
 _MOST = 2**31 - 1  # steps that exudyn counts
 _FEW = 200  # samples at which a run is judged before it is at all of them
-_SINGLE = 32  # samples: among more there is one where nothing cancels
 _SLOW = 1e-6  # of the fastest speed
 _ROUNDED = "finer steps err as much by rounding, which grows in this motion"
 _NO_FINER = "at a finer step exudyn's Newton iteration does not converge"
 
 Values = dict[str, Array]
+Errors = dict[str, float]
 
 
 def run(train: CrankTrain, rtol: float, cost_cap: float) -> tuple[Solution, Kept]:
@@ -47,104 +46,88 @@ def run(train: CrankTrain, rtol: float, cost_cap: float) -> tuple[Solution, Kept
     ------
     FormulationError : exudyn cannot take a single step of this scene
     """
-    scene = train.scene
+    scene, plan = train.scene, plan_of(train.scene)
     assert scene.start is not None
     start = State(0.0, scene.start.angle, scene.start.speed, 0.0, begun(train))
-    plan, model = plan_of(scene), Model(scene)
     rate = STEPS_A_SECOND / len(scene.cylinders)
     steps = math.ceil(min(cost_cap * rate, _MOST))
-    limits = Limits(plan.time_bound, plan.angle_bounds, steps)
-    try:
-        runs = Runs(train, model, start, limits)
-        values, errors, why = _refined(runs, rtol, partial(_of_plan, runs, plan))
-        status, message = _ended(runs, plan, cost_cap)
-        worst = _worst(values, errors)
-        if runs.moves and worst > rtol:
-            message += _shortfall(worst, rtol, why, runs.steps / rate, cost_cap)
-    finally:
-        model.close()
+    with closing(Answers(train)) as answers:
+        limits = Limits(plan.time_bound, plan.angle_bounds, steps)
+        runs = Runs(answers.forces, answers.model, start, limits)
+        values, errors, why = _refined(runs, rtol, lambda most: _at_plan(runs, answers, plan, most))
+    status, message = _ended(runs, plan, cost_cap)
+    if runs.moves and not (worst := _worst(values, errors)) <= rtol:
+        message += _shortfall(worst, rtol, why, runs.steps / rate, cost_cap)
     cost = sum(path.iterations for path in runs.paths), runs.steps
-    return solution(values, errors, (status, message), cost), _kept(runs, plan)
+    passes = tuple(runs.motions()) if runs.moves else ()
+    kept = Kept(train, start, passes, _bound(runs, plan), runs.ending)
+    return solution(values, errors, (status, message), cost), kept
 
 
 def follow(
     train: CrankTrain, start: State, times: Array, rtol: float, steps: int
-) -> tuple[Values, dict[str, float]]:
+) -> tuple[Values, Errors]:
     """Every variable at later times [s], integrated from a state; and its error.
 
     Raises
     ------
     FormulationError : exudyn cannot take a single step from there
     """
-    model = Model(train.scene)
-    try:
-        runs = Runs(train, model, start, Limits(float(times[-1]), EVERYWHERE, steps))
+    with closing(Answers(train)) as answers:
+        limits = Limits(float(times[-1]), EVERYWHERE, steps)
+        runs = Runs(answers.forces, answers.model, start, limits)
+        by_angle = np.zeros(len(times), dtype=bool)
 
-        def answer(_most: int | None) -> tuple[Values, dict[str, float]]:
-            omega = runs.motions()[0].at(times)
-            return _shared(runs, times, *omega, np.zeros(len(times), dtype=bool))
+        def read(_most: int | None) -> tuple[Values, Errors]:
+            return _checked(runs, answers, (times, *runs.motions()[0].at(times)), by_angle)
 
-        values, errors, _ = _refined(runs, rtol, answer)
-    finally:
-        model.close()
+        values, errors, _ = _refined(runs, rtol, read)
     return values, errors
 
 
 def _refined(
-    runs: Runs, rtol: float, answer: Callable[[int | None], tuple[Values, dict[str, float]]]
-) -> tuple[Values, dict[str, float], str]:
-    """An answer and its errors, and why it is none that was asked for.
+    runs: Runs, rtol: float, read: Callable[[int | None], tuple[Values, Errors]]
+) -> tuple[Values, Errors, str]:
+    """The values and errors of runs fine enough, and why they are not what was asked for.
 
-    answer : of so many samples, or of all
+    read : at so many samples, or at all
     """
     finer, why = runs.first(), ""
-    while True:
-        values, errors = answer(_FEW)
-        if finer and runs.rounded:
-            why, finer = _ROUNDED, False
-        enough = not finer or not runs.affords_another
-        if enough or not _worst(values, errors) > rtol:
-            values, errors = answer(None)
-            if enough or not _worst(values, errors) > rtol:
-                return values, errors, why
-        finer = runs.halve()
-        why = "" if finer else _NO_FINER
+    for most in (_FEW, None):
+        values, errors = read(most)
+        while finer and runs.affords_another and not _worst(values, errors) <= rtol:
+            if runs.rounded:
+                finer, why = False, _ROUNDED
+            elif runs.halve():
+                values, errors = read(most)
+            else:
+                finer, why = False, _NO_FINER
+    return values, errors, why
 
 
-def _of_plan(runs: Runs, plan: Plan, most: int | None) -> tuple[Values, dict[str, float]]:
+def _at_plan(runs: Runs, answers: Answers, plan: Plan, most: int | None) -> tuple[Values, Errors]:
     """Every variable at the samples of a plan, or at so many of them, and its error."""
-    answers = Answers(runs.model, runs.forces, runs.states)
-    begin = answers.at(*(np.array([each]) for each in runs.start[:3]))
     if not runs.moves:
-        del begin["fallen"]
-        begin["energy_residual"] = np.zeros(1)
-        return begin, rounding(begin)
-    answer, _ = runs.motions()
-    last, bound = runs.states[-1], _bound(runs, plan)
-    time, theta = sample(plan, answer, answer.until(last.time, bound), bound)
+        start = Motion((), (), (runs.start, runs.start))
+        values = answers.free(start, *(np.array([each]) for each in runs.start[:3]))
+        return values | {"energy_residual": np.zeros(1)}, dict.fromkeys(EVERY, 0.0)
+    answer, bound = runs.motions()[0], _bound(runs, plan)
+    ends = [*(state.time for state in answer.states[:-1]), answer.until(bound)]
+    time, theta = plan.samples(pairwise(ends), lambda t: answer.at(t)[0], answer.times, bound)
     if most is not None and len(time) > most:
         chosen = np.unique(np.linspace(0, len(time) - 1, most).astype(int))
         time, theta = time[chosen], theta[chosen]
     omega = answer.at(time)[1]
     omega[time == 0.0] = runs.start.omega
     if runs.ending is not Ending.COMPLETE:
-        omega[-1] = last.omega
+        omega[-1] = answer.states[-1].omega
     by_angle = np.full(len(time), not plan.in_time)
     by_angle[-1] = bound is not None
-    values, errors = _shared(runs, time, theta, omega, by_angle)
-    edges = np.union1d(answer.grid[answer.grid < time[-1]], time)
-    work = answers.work(answer, edges)[np.searchsorted(edges, time)]
-    gained = values["kinetic_energy"] - begin["kinetic_energy"]
-    values["energy_residual"] = gained - (values.pop("fallen") - begin["fallen"]) - work
+    values, errors = _checked(runs, answers, (time, theta, omega), by_angle)
+    cells = [each.cells for each in stretches_of(runs.forces, answer, bound)]
+    values["energy_residual"] = answers.residual(cells, time)
     errors["energy_residual"] = peak(values["energy_residual"])
-    if runs.ending is not Ending.COMPLETE:  # each run ends elsewhere
-        other = runs.paths[-2:][0].states[-1]
-        for name, x, y in zip(
-            ("time", "crank_angle", "crank_speed"), last[:3], other[:3], strict=True
-        ):
-            errors[name] = max(errors[name], 1.5 * abs(x - y))
-    del errors["fallen"]
-    return values, {name: errors[name] + least for name, least in rounding(values).items()}
+    return values, errors
 
 
 def _bound(runs: Runs, plan: Plan) -> float | None:
@@ -153,76 +136,51 @@ def _bound(runs: Runs, plan: Plan) -> float | None:
     return theta if runs.ending is Ending.COMPLETE and theta in plan.angle_bounds else None
 
 
-def _kept(runs: Runs, plan: Plan) -> Kept:
-    """What is kept of the runs; the states of a check are those of the run before."""
-    passes = []
-    if runs.moves and runs.paths:
-        answer, checks = runs.motions()
-        before = runs.paths[-2:][0].states
-        passes = [(answer, runs.states), *((check, before) for check in checks[:-1])]
-        passes += [(check, runs.states) for check in checks[-1:]]
-    return Kept(runs.forces.train, runs.start, tuple(passes), _bound(runs, plan), runs.ending)
-
-
-def _shared(
-    runs: Runs, time: Array, theta: Array, omega: Array, by_angle: NDArray[np.bool_]
-) -> tuple[Values, dict[str, float]]:
+def _checked(
+    runs: Runs, answers: Answers, at: tuple[Array, Array, Array], by_angle: NDArray[np.bool_]
+) -> tuple[Values, Errors]:
     """The variables at samples, and what they change by in the motions that check the answer.
 
-    Where forces jump, so does what lies beside: these motions are then taken on both sides. A speed
-    that the loads hold is what it is in each of them.
+    Where forces jump, so does what lies beside: these motions are then taken on both sides. A run
+    that does not come to its end ends elsewhere in each of them.
     """
-    answers = Answers(runs.model, runs.forces, runs.states)
-    values = answers.at(time, theta, omega)
-    answer, checks = runs.motions()
+    answer, *checks = runs.motions()
+    values = answers.free(answer, *at)
     if not checks:
         return values, dict.fromkeys(values, math.inf)
-    coarser = Answers(runs.model, runs.forces, runs.paths[-2].states)  # with decisions of its own
+    if runs.forces.is_cut:
+        weights = (2.0 * np.array(answer.weights) - each.weights for each in checks)
+        pairs = zip(checks[:], weights, strict=True)
+        checks += [replace(each, weights=tuple(other.tolist())) for each, other in pairs]
     errors = dict.fromkeys(values, 0.0)
-    for check, side in product(checks, (1.0, -1.0) if runs.forces.jumps else (1.0,)):
-        before, changes = values, dict.fromkeys(values, 0.0)
-        for then, angle, speed in _shifts(answer, check, (time, theta, omega), by_angle, side):
-            if runs.ending is Ending.HELD:
-                speed[-1] = omega[-1]
-            after = coarser.at(then, angle, speed)
-            changes = {name: changes[name] + peak(after[name] - before[name]) for name in values}
-            before = after
-        errors = {name: max(errors[name], changes[name]) for name in values}
-    errors["crank_angle"] = max(peak(check.at(time)[0] - theta) for check in checks)
+    for check in checks:
+        then, angle, speed = _shifted(check, *at, by_angle)
+        if runs.ending is not Ending.COMPLETE:
+            then[-1], angle[-1], speed[-1] = check.states[-1][:3]
+        after = answers.free(check, then, angle, speed)
+        errors = {n: max(most, peak(after[n] - values[n])) for n, most in errors.items()}
+    late = max(peak(check.at(at[0])[0] - at[1]) for check in checks)
+    errors["crank_angle"] = max(errors["crank_angle"], late)
     return values, errors
 
 
-def _shifts(
-    answer: Motion,
-    check: Motion,
-    at: tuple[Array, Array, Array],
-    by_angle: NDArray[np.bool_],
-    side: float,
-) -> Iterator[tuple[Array, Array, Array]]:
-    """The samples in a motion that is off, at the same angles or times; of few samples, where
-    changes may cancel by chance, that of place and speed one after the other."""
-    time, theta, omega = at
-    ahead = side * (check.at(time)[0] - theta)
+def _shifted(
+    check: Motion, time: Array, theta: Array, omega: Array, by_angle: NDArray[np.bool_]
+) -> tuple[Array, Array, Array]:
+    """The samples in a motion that is off, at the same angles or times."""
+    ahead = check.at(time)[0] - theta
     bend = np.gradient(omega, time) if len(time) > 1 else 0.0 * omega
     room = np.sqrt(np.maximum(omega**2 - 2.0 * bend * ahead, 0.0))  # near a reversal
     whole = omega + np.copysign(room, omega)
     late = np.divide(-2.0 * ahead, whole, out=np.zeros_like(time), where=whole != 0.0)
-    late = np.where(by_angle, late, 0.0)
-    then = np.maximum(time + late, 0.0)
-    angle = theta + np.where(by_angle, 0.0, ahead)
-    speed, other = answer.at(then)[1], check.at(then)[1]
-    if len(time) <= _SINGLE:
-        yield then, angle, omega
-    yield then, angle, speed + side * (other - speed)
+    then = np.maximum(time + np.where(by_angle, late, 0.0), 0.0)
+    return then, theta + np.where(by_angle, 0.0, ahead), check.at(then)[1]
 
 
-def _worst(values: Values, errors: dict[str, float]) -> float:
+def _worst(values: Values, errors: Errors) -> float:
+    peaks = {name: peak(values[name]) for name in errors}
     angle = values["crank_angle"]
-    if len(angle) == 1:
-        return 0.0
-    known = {name: error for name, error in errors.items() if name in EVERY}
-    peaks = {name: peak(values[name]) for name in known}
-    return relative_error(peaks, known, peak(angle - angle[0]))
+    return relative_error(peaks, errors, peak(angle - angle[0]))
 
 
 def _ended(runs: Runs, plan: Plan, cap: float) -> tuple[int, str]:

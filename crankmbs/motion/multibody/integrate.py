@@ -1,44 +1,31 @@
 """A free run by exudyn's generalized-alpha method at one step size, from cut to cut.
 
-A stretch ends at a time, a crank angle or a speed at which a force jumps: exudyn runs beyond it by
-one step, with forces that go straight on, and the next stretch begins where the cubic through the
-last two steps meets it, with consistent positions, velocities and accelerations.
+A stretch ends where the crank turns back, and at a time, a crank angle or a speed at which a force
+jumps: exudyn runs beyond it by one step, with forces that go straight on, and the next stretch
+begins where the cubic through the last two steps meets it, with consistent positions, velocities
+and accelerations.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from typing import NamedTuple, TypeVar
+from typing import NamedTuple
 
 import numpy as np
 
-from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion.base import State
 from crankmbs.motion.ending import Ending
-from crankmbs.motion.mode import Mode, decided
-from crankmbs.motion.multibody.forces import Bounds, Forces
+from crankmbs.motion.mode import decided
+from crankmbs.motion.multibody.forces import EVERYWHERE, Bounds, Forces, Limits
 from crankmbs.motion.multibody.model import Consistent, Model
 from crankmbs.numerics.arrays import Array
 
-T = TypeVar("T", float, Array)
+__all__ = ["Path", "acceleration", "integrate"]
 
-__all__ = ["Limits", "Path", "acceleration", "integrate"]
-
-_BESIDE = 1e-10  # of a speed: so near it is on it
-_ON = 1e-11  # rad
 _SAME = 1e-12  # relative: times nearer than this are one
 _ENTRY = 50  # steps that the begin of a stretch counts as
 _STILL = 1e-9  # rad/s2: of an acceleration that is rounding
 _MOST_SPEEDS = 100  # cuts at speeds in a run; beyond, the loads are run over as they are
-
-
-class Limits(NamedTuple):
-    """Time [s] and crank angles [rad] at which a run ends, and steps that it may take."""
-
-    time: float
-    angles: tuple[float, float]
-    steps: int
 
 
 class Path(NamedTuple):
@@ -58,77 +45,69 @@ class Path(NamedTuple):
     steps: int
     iterations: int
 
-    def at(self, time: Array) -> tuple[Array, Array]:
-        """Crank angle and speed at times, by cubics between steps; beyond the end they go on."""
-        t, theta, omega, alpha = self.rows.T
+    def at(self, time: Array) -> Array:
+        """Crank angle and speed at times, shape (2, p), by cubics between steps; beyond the end
+        they go on."""
+        t = self.rows[:, 0]
         k = np.clip(np.searchsorted(t, time, side="right") - 1, 0, len(t) - 2)
         k = np.where(t[k + 1] > t[k], k, np.maximum(k - 1, 0))
-        h = t[k + 1] - t[k]
-        x = (time - t[k]) / h
-        return (
-            _cubic(x, theta[k], theta[k + 1], h * omega[k], h * omega[k + 1]),
-            _cubic(x, omega[k], omega[k + 1], h * alpha[k], h * alpha[k + 1]),
-        )
+        x = (time - t[k]) / (t[k + 1] - t[k])
+        a, b, c, d = _cubics(self.rows[k], self.rows[k + 1])[:, 1:]
+        return np.asarray(((a * x + b) * x + c) * x + d)
 
 
 def integrate(
-    train: CrankTrain,
-    model: Model,
-    start: State,
-    limits: Limits,
-    step: float,
-    *,
-    stiff: bool = False,
+    forces: Forces, model: Model, start: State, limits: Limits, step: float, *, stiff: bool = False
 ) -> Path:
     """Run from a state with steps of a length [s].
 
     stiff : whether exudyn's Newton iteration shall know how the loads change
     """
-    forces = Forces(train)
-    state, states, parts = start, [start], []
+    state, states, parts = start, [start], list[Array]()
     sense, steps, iterations, cuts, idle = 0.0, 0, 0, 0, 0
     ending = Ending.COMPLETE
     while state.time < limits.time * (1.0 - _SAME) and state.theta not in limits.angles:
-        if cuts > _MOST_SPEEDS:
-            forces = forces.blind
-        entered = _enter(model, forces, state, sense)
-        if entered is None or idle > 1:
-            ending = Ending.HELD
+        entered = _enter(model, forces, state, sense, limits, stops=cuts <= _MOST_SPEEDS)
+        if entered is None or idle > 1 or steps >= limits.steps:
+            ending = Ending.CALLED_OFF if entered and idle <= 1 else Ending.HELD
             break
-        bounds = _within(entered[0], limits)
-        left = limits.steps - steps
-        if left <= 0:
-            ending = Ending.CALLED_OFF
-            break
-        inside = _inside(bounds)
-        rows, ending, cost = model.run(state[:3], step, left, inside, stiff=stiff)
+        rows, ending, cost = model.run(
+            state[:3], step, limits.steps - steps, entered[0], stiff=stiff
+        )
         steps, iterations = steps + len(rows) + _ENTRY, iterations + cost
-        if ending is not Ending.COMPLETE:
-            parts.append(rows)
-            states.append(_state(rows, state.mode))
-            break
-        rows, sense = _cut(rows, bounds)
-        cuts += sense != 0.0
-        met = _state(rows, state.mode)
+        if ending is Ending.COMPLETE:
+            rows, sense = _cut(rows, entered[0])
+            cuts += bool(sense and rows[-1, 2])
+        time, theta, omega = rows[-1, :3].tolist()
+        met = State(time, theta, omega, 0.0, state.mode)
         idle = 0 if met.time > state.time else idle + 1
-        if idle == 0:
+        if ending is Ending.COMPLETE:
+            met = met._replace(mode=decided(forces.train, state.mode, time, theta, omega))
+        if idle == 0 or ending is not Ending.COMPLETE:
             parts.append(rows)
             states.append(met)
-        state = met._replace(mode=decided(train, state.mode, *met[:3]))
-        states[-1] = state
-    rows = np.concatenate(parts) if parts else np.array([[*start[:3], 0.0]])
+        state = states[-1] = met
+        if ending is not Ending.COMPLETE:
+            break
+    every = np.concatenate(parts) if parts else np.array([[*start[:3], 0.0]])
     whole = cuts <= _MOST_SPEEDS and forces.smooth
-    return Path(rows, tuple(states), ending, whole, steps, iterations)
+    return Path(every, tuple(states), ending, whole, steps, iterations)
 
 
 def acceleration(model: Model, forces: Forces, state: State) -> float | None:
     """Crank acceleration [rad/s2] with which a crank leaves a state; None where it is held."""
-    entered = _enter(model, forces, state, 0.0)
+    entered = _enter(model, forces, state, 0.0, Limits(math.inf, EVERYWHERE, 0))
     return None if entered is None else float(entered[1].acceleration[0, 2])
 
 
 def _enter(
-    model: Model, forces: Forces, state: State, arrived: float
+    model: Model,
+    forces: Forces,
+    state: State,
+    arrived: float,
+    limits: Limits,
+    *,
+    stops: bool = True,
 ) -> tuple[Bounds, Consistent] | None:
     """Give the model the forces beside a state on the side to which it moves.
 
@@ -139,13 +118,12 @@ def _enter(
     the bounds of the stretch and the consistent start; None where the forces drive the crank back
     from both sides
     """
-    time, theta, omega, _, mode = state
+    _, theta, omega, _, mode = state
     refused = 0
     for sense in (arrived, -arrived) if arrived else (1.0, -1.0):
-        side = math.copysign(1.0, omega) if omega else sense
-        bounds = forces.bounds(time, theta, omega, mode, (side, sense))
+        bounds = forces.bounds(state, sense, limits, stops=stops)
         model.torque = forces.load(bounds, mode)
-        model.pushes = forces.pushes(bounds, mode, theta, side)
+        model.pushes = forces.pushes(bounds, mode, theta, math.copysign(1.0, omega or sense))
         begin = model.start(*state[:3])
         leaves = sense * float(begin.acceleration[0, 2])
         if leaves > 0.0 or (omega and omega not in bounds.speeds):
@@ -154,61 +132,33 @@ def _enter(
     return None if refused == 2 else (bounds, begin)
 
 
-def _state(rows: Array, mode: Mode) -> State:
-    time, theta, omega, _ = rows[-1].tolist()
-    return State(time, theta, omega, 0.0, mode)
-
-
-def _within(bounds: Bounds, limits: Limits) -> Bounds:
-    angles = max(bounds.angles[0], limits.angles[0]), min(bounds.angles[1], limits.angles[1])
-    return Bounds((bounds.times[0], min(bounds.times[1], limits.time)), angles, bounds.speeds)
-
-
-def _inside(bounds: Bounds) -> Callable[[float, float, float], bool]:
-    (_, end), (low, high), (slow, fast) = bounds
-    low, high = low - _ON, high + _ON
-    slow, fast = slow - _BESIDE * abs(slow), fast + _BESIDE * abs(fast)
-
-    def inside(time: float, theta: float, omega: float) -> bool:
-        return time < end and low < theta < high and slow <= omega <= fast
-
-    return inside
-
-
 def _cut(rows: Array, bounds: Bounds) -> tuple[Array, float]:
     """End rows where the last step first meets a bound; also the sign in which the speed did."""
-    (t, theta, omega, alpha), (t1, theta1, omega1, alpha1) = rows[-2:].tolist()
-    h = t1 - t
-    angle = _coefficients(theta, theta1, h * omega, h * omega1)
-    speed = _coefficients(omega, omega1, h * alpha, h * alpha1)
-    met = [(min((bounds.times[1] - t) / h, 1.0), 0, bounds.times[1], 0.0)]
-    for column, cubic, value, ends in (
-        (1, angle, theta1, bounds.angles),
-        (2, speed, omega1, bounds.speeds),
-    ):
-        for bound, sign in zip(ends, (-1.0, 1.0), strict=True):
-            if sign * (value - bound) > 0.0:
-                met.append((_root(cubic, bound), column, bound, sign))
-    x, column, bound, sign = min(met)
-    row = [t + x * h, *(float(np.polyval(c, x)) for c in (angle, speed))]
-    row.append(float(np.polyval(np.polyder(speed), x)) / h)
+    begin, end = rows[-2:]
+    cubics = _cubics(begin, end)
+    x, column, bound, sign = min(
+        (_root(cubics[:, column], bound), column, bound, sign)
+        for column, ends in enumerate(bounds)
+        for bound, sign in zip(ends, (-1.0, 1.0), strict=True)
+        if (beyond := sign * (end[column] - bound)) > 0.0 or beyond == column == 0
+    )
+    rate = np.polyval(np.polyder(cubics[:, 2]), x) / (end[0] - begin[0])
+    row = np.append(np.polyval(cubics, x), rate)
     row[column] = bound
     return np.vstack([rows[:-1], row]), sign if column == 2 else 0.0
 
 
-def _root(cubic: Sequence[float], value: float) -> float:
+def _root(cubic: Array, value: float) -> float:
     """Where in its step a cubic that ends beyond a value last comes to it."""
     roots = np.roots([*cubic[:-1], cubic[-1] - value])
-    real = roots.real[(np.abs(roots.imag) < 1e-9) & (roots.real > 0.0) & (roots.real <= 1.0)]
-    return float(real.max(initial=0.0))
+    real = roots.real[(np.abs(roots.imag) < 1e-9) & (roots.real > 0.0) & (roots.real < 1.0 + 1e-9)]
+    return min(float(real.max(initial=0.0)), 1.0)
 
 
-def _coefficients(y: T, y1: T, slope: T, slope1: T) -> tuple[T, T, T, T]:
-    """Of the cubic in a step, from 0 to 1, by descending power."""
-    rise = y1 - y
-    return slope + slope1 - 2.0 * rise, 3.0 * rise - 2.0 * slope - slope1, slope, y
-
-
-def _cubic(x: Array, y: Array, y1: Array, slope: Array, slope1: Array) -> Array:
-    a, b, c, d = _coefficients(y, y1, slope, slope1)
-    return ((a * x + b) * x + c) * x + d
+def _cubics(begin: Array, end: Array) -> Array:
+    """Those of time, angle and speed in steps between rows, from 0 to 1, by descending power; shape
+    (4, 3, ...)."""
+    y, y_1, h = begin.T[:3], end.T[:3], end.T[0] - begin.T[0]
+    slope, slope_1 = (h * np.array([np.ones_like(h), *row.T[2:]]) for row in (begin, end))
+    rise = y_1 - y
+    return np.array([slope + slope_1 - 2.0 * rise, 3.0 * rise - 2.0 * slope - slope_1, slope, y])

@@ -1,4 +1,4 @@
-"""The mechanism of a scene in plain data: bodies, hinges and guides, as a textbook lists them.
+"""The mechanism of a scene, as a textbook lists it, and the same in exudyn, line by line.
 
 Planar, in the engine's frame: X along the reference cylinder, Y is X turned by +90 degrees. The
 order of bodies is that of the coordinates: x, y of the centre of mass [m] and the angle [rad], but
@@ -8,15 +8,31 @@ for point masses. That of hinges, then guides, is that of the multipliers.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
+import exudyn
 import numpy as np
+from exudyn import itemInterface
 
-from crankmbs.mechanics.geometry import close_loop
+from crankmbs.mechanics.axes import closed_loops
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 
-__all__ = ["Body", "Guide", "Hinge", "Mechanism", "closed", "mechanism_of"]
+__all__ = [
+    "Body",
+    "Guide",
+    "Hinge",
+    "Mechanism",
+    "add_body",
+    "build",
+    "closed",
+    "marker",
+    "mechanism_of",
+]
+
+exu: Any = exudyn  # its stubs are narrower than what it takes
+eii: Any = itemInterface
 
 
 class Body(NamedTuple):
@@ -76,23 +92,83 @@ def mechanism_of(scene: Scene) -> Mechanism:
         hinges.append(Hinge(f"piston pin {k}", (f"rod {k}", f"piston {k}"), points))
         normal = -math.sin(cylinder.bank), math.cos(cylinder.bank)
         guides.append(Guide(f"wall {k}", f"piston {k}", normal, piston.offset))
-    g = scene.gravity
-    pull = (0.0, 0.0)
+    g, pull = scene.gravity, (0.0, 0.0)
     if g is not None:
         pull = g.acceleration * math.cos(g.angle), g.acceleration * math.sin(g.angle)
     return Mechanism(pull, tuple(bodies), tuple(hinges), tuple(guides))
 
 
+def marker(system: Any, body: int, place: tuple[float, float] = (0.0, 0.0)) -> int:
+    """A marker of exudyn on a body, at a place [m] in its axes."""
+    item = eii.MarkerBodyPosition(bodyNumber=body, localPosition=[*place, 0.0])
+    return int(system.AddMarker(item))
+
+
+def add_body(system: Any, body: Body, gravity: tuple[float, float]) -> tuple[int, int]:
+    """Add a body with its weight; its node and itself, by exudyn's numbers."""
+    if body.inertia is None:
+        node = system.AddNode(eii.NodePoint2D())
+        item = eii.ObjectMassPoint2D(nodeNumber=node, mass=body.mass)
+    else:
+        node = system.AddNode(eii.NodeRigidBody2D())
+        item = eii.ObjectRigidBody2D(nodeNumber=node, mass=body.mass, inertia=body.inertia)
+    number = system.AddObject(item)
+    centre = system.AddMarker(eii.MarkerBodyMass(bodyNumber=number))
+    system.AddLoad(eii.Gravity(markerNumber=centre, loadVector=[*gravity, 0.0]))
+    return node, number
+
+
+def build(
+    mechanism: Mechanism,
+    push: Callable[[int, float], tuple[float, float]] | None,
+    torque: Callable[[float], float],
+) -> tuple[Any, Any]:
+    """exudyn's container and system of a mechanism.
+
+    push : force [N] on a piston, x and y, by its number and the solver's time [s]; None: none is
+        pushed. torque [N m] : on the crank, by the time
+    """
+    container = exu.SystemContainer()
+    system = container.AddSystem()
+    nodes = {"ground": system.AddNode(eii.NodePointGround())}
+    bodies = {"ground": system.AddObject(eii.ObjectGround())}
+    for body in mechanism.bodies:
+        nodes[body.name], bodies[body.name] = add_body(system, body, mechanism.gravity)
+    for hinge in mechanism.hinges:
+        pairs = zip(hinge.bodies, hinge.points, strict=True)
+        ends = [marker(system, bodies[name], point) for name, point in pairs]
+        system.AddObject(eii.RevoluteJoint2D(markerNumbers=ends))
+    for number, guide in enumerate(mechanism.guides):
+        ends = [
+            system.AddMarker(eii.MarkerNodeCoordinates(nodeNumber=nodes[name]))
+            for name in ("ground", guide.body)
+        ]
+        wall = {"scalingMarker1": np.array([guide.normal]), "offset": [guide.offset]}
+        system.AddObject(eii.CoordinateVectorConstraint(markerNumbers=ends, **wall))
+        if push is not None:
+            force = eii.LoadForceVector(
+                markerNumber=marker(system, bodies[guide.body]),
+                loadVectorUserFunction=lambda _, time, load, k=number: [*push(k, time), 0.0],
+            )
+            system.AddLoad(force)
+    crank = eii.MarkerNodeCoordinate(nodeNumber=nodes["crank"], coordinate=2)
+    turn = eii.LoadCoordinate(
+        markerNumber=system.AddMarker(crank),
+        loadUserFunction=lambda _, time, load: torque(time),
+    )
+    system.AddLoad(turn)
+    return container, system
+
+
 def closed(scene: Scene, theta: Array) -> Array:
     """Coordinates of all bodies on the closed loop at crank angles [rad], shape (m, q): the right
     one of the two ways in which a rod closes it."""
-    centre = scene.crank.center_of_mass * np.exp(1j * theta)
+    centre, loop = scene.crank.center_of_mass * np.exp(1j * theta), closed_loops(scene, theta)
     columns = [centre.real, centre.imag, theta]
-    for cylinder, gear in zip(scene.cylinders, scene.running_gear, strict=True):
-        loop = close_loop(theta + cylinder.phase, *gear.shape)
+    for k, (cylinder, gear) in enumerate(zip(scene.cylinders, scene.running_gear, strict=True)):
         axis, a = np.exp(1j * cylinder.bank), gear.rod.center_of_mass
-        throw = gear.radius * (loop.cos_phi + 1j * loop.sin_phi)
-        along = loop.cos_beta - 1j * loop.sin_beta
-        middle, pin = axis * (throw + a * along), axis * (loop.x + 1j * gear.piston.offset)
-        columns += [middle.real, middle.imag, cylinder.bank - loop.beta, pin.real, pin.imag]
+        throw = gear.radius * (loop.cos_phi[k] + 1j * loop.sin_phi[k])
+        middle = axis * (throw + a * (loop.cos_beta[k] - 1j * loop.sin_beta[k]))
+        pin = axis * (loop.x[k] + 1j * gear.piston.offset)
+        columns += [middle.real, middle.imag, cylinder.bank - loop.beta[k], pin.real, pin.imag]
     return np.stack(columns, axis=-1)

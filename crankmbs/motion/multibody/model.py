@@ -1,4 +1,4 @@
-"""The mechanism of a scene as a system of exudyn, line by line, and its equations of motion.
+"""The system that exudyn makes of a scene: its equations at given states, and its runs over time.
 
 Absolute coordinates q and multipliers of the joints, with exudyn's mass matrix M, constraints C,
 their Jacobian J and generalized forces f:
@@ -10,93 +10,31 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
-from functools import partial
 from typing import Any, NamedTuple
 
 import exudyn
 import numpy as np
-from exudyn import itemInterface
 
+from crankmbs.mechanics.axes import closed_loops, displacements
 from crankmbs.mechanics.geometry import top_position
 from crankmbs.motion.ending import Ending
-from crankmbs.motion.multibody.applied import Push
+from crankmbs.motion.multibody.forces import Bounds, Push
 from crankmbs.motion.multibody.generalized_alpha import quiet_shifts, settings_of
-from crankmbs.motion.multibody.mechanism import Mechanism, closed, mechanism_of
+from crankmbs.motion.multibody.mechanism import build, closed, mechanism_of
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 
-__all__ = ["Consistent", "Model", "build"]
+__all__ = ["Consistent", "Model"]
 
 exu: Any = exudyn  # its stubs are narrower than what it takes
-eii: Any = itemInterface
 
 # of Newton's method, relative, and absolute as a share of the largest joint force at the start:
 # where forces are small beside what they cancel the first may lie below what is rounded; a relative
 # 1e-8 leaves errors that no halving shows, and passes near folds
 _TOLERANCES = ((1e-10, 1e-16), (1e-9, 1e-11))
 _BLOCK = 1000  # states that are solved for together
-
-
-def build(
-    mechanism: Mechanism,
-    push: Callable[[int, float], tuple[float, float]] | None,
-    torque: Callable[[float], float],
-) -> tuple[Any, Any]:
-    """exudyn's container and system of a mechanism.
-
-    push : force [N] on a piston, x and y, by its number and the solver's time [s]; None: none is
-        pushed. torque [N m] : on the crank, by the time
-    """
-    container = exu.SystemContainer()
-    system = container.AddSystem()
-    bodies = {"ground": system.AddObject(eii.ObjectGround())}
-    fixed = system.AddNode(eii.NodePointGround())
-    nodes = {}
-    for body in mechanism.bodies:
-        if body.inertia is None:
-            node = system.AddNode(eii.NodePoint2D())
-            item = eii.ObjectMassPoint2D(nodeNumber=node, mass=body.mass)
-        else:
-            node = system.AddNode(eii.NodeRigidBody2D())
-            item = eii.ObjectRigidBody2D(nodeNumber=node, mass=body.mass, inertia=body.inertia)
-        nodes[body.name], bodies[body.name] = node, system.AddObject(item)
-        marker = system.AddMarker(eii.MarkerBodyMass(bodyNumber=bodies[body.name]))
-        weight = [*mechanism.gravity, 0.0]
-        system.AddLoad(eii.Gravity(markerNumber=marker, loadVector=weight))
-    for hinge in mechanism.hinges:
-        markers = [
-            system.AddMarker(
-                eii.MarkerBodyPosition(bodyNumber=bodies[name], localPosition=[*point, 0.0])
-            )
-            for name, point in zip(hinge.bodies, hinge.points, strict=True)
-        ]
-        system.AddObject(eii.RevoluteJoint2D(markerNumbers=markers))
-    for number, guide in enumerate(mechanism.guides):
-        markers = [
-            system.AddMarker(eii.MarkerNodeCoordinates(nodeNumber=node))
-            for node in (fixed, nodes[guide.body])
-        ]
-        system.AddObject(
-            eii.CoordinateVectorConstraint(
-                markerNumbers=markers,
-                scalingMarker1=np.array([guide.normal]),
-                offset=[guide.offset],
-            )
-        )
-        if push is None:
-            continue
-        marker = system.AddMarker(eii.MarkerBodyPosition(bodyNumber=bodies[guide.body]))
-        system.AddLoad(
-            eii.LoadForceVector(
-                markerNumber=marker,
-                loadVectorUserFunction=lambda _, time, load, k=number: [*push(k, time), 0.0],
-            )
-        )
-    marker = system.AddMarker(eii.MarkerNodeCoordinate(nodeNumber=nodes["crank"], coordinate=2))
-    system.AddLoad(
-        eii.LoadCoordinate(markerNumber=marker, loadUserFunction=lambda _, time, load: torque(time))
-    )
-    return container, system
+_ON = 1e-11  # rad: of a bound, so near the crank is on it
+_BESIDE = 1e-10  # the same of a speed, relative; rad/s near rest
 
 
 class Consistent(NamedTuple):
@@ -116,12 +54,25 @@ class Consistent(NamedTuple):
     torque: Array
 
 
+class Run(NamedTuple):
+    """Rows of time [s], crank angle [rad], speed [rad/s] and acceleration [rad/s2], shape (m, 4).
+
+    ending : COMPLETE where a bound was passed, CALLED_OFF after all steps, DIVERGED where exudyn
+        failed or a rod turned over; iterations : of Newton's method
+    """
+
+    rows: Array
+    ending: Ending
+    iterations: int
+
+
 class Model:
     """A scene in exudyn. Set its forces, then run it from a state, or solve for states.
 
     torque [N m] : on a free crank, of time [s], crank angle [rad] and speed [rad/s]
     pushes [N] : on each piston towards the crank, of time, crank angle, and of the piston's
         displacement from its top dead centre [m] and velocity in that direction [m/s]
+    mass, weight : shape (q,), of each coordinate, as exudyn has it
     """
 
     def __init__(self, scene: Scene) -> None:
@@ -148,20 +99,31 @@ class Model:
         """Let go of what exudyn holds: it and this model refer to each other."""
         self._system.Reset()
 
+    # what exudyn asks for at every step
+
+    def _torque(self, time: float) -> float:
+        return self.torque(self._begin + time, self._q.item(2), self._v.item(2))
+
+    def _push(self, k: int, time: float) -> tuple[float, float]:
+        (x, y), at = self._towards[k], 6 + 5 * k
+        speed = x * self._v.item(at) + y * self._v.item(at + 1)
+        down = self._tops[k] + x * self._q.item(at) + y * self._q.item(at + 1)
+        force = self.pushes[k](self._begin + time, self._q.item(2), down, speed)
+        return force * x, force * y
+
+    # over time
+
     def start(self, time: float, theta: float, omega: float, *, driven: bool = False) -> Consistent:
         """The system in a state, free or at constant speed, under the forces that it was given."""
         at, faster = np.array([theta]), np.array([omega])
-        push = np.zeros((1, len(self.scene.cylinders)))
-        torque = np.array([self.torque(time, theta, omega)])
-        if self.pushes:
-            moving = self.states(at, faster, push, torque)
-            rows = (row[0, 3:].reshape(-1, 5)[:, 3:] for row in (moving.position, moving.velocity))
-            down, speeds = ((row * self._towards).sum(axis=1) for row in rows)
-            pairs = zip(self.pushes, (self._tops + down).tolist(), speeds.tolist(), strict=True)
-            push = np.array([[each(time, theta, *where) for each, *where in pairs]])
+        loop = closed_loops(self.scene, at)
+        down, speeds = displacements(self.scene, loop)[:, 0], -loop.x_1[:, 0] * omega
+        where = zip(self.pushes, down.tolist(), speeds.tolist(), strict=False)
+        push = np.zeros((1, len(down)))
+        push[0, : len(self.pushes)] = [each(time, theta, *place) for each, *place in where]
         if driven:
-            return self.driven(at, faster, np.zeros(1), push)
-        return self.states(at, faster, push, torque)
+            return self.states(at, faster, push, alpha=np.zeros(1))
+        return self.states(at, faster, push, torque=np.array([self.torque(time, theta, omega)]))
 
     def quiet_start(
         self, state: tuple[float, float, float], step: float, *, driven: bool = False
@@ -178,84 +140,96 @@ class Model:
         here = self.start(*state, driven=driven)
         self._largest = max(self._largest, float(np.abs(here.hinges).max()))
         alpha = float(here.acceleration[0, 2])
-        sides = [
+        before, after = (
             self.start(
                 time + t, theta + (omega + 0.5 * alpha * t) * t, omega + alpha * t, driven=driven
             )
             for t in (-0.5 * step, 0.5 * step)
-        ]
-        jerk = (sides[1].acceleration[0] - sides[0].acceleration[0]) / step
-        own, *shifts = quiet_shifts(jerk, step)
+        )
+        own, *shifts = quiet_shifts((after.acceleration[0] - before.acceleration[0]) / step, step)
         smooth = omega + float(own[2]) if omega else 0.0  # at rest it is not to turn back
-        begin = here.position[0], here.velocity[0], here.acceleration[0]
-        return (smooth, alpha), *(x + shift for x, shift in zip(begin, shifts, strict=True))
+        return (smooth, alpha), *(x[0] + shift for x, shift in zip(here[:3], shifts, strict=True))
 
     def run(
         self,
         state: tuple[float, float, float],
         step: float,
         most: int,
-        inside: Callable[[float, float, float], bool],
+        bounds: Bounds,
         *,
         stiff: bool,
-    ) -> tuple[Array, Ending, int]:
+    ) -> Run:
         """Integrate from a time [s], angle [rad], speed [rad/s] by the generalized-alpha method.
 
-        most : steps; inside(time, crank angle, speed) : asked after every step; where False the run
-            ends. stiff : whether Newton's method shall know how the loads change; 2.7 times as slow
-
-        Returns
-        -------
-        rows of time [s], crank angle [rad], speed [rad/s] and acceleration [rad/s2], shape (m, 4);
-        COMPLETE where ``inside`` ended it, CALLED_OFF after all steps, DIVERGED where exudyn failed
-        or a rod turned over; Newton's iterations
+        most : steps; bounds : the step that passes one is the last; stiff : whether Newton's method
+            shall know how the loads change; 2.7 times as slow
         """
         rows: list[tuple[float, float, float, float]] = []
-        data, initial = self._system.systemData, exu.ConfigurationType.Initial
         rods = [(5 + 5 * k, c.bank) for k, c in enumerate(self.scene.cylinders)]
-        outside = False
+        (_, end), (low, high), (slow, fast) = bounds
+        low, high = low - _ON, high + _ON
+        slow, fast = slow - _BESIDE * max(abs(slow), 1.0), fast + _BESIDE * max(abs(fast), 1.0)
+        begin, outside = state[0], False
 
         def note(_: object, _time: float) -> bool:  # before each step, and not after the last
             nonlocal outside
             if any(abs(self._q.item(at) - bank) > 0.5 * np.pi for at, bank in rods):
                 return False
-            row = begin + step * len(rows), self._q.item(2), self._v.item(2), self._a.item(2)
-            rows.append(row if rows else (*state[:2], *smooth))
-            outside = len(rows) > 1 and not inside(*row[:3])
+            time, theta, omega = begin + step * len(rows), self._q.item(2), self._v.item(2)
+            rows.append((time, theta, omega, self._a.item(2)) if rows else (*state[:2], *smooth))
+            inside = time < end and low < theta < high and slow <= omega <= fast
+            outside = len(rows) > 1 and not inside
             return not outside
 
-        begin = self._begin = state[0]
-        smooth, *start = self.quiet_start(state, step)
+        self._begin, (smooth, *start) = begin, self.quiet_start(state, step)
         self._system.SetPreStepUserFunction(note)
-        settings = settings_of(step, most, stiff=stiff)
-        iterations, solved = 0, False
-        newton = settings.timeIntegration.newton
-        for newton.relativeTolerance, share in _TOLERANCES:
+        settings, iterations, solved = settings_of(step, most, stiff=stiff), 0, False
+        for relative, share in _TOLERANCES:
             rows.clear()
-            newton.absoluteTolerance = max(share * self._largest, 1e-12)
-            data.SetODE2Coordinates(start[0], initial)
-            data.SetODE2Coordinates_t(start[1], initial)
-            data.SetODE2Coordinates_tt(start[2], initial)
+            settings.timeIntegration.newton.relativeTolerance = relative
+            settings.timeIntegration.newton.absoluteTolerance = max(share * self._largest, 1e-12)
+            self._set(*start)
             with _quiet(), suppress(RuntimeError, ValueError):  # Newton fails, a matrix is singular
                 solved = self._system.SolveDynamic(settings)
             iterations += int(self._system.sys["dynamicSolver"].it.newtonStepsCount)
             if outside or solved:
                 break
-        ending = Ending.COMPLETE if outside else Ending.DIVERGED
-        if not outside and len(rows) == most:
-            ending = Ending.CALLED_OFF
-        return np.array(rows), ending, iterations
+        ending = Ending.CALLED_OFF if len(rows) == most else Ending.DIVERGED
+        return Run(np.array(rows), Ending.COMPLETE if outside else ending, iterations)
 
-    def states(self, theta: Array, omega: Array, push: Array, torque: Array) -> Consistent:
+    def _set(self, position: Array, velocity: Array, acceleration: Array) -> None:
+        """Let exudyn begin there."""
+        data, initial = self._system.systemData, exu.ConfigurationType.Initial
+        data.SetODE2Coordinates(position, initial)
+        data.SetODE2Coordinates_t(velocity, initial)
+        data.SetODE2Coordinates_tt(acceleration, initial)
+
+    # at given states
+
+    def states(
+        self,
+        theta: Array,
+        omega: Array,
+        push: Array,
+        *,
+        torque: Array | None = None,
+        alpha: Array | None = None,
+    ) -> Consistent:
         """The system at crank angles [rad] and speeds [rad/s] of shape (m,), under given forces.
 
-        push : shape (m, n) [N], on each piston towards the crank; torque : shape (m,) [N m]
+        push : shape (m, n) [N], on each piston towards the crank; of a free crank its torque, of a
+        driven one its acceleration, shape (m,) [N m, rad/s2]
         """
-        return _in_blocks(partial(self._block, free=True), theta, omega, push, torque)
+        given = alpha if torque is None else torque
+        assert given is not None
+        rows = theta, omega, push, given
+        blocks = ([row[k : k + _BLOCK] for row in rows] for k in range(0, len(theta), _BLOCK))
+        parts = [self._block(*block, free=torque is not None) for block in blocks]
+        return Consistent(*map(np.concatenate, zip(*parts, strict=True)))
 
-    def driven(self, theta: Array, omega: Array, alpha: Array, push: Array) -> Consistent:
-        """The same at given accelerations [rad/s2]; the torque is what they take."""
-        return _in_blocks(partial(self._block, free=False), theta, omega, push, alpha)
+    def energy(self, found: Consistent) -> Array:
+        """Kinetic energy, and that of height [J], shape (m,)."""
+        return np.asarray(0.5 * found.velocity**2 @ self.mass - found.position @ self.weight)
 
     def _block(
         self, theta: Array, omega: Array, push: Array, given: Array, *, free: bool
@@ -276,60 +250,24 @@ class Model:
         v = u * omega[:, None]
         turning = np.einsum("mcb,mb->mc", bend, v[:, self._turns] ** 2)
         w = -np.linalg.solve(jacobian, np.column_stack([turning, ahead])[..., None])[..., 0]
-        force = self._weight + push @ self._pushed
+        force = self.weight + push @ self._pushed
         alpha = given
         if free:
             force[:, 2] += given
-            alpha = ((force - w * self._mass) * u).sum(axis=1) / (u**2 @ self._mass)
+            alpha = ((force - w * self.mass) * u).sum(axis=1) / (u**2 @ self.mass)
         a = u * alpha[:, None] + w
-        rest = (force - a * self._mass)[..., None]
+        rest = (force - a * self.mass)[..., None]
         joints = -np.linalg.solve(np.swapaxes(jacobian, 1, 2), rest)[..., 0]
         count = 2 * len(self.mechanism.hinges)
-        hinges = joints[:, :count].reshape(len(theta), count // 2, 2)
+        hinges = joints[:, :count].reshape(len(theta), -1, 2)
         return Consistent(q, v, a, hinges, joints[:, count:-1], given if free else joints[:, -1])
-
-    def _read(self) -> None:
-        """Read mass, constraints and forces from exudyn: in each angle the constraints are a sine
-        and a cosine, in all else linear."""
-        solver, system, data = (
-            exu.MainSolverImplicitSecondOrder(),
-            self._system,
-            self._system.systemData,
-        )
-        with _quiet():
-            solver.InitializeSolver(system, settings_of(1.0))
-        count = len(self._q)
-        rows = slice(count, count + len(self.mechanism.guides) + 2 * len(self.mechanism.hinges))
-        names = [body.inertia for body in self.mechanism.bodies]
-        ends = np.cumsum([2 if inertia is None else 3 for inertia in names])
-        turns = np.array([end - 1 for end, i in zip(ends, names, strict=True) if i is not None])
-
-        def at(angle: float) -> tuple[Array, Array]:
-            position = np.zeros(count)
-            position[turns] = angle
-            data.SetODE2Coordinates(position)
-            solver.SetSystemJacobian(np.zeros((rows.stop, rows.stop)))
-            solver.ComputeJacobianAE(system)
-            solver.ComputeAlgebraicEquations(system)
-            return solver.GetSystemJacobian()[rows, :count], solver.GetSystemResidual()[rows]
-
-        def forces(number: int) -> Array:
-            self.pushes = [_constant(float(k == number)) for k in range(cylinders)]
-            solver.ComputeODE2RHS(system)
-            return np.array(solver.GetSystemResidual()[:count])
-
-        self._turns, cylinders = turns, len(self.scene.cylinders)
-        (self._flat, offset), (self._upright, _) = at(0.0), at(0.5 * np.pi)
-        self._offset = offset + self._upright[:, turns].sum(axis=1)
-        self._weight = forces(-1)
-        self._pushed = np.array([forces(k) - self._weight for k in range(cylinders)])
-        self.pushes = ()
-        solver.ComputeMassMatrix(system)
-        self._mass = np.diag(solver.GetSystemMassMatrix()).copy()
 
     def _constraints(self, q: Array) -> tuple[Array, Array, Array]:
         """The Jacobian with a row for the crank angle, shape (m, q, q); the second derivatives in
-        the angles, shape (m, q - 1, turning bodies); and by how much the joints are open."""
+        the angles, shape (m, q - 1, turning bodies); and by how much the joints are open.
+
+        In each angle the constraints are a sine and a cosine, in all else linear.
+        """
         turns, flat, upright = self._turns, self._flat, self._upright
         cos, sin = np.cos(q[:, None, turns]), np.sin(q[:, None, turns])
         straight = flat.copy()
@@ -341,27 +279,35 @@ class Model:
         bend = upright[:, turns] * cos - flat[:, turns] * sin
         return jacobian, bend, self._offset + q @ straight.T - bend.sum(axis=2)
 
-    def _torque(self, time: float) -> float:
-        return self.torque(self._begin + time, self._q.item(2), self._v.item(2))
+    def _read(self) -> None:
+        """Read mass, constraints and forces from exudyn."""
+        solver, system = exu.MainSolverImplicitSecondOrder(), self._system
+        with _quiet():
+            solver.InitializeSolver(system, settings_of(1.0))
+        count, cylinders = len(self._q), len(self.scene.cylinders)
+        self._turns = np.array([2, *range(5, count, 5)])
 
-    def _push(self, k: int, time: float) -> tuple[float, float]:
-        x, y = self._towards[k]
-        at = 6 + 5 * k
-        speed = x * self._v.item(at) + y * self._v.item(at + 1)
-        down = self._tops[k] + x * self._q.item(at) + y * self._q.item(at + 1)
-        force = self.pushes[k](self._begin + time, self._q.item(2), down, speed)
-        return force * x, force * y
+        def at(angle: float) -> tuple[Array, Array]:
+            position = np.zeros(count)
+            position[self._turns] = angle
+            system.systemData.SetODE2Coordinates(position)
+            solver.SetSystemJacobian(np.zeros((2 * count - 1, 2 * count - 1)))
+            solver.ComputeJacobianAE(system)
+            solver.ComputeAlgebraicEquations(system)
+            return solver.GetSystemJacobian()[count:, :count], solver.GetSystemResidual()[count:]
 
+        def forces(row: Array) -> Array:
+            self.pushes = [lambda *_, force=force: force for force in row.tolist()]
+            solver.ComputeODE2RHS(system)
+            return np.array(solver.GetSystemResidual()[:count])
 
-def _constant(value: float) -> Push:
-    return lambda _time, _theta, _displacement, _speed: value
-
-
-def _in_blocks(solve: Callable[..., Consistent], *rows: Array) -> Consistent:
-    """Solve for states so many at a time, which bounds the memory."""
-    starts = range(0, max(len(rows[0]), 1), _BLOCK)
-    parts = [solve(*(row[k : k + _BLOCK] for row in rows)) for k in starts]
-    return Consistent(*map(np.concatenate, zip(*parts, strict=True)))
+        (self._flat, offset), (self._upright, _) = at(0.0), at(0.5 * np.pi)
+        self._offset = offset + self._upright[:, self._turns].sum(axis=1)
+        self.weight = forces(np.zeros(cylinders))
+        self._pushed = np.array([forces(row) - self.weight for row in np.eye(cylinders)])
+        self.pushes = ()
+        solver.ComputeMassMatrix(system)
+        self.mass = np.diag(solver.GetSystemMassMatrix()).copy()
 
 
 @contextmanager
