@@ -10,6 +10,7 @@ import pytest
 from crankmbs.compare.confirm import confirm, differences
 from crankmbs.errors import InputError
 from crankmbs.result import Result
+from crankmbs.scene.forces import Spring
 from crankmbs.scene.read import load_scene
 from crankmbs.scene.run import Run
 from crankmbs.simulate import simulate
@@ -89,6 +90,16 @@ def test_a_crank_that_friction_holds_is_confirmed_too(name: str) -> None:
     assert found.holds
     assert found.at_states <= 1e-9
     assert "while it holds the crank at rest" in found.missing[0]
+
+
+def test_forces_from_outside_are_the_run_s_where_the_speed_is_prescribed() -> None:
+    driven = load_scene("compressor").with_(run__until="1 rev")
+    assert driven.motion is not None
+    pushed = replace(driven, force=(Spring(stiffness=2000.0),))
+    found = [confirm(simulate(scene)) for scene in (driven, pushed)]
+    assert [len(each.missing) for each in found] == [0, 1]
+    assert "not they themselves" in found[1].missing[0]
+    assert all(each.difference < 1e-9 for each in found)
 
 
 @pytest.mark.parametrize("seed", [19, 36])

@@ -91,7 +91,7 @@ class Confirmation:
     period : differences over the last period, which exudyn integrates from the motion's state at
         its begin; of a prescribed speed its equations alone. Empty where nothing moves
     states : differences of its accelerations and joint forces at states all over the run, under the
-        run's load torque
+        run's load torque and forces from outside on the pistons
     window [s] : begin and end of that period
     missing : what could not be compared, in sentences
     """
@@ -168,6 +168,11 @@ def confirm(result: Result) -> Confirmation:
             period, window = _last_period(result, train, part)
         except FormulationError as error:
             missing.append(f"the last cycle could not be integrated: {error}")
+    if result.scene.motion is not None and result.scene.force:
+        missing.append(
+            "the forces from outside on the pistons are the run's, as the speed is prescribed: what "
+            "they do to every joint was compared, not they themselves"
+        )
     if result.scene.friction is not None and np.any(result.sampled("crank_speed") == 0.0):
         missing.append(
             "what friction gives while it holds the crank at rest is the run's: a rigid body at "
