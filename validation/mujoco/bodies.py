@@ -28,7 +28,8 @@ Floats = NDArray[np.float64]
 _CLOSED = 1e-15  # of the largest throw and rod: corrections so small end Newton's method
 _CORRECTIONS = 12
 _NEAR = 0.2  # rad: from so near the last state leads to the next
-_LEAST = 1e-14  # kg, kg m2: MuJoCo takes no body without mass and inertia
+_LEAST = 1e-14  # kg, kg m2: MuJoCo's compiler takes no body without mass and inertia
+_ALMOST_NONE = 1e-30  # kg, kg m2: what a body without has instead
 _MODEL = """
 <mujoco>
   <compiler angle="radian"/>
@@ -94,6 +95,11 @@ class Bodies:
             [self.model.site(f"{place} {k}").id for place in ("end", "pin")] for k in range(n)
         ]
         each = [machine.of(k) for k in range(n)]
+        for pair, m in zip(self.bodies, each, strict=True):
+            masses = [(m.rod_mass, m.rod_inertia), (m.piston_mass, 1.0)]
+            for body, (mass, inertia) in zip(pair, masses, strict=True):
+                self.model.body_mass[body] = max(float(mass), _ALMOST_NONE)
+                self.model.body_inertia[body] = max(float(inertia), _ALMOST_NONE)
         self.reach = np.array([float(m.crank_radius) + float(m.rod_length) for m in each])
         self.rates = np.eye(1 + 2 * n)[0]  # of all coordinates, per crank angle
         self.jacobian = np.zeros((2 * n, 1 + 2 * n))
