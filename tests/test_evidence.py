@@ -79,6 +79,8 @@ def test_every_guard_is_a_claim_or_a_test_that_is_collected(request):
         ("s1_table_4", "reference/s1_table4_as_printed.csv"),
         ("s1_motion_curves", "reference/truncation_errors.csv"),
         ("run_up_minimal", "random_scenes.py"),
+        ("mujoco_unlike", "mujoco/cylinders.csv"),
+        ("mujoco_unlike", "random_unlike.py"),
     ],
 )
 def test_another_input_is_another_digest(name, part, monkeypatch):

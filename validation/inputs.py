@@ -15,6 +15,7 @@ __all__ = ["digest", "inputs", "short_hash"]
 _HERE = Path(__file__).parent
 _MODULE = re.compile(r"^from validation\.(checks\.\w+|random_\w+) import ", re.MULTILINE)
 _READS = re.compile(r"^from validation import .*\breference\b", re.MULTILINE)
+_STORED = re.compile(r"^from validation\.(\w+)\.stored import ", re.MULTILINE)
 _TABLE = re.compile(r'"([^"]+\.csv)"')
 
 
@@ -22,8 +23,9 @@ def digest(case: Case) -> str:
     """Twelve hexadecimal digits of the files that say what is claimed and what it is held against.
 
     These are the case, its scene with the tables that it names, the module of its check with the
-    checks and the random scenes that this imports, and all reference tables where one of them reads
-    any. A row with another digest was measured for another claim.
+    checks and the random scenes that this imports, all reference tables where one of them reads
+    any, and the stored numbers of another program where one reads these. A row with another digest
+    was measured for another claim.
 
     The code of crankmbs and of the oracles is left out: nearly every commit changes it, and to
     judge all claims takes hours. Continuous integration judges the quick claims by the code
@@ -41,6 +43,8 @@ def inputs(case: Case) -> list[Path]:
         files += [scene, *(scene.parent / table for table in _TABLE.findall(_text(scene)))]
     if any(_READS.search(_text(module)) for module in modules):
         files += sorted(reference.FOLDER.glob("*.csv"))
+    for folder in dict.fromkeys(name for m in modules for name in _STORED.findall(_text(m))):
+        files += sorted((_HERE / folder).glob("*.csv"))
     return files
 
 

@@ -62,6 +62,12 @@ KINDS = (
         "multibody multibody_order frame.by_bodies friction.confirmed",
     ),
     Kind(
+        "Another program's rigid bodies",
+        "Nothing but the scene: MuJoCo's mass matrix, bias forces, Jacobians and joint forces, "
+        "under laws of gas and loads by the oracles. Its numbers are stored.",
+        "mujoco",
+    ),
+    Kind(
         "Identities and rules",
         "No second computation: a law that any right result obeys, a closed form, or input that "
         "has to be refused.",

@@ -170,8 +170,8 @@ def confirm(result: Result) -> Confirmation:
             missing.append(f"the last cycle could not be integrated: {error}")
     if result.scene.motion is not None and result.scene.force:
         missing.append(
-            "the forces from outside on the pistons are the run's, as the speed is prescribed: what "
-            "they do to every joint was compared, not they themselves"
+            "the forces from outside on the pistons are the run's, as the speed is prescribed: "
+            "what they do to every joint was compared, not they themselves"
         )
     if result.scene.friction is not None and np.any(result.sampled("crank_speed") == 0.0):
         missing.append(

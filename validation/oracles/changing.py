@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_left, bisect_right
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -78,20 +79,31 @@ class _State(NamedTuple):
     omega: float
 
 
-def changing_motion(changes: Changes, theta: float, omega: float, times: Floats) -> Changed:
+def changing_motion(
+    changes: Changes,
+    theta: float,
+    omega: float,
+    times: Floats,
+    stretch: Callable[..., Stretch] = Stretch,
+) -> Changed:
     """The motion from a crank angle and speed, at increasing times [s].
+
+    stretch : makes what the crank is between two events; another class of them accelerates it by
+    other equations
 
     Raises
     ------
     ArithmeticError : a speed that is held at a knot of the loads, events without end, overflow
     """
     with np.errstate(over="ignore", invalid="ignore"):
-        return _Walk(changes, theta, omega).samples(times)
+        return _Walk(changes, theta, omega, stretch).samples(times)
 
 
 class _Walk:
-    def __init__(self, changes: Changes, theta: float, omega: float) -> None:
-        self.changes, self.state = changes, _State(0.0, theta, omega)
+    def __init__(
+        self, changes: Changes, theta: float, omega: float, stretch: Callable[..., Stretch]
+    ) -> None:
+        self.changes, self.state, self.stretch = changes, _State(0.0, theta, omega), stretch
         self.events: list[tuple[float, float, float, str]] = []
         machine = changes.machine
         self.phases = [float(phase) for phase, _ in machine.cylinders]
@@ -196,7 +208,7 @@ class _Walk:
         low = max([theta - 1.0, *(edge[0] for edge in edges)])
         high = min([theta + 1.0, *(edge[1] for edge in edges)])
         shares = tuple(self.decider.shares) if self.decider else (1.0,) * len(gas)
-        at = Stretch(
+        at = self.stretch(
             self.changes, shares, low, high, slow, fast, end, gas, loads, [], [1.0] * len(gas), []
         )
         middle = theta + sense * min(1e-7, 0.5 * (high - low))

@@ -165,15 +165,21 @@ class Stretch:
             found[one.k] += one.at(t, theta, displacement, -places[one.k].x_1 * omega)
         return found
 
-    def alpha(self, t: float, theta: float, omega: float) -> float:
-        """The acceleration [rad/s2]."""
-        places, both = self.places(theta), self.forces(theta)
+    def on_pistons(self, t: float, theta: float, omega: float, places: list[Place]) -> list[float]:
+        """All forces along the cylinder on every piston [N], towards the crank, but the rod's."""
+        both = self.forces(theta)
         if self.pushed:
             applied = self._applied(t, theta, omega, places)
             both = [a + b for a, b in zip(both, applied, strict=True)]
         if self.changes.rings is not None:
             rubbed = self._rubbed(omega, places, self.forces(theta))
             both = [a + b for a, b in zip(both, rubbed, strict=True)]
+        return both
+
+    def alpha(self, t: float, theta: float, omega: float) -> float:
+        """The acceleration [rad/s2]."""
+        places = self.places(theta)
+        both = self.on_pistons(t, theta, omega, places)
         inertia, slope, torque = inertia_and_torque(self.changes.machine, theta, places, both)
         return (torque + self.external(t, theta, omega) - 0.5 * slope * omega * omega) / inertia
 
