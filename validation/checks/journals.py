@@ -21,6 +21,7 @@ from validation.random_scenes import random_scene
 
 __all__ = ["beams", "of_runs"]
 
+_NOTHING = 1e-12  # N: rounding, where a crank rests and nothing pulls
 _MOTION = ("crank_angle", "crank_speed", "crank_acceleration")
 
 
@@ -90,7 +91,8 @@ def _apart(
         ours[f"{name}_force_x"] + 1j * ours[f"{name}_force_y"]
         for name in ("main_journal", "main_bearing")
     )
-    largest = max(float(np.abs(each).max()) for each in (rods, exact, bearing)) or 1.0
+    largest = max(float(np.abs(each).max()) for each in (rods, exact, bearing))
+    largest = largest if largest > _NOTHING else 1.0
     apart = [np.abs(found - exact).max(), np.abs(found.sum(axis=1) - bearing).max()]
     if "pin_force_x" in ours:
         shared = ours["pin_force_x"] + 1j * ours["pin_force_y"]
