@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from command_line import crankmbs_, names, refused
 from exports import FIRED, HEADER, columns_of_cycles, cycles, text
+from scene_texts import FREE, INDICATOR, edited
 
 from crankmbs import load_scene, read_pressure
 
@@ -29,7 +30,7 @@ def test_it_writes_table_and_figures_and_says_what_was_done(export):
         "decimal comma; 4-stroke, -360 to 359 degrees in steps of 1",
         "the header gives bore 85.25 mm, stroke 92 mm, rod length 153.333 mm, compression ratio 18",
         "wrote out: table.csv, table_angle.png, table_pv.png, table_cycles.png",
-        '  pressure = "table.csv"',
+        '  pressure = "out/table.csv"',
     ):
         assert sentence in result.stdout
     assert str(export) not in (export / "out" / "table.csv").read_text()
@@ -39,6 +40,22 @@ def test_by_default_it_writes_into_results(export):
     result = crankmbs_("pressure", "export.csv", "--no-figures")
     assert result.exit_code == 0, result.output
     assert names(export / "results" / "export") == {"pressure.csv"}
+    assert '  pressure = "results/export/pressure.csv"\n' in result.stdout
+
+
+def test_the_path_is_from_where_the_scene_stands(export):
+    """As a scene reads it: pasted into the scene, the table is found."""
+    (export / "machines").mkdir()
+    scene = edited(FREE, 'pressure = "gas.csv"\nabsolute = false\n', INDICATOR)
+    (export / "machines" / "mine.toml").write_text(scene)
+    arguments = "export.csv", "--scene", "machines/mine.toml", "-o", "out/table.csv"
+    result = crankmbs_("pressure", *arguments, "--no-figures")
+    assert result.exit_code == 0, result.output
+    lines = result.stdout.split("as [gas] of a scene:\n")[1]
+    assert lines.startswith('  pressure = "../out/table.csv"\n')
+    pasted = edited(FREE, 'pressure = "gas.csv"\nabsolute = false\n', lines)
+    (export / "machines" / "mine.toml").write_text(pasted)
+    assert crankmbs_("check", "machines/mine.toml").exit_code == 0
 
 
 def test_a_question_is_put_in_words_of_the_command_line(export):

@@ -142,6 +142,10 @@ def test_check_shows_every_prescribed_speed(speed, said):
             '"speed_table"\nfile = "load.csv"',
             "speed table, -20 to +10 N m in 2 rows of load.csv; -20 N m at the start, brakes",
         ),
+        (
+            '"constant"\ntorque = "-9 N m"\nafter = "1 s"',
+            "constant, -9 N m, after 1 s; none at the start",
+        ),
     ],
 )
 def test_check_shows_every_load_with_its_sign(load, said):

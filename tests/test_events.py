@@ -69,8 +69,8 @@ def test_loads_on_and_off_by_closed_form(formulation):
     np.testing.assert_allclose(events["crank_speed"], speed, rtol=1e-10)
     turned = [0.0, 9.9, 22.9, 22.9 + 1.09 * (20.0 + 9.1) / 2.0]
     np.testing.assert_allclose(events["crank_angle"], 0.3 + np.array(turned), rtol=1e-10)
-    assert events["text"].values[1] == "load 1, constant, ends at 190.986 rpm"
-    assert events["text"].values[2] == "load 2, constant, sets in at 1.55 s"
+    assert events["text"].values[1] == "torque[1], constant, ends at 190.986 rpm"
+    assert events["text"].values[2] == "torque[2], constant, sets in at 1.55 s"
     assert max(events[name].error_estimate for name in ("time", "crank_angle")) < 1e-9
 
 

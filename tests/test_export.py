@@ -111,10 +111,10 @@ def test_the_script_says_its_error_and_needs_no_crankmbs(tmp_path):
     run = subprocess.run(
         [sys.executable, "-c", code], cwd=tmp_path, check=True, capture_output=True, text=True
     )
-    assert run.stdout.endswith("wrote mine.csv\n")
-    rows = np.loadtxt(tmp_path / "mine.csv", delimiter=",", skiprows=1)
+    assert run.stdout.endswith("wrote mine_exudyn.csv\n")
+    rows = np.loadtxt(tmp_path / "mine_exudyn.csv", delimiter=",", skiprows=1)
     assert rows[-1, 0] == pytest.approx(0.3)
-    with (tmp_path / "mine.csv").open() as lines:
+    with (tmp_path / "mine_exudyn.csv").open() as lines:
         assert next(lines).startswith("time [s],crank_angle [rad],crank_speed [rad/s],")
 
 

@@ -205,6 +205,10 @@ def test_the_command(tmp_path, monkeypatch):
     for wanted in ("much", "-1 %", "300 %"):
         said = refused("flywheel", "yi_diesel_free", "--fluctuation", wanted)
         assert said.startswith("--fluctuation: must be a share of the mean speed")
+    assert refused("flywheel", "yi_diesel_free", "--fluctuation", "1") == (
+        "--fluctuation: 1 without a unit is 100 % of the mean speed; "
+        'write "1 %", or "100 %" if that is meant'
+    )
 
 
 def test_a_settled_run_is_confirmed(tmp_path):

@@ -33,6 +33,16 @@ def test_a_load_that_never_set_in():
     assert text.endswith("torque[2]: from_speed, 9000 rpm, was not met, and the load never set in")
 
 
+def test_a_load_that_waits_for_a_time_behind_the_end():
+    late = Viscous(coefficient=0.1, after=9.0)
+    text = said(replace(FOUR, torque=(*FOUR.torque, late), run=Run(until="0.05 s")))
+    assert text.endswith(
+        "torque[2]: after, 9 s, is not before the end of the run, 0.05 s, and the load never set in"
+    )
+    soon = replace(late, after=0.01)
+    assert "never" not in said(replace(FOUR, torque=(soon,), run=Run(until="0.05 s")))
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("gains", "hunts"), [({"kp": 1.0, "max": 5.0}, True), ({}, False), ({"max": 0.5}, False)]

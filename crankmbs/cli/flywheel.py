@@ -27,6 +27,7 @@ __all__ = ["flywheel"]
 
 _POINTS, _BEYOND = 13, 2.0  # of the curve drawn, and how far it goes beyond both inertias
 _NOTHING = 1e-9  # of W: a load that balances is none
+_LARGE = 0.2  # of the mean speed: as a bare number rather a percentage without its sign
 _SHARE = re.compile(r"\s*(\d+\.?\d*(?:[eE][+-]?\d+)?|\.\d+)\s*(%?)\s*")
 
 
@@ -49,6 +50,11 @@ def flywheel(
         raise InputError(
             "--fluctuation: must be a share of the mean speed above 0 and below 200 %, such as "
             f'"1 %" or 0.01; {shown(fluctuation)} came'
+        )
+    if match and not match[2] and number >= _LARGE:
+        raise InputError(
+            f"--fluctuation: {number:g} without a unit is {100.0 * number:g} % of the mean speed; "
+            f'write "{number:g} %", or "{100.0 * number:g} %" if that is meant'
         )
     path = scene_path(scene)
     machine = load_scene(path)

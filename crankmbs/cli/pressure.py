@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -100,9 +101,13 @@ def _convert(
                 names += _draw(indicated, part, target.stem)
     lines = [as_options(sentence) for sentence in indicated.sentences]
     lines += ["", wrote_into(target.parent, names), "as [gas] of a scene:"]
-    lines += [f"  {line}" for line in gas_lines(indicated, target.name)]
+    # a scene's paths are relative to its folder; a new one's stands where the command is given
+    beside = Path(scene).parent if scene and Path(scene).is_file() else Path()
+    within = Path(os.path.relpath(target.parent, beside))
+    lines += [f"  {line}" for line in gas_lines(indicated, (within / names[0]).as_posix())]
     if indicated.speed is not None:
-        lines += ["as [motion] of a scene:", f"  {motion_line(names[1])}"]
+        of_speed = (within / names[1]).as_posix()
+        lines += ["as [motion] of a scene:", f"  {motion_line(of_speed)}"]
     echo("\n".join(lines))
 
 

@@ -85,7 +85,7 @@ def _about(result: Result, measures: Measures) -> str:
             f"{'end':<12} {result.message}",
             f"{'samples':<12} {samples}",
             f"{'last sample':<12} {math.degrees(angle[-1]):.6g} deg, {speed[-1] / RPM:.6g} rpm",
-            *([f"{'speed':<12} {fault}"] if (fault := unsteady(measures)) else []),
+            *([f"{'speed':<12} {fault}"] if (fault := unsteady(result, measures)) else []),
             *_events(result),
             _error_line(result),
             f"{'energy':<12} closes to {measures.energy_closure:.1e} of the peak kinetic energy",

@@ -209,7 +209,7 @@ def _parameters(train: CrankTrain, stem: str, end: float, steps: int) -> str:
         ("TORQUE_QUADRATIC", 0.0 - _sum(scene, Quadratic, "coefficient"), "N m s^2"),
         ("PRESCRIBED_SPEED", speed, "rad/s; None: the crank is free"),
         ("START_ANGLE", begin.angle, "rad"),
-        ("OUTPUT", f"{stem}.csv", ""),
+        ("OUTPUT", f"{stem}_exudyn.csv", "not the name of a table that the scene reads"),
         ("NEAR", NEAR, "rad: angles nearer than this are one"),
         ("STEP", step, "s"),
         ("STEPS", steps, ""),

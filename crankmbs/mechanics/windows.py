@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.torque import Acting
+from crankmbs.scene.windowed import Windowed
 
 __all__ = [
     "Phase",
@@ -79,7 +80,7 @@ def acting(torques: tuple[Acting, ...], phases: Phases) -> tuple[tuple[int, Acti
     return tuple(one for one in numbered if not phases or phases[one[0] - 1] is Phase.ACTING)
 
 
-def place_of(loads: tuple[Acting, ...], number: int) -> str:
+def place_of(loads: tuple[Acting | Windowed, ...], number: int) -> str:
     """Where in a scene the load with a number among all stands, as in every message.
 
     >>> place_of((Constant(torque=2.0), Constant(torque=1.0)), 2)

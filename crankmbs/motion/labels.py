@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crankmbs.mechanics.variables import Variable, dataset
+from crankmbs.mechanics.windows import place_of
 from crankmbs.motion.account import Kind, Rows
 from crankmbs.motion.events import MOST_EVENTS
 from crankmbs.numerics.arrays import Labelled
@@ -128,9 +129,8 @@ def _text(scene: Scene, kind: Kind, number: int, time: float, share: float) -> s
     if kind is Kind.FUEL:
         return f"cylinder {number} decides q = {share:.4g}"
     if kind in _OF_LOADS:
-        load = (*scene.torque, *scene.force)[number - 1]
-        torques = len(scene.torque)
-        which = f"load {number}" if number <= torques else f"force {number - torques}"
+        loads = *scene.torque, *scene.force
+        load, which = loads[number - 1], place_of(loads, number)
         if kind is Kind.LOAD_ON:
             return f"{which}, {load.name}, sets in at {_met(time, load.after, load.from_speed)}"
         return f"{which}, {load.name}, ends at {_met(time, load.until, load.until_speed)}"

@@ -1,4 +1,4 @@
-"""What a reader of a run has to know besides: windows that a speed did not end or begin, a governor
+"""What a reader of a run has to know besides: windows that did not end or begin, a governor
 that hunts, and a crank that turned back under a load over its angle."""
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ _SWINGS = 3  # from one end to the other: a load step makes one, and one back
 
 
 def remarks(scene: Scene, mode: Mode, samples: Samples) -> tuple[str, ...]:
-    """A sentence for each window that waits for a speed at the end of a run, for a governor whose
-    share goes from its least to its greatest and back throughout the second half of it, and for
-    each load over the angle of a crank that turned back.
+    """A sentence for each window that waits for a time or a speed at the end of a run, for a
+    governor whose share goes from its least to its greatest and back throughout the second half of
+    it, and for each load over the angle of a crank that turned back.
 
     mode : at the end
 
@@ -31,7 +31,7 @@ def remarks(scene: Scene, mode: Mode, samples: Samples) -> tuple[str, ...]:
     'reached the end of the run'
     """
     shares = samples.own.get("fuel")
-    said = [*_windows(scene, mode), *_turned_back(scene, samples.omega)]
+    said = [*_windows(scene, mode, float(samples.time[-1])), *_turned_back(scene, samples.omega)]
     fuel, firing = scene.fuel, mode.firing
     if fuel is not None and firing is not None:
         if firing.set_in is None and fuel.from_speed is not None:
@@ -44,7 +44,7 @@ def remarks(scene: Scene, mode: Mode, samples: Samples) -> tuple[str, ...]:
     return tuple(said)
 
 
-def _windows(scene: Scene, mode: Mode) -> Iterator[str]:
+def _windows(scene: Scene, mode: Mode, end: float) -> Iterator[str]:
     numbered = [
         (f"{load.heading}[{number}]", load)
         for loads in (scene.torque, scene.force)
@@ -55,6 +55,11 @@ def _windows(scene: Scene, mode: Mode) -> Iterator[str]:
             yield (
                 f"{place}: until_speed, {load.until_speed / RPM:.6g} rpm, was not met, "
                 "and the load never let go"
+            )
+        if phase is Phase.DUE and (load.after or 0.0) >= end:
+            yield (
+                f"{place}: after, {load.after:.6g} s, is not before the end of the run, "
+                f"{end:.6g} s, and the load never set in"
             )
         if phase is Phase.WAITING and load.from_speed is not None:
             yield (

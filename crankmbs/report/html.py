@@ -38,7 +38,7 @@ def result_html(result: Result) -> str:
         ("formulation", result.formulation),
         *(("", reason) for reason in result.reasons),
         ("end", result.message),
-        *([("speed", text)] if (text := unsteady(measures)) else []),
+        *([("speed", text)] if (text := unsteady(result, measures)) else []),
         ("num. error", f"{error.estimated:.1e} relative, {error.asked:.0e} asked for"),
         *(("warning", text) for text in warnings(result.scene)),
     ]

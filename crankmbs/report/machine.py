@@ -11,6 +11,7 @@ from crankmbs.measures.plausible import warnings
 from crankmbs.mechanics.geometry import dead_centres
 from crankmbs.mechanics.pressure import PeriodicPressure, crank_ends_of, pressures_of, remarks
 from crankmbs.mechanics.speed import speed_remarks
+from crankmbs.mechanics.windows import Phase, first_phases
 from crankmbs.scene.cycles import cycles_in
 from crankmbs.scene.drives import Oscillation, Ramp, SpeedFile
 from crankmbs.scene.force import PistonForce
@@ -325,6 +326,8 @@ def _load(scene: Scene, load: Torque) -> str:
     assert scene.start is not None
     text = f"{load.name}, {load.words}{load.window_words}"
     speed = scene.start.speed
+    if any(phase is not Phase.ACTING for phase in first_phases((load,), speed)):
+        return f"{text}; none at the start"
     torque = float(load(0.0, scene.start.angle, speed))
     if torque * speed == 0.0:
         return text

@@ -69,10 +69,8 @@ def tables(result: Result, measures: Measures) -> list[Table]:
         rows = measure_rows(measures, scene)
         parts.append(Table([f"over the {window}", "value, to 6 digits", _ERROR], rows))
     if not measures.steady:
-        motion, of = result.passes.answer, "whole run"
-        if result.scene.run.every is None:
-            of = "what is kept of the run"
-        name = f"over the {of}, {motion.begin:.6g} to {motion.end:.6g} s"
+        motion = result.passes.answer
+        name = f"over {_part(result)}, {motion.begin:.6g} to {motion.end:.6g} s"
         return [*parts, Table([name, *_WHOLE_RUN], _of_run(run_peaks(result), scene))]
     parts.append(Table([f"over the {window}", *FORCE_HEADINGS], peak_rows(measures, scene.period)))
     specific = _specific(measures)
@@ -82,21 +80,29 @@ def tables(result: Result, measures: Measures) -> list[Table]:
     return parts
 
 
-def unsteady(measures: Measures) -> str:
-    """Why peaks are those of the whole run, in a sentence; nothing where they are not.
+def _part(result: Result) -> str:
+    """Of what peaks are where the motion is not periodic."""
+    kept = result.passes.answer.begin == 0.0
+    return "the whole run" if kept else "what is kept of the run"
 
-    >>> unsteady(simulate(load_scene("propeller")).measures())
+
+def unsteady(result: Result, measures: Measures) -> str:
+    """Why peaks are not those of the window, in a sentence; nothing where they are.
+
+    >>> result = simulate(load_scene("propeller"))
+    >>> unsteady(result, result.measures())
     ''
     """
     if measures.steady:
         return ""
+    peaks = f"peaks are of {_part(result)}"
     if measures.window.kind == TURNS_BACK:
-        return "not periodic: the crank rests or turns back; peaks are of the whole run"
+        return f"not periodic: the crank rests or turns back; {peaks}"
     scale, unit = displayed("rad/s")
     drift = measures.speed_gain.value / scale
     return (
         f"not periodic: the speed changes by {drift:+.3g} {unit} over the {measures.window.kind}; "
-        "peaks are of the whole run"
+        f"{peaks}"
     )
 
 

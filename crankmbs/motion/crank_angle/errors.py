@@ -29,8 +29,8 @@ def errors_of(segment: AngleSegment) -> Errors:
     """The torque and the slowness that a solution has at the finer rule's nodes, integrated up to
     these and to the cells' ends, less what its own rule made of them."""
     grid, loads, sense = segment.grid, segment.branch, segment.sense
-    rule, finer = grid.rule, grid.finer.rule
-    terms = grid.finer.same(segment.terms, segment.begin.theta, sense)
+    rule, finer = grid.rule, grid.of_finer_rule.rule
+    terms = grid.of_finer_rule.same(segment.terms, segment.begin.theta, sense)
     if segment.modes:
         terms = terms.fired(segment.shares)
     pace = terms.pace

@@ -228,6 +228,15 @@ class Grid:
         rule = gauss(len(self.rule.nodes) + 2)
         return Grid(self.train.perturbed, self.edges, rule, checks=True, phases=self.phases)
 
+    @cached_property
+    def of_finer_rule(self) -> Grid:
+        """The same cells for that rule, under this pressure: it shows what the cells err, which
+        smaller ones make less of; what the pressure may be off by stays."""
+        finer = self.finer
+        if finer.train is self.train:
+            return finer
+        return Grid(self.train, self.edges, finer.rule, phases=self.phases)
+
     def split(self, parts: NDArray[np.intp]) -> Grid:
         """Every cell cut into equal parts, as many as ``parts``, shape (n,), says."""
         cell = np.repeat(np.arange(len(parts)), parts)
