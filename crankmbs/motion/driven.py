@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from crankmbs.errors import InputError
 from crankmbs.mechanics.knots import KNOT, apart, repeat
 from crankmbs.mechanics.speed import SpeedLaw
 from crankmbs.mechanics.train import (
@@ -25,11 +26,20 @@ from crankmbs.mechanics.windows import later_phases
 from crankmbs.motion.base import State
 from crankmbs.motion.cells import Acting, Cells
 from crankmbs.motion.mode import Mode, begun, decided
+from crankmbs.motion.plan import Plan
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.lagrange import ends_and_nodes
 from crankmbs.scene.units import DEGREE
 
-__all__ = ["Driven", "Way", "begun_at", "decisions", "driven", "windows_at"]
+__all__ = [
+    "Driven",
+    "Way",
+    "begun_at",
+    "decisions",
+    "driven",
+    "monotone_stretches",
+    "windows_at",
+]
 
 _PANEL = 5.0 * DEGREE  # widest panel of a quadrature over the angle
 _TURNS = 100  # periods in a piece
@@ -102,7 +112,7 @@ class Driven:
 
 
 def driven(way: Way, stretches: Iterable[tuple[float, float]]) -> Iterator[Driven]:
-    """The pieces on stretches of time [s], as `crankmbs.motion.prescribed` finds them."""
+    """The pieces on stretches of time [s], as `monotone_stretches` finds them."""
     train, law = way.train, way.law
     mode = begun(train)
     stretches = tuple(stretches)
@@ -159,3 +169,34 @@ def decisions(train: CrankTrain, law: SpeedLaw, first: State, last: State) -> It
         omega = float(law.at_time(time)[1])
         mode = decided(train, mode, time, angle, omega)
         yield State(time, angle, omega, 0.0, mode)
+
+
+def monotone_stretches(plan: Plan, law: SpeedLaw) -> tuple[list[tuple[float, float]], bool]:
+    """Stretches (begin, end) [s] up to the end of the run; and whether that comes.
+
+    Raises
+    ------
+    InputError : a speed table that ends before the run does
+    """
+    stretches: list[tuple[float, float]] = []
+    begin = 0.0
+    for turn in law.turning_times:
+        end = min(turn, plan.time_bound)
+        sense = float(law.at_time(begin + 1.0 if math.isinf(end) else 0.5 * (begin + end))[1])
+        bound = plan.angle_bounds[1 if sense > 0.0 else 0]
+        if sense != 0.0 and math.isfinite(bound):
+            passed = math.inf if math.isinf(end) else (float(law.at_time(end)[0]) - bound) * sense
+            if passed >= -1e-13 * abs(bound):
+                stretches.append((begin, float(law.time_at(bound, begin, end)[0])))
+                return stretches, True
+        if sense == 0.0 and math.isinf(end):
+            return stretches, False
+        stretches.append((begin, end))
+        if end == plan.time_bound:
+            return stretches, True
+        begin = end
+    degrees = float(law.at_time(begin)[0]) / DEGREE
+    raise InputError(
+        f"motion.speed: the speed table ends at {begin:g} s, before the run does, at "
+        f"{degrees:g} degrees; lengthen the table or shorten the run"
+    )

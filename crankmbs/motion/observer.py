@@ -33,7 +33,8 @@ def account_of(passes: Sequence[Followed], share: float) -> Account:
     for number, (train, begin, pieces, ending) in enumerate(passes):
         logs.append(Log(train))
         cycles.append(Cycles(train, begin.theta, finer=number > 0))
-        logs[-1].start(begin)
+        if not train.scene.settles:  # a periodic motion has no start: what acts was decided before
+            logs[-1].start(begin)
         last = begin
         for piece in pieces:
             logs[-1].add(piece)

@@ -24,9 +24,8 @@ from crankmbs.mechanics.torque import Branch, Course, branch_at, course_of
 from crankmbs.motion.base import State
 from crankmbs.motion.crank_angle.firings import solve_fired
 from crankmbs.motion.crank_angle.grid import Grid, Terms
-from crankmbs.motion.crank_angle.kinks import what_misses
+from crankmbs.motion.crank_angle.kinks import sign_changes_in, what_misses
 from crankmbs.motion.crank_angle.periods import period_of
-from crankmbs.motion.crank_angle.rings import sign_changes_in
 from crankmbs.motion.crank_angle.segment import AngleSegment
 from crankmbs.motion.crank_angle.solvers import Begin, lasting, solve
 from crankmbs.motion.ending import Ending

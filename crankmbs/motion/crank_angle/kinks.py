@@ -1,4 +1,5 @@
-"""Where cells of the crank angle are cut because their loads bend inside them.
+"""Where cells of the crank angle are cut because loads bend inside them, or rings feel a gas force
+that changes its sign.
 
 A Gauss rule of s nodes misses of a kink at the position c of a cell, where the torque's slope
 changes by b per cell, at most b min(c^2 / 2, (1 - c)^2 / 2, 0.31 / s^2) of the mean torque. The
@@ -6,6 +7,12 @@ cells are solved with the loads as they are; where the kinks in one of them are 
 be missed they become edges, and all is solved again; where they are worth little more, on a grid
 that checks another, what the rule misses of them is computed and added. Rows of a fine table are so
 stepped over, and their number costs nothing.
+
+Without fuel the angles at which gas forces change their sign are known, and edges of the grid. With
+fuel they move with the share of the combustion that acts, which is known once the cells are solved:
+between two knots the pressure is a cubic, given by its values at the nodes, and its roots become
+edges. As they are those of the shares and not of the motion, solving again moves them no more than
+the shares err.
 """
 
 from __future__ import annotations
@@ -20,13 +27,15 @@ from crankmbs.motion.crank_angle.grid import largest_of_row
 from crankmbs.motion.crank_angle.segment import AngleSegment
 from crankmbs.numerics.arrays import Array, Index
 
-__all__ = ["Missing", "what_misses"]
+__all__ = ["Missing", "sign_changes_in", "what_misses"]
 
 _WORST = 0.31  # over s^2: what s nodes miss of a kink of slope 1; (pi / 2)^2 / 8, for many nodes
 _HALVES = 10  # a mark a thousandth of the stretch off still lies between the two kinks
 _NEWTON = 5  # steps, kept within brackets
 _MENDED = 50.0  # times what may be missed: kinks whose errors, known to a hundredth, are added
 _CALM = 0.01  # of a cell's energy, by the slopes of its loads: what a missed kink feeds back
+_AT_EDGE = 1e-7  # rad: a root so near an edge is there
+_BISECTIONS = 50  # to 1e-15 of a piece
 _LITTLE = 1e-3  # of what a cell may miss: a kink worth less stays in it beside others
 
 
@@ -236,3 +245,35 @@ def _value(of: Array, x: Array) -> tuple[Array, Array]:
         slope = slope * x + value
         value = value * x + coefficient
     return value, slope
+
+
+def sign_changes_in(segment: AngleSegment) -> Array:
+    """Angles turned [rad] at which gas forces change their sign inside cells and press rings;
+    empty without fuel."""
+    train, terms = segment.grid.train, segment.terms
+    found = [np.empty(0)]
+    if terms.rubbed.shape[-1] == 0 or train.pressure is None or train.combustion is None:
+        return found[0]
+    theta = terms.angles(segment.begin.theta, segment.sense, segment.grid.rule)
+    nodes = segment.grid.rule.nodes
+    to_cubic = np.linalg.pinv(np.vander(nodes, 4)).T
+    x = np.concatenate([[0.0], nodes, [1.0]])
+    for k, cylinder in enumerate(train.scene.cylinders):
+        phi = theta + cylinder.phase
+        force = train.pressure[k](phi) + segment.shares[:, k, None] * train.combustion[k](phi)
+        cubics = force @ to_cubic
+        values = cubics @ np.vander(x, 4).T
+        cell, at = np.nonzero(values[:, 1:] * values[:, :-1] < 0.0)
+        low, high = x[at], x[at + 1]
+        falls = values[cell, at] > 0.0
+        for _ in range(_BISECTIONS):
+            middle = 0.5 * (low + high)
+            positive = np.polynomial.polynomial.polyval(middle, cubics[cell, ::-1].T, False) > 0.0
+            low, high = (
+                np.where(positive == falls, middle, low),
+                np.where(positive == falls, high, middle),
+            )
+        behind = low * terms.width[cell]
+        inside = np.minimum(behind, terms.width[cell] - behind) > _AT_EDGE
+        found.append((segment.edges[cell] + behind)[inside])
+    return np.concatenate(found)

@@ -17,8 +17,7 @@ from crankmbs.motion.crank_angle.segment import AngleSegment
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.minimal import advance as minimal
 from crankmbs.motion.minimal.reduced import Reduced
-from crankmbs.motion.minimal.segment import TimeSegment
-from crankmbs.motion.minimal.step_sizes import StepSizes
+from crankmbs.motion.minimal.segment import StepSizes, TimeSegment
 from crankmbs.motion.plan import Plan
 
 __all__ = ["FINEST_STEP", "Handover"]

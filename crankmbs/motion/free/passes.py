@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import replace
 from functools import partial
+from itertools import takewhile
 from typing import NamedTuple
 
 import numpy as np
@@ -13,21 +15,16 @@ from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.variables import VARIABLES
 from crankmbs.motion.account import Account
 from crankmbs.motion.assemble import Assembled, assemble
-from crankmbs.motion.base import Solution, State
+from crankmbs.motion.base import Segment, Solution
 from crankmbs.motion.crank_angle.grid import FINEST_CELL, Grid, edges_apart, grid_of
-from crankmbs.motion.cycles import MOST_CYCLES, Cycles, cycles_of
+from crankmbs.motion.cycles import MOST_CYCLES
 from crankmbs.motion.ending import Ending
-from crankmbs.motion.events import events_of
 from crankmbs.motion.free.handover import FINEST_STEP
-from crankmbs.motion.free.integrate import (
-    Begin,
-    Pass,
-    Setup,
-    begin_at_start,
-    integrate,
-)
+from crankmbs.motion.free.integrate import Begin, Pass, Setup, begin_at_start, integrate
 from crankmbs.motion.free.matching import match, stays
+from crankmbs.motion.minimal.segment import StepSizes
 from crankmbs.motion.motion import Motion, Passes
+from crankmbs.motion.observer import Followed, account_of
 from crankmbs.motion.plan import plan_of
 from crankmbs.motion.remarks import remarks
 from crankmbs.numerics.collocation import gauss
@@ -90,18 +87,17 @@ def run(
     local = max(local, finest)
     for left in reversed(range(_PASSES)):
         answer = integrate(grid, setup, local, by_angle=by_angle)
-        begun, grid = grid, answer.grid
-        if left and lead is not None and grid is not begun:
+        grid = answer.hand.grid
+        if left and lead is not None and grid is not answer.grid:
             continue  # where a settled motion begins depends on the cells
-        origin = answer.origin
-        better = integrate(grid.finer, setup, 1e-2 * local, by_angle=by_angle, first=origin)
-        passes = [_Made(begun, local, answer), _Made(grid.finer, 1e-2 * local, better)]
+        better = integrate(grid.finer, setup, 1e-2 * local, by_angle=by_angle, before=answer)
+        passes = [answer, better]
         solution = _solution(train.scene, answer, better, setup)
         assembled = assemble(train, solution)
         if functions:
             other = staggered(grid)
-            elsewhere = integrate(other, setup, 0.1 * local, by_angle=by_angle, first=origin)
-            passes.append(_Made(other, 0.1 * local, elsewhere))
+            elsewhere = integrate(other, setup, 0.1 * local, by_angle=by_angle, before=answer)
+            passes.append(elsewhere)
             again = assemble(train, _solution(train.scene, answer, elsewhere, setup))
             assembled = _stated_twice(assembled, again)
         near = local <= 10.0 * finest
@@ -119,10 +115,10 @@ def run(
         # what is left is rounding, in both passes alike, and their difference too small an estimate
         best = _doubled(best)
         share *= 2.0
-    first, *others = (Motion(one.grid.train, [*one.made.path.segments]) for one in followed)
-    if not all(one.made.path.segments for one in followed):  # the crank never moves
+    first, *others = (Motion(one.grid.train, [*one.path.segments]) for one in followed)
+    if not all(one.path.segments for one in followed):  # the crank never moves
         first, *others = [Motion.of_one(train, best.solution.samples)] * len(followed)
-    keep = partial(_account, followed, setup, share, by_angle=by_angle)
+    keep = partial(_account, followed, setup, share)
     solution = replace(best.solution, keep=keep)
     if best.relative_error > rtol and solution.status >= 0:
         text = f"asked for {rtol:.0e}, reached {best.relative_error:.0e}"
@@ -130,34 +126,22 @@ def run(
     return replace(best, solution=solution, motion=partial(Passes, first, tuple(others), share))
 
 
-class _Made(NamedTuple):
-    """A pass, and what it was made with: the first grid, and what it might err locally."""
-
-    grid: Grid
-    local: float
-    made: Pass
-
-
-def _account(passes: tuple[_Made, ...], setup: Setup, share: float, *, by_angle: bool) -> Account:
-    """The events of a motion and its whole cycles; where its segments were not kept it is followed
-    once more."""
-    cycles, origin = [], passes[0].made.origin
-    for k, (grid, local, made) in enumerate(passes):
-        cycles.append(Cycles(grid.train, made.origin.state.theta, finer=k > 0))
-        if not (math.isfinite(setup.plan.last) or made.path.dropped):
-            for segment in made.path.segments:
-                cycles[-1].add(segment)
-            continue
-        plan = replace(setup.plan, last=(MOST_CYCLES + 1) * grid.train.scene.period)
-        begin, watch = partial(_given, made.origin.state), cycles[-1].add
-        again = setup._replace(begin=begin, plan=plan, watch=watch)
-        integrate(grid, again, local, by_angle=by_angle, first=None if k == 0 else origin)
-    events = events_of([one.made.path.log for one in passes], share)
-    return Account(events, cycles_of(cycles, share))
+def _account(passes: tuple[Pass, ...], setup: Setup, share: float) -> Account:
+    """The events of a motion and its whole cycles."""
+    followed = [
+        Followed(one.grid.train, one.begin, _segments(one, setup), one.ending) for one in passes
+    ]
+    return account_of(followed, share)
 
 
-def _given(state: State, _grid: Grid, _local: float) -> State:
-    return state
+def _segments(one: Pass, setup: Setup) -> Iterable[Segment]:
+    """The segments of a pass; where they were not kept it is followed once more."""
+    if one.path.state is None or not (math.isfinite(setup.plan.last) or one.path.dropped):
+        return one.path.segments
+    plan = replace(setup.plan, last=(MOST_CYCLES + 1) * one.grid.train.scene.period)
+    again = replace(one.hand, grid=one.grid, taken=StepSizes())
+    end, segments = one.path.state.time, again.segments(one.start, plan, setup.allowed)
+    return takewhile(lambda segment: segment.begin.time < end, segments)
 
 
 @once
@@ -211,9 +195,9 @@ def _solution(scene: Scene, answer: Pass, better: Pass, setup: Setup) -> Solutio
     if status >= 0 and path.state is not None:
         text = "; ".join([text, *remarks(scene, path.state.mode, samples)])
     reasons: tuple[str, ...] = ()
-    if answer.slow:
-        times = ", ".join(f"{t:.4g}" for t in answer.slow[:5])
-        more = " and later" if len(answer.slow) > 5 else ""
+    if path.slow and answer.hand.by_angle:
+        times = ", ".join(f"{t:.4g}" for t in path.slow[:5])
+        more = " and later" if len(path.slow) > 5 else ""
         reasons = (f"minimal carried it across slow stretches that begin at {times} s{more}",)
     evaluations = path.evaluations + better.path.evaluations
     steps = path.steps + better.path.steps

@@ -24,7 +24,6 @@ from crankmbs.motion.crank_angle.grid import Grid
 from crankmbs.motion.crank_angle.periods import Period, period_of
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.free.integrate import Setup, integrate
-from crankmbs.motion.free.recorder import Segment
 from crankmbs.motion.plan import plan_of
 from crankmbs.numerics.arrays import Array
 
@@ -71,15 +70,6 @@ class LostError(Exception):
     def __init__(self, ending: Ending, factor: float = math.nan) -> None:
         super().__init__(ending)
         self.ending, self.factor = ending, factor
-
-
-class _StopError(Exception):
-    """The crank stops or turns back."""
-
-
-def _refuse_a_stop(segment: Segment) -> None:
-    if segment.end.omega == 0.0:
-        raise _StopError
 
 
 class PeriodMap:
@@ -143,12 +133,8 @@ class PeriodMap:
         self._periods += 1
         if self._periods > MOST_PERIODS:
             raise LostError(Ending.WANDERS)
-        watch = _refuse_a_stop if one_way else None
-        setup = Setup(lambda *_: state, self._plan, self._allowed, watch=watch)
-        try:
-            found = integrate(grid, setup, local, by_angle=self._by_angle)
-        except _StopError:
-            return Returned(Ending.UNMOVED, 0.0, 0.0, 0.0, 0.0, 0.0)
+        setup = Setup(lambda *_: state, self._plan, self._allowed, one_way=one_way)
+        found = integrate(grid, setup, local, by_angle=self._by_angle)
         omega, speed = float(found.samples.omega[-1]), np.abs(found.samples.omega)
         return Returned(
             found.ending,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Callable, Generator
+from collections.abc import Generator
 from dataclasses import replace
 from typing import Protocol
 
@@ -15,12 +15,11 @@ from crankmbs.motion import base
 from crankmbs.motion.base import Samples, State
 from crankmbs.motion.crank_angle.segment import AngleSegment
 from crankmbs.motion.ending import Ending
-from crankmbs.motion.events import Log
 from crankmbs.motion.minimal.segment import TimeSegment
 from crankmbs.motion.plan import Plan
 from crankmbs.motion.states import samples_at
 
-__all__ = ["Recorder", "Segment", "Watch"]
+__all__ = ["Recorder", "Segment"]
 
 _VAIN = 20  # as many reversals that reach no farther, and the end is not coming
 _MOST_HELD, _A_SAMPLE = 10_000_000, 100  # numbers in segments: at most, or as many for each sample
@@ -48,15 +47,12 @@ class Segment(base.Segment, Protocol):
         """Evaluations of the equation of motion that it took."""
 
 
-Watch = Callable[[Segment], None]
-
-
 class Recorder:
     """The segments of one pass, sampled as they come; with a finite plan.last only the last stay.
 
     can_swing : whether a swing that reaches no farther is known to go on so for ever
     allowed : evaluations over time
-    log : of the events; watch : is shown every segment
+    one_way : whether it is given up where the crank stops or turns back
     slow : times [s] at which time takes over
     dropped : whether segments were given up, as memory would not hold all
     """
@@ -69,10 +65,10 @@ class Recorder:
         *,
         can_swing: bool,
         allowed: int,
-        watch: Watch | None = None,
+        one_way: bool = False,
     ) -> None:
-        self._train, self._watch, self.dropped, self._held = train, watch, False, 0
-        self._plan, self._can_swing, self._left, self.log = plan, can_swing, allowed, Log(train)
+        self._train, self._one_way, self.dropped, self._held = train, one_way, False, 0
+        self._plan, self._can_swing, self._left = plan, can_swing, allowed
         self._farthest, self._since = 0.0, 0  # reach [rad], and reversals that reached no farther
         self.slow = list[float]()
         self._blocks, self._count = [first], 1
@@ -92,6 +88,8 @@ class Recorder:
             self.slow += [segment.begin.time] if over_time and not went_on else []
             count = self._count
             self._add(segment)
+            if self._one_way and self.reversals:
+                return Ending.UNMOVED
             self._left -= segment.evaluations if over_time else 0
             if self._swings():
                 if self._can_swing:
@@ -101,9 +99,6 @@ class Recorder:
                     return Ending.COSTLY
 
     def _add(self, segment: Segment) -> None:
-        self.log.add(segment)
-        if self._watch is not None:
-            self._watch(segment)
         self.steps += segment.steps
         self.evaluations += segment.evaluations
         if segment.end.omega == 0.0:

@@ -16,9 +16,9 @@ from crankmbs.motion.crank_angle.grid import FINEST_CELL, Grid
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.free.handover import Handover
 from crankmbs.motion.free.passes import first_grid, staggered
-from crankmbs.motion.minimal.entering import enter
+from crankmbs.motion.minimal.equation import enter
 from crankmbs.motion.minimal.reduced import Reduced
-from crankmbs.motion.minimal.step_sizes import StepSizes
+from crankmbs.motion.minimal.segment import StepSizes
 from crankmbs.motion.mode import begun
 from crankmbs.motion.plan import Plan, folds_of
 from crankmbs.motion.states import first_sample
