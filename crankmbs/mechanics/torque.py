@@ -26,6 +26,7 @@ from crankmbs.mechanics.windows import Phase, Phases, acting, phase_ends, place_
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.cycle import Cycle, common_period, summed
 from crankmbs.numerics.function import Function
+from crankmbs.numerics.once import once
 from crankmbs.numerics.piecewise import total
 from crankmbs.scene.torque import Acting
 
@@ -247,6 +248,7 @@ def _outside(ends: list[float], low: float, high: float) -> tuple[float, float]:
     return below, min((end for end in ends if end >= high), default=math.inf)
 
 
+@once
 def over_angle(train: CrankTrain, phases: Phases = ()) -> Callable[[ArrayLike], Array] | None:
     """What the loads that act give over the crank angle [N m], at angles [rad] of any shape."""
     parts = [load.parts.over_angle for _, load in acting(train.loads, phases)]

@@ -6,8 +6,6 @@ import math
 from collections.abc import Callable
 from typing import NamedTuple
 
-import numpy as np
-
 from crankmbs.motion.assemble import ANGLE_ROUNDING
 from crankmbs.motion.base import Samples, State
 from crankmbs.motion.crank_angle.grid import Grid
@@ -72,8 +70,7 @@ def integrate(
     begin = start = setup.begin(grid, local)
     steady = all(load.is_steady for load in train.loads) and train.law is None
     same = before is not None and before.first.omega[0] == begin.omega
-    of_angle = float(grid.at(begin.mode.loads).outside(np.asarray(begin.theta)))
-    first = before.first if before and same else first_sample(train, begin, of_angle)
+    first = before.first if before and same else first_sample(train, begin)
     if before:  # it begins a rounding ahead: so the difference knows what the motion makes of one
         ahead = math.copysign(ANGLE_ROUNDING * begin.theta, begin.omega or float(first.alpha[0]))
         start = begin._replace(theta=begin.theta + ahead)
