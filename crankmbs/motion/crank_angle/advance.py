@@ -218,11 +218,11 @@ def _solve(problem: _Problem, loads: Branch | Course) -> AngleSegment | None:
     for _ in range(_ROUNDS):
         if segment is None:
             return None
-        marks, missing, gained = what_misses(segment, allowed)
-        bends = sign_changes_in(segment)
-        if len(missing) == 0 and len(bends) == 0:
+        missing, gained = what_misses(segment, allowed)
+        marks = np.append(missing, sign_changes_in(segment))
+        if len(marks) == 0:
             return segment.with_more(gained) if gained.any() else segment
-        terms = grid.cut(terms, state.theta, sense, np.append(marks, bends))
+        terms = grid.cut(terms, state.theta, sense, marks)
         segment = _solved(problem, loads, terms, t_end)
     return None
 

@@ -6,13 +6,12 @@ No knot of the pressure lies inside a cell, so everything in it is smooth.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from crankmbs.mechanics.friction import rubbing
 from crankmbs.mechanics.inertia import fired_torque, reduce
@@ -142,7 +141,7 @@ class Grid:
 
     def at(self, phases: Phases) -> Grid:
         """The grid in these phases of the loads."""
-        if phases == self.phases or not self._has_loads:
+        if phases == self.phases or not self.train.loads_over_angle:
             return self
         if phases not in self.known:
             self.known[phases] = replace(self, phases=phases)
@@ -154,25 +153,10 @@ class Grid:
         return self.train.drags
 
     @cached_property
-    def _has_loads(self) -> bool:
-        """Whether loads depend on the angle."""
-        over_angle = any(load.parts.over_angle is not None for load in self.train.loads)
-        return over_angle or bool(self.train.pushes)
-
-    @cached_property
-    def over_angle(self) -> Callable[[ArrayLike], Array] | None:
-        """What loads that act give over the angle."""
-        return over_angle(self.train, self.phases)
-
-    @cached_property
     def at_decisions(self) -> Array:
         """J [kg m2] at the crank angles of one period at which the fuel is decided."""
         law = self.train.law
         return reduce(self.train, np.array(law.angles if law else ())).inertia
-
-    def outside(self, theta: Array) -> Array | float:
-        """Torque of loads over the angle [N m], at angles [rad]."""
-        return 0.0 if self.over_angle is None else self.over_angle(theta)
 
     @cached_property
     def tables(self) -> _Tables:
@@ -206,7 +190,7 @@ class Grid:
         """Whether nothing but weights acts over the angle."""
         train = self.train
         gas_or_friction = train.pressure is not None or train.rubs
-        return not gas_or_friction and self.over_angle is None
+        return not gas_or_friction and over_angle(train, self.phases) is None
 
     @cached_property
     def rounding(self) -> float:
@@ -329,7 +313,8 @@ class Grid:
         every = start[:, None] + width[:, None] * places
         theta, found = every[:, 1:-1], reduce(self.train, every)
         inertia, ends = found.inertia[:, 1:-1], found.inertia[:, [0, -1]]
-        torque = np.asarray(found.torque[:, 1:-1] + self.outside(theta))
+        torque, of_angle = found.torque[:, 1:-1], over_angle(self.train, self.phases)
+        torque = torque.copy() if of_angle is None else torque + of_angle(theta)
         combustion, rubbed = fired_torque(self.train, theta), self._rub(theta)
         return _Tables(inertia, torque, combustion, *rubbed, ends)
 

@@ -82,12 +82,11 @@ class _Points(NamedTuple):
 class Missing(NamedTuple):
     """What cells miss at kinks.
 
-    marks : angles turned [rad] at which cells are to be cut; cells : those that miss too much
+    marks : angles turned [rad] at which cells that miss too much are to be cut
     gained [J] : in each of the others, to be added
     """
 
     marks: Array
-    cells: Index
     gained: Array
 
 
@@ -103,7 +102,7 @@ def what_misses(segment: AngleSegment, allowed: float) -> Missing:
     least = allowed * width * segment.energy[1:]
     missed, gained = np.zeros_like(least), np.zeros_like(least)
     if not isinstance(segment.branch, Course):
-        return Missing(x, k, gained)
+        return Missing(x, gained)
     found = [
         (points, _passed(points), _turns(points))
         for points in _near_rows(segment, segment.branch, least)
@@ -124,7 +123,7 @@ def what_misses(segment: AngleSegment, allowed: float) -> Missing:
         gained += np.bincount(cell[added], more, len(gained))
         k = np.concatenate([k, cell[~added], points.cell[turning]])
         x = np.concatenate([x, at[~added], tops])
-    return Missing(segment.edges[k] + x * width[k], np.unique(k), gained)
+    return Missing(segment.edges[k] + x * width[k], gained)
 
 
 def _gained(points: _Points, passed: _Passed, x: Array, segment: AngleSegment) -> Array:
