@@ -24,10 +24,11 @@ from crankmbs.motion.crank_angle.grid import Grid
 from crankmbs.motion.crank_angle.periods import Period, period_of
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.free.integrate import Setup, integrate
+from crankmbs.motion.free.settling import LostError
 from crankmbs.motion.plan import plan_of
 from crankmbs.numerics.arrays import Array
 
-__all__ = ["MOST_PERIODS", "LostError", "PeriodMap", "Returned", "Slope"]
+__all__ = ["MOST_PERIODS", "PeriodMap", "Returned"]
 
 MOST_PERIODS = 400  # periods that are tried before the search is given up
 
@@ -37,9 +38,6 @@ _LOOKS = 48  # at so many angles in a cycle, where they may depend on both
 _SPEEDS = 65  # at which the slope of the loads is looked at, beside those of the rows of tables
 _BESIDE = 1e-7  # of a row: on either side of it
 _FLAT = 1e-6  # of the steepest slope: rounding
-_STEP = 1e-3  # of the energy: differences that tell the factor
-_FINE = 1e-13  # tolerance of a period for a difference
-_NOISE = 1e-11  # relative, of such a period
 _CLEAR = 0.05  # rad: an energy that the largest torque does not take within it is clear of rest
 
 
@@ -53,23 +51,6 @@ class Returned(NamedTuple):
     slow: float
     fast: float
     time: float
-
-
-class Slope(NamedTuple):
-    """Factor by which a small difference of energies grows in a period, its error, and the greatest
-    energy over this one."""
-
-    factor: float
-    error: float
-    swing: float
-
-
-class LostError(Exception):
-    """The run does not settle, for a reason; factor by which a period changes a disturbance."""
-
-    def __init__(self, ending: Ending, factor: float = math.nan) -> None:
-        super().__init__(ending)
-        self.ending, self.factor = ending, factor
 
 
 class PeriodMap:
@@ -144,19 +125,6 @@ class PeriodMap:
             float(speed.max()),
             float(found.samples.time[-1]),
         )
-
-    def slope(self, grid: Grid, energy: float, sense: float) -> Slope:
-        """How a difference of energies changes in a period, by differences of two widths."""
-        high, low, higher, lower = (
-            self.period(grid, _FINE, self.state(energy * (1.0 + n * _STEP), sense))
-            for n in (1, -1, 2, -2)
-        )
-        width = 2.0 * _STEP * energy
-        factor = (high.energy - low.energy) / width
-        wide = 0.5 * (higher.energy - lower.energy) / width
-        error = abs(wide - factor) + _NOISE / _STEP
-        most = max(high.fast**2 * self.most_inertia, 2.0 * energy)
-        return Slope(factor, error, 0.5 * most / energy)
 
     @cached_property
     def _drag(self) -> float:
