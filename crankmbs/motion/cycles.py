@@ -135,8 +135,8 @@ class Cycles:
         """The ends of cycles passed from one angle to another; at the first of them only where none
         is open."""
         x, y = (self._sense * (theta - self._start) / self._period for theta in (begin, end))
-        found = range(math.ceil(x - _SAME), math.floor(y + _SAME) + 1)
-        return [k for k in found if k > x + _SAME or self._open is None]
+        places = range(math.ceil(x - _SAME), math.floor(y + _SAME) + 1)
+        return [k for k in places if k > x + _SAME or self._open is None]
 
     def _close(self, here: _Open, after: tuple[float, ...], speed: float) -> None:
         begun = self._open
@@ -204,7 +204,7 @@ class Cycles:
         columns = {name: np.array([getattr(one, name) for one in done]) for name in _Done._fields}
         scene, sense = self._train.scene, columns["sense"]
         works = columns["works"].reshape(count, len(self._works))
-        found = {
+        table = {
             "number": columns["number"].astype(np.float64),
             "time": columns["time"],
             "crank_angle": self._start + sense * self._period * columns["place"],
@@ -214,25 +214,25 @@ class Cycles:
             "largest_speed": columns["fastest"],
             "kinetic_energy_gained": columns["gained"],
         }
-        found |= {name: works[:, at] for name, at in self._columns.items()}
+        table |= {name: works[:, at] for name, at in self._columns.items()}
         if scene.gas is not None:
             on_head, on_crank = areas(scene)
             stroke = np.array([gear.stroke for gear in scene.running_gear])
-            work, below = found["gas_work"], found.pop("crank_end_work", None)
+            work, below = table["gas_work"], table.pop("crank_end_work", None)
             head = work if below is None else work - below
-            found["imep"] = head / (on_head * stroke)
+            table["imep"] = head / (on_head * stroke)
             if below is not None:
-                found["imep_crank_end"] = below / (on_crank * stroke)
+                table["imep_crank_end"] = below / (on_crank * stroke)
         if scene.fuel is not None:
             fired = len(scene.cylinders)  # given, as there may be no cycle
             before, after = (columns[name].reshape(count, fired) for name in ("before", "after"))
-            found["fuel"] = self._shares(sense, before, after)
+            table["fuel"] = self._shares(sense, before, after)
         if scene.motion is not None:
-            found["drive_work"] = found["drive_work"][:, 0]
-        rounding = _STEEP * _EPS * peak(found["crank_angle"])
+            table["drive_work"] = table["drive_work"][:, 0]
+        rounding = _STEEP * _EPS * peak(table["crank_angle"])
         errors = {name: rounding * peak(works[:, at]) for name, at in self._columns.items()}
-        errors |= {name: rounding * peak(found[name]) for name in found if name.startswith("imep")}
-        return Rows(found, errors, self.left_out + len(self.done) - count)
+        errors |= {name: rounding * peak(table[name]) for name in table if name.startswith("imep")}
+        return Rows(table, errors, self.left_out + len(self.done) - count)
 
     def _shares(self, sense: Array, before: Array, after: Array) -> Array:
         """The share of the firing whose dead centre a cycle holds, shape (n, cylinders)."""
@@ -274,8 +274,8 @@ def _extremes(cells: Cells, train: CrankTrain, marks: Array, points: Samples) ->
 
 def _moving(cells: Cells, train: CrankTrain, time: Array) -> Array:
     """Times [s], acceleration [rad/s2] and speed [rad/s] there, shape (3, n)."""
-    found = samples_at(cells, train, time, in_time=True)
-    return np.array([time, found.alpha, found.omega])
+    there = samples_at(cells, train, time, in_time=True)
+    return np.array([time, there.alpha, there.omega])
 
 
 def _shares_beside(

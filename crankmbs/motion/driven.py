@@ -92,8 +92,8 @@ class Driven:
         knots = [crank_angle_knots(train), friction_knots(train), knots_over_angle(train)]
         inside = repeat(np.concatenate(knots), train.period, low, high)
         angles = apart(np.concatenate([panels, inside, *self._bends()]))
-        given = [t for t in times_of(train.loads) if begin.time < t < end.time]
-        corners = np.unique([begin.time, *law.corners(begin.time, end.time), *given, end.time])
+        kinks = [t for t in times_of(train.loads) if begin.time < t < end.time]
+        corners = np.unique([begin.time, *law.corners(begin.time, end.time), *kinks, end.time])
         at = np.sort(law.at_time(corners)[0])
         after = np.clip(np.searchsorted(at, angles), 1, len(at) - 1)
         away = np.minimum(angles - at[after - 1], at[after] - angles)
@@ -123,10 +123,10 @@ def driven(way: Way, stretches: Iterable[tuple[float, float]]) -> Iterator[Drive
         last = last._replace(theta=first.theta) if rests else last
         for state in _apart(train, law, first, last):
             first = first._replace(mode=mode)
-            found = () if rests else tuple(decisions(train, law, first, state))
-            mode = windows_at(train, found[-1].mode if found else mode, state.time)
+            inside = () if rests else tuple(decisions(train, law, first, state))
+            mode = windows_at(train, inside[-1].mode if inside else mode, state.time)
             state = state._replace(mode=mode)
-            yield Driven(way, first, state, found)
+            yield Driven(way, first, state, inside)
             first = state
 
 

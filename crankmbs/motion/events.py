@@ -145,13 +145,13 @@ def events_of(logs: Sequence[Log], share: float) -> Rows:
 
     share : of the largest difference, that is stated
     """
-    found = [log.events for log in logs]
-    names = zip(*([event.name for event in each] for each in found), strict=False)
+    noted = [log.events for log in logs]
+    names = zip(*([event.name for event in each] for each in noted), strict=False)
     alike = itertools.takewhile(lambda row: len(set(row)) == 1, names)
     count = sum(1 for _ in alike)
-    longer = [each for each in found if len(each) > count]
-    rests = len(longer) == len(found) and all(each[-1].kind is Kind.REST for each in found)
-    kept = [each[:count] + each[-1:] if rests else each[:count] for each in found]
+    longer = [each for each in noted if len(each) > count]
+    rests = len(longer) == len(noted) and all(each[-1].kind is Kind.REST for each in noted)
+    kept = [each[:count] + each[-1:] if rests else each[:count] for each in noted]
     return beside([_rows(each, log.left_out) for each, log in zip(kept, logs, strict=True)], share)
 
 

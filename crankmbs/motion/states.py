@@ -198,7 +198,8 @@ def entered(train: CrankTrain, state: State) -> tuple[Branch | None, Reduction, 
     (time, theta, omega, _, mode), shares = state, state.mode.shares
     reduction, sense = reduce(train, theta, shares), math.copysign(1.0, omega) if omega else 0.0
     rest = float(reduction.rest(omega)) + mode.held
-    rest += float(friction_torque(train, theta, omega, sense, shares or None, mode.loads))
+    if train.rubs:
+        rest += float(friction_torque(train, theta, omega, sense, shares or None, mode.loads))
     of_angle = over_angle(train, mode.loads)
     rest += 0.0 if of_angle is None else float(of_angle(theta))
     branch = branch_at(train.loads, (time, theta, omega), rest, mode.loads)

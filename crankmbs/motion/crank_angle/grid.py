@@ -16,12 +16,12 @@ from numpy.typing import NDArray
 from crankmbs.mechanics.friction import rubbing
 from crankmbs.mechanics.inertia import fired_torque, reduce
 from crankmbs.mechanics.torque import over_angle
-from crankmbs.mechanics.train import CrankTrain
+from crankmbs.mechanics.train import CrankTrain, crank_angle_knots, friction_knots, knots_over_angle
 from crankmbs.mechanics.windows import Phases
-from crankmbs.motion.crank_angle.edges import WIDEST, edges_of
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.collocation import Rule, gauss
 from crankmbs.numerics.lagrange import ends_and_nodes
+from crankmbs.scene.units import DEGREE
 
 __all__ = ["FINEST_CELL", "Grid", "Terms", "edges_apart", "grid_of", "largest_of_row"]
 
@@ -30,6 +30,7 @@ FINEST_CELL = 3e-14
 """What rounding leaves of a cell's relative error."""
 
 _EPS = float(np.finfo(float).eps)
+_WIDEST = 6.0 * DEGREE  # rad: of a cell
 _MOST_CELLS = 20_000
 _SLIVER = 1e-12  # rad: a start this close to an edge is on it
 
@@ -181,7 +182,7 @@ class Grid:
             torque += np.abs(tables.friction) + pressing * np.abs(tables.rubbed).sum(axis=-1)
         most = np.append(largest_of_row(torque), 0.0)
         middle = 0.5 * (self.edges[1:] + self.edges[:-1])
-        around = np.add.outer(middle, [-WIDEST, WIDEST])
+        around = np.add.outer(middle, [-_WIDEST, _WIDEST])
         from_to = np.searchsorted(middle, around.ravel())
         return np.asarray(np.maximum.reduceat(most, from_to)[::2])
 
@@ -332,12 +333,47 @@ class Grid:
         return found.coulomb(), empty, drag
 
 
-def grid_of(train: CrankTrain, rule: Rule, widest: float = WIDEST) -> Grid:
+def grid_of(train: CrankTrain, rule: Rule, widest: float = _WIDEST) -> Grid:
     """The coarsest grid of a crank train: with the edges that it must have, no cell wider than
     ``widest`` [rad]."""
-    marks = edges_apart(np.array([0.0, train.period]), edges_of(train))
+    marks = edges_apart(np.array([0.0, train.period]), _edges_of(train))
     grid = Grid(train, marks, rule)
     return grid.split(np.maximum(np.ceil(np.diff(marks) / widest - 1e-9), 1).astype(np.intp))
+
+
+def _edges_of(train: CrankTrain) -> Array:
+    """Crank angles [rad] in one period, in any order: the knots of pressure, loads and friction,
+    the decisions on the fuel, and those around folds that a rod just escapes."""
+    knots = [crank_angle_knots(train), knots_over_angle(train), friction_knots(train)]
+    return np.concatenate([*knots, _near_folds(train), _decisions(train)])
+
+
+def _decisions(train: CrankTrain) -> Array:
+    """Crank angles [rad] in one period at which the fuel is decided."""
+    if train.law is None:
+        return np.empty(0)
+    own = train.scene.period
+    turns = own * np.arange(round(train.period / own))
+    return np.asarray(np.add.outer(turns, train.law.angles).ravel())
+
+
+def _near_folds(train: CrankTrain) -> Array:
+    """Crank angles [rad] around those where a rod is hardly longer than it must be, ever farther.
+
+    The rod swings over within ``width`` of there, where its formulas have their singularity beside
+    the real angles: in wider cells two rules err alike, if they see it at all.
+    """
+    period, marks = train.period, [np.empty(0)]
+    turns = 2.0 * math.pi * np.arange(round(period / (2.0 * math.pi)))
+    own = zip(train.scene.cylinders, train.scene.running_gear, strict=True)
+    for cylinder, (radius, length, offset) in ((c, gear.shape) for c, gear in own):
+        for fold, gap in ((0.5, length - radius + offset), (-0.5, length - radius - offset)):
+            width = math.sqrt(2.0 * max(gap, 0.0) / radius)
+            if 0.0 < width < _WIDEST:
+                beside = width * 2.0 ** np.arange(math.ceil(math.log2(_WIDEST / width)))
+                around = fold * math.pi + np.concatenate([-beside, [0.0], beside])
+                marks.append(np.add.outer(turns - cylinder.phase, around).ravel())
+    return np.asarray(np.mod(np.concatenate(marks), period))
 
 
 def edges_apart(*marks: Array) -> Array:

@@ -144,7 +144,7 @@ def _near_rows(segment: AngleSegment, course: Course, least: Array) -> list[_Poi
     """Time and speed in the cells that a row lies in, or is no farther from than the nodes from one
     another."""
     x = np.concatenate([[0.0], segment.grid.rule.nodes, [1.0]])
-    width, found = segment.terms.width, []
+    width, near = segment.terms.width, []
     passed = np.diff(np.searchsorted(course.times, segment.time))
     k = np.flatnonzero(passed)
     if len(k):
@@ -152,7 +152,7 @@ def _near_rows(segment: AngleSegment, course: Course, least: Array) -> list[_Poi
         begin = segment.time[k, None]
         time = np.hstack([begin, begin + spent, segment.time[k + 1, None]])
         bends = np.diff(course.in_time[:, 1])
-        found.append(_Points(x, time, course.times, bends, k, width[k], least[k]))
+        near.append(_Points(x, time, course.times, bends, k, width[k], least[k]))
     slow, fast = 1.0 / largest_of_row(segment.slowness), -1.0 / largest_of_row(-segment.slowness)
     rows = np.sort(segment.sense * course.speeds)
     before, after = np.searchsorted(rows, [2.0 * slow - fast, 2.0 * fast - slow])
@@ -163,8 +163,8 @@ def _near_rows(segment: AngleSegment, course: Course, least: Array) -> list[_Poi
     if len(k):
         inside = segment.sense / segment.slowness[k]
         omega = np.column_stack([segment.speeds[k], inside, segment.speeds[k + 1]])
-        found.append(_Points(x, omega, course.speeds, bends, k, width[k], least[k]))
-    return found
+        near.append(_Points(x, omega, course.speeds, bends, k, width[k], least[k]))
+    return near
 
 
 def _may_miss(segment: AngleSegment, k: Index, worth: Array) -> NDArray[np.bool_]:

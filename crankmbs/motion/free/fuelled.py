@@ -177,10 +177,10 @@ class Fuelled:
         """
         plan = replace(self._plan, until=count * self._period)
         setup = Setup(lambda *_: state, plan, self._allowed)
-        found = integrate(grid, setup, local, by_angle=self._by_angle)
-        end = found.path.state
-        if found.ending is not Ending.COMPLETE or end is None:
-            raise LostError(Ending.STALLS if found.ending in _STILL else found.ending)
+        one = integrate(grid, setup, local, by_angle=self._by_angle)
+        end = one.path.state
+        if one.ending is not Ending.COMPLETE or end is None:
+            raise LostError(Ending.STALLS if one.ending in _STILL else one.ending)
         return self._back(end, math.copysign(count * self._period, end.theta - self._angle))
 
     def _back(self, end: State, turned: float) -> State:

@@ -15,13 +15,12 @@ from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.variables import VARIABLES
 from crankmbs.motion.account import Account
 from crankmbs.motion.assemble import Assembled, assemble
-from crankmbs.motion.base import Segment, Solution
+from crankmbs.motion.base import Samples, Segment, Solution
 from crankmbs.motion.crank_angle.grid import FINEST_CELL, Grid, edges_apart, grid_of
 from crankmbs.motion.cycles import MOST_CYCLES
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.free.handover import FINEST_STEP
 from crankmbs.motion.free.integrate import Begin, Pass, Setup, begin_at_start, integrate
-from crankmbs.motion.free.matching import match, stays
 from crankmbs.motion.minimal.segment import StepSizes
 from crankmbs.motion.motion import Motion, Passes
 from crankmbs.motion.observer import Followed, account_of
@@ -31,7 +30,7 @@ from crankmbs.numerics.collocation import gauss
 from crankmbs.numerics.once import once
 from crankmbs.scene.scene import Scene
 
-__all__ = ["Lead", "evaluations", "first_grid", "run", "staggered"]
+__all__ = ["Lead", "evaluations", "first_grid", "match", "run", "staggered", "stays"]
 
 _PASSES = 12  # at most; each asks for less of an error, or begins elsewhere
 _BETTERED = 0.5  # of the least error: what is not below has not been bettered by finer steps
@@ -41,6 +40,7 @@ _PLACES = np.array([0.225, 0.725])  # of new edges in a cell: an old edge is the
 _BESIDE = np.array([5e-3, 5e-5])  # of a cell: edges near a knot, where all grids have one
 # what a pass may say that has not seen yet, or by its errors never, that the crank is at rest
 _RESTING = {Ending.REST, Ending.SWING, Ending.COMPLETE}
+_SAME_REST = 1e-3  # rad: two passes rest at the same place; how far apart is in the stated error
 _BROKEN = (Ending.COSTLY, Ending.FAILED)
 
 
@@ -203,3 +203,60 @@ def _solution(scene: Scene, answer: Pass, better: Pass, setup: Setup) -> Solutio
     steps = path.steps + better.path.steps
     unknown = {} if check else dict.fromkeys({**VARIABLES, **samples.own}, math.inf)
     return Solution(samples, status, text, evaluations, steps, check, unknown, reasons)
+
+
+class _Matched(NamedTuple):
+    """Samples of either pass, of the second None without a common one; whether the passes part."""
+
+    samples: Samples
+    better: Samples | None
+    parted: bool
+
+
+def stays(a: Samples, b: Samples) -> bool:
+    """Whether from the earlier end on the other pass stays where the first has ended."""
+    short, long = sorted((a, b), key=lambda samples: float(samples.time[-1]))
+    later = long.theta[long.time.searchsorted(short.time[-1]) :]
+    return bool(np.max(np.abs(later - short.theta[-1])) <= _SAME_REST)
+
+
+def match(a: Samples, b: Samples, *, in_time: bool, reversals: int, at_rest: bool) -> _Matched:
+    """The samples that both passes have, and their ends.
+
+    A grid angle within the error of a reversal, or of the end, may be missing in one of them.
+    Where they part their ends are left out. A crank at rest stays there: when a pass deems it so
+    depends on its tolerance, so what comes after is compared with that end, at equal times.
+
+    at_rest : whether they come to rest at the same place, but for their errors
+    """
+    grid_a, grid_b = (s.time[:-1] if in_time else s.theta[:-1] for s in (a, b))
+    n, m = len(grid_a), len(grid_b)
+    if not at_rest and np.array_equal(grid_a, grid_b):
+        return _Matched(a, b, parted=False)
+    kept: list[tuple[int, int]] = []
+    i = j = 0
+    while i < n and j < m:
+        late = a.time[i] - b.time[j]
+        if grid_a[i] != grid_b[j]:
+            i, j = (i + 1, j) if late < 0.0 else (i, j + 1)
+        elif i + 1 < n and grid_a[i + 1] == grid_b[j] and abs(a.time[i + 1] - b.time[j]) < -late:
+            i += 1  # turning there it is passed twice, or, within the error, not at all
+        elif j + 1 < m and grid_b[j + 1] == grid_a[i] and abs(b.time[j + 1] - a.time[i]) < late:
+            j += 1
+        else:
+            kept.append((i, j))
+            i, j = i + 1, j + 1
+    common = min(a.time[-1], b.time[-1]) if at_rest else math.inf
+    passed = np.count_nonzero(a.time[:-1] < common) + np.count_nonzero(b.time[:-1] < common)
+    parted = bool(passed - 2 * len(kept) > 2 * (reversals + 1))
+    if parted and not kept:
+        return _Matched(a, None, parted=True)
+    if at_rest:
+        kept += [(k, m) for k in range(i, n) if a.time[k] >= b.time[-1]]
+    if not parted:
+        kept.append((n, m))
+    rows_a, rows_b = np.array(kept).T
+    a, b = a.select(rows_a), b.select(rows_b)
+    if at_rest:
+        b = replace(b, time=np.where(rows_b == m, a.time, b.time))
+    return _Matched(a, b, parted)

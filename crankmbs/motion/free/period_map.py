@@ -115,15 +115,15 @@ class PeriodMap:
         if self._periods > MOST_PERIODS:
             raise LostError(Ending.WANDERS)
         setup = Setup(lambda *_: state, self._plan, self._allowed, one_way=one_way)
-        found = integrate(grid, setup, local, by_angle=self._by_angle)
-        omega, speed = float(found.samples.omega[-1]), np.abs(found.samples.omega)
+        one = integrate(grid, setup, local, by_angle=self._by_angle)
+        omega, speed = float(one.samples.omega[-1]), np.abs(one.samples.omega)
         return Returned(
-            found.ending,
+            one.ending,
             0.5 * self.inertia * omega**2,
             math.copysign(1.0, omega),
             float(speed.min()),
             float(speed.max()),
-            float(found.samples.time[-1]),
+            float(one.samples.time[-1]),
         )
 
     @cached_property

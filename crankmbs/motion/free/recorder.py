@@ -110,8 +110,8 @@ class Recorder:
         if math.isinf(self._plan.last):
             if self.segments and self._plan.in_time:
                 self._blocks[-1] = self._begun_by(segment, self._blocks[-1])
-            self._blocks += (found := self._sampled(segment))
-            self._count += sum(len(block.time) for block in found)
+            self._blocks += (blocks := self._sampled(segment))
+            self._count += sum(len(block.time) for block in blocks)
             self._plan.room.check(self._count)
         self.segments.append(segment)
         self._held += segment.size
@@ -162,7 +162,7 @@ class Recorder:
         if math.isfinite(self._plan.last):
             blocks = [
                 *blocks,
-                *(found for segment in self.segments for found in self._sampled(segment)),
+                *(block for segment in self.segments for block in self._sampled(segment)),
             ]
         joined = Samples.joined([*blocks, self._last()])
         kept = np.ones(len(joined.time), dtype=np.bool_)

@@ -42,30 +42,30 @@ def run(train: CrankTrain, rtol: float, cost_cap: float, *, by_angle: bool) -> A
         else:
             settling = Fuelled(train, grid, allowed, by_angle=by_angle).settling()
         lead = passes.Lead(grid, rtol * min(settling.damping, 1.0), settling.begin)
-        found = passes.run(train, rtol, cost_cap, by_angle=by_angle, lead=lead)
+        assembled = passes.run(train, rtol, cost_cap, by_angle=by_angle, lead=lead)
         decay = settling.decay()
     except LostError as lost:
-        found = passes.run(train, rtol, cost_cap, by_angle=by_angle)
-        return found if found.solution.status != 0 else _said(found, lost)
-    return found if found.solution.status != 0 else _settled(found, decay)
+        assembled = passes.run(train, rtol, cost_cap, by_angle=by_angle)
+        return assembled if assembled.solution.status != 0 else _said(assembled, lost)
+    return assembled if assembled.solution.status != 0 else _settled(assembled, decay)
 
 
-def _said(found: Assembled, lost: LostError) -> Assembled:
+def _said(assembled: Assembled, lost: LostError) -> Assembled:
     """The period from the start, with the reason why nothing settles."""
-    samples = found.solution.samples
+    samples = assembled.solution.samples
     at = float(samples.theta[-1]), float(samples.omega[-1])
     status, message = lost.ending.said(*at, periods=MOST_PERIODS, factor=lost.factor)
-    solution = replace(found.solution, status=status, message=message, unsettled=lost.ending)
-    return replace(found, solution=solution)
+    solution = replace(assembled.solution, status=status, message=message, unsettled=lost.ending)
+    return replace(assembled, solution=solution)
 
 
-def _settled(found: Assembled, decay: Decay) -> Assembled:
+def _settled(assembled: Assembled, decay: Decay) -> Assembled:
     """The settled period, with what it leaves of a disturbance."""
-    _, mark, short = found.solution.message.partition(";")
+    _, mark, short = assembled.solution.message.partition(";")
     message = (
         f"settled: a disturbance decays to {100.0 * decay.factor:.4g} % per period{mark}{short}"
     )
-    return replace(found, solution=replace(found.solution, message=message, decay=decay))
+    return replace(assembled, solution=replace(assembled.solution, message=message, decay=decay))
 
 
 def _of_energy(period_map: PeriodMap, limit: Limit) -> Settling:

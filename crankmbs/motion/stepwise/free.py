@@ -153,13 +153,13 @@ class Free:
         beside = one._replace(theta=one.theta + turned, omega=one.omega + faster, mode=other.mode)
         answer = self._sample(self._train, one)
         better = self._sample(self._train.perturbed, beside)
-        found = assemble(self._train, Solution(answer, *self.said(standing), 0, 0, better))
-        errors = {name: self._share * error for name, error in found.errors.items()}
-        return replace(found, errors=errors)
+        assembled = assemble(self._train, Solution(answer, *self.said(standing), 0, 0, better))
+        errors = {name: self._share * error for name, error in assembled.errors.items()}
+        return replace(assembled, errors=errors)
 
     def _sample(self, train: CrankTrain, state: State) -> Samples:
-        found = first_sample(train, self._known(state))
-        return replace(found, time=np.array([state.time]))
+        sample = first_sample(train, self._known(state))
+        return replace(sample, time=np.array([state.time]))
 
     def _known(self, state: State) -> State:
         """A state at the very end of a load's table over time an instant before it."""
