@@ -131,10 +131,10 @@ def test_cells_are_split_on_the_way_and_nothing_is_begun_anew(monkeypatch):
     result = simulate(load_scene("torque_driven"), formulation="crank_angle")
     assert result.error.estimated <= result.error.asked
     answer, better = passed
-    assert len(answer.grid.edges) > len(
+    assert len(answer.hand.grid.edges) > len(
         passes.first_grid(crank_train(load_scene("torque_driven")), result.error.asked).edges
     )
-    assert np.array_equal(better.grid.edges, answer.grid.edges)
+    assert np.array_equal(better.grid.edges, answer.hand.grid.edges)
 
 
 def halved(grid):

@@ -12,8 +12,10 @@ from scipy.integrate import quad
 from crankmbs import InputError, Result, Viscous, load_scene, simulate
 from crankmbs.errors import OutputError
 from crankmbs.measures.nodes import nodes_of
+from crankmbs.measures.peaks import run_peaks
 from crankmbs.motion.free import recorder
 from crankmbs.numerics.lagrange import ends_and_nodes
+from crankmbs.report.rows import unsteady
 from crankmbs.storage.netcdf import read_netcdf, write_netcdf
 
 _ROWS = ("time", "theta", "omega", "alpha")
@@ -197,6 +199,22 @@ def test_by_angle_a_motion_that_turns_back_is_refused():
         result.interp(crank_angle=[1.0])
     unchecked = replace(result, motion=lambda: result.passes._replace(checks=()))
     assert unchecked.measures().mean_speed.error == math.inf
+
+
+@pytest.mark.parametrize(
+    ("most", "part"), [(550_000, "the whole run"), (20_000, "what is kept of the run")]
+)
+def test_what_is_kept_of_a_run_is_checked(monkeypatch, most, part):
+    """The pass of higher order holds more numbers: it was kept from later on, and the largest force
+    had an error as large as itself."""
+    monkeypatch.setattr(recorder, "_MOST_HELD", most)
+    monkeypatch.setattr(recorder, "_A_SAMPLE", 1)
+    result = simulate(load_scene("propeller").with_(torque=(), run__until="80 rev"))
+    answer, (check,) = result.passes.answer, result.passes.checks
+    assert (answer.begin == 0.0) == (part == "the whole run")
+    assert check.begin <= answer.begin
+    assert all(peak.value.error < 1e-6 * abs(peak.value.value) for peak in run_peaks(result))
+    assert f"peaks are of {part}" in unsteady(result, result.measures())
 
 
 @pytest.mark.slow

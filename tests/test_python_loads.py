@@ -28,7 +28,7 @@ from crankmbs.mechanics.train import crank_train
 from crankmbs.motion.base import State
 from crankmbs.motion.minimal.advance import Effort, advance
 from crankmbs.motion.minimal.reduced import Reduced
-from crankmbs.motion.minimal.step_sizes import StepSizes
+from crankmbs.motion.minimal.segment import StepSizes
 from crankmbs.motion.mode import begun
 from crankmbs.motion.plan import Plan
 from crankmbs.numerics.function import Function

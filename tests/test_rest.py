@@ -8,7 +8,7 @@ from references import worst_ratio
 
 from crankmbs import Gravity, Run, Viscous, load_scene, simulate
 from crankmbs.motion.base import Samples
-from crankmbs.motion.free.matching import match, stays
+from crankmbs.motion.free.passes import match, stays
 from validation.random_periods import random_periods
 from validation.random_scenes import random_scene
 

@@ -76,7 +76,7 @@ def free(monkeypatch):
     def only(count):
         memory = SimpleNamespace(available=count)
         monkeypatch.setattr(psutil, "virtual_memory", lambda: memory)
-        monkeypatch.setattr("crankmbs.motion.memory._LITTLE", 0.0)
+        monkeypatch.setattr("crankmbs.motion.plan._LITTLE", 0.0)
 
     return only
 

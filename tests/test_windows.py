@@ -23,7 +23,7 @@ from crankmbs import (
     load_scene,
     simulate,
 )
-from crankmbs.mechanics.windows import Phase, first_phases, later_phases, span
+from crankmbs.mechanics.windows import Phase, first_phases, later_phases
 from crankmbs.scene.read import parse_scene
 from crankmbs.scene.write import scene_files
 
@@ -180,13 +180,6 @@ def test_phases_go_one_way():
     over = Phase.OVER
     assert walked == [Phase.WAITING, Phase.ACTING, Phase.ACTING, over, over]
     assert first_phases((Constant(torque=1.0),), 0.0) == ()
-
-
-def test_the_span_in_samples():
-    t, omega = np.linspace(0.0, 4.0, 9), np.array([0.0, 5.0, 10.0, 15, 20, 15, 10, 5, 0])
-    found = span(Constant(torque=1.0, from_speed=12.5, until_speed=11.5), t, omega)
-    assert found == pytest.approx((1.25, 2.85))
-    assert span(Constant(torque=1.0, from_speed=30.0), t, omega)[0] == math.inf
 
 
 def test_windows_are_written(tmp_path):

@@ -7,9 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from crankmbs.mechanics.fired import pushed
 from crankmbs.mechanics.friction import friction_forces
-from crankmbs.mechanics.newton_euler import UNITS, of_crank, of_cylinders
+from crankmbs.mechanics.newton_euler import UNITS, of_crank, of_cylinders, pushed
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.periodic import single

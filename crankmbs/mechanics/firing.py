@@ -143,20 +143,6 @@ class FuelLaw:
             decides[np.abs(np.remainder(off + 1.0, self.scene.period) - 1.0) < 2.0 * _SAME, k] = 1.0
         return decides
 
-    @property
-    def numbers(self) -> tuple[float, ...]:
-        """speed, kp, ki, min and max of the governor, after, until, from_speed and until_speed of
-        the window, and the speed at the start; NaN where there is none."""
-        fuel, governor = self.fuel, self.fuel.governor
-        of = (
-            (governor.speed, governor.kp, governor.ki, governor.min, governor.max)
-            if governor
-            else (0.0, 0.0, 0.0, 1.0, 1.0)
-        )
-        ends = (fuel.until, fuel.from_speed, fuel.until_speed)
-        window = [math.nan if end is None else end for end in ends]
-        return (*of, fuel.after, *window, self.start[1])
-
     def decided(self, firing: Firing, time: float, theta: float, omega: float) -> Firing:
         """After the decision at one of the angles of `next`, at a time [s] and a speed [rad/s]."""
         forwards = theta > firing.high

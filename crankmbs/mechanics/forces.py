@@ -4,7 +4,7 @@ A force F on a piston, positive towards the crank, has the power F v = -F x_1 om
 crank feels the torque -x_1 F. To whatever solves the motion it is one more load (`OnCrank`): of the
 crank angle, as far as it depends on the cycle angle alone, or of time, angle and speed. In the
 joints it is what friction is, a push along the axis between piston and frame
-(`crankmbs.mechanics.fired.pushed`).
+(`crankmbs.mechanics.newton_euler.pushed`).
 
 Over the travel it may be another on the way back,
 

@@ -15,7 +15,13 @@ from itertools import pairwise
 
 import numpy as np
 
-from crankmbs.mechanics.geometry import close_loop, dead_centres, top_position
+from crankmbs.mechanics.geometry import (
+    bottom_position,
+    close_loop,
+    dead_centres,
+    throw_angles,
+    top_position,
+)
 from crankmbs.mechanics.knots import KNOT, apart
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.gas import Gas, Indicator
@@ -73,7 +79,7 @@ def _strokes(gas: Gas, indicator: Indicator, shape: Shape, fires: bool) -> list[
     top, bottom = dead_centres(*shape)
     turn = 2.0 * math.pi
     ratio = indicator.compression_ratio
-    x_top, x_bottom = top_position(*shape), float(close_loop(bottom, *shape).x)
+    stroke = top_position(*shape) - bottom_position(*shape)
 
     def volume(angle: Array) -> Array:
         return relative_volume(shape, ratio, angle)
@@ -91,8 +97,8 @@ def _strokes(gas: Gas, indicator: Indicator, shape: Shape, fires: bool) -> list[
     fired = burnt = turn + top
     closed: list[Stroke] = [(bottom, fired, compression)]
     if fires and indicator.pre_expansion > 1.0:
-        x_burnt = x_top - (indicator.pre_expansion - 1.0) / (ratio - 1.0) * (x_top - x_bottom)
-        burnt = turn + _downstroke_angle(x_burnt, *shape)
+        above = np.array((indicator.pre_expansion - 1.0) / (ratio - 1.0) * stroke)
+        burnt = turn + float(throw_angles(above, stroke - above, *shape)[0])
         closed.append((fired, burnt, held(indicator.peak_pressure)))
     closed.append((burnt, turn + bottom, expansion if fires else compression))
     if gas.stroke == 2:
@@ -107,22 +113,9 @@ def _strokes(gas: Gas, indicator: Indicator, shape: Shape, fires: bool) -> list[
 
 def relative_volume(shape: Shape, ratio: float, angle: Array) -> Array:
     """V / V_clearance at cycle angles [rad], for a compression ratio."""
-    x_top = top_position(*shape)
-    x_bottom = float(close_loop(dead_centres(*shape)[1], *shape).x)
+    x_top, x_bottom = top_position(*shape), bottom_position(*shape)
     share = (x_top - close_loop(angle, *shape).x) / (x_top - x_bottom)
     return np.asarray(1.0 + (ratio - 1.0) * share)
-
-
-def _downstroke_angle(x: float, radius: float, rod_length: float, offset: float) -> float:
-    """Cycle angle [rad] after the top dead centre at which the piston pin stands at ``x``.
-
-    The pin lies d = sqrt(x^2 + e^2) from the crank axis, in the direction atan(e / x); the throw
-    leads that direction by the angle opposite the rod, written as a half angle.
-    """
-    distance = math.hypot(x, offset)
-    over = (radius + rod_length - distance) * (rod_length + distance - radius)
-    lead = 2.0 * math.asin(math.sqrt(max(over, 0.0) / (4.0 * radius * distance)))
-    return math.atan2(offset, x) + lead
 
 
 def fit(

@@ -19,21 +19,21 @@ import numpy as np
 from crankmbs.mechanics.axes import axes_of, closed_loops, gears_of, gravity_vector
 from crankmbs.mechanics.geometry import Loop
 from crankmbs.mechanics.inertia import crank_weight, ends_at, gas_at, moving_inertias, rod_centre
-from crankmbs.mechanics.journals import journal_rows, of_journals
+from crankmbs.mechanics.journals import journal_rows, of_journals, of_rods
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.numerics.arrays import Array
+from crankmbs.numerics.periodic import Period
 from crankmbs.scene.scene import Scene
 
 __all__ = [
     "UNITS",
-    "Cylinder",
     "Cylinders",
     "Powers",
     "balanced",
     "of_crank",
-    "of_cylinder",
     "of_cylinders",
     "powers_of",
+    "pushed",
     "rows_of",
 ]
 
@@ -103,6 +103,17 @@ def powers_of(name: str) -> tuple[int, ...]:
     return (0, 1) if name in _ACCELERATIONS else (0, 1, 2)
 
 
+def _along_the_crank(torque: Array) -> dict[str, Array]:
+    """The torques of the rods on the crank, shape (cylinders, ...): of each, and summed up to the
+    journal behind it and to the middle of its pin."""
+    journal = np.cumsum(torque, axis=0)
+    return {
+        "crank_torque": torque,
+        "journal_torque": journal,
+        "pin_torque": journal - 0.5 * torque,
+    }
+
+
 class Cylinders(NamedTuple):
     """The variables of the cylinders by name, shape (cylinders, u, n), for velocities those per
     speed, shape (cylinders, 1, n) of what depends on the angle alone; what each adds to the
@@ -145,7 +156,6 @@ def of_cylinders(train: CrankTrain, theta: Array, motion: Powers) -> Cylinders:
     leaning = gears.piston_mass * gy * one
     side = -pin_y - leaning
     torque = r * (loop.sin_phi * throw_x - loop.cos_phi * throw_y)
-    journal = np.cumsum(torque, axis=0)
     variables = {
         "rod_angle": loop.beta,
         "rod_angular_speed": loop.beta_1,
@@ -161,10 +171,7 @@ def of_cylinders(train: CrankTrain, theta: Array, motion: Powers) -> Cylinders:
         "piston_pin_force_y": pin_y,
         "crank_pin_force_x": throw_x,
         "crank_pin_force_y": throw_y,
-        "crank_torque": torque,
-        "journal_torque": journal,
-        "pin_torque": journal - 0.5 * torque,
-    }
+    } | _along_the_crank(torque)
     for name, pressures in ends_at(train, theta, gas[:, 0]).items():
         variables[name] = pressures[:, np.newaxis]
     shake_x, shake_y = -inertial_x - carried, leaning - inertial_y
@@ -172,39 +179,28 @@ def of_cylinders(train: CrankTrain, theta: Array, motion: Powers) -> Cylinders:
     return Cylinders(variables, shake_x, shake_y, moment, moving_inertias(gears, loop, g))
 
 
-def of_crank(
-    scene: Scene, theta: Array, motion: Powers, cylinders: Cylinders | None
-) -> dict[str, Array]:
+def of_crank(scene: Scene, theta: Array, motion: Powers, cylinders: Cylinders) -> dict[str, Array]:
     """The variables of the crank and of the frame, shape (u, n), at crank angles of shape (n,)
-    [rad]; without cylinders what belongs to the crank alone."""
+    [rad]."""
     crank, (square, alpha, one) = scene.crank, motion
     first_moment = crank.mass * crank.center_of_mass
     sin_theta, cos_theta = np.sin(theta), np.cos(theta)
     gx, gy = gravity_vector(scene)
     pull_x = first_moment * (-cos_theta * square - sin_theta * alpha) - crank.mass * gx * one
     pull_y = first_moment * (-sin_theta * square + cos_theta * alpha) - crank.mass * gy * one
-    found = {
-        "external_torque": crank.moment_of_inertia * alpha - crank_weight(scene, theta) * one,
-        "main_bearing_force_x": pull_x,
-        "main_bearing_force_y": pull_y,
-        "frame_force_x": -pull_x,
-        "frame_force_y": -pull_y,
-        "frame_moment": np.zeros_like(pull_x),
-        "kinetic_energy": 0.5 * crank.moment_of_inertia * square,
-    }
-    if cylinders is None:
-        return found
     throw_x, throw_y = (cylinders.variables[f"crank_pin_force_{axis}"] for axis in "xy")
-    shake = cylinders.shake_x, cylinders.shake_y
-    ones = np.ones(len(throw_x))
+    shake, ones = (cylinders.shake_x, cylinders.shake_y), np.ones(len(throw_x))
     bearing, frame = (_in_the_engine(scene, ones, *each) for each in ((throw_x, throw_y), shake))
-    found["external_torque"] = found["external_torque"] - cylinders.variables["journal_torque"][-1]
-    found["main_bearing_force_x"] += bearing[0]
-    found["main_bearing_force_y"] += bearing[1]
-    found["frame_force_x"] += frame[0]
-    found["frame_force_y"] += frame[1]
-    found["frame_moment"] += cylinders.moment.sum(axis=0)
-    found["kinetic_energy"] = found["kinetic_energy"] + 0.5 * cylinders.inertia.sum(axis=0) * square
+    torque = crank.moment_of_inertia * alpha - crank_weight(scene, theta) * one
+    found = {
+        "external_torque": torque - cylinders.variables["journal_torque"][-1],
+        "main_bearing_force_x": pull_x + bearing[0],
+        "main_bearing_force_y": pull_y + bearing[1],
+        "frame_force_x": frame[0] - pull_x,
+        "frame_force_y": frame[1] - pull_y,
+        "frame_moment": cylinders.moment.sum(axis=0),
+        "kinetic_energy": 0.5 * (crank.moment_of_inertia + cylinders.inertia.sum(axis=0)) * square,
+    }
     if scene.levers is not None:
         along_x, along_y = _in_the_engine(scene, np.array(scene.levers), *shake)
         found |= {"rocking_moment_x": -along_y, "rocking_moment_y": along_x}
@@ -244,19 +240,37 @@ def balanced(train: CrankTrain, theta: Array, motion: Powers) -> dict[str, Array
     return {name: every[name] for name in rows_of(train.scene)}
 
 
-class Cylinder(NamedTuple):
-    """The variables of one cylinder by name, shape (u, n) or (n,), for velocities those per speed;
-    and its kinetic energy, shape (u, n)."""
+def pushed(scene: Scene, period: Period, forces: Array) -> dict[str, Array]:
+    """What forces on the pistons towards the crank add: the rods push along themselves.
 
-    variables: dict[str, Array]
-    kinetic_energy: Array
+    forces : shape (cylinders, samples) [N]
 
+    Returns
+    -------
+    by variable of the result, in its unit: shape (1, samples) of the crank, (cylinders, samples) of
+    each cylinder, as of each journal
 
-def of_cylinder(train: CrankTrain, theta: Array, motion: Powers, number: int) -> Cylinder:
-    """The variables of the cylinder with an index."""
-    found = of_cylinders(train, theta, motion)
-    variables = {
-        name: values[number, 0] if name in _OF_ANGLE else values[number]
-        for name, values in found.variables.items()
+    >>> scene = load_scene("coasting")
+    >>> pushed(scene, single(np.zeros(1)), np.ones((1, 1)))["piston_pin_force_x"]
+    array([[1.]])
+    """
+    gears, loop = gears_of(scene), closed_loops(scene, period.angles)
+    tangent = loop.sin_beta / loop.cos_beta
+    lever = gears.radius * (loop.sin_phi + loop.cos_phi * tangent)
+    across = period.times(-tangent, forces)
+    torque = period.times(lever, forces)
+    moment = period.times(-loop.x * tangent - gears.offset, forces)
+    torques = _along_the_crank(torque)
+    bearing = _in_the_engine(scene, np.ones(len(forces)), forces[:, None], across[:, None])
+    of_joints = of_rods(scene, forces, across) | torques
+    return of_joints | {
+        "external_torque": -torques["journal_torque"][-1:],
+        "main_bearing_force_x": bearing[0],
+        "main_bearing_force_y": bearing[1],
+        "frame_moment": moment.sum(axis=0, keepdims=True),
+        "side_force": -across,
+        "piston_pin_force_x": forces,
+        "piston_pin_force_y": across,
+        "crank_pin_force_x": forces,
+        "crank_pin_force_y": across,
     }
-    return Cylinder(variables, 0.5 * found.inertia[number] * motion.square)

@@ -19,9 +19,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from crankmbs.mechanics.axes import axes_of, gears_of
-from crankmbs.mechanics.fired import pushed
 from crankmbs.mechanics.friction import friction_forces
-from crankmbs.mechanics.newton_euler import UNITS, Powers, balanced, powers_of, rows_of
+from crankmbs.mechanics.newton_euler import UNITS, Powers, balanced, powers_of, pushed, rows_of
 from crankmbs.mechanics.pressure import pressures_at
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.variables import EVERY
@@ -102,8 +101,6 @@ def reactions(
     0.0
     """
     found = balances(train, theta, omega, alpha, given)
-    if not found.by_parts:
-        return found.alone
     # one piece of memory, so large that the system is not asked for every run's anew
     table = Table(found.rows, np.empty((sum(found.rows.values()), len(found.period.which))))
     found.fill(table.values)
@@ -129,22 +126,6 @@ class Balances(NamedTuple):
     added: dict[str, Array]
     by_parts: bool
     groups: tuple[tuple[list[str], slice], ...]
-
-    @property
-    def alone(self) -> dict[str, Array]:
-        """The variables at samples whose angles do not come back, as `reactions` returns them."""
-        found = {}
-        for name in self.rows:
-            values: Array | float = 0.0
-            if name in self.parts:
-                values = self.parts[name][:, 0]
-                if name in _PER_SPEED:
-                    values = values * self.motion[2]
-            if name in self.added:
-                values = values + self.added[name]
-            rows = np.asarray(values)
-            found[name] = rows.T if EVERY[name].of else rows[0]
-        return found
 
     def fill(self, room: Array) -> None:
         """All variables at the samples in their places, shape (rows, samples)."""

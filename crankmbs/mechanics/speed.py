@@ -96,7 +96,8 @@ class _PolynomialLaw:
     def __init__(self, omega: PPoly, start: float) -> None:
         self._omega = omega
         self._alpha = omega.derivative()
-        self._theta = _integral(omega, start)
+        self._theta = omega.antiderivative()
+        self._theta.c[-1] += start - float(self._theta(0.0))
         self.turning_times = (*self._reversals(), float(omega.x[-1]))
 
     @property
@@ -138,19 +139,6 @@ class _PolynomialLaw:
         resting = self._omega.x[:-1][np.all(self._omega.c == 0.0, axis=0)]
         times = np.concatenate([roots[np.isfinite(roots)], resting])
         return sorted({float(t) for t in times if 0.0 < t <= finite and t < self._omega.x[-1]})
-
-
-def _integral(omega: PPoly, start: float) -> PPoly:
-    """Antiderivative with value ``start`` at time 0; the last piece may be endless."""
-    c = omega.c
-    powers = np.arange(len(c), 0, -1)[:, None]
-    width = np.diff(omega.x)[:-1]
-    raised = np.vstack([c / powers, np.zeros(c.shape[1])])
-    gained = np.array([np.polyval(raised[:, k], w) for k, w in enumerate(width)])
-    raised[-1] = start + np.concatenate([[0.0], np.cumsum(gained)])
-    theta = PPoly(raised, omega.x)
-    raised[-1] -= float(theta(0.0)) - start
-    return PPoly(raised, omega.x)
 
 
 @dataclass(frozen=True)

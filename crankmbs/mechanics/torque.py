@@ -26,21 +26,19 @@ from crankmbs.mechanics.windows import Phase, Phases, acting, phase_ends, place_
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.cycle import Cycle, common_period, summed
 from crankmbs.numerics.function import Function
+from crankmbs.numerics.once import once
 from crankmbs.numerics.piecewise import total
 from crankmbs.scene.torque import Acting
 
 __all__ = [
     "Branch",
     "Course",
-    "Tables",
     "branch_at",
     "branch_of",
     "course_of",
     "over_angle",
     "pushing",
 ]
-
-Tables = tuple[Array, Array, Array, Array]  # times, in_time, speeds and in_speed of `Course`
 
 
 @dataclass(frozen=True)
@@ -75,12 +73,6 @@ class Branch:
     def is_steady(self) -> bool:
         """Whether it does not change with the time, but for its functions."""
         return self.ct == 0.0
-
-    @property
-    def tables(self) -> Tables:
-        """The same as a course without a row."""
-        in_time, in_speed = np.array([[self.c0, self.ct]]), np.array([[0.0, self.c1, self.c2]])
-        return np.empty(0), in_time, np.empty(0), in_speed
 
     def slope(self, omega: Array) -> Array:
         """dT/domega [N m s/rad] at speeds [rad/s]."""
@@ -122,11 +114,6 @@ class Course:
     def is_steady(self) -> bool:
         """Whether it is a function of the speed alone."""
         return not self.in_time[:, 1].any()
-
-    @property
-    def tables(self) -> Tables:
-        """times, in_time, speeds and in_speed."""
-        return self.times, self.in_time, self.speeds, self.in_speed
 
     def __call__(self, t: ArrayLike, omega: ArrayLike) -> Array:
         """Torque [N m] at times [s] and speeds [rad/s]."""
@@ -243,9 +230,9 @@ def course_of(
     if not bent_in_time.any() and not bent.any():
         return replace(branch, t_end=t_end, omega_low=low, omega_high=high)
     in_time, in_speed = in_time[np.append(True, bent_in_time)], in_speed[np.append(True, bent)]
+    times, speeds_of_rows = rows_in_time[bent_in_time], rows_in_speed[bent]
     in_time = in_time[:, :2].copy()
-    tables: Tables = rows_in_time[bent_in_time], in_time, rows_in_speed[bent], in_speed
-    return Course(*tables, t_end, low, high, branch.functions)
+    return Course(times, in_time, speeds_of_rows, in_speed, t_end, low, high, branch.functions)
 
 
 def _beside(speeds: tuple[float, ...], omega: float, *, rising: bool) -> tuple[float, float]:
@@ -261,6 +248,7 @@ def _outside(ends: list[float], low: float, high: float) -> tuple[float, float]:
     return below, min((end for end in ends if end >= high), default=math.inf)
 
 
+@once
 def over_angle(train: CrankTrain, phases: Phases = ()) -> Callable[[ArrayLike], Array] | None:
     """What the loads that act give over the crank angle [N m], at angles [rad] of any shape."""
     parts = [load.parts.over_angle for _, load in acting(train.loads, phases)]

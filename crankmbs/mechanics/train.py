@@ -77,15 +77,16 @@ class CrankTrain:
         return tuple(OnCrank(self.scene, force) for force in self.scene.force)
 
     @cached_property
-    def alone(self) -> CrankTrain:
-        """The same without forces from outside on the pistons."""
-        return replace(self, scene=replace(self.scene, force=())) if self.pushes else self
-
-    @cached_property
     def loads(self) -> tuple[Acting, ...]:
         """All that acts from outside on the crank, in the order of the numbers of their phases:
         torques, then forces on the pistons."""
         return *self.scene.torque, *self.pushes
+
+    @cached_property
+    def loads_over_angle(self) -> bool:
+        """Whether loads depend on the crank angle, or resist as friction does."""
+        parts = (load.parts.over_angle for load in self.loads)
+        return bool(self.pushes) or any(part is not None for part in parts)
 
     @cached_property
     def has_functions(self) -> bool:

@@ -9,13 +9,8 @@ which the solvers land.
 
 from __future__ import annotations
 
-import math
 from enum import IntEnum
 
-import numpy as np
-from numpy.typing import NDArray
-
-from crankmbs.numerics.arrays import Array
 from crankmbs.scene.torque import Acting
 from crankmbs.scene.windowed import Windowed
 
@@ -27,7 +22,6 @@ __all__ = [
     "later_phases",
     "phase_ends",
     "place_of",
-    "span",
 ]
 
 
@@ -105,38 +99,3 @@ def phase_ends(
             times += [] if load.until is None else [load.until]
             speeds += [] if load.until_speed is None else [load.until_speed]
     return tuple(times), tuple(speeds)
-
-
-def span(load: Acting, time: Array, omega: Array) -> tuple[float, float]:
-    """From when to when [s] a load acts in a motion given by its samples; where a speed is met
-    between two of them by the straight line.
-
-    time, omega : shape (n,) [s, rad/s]
-
-    >>> load = Constant(torque=2.0, from_speed=2.0)
-    >>> span(load, np.array([0.0, 1.0]), np.array([1.0, 3.0]))
-    (0.5, inf)
-    """
-    begin = load.after or 0.0
-    if load.from_speed is not None:
-        begin = max(begin, _met(load.from_speed, time, omega, -math.inf))
-    end = math.inf if load.until is None else load.until
-    if load.until_speed is not None:
-        end = min(end, _met(load.until_speed, time, omega, begin))
-    return begin, end
-
-
-def _met(speed: float, time: Array, omega: Array, since: float) -> float:
-    """When a speed is first met after a time; infinite if never."""
-    if omega[0] == speed and time[0] > since:
-        return float(time[0])
-    beyond = omega - speed
-    passed: NDArray[np.intp] = np.flatnonzero(
-        (beyond[1:] * beyond[:-1] <= 0.0) & (beyond[:-1] != 0.0)
-    )
-    for k in passed:
-        share = beyond[k] / (beyond[k] - beyond[k + 1])
-        met = float(time[k] + share * (time[k + 1] - time[k]))
-        if met > since:
-            return met
-    return math.inf

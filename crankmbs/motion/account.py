@@ -62,7 +62,8 @@ Keep = Callable[[], Account]
 
 def beside(rows: Sequence[Rows], share: float) -> Rows:
     """The first of several answers of the same rows, with its error: a share of what the others
-    differ from it by at most, and its rounding; unknown, infinite, where there is no other.
+    differ from it by at most, its rounding, and what it states itself; unknown, infinite, where
+    there is no other.
 
     >>> one, other = (Rows({"x": np.array([x])}, {}) for x in (1.0, 1.5))
     >>> round(beside([one, other], 2.0).errors["x"], 9)
@@ -74,5 +75,7 @@ def beside(rows: Sequence[Rows], share: float) -> Rows:
         known = np.isfinite(values)
         apart = [peak(np.where(known, each.columns[name] - values, 0.0)) for each in others]
         rounding = _ROUNDING * peak(np.where(known, values, 0.0))
-        errors[name] = share * max(apart, default=math.inf) + rounding
+        errors[name] = (
+            share * max(apart, default=math.inf) + rounding + answer.errors.get(name, 0.0)
+        )
     return Rows(answer.columns, errors, answer.left_out)

@@ -108,6 +108,11 @@ class Cells:
         """dt/dx at ends and nodes [s], shape (m, n)."""
         return np.asarray((self.time - self.time[:, :1]) @ self._polynomials.slopes.T)
 
+    @property
+    def turned(self) -> Array:
+        """d angle/dx at ends and nodes [rad], shape (m, n)."""
+        return np.asarray((self.angle - self.angle[:, :1]) @ self._polynomials.slopes.T)
+
     def located(self, values: Array, *, in_time: bool) -> tuple[Index, Array]:
         """The cells in which times [s], or else angles [rad], are passed, shape (p,), and where; at
         the end of one rather than at the begin of the next."""

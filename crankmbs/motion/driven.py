@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from crankmbs.errors import InputError
 from crankmbs.mechanics.knots import KNOT, apart, repeat
 from crankmbs.mechanics.speed import SpeedLaw
 from crankmbs.mechanics.train import (
@@ -25,11 +26,20 @@ from crankmbs.mechanics.windows import later_phases
 from crankmbs.motion.base import State
 from crankmbs.motion.cells import Acting, Cells
 from crankmbs.motion.mode import Mode, begun, decided
+from crankmbs.motion.plan import Plan
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.lagrange import ends_and_nodes
 from crankmbs.scene.units import DEGREE
 
-__all__ = ["Driven", "Way", "begun_at", "decisions", "driven", "windows_at"]
+__all__ = [
+    "Driven",
+    "Way",
+    "begun_at",
+    "decisions",
+    "driven",
+    "monotone_stretches",
+    "windows_at",
+]
 
 _PANEL = 5.0 * DEGREE  # widest panel of a quadrature over the angle
 _TURNS = 100  # periods in a piece
@@ -82,8 +92,8 @@ class Driven:
         knots = [crank_angle_knots(train), friction_knots(train), knots_over_angle(train)]
         inside = repeat(np.concatenate(knots), train.period, low, high)
         angles = apart(np.concatenate([panels, inside, *self._bends()]))
-        given = [t for t in times_of(train.loads) if begin.time < t < end.time]
-        corners = np.unique([begin.time, *law.corners(begin.time, end.time), *given, end.time])
+        kinks = [t for t in times_of(train.loads) if begin.time < t < end.time]
+        corners = np.unique([begin.time, *law.corners(begin.time, end.time), *kinks, end.time])
         at = np.sort(law.at_time(corners)[0])
         after = np.clip(np.searchsorted(at, angles), 1, len(at) - 1)
         away = np.minimum(angles - at[after - 1], at[after] - angles)
@@ -102,7 +112,7 @@ class Driven:
 
 
 def driven(way: Way, stretches: Iterable[tuple[float, float]]) -> Iterator[Driven]:
-    """The pieces on stretches of time [s], as `crankmbs.motion.prescribed` finds them."""
+    """The pieces on stretches of time [s], as `monotone_stretches` finds them."""
     train, law = way.train, way.law
     mode = begun(train)
     stretches = tuple(stretches)
@@ -113,10 +123,10 @@ def driven(way: Way, stretches: Iterable[tuple[float, float]]) -> Iterator[Drive
         last = last._replace(theta=first.theta) if rests else last
         for state in _apart(train, law, first, last):
             first = first._replace(mode=mode)
-            found = () if rests else tuple(decisions(train, law, first, state))
-            mode = windows_at(train, found[-1].mode if found else mode, state.time)
+            inside = () if rests else tuple(decisions(train, law, first, state))
+            mode = windows_at(train, inside[-1].mode if inside else mode, state.time)
             state = state._replace(mode=mode)
-            yield Driven(way, first, state, found)
+            yield Driven(way, first, state, inside)
             first = state
 
 
@@ -159,3 +169,34 @@ def decisions(train: CrankTrain, law: SpeedLaw, first: State, last: State) -> It
         omega = float(law.at_time(time)[1])
         mode = decided(train, mode, time, angle, omega)
         yield State(time, angle, omega, 0.0, mode)
+
+
+def monotone_stretches(plan: Plan, law: SpeedLaw) -> tuple[list[tuple[float, float]], bool]:
+    """Stretches (begin, end) [s] up to the end of the run; and whether that comes.
+
+    Raises
+    ------
+    InputError : a speed table that ends before the run does
+    """
+    stretches: list[tuple[float, float]] = []
+    begin = 0.0
+    for turn in law.turning_times:
+        end = min(turn, plan.time_bound)
+        sense = float(law.at_time(begin + 1.0 if math.isinf(end) else 0.5 * (begin + end))[1])
+        bound = plan.angle_bounds[1 if sense > 0.0 else 0]
+        if sense != 0.0 and math.isfinite(bound):
+            passed = math.inf if math.isinf(end) else (float(law.at_time(end)[0]) - bound) * sense
+            if passed >= -1e-13 * abs(bound):
+                stretches.append((begin, float(law.time_at(bound, begin, end)[0])))
+                return stretches, True
+        if sense == 0.0 and math.isinf(end):
+            return stretches, False
+        stretches.append((begin, end))
+        if end == plan.time_bound:
+            return stretches, True
+        begin = end
+    degrees = float(law.at_time(begin)[0]) / DEGREE
+    raise InputError(
+        f"motion.speed: the speed table ends at {begin:g} s, before the run does, at "
+        f"{degrees:g} degrees; lengthen the table or shorten the run"
+    )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections import Counter
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -60,10 +61,8 @@ class Log:
     def __init__(self, train: CrankTrain) -> None:
         self._train = train
         self._phases = np.array([c.phase for c in train.scene.cylinders])
-        self._decisions: list[tuple[int, _Event]] = []
-        self._others: list[tuple[int, _Event]] = []
-        self._order = itertools.count()
-        self.decided = self.happened = 0
+        self._noted: list[_Event] = []
+        self._count: Counter[bool] = Counter()  # by whether they are decisions on the fuel
         self._sense, self._rests = 0.0, False
 
     def start(self, state: State) -> None:
@@ -117,29 +116,26 @@ class Log:
         if after.firing != before.firing and after.firing is not None:
             period = self._train.scene.period
             off = np.remainder(state.theta + self._phases - math.pi + 0.5 * period, period)
-            own = np.abs(off - 0.5 * period) < _SAME
-            for k in np.flatnonzero(own | everywhere).tolist():
-                self.decided += 1
-                if self.decided <= MOST_EVENTS:
-                    event = _Event(*state[:3], Kind.FUEL, k + 1, after.shares[k])
-                    self._decisions.append((next(self._order), event))
+            decide = np.abs(off - 0.5 * period) < _SAME
+            for k in np.flatnonzero(decide | everywhere).tolist():
+                self._note(state, Kind.FUEL, k + 1, after.shares[k])
 
-    def _note(self, state: State, kind: Kind, number: int) -> None:
-        self.happened += 1
-        if self.happened <= MOST_EVENTS:
-            event = _Event(*state[:3], kind, number, math.nan)
-            self._others.append((next(self._order), event))
+    def _note(self, state: State, kind: Kind, number: int, share: float = math.nan) -> None:
+        of_fuel = kind is Kind.FUEL
+        self._count[of_fuel] += 1
+        if self._count[of_fuel] <= MOST_EVENTS:
+            self._noted.append(_Event(*state[:3], kind, number, share))
 
     @property
     def events(self) -> list[_Event]:
         """Those that are kept, in their order."""
-        decisions = self._decisions if self.decided <= MOST_EVENTS else []
-        return [event for _, event in sorted([*decisions, *self._others])]
+        without = self._count[True] > MOST_EVENTS
+        return [each for each in self._noted if not (without and each.kind is Kind.FUEL)]
 
     @property
     def left_out(self) -> int:
         """How many are not kept."""
-        return self.decided + self.happened - len(self.events)
+        return self._count.total() - len(self.events)
 
 
 def events_of(logs: Sequence[Log], share: float) -> Rows:
@@ -149,13 +145,13 @@ def events_of(logs: Sequence[Log], share: float) -> Rows:
 
     share : of the largest difference, that is stated
     """
-    found = [log.events for log in logs]
-    names = zip(*([event.name for event in each] for each in found), strict=False)
+    noted = [log.events for log in logs]
+    names = zip(*([event.name for event in each] for each in noted), strict=False)
     alike = itertools.takewhile(lambda row: len(set(row)) == 1, names)
     count = sum(1 for _ in alike)
-    longer = [each for each in found if len(each) > count]
-    rests = len(longer) == len(found) and all(each[-1].kind is Kind.REST for each in found)
-    kept = [each[:count] + each[-1:] if rests else each[:count] for each in found]
+    longer = [each for each in noted if len(each) > count]
+    rests = len(longer) == len(noted) and all(each[-1].kind is Kind.REST for each in noted)
+    kept = [each[:count] + each[-1:] if rests else each[:count] for each in noted]
     return beside([_rows(each, log.left_out) for each, log in zip(kept, logs, strict=True)], share)
 
 

@@ -16,12 +16,11 @@ from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion.account import Account
 from crankmbs.motion.base import Samples, Solution
 from crankmbs.motion.cells import Cells
-from crankmbs.motion.driven import Driven, Way, begun_at, driven
+from crankmbs.motion.driven import Driven, Way, begun_at, driven, monotone_stretches
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.motion import Motion, Passes
 from crankmbs.motion.observer import Followed, account_of
 from crankmbs.motion.plan import Plan, plan_of
-from crankmbs.motion.prescribed import monotone_stretches
 from crankmbs.motion.states import inner_samples, table_of
 from crankmbs.numerics.arrays import Array
 

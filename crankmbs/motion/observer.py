@@ -30,10 +30,11 @@ def account_of(passes: Sequence[Followed], share: float) -> Account:
     share : of the largest difference between them, that is stated as error
     """
     logs, cycles = [], []
-    for number, (train, begin, pieces, ending) in enumerate(passes):
+    for train, begin, pieces, ending in passes:
         logs.append(Log(train))
-        cycles.append(Cycles(train, begin.theta, finer=number > 0))
-        logs[-1].start(begin)
+        cycles.append(Cycles(train, begin.theta))
+        if not train.scene.settles:  # a periodic motion has no start: what acts was decided before
+            logs[-1].start(begin)
         last = begin
         for piece in pieces:
             logs[-1].add(piece)

@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
+import psutil
 
+from crankmbs.errors import InputError
 from crankmbs.mechanics.variables import VARIABLES, variables_of
-from crankmbs.motion.memory import Room
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.units import DEGREE
@@ -20,6 +22,36 @@ __all__ = ["Plan", "folds_of", "plan_of"]
 _LESS = 1.0 - 1e-6  # of a spacing: the samples that are kept beyond the last period reach so far
 _ROUNDING = 8 * float(np.finfo(float).eps)  # of a value, as in `crankmbs.motion.cells.cell_of`
 _HAIR = 1e-6  # rad: so near a fold the forces still have all their digits but the last few
+_TIMES = 10  # what a run takes at its peak, saved at its end, over what it stores: 3 to 9 measured
+_LITTLE = 16e6  # bytes: less than what was loaded to come here, and not worth to ask the system
+
+
+class Room:
+    """The memory that is free, for samples of so many numbers each; looked at where there are more
+    than a few."""
+
+    def __init__(self, numbers: int) -> None:
+        self._numbers = numbers
+
+    @cached_property
+    def _free(self) -> int:
+        """Bytes, without swapping."""
+        return int(psutil.virtual_memory().available)
+
+    def check(self, samples: float) -> None:
+        """Refuse more samples than memory holds.
+
+        Raises
+        ------
+        InputError : how many, what they take, what is free, and the way out
+        """
+        taken = samples * 8 * self._numbers * _TIMES
+        if taken > _LITTLE and taken > self._free:
+            raise InputError(
+                f"run.every: {samples:.3g} samples of {self._numbers} numbers each came, which "
+                f"take up to {taken / 1e9:.3g} GB, and {self._free / 1e9:.3g} GB are free; give a "
+                'wider spacing, or every = "none" to keep the last cycle alone'
+            )
 
 
 @dataclass(frozen=True)

@@ -8,18 +8,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from functools import partial
 
 import numpy as np
 
 from crankmbs.mechanics.forces import OnCrank
 from crankmbs.mechanics.friction import friction_forces, friction_torque, held_share
-from crankmbs.mechanics.inertia import fired_torque, reduce
+from crankmbs.mechanics.inertia import Reduction, fired_torque, reduce
 from crankmbs.mechanics.reactions import Balances, Table, balances
-from crankmbs.mechanics.torque import branch_at, branch_of, over_angle, pushing
+from crankmbs.mechanics.torque import Branch, branch_at, branch_of, over_angle, pushing
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion.base import Samples, State
-from crankmbs.motion.cells import Cells
+from crankmbs.motion.cells import Acting, Cells
 from crankmbs.numerics.arrays import Array, Index
 from crankmbs.numerics.periodic import one_period
 
@@ -27,6 +26,7 @@ __all__ = [
     "MOTION",
     "applied_forces",
     "balances_of",
+    "entered",
     "first_sample",
     "inner_samples",
     "motion_rows",
@@ -192,43 +192,36 @@ def motion_rows(samples: Samples) -> Array:
     return np.array([*of_time, samples.energy_residual])
 
 
-def first_sample(train: CrankTrain, state: State, of_angle: float) -> Samples:
-    """The sample at a state. A crank at rest has the acceleration with which it sets out, and the
-    friction that resists it; where friction holds it, none, and the friction that it takes.
+def entered(train: CrankTrain, state: State) -> tuple[Branch | None, Reduction, float]:
+    """The branch of the loads that a motion enters at a state, as `branch_at` says; the crank train
+    there; and the torque [N m] that loads of time and speed add to."""
+    (time, theta, omega, _, mode), shares = state, state.mode.shares
+    reduction, sense = reduce(train, theta, shares), math.copysign(1.0, omega) if omega else 0.0
+    rest = float(reduction.rest(omega)) + mode.held
+    if train.rubs:
+        rest += float(friction_torque(train, theta, omega, sense, shares or None, mode.loads))
+    of_angle = over_angle(train, mode.loads)
+    rest += 0.0 if of_angle is None else float(of_angle(theta))
+    branch = branch_at(train.loads, (time, theta, omega), rest, mode.loads)
+    return branch and branch.plus(mode.held), reduction, rest
 
-    of_angle [N m] : what the loads give over the crank angle
-    """
-    shares, (time, theta, omega, *_) = state.mode.shares, state
-    reduction = reduce(train, theta, shares)
-    of_angle += state.mode.held
-    rest = float(reduction.rest(omega)) + of_angle
-    torques, phases = train.loads, state.mode.loads
-    rub = partial(friction_torque, train, theta, omega, shares=shares or None, phases=phases)
-    sliding = math.copysign(1.0, omega) if omega else 0.0
-    rubbed = float(rub(sliding))
-    branch = branch_at(torques, state[:3], rest + rubbed, phases)
-    held = branch is None and omega == 0.0
-    branch = branch or branch_of(torques, time, omega, rising=True, phases=phases)
-    outside = float(branch(time, omega))
-    outside += sum(f.number(time, theta, omega) for f in branch.functions)
-    outside = -rest if held else outside
-    own = {"fuel": np.array([shares])} if shares else {}
-    if train.rubs and omega == 0.0:
-        share = float(held_share(train, theta, rest + outside, shares, phases))
-        sliding = min(max(share, -1.0), 1.0)
-        rubbed = -(rest + outside) if abs(share) <= 1.0 else float(rub(sliding))
-    at, along = np.array([[time], [theta], [omega]]), np.array([sliding])
-    if train.scene.friction is not None:
-        own["friction_force"] = friction_forces(train, at[1], at[2], own.get("fuel"), along)
-    pushes, feels = pushing(train, phases), outside + of_angle
-    if train.pushes:
-        own["applied_force"] = applied_forces(train, pushes, (at[0], at[1], at[2]), along)
-        feels -= sum(float(push.parts(*state[:3])) for push in pushes)
-    return Samples(
-        time=np.array([time]),
-        theta=np.array([theta]),
-        omega=np.array([omega]),
-        alpha=np.array([(rest + outside + rubbed) / float(reduction.inertia)]),
-        energy_residual=np.array([state.residual]),
-        own={"external_torque": np.array([feels]), **own},
-    )
+
+def first_sample(train: CrankTrain, state: State) -> Samples:
+    """The sample at a state. A crank at rest has the acceleration with which it sets out, and the
+    friction that resists it; where friction or loads hold it, none, and the friction that it
+    takes."""
+    (time, theta, omega, residual, mode), sense = state, float(np.sign(state.omega))
+    branch, _, rest = entered(train, state)
+    holds = branch is None and omega == 0.0
+    if branch is None:
+        branch = branch_of(train.loads, time, omega, rising=True, phases=mode.loads)
+        branch = branch.plus(mode.held)
+    if train.rubs and omega == 0.0 and not holds:
+        pull = rest + float(branch(time, omega)) - mode.held
+        pull += sum(f.number(time, theta, omega) for f in branch.functions)
+        share = float(held_share(train, theta, pull, mode.shares, mode.loads))
+        holds, sense = abs(share) <= 1.0, float(np.sign(share))
+    at, speed, angle = (np.full((1, 3), value) for value in (time, omega, theta))
+    acting, shares = Acting(sense, holds, mode.loads, branch), np.array([mode.shares])
+    cell = Cells(at, angle, speed, acting, shares, residual=np.array([residual]))
+    return samples_in(cell, train, np.zeros(1, np.intp), np.zeros(1))

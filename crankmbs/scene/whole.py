@@ -38,7 +38,7 @@ UNCOVERED = (
 _SPARE = 1e-3  # of the stroke, over which the ends of a table over the travel are held
 _FARTHEST = 1e9  # rad or s: its last digit is 1e-7
 _MOST_CYCLES = 1000  # of the engine, after which its loads over the angle come again
-_MOST_SAMPLES = 2e7  # the memory of a machine may hold less: `crankmbs.motion.memory`
+_MOST_SAMPLES = 2e7  # the memory of a machine may hold less: `crankmbs.motion.plan`
 
 
 def check_whole(scene: Scene) -> None:

@@ -18,20 +18,19 @@ from typing import NamedTuple
 
 import numpy as np
 
-from crankmbs.mechanics.friction import friction_torque
 from crankmbs.mechanics.inertia import reduce
-from crankmbs.mechanics.torque import Branch, Course, branch_at, course_of
+from crankmbs.mechanics.torque import Branch, Course, course_of
 from crankmbs.motion.base import State
 from crankmbs.motion.crank_angle.firings import solve_fired
 from crankmbs.motion.crank_angle.grid import Grid, Terms
-from crankmbs.motion.crank_angle.kinks import what_misses
+from crankmbs.motion.crank_angle.kinks import sign_changes_in, what_misses
 from crankmbs.motion.crank_angle.periods import period_of
-from crankmbs.motion.crank_angle.rings import sign_changes_in
 from crankmbs.motion.crank_angle.segment import AngleSegment
 from crankmbs.motion.crank_angle.solvers import Begin, lasting, solve
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.mode import Mode
 from crankmbs.motion.plan import Plan
+from crankmbs.motion.states import entered
 from crankmbs.scene.units import DEGREE
 
 __all__ = ["advance", "is_fast"]
@@ -76,7 +75,8 @@ def advance(
         grid = grid.at(mode.loads)
         bound = min(end, mode.high) if sense > 0.0 else max(end, mode.low)
         bound = bound if grid.train.law is None else end  # decisions are edges within a segment
-        branch, energy = _enter(grid, state)
+        branch, reduction, _ = entered(grid.train, state)
+        energy = 0.5 * float(reduction.inertia) * state.omega**2
         if branch is None:
             return Ending.HELD
         problem = _Problem(grid, state, energy, sense, bound, plan.time_bound, allowed)
@@ -95,7 +95,9 @@ def advance(
         t_end = min(branch.t_end, plan.time_bound)
         goes_on = state.mode == mode and state.time < t_end and grid.train.law is None
         if math.isfinite(plan.last) and goes_on and branch.is_affine_in_energy and not grid.drags:
-            state, skipped = _skip(problem._replace(state=state, t_end=t_end), branch, plan.last)
+            energy = 0.5 * float(reduce(grid.train, state.theta).inertia) * state.omega**2
+            ahead = problem._replace(state=state, energy=energy, t_end=t_end)
+            state, skipped = _skip(ahead, branch, plan.last)
 
 
 class _Problem(NamedTuple):
@@ -161,7 +163,7 @@ def _ended_exactly(problem: _Problem, segment: AngleSegment, t_end: float) -> An
 def _skip(problem: _Problem, branch: Branch, last: float) -> tuple[State, int]:
     """Pass whole periods at once, all but the last ones; return the state after them and the
     number of cells passed."""
-    grid, state, _, sense, bound, t_end, _ = problem
+    grid, state, start, sense, bound, t_end, _ = problem
     period = float(grid.edges[-1])
 
     def at(time: float, turned: float, energy: float) -> AngleSegment | None:
@@ -176,7 +178,6 @@ def _skip(problem: _Problem, branch: Branch, last: float) -> tuple[State, int]:
             return None
         return segment if segment.cut(math.inf, math.inf).stop == segment.stop else None
 
-    start = _enter(grid, state)[1]
     first = at(state.time, 0.0, start)
     kept = max(_KEPT, math.ceil(last / period))
     most = min(abs(bound - state.theta) / period, 1e15) // 1.0 - kept
@@ -195,17 +196,6 @@ def _skip(problem: _Problem, branch: Branch, last: float) -> tuple[State, int]:
             return far.begin._replace(residual=state.residual - missed), passed
         most = run.periods // 2
     return state, 0
-
-
-def _enter(grid: Grid, state: State) -> tuple[Branch | None, float]:
-    """The branch of the loads that the motion enters, and its kinetic energy [J]."""
-    train, (time, theta, omega, _, mode) = grid.train, state
-    reduction = reduce(train, theta, mode.shares)
-    rest = reduction.rest(omega) + grid.outside(np.asarray(theta))
-    sense, shares = math.copysign(1.0, omega), mode.shares or None
-    rest += friction_torque(train, theta, omega, sense, shares, mode.loads) + mode.held
-    branch = branch_at(train.loads, (time, theta, omega), float(rest), mode.loads)
-    return branch and branch.plus(mode.held), 0.5 * float(reduction.inertia) * omega**2
 
 
 def _solve(problem: _Problem, loads: Branch | Course) -> AngleSegment | None:
@@ -228,11 +218,11 @@ def _solve(problem: _Problem, loads: Branch | Course) -> AngleSegment | None:
     for _ in range(_ROUNDS):
         if segment is None:
             return None
-        marks, missing, gained = what_misses(segment, allowed)
-        bends = sign_changes_in(segment)
-        if len(missing) == 0 and len(bends) == 0:
+        missing, gained = what_misses(segment, allowed)
+        marks = np.append(missing, sign_changes_in(segment))
+        if len(marks) == 0:
             return segment.with_more(gained) if gained.any() else segment
-        terms = grid.cut(terms, state.theta, sense, np.append(marks, bends))
+        terms = grid.cut(terms, state.theta, sense, marks)
         segment = _solved(problem, loads, terms, t_end)
     return None
 

@@ -6,23 +6,22 @@ No knot of the pressure lies inside a cell, so everything in it is smooth.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from crankmbs.mechanics.friction import rubbing
 from crankmbs.mechanics.inertia import fired_torque, reduce
 from crankmbs.mechanics.torque import over_angle
-from crankmbs.mechanics.train import CrankTrain
+from crankmbs.mechanics.train import CrankTrain, crank_angle_knots, friction_knots, knots_over_angle
 from crankmbs.mechanics.windows import Phases
-from crankmbs.motion.crank_angle.edges import WIDEST, edges_of
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.collocation import Rule, gauss
 from crankmbs.numerics.lagrange import ends_and_nodes
+from crankmbs.scene.units import DEGREE
 
 __all__ = ["FINEST_CELL", "Grid", "Terms", "edges_apart", "grid_of", "largest_of_row"]
 
@@ -31,6 +30,7 @@ FINEST_CELL = 3e-14
 """What rounding leaves of a cell's relative error."""
 
 _EPS = float(np.finfo(float).eps)
+_WIDEST = 6.0 * DEGREE  # rad: of a cell
 _MOST_CELLS = 20_000
 _SLIVER = 1e-12  # rad: a start this close to an edge is on it
 
@@ -142,7 +142,7 @@ class Grid:
 
     def at(self, phases: Phases) -> Grid:
         """The grid in these phases of the loads."""
-        if phases == self.phases or not self._has_loads:
+        if phases == self.phases or not self.train.loads_over_angle:
             return self
         if phases not in self.known:
             self.known[phases] = replace(self, phases=phases)
@@ -154,25 +154,10 @@ class Grid:
         return self.train.drags
 
     @cached_property
-    def _has_loads(self) -> bool:
-        """Whether loads depend on the angle."""
-        over_angle = any(load.parts.over_angle is not None for load in self.train.loads)
-        return over_angle or bool(self.train.pushes)
-
-    @cached_property
-    def over_angle(self) -> Callable[[ArrayLike], Array] | None:
-        """What loads that act give over the angle."""
-        return over_angle(self.train, self.phases)
-
-    @cached_property
     def at_decisions(self) -> Array:
         """J [kg m2] at the crank angles of one period at which the fuel is decided."""
         law = self.train.law
         return reduce(self.train, np.array(law.angles if law else ())).inertia
-
-    def outside(self, theta: Array) -> Array | float:
-        """Torque of loads over the angle [N m], at angles [rad]."""
-        return 0.0 if self.over_angle is None else self.over_angle(theta)
 
     @cached_property
     def tables(self) -> _Tables:
@@ -197,7 +182,7 @@ class Grid:
             torque += np.abs(tables.friction) + pressing * np.abs(tables.rubbed).sum(axis=-1)
         most = np.append(largest_of_row(torque), 0.0)
         middle = 0.5 * (self.edges[1:] + self.edges[:-1])
-        around = np.add.outer(middle, [-WIDEST, WIDEST])
+        around = np.add.outer(middle, [-_WIDEST, _WIDEST])
         from_to = np.searchsorted(middle, around.ravel())
         return np.asarray(np.maximum.reduceat(most, from_to)[::2])
 
@@ -206,7 +191,7 @@ class Grid:
         """Whether nothing but weights acts over the angle."""
         train = self.train
         gas_or_friction = train.pressure is not None or train.rubs
-        return not gas_or_friction and self.over_angle is None
+        return not gas_or_friction and over_angle(train, self.phases) is None
 
     @cached_property
     def rounding(self) -> float:
@@ -338,7 +323,8 @@ class Grid:
         every = start[:, None] + width[:, None] * places
         theta, found = every[:, 1:-1], reduce(self.train, every)
         inertia, ends = found.inertia[:, 1:-1], found.inertia[:, [0, -1]]
-        torque = np.asarray(found.torque[:, 1:-1] + self.outside(theta))
+        torque, of_angle = found.torque[:, 1:-1], over_angle(self.train, self.phases)
+        torque = torque.copy() if of_angle is None else torque + of_angle(theta)
         combustion, rubbed = fired_torque(self.train, theta), self._rub(theta)
         return _Tables(inertia, torque, combustion, *rubbed, ends)
 
@@ -356,12 +342,47 @@ class Grid:
         return found.coulomb(), empty, drag
 
 
-def grid_of(train: CrankTrain, rule: Rule, widest: float = WIDEST) -> Grid:
+def grid_of(train: CrankTrain, rule: Rule, widest: float = _WIDEST) -> Grid:
     """The coarsest grid of a crank train: with the edges that it must have, no cell wider than
     ``widest`` [rad]."""
-    marks = edges_apart(np.array([0.0, train.period]), edges_of(train))
+    marks = edges_apart(np.array([0.0, train.period]), _edges_of(train))
     grid = Grid(train, marks, rule)
     return grid.split(np.maximum(np.ceil(np.diff(marks) / widest - 1e-9), 1).astype(np.intp))
+
+
+def _edges_of(train: CrankTrain) -> Array:
+    """Crank angles [rad] in one period, in any order: the knots of pressure, loads and friction,
+    the decisions on the fuel, and those around folds that a rod just escapes."""
+    knots = [crank_angle_knots(train), knots_over_angle(train), friction_knots(train)]
+    return np.concatenate([*knots, _near_folds(train), _decisions(train)])
+
+
+def _decisions(train: CrankTrain) -> Array:
+    """Crank angles [rad] in one period at which the fuel is decided."""
+    if train.law is None:
+        return np.empty(0)
+    own = train.scene.period
+    turns = own * np.arange(round(train.period / own))
+    return np.asarray(np.add.outer(turns, train.law.angles).ravel())
+
+
+def _near_folds(train: CrankTrain) -> Array:
+    """Crank angles [rad] around those where a rod is hardly longer than it must be, ever farther.
+
+    The rod swings over within ``width`` of there, where its formulas have their singularity beside
+    the real angles: in wider cells two rules err alike, if they see it at all.
+    """
+    period, marks = train.period, [np.empty(0)]
+    turns = 2.0 * math.pi * np.arange(round(period / (2.0 * math.pi)))
+    own = zip(train.scene.cylinders, train.scene.running_gear, strict=True)
+    for cylinder, (radius, length, offset) in ((c, gear.shape) for c, gear in own):
+        for fold, gap in ((0.5, length - radius + offset), (-0.5, length - radius - offset)):
+            width = math.sqrt(2.0 * max(gap, 0.0) / radius)
+            if 0.0 < width < _WIDEST:
+                beside = width * 2.0 ** np.arange(math.ceil(math.log2(_WIDEST / width)))
+                around = fold * math.pi + np.concatenate([-beside, [0.0], beside])
+                marks.append(np.add.outer(turns - cylinder.phase, around).ravel())
+    return np.asarray(np.mod(np.concatenate(marks), period))
 
 
 def edges_apart(*marks: Array) -> Array:

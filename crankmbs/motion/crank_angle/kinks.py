@@ -1,4 +1,5 @@
-"""Where cells of the crank angle are cut because their loads bend inside them.
+"""Where cells of the crank angle are cut because loads bend inside them, or rings feel a gas force
+that changes its sign.
 
 A Gauss rule of s nodes misses of a kink at the position c of a cell, where the torque's slope
 changes by b per cell, at most b min(c^2 / 2, (1 - c)^2 / 2, 0.31 / s^2) of the mean torque. The
@@ -6,6 +7,12 @@ cells are solved with the loads as they are; where the kinks in one of them are 
 be missed they become edges, and all is solved again; where they are worth little more, on a grid
 that checks another, what the rule misses of them is computed and added. Rows of a fine table are so
 stepped over, and their number costs nothing.
+
+Without fuel the angles at which gas forces change their sign are known, and edges of the grid. With
+fuel they move with the share of the combustion that acts, which is known once the cells are solved:
+between two knots the pressure is a cubic, given by its values at the nodes, and its roots become
+edges. As they are those of the shares and not of the motion, solving again moves them no more than
+the shares err.
 """
 
 from __future__ import annotations
@@ -20,13 +27,15 @@ from crankmbs.motion.crank_angle.grid import largest_of_row
 from crankmbs.motion.crank_angle.segment import AngleSegment
 from crankmbs.numerics.arrays import Array, Index
 
-__all__ = ["Missing", "what_misses"]
+__all__ = ["Missing", "sign_changes_in", "what_misses"]
 
 _WORST = 0.31  # over s^2: what s nodes miss of a kink of slope 1; (pi / 2)^2 / 8, for many nodes
 _HALVES = 10  # a mark a thousandth of the stretch off still lies between the two kinks
 _NEWTON = 5  # steps, kept within brackets
 _MENDED = 50.0  # times what may be missed: kinks whose errors, known to a hundredth, are added
 _CALM = 0.01  # of a cell's energy, by the slopes of its loads: what a missed kink feeds back
+_AT_EDGE = 1e-7  # rad: a root so near an edge is there
+_BISECTIONS = 50  # to 1e-15 of a piece
 _LITTLE = 1e-3  # of what a cell may miss: a kink worth less stays in it beside others
 
 
@@ -73,12 +82,11 @@ class _Points(NamedTuple):
 class Missing(NamedTuple):
     """What cells miss at kinks.
 
-    marks : angles turned [rad] at which cells are to be cut; cells : those that miss too much
+    marks : angles turned [rad] at which cells that miss too much are to be cut
     gained [J] : in each of the others, to be added
     """
 
     marks: Array
-    cells: Index
     gained: Array
 
 
@@ -94,7 +102,7 @@ def what_misses(segment: AngleSegment, allowed: float) -> Missing:
     least = allowed * width * segment.energy[1:]
     missed, gained = np.zeros_like(least), np.zeros_like(least)
     if not isinstance(segment.branch, Course):
-        return Missing(x, k, gained)
+        return Missing(x, gained)
     found = [
         (points, _passed(points), _turns(points))
         for points in _near_rows(segment, segment.branch, least)
@@ -115,7 +123,7 @@ def what_misses(segment: AngleSegment, allowed: float) -> Missing:
         gained += np.bincount(cell[added], more, len(gained))
         k = np.concatenate([k, cell[~added], points.cell[turning]])
         x = np.concatenate([x, at[~added], tops])
-    return Missing(segment.edges[k] + x * width[k], np.unique(k), gained)
+    return Missing(segment.edges[k] + x * width[k], gained)
 
 
 def _gained(points: _Points, passed: _Passed, x: Array, segment: AngleSegment) -> Array:
@@ -136,7 +144,7 @@ def _near_rows(segment: AngleSegment, course: Course, least: Array) -> list[_Poi
     """Time and speed in the cells that a row lies in, or is no farther from than the nodes from one
     another."""
     x = np.concatenate([[0.0], segment.grid.rule.nodes, [1.0]])
-    width, found = segment.terms.width, []
+    width, near = segment.terms.width, []
     passed = np.diff(np.searchsorted(course.times, segment.time))
     k = np.flatnonzero(passed)
     if len(k):
@@ -144,7 +152,7 @@ def _near_rows(segment: AngleSegment, course: Course, least: Array) -> list[_Poi
         begin = segment.time[k, None]
         time = np.hstack([begin, begin + spent, segment.time[k + 1, None]])
         bends = np.diff(course.in_time[:, 1])
-        found.append(_Points(x, time, course.times, bends, k, width[k], least[k]))
+        near.append(_Points(x, time, course.times, bends, k, width[k], least[k]))
     slow, fast = 1.0 / largest_of_row(segment.slowness), -1.0 / largest_of_row(-segment.slowness)
     rows = np.sort(segment.sense * course.speeds)
     before, after = np.searchsorted(rows, [2.0 * slow - fast, 2.0 * fast - slow])
@@ -155,8 +163,8 @@ def _near_rows(segment: AngleSegment, course: Course, least: Array) -> list[_Poi
     if len(k):
         inside = segment.sense / segment.slowness[k]
         omega = np.column_stack([segment.speeds[k], inside, segment.speeds[k + 1]])
-        found.append(_Points(x, omega, course.speeds, bends, k, width[k], least[k]))
-    return found
+        near.append(_Points(x, omega, course.speeds, bends, k, width[k], least[k]))
+    return near
 
 
 def _may_miss(segment: AngleSegment, k: Index, worth: Array) -> NDArray[np.bool_]:
@@ -236,3 +244,35 @@ def _value(of: Array, x: Array) -> tuple[Array, Array]:
         slope = slope * x + value
         value = value * x + coefficient
     return value, slope
+
+
+def sign_changes_in(segment: AngleSegment) -> Array:
+    """Angles turned [rad] at which gas forces change their sign inside cells and press rings;
+    empty without fuel."""
+    train, terms = segment.grid.train, segment.terms
+    found = [np.empty(0)]
+    if terms.rubbed.shape[-1] == 0 or train.pressure is None or train.combustion is None:
+        return found[0]
+    theta = terms.angles(segment.begin.theta, segment.sense, segment.grid.rule)
+    nodes = segment.grid.rule.nodes
+    to_cubic = np.linalg.pinv(np.vander(nodes, 4)).T
+    x = np.concatenate([[0.0], nodes, [1.0]])
+    for k, cylinder in enumerate(train.scene.cylinders):
+        phi = theta + cylinder.phase
+        force = train.pressure[k](phi) + segment.shares[:, k, None] * train.combustion[k](phi)
+        cubics = force @ to_cubic
+        values = cubics @ np.vander(x, 4).T
+        cell, at = np.nonzero(values[:, 1:] * values[:, :-1] < 0.0)
+        low, high = x[at], x[at + 1]
+        falls = values[cell, at] > 0.0
+        for _ in range(_BISECTIONS):
+            middle = 0.5 * (low + high)
+            positive = np.polynomial.polynomial.polyval(middle, cubics[cell, ::-1].T, False) > 0.0
+            low, high = (
+                np.where(positive == falls, middle, low),
+                np.where(positive == falls, high, middle),
+            )
+        behind = low * terms.width[cell]
+        inside = np.minimum(behind, terms.width[cell] - behind) > _AT_EDGE
+        found.append((segment.edges[cell] + behind)[inside])
+    return np.concatenate(found)

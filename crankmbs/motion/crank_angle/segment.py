@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,17 +13,26 @@ from numpy.typing import NDArray
 from crankmbs.mechanics.torque import Branch, Course
 from crankmbs.motion.base import NOWHERE, Samples, State
 from crankmbs.motion.cells import Acting, Cells
-from crankmbs.motion.crank_angle.crossing import crossing
-from crankmbs.motion.crank_angle.errors import Errors, errors_of
-from crankmbs.motion.crank_angle.grid import Grid, Terms
+from crankmbs.motion.crank_angle.grid import Grid, Terms, largest_of_row
+from crankmbs.motion.crank_angle.solvers import torque_at
 from crankmbs.motion.mode import Mode, decided
 from crankmbs.motion.states import samples_in
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.collocation import chain
+from crankmbs.numerics.roots import first_above
 
 __all__ = ["AngleSegment"]
 
 _SAME = 1e-6  # rad: more than rounding of an angle, less than a cell
+
+
+class Errors(NamedTuple):
+    """Of solved cells, shape (m,): error of the energy gained in each [J]; the worst of energy and
+    time, relative, at its end and inside."""
+
+    energy: Array
+    at_end: Array
+    inside: Array
 
 
 @dataclass(frozen=True)
@@ -160,7 +170,7 @@ class AngleSegment:
     @cached_property
     def errors(self) -> Errors:
         """What a finer Gauss rule along the solution gives, at its nodes and at the cell's end."""
-        return errors_of(self)
+        return _errors_of(self)
 
     @cached_property
     def missed(self) -> Array:
@@ -182,7 +192,7 @@ class AngleSegment:
             stops.append(((k, float(x[0])), nowhere._replace(time=t_end)))
         for limit, above in ((self.branch.omega_low, False), (self.branch.omega_high, True)):
             if math.isfinite(limit) and limit * self.sense > 0.0:
-                stop = crossing(self, limit, above=above)
+                stop = _crossing(self, limit, above=above)
                 if stop is not None:
                     stops.append((stop, nowhere._replace(omega=limit)))
         stop, exact = min(stops, key=lambda item: item[0])
@@ -269,3 +279,62 @@ class AngleSegment:
             torque=torque,
             slowness=self.slowness - faster,
         )
+
+
+def _errors_of(segment: AngleSegment) -> Errors:
+    """The torque and the slowness that a solution has at the finer rule's nodes, integrated up to
+    these and to the cells' ends, less what its own rule made of them."""
+    grid, loads, sense = segment.grid, segment.branch, segment.sense
+    rule, finer = grid.rule, grid.of_finer_rule.rule
+    terms = grid.of_finer_rule.same(segment.terms, segment.begin.theta, sense)
+    if segment.modes:
+        terms = terms.fired(segment.shares)
+    pace = terms.pace
+    own = np.column_stack([rule.integrals(finer.nodes).T, rule.weights])
+    to_nodes = np.column_stack([finer.matrix.T, finer.weights])
+    gained, spent = segment.torque @ own, segment.slowness @ own
+    with np.errstate(invalid="ignore", divide="ignore"):
+        energy = segment.energy[:-1, None] + sense * pace * gained[:, :-1]
+        slowness = np.sqrt(0.5 * terms.inertia / np.maximum(energy, 0.0))
+        t = segment.time[:-1, None] + pace * spent[:, :-1]
+        theta = terms.angles(segment.begin.theta, sense, finer) if loads.functions else np.empty(0)
+        torque = torque_at(terms, loads, t, theta, sense / slowness)
+        missed = sense * pace * (torque @ to_nodes - gained)
+        late = np.abs(pace * (slowness @ to_nodes - spent))
+        per_time = np.maximum(1.0 / largest_of_row(segment.slowness), 1.0 / segment.time[1:])
+        both = np.abs(missed) / segment.energy[1:, None] + late * per_time[:, None]
+    return Errors(missed[:, -1], both[:, -1], largest_of_row(both))
+
+
+def _crossing(segment: AngleSegment, limit: float, *, above: bool) -> tuple[int, float] | None:
+    """Cell and place in it, 0 to 1, where the speed first passes a limit [rad/s]; None where it
+    does not."""
+    omega = np.column_stack([segment.sense / segment.slowness, segment.speeds[1:]])
+    positions = np.concatenate([[0.0], segment.grid.rule.nodes, [1.0]])
+    side = 1.0 if above else -1.0
+    beyond = side * (np.append(segment.begin.omega, omega) - limit)
+    inside = int(np.argmax(np.append(beyond[1:] > 0.0, True)))  # stretches before it is seen
+    stretches = np.append(np.flatnonzero(_may_leave(beyond)[:inside]), inside)
+    for k, j in zip(*divmod(stretches, omega.shape[1]), strict=True):
+        if k == len(omega):
+            break
+
+        def speed(x: Array, k: int = k) -> tuple[Array, Array]:
+            there = samples_in(segment.whole, segment.grid.train, np.full(1, k), x)
+            slope = segment.terms.width[k] * there.alpha / np.abs(there.omega)
+            return side * (there.omega - limit), side * slope
+
+        x = first_above(speed, positions[j], positions[j + 1])
+        if x is not None:
+            return int(k), x
+    return None
+
+
+def _may_leave(beyond: Array) -> NDArray[np.bool_]:
+    """Between which of neighbouring points a value, below zero at both, may be above: where it
+    turns, and falls off to the neighbours by more than is missing."""
+    rise = np.diff(beyond, prepend=beyond[0], append=beyond[-1])
+    before, after = rise[:-1], -rise[1:]
+    near = (beyond < 0.0) & (beyond + before + after > 0.0)
+    top = near & (before >= 0.0) & (after >= 0.0)
+    return np.asarray(top[:-1] | top[1:])

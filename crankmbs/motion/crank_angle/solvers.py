@@ -18,7 +18,7 @@ from crankmbs.motion.crank_angle.grid import Grid, Terms, largest_of_row
 from crankmbs.numerics.arrays import Array, Index
 from crankmbs.numerics.collocation import Maps, carried, chain
 
-__all__ = ["Begin", "Cells", "added", "is_affine", "lasting", "solve", "surplus", "torque_at"]
+__all__ = ["Begin", "Cells", "added", "lasting", "solve", "surplus", "torque_at"]
 
 _NEWTON = 20  # steps; where they do not suffice the motion goes on from the last cell that is good
 _TRIED = 2  # of them, after which cells are given up from one on whose energy is still cut
@@ -53,16 +53,11 @@ class Cells(NamedTuple):
         return Cells(self.edges[: m + 1], self.time[: m + 1], self.torque[:m], self.slowness[:m])
 
 
-def is_affine(terms: Terms, loads: Branch | Course) -> bool:
-    """Whether the torque is affine in the energy."""
-    return isinstance(loads, Branch) and loads.is_affine_in_energy and not terms.drags
-
-
 def solve(grid: Grid, terms: Terms, loads: Branch | Course, begin: Begin) -> Cells:
     """Solved cells, the last one across the end in time or a bound of the loads in the
     speed; fewer where the energy is gone or Newton's method does not converge."""
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-        if isinstance(loads, Branch) and is_affine(terms, loads):
+        if isinstance(loads, Branch) and loads.is_affine_in_energy and not terms.drags:
             cells = _affine(grid, terms, loads, begin)
         else:
             cells = _newton(grid, terms, loads, begin)

@@ -8,12 +8,15 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+import numpy as np
 from scipy.optimize import brentq
 
 from crankmbs.motion.base import State
 from crankmbs.motion.crank_angle.grid import Grid
 from crankmbs.motion.ending import Ending
-from crankmbs.motion.free.period_map import LostError, PeriodMap, Returned
+from crankmbs.motion.free.period_map import PeriodMap, Returned
+from crankmbs.motion.free.settling import FINE, STEP, WIDE, LostError, slope_of
+from crankmbs.numerics.arrays import Array
 
 __all__ = ["Limit", "fixed_point"]
 
@@ -174,10 +177,18 @@ class _FixedPoint:
 
     def _limit_at(self, energy: float, sense: float) -> Limit:
         """The limit at a fixed point, with how fast it is reached."""
-        found = self._period_map.slope(self._grid, energy, sense)
-        if 1.0 - found.factor <= found.error:
+        period_map, at = self._period_map, np.array([energy])
+
+        def image(trial: Array) -> Array:
+            state = period_map.state(float(trial[0]), sense)
+            return np.array([period_map.period(self._grid, FINE, state).energy])
+
+        factor, wide = (float(slope_of(image, at, at, width)[0, 0]) for width in (STEP, WIDE))
+        if 1.0 - factor <= abs(wide - factor) + FINE / STEP:
             raise LostError(Ending.BALANCED)
-        return Limit(energy, sense, 1.0 - found.factor, found.swing, affine=False)
+        fast = period_map.period(self._grid, _LOCAL, period_map.state(energy, sense)).fast
+        swing = max(0.5 * fast**2 * period_map.most_inertia / energy, 1.0)
+        return Limit(energy, sense, 1.0 - factor, swing, affine=False)
 
     def _stalled(self, energy: float, sense: float) -> State:
         """Where the crank turns after it has stopped, if it does."""

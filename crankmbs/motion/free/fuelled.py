@@ -9,18 +9,18 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from functools import cached_property
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 
 from crankmbs.mechanics.inertia import reduce
 from crankmbs.mechanics.train import CrankTrain
-from crankmbs.motion.base import Decay, State
+from crankmbs.motion.base import State
 from crankmbs.motion.crank_angle.grid import Grid
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.free.integrate import Setup, integrate
-from crankmbs.motion.free.period_map import LostError
+from crankmbs.motion.free.settling import STEP, LostError, Settling, largest, newton_step, slope_of
 from crankmbs.motion.mode import Mode, begun, decided
 from crankmbs.motion.plan import plan_of
 from crankmbs.numerics.arrays import Array
@@ -28,16 +28,10 @@ from crankmbs.numerics.arrays import Array
 __all__ = ["Fuelled"]
 
 _LOCAL = 1e-11  # tolerance of the periods of the search
-_FINE = 1e-13  # and of those that tell the factor
-_STEP, _WIDE = 1e-4, 4e-4  # of each number's size: differences
 _NEWTON, _CLOSE = 12, 1e-8  # steps, and the last one's size
 _FIRST, _MOST = 4, 512  # periods followed before each search, doubled from one to the next
 _NEAR = 0.02  # of its size: so near the fixed point the run is as good as there
 _LAST = 64  # periods in which a governor that hunts goes to both ends
-_KEPT = 1e-6  # of an integral that nothing changes: rounding of the differences
-_POLISHES = 12  # steps at most; they end where a step is not half the one before
-_EPS = float(np.finfo(float).eps)
-_ROUNDING = 4 * _EPS
 _STILL = (Ending.REST, Ending.SWING, Ending.STUCK, Ending.UNMOVED)
 
 
@@ -65,16 +59,19 @@ class Fuelled:
         self._allowed, self._by_angle = allowed, by_angle
         begin = State(0.0, self._angle, self._start.speed, 0.0, begun(train))
         self._model = self._after(grid, _LOCAL, begin, 1)
-        self._seen: list[tuple[Grid, Array]] = []
 
-    @cached_property
-    def _point(self) -> _Point:
-        """The fixed point that the run comes to.
+    def settling(self) -> Settling:
+        """Where the settled motion begins.
 
         Raises
         ------
         LostError : it does not settle
         """
+        point = self._point()
+        return Settling(point.at, point.slope, self._image, self._state, self._sizes)
+
+    def _point(self) -> _Point:
+        """The fixed point that the run comes to."""
         state, count, point, before = self._model, _FIRST, None, math.inf
         while count <= _MOST:
             state = self._after(self._grid, _LOCAL, state, count)
@@ -112,75 +109,21 @@ class Fuelled:
             shares += list(state.mode.shares)
         return governor is not None and {governor.min, governor.max} <= set(shares)
 
-    @property
-    def damping(self) -> float:
-        """1 less the largest factor."""
-        return 1.0 - self._point.factor
-
-    def begin(self, grid: Grid, local: float) -> State:
-        """Where the settled period begins on a grid, by periods with this tolerance; on one that
-        checks another beside it, by what rounding may make of it."""
-        at, left = (self._seen[-1][1] if self._seen else self._point.at).copy(), math.inf
-        for _ in range(_POLISHES):
-            step = self._step(at, self._image(grid, local, at), self._point.slope)
-            size = float(np.max(np.abs(step) / self._sizes(at)))
-            if size > 0.5 * left:
-                break
-            at, left = at + step, size
-        if grid.checks and self._seen:
-            more = _ROUNDING / self.damping * at[0]
-            at[0] += math.copysign(more, at[0] - self._seen[-1][1][0])
-        self._seen.append((grid, at))
-        return self._state(at)
-
-    def decay(self) -> Decay:
-        """The largest factor by which a disturbance changes in a period, and its error: what it
-        differs by between two differences, and between the grids of both passes."""
-        (one, at), (other, there) = self._seen[-2:]
-        factors = [
-            _largest(self._slope(grid, _FINE, numbers, width))
-            for grid, numbers, width in (
-                (other, there, _STEP),
-                (other, there, _WIDE),
-                (one, at, _STEP),
-            )
-        ]
-        apart = sum(abs(factor - factors[0]) for factor in factors[1:])
-        return Decay(factors[0], apart + _FINE / _STEP)
-
     def _newton(self, at: Array) -> _Point | None:
         """The fixed point near some numbers; None where none is found."""
         for _ in range(_NEWTON):
             try:
-                slope = self._slope(self._grid, _LOCAL, at, _STEP)
-                step = self._step(at, self._image(self._grid, _LOCAL, at), slope)
+                image = partial(self._image, self._grid, _LOCAL)
+                slope = slope_of(image, at, self._sizes(at), STEP)
+                step = newton_step(at, image(at), slope)
             except LostError:
                 return None
             at = at + step
             if not at[0] > 0.0:
                 return None
             if np.max(np.abs(step) / self._sizes(at)) <= _CLOSE:
-                return _Point(at, slope, _largest(slope))
+                return _Point(at, slope, largest(slope))
         return None
-
-    def _step(self, at: Array, image: Array, slope: Array) -> Array:
-        """Newton's; an integral that a period leaves as it is stays."""
-        moves = _moves(slope)
-        step = np.zeros_like(at)
-        system = np.eye(len(at))[np.ix_(moves, moves)] - slope[np.ix_(moves, moves)]
-        step[moves] = np.linalg.lstsq(system, (image - at)[moves], rcond=None)[0]
-        return step
-
-    def _slope(self, grid: Grid, local: float, at: Array, width: float) -> Array:
-        """The derivative of what a period makes of the numbers, by differences."""
-        slope = np.empty((len(at), len(at)))
-        for k, size in enumerate(self._sizes(at)):
-            ahead, behind = at.copy(), at.copy()
-            ahead[k] += width * size
-            behind[k] -= width * size
-            apart = self._image(grid, local, ahead) - self._image(grid, local, behind)
-            slope[:, k] = apart / (ahead[k] - behind[k])
-        return slope
 
     def _image(self, grid: Grid, local: float, at: Array) -> Array:
         return self._numbers(self._after(grid, local, self._state(at), 1))
@@ -234,10 +177,10 @@ class Fuelled:
         """
         plan = replace(self._plan, until=count * self._period)
         setup = Setup(lambda *_: state, plan, self._allowed)
-        found = integrate(grid, setup, local, by_angle=self._by_angle)
-        end = found.path.state
-        if found.ending is not Ending.COMPLETE or end is None:
-            raise LostError(Ending.STALLS if found.ending in _STILL else found.ending)
+        one = integrate(grid, setup, local, by_angle=self._by_angle)
+        end = one.path.state
+        if one.ending is not Ending.COMPLETE or end is None:
+            raise LostError(Ending.STALLS if one.ending in _STILL else one.ending)
         return self._back(end, math.copysign(count * self._period, end.theta - self._angle))
 
     def _back(self, end: State, turned: float) -> State:
@@ -253,15 +196,3 @@ class Fuelled:
         firing = firing._replace(time=firing.time - end.time, **angles)
         low, high = law.next(firing)
         return State(0.0, self._angle, end.omega, 0.0, Mode(mode.loads, low, high, firing))
-
-
-def _moves(slope: Array) -> Array:
-    """Which of the numbers a period changes: all but an integral that it leaves as it is."""
-    kept = np.abs(slope - np.eye(len(slope))) < _KEPT
-    return np.array([not (k == 1 and row.all()) for k, row in enumerate(kept)])
-
-
-def _largest(slope: Array) -> float:
-    """The largest absolute factor of a disturbance of what a period changes."""
-    moves = _moves(slope)
-    return float(np.max(np.abs(np.linalg.eigvals(slope[np.ix_(moves, moves)]))))

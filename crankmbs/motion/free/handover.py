@@ -17,8 +17,7 @@ from crankmbs.motion.crank_angle.segment import AngleSegment
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.minimal import advance as minimal
 from crankmbs.motion.minimal.reduced import Reduced
-from crankmbs.motion.minimal.segment import TimeSegment
-from crankmbs.motion.minimal.step_sizes import StepSizes
+from crankmbs.motion.minimal.segment import StepSizes, TimeSegment
 from crankmbs.motion.plan import Plan
 
 __all__ = ["FINEST_STEP", "Handover"]
@@ -74,19 +73,19 @@ class Handover:
         while True:
             begin, rounds = state, 0
             effort = minimal.Effort(tolerance, allowed, self.before, hesitates=hesitates)
-            found: Any = (
+            segments: Any = (
                 minimal.advance(self.reduced, state, plan, effort, is_fast)
                 if over_time
                 else crank_angle.advance(self.grid, state, plan, kinks)
             )
             while True:
                 try:
-                    segment = next(found)
+                    segment = next(segments)
                 except StopIteration as stop:
                     ending: Ending | None = stop.value
                     break
                 if not over_time and rounds < _ROUNDS and self._refined(segment):
-                    found = crank_angle.advance(self.grid, state, plan, kinks)
+                    segments = crank_angle.advance(self.grid, state, plan, kinks)
                     rounds += 1
                     continue
                 rounds = 0

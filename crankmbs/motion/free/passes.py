@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import replace
 from functools import partial
+from itertools import takewhile
 from typing import NamedTuple
 
 import numpy as np
@@ -13,28 +15,22 @@ from crankmbs.mechanics.train import CrankTrain
 from crankmbs.mechanics.variables import VARIABLES
 from crankmbs.motion.account import Account
 from crankmbs.motion.assemble import Assembled, assemble
-from crankmbs.motion.base import Solution, State
+from crankmbs.motion.base import Samples, Segment, Solution
 from crankmbs.motion.crank_angle.grid import FINEST_CELL, Grid, edges_apart, grid_of
-from crankmbs.motion.cycles import MOST_CYCLES, Cycles, cycles_of
+from crankmbs.motion.cycles import MOST_CYCLES
 from crankmbs.motion.ending import Ending
-from crankmbs.motion.events import events_of
 from crankmbs.motion.free.handover import FINEST_STEP
-from crankmbs.motion.free.integrate import (
-    Begin,
-    Pass,
-    Setup,
-    begin_at_start,
-    integrate,
-)
-from crankmbs.motion.free.matching import match, stays
+from crankmbs.motion.free.integrate import Begin, Pass, Setup, begin_at_start, integrate
+from crankmbs.motion.minimal.segment import StepSizes
 from crankmbs.motion.motion import Motion, Passes
+from crankmbs.motion.observer import Followed, account_of
 from crankmbs.motion.plan import plan_of
 from crankmbs.motion.remarks import remarks
 from crankmbs.numerics.collocation import gauss
 from crankmbs.numerics.once import once
 from crankmbs.scene.scene import Scene
 
-__all__ = ["Lead", "evaluations", "first_grid", "run", "staggered"]
+__all__ = ["Lead", "evaluations", "first_grid", "match", "run", "staggered", "stays"]
 
 _PASSES = 12  # at most; each asks for less of an error, or begins elsewhere
 _BETTERED = 0.5  # of the least error: what is not below has not been bettered by finer steps
@@ -44,6 +40,7 @@ _PLACES = np.array([0.225, 0.725])  # of new edges in a cell: an old edge is the
 _BESIDE = np.array([5e-3, 5e-5])  # of a cell: edges near a knot, where all grids have one
 # what a pass may say that has not seen yet, or by its errors never, that the crank is at rest
 _RESTING = {Ending.REST, Ending.SWING, Ending.COMPLETE}
+_SAME_REST = 1e-3  # rad: two passes rest at the same place; how far apart is in the stated error
 _BROKEN = (Ending.COSTLY, Ending.FAILED)
 
 
@@ -90,18 +87,17 @@ def run(
     local = max(local, finest)
     for left in reversed(range(_PASSES)):
         answer = integrate(grid, setup, local, by_angle=by_angle)
-        begun, grid = grid, answer.grid
-        if left and lead is not None and grid is not begun:
+        grid = answer.hand.grid
+        if left and lead is not None and grid is not answer.grid:
             continue  # where a settled motion begins depends on the cells
-        origin = answer.origin
-        better = integrate(grid.finer, setup, 1e-2 * local, by_angle=by_angle, first=origin)
-        passes = [_Made(begun, local, answer), _Made(grid.finer, 1e-2 * local, better)]
+        better = integrate(grid.finer, setup, 1e-2 * local, by_angle=by_angle, before=answer)
+        passes = [answer, better]
         solution = _solution(train.scene, answer, better, setup)
         assembled = assemble(train, solution)
         if functions:
             other = staggered(grid)
-            elsewhere = integrate(other, setup, 0.1 * local, by_angle=by_angle, first=origin)
-            passes.append(_Made(other, 0.1 * local, elsewhere))
+            elsewhere = integrate(other, setup, 0.1 * local, by_angle=by_angle, before=answer)
+            passes.append(elsewhere)
             again = assemble(train, _solution(train.scene, answer, elsewhere, setup))
             assembled = _stated_twice(assembled, again)
         near = local <= 10.0 * finest
@@ -119,10 +115,10 @@ def run(
         # what is left is rounding, in both passes alike, and their difference too small an estimate
         best = _doubled(best)
         share *= 2.0
-    first, *others = (Motion(one.grid.train, [*one.made.path.segments]) for one in followed)
-    if not all(one.made.path.segments for one in followed):  # the crank never moves
+    first, *others = (Motion(one.grid.train, [*one.path.segments]) for one in followed)
+    if not all(one.path.segments for one in followed):  # the crank never moves
         first, *others = [Motion.of_one(train, best.solution.samples)] * len(followed)
-    keep = partial(_account, followed, setup, share, by_angle=by_angle)
+    keep = partial(_account, followed, setup, share)
     solution = replace(best.solution, keep=keep)
     if best.relative_error > rtol and solution.status >= 0:
         text = f"asked for {rtol:.0e}, reached {best.relative_error:.0e}"
@@ -130,34 +126,22 @@ def run(
     return replace(best, solution=solution, motion=partial(Passes, first, tuple(others), share))
 
 
-class _Made(NamedTuple):
-    """A pass, and what it was made with: the first grid, and what it might err locally."""
-
-    grid: Grid
-    local: float
-    made: Pass
-
-
-def _account(passes: tuple[_Made, ...], setup: Setup, share: float, *, by_angle: bool) -> Account:
-    """The events of a motion and its whole cycles; where its segments were not kept it is followed
-    once more."""
-    cycles, origin = [], passes[0].made.origin
-    for k, (grid, local, made) in enumerate(passes):
-        cycles.append(Cycles(grid.train, made.origin.state.theta, finer=k > 0))
-        if not (math.isfinite(setup.plan.last) or made.path.dropped):
-            for segment in made.path.segments:
-                cycles[-1].add(segment)
-            continue
-        plan = replace(setup.plan, last=(MOST_CYCLES + 1) * grid.train.scene.period)
-        begin, watch = partial(_given, made.origin.state), cycles[-1].add
-        again = setup._replace(begin=begin, plan=plan, watch=watch)
-        integrate(grid, again, local, by_angle=by_angle, first=None if k == 0 else origin)
-    events = events_of([one.made.path.log for one in passes], share)
-    return Account(events, cycles_of(cycles, share))
+def _account(passes: tuple[Pass, ...], setup: Setup, share: float) -> Account:
+    """The events of a motion and its whole cycles."""
+    followed = [
+        Followed(one.grid.train, one.begin, _segments(one, setup), one.ending) for one in passes
+    ]
+    return account_of(followed, share)
 
 
-def _given(state: State, _grid: Grid, _local: float) -> State:
-    return state
+def _segments(one: Pass, setup: Setup) -> Iterable[Segment]:
+    """The segments of a pass; where they were not kept it is followed once more."""
+    if one.path.state is None or not (math.isfinite(setup.plan.last) or one.path.dropped):
+        return one.path.segments
+    plan = replace(setup.plan, last=(MOST_CYCLES + 1) * one.grid.train.scene.period)
+    again = replace(one.hand, grid=one.grid, taken=StepSizes())
+    end, segments = one.path.state.time, again.segments(one.start, plan, setup.allowed)
+    return takewhile(lambda segment: segment.begin.time < end, segments)
 
 
 @once
@@ -211,11 +195,68 @@ def _solution(scene: Scene, answer: Pass, better: Pass, setup: Setup) -> Solutio
     if status >= 0 and path.state is not None:
         text = "; ".join([text, *remarks(scene, path.state.mode, samples)])
     reasons: tuple[str, ...] = ()
-    if answer.slow:
-        times = ", ".join(f"{t:.4g}" for t in answer.slow[:5])
-        more = " and later" if len(answer.slow) > 5 else ""
+    if path.slow and answer.hand.by_angle:
+        times = ", ".join(f"{t:.4g}" for t in path.slow[:5])
+        more = " and later" if len(path.slow) > 5 else ""
         reasons = (f"minimal carried it across slow stretches that begin at {times} s{more}",)
     evaluations = path.evaluations + better.path.evaluations
     steps = path.steps + better.path.steps
     unknown = {} if check else dict.fromkeys({**VARIABLES, **samples.own}, math.inf)
     return Solution(samples, status, text, evaluations, steps, check, unknown, reasons)
+
+
+class _Matched(NamedTuple):
+    """Samples of either pass, of the second None without a common one; whether the passes part."""
+
+    samples: Samples
+    better: Samples | None
+    parted: bool
+
+
+def stays(a: Samples, b: Samples) -> bool:
+    """Whether from the earlier end on the other pass stays where the first has ended."""
+    short, long = sorted((a, b), key=lambda samples: float(samples.time[-1]))
+    later = long.theta[long.time.searchsorted(short.time[-1]) :]
+    return bool(np.max(np.abs(later - short.theta[-1])) <= _SAME_REST)
+
+
+def match(a: Samples, b: Samples, *, in_time: bool, reversals: int, at_rest: bool) -> _Matched:
+    """The samples that both passes have, and their ends.
+
+    A grid angle within the error of a reversal, or of the end, may be missing in one of them.
+    Where they part their ends are left out. A crank at rest stays there: when a pass deems it so
+    depends on its tolerance, so what comes after is compared with that end, at equal times.
+
+    at_rest : whether they come to rest at the same place, but for their errors
+    """
+    grid_a, grid_b = (s.time[:-1] if in_time else s.theta[:-1] for s in (a, b))
+    n, m = len(grid_a), len(grid_b)
+    if not at_rest and np.array_equal(grid_a, grid_b):
+        return _Matched(a, b, parted=False)
+    kept: list[tuple[int, int]] = []
+    i = j = 0
+    while i < n and j < m:
+        late = a.time[i] - b.time[j]
+        if grid_a[i] != grid_b[j]:
+            i, j = (i + 1, j) if late < 0.0 else (i, j + 1)
+        elif i + 1 < n and grid_a[i + 1] == grid_b[j] and abs(a.time[i + 1] - b.time[j]) < -late:
+            i += 1  # turning there it is passed twice, or, within the error, not at all
+        elif j + 1 < m and grid_b[j + 1] == grid_a[i] and abs(b.time[j + 1] - a.time[i]) < late:
+            j += 1
+        else:
+            kept.append((i, j))
+            i, j = i + 1, j + 1
+    common = min(a.time[-1], b.time[-1]) if at_rest else math.inf
+    passed = np.count_nonzero(a.time[:-1] < common) + np.count_nonzero(b.time[:-1] < common)
+    parted = bool(passed - 2 * len(kept) > 2 * (reversals + 1))
+    if parted and not kept:
+        return _Matched(a, None, parted=True)
+    if at_rest:
+        kept += [(k, m) for k in range(i, n) if a.time[k] >= b.time[-1]]
+    if not parted:
+        kept.append((n, m))
+    rows_a, rows_b = np.array(kept).T
+    a, b = a.select(rows_a), b.select(rows_b)
+    if at_rest:
+        b = replace(b, time=np.where(rows_b == m, a.time, b.time))
+    return _Matched(a, b, parted)

@@ -24,11 +24,11 @@ from crankmbs.motion.crank_angle.grid import Grid
 from crankmbs.motion.crank_angle.periods import Period, period_of
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.free.integrate import Setup, integrate
-from crankmbs.motion.free.recorder import Segment
+from crankmbs.motion.free.settling import LostError
 from crankmbs.motion.plan import plan_of
 from crankmbs.numerics.arrays import Array
 
-__all__ = ["MOST_PERIODS", "LostError", "PeriodMap", "Returned", "Slope"]
+__all__ = ["MOST_PERIODS", "PeriodMap", "Returned"]
 
 MOST_PERIODS = 400  # periods that are tried before the search is given up
 
@@ -38,9 +38,6 @@ _LOOKS = 48  # at so many angles in a cycle, where they may depend on both
 _SPEEDS = 65  # at which the slope of the loads is looked at, beside those of the rows of tables
 _BESIDE = 1e-7  # of a row: on either side of it
 _FLAT = 1e-6  # of the steepest slope: rounding
-_STEP = 1e-3  # of the energy: differences that tell the factor
-_FINE = 1e-13  # tolerance of a period for a difference
-_NOISE = 1e-11  # relative, of such a period
 _CLEAR = 0.05  # rad: an energy that the largest torque does not take within it is clear of rest
 
 
@@ -54,32 +51,6 @@ class Returned(NamedTuple):
     slow: float
     fast: float
     time: float
-
-
-class Slope(NamedTuple):
-    """Factor by which a small difference of energies grows in a period, its error, and the greatest
-    energy over this one."""
-
-    factor: float
-    error: float
-    swing: float
-
-
-class LostError(Exception):
-    """The run does not settle, for a reason; factor by which a period changes a disturbance."""
-
-    def __init__(self, ending: Ending, factor: float = math.nan) -> None:
-        super().__init__(ending)
-        self.ending, self.factor = ending, factor
-
-
-class _StopError(Exception):
-    """The crank stops or turns back."""
-
-
-def _refuse_a_stop(segment: Segment) -> None:
-    if segment.end.omega == 0.0:
-        raise _StopError
 
 
 class PeriodMap:
@@ -143,34 +114,17 @@ class PeriodMap:
         self._periods += 1
         if self._periods > MOST_PERIODS:
             raise LostError(Ending.WANDERS)
-        watch = _refuse_a_stop if one_way else None
-        setup = Setup(lambda *_: state, self._plan, self._allowed, watch=watch)
-        try:
-            found = integrate(grid, setup, local, by_angle=self._by_angle)
-        except _StopError:
-            return Returned(Ending.UNMOVED, 0.0, 0.0, 0.0, 0.0, 0.0)
-        omega, speed = float(found.samples.omega[-1]), np.abs(found.samples.omega)
+        setup = Setup(lambda *_: state, self._plan, self._allowed, one_way=one_way)
+        one = integrate(grid, setup, local, by_angle=self._by_angle)
+        omega, speed = float(one.samples.omega[-1]), np.abs(one.samples.omega)
         return Returned(
-            found.ending,
+            one.ending,
             0.5 * self.inertia * omega**2,
             math.copysign(1.0, omega),
             float(speed.min()),
             float(speed.max()),
-            float(found.samples.time[-1]),
+            float(one.samples.time[-1]),
         )
-
-    def slope(self, grid: Grid, energy: float, sense: float) -> Slope:
-        """How a difference of energies changes in a period, by differences of two widths."""
-        high, low, higher, lower = (
-            self.period(grid, _FINE, self.state(energy * (1.0 + n * _STEP), sense))
-            for n in (1, -1, 2, -2)
-        )
-        width = 2.0 * _STEP * energy
-        factor = (high.energy - low.energy) / width
-        wide = 0.5 * (higher.energy - lower.energy) / width
-        error = abs(wide - factor) + _NOISE / _STEP
-        most = max(high.fast**2 * self.most_inertia, 2.0 * energy)
-        return Slope(factor, error, 0.5 * most / energy)
 
     @cached_property
     def _drag(self) -> float:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Callable, Generator
+from collections.abc import Generator
 from dataclasses import replace
 from typing import Protocol
 
@@ -15,15 +15,14 @@ from crankmbs.motion import base
 from crankmbs.motion.base import Samples, State
 from crankmbs.motion.crank_angle.segment import AngleSegment
 from crankmbs.motion.ending import Ending
-from crankmbs.motion.events import Log
 from crankmbs.motion.minimal.segment import TimeSegment
 from crankmbs.motion.plan import Plan
 from crankmbs.motion.states import samples_at
 
-__all__ = ["Recorder", "Segment", "Watch"]
+__all__ = ["Recorder", "Segment"]
 
 _VAIN = 20  # as many reversals that reach no farther, and the end is not coming
-_MOST_HELD, _A_SAMPLE = 10_000_000, 100  # numbers in segments: at most, or as many for each sample
+_MOST_HELD, _A_SAMPLE = 40_000_000, 100  # numbers in segments: at most, or as many for each sample
 _KEPT_AT_LEAST = 8.0 * math.pi  # rad: the end of a run that is always kept, two cycles
 _SAMPLE = 200  # evaluations as costly as a sample of a swing
 
@@ -48,18 +47,19 @@ class Segment(base.Segment, Protocol):
         """Evaluations of the equation of motion that it took."""
 
 
-Watch = Callable[[Segment], None]
-
-
 class Recorder:
     """The segments of one pass, sampled as they come; with a finite plan.last only the last stay.
 
     can_swing : whether a swing that reaches no farther is known to go on so for ever
     allowed : evaluations over time
-    log : of the events; watch : is shown every segment
+    one_way : whether it is given up where the crank stops or turns back
     slow : times [s] at which time takes over
     dropped : whether segments were given up, as memory would not hold all
+    kept : set it of a pass that betters another: the time [s] from which that one is kept, and this
+        one with it
     """
+
+    kept: float | None = None
 
     def __init__(
         self,
@@ -69,10 +69,10 @@ class Recorder:
         *,
         can_swing: bool,
         allowed: int,
-        watch: Watch | None = None,
+        one_way: bool = False,
     ) -> None:
-        self._train, self._watch, self.dropped, self._held = train, watch, False, 0
-        self._plan, self._can_swing, self._left, self.log = plan, can_swing, allowed, Log(train)
+        self._train, self._one_way, self.dropped, self._held = train, one_way, False, 0
+        self._plan, self._can_swing, self._left = plan, can_swing, allowed
         self._farthest, self._since = 0.0, 0  # reach [rad], and reversals that reached no farther
         self.slow = list[float]()
         self._blocks, self._count = [first], 1
@@ -92,6 +92,8 @@ class Recorder:
             self.slow += [segment.begin.time] if over_time and not went_on else []
             count = self._count
             self._add(segment)
+            if self._one_way and self.reversals:
+                return Ending.UNMOVED
             self._left -= segment.evaluations if over_time else 0
             if self._swings():
                 if self._can_swing:
@@ -101,9 +103,6 @@ class Recorder:
                     return Ending.COSTLY
 
     def _add(self, segment: Segment) -> None:
-        self.log.add(segment)
-        if self._watch is not None:
-            self._watch(segment)
         self.steps += segment.steps
         self.evaluations += segment.evaluations
         if segment.end.omega == 0.0:
@@ -115,8 +114,8 @@ class Recorder:
         if math.isinf(self._plan.last):
             if self.segments and self._plan.in_time:
                 self._blocks[-1] = self._begun_by(segment, self._blocks[-1])
-            self._blocks += (found := self._sampled(segment))
-            self._count += sum(len(block.time) for block in found)
+            self._blocks += (blocks := self._sampled(segment))
+            self._count += sum(len(block.time) for block in blocks)
             self._plan.room.check(self._count)
         self.segments.append(segment)
         self._held += segment.size
@@ -128,8 +127,12 @@ class Recorder:
 
     def _is_spare(self, behind: float) -> bool:
         """Whether a segment that ends an angle [rad] behind the motion's end is given up."""
+        if behind > self._plan.last:
+            return True
+        if self.kept is not None:
+            return len(self.segments) > 1 and self.segments[0].end.time < self.kept
         most = max(_MOST_HELD, _A_SAMPLE * self._count)
-        return behind > self._plan.last or (self._held > most and behind > _KEPT_AT_LEAST)
+        return self._held > most and behind > _KEPT_AT_LEAST
 
     def _begun_by(self, segment: Segment, before: Samples) -> Samples:
         """Samples up to the time at which a segment begins: one there has its values, as a load
@@ -167,7 +170,7 @@ class Recorder:
         if math.isfinite(self._plan.last):
             blocks = [
                 *blocks,
-                *(found for segment in self.segments for found in self._sampled(segment)),
+                *(block for segment in self.segments for block in self._sampled(segment)),
             ]
         joined = Samples.joined([*blocks, self._last()])
         kept = np.ones(len(joined.time), dtype=np.bool_)

@@ -21,12 +21,10 @@ from scipy.integrate import DOP853, Radau
 from crankmbs.mechanics.torque import Branch
 from crankmbs.motion.base import State
 from crankmbs.motion.ending import Ending
-from crankmbs.motion.minimal.entering import enter
-from crankmbs.motion.minimal.equation import Equation
+from crankmbs.motion.minimal.equation import Equation, enter
 from crankmbs.motion.minimal.exits import first_exit, interpolant, value
 from crankmbs.motion.minimal.reduced import Reduced
-from crankmbs.motion.minimal.segment import TimeSegment, Track
-from crankmbs.motion.minimal.step_sizes import StepSizes
+from crankmbs.motion.minimal.segment import StepSizes, TimeSegment, Track
 from crankmbs.motion.plan import Plan
 from crankmbs.numerics.arrays import Array
 

@@ -14,11 +14,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from crankmbs.mechanics.axes import closed_loops
 from crankmbs.mechanics.friction import friction_torque, rubbing
 from crankmbs.mechanics.inertia import fired_torque, reduce
 from crankmbs.mechanics.knots import KNOT, apart
-from crankmbs.mechanics.torque import over_angle, pushing
+from crankmbs.mechanics.torque import over_angle
 from crankmbs.mechanics.train import (
     CrankTrain,
     crank_angle_knots,
@@ -73,11 +72,9 @@ class _Fits(NamedTuple):
 
     edges : of the pieces [rad], from 0 to one period
     inertia, slope, torque, rings, drag : shape (n, terms); the slope is that of J, the torque
-        without friction, loads and combustion
+        without friction and combustion
     gas, combustion : shape (n, terms, cylinders) [N m], what presses rings, and what firings of
         share 1 add; no cylinders where there is none
-
-    rings and drag are of friction alone, without forces from outside on the pistons
     """
 
     edges: list[float]
@@ -131,9 +128,19 @@ class Reduced:
         rubbed = friction_torque(self.train, angles, 0.0, 1.0, shares)
         return load + float(np.max(most - rubbed))
 
+    def fits(self, phases: Phases) -> _Fits:
+        """The polynomials of one period in these phases of the loads; pieces in which they do not
+        fall are halved."""
+        key = phases if self.train.loads_over_angle else ()
+        if key not in self._fits:
+            self._fits[key] = self._fitted(key)
+        return self._fits[key]
+
     @cached_property
-    def fits(self) -> _Fits:
-        """The polynomials of one period; pieces in which they do not fall are halved."""
+    def _fits(self) -> dict[Phases, _Fits]:
+        return {}
+
+    def _fitted(self, phases: Phases) -> _Fits:
         train, period = self.train, self.train.period
         knots = [crank_angle_knots(train), knots_over_angle(train), friction_knots(train)]
         marks = apart(np.concatenate([*knots, [0.0]]))
@@ -141,7 +148,7 @@ class Reduced:
         parts, before = np.ones(len(edges) - 1, dtype=np.intp), np.full(len(edges) - 1, np.inf)
         while True:
             edges, before = _split(edges, parts), np.repeat(before, parts)
-            found = self._fitted(edges)
+            found = self._coefficients(edges, phases)
             narrow = np.diff(edges) <= _NARROW
             found[narrow, _STRAIGHT:] = 0.0
             inside = found.reshape(*found.shape[:2], -1)
@@ -162,27 +169,25 @@ class Reduced:
         friction = self.train.scene.friction
         return friction is not None and friction.ring_pressure > 0.0
 
-    def _fitted(self, edges: Array) -> Array:
-        """Coefficients of all that depends on the angle, shape (n, terms, functions)."""
-        theta = self.nodes(edges)
-        found, rubs = reduce(self.train, theta), rubbing(self.train.alone, theta)
-        alone = np.stack([*found, rubs.rings, rubs.drag], axis=-1)
-        gas = rubs.gas if self._presses else rubs.gas[..., :0]
-        values = np.concatenate([alone, gas, fired_torque(self.train, theta)], axis=-1)
-        return np.asarray(self.to_chebyshev @ values)
-
-    def nodes(self, edges: Array) -> Array:
-        """The angles [rad], shape (n, terms), at which pieces are fitted."""
+    def _coefficients(self, edges: Array, phases: Phases) -> Array:
+        """Those of all that depends on the angle, shape (n, terms, functions)."""
         x = np.polynomial.chebyshev.chebpts1(self._terms)
         middle, half = _placed(edges[:-1], edges[1:])
-        return np.asarray(middle[:, None] + half[:, None] * x)
+        theta = np.asarray(middle[:, None] + half[:, None] * x)
+        found, rubs = reduce(self.train, theta), rubbing(self.train, theta, phases)
+        of_angle = over_angle(self.train, phases)
+        torque = found.torque if of_angle is None else found.torque + of_angle(theta)
+        alone = np.stack([found.inertia, found.slope, torque, rubs.rings, rubs.drag], axis=-1)
+        gas = rubs.gas if self._presses else rubs.gas[..., :0]
+        values = np.concatenate([alone, gas, fired_torque(self.train, theta)], axis=-1)
+        return np.asarray(self._to_chebyshev @ values)
 
     @property
     def _terms(self) -> int:
         return _TERMS + _MORE * self.checks
 
     @cached_property
-    def to_chebyshev(self) -> Array:
+    def _to_chebyshev(self) -> Array:
         """Values at the nodes to coefficients."""
         x = np.polynomial.chebyshev.chebpts1(self._terms)
         weights = np.full((self._terms, 1), 2.0 / self._terms)
@@ -195,15 +200,13 @@ class Pieces:
 
     def __init__(self, base: Reduced, phases: Phases, shares: tuple[float, ...]) -> None:
         self.train, self.torque_scale = base.train, base.torque_scale
-        self._base, self._shares = base, np.array(shares)
-        self.over_angle = over_angle(base.train, phases)
-        self._phases = phases
+        self._fits, self._shares = base.fits(phases), np.array(shares)
         fired = base.train.combustion is not None
         self._bends = sign_changes(base.train, shares).tolist() if fired else []
 
     def around(self, theta: float, sense: float) -> Piece:
         """The piece that the motion enters at an angle [rad] in a sense of rotation."""
-        fits, period = self._base.fits, self.train.period
+        fits, period = self._fits, self.train.period
         ahead = theta + sense * _PASSED * max(abs(theta), period)
         turns = math.floor(ahead / period)
         local = ahead - turns * period
@@ -217,34 +220,12 @@ class Pieces:
         knots = found.low + base, found.high + base, found.middle + base
         return Piece(*knots, found.half, found.powers)
 
-    @cached_property
-    def _loads(self) -> tuple[Array, Array, Array] | None:
-        """Coefficients of what loads give over the angle, of what of them is against either sense
-        of rotation, and of that per speed."""
-        pushes = pushing(self.train, self._phases)
-        if self.over_angle is None and not pushes:
-            return None
-        nodes = self._base.nodes(np.array(self._base.fits.edges))
-        torque = np.zeros_like(nodes) if self.over_angle is None else self.over_angle(nodes)
-        resisting = np.zeros((2, nodes.size))
-        loop = closed_loops(self.train.scene, nodes.ravel())
-        for push in pushes:
-            resisting += push.resisting(nodes.ravel(), loop)
-        every = np.stack([torque, *resisting.reshape(2, *nodes.shape)])
-        found = every @ self._base.to_chebyshev.T
-        return found[0], found[1], found[2]
-
     def _piece(self, k: int, low: float, high: float, sense: float) -> Piece:
         """A part of the piece k, where friction keeps its signs."""
-        fits = self._base.fits
+        fits = self._fits
         begin, end = np.array(fits.edges[k : k + 2])
         middle, half = (float(each) for each in _placed(begin, end))
-        torque, drag = fits.torque[k] + 0.0, fits.drag[k]
-        if self._loads is not None:
-            given, against, per_speed = (part[k] for part in self._loads)
-            torque += given - sense * against
-            drag = drag + per_speed
-        more = np.zeros((1, 1))
+        torque, more = fits.torque[k] + 0.0, np.zeros((1, 1))
         if len(self._shares):
             more = fits.combustion[k] * self._shares
             torque += more.sum(axis=-1)
@@ -255,7 +236,7 @@ class Pieces:
             gas = gas + more
             pressing = gas * np.sign(np.polynomial.chebyshev.chebval(at, gas))
             torque -= sense * friction.ring_pressure * pressing.sum(axis=-1)
-        rows = np.stack([fits.inertia[k], fits.slope[k], torque, drag])
+        rows = np.stack([fits.inertia[k], fits.slope[k], torque, fits.drag[k]])
         matters = (np.abs(rows) > _ROUNDING * np.abs(rows).max(axis=1, keepdims=True)).any(axis=0)
         count = int(np.flatnonzero(matters)[-1]) + 1
         powers = rows[:, :count] @ _powers(count)

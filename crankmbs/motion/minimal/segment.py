@@ -1,8 +1,11 @@
-"""The solution over time on a segment of steps."""
+"""The solution over time on a segment of steps; the steps of a pass, which a later one halves."""
 
 from __future__ import annotations
 
 import math
+from array import array
+from bisect import bisect_right
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -19,8 +22,9 @@ from crankmbs.motion.states import samples_in
 from crankmbs.numerics.arrays import Array
 from crankmbs.numerics.lagrange import ends_and_nodes
 
-__all__ = ["TimeSegment", "Track"]
+__all__ = ["StepSizes", "TimeSegment", "Track"]
 
+_DIED_OUT = 1e-12  # of the time: steps as short led to where a load has no value, and need no half
 _STAGES = 8  # of the rule at whose nodes, and at both ends, a step of degree 7 is told
 
 
@@ -131,3 +135,34 @@ class TimeSegment:
         return TimeSegment.of(
             equation, Track(*times, rows, until, y, equation, math.inf, 0.0, 0), begin
         )
+
+
+class StepSizes:
+    """When the steps of a pass begin and how long they are [s]: without bound where the crank angle
+    carries it.
+
+    >>> steps = StepSizes()
+    >>> steps.add([0.0, 1.0, 1.5], [1.0, 0.5, math.inf])
+    >>> steps.halved(0.0, 1.0), steps.halved(1.0, 0.8), steps.halved(1.5, 1.0)
+    (0.5, 0.25, 1.0)
+    """
+
+    def __init__(self) -> None:
+        self._begins, self._sizes = array("d"), array("d")
+
+    def add(self, begins: Iterable[float], sizes: Iterable[float]) -> None:
+        """Add steps that follow those so far."""
+        self._begins.extend(begins)
+        self._sizes.extend(sizes)
+
+    def at(self, time: float) -> float:
+        """How long the step is [s] that is under way at a time [s]; without bound before any."""
+        k = bisect_right(self._begins, time)
+        return self._sizes[k - 1] if k else math.inf
+
+    def halved(self, time: float, size: float) -> float:
+        """A step [s] from a time [s] on, no longer than half the one under way at its middle."""
+        least = _DIED_OUT * abs(time)
+        while size > (half := 0.5 * self.at(time + 0.5 * size)) > least:
+            size = half
+        return size

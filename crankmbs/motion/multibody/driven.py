@@ -8,10 +8,9 @@ from crankmbs.mechanics.peaks import peak
 from crankmbs.mechanics.speed import speed_law
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion.base import Samples, Solution
-from crankmbs.motion.driven import Way, driven
+from crankmbs.motion.driven import Way, driven, monotone_stretches
 from crankmbs.motion.multibody.answer import Answers, solution
 from crankmbs.motion.plan import plan_of
-from crankmbs.motion.prescribed import monotone_stretches
 from crankmbs.numerics.arrays import Array
 
 __all__ = ["run"]

@@ -11,11 +11,10 @@ from crankmbs.mechanics.torque import pushing
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.motion.assemble import Assembled, assemble
 from crankmbs.motion.base import Samples, Solution, State
-from crankmbs.motion.driven import decisions, windows_at
+from crankmbs.motion.driven import decisions, monotone_stretches, windows_at
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.mode import begun
 from crankmbs.motion.plan import Plan, folds_of
-from crankmbs.motion.prescribed import monotone_stretches
 from crankmbs.motion.states import applied_forces
 from crankmbs.motion.stepwise.standing import Moving, Standing, commanded, said
 

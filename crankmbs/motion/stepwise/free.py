@@ -16,9 +16,8 @@ from crankmbs.motion.crank_angle.grid import FINEST_CELL, Grid
 from crankmbs.motion.ending import Ending
 from crankmbs.motion.free.handover import Handover
 from crankmbs.motion.free.passes import first_grid, staggered
-from crankmbs.motion.minimal.entering import enter
 from crankmbs.motion.minimal.reduced import Reduced
-from crankmbs.motion.minimal.step_sizes import StepSizes
+from crankmbs.motion.minimal.segment import StepSizes
 from crankmbs.motion.mode import begun
 from crankmbs.motion.plan import Plan, folds_of
 from crankmbs.motion.states import first_sample
@@ -137,17 +136,8 @@ class Free:
             self._share * (apart + _ROUNDING * abs(value))
             for apart, value in zip(standing[1:3], state[1:3], strict=True)
         )
-        return Moving(state.theta, state.omega, self._acceleration(state), *errors)
-
-    def _acceleration(self, state: State) -> float:
-        """With which the crank sets out from a state [rad/s2]."""
-        reduced = self._reduced[0]
-        scale = reduced.torque_scale + abs(state.mode.held)
-        equation = enter(reduced, self._known(state), scale)
-        if isinstance(equation, Ending) or equation.holds:
-            return 0.0
-        y = np.array([state.theta - equation.piece.middle, state.omega, 0.0])
-        return float(equation.slopes(state.time, y)[1])
+        alpha = float(self._sample(self._train, state).alpha[0])
+        return Moving(state.theta, state.omega, alpha, *errors)
 
     def said(self, standing: Standing) -> tuple[int, str]:
         """Status and sentence of the last step."""
@@ -163,15 +153,13 @@ class Free:
         beside = one._replace(theta=one.theta + turned, omega=one.omega + faster, mode=other.mode)
         answer = self._sample(self._train, one)
         better = self._sample(self._train.perturbed, beside)
-        found = assemble(self._train, Solution(answer, *self.said(standing), 0, 0, better))
-        errors = {name: self._share * error for name, error in found.errors.items()}
-        return replace(found, errors=errors)
+        assembled = assemble(self._train, Solution(answer, *self.said(standing), 0, 0, better))
+        errors = {name: self._share * error for name, error in assembled.errors.items()}
+        return replace(assembled, errors=errors)
 
     def _sample(self, train: CrankTrain, state: State) -> Samples:
-        over_angle = self._reduced[0].at(state.mode).over_angle
-        of_angle = float(over_angle(state.theta)) if over_angle is not None else 0.0
-        found = first_sample(train, self._known(state), of_angle)
-        return replace(found, time=np.array([state.time]))
+        sample = first_sample(train, self._known(state))
+        return replace(sample, time=np.array([state.time]))
 
     def _known(self, state: State) -> State:
         """A state at the very end of a load's table over time an instant before it."""
