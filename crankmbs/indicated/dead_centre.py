@@ -13,12 +13,12 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import least_squares
 
-from crankmbs.indicated.reference import EXPONENTS
 from crankmbs.indicated.shape import Shape
 from crankmbs.numerics.arrays import Array
 
-__all__ = ["DeadCentre", "fired_dead_centre", "is_fired", "motored_dead_centre", "peak_of"]
+__all__ = ["EXPONENTS", "DeadCentre", "fired_dead_centre", "is_fired", "motored_dead_centre"]
 
+EXPONENTS = (1.28, 1.40)  # of the compression of air and mixture in engines
 _ABOUT = 8.0  # degrees about the peak: a quartic follows a motored one to 0.01 degrees
 _LOSS = (0.2, 1.2)  # degrees: loss angles that engines are taken to have where none is given
 _FIT = 0.02  # degrees: what the quartic may be off
@@ -105,13 +105,15 @@ def motored_dead_centre(
     )
 
 
-def fired_dead_centre(phi: Array, mean: Array, shape: Shape) -> DeadCentre | None:
+def fired_dead_centre(phi: Array, mean: Array, shape: Shape | None) -> DeadCentre | None:
     """The interval of the dead centre in which the compression before the ignition is a polytrope
     of an exponent between 1.28 and 1.40, the pressure known to 0.05 bar.
 
     least squares of ln(p + c) = ln C - n ln V(phi - d) in d and C, from 100 to 30 degrees before;
-    None where the pressure is no absolute one there
+    None where the pressure is no absolute one there, or no compression ratio is known
     """
+    if shape is None or shape.ratio is None:
+        return None
     window = (phi >= _COMPRESSION[0]) & (phi <= _COMPRESSION[1])
     angle, pressure = phi[window], mean[window]
     if np.min(pressure) <= -_OFFSETS[0]:

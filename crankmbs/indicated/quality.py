@@ -59,7 +59,7 @@ def closure(pressure: Array) -> Array:
     return np.asarray(following - (2.0 * pressure[:, -1] - pressure[:, -2]))
 
 
-def smoothed(phi: Array, pressure: Array, width: float, where: str) -> Array:
+def smoothed(phi: Array, pressure: Array, width: float) -> Array:
     """Cycles under a sliding cubic of least squares (Savitzky and Golay) over ``width`` degrees.
 
     Raises
@@ -69,13 +69,13 @@ def smoothed(phi: Array, pressure: Array, width: float, where: str) -> Array:
     step = float(np.median(np.diff(phi)))
     if not np.allclose(np.diff(phi), step, rtol=1e-3):
         raise InputError(
-            f"{where}: smooth needs evenly spaced angles, and the resolution changes within the "
+            "smooth needs evenly spaced angles, and the resolution changes within the "
             "cycle; leave smooth out, or resample the file"
         )
     rows = 2 * round(0.5 * width / step) + 1
     if not 5 <= rows < len(phi):
         raise InputError(
-            f"{where}: smooth must span at least five rows, {4.0 * step:g} degrees here, and less "
+            f"smooth must span at least five rows, {4.0 * step:g} degrees here, and less "
             f"than the cycle; {width:g} degrees came"
         )
     from scipy.signal import savgol_filter  # a fifth of a second: only where it is asked for

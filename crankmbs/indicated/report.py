@@ -11,7 +11,7 @@ from crankmbs.indicated.findings import CylinderPressure
 from crankmbs.indicated.shape import Shape
 from crankmbs.scene.units import BAR
 
-__all__ = ["said_of"]
+__all__ = ["sentences_of"]
 
 _LATE = -0.5  # degrees: a fired cycle that peaks before this burns too early, or is out of phase
 _EARLY = -3.0  # degrees: no loss of heat brings a motored peak so far
@@ -19,7 +19,9 @@ _EPSILON = 1e-9  # of the range: less is the rounding of digits, no noise
 _MOVED = 0.01  # of the range: how far a cycle may miss the next one's beginning
 
 
-def said_of(cylinder: CylinderPressure, shape: Shape | None, referenced: bool) -> Iterator[str]:
+def sentences_of(
+    cylinder: CylinderPressure, shape: Shape | None, referenced: bool
+) -> Iterator[str]:
     """The sentences of one cylinder."""
     name = f"cylinder {cylinder.number}"
     yield _size(cylinder, name)

@@ -130,7 +130,7 @@ class Rotation(NamedTuple):
         return float(self.mean_speed * np.radians(relative) + steepest * self.angle_error + mixed)
 
 
-def rotation_of(time: Array, first: Index, wheel: Wheel, stroke: int, where: str) -> Rotation:
+def rotation_of(time: Array, first: Index, wheel: Wheel, stroke: int) -> Rotation:
     """The rotation from the times [s] of a wheel's edges.
 
     first : the places of the first edges after the gaps; stroke : 2 or 4
@@ -143,7 +143,7 @@ def rotation_of(time: Array, first: Index, wheel: Wheel, stroke: int, where: str
     cycles = (len(first) - 1) // turns
     if cycles < 2:
         raise InputError(
-            f"{where}: {len(first) - 1} whole revolutions are less than two cycles of a "
+            f"{len(first) - 1} whole revolutions are less than two cycles of a "
             f"{stroke}-stroke engine, {2 * turns} revolutions; record longer"
             + (", or give stroke=2" if stroke == 4 else "")
         )
