@@ -14,9 +14,8 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from crankmbs.figures.cylinders import one_curve_each
 from crankmbs.figures.polar import ENGINE, THROW, alike, draw_polar
-from crankmbs.figures.style import STYLE, footer, panels
+from crankmbs.figures.style import STYLE, footer, one_curve_each, panels
 from crankmbs.figures.view import View
 from crankmbs.numerics.arrays import Array
 

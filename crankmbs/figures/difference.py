@@ -11,8 +11,16 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from crankmbs.compare.confirm import Difference
-from crankmbs.figures.cylinders import one_curve_each, whose
-from crankmbs.figures.style import STYLE, footer, legend, line_of, panels, save
+from crankmbs.figures.style import (
+    STYLE,
+    footer,
+    legend,
+    line_of,
+    one_curve_each,
+    panels,
+    save,
+    whose,
+)
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 

@@ -5,17 +5,18 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
+from matplotlib import rc_context
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Polygon
 
-from crankmbs.figures.outline import Mechanism
-from crankmbs.figures.style import line_of
+from crankmbs.figures.outline import Mechanism, mechanism
+from crankmbs.figures.style import STYLE, caption, line_of, panels
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 
-__all__ = ["Drawing", "Look", "on_paper", "slices"]
-
+__all__ = ["Drawing", "Look", "machine_figure", "on_paper", "slices"]
 
 _MM = 1e3
 _METAL, _EDGE, _GAS, _ROD = "0.75", "0.25", "#E69F00", "0.6"
@@ -148,3 +149,30 @@ class Drawing:
 def on_paper(points: Array) -> tuple[Array, Array]:
     """Points [m] of shape (..., 2) as abscissae and ordinates [mm]."""
     return -points[..., 1] * _MM, points[..., 0] * _MM
+
+
+_ACROSS = 6  # cuts in one row
+
+
+@rc_context(STYLE)
+def machine_figure(scene: Scene) -> Figure:
+    """Crank, rods, pistons and liners at the angle of the start: one drawing for each cylinder, or
+    for those of different banks that stand side by side.
+
+    >>> len(machine_figure(load_scene("yi_diesel_free")).axes)
+    4
+    """
+    cuts = slices(scene)
+    across = min(len(cuts), _ACROSS)
+    down = -(-len(cuts) // across)
+    figure, axes = panels(down, across, 2.2 * across + 1.0, 4.0 * down)
+    begin = scene.start or scene.motion
+    parts = mechanism(scene, [begin.angle if begin is not None else 0.0])
+    for ax in axes:
+        ax.axis("off")
+    for ax, cut in zip(axes, cuts, strict=False):
+        Drawing(ax, parts, cut)
+        if len(scene.cylinders) > 1:
+            ax.set_title(", ".join(str(k + 1) for k in cut))
+    caption(figure, ["X upwards, Y to the left, to scale, where the run begins"])
+    return figure

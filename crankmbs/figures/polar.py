@@ -16,7 +16,6 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from crankmbs.figures.cylinders import one_curve_each, whose
 from crankmbs.figures.style import (
     STYLE,
     footer,
@@ -24,7 +23,9 @@ from crankmbs.figures.style import (
     legend,
     line_of,
     mark_points,
+    one_curve_each,
     panels,
+    whose,
 )
 from crankmbs.figures.view import View
 from crankmbs.numerics.arrays import Array

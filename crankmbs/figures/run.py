@@ -9,18 +9,17 @@ from matplotlib.figure import Figure
 
 from crankmbs.errors import InputError, shown
 from crankmbs.figures.bearings import bearings_figure
-from crankmbs.figures.cycles import FEWEST_CYCLES, cycles_figure
-from crankmbs.figures.indicator import indicator_figure
-from crankmbs.figures.orders import orders_figure
+from crankmbs.figures.cycles import FEWEST_CYCLES, cycles_figure, transient_figure, varies_strongly
+from crankmbs.figures.design import orders_figure
 from crankmbs.figures.polar import crank_pin_figure, main_bearing_figure, piston_pin_figure
 from crankmbs.figures.strips import (
     forces_figure,
+    indicator_figure,
     piston_motion_figure,
     speed_figure,
     torque_figure,
 )
 from crankmbs.figures.style import save
-from crankmbs.figures.transient import transient_figure, varies_strongly
 from crankmbs.figures.view import View, last_view
 from crankmbs.measures import engine_orders
 from crankmbs.result import Result

@@ -35,9 +35,11 @@ __all__ = [
     "line_of",
     "logarithmic",
     "mark_points",
+    "one_curve_each",
     "panels",
     "png",
     "save",
+    "whose",
 ]
 
 # Okabe and Ito's palette without its yellow, which is too pale on white
@@ -45,6 +47,7 @@ COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00")
 _DASHES = ("-", (0, (6, 2)), (0, (6, 2, 1.5, 2)), (0, (2.5, 1.5)))
 _GREY = "0.55"
 FLAT = 1e-6  # of the mean: what varies less is drawn as constant
+_SAME = 1e-3  # of the range of a panel's curves: less than a pixel of it, a fifth of a line
 _SMALLER = 2  # points: text at the dead centres and of the caption, than the type of the figure
 _FAST = {"compress_level": 3}  # of a PNG: a third less time for a sixth more bytes
 _LINE = 1.27  # of its size: a line of it
@@ -235,3 +238,43 @@ def footer(figure: Figure, result: Result, about: str) -> None:
 def caption(figure: Figure, lines: list[str]) -> None:
     """Write lines under the figure as they are: in a title a $ is no formula."""
     figure.supxlabel("\n".join(lines), fontsize=_small(), color="0.35", parse_math=False)
+
+
+def one_curve_each(*panels: Array) -> list[list[int]]:
+    """Cylinders, counted from 0, whose curves coincide in every panel.
+
+    panels : each of shape (n, cylinders), any unit
+
+    >>> one_curve_each([[0.0, 1.0, 0.0], [1.0, 0.0, 1.0]])
+    [[0, 2], [1]]
+    """
+    curves = [np.asarray(panel, dtype=np.float64) for panel in panels]
+    groups: list[list[int]] = []
+    for k in range(curves[0].shape[1]):
+        same = next((group for group in groups if _coincide(curves, group[0], k)), None)
+        if same is None:
+            groups.append([k])
+        else:
+            same.append(k)
+    return groups
+
+
+def whose(cylinders: list[int]) -> str:
+    """Legend entry of the cylinders of one curve, counted from 0.
+
+    >>> whose([0, 3])
+    'cylinders 1, 4'
+    """
+    numbers = ", ".join(str(k + 1) for k in cylinders)
+    return f"cylinder{'s' if len(cylinders) > 1 else ''} {numbers}"
+
+
+def _coincide(curves: list[Array], first: int, second: int) -> bool:
+    return all(
+        bool(np.all(np.abs(panel[:, first] - panel[:, second]) <= _seen(panel))) for panel in curves
+    )
+
+
+def _seen(panel: Array) -> float:
+    """What can be seen of a difference: nothing where the whole panel is drawn as constant."""
+    return max(_SAME * float(np.ptp(panel)), FLAT * float(np.max(np.abs(panel))))

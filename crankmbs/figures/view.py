@@ -1,4 +1,4 @@
-"""What the figures draw: the last cycle of a result, its angles in degrees."""
+"""What the figures draw: the last cycle of a result, its angles in degrees; curves over time."""
 
 from __future__ import annotations
 
@@ -7,8 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crankmbs.figures.curves import over_time
-from crankmbs.measures import Span, last_span
+from crankmbs.measures import Span, interp, last_span
 from crankmbs.measures.span import TURNS_BACK
 from crankmbs.mechanics.geometry import dead_centres
 from crankmbs.numerics.arrays import Array
@@ -16,8 +15,7 @@ from crankmbs.result import Result
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.units import DEGREE
 
-__all__ = ["View", "last_view"]
-
+__all__ = ["View", "last_view", "over_time"]
 
 _SAME = 0.5  # deg: dead centres closer than this share one line
 _THERE = 1e-6  # deg: a cycle that begins so near to where the axis does is drawn in one piece
@@ -184,3 +182,34 @@ def last_view(result: Result) -> View:
         begun=begun,
         curves=curves,
     )
+
+
+_WIDTH = 500  # of a panel, in the longest lines that are drawn straight
+
+
+def over_time(result: Result, first: int = 0) -> dict[str, Array]:
+    """Time [s], crank angle [rad] and the variables of a result from a sample on, by name, for a
+    panel of all of it.
+
+    Samples at equal angles lie far apart in time where the crank turns back. Between them the
+    motion is read as it was solved; without it, as of some loaded results, there are samples alone.
+    """
+    values = {
+        name: values[first:] for name, (of, values, _) in result.variables.items() if "time" in of
+    }
+    time = values["time"]
+    pieces = np.ceil(np.diff(time) * _WIDTH / max(float(np.ptp(time)), np.finfo(float).tiny))
+    if result.motion is None:
+        return values
+    begin = result.passes.answer.begin  # of a long run with few samples the end is kept
+    wide = np.flatnonzero((pieces > 1.0) & (time[:-1] >= begin))
+    if not wide.size:
+        return values
+    added = [np.linspace(time[k], time[k + 1], int(pieces[k]) + 1)[1:-1] for k in wide]
+    between = interp(result, time=np.concatenate(added))
+    places = np.repeat(wide + 1, [len(times) for times in added])
+    return {
+        name: np.insert(v, places, between[name].values, axis=0)
+        for name, v in values.items()
+        if name in between
+    }
