@@ -10,13 +10,12 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 
 from crankmbs.design import Balance, Flywheel
+from crankmbs.figures.polar import ENGINE, draw_polar
 from crankmbs.figures.style import (
     COLOURS,
     STYLE,
     footer,
-    force_scale,
     legend,
-    line_of,
     logarithmic,
     panels,
     save,
@@ -37,26 +36,16 @@ __all__ = [
 
 @rc_context(STYLE)
 def balance_figure(balance: Balance) -> Figure:
-    """Over the last cycle, X upwards and Y to the left as the engine stands."""
+    """Over the last cycle, in the engine's frame, with marks at every 90 degrees before."""
     figure, (ax,) = panels(1, 1, 8.0, 8.0)
     first = last_span(balance.result).first
-    paths = {
-        "before": balance.before[first:],
-        f"after, share {100 * balance.share:g} %": balance.after[first:],
-    }
-    scale, unit = force_scale(*paths.values())
-    for k, (label, path) in enumerate(paths.items()):
-        ax.plot(path[:, 1] / scale, path[:, 0] / scale, **line_of(k), label=label)
-    most = 1.05 * max(float(np.max(np.abs(path))) for path in paths.values()) / scale or 1.0
-    ax.axhline(0.0, color="0.55", linewidth=1.0, zorder=1)
-    ax.axvline(0.0, color="0.55", linewidth=1.0, zorder=1)
-    ax.set_xlim(most, -most)
-    ax.set_ylim(-most, most)
-    ax.set_aspect("equal")
-    ax.set_xlabel(f"force on the frame along Y [{unit}]")
-    ax.set_ylabel(f"force on the frame along X [{unit}]")
+    degrees = np.degrees(balance.result.sampled("crank_angle")[first:])
+    up, left = np.array([balance.before, balance.after])[:, first:].transpose(2, 0, 1)
+    labels = {0: "before", 1: f"after, share {100 * balance.share:g} %"}
+    draw_polar(ax, (list(up), list(left)), degrees, labels, ENGINE)
+    ax.set_title("force on the frame, engine's frame")
     legend(figure, ax)
-    footer(figure, balance.result, "force on the frame over the last cycle")
+    footer(figure, balance.result, "last cycle; marks: crank angle [deg]")
     return figure
 
 

@@ -17,8 +17,8 @@ from crankmbs.figures.style import (
     legend,
     line_of,
     one_curve_each,
-    panels,
     save,
+    tiles,
     whose,
 )
 from crankmbs.numerics.arrays import Array
@@ -37,18 +37,15 @@ def difference_figure(result: Result, differences: tuple[Difference, ...]) -> Fi
     Cylinders are one curve where they coincide in every panel. What is below a thousandth of the
     largest difference of its panel tells no two apart: near its zeros that is rounding.
     """
-    rows = -(-len(differences) // _COLUMNS)
-    figure, axes = panels(rows, _COLUMNS, 15.0, 2.9 * rows)
+    figure, axes = tiles(len(differences), _COLUMNS, (5.0, 2.9))
     low, high = _limits(differences)
     drawn = [np.maximum(row.size / (row.peak or 1.0), low) for row in differences]
     several = [sizes for sizes in drawn if sizes.shape[1] > 1]
     groups = one_curve_each(*several) if several else []
-    for ax, row, sizes in zip(axes, differences, drawn, strict=False):
+    for ax, row, sizes in zip(axes, differences, drawn, strict=True):
         _draw(ax, row, sizes, groups)
         ax.set_ylim(low, high)
-    for ax in axes[len(differences) :]:
-        ax.set_visible(False)
-    for ax in axes[: len(differences)][-_COLUMNS:]:
+    for ax in axes[-_COLUMNS:]:
         ax.set_xlabel("crank angle [rev]")
     figure.supylabel("difference / peak of the quantity [1]")
     legend(figure, max(axes, key=lambda ax: len(ax.lines)))

@@ -17,7 +17,7 @@ from crankmbs.figures.outline import Mechanism
 from crankmbs.figures.view import View
 from crankmbs.numerics.arrays import Array
 
-__all__ = ["Machine", "Ring", "shown_forces"]
+__all__ = ["Machine", "Ring", "at_frames", "shown_forces"]
 
 RADIUS = 1.45  # of the crank radius
 _TICKS = 24
@@ -120,15 +120,16 @@ def shown_forces(
 ) -> list[Force]:
     """The forces on a body at the frames, linear between samples, of the cylinders that are drawn;
     the bearings' on the crank, all cylinders' together, where all are in one drawing."""
-    time = view.values("time") - view.window.begin
-    data = {
-        name: np.stack([np.interp(frames.time, time, row) for row in np.atleast_2d(values.T)])
-        for name in (*_SEEN, *_PINS)
-        if name in view.result.variables
-        for values in (view.values(name),)
-    }
-    data = {name: rows.T if view.values(name).ndim > 1 else rows[0] for name, rows in data.items()}
+    known = [name for name in (*_SEEN, *_PINS) if name in view.result.variables]
+    data = {name: at_frames(view, frames, name) for name in known}
     drawn = [k for cut in cuts for k in cut]
     if len(cuts) == 1 and len(drawn) == len(view.scene.cylinders):
         return forces_on(body, view.scene, parts, data)
     return [each for each in forces_on(body, view.scene, parts, data) if each.cylinder in drawn]
+
+
+def at_frames(view: View, frames: Frames, name: str) -> Array:
+    """A variable at the frames, linear between samples, shape (n,) or (n, cylinders)."""
+    time, values = view.values("time") - view.window.begin, view.values(name)
+    rows = [np.interp(frames.time, time, row) for row in np.atleast_2d(values.T)]
+    return np.reshape(np.transpose(rows), (-1, *values.shape[1:]))

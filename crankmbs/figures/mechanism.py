@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Polygon
 
 from crankmbs.figures.outline import Mechanism, mechanism
-from crankmbs.figures.style import STYLE, caption, line_of, panels
+from crankmbs.figures.style import STYLE, caption, line_of, tiles
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 
@@ -163,14 +163,10 @@ def machine_figure(scene: Scene) -> Figure:
     4
     """
     cuts = slices(scene)
-    across = min(len(cuts), _ACROSS)
-    down = -(-len(cuts) // across)
-    figure, axes = panels(down, across, 2.2 * across + 1.0, 4.0 * down)
+    figure, axes = tiles(len(cuts), _ACROSS, (2.4, 4.0), least=(3.2, 4.0))
     begin = scene.start or scene.motion
     parts = mechanism(scene, [begin.angle if begin is not None else 0.0])
-    for ax in axes:
-        ax.axis("off")
-    for ax, cut in zip(axes, cuts, strict=False):
+    for ax, cut in zip(axes, cuts, strict=True):
         Drawing(ax, parts, cut)
         if len(scene.cylinders) > 1:
             ax.set_title(", ".join(str(k + 1) for k in cut))

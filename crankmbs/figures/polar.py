@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import textwrap
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from matplotlib import rc_context
@@ -20,6 +20,7 @@ from crankmbs.figures.style import (
     STYLE,
     footer,
     force_scale,
+    grouped,
     legend,
     line_of,
     mark_points,
@@ -49,15 +50,10 @@ _WIDEST = 9  # letters in a line of a label: two angles
 _GAP, _LINE, _LETTER = 0.04, 0.045, 0.017  # of the axes: to the labels; their height and width
 
 
-@dataclass(frozen=True)
-class _Mark:
+class _Mark(NamedTuple):
     left: float
     up: float
-    angles: list[int]
-
-    @property
-    def lines(self) -> list[str]:
-        return textwrap.wrap(", ".join(map(str, sorted(self.angles))), _WIDEST)
+    lines: list[str]
 
 
 @rc_context(STYLE)
@@ -163,16 +159,21 @@ def _marks(left: Array, up: Array, degrees: Array) -> list[_Mark]:
     near = _CLOSE * max(float(np.ptp(left)), float(np.ptp(up)))
     low, high = float(degrees.min()), float(degrees.max())
     first = math.ceil(low / 90.0 - 1e-6) * 90
-    marks: list[_Mark] = []
-    for angle in range(first, min(math.floor(high + 1e-6), first + 719) + 1, 90):
-        k = int(np.argmin(np.abs(degrees - angle)))
-        a, b = float(left[k]), float(up[k])
-        same = next((m for m in marks if math.hypot(m.left - a, m.up - b) <= near), None)
-        if same is None:
-            same = _Mark(a, b, [])
-            marks.append(same)
-        same.angles.append(angle % 720)
-    return marks
+    angles = range(first, min(math.floor(high + 1e-6), first + 719) + 1, 90)
+    nearest = {angle % 720: int(np.argmin(np.abs(degrees - angle))) for angle in angles}
+
+    def on_one_spot(one: int, other: int) -> bool:
+        a, b = nearest[one], nearest[other]
+        return math.hypot(left[a] - left[b], up[a] - up[b]) <= near
+
+    return [
+        _Mark(
+            float(left[nearest[spot[0]]]),
+            float(up[nearest[spot[0]]]),
+            textwrap.wrap(", ".join(map(str, sorted(spot))), _WIDEST),
+        )
+        for spot in grouped(nearest, on_one_spot)
+    ]
 
 
 def _frame(ax: Axes, left: Array, up: Array, marks: list[_Mark]) -> None:

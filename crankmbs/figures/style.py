@@ -5,8 +5,9 @@ from __future__ import annotations
 import io
 import math
 import textwrap
+from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, TypeVar
 
 import numpy as np
 from matplotlib import rcParams
@@ -30,6 +31,7 @@ __all__ = [
     "crank_axis",
     "footer",
     "force_scale",
+    "grouped",
     "keep_flat",
     "legend",
     "line_of",
@@ -39,8 +41,11 @@ __all__ = [
     "panels",
     "png",
     "save",
+    "tiles",
     "whose",
 ]
+
+T = TypeVar("T")
 
 # Okabe and Ito's palette without its yellow, which is too pale on white
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00")
@@ -112,6 +117,19 @@ def panels(
     FigureCanvasAgg(figure)
     grid = figure.subplots(rows, columns, squeeze=False, width_ratios=ratios)
     return figure, [axes for row in grid for axes in row]
+
+
+def tiles(
+    count: int, across: int, size: tuple[float, float], least: tuple[float, float] = (0.0, 0.0)
+) -> tuple[Figure, list[Axes]]:
+    """Panels of one size [inch], so many side by side at most; the figure has a least size."""
+    columns = min(count, across)
+    rows = -(-count // columns)
+    width, height = max(size[0] * columns, least[0]), max(size[1] * rows, least[1])
+    figure, axes = panels(rows, columns, width, height)
+    for ax in axes[count:]:
+        ax.set_visible(False)
+    return figure, axes[:count]
 
 
 def logarithmic(axis: Axis) -> None:
@@ -249,13 +267,26 @@ def one_curve_each(*panels: Array) -> list[list[int]]:
     [[0, 2], [1]]
     """
     curves = [np.asarray(panel, dtype=np.float64) for panel in panels]
-    groups: list[list[int]] = []
-    for k in range(curves[0].shape[1]):
-        same = next((group for group in groups if _coincide(curves, group[0], k)), None)
-        if same is None:
-            groups.append([k])
+
+    def coincide(first: int, second: int) -> bool:
+        return all(
+            bool(np.all(np.abs(panel[:, first] - panel[:, second]) <= _seen(panel)))
+            for panel in curves
+        )
+
+    return grouped(range(curves[0].shape[1]), coincide)
+
+
+def grouped(items: Iterable[T], alike: Callable[[T, T], bool]) -> list[list[T]]:
+    """Items in their order, each with those before that are like the first of its group."""
+    groups: list[list[T]] = []
+    for item in items:
+        for group in groups:
+            if alike(group[0], item):
+                group.append(item)
+                break
         else:
-            same.append(k)
+            groups.append([item])
     return groups
 
 
@@ -267,12 +298,6 @@ def whose(cylinders: list[int]) -> str:
     """
     numbers = ", ".join(str(k + 1) for k in cylinders)
     return f"cylinder{'s' if len(cylinders) > 1 else ''} {numbers}"
-
-
-def _coincide(curves: list[Array], first: int, second: int) -> bool:
-    return all(
-        bool(np.all(np.abs(panel[:, first] - panel[:, second]) <= _seen(panel))) for panel in curves
-    )
 
 
 def _seen(panel: Array) -> float:

@@ -16,7 +16,7 @@ from matplotlib.ticker import MaxNLocator
 from crankmbs.digits import error_digits
 from crankmbs.display import displayed
 from crankmbs.errors import InputError
-from crankmbs.figures.style import COLOURS, STYLE, caption, logarithmic, panels
+from crankmbs.figures.style import COLOURS, STYLE, caption, logarithmic, panels, tiles
 from crankmbs.numerics.arrays import Array
 from crankmbs.sweep.columns import Column
 from crankmbs.sweep.reading import Reading, amount_of, reading_of
@@ -29,6 +29,7 @@ __all__ = ["sweep_figure"]
 _ON_AXES = {"1": (0.01, "%"), "N": (1e3, "kN")}  # else as in text
 _MOST = 12  # panels
 _COLUMNS = 3
+_SIZES = (4.6, 4.2), (9.0, 6.5)  # inch: of a panel, and of the smallest figure
 _LEVELS = 12
 _ROUND = [1, 2, 5, 10]  # steps of ticks and levels, times a power of ten
 _CELLS = 500  # along an axis: finer than the points that are drawn
@@ -137,14 +138,9 @@ def _over(data: xr.Dataset, drawn: _Drawn, knobs: list[str]) -> Figure:
             f"{', '.join(further)}: {count} panels are too many; at most {_MOST} are drawn, vary "
             "fewer values beside the first two"
         )
-    columns = min(count, _COLUMNS)
-    rows = -(-count // columns)
-    figure, axes = panels(rows, columns, max(4.6 * columns, 9.0), max(4.2 * rows, 6.5))
+    figure, axes = tiles(count, _COLUMNS, *_SIZES)
     levels = _levels(drawn.values.values)
     for k, ax in enumerate(axes):
-        ax.set_visible(k < count)
-        if k >= count:
-            continue
         table = drawn.values.values if rest is None else rest.values[k]
         filled = _contours(
             ax, (_axis(data, x), _axis(data, y)), drawn._replace(values=table), levels
@@ -200,32 +196,25 @@ def _amount(drawn: _Drawn) -> str:
 
 def _over_cases(data: xr.Dataset, drawn: _Drawn) -> Figure:
     names = [str(name) for name in data.coords if data[name].dims == ("case",)]
-    columns = min(len(names), _COLUMNS)
-    rows = -(-len(names) // columns)
-    figure, axes = panels(rows, columns, max(4.6 * columns, 8.0), max(4.0 * rows, 5.0))
-    for ax, name in zip(axes, names, strict=False):
+    figure, axes = tiles(len(names), _COLUMNS, *_SIZES)
+    for ax, name in zip(axes, names, strict=True):
         axis = _axis(data, name)
         ax.plot(*_apart(axis.at, drawn.values.values), ".", color=COLOURS[0], markersize=4)
         axis.along(ax.xaxis)
         _limited(ax, drawn)
-    for ax in axes[len(names) :]:
-        ax.set_visible(False)
     figure.suptitle(drawn.label, fontsize=14)
     return figure
 
 
 def _apart(x: Array, y: Array) -> tuple[Array, Array]:
     """Of points that nobody can tell apart in the figure one."""
-    if len(x) <= _CELLS:
-        return x, y
     there = np.isfinite(y)
     x, y = x[there], y[there]
-    cells = np.zeros(len(x), dtype=np.int64)
-    for values in (x, y):
-        share = (values - values.min()) * ((_CELLS - 1) / (float(np.ptp(values)) or 1.0))
-        cells *= _CELLS
-        cells += share.astype(np.int32)
-    first = np.unique(cells, return_index=True)[1]
+    across, up = (
+        np.floor((values - values.min()) * (_CELLS / (float(np.ptp(values)) or 1.0)))
+        for values in (x, y)
+    )
+    first = np.unique(across * (_CELLS + 1) + up, return_index=True)[1]
     return x[first], y[first]
 
 

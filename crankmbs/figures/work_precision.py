@@ -10,7 +10,7 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from crankmbs.figures.style import STYLE, caption, panels
+from crankmbs.figures.style import STYLE, caption, tiles
 from crankmbs.storage.files import write_in_one_move
 from crankmbs.work_precision import END, MOTION, WorkPrecision
 
@@ -43,15 +43,11 @@ def work_precision_figure(outcome: WorkPrecision) -> Figure:
     Grey is below the error that the reference states; what lies there is drawn on its edge.
     """
     names = outcome.quantities
-    rows = -(-len(names) // _COLUMNS)
-    figure, axes = panels(rows, _COLUMNS, 16.0, 4.7 * rows + 2.0)
+    figure, axes = tiles(len(names), _COLUMNS, (5.3, 5.5))
     styles = _styles(outcome)
     left, right = _decades([*_errors(outcome), *outcome.reference.floors.values()])
     limits = _decades([row.time for row in outcome.rows])
     for k, ax in enumerate(axes):
-        if k >= len(names):
-            ax.set_visible(False)
-            continue
         _draw(ax, outcome, names[k], styles)
         ax.set_xlim(left, min(right, 1.0))
         ax.set_ylim(limits)

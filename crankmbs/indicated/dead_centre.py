@@ -32,14 +32,16 @@ _MOTORED, _FIRED = 1.06, 1.25  # of the pressures behind and before the peak
 class DeadCentre(NamedTuple):
     """Where the true dead centre lies, from that which the file has: ``low`` to ``high`` [deg].
 
-    how : "motored" or "fired", and what it rests on; peak : angle [deg] of the peak
+    peak : angle [deg] of the peak; motored : whether it rests on that, else on the compression
+    loss_angle [deg] : behind the peak, where it was given
     skew : how far [deg] the middle of the chord at 70 % of the peak lies from the peak
     """
 
     low: float
     high: float
-    how: str
     peak: float
+    motored: bool
+    loss_angle: float | None = None
     skew: float = math.nan
 
     @property
@@ -99,10 +101,8 @@ def motored_dead_centre(
     at, spread = peak_of(phi, mean, noise)
     off = _FIT + _SIGMAS * spread
     least, most = _LOSS if loss_angle is None else (loss_angle, loss_angle)
-    source = "" if loss_angle is None else f", the loss angle of {loss_angle:g} degrees as given"
-    return DeadCentre(
-        at + least - off, at + most + off, f"motored{source}", at, _skew(phi, mean, at)
-    )
+    skew = _skew(phi, mean, at)
+    return DeadCentre(at + least - off, at + most + off, at, True, loss_angle, skew)
 
 
 def fired_dead_centre(phi: Array, mean: Array, shape: Shape | None) -> DeadCentre | None:
@@ -120,7 +120,7 @@ def fired_dead_centre(phi: Array, mean: Array, shape: Shape | None) -> DeadCentr
         return None
     centres = [_shift(angle, pressure + c, shape, n) for n in EXPONENTS for c in _OFFSETS]
     peak = float(phi[np.argmax(mean)])
-    return DeadCentre(min(centres), max(centres), "fired, from its compression", peak)
+    return DeadCentre(min(centres), max(centres), peak, motored=False)
 
 
 def _shift(phi: Array, pressure: Array, shape: Shape, exponent: float) -> float:

@@ -177,7 +177,7 @@ def _by_pressure(
             found.remarks.append(
                 f"the dead centre is taken where the pressure shows it, {first % 360.0:.2f} +- "
                 f"{centre.half:.2f} degrees after the first edge of a revolution, by "
-                f"{'its motored peak' if centre.how.startswith('motored') else 'its compression'};"
+                f"{'its motored peak' if centre.motored else 'its compression'};"
                 " firing_tdc says where it is known"
             )
             return found
@@ -194,8 +194,7 @@ def _centre(cylinder: CylinderPressure, shape: Shape | None) -> DeadCentre | Non
     the compression."""
     centre = cylinder.dead_centre
     alike = np.std(cylinder.peaks) < _ALIKE * np.mean(cylinder.peaks)
-    motored = centre is not None and centre.how.startswith("motored")
-    if centre is not None and motored and alike and abs(centre.skew) < _SYMMETRIC:
+    if centre is not None and centre.motored and alike and abs(centre.skew) < _SYMMETRIC:
         return centre
     return fired_dead_centre(cylinder.angle, cylinder.mean, shape)
 

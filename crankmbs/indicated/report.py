@@ -88,19 +88,21 @@ def _dead_centre(cylinder: CylinderPressure, name: str, shape: Shape | None) -> 
         )
         return
     angle = cylinder.firing + centre.middle
-    if centre.how.startswith("motored"):
+    basis = f"{name}: fired, from its compression"
+    place = (
+        f"the true dead centre lies {centre.middle:+.2f} +- {centre.half:.2f} degrees from the "
+        "file's"
+    )
+    if centre.motored:
         basis = (
             f"{name}: the motored peak lies at {centre.peak:.3f} degrees, the middle of the chord "
             f"at 70 % {centre.skew:+.2f} degrees from it"
         )
-    else:
-        basis = f"{name}: {centre.how}"
-    middle = f"{centre.middle:+.2f} +- {centre.half:.2f} degrees"
-    place = f"the true dead centre lies {middle} from the file's"
-    if "as given" in centre.how:
-        place += f", with the loss angle{centre.how.split('loss angle')[1]}"
-    elif centre.how.startswith("motored"):
-        place += ", for a loss angle from 0.2 to 1.2 degrees, which loss_angle narrows"
+        place += (
+            ", for a loss angle from 0.2 to 1.2 degrees, which loss_angle narrows"
+            if centre.loss_angle is None
+            else f", with the loss angle of {centre.loss_angle:g} degrees as given"
+        )
     if centre.low <= 0.0 <= centre.high:
         yield f"{basis}; {place}: the file's may be right"
         return
