@@ -12,7 +12,7 @@ from matplotlib.patches import Arc
 
 from crankmbs.figures.arrows import Arrows, Force, draw_bar, forces_on, largest
 from crankmbs.figures.frames import Frames
-from crankmbs.figures.mechanism import Drawing, Look
+from crankmbs.figures.mechanism import Drawing
 from crankmbs.figures.outline import Mechanism
 from crankmbs.figures.view import View
 from crankmbs.numerics.arrays import Array
@@ -97,13 +97,13 @@ class Machine:
         pin = parts.crank_pin[:, cylinders[0]]
         radius = float(np.hypot(*pin[0])) * 1e3  # mm, as it is drawn
         newtons = largest(forces)
-        look = Look(RADIUS + _RIM, _ABOVE, grey=True) if newtons > 0.0 else Look(RADIUS + _RIM)
+        acts = newtons > 0.0
         throw = np.arctan2(pin[:, 1], pin[:, 0])
         self._moving: list[Drawing | Ring | Arrows] = [
-            Drawing(ax, parts, cylinders, heat, look),
+            Drawing(ax, parts, cylinders, heat, around=RADIUS + _RIM, above=_ABOVE * acts),
             Ring(ax, RADIUS * radius, throw, frames.magnified * frames.leads),
         ]
-        if newtons > 0.0:
+        if acts:
             acting = [force for force in forces if force.cylinder in (None, *cylinders)]
             self._moving.append(Arrows(ax, acting, radius, newtons))
             if forces[0].cylinder in cylinders:  # once for all drawings
