@@ -17,7 +17,7 @@ from crankmbs.lessons.pieces import (
     exact,
     simulated,
 )
-from crankmbs.lessons.runs import changed, even, named
+from crankmbs.lessons.runs import changed, even, named, rod_ratio, speed_of
 from crankmbs.lessons.shaking import amplitude, reciprocating, twin
 from crankmbs.page.knobs import FIRING_ORDERS, Choice, Knob, choices_of
 from crankmbs.scene.parts import Layout
@@ -171,8 +171,8 @@ def _twin() -> Section:
 
 def _second_order(four: Scene) -> Question:
     run = simulate(reciprocating(four))
-    scene, omega = run.scene, float(run.data["crank_speed"].values[0])
-    ratio = float(lecture.rod_ratio(crank_radius=scene.crank.radius, rod_length=scene.rod.length))
+    scene, omega = run.scene, speed_of(run.scene)
+    ratio = rod_ratio(scene)
     unit = scene.piston.mass * scene.crank.radius * omega**2
     first, second = (amplitude(run, "frame_force_x", order) for order in (1.0, 2.0))
     solution = simulated("second", second, "kN", 1e-3)
@@ -200,7 +200,7 @@ def _force(name: str, value: float) -> str:
 def _rocking(scene: Scene, spacing: float) -> Question:
     layout = Layout(firing_order=FIRING_ORDERS["3"], spacing=spacing)
     run = simulate(reciprocating(dataclasses.replace(scene, layout=layout)))
-    omega = float(run.data["crank_speed"].values[0])
+    omega = speed_of(run.scene)
     unit = run.scene.piston.mass * scene.crank.radius * omega**2
     formula = exact("couple_lecture", math.sqrt(3.0) * unit * spacing, "N m")
     solution = simulated("couple_first", amplitude(run, "rocking_moment_y", 1.0), "N m")
@@ -222,8 +222,8 @@ def _counterweight(scene: Scene) -> Question:
     mass, r = pair.piston.mass, scene.crank.radius
     weight = {"mass": mass, "center_of_mass": -r}
     before, after = simulate(pair), simulate(changed(pair, crank=weight))
-    omega = float(before.data["crank_speed"].values[0])
-    ratio = float(lecture.rod_ratio(crank_radius=r, rod_length=scene.rod.length))
+    omega = speed_of(before.scene)
+    ratio = rod_ratio(scene)
     solution = exact("counterweight", mass, "kg")
     first = simulated("twin_before", amplitude(before, "frame_force_x", 1.0), "kN", 1e-3)
     second = simulated("twin_second", amplitude(after, "frame_force_y", 2.0), "kN", 1e-3)
