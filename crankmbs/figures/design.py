@@ -40,9 +40,9 @@ def balance_figure(balance: Balance) -> Figure:
     figure, (ax,) = panels(1, 1, 8.0, 8.0)
     first = last_span(balance.result).first
     degrees = np.degrees(balance.result.sampled("crank_angle")[first:])
-    up, left = np.array([balance.before, balance.after])[:, first:].transpose(2, 0, 1)
+    before, after = (path[first:] @ (1.0, 1j) for path in (balance.before, balance.after))
     labels = {0: "before", 1: f"after, share {100 * balance.share:g} %"}
-    draw_polar(ax, (list(up), list(left)), degrees, labels, ENGINE)
+    draw_polar(ax, np.stack([before, after], axis=1), degrees, labels, ENGINE)
     ax.set_title("force on the frame, engine's frame")
     legend(figure, ax)
     footer(figure, balance.result, "last cycle; marks: crank angle [deg]")

@@ -169,10 +169,8 @@ def indicator_figure(view: View) -> Figure:
         ends["crank end"] = "crank_end_pressure", [piston.crank_end_area for piston in pistons]
     pressures = {end: view.values(name) / BAR for end, (name, _) in ends.items()}
     volumes = {end: 1e6 * displacement * np.array(areas) for end, (_, areas) in ends.items()}
-    cycles = [view.cycle_degrees(k) for k in range(len(pistons))]
-    loops = [list(values.T) for values in (*pressures.values(), *volumes.values())]
     over_angle = {group[0]: whose(group) for group in one_curve_each(*pressures.values())}
-    over_volume = alike(view, cycles, *loops)
+    over_volume = alike(view, *pressures.values(), *volumes.values())
     figure, axes = panels(1, 2, 13.0, 5.5, ratios=(1.5, 1.0))
     for number, (end, pressure) in enumerate(pressures.items()):
         lines = {k: line_of(k * len(ends) + number) for k in range(len(pistons))}

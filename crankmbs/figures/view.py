@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from crankmbs.measures import Span, interp, last_span
 from crankmbs.measures.span import TURNS_BACK
@@ -15,10 +16,14 @@ from crankmbs.result import Result
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.units import DEGREE
 
-__all__ = ["View", "last_view", "over_time"]
+__all__ = ["Plane", "View", "last_view", "over_time"]
 
 _SAME = 0.5  # deg: dead centres closer than this share one line
 _THERE = 1e-6  # deg: a cycle that begins so near to where the axis does is drawn in one piece
+
+
+Plane = NDArray[np.complex128]
+"""Forces in a plane: their parts upwards and to the left are real and imaginary."""
 
 
 @dataclass(frozen=True)
@@ -60,6 +65,11 @@ class View:
             return self.curves[name]
         return self.result.sampled(name)[self.window.first :]
 
+    def force(self, name: str) -> Plane:
+        """Forces of a name as complex numbers X + i Y, shape (n, how many)."""
+        force = self.values(f"{name}_x") + 1j * self.values(f"{name}_y")
+        return force.reshape(len(force), -1)
+
     def drawn(self, degrees: Array, values: Array) -> tuple[Array, Array]:
         """Values over crank angles of the cycle [deg], in its order, as a line shows them.
 
@@ -85,9 +95,11 @@ class View:
             return degrees
         return self.low + np.mod(degrees - self.low, self.high - self.low)
 
-    def cycle_degrees(self, cylinder: int) -> Array:
-        """Cycle angle of a cylinder, counted from 0, at the samples [deg]."""
-        return self.degrees + math.degrees(self.scene.cylinders[cylinder].phase)
+    @property
+    def cycle_degrees(self) -> Array:
+        """Cycle angle of every cylinder at the samples [deg], shape (n, cylinders)."""
+        phases = [math.degrees(cylinder.phase) for cylinder in self.scene.cylinders]
+        return np.add.outer(self.degrees, phases)
 
     def dead_centre_labels(self) -> dict[float, str]:
         """Crank angles [deg] of the dead centres that are shown, and what they are.
