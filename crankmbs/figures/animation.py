@@ -228,4 +228,4 @@ def _heat(view: View, frames: Frames) -> Array | None:
     if view.scene.gas is None:
         return None
     pressure = np.maximum(at_frames(view, frames, "gas_pressure"), 0.0)
-    return np.asarray(_HOTTEST * np.sqrt(pressure / (float(pressure.max()) or 1.0)))
+    return _HOTTEST * np.sqrt(pressure / (float(pressure.max()) or 1.0))

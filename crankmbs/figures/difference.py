@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from crankmbs.compare.confirm import Difference
 from crankmbs.figures.style import (
     STYLE,
+    decades,
     footer,
     legend,
     line_of,
@@ -38,7 +39,13 @@ def difference_figure(result: Result, differences: tuple[Difference, ...]) -> Fi
     largest difference of its panel tells no two apart: near its zeros that is rounding.
     """
     figure, axes = tiles(len(differences), _COLUMNS, (5.0, 2.9))
-    low, high = _limits(differences)
+    shares = [
+        value / (row.peak or 1.0)
+        for row in differences
+        for value in (row.largest[0], *row.errors)
+        if value > 0.0
+    ]
+    low, high = decades(max(share, _ROUNDING) for share in shares or [_ROUNDING])
     drawn = [np.maximum(row.size / (row.peak or 1.0), low) for row in differences]
     several = [sizes for sizes in drawn if sizes.shape[1] > 1]
     groups = one_curve_each(*several) if several else []
@@ -74,15 +81,3 @@ def _draw(ax: Axes, row: Difference, sizes: Array, groups: list[list[int]]) -> N
         ax.axhline(error / peak, color="black", linestyle=dashes, label=f"stated by {name}")
     ax.locator_params(axis="x", nbins=5)
     ax.set_title(row.quantity, loc="left")
-
-
-def _limits(differences: tuple[Difference, ...]) -> tuple[float, float]:
-    """Whole decades around all that is drawn, differences that pass through zero cut off."""
-    shown = [
-        value / (row.peak or 1.0)
-        for row in differences
-        for value in (row.largest[0], *row.errors)
-        if value > 0.0
-    ] or [_ROUNDING]
-    low = 10.0 ** math.floor(math.log10(max(min(shown), _ROUNDING)))
-    return low, 10.0 ** math.ceil(math.log10(max([*shown, low])) + 0.5)

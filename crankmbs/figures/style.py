@@ -29,6 +29,7 @@ __all__ = [
     "STYLE",
     "caption",
     "crank_axis",
+    "decades",
     "footer",
     "force_scale",
     "grouped",
@@ -137,6 +138,12 @@ def logarithmic(axis: Axis) -> None:
     axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     axis.set_minor_locator(NullLocator())
     axis.set_major_formatter(lambda value, _: f"{value:g}")
+
+
+def decades(values: Iterable[float]) -> tuple[float, float]:
+    """Whole decades around positive values."""
+    logarithms = np.log10([*values])
+    return 10.0 ** math.floor(logarithms.min() - 0.1), 10.0 ** math.ceil(logarithms.max() + 0.1)
 
 
 def line_of(cylinder: int) -> dict[str, Any]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +9,7 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from crankmbs.figures.style import STYLE, caption, tiles
+from crankmbs.figures.style import STYLE, caption, decades, tiles
 from crankmbs.storage.files import write_in_one_move
 from crankmbs.work_precision import END, MOTION, WorkPrecision
 
@@ -45,8 +44,12 @@ def work_precision_figure(outcome: WorkPrecision) -> Figure:
     names = outcome.quantities
     figure, axes = tiles(len(names), _COLUMNS, (5.3, 5.5))
     styles = _styles(outcome)
-    left, right = _decades([*_errors(outcome), *outcome.reference.floors.values()])
-    limits = _decades([row.time for row in outcome.rows])
+    floors = outcome.reference.floors
+    errors = [
+        max(error, floors[name]) for row in outcome.rows for name, error in row.errors.items()
+    ]
+    left, right = decades([*errors, *floors.values()])
+    limits = decades(row.time for row in outcome.rows)
     for k, ax in enumerate(axes):
         _draw(ax, outcome, names[k], styles)
         ax.set_xlim(left, min(right, 1.0))
@@ -91,15 +94,3 @@ def _styles(outcome: WorkPrecision) -> dict[str, dict[str, Any]]:
                 "markerfacecolor": "white" if part else None,
             }
     return styles
-
-
-def _errors(outcome: WorkPrecision) -> list[float]:
-    """All errors, those below the reference's set to it."""
-    floors = outcome.reference.floors
-    return [max(error, floors[name]) for row in outcome.rows for name, error in row.errors.items()]
-
-
-def _decades(values: list[float]) -> tuple[float, float]:
-    """Whole decades around values."""
-    low, high = math.log10(min(values)), math.log10(max(values))
-    return 10.0 ** math.floor(low - 0.1), 10.0 ** math.ceil(high + 0.1)

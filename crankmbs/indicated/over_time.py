@@ -137,7 +137,7 @@ def clock(sheet: Sheet, heading: Heading, at: int) -> Array:
             f"{time[k + 1]:.9g} s, and its steps are {usual:.4g} s; export the time with more "
             "digits, or cut the record there"
         )
-    return np.asarray(time)
+    return time
 
 
 def most_edges(sheet: Sheet, columns: Sequence[int]) -> int:

@@ -34,7 +34,7 @@ def mean_effective_pressure(phi: Array, pressure: Array, shape: Shape, period: f
     turned = np.radians(period)
     gaps = np.diff(np.append(angle, angle[0] + turned))
     weight = 0.5 * (gaps + np.roll(gaps, 1))
-    return np.asarray(pressure @ (weight * shape.travel_1(angle)))
+    return pressure @ (weight * shape.travel_1(angle))
 
 
 def noise(phi: Array, pressure: Array) -> float:
@@ -56,7 +56,7 @@ def closure(pressure: Array) -> Array:
     """How far each cycle's last row lies from the first of the next one, beyond the step before
     it; the first of the same cycle where there is no next: shape (cycles,) [Pa]."""
     following = np.append(pressure[1:, 0], pressure[-1, 0])
-    return np.asarray(following - (2.0 * pressure[:, -1] - pressure[:, -2]))
+    return following - (2.0 * pressure[:, -1] - pressure[:, -2])
 
 
 def smoothed(phi: Array, pressure: Array, width: float) -> Array:
@@ -80,4 +80,4 @@ def smoothed(phi: Array, pressure: Array, width: float) -> Array:
         )
     from scipy.signal import savgol_filter  # a fifth of a second: only where it is asked for
 
-    return np.asarray(savgol_filter(pressure, rows, 3, axis=1, mode="wrap"))
+    return savgol_filter(pressure, rows, 3, axis=1, mode="wrap")

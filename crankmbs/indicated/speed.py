@@ -171,4 +171,4 @@ def _teeth_times(sheet: Sheet, heading: Heading, at: int) -> Array:
             f"{sheet.line(k + 1)}: the times of the teeth must rise; {shown(float(time[k + 1]))} s "
             f"came after {shown(float(time[k]))} s; cut the record there"
         )
-    return np.asarray(time)
+    return time

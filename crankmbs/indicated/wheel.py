@@ -87,7 +87,7 @@ def edges(time: Array, signal: Array, *, falling: bool = False) -> Array:
     crossings = np.flatnonzero((s[:-1] < middle) & (s[1:] >= middle)) + 1
     k = crossings[np.searchsorted(crossings, rises, side="right") - 1]
     share = (middle - s[k - 1]) / (s[k] - s[k - 1])
-    return np.asarray(time[k - 1] + share * (time[k] - time[k - 1]))
+    return time[k - 1] + share * (time[k] - time[k - 1])
 
 
 def first_edges(time: Array, wheel: Wheel) -> Index:
@@ -121,7 +121,7 @@ def first_edges(time: Array, wheel: Wheel) -> Index:
             f'wheel="{wheel} {other}"'
         )
     _check_revolutions(time, ratio, first, wheel)
-    return np.asarray(first)
+    return first
 
 
 def marked_edges(time: Array, marks: Array, wheel: Wheel) -> Index:
@@ -141,13 +141,13 @@ def marked_edges(time: Array, marks: Array, wheel: Wheel) -> Index:
     nearer = inside - time[behind - 1] < time[behind] - inside
     first = behind - nearer
     _check_revolutions(time, _in_pitches(time), first, wheel)
-    return np.asarray(first)
+    return first
 
 
 def _in_pitches(time: Array) -> Array:
     """Intervals over the median of their neighbours."""
     steps = np.diff(time)
-    return np.asarray(steps / median_filter(steps, _NEIGHBOURS, mode="nearest"))
+    return steps / median_filter(steps, _NEIGHBOURS, mode="nearest")
 
 
 def _check_revolutions(time: Array, ratio: Array, first: Index, wheel: Wheel) -> None:

@@ -164,7 +164,7 @@ def peak(result: Result, name: str, sign: float = 1.0) -> Estimate:
 
     def quantity(variables: Mapping[str, Array]) -> Array:
         values = variables[name]
-        return np.asarray(sign * values.reshape(len(values), -1)[:, 0])
+        return sign * values.reshape(len(values), -1)[:, 0]
 
     value, error = largest(result, quantity)
     return Estimate(sign * value, error)
