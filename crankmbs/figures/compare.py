@@ -25,7 +25,7 @@ from crankmbs.compare import (
 )
 from crankmbs.figures.headline import budget_headline, comparison_headline
 from crankmbs.figures.slide import SLIDE, slide, slide_legend
-from crankmbs.figures.style import crank_axis, footer, force_scale, grouped, line_of
+from crankmbs.figures.style import crank_axis, footer, force_scale, grouped, line_of, save
 from crankmbs.figures.view import last_view
 from crankmbs.numerics.arrays import Array
 from crankmbs.storage.files import together
@@ -86,7 +86,7 @@ def save_validation(comparison: Comparison, budget: Budget, folder: Path) -> lis
     with together(folder) as part:
         for name, figure in drawn.items():
             if figure is not None:
-                figure.savefig(part / name, format="png")
+                save(figure, part / name)
                 files.append(folder / name)
     return files
 

@@ -85,28 +85,22 @@ def piston_motion_figure(view: View) -> Figure:
 @rc_context(STYLE)
 def forces_figure(view: View) -> Figure:
     """Gas force, applied force and side force over the crank angle, those that there are."""
-    names = {
-        "gas_force": "gas on piston,\ntowards the crank",
-        "applied_force": "applied to piston,\ntowards the crank",
-        "side_force": "cylinder wall on\npiston, along Y",
-    }
-    if view.scene.gas is None:
-        del names["gas_force"]
-    if not view.scene.force:
-        del names["applied_force"]
+    names = {"side_force": ("side force", "cylinder wall on\npiston, along Y")}
+    if view.scene.force:
+        applied = "applied force", "applied to piston,\ntowards the crank"
+        names = {"applied_force": applied, **names}
+    if view.scene.gas is not None:
+        names = {"gas_force": ("gas", "gas on piston,\ntowards the crank"), **names}
     figure, axes = panels(len(names), 1, 10.0, 3.5 * len(names))
     groups = one_curve_each(*map(view.values, names))
-    for ax, (name, label) in zip(axes, names.items(), strict=True):
+    for ax, (name, (_, label)) in zip(axes, names.items(), strict=True):
         scale, unit = force_scale(view.values(name))
         _per_cylinder(ax, view, view.values(name) / scale, groups)
         ax.set_ylabel(f"{label} [{unit}]")
     crank_axis(axes, view)
     legend(figure, axes[0])
     figure.align_ylabels(axes)
-    titles = {"gas_force": "gas", "applied_force": "applied force", "side_force": "side force"}
-    footer(
-        figure, view.result, " and ".join(word for name, word in titles.items() if name in names)
-    )
+    footer(figure, view.result, " and ".join(word for word, _ in names.values()))
     return figure
 
 

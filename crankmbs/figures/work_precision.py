@@ -9,8 +9,7 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from crankmbs.figures.style import STYLE, caption, decades, tiles
-from crankmbs.storage.files import write_in_one_move
+from crankmbs.figures.style import STYLE, caption, decades, save, tiles
 from crankmbs.work_precision import END, MOTION, WorkPrecision
 
 __all__ = ["save_figure", "work_precision_figure"]
@@ -29,10 +28,7 @@ def save_figure(outcome: WorkPrecision, folder: Path) -> Path:
     ------
     OutputError : the folder cannot be made or written
     """
-    figure = work_precision_figure(outcome)
-    target = folder / "work_precision.png"
-    write_in_one_move(target, lambda part: figure.savefig(part, format="png"))
-    return target
+    return save(work_precision_figure(outcome), folder / "work_precision.png")
 
 
 @rc_context(STYLE)

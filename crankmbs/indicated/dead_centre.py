@@ -77,8 +77,7 @@ def peak_of(phi: Array, mean: Array, noise: float) -> tuple[float, float]:
     for _ in range(2):  # the second time about the peak itself
         window = np.abs(phi - middle) <= _ABOUT
         x, y = (phi[window] - middle) / _ABOUT, mean[window]
-        powers = np.vander(x, 5)
-        quartic, *_ = np.linalg.lstsq(powers, y, rcond=None)
+        quartic, variances = np.polyfit(x, y, 4, cov="unscaled")
         slope = np.polyder(quartic)
         turning = np.roots(slope)
         real = turning.real[(np.abs(turning.imag) < 1e-9) & (np.abs(turning.real) <= 1.0)]
@@ -86,7 +85,7 @@ def peak_of(phi: Array, mean: Array, noise: float) -> tuple[float, float]:
         middle += _ABOUT * at
     bend = abs(float(np.polyval(np.polyder(slope), at)))
     gradient = np.array([4.0 * at**3, 3.0 * at**2, 2.0 * at, 1.0, 0.0])
-    spread = gradient @ np.linalg.solve(powers.T @ powers, gradient)
+    spread = gradient @ variances @ gradient
     return middle, _ABOUT * noise * math.sqrt(max(float(spread), 0.0)) / max(bend, 1e-300)
 
 

@@ -82,15 +82,11 @@ def _check_alone(angle: Array, mean: Array, period: float, at: float) -> None:
 
 def flank(angle: Array, mean: Array, period: float, level: float) -> float:
     """The angle [deg] at which the pressure, on its way to the peak, last rises through a level."""
-    low, peak = float(np.min(mean)), int(np.argmax(mean))
-    n = len(mean)
-    k = peak
-    while mean[k % n] > low + level and peak - k < n:
-        k -= 1
-    a, b = mean[k % n] - low, mean[(k + 1) % n] - low
-    first = angle[k % n] + period * (k // n)
-    second = angle[(k + 1) % n] + period * ((k + 1) // n)
-    return float(first + (second - first) * (level - a) / (b - a))
+    first = int(np.argmax(mean)) + 1
+    at = np.concatenate([angle[first:] - period, angle[:first]])  # up to the peak
+    above = np.concatenate([mean[first:], mean[:first]]) - np.min(mean) - level
+    k = np.flatnonzero(above <= 0.0)[-1]
+    return float(at[k] - (at[k + 1] - at[k]) * above[k] / (above[k + 1] - above[k]))
 
 
 def lags(angle: Array, means: Sequence[Array], period: float) -> list[float]:

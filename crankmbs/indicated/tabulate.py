@@ -26,7 +26,7 @@ def table_of(
     cylinders: Sequence[CylinderPressure],
     firsts: Sequence[int],
     shape: Shape | None,
-    cycles: str,
+    cycles: tuple[int, int | None] | None,
 ) -> tuple[Table | CylinderTable, str]:
     """The table [rad, Pa] over the cycle angle of the first cylinder, and what it holds.
 
@@ -47,17 +47,20 @@ def table_of(
             f"the true firing dead centre is at a cycle angle of {zero + top:.5g} degrees, as "
             "the offset asks for"
         )
-    if cycles == "mean":
+    if cycles is None:
         return _mean(cylinders, firsts, angle, period), f"the table holds the mean cycle; {words}"
     sequence = _sequence(cylinders, firsts)
-    first, last = _wanted(cycles, sequence.shape[1])
+    whole = sequence.shape[1]
+    first, last = cycles[0], cycles[1] or whole
+    if last > whole:
+        raise InputError(f"cycles must be among the {whole} whole ones; {last} came")
     chosen = sequence[:, first - 1 : last]
     count = chosen.shape[1]
     long = np.concatenate([angle + k * period for k in range(count)])
     which = f"cycle {first}" if first == last else f"cycles {first} to {last}"
     return (
         _tabulated(long, chosen.reshape(len(cylinders), -1)),
-        f"the table holds {which} of {sequence.shape[1]}; {words}",
+        f"the table holds {which} of {whole}; {words}",
     )
 
 
@@ -96,16 +99,6 @@ def _sequence(cylinders: Sequence[CylinderPressure], firsts: Sequence[int]) -> A
         for each, start in zip(flat, starts, strict=True)
     ]
     return np.array(parts).reshape(len(cylinders), whole, n)
-
-
-def _wanted(cycles: str, count: int) -> tuple[int, int]:
-    if cycles == "all":
-        return 1, count
-    first, _, last = cycles.partition("-")
-    numbers = int(first), int(last or first)
-    if numbers[1] > count:
-        raise InputError(f"cycles must be among the {count} whole ones; {cycles} came")
-    return numbers
 
 
 def _tabulated(angle: Array, rows: Array) -> Table | CylinderTable:
