@@ -32,6 +32,7 @@ _MOST_MARKS = 8  # events that can be told apart in a panel
 _LABEL = 0.1  # of a panel's width, what the words of an event take
 _HAIR = 1e-9  # of a cycle: an event at its begin or end may be so far outside by rounding
 _HEAD = 0.3  # of a panel's height, kept free above the curve for them
+_STRONGLY = 0.5  # of the highest speed: in a start, a run-up, a run-down, a crank that turns back
 
 
 @rc_context(STYLE)
@@ -113,9 +114,6 @@ def mark_events(ax: Axes, result: Result, at: Array) -> None:
             bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5, "alpha": 0.8},
         )
         named[words[k]] = float(at[k])
-
-
-_STRONGLY = 0.5  # of the highest speed: in a start, a run-up, a run-down, a crank that turns back
 
 
 def varies_strongly(result: Result) -> bool:

@@ -33,6 +33,9 @@ __all__ = [
     "save_orders_figure",
 ]
 
+_NOTHING = 1e-9  # of the crank's inertia
+_WIDTH = 0.18  # of an order: two bars side by side leave a gap to the next half order
+
 
 @rc_context(STYLE)
 def balance_figure(balance: Balance) -> Figure:
@@ -57,9 +60,6 @@ def save_balance_figure(balance: Balance, folder: Path) -> Path:
     OutputError : the folder cannot be made or written
     """
     return save(balance_figure(balance), folder / "balance.png")
-
-
-_NOTHING = 1e-9  # of the crank's inertia
 
 
 @rc_context(STYLE)
@@ -108,16 +108,13 @@ def save_flywheel_figure(
     return save(flywheel_figure(wheel, curve), folder / "flywheel.png")
 
 
-_WIDTH = 0.18  # of an order: two bars side by side leave a gap to the next half order
-
-
 @rc_context(STYLE)
 def orders_figure(result: Result, orders: EngineOrders) -> Figure:
-    """One panel a quantity that is more than rounding: amplitudes of the run, and of inertia at
-    constant speed."""
+    """One panel a quantity that is more than rounding, or the first: amplitudes of the run, and of
+    inertia at constant speed."""
     largest = {row.quantity: float(np.max(row.orders.amplitude)) for row in orders.rows}
     zero = negligible(largest, {row.quantity: row.units for row in orders.rows})
-    rows = [row for row in orders.rows if row.quantity not in zero]
+    rows = [row for row in orders.rows if row.quantity not in zero] or orders.rows[:1]
     figure, axes = panels(len(rows), 1, 10.0, 2.6 * len(rows))
     for ax, row in zip(axes, rows, strict=True):
         order = row.orders.order

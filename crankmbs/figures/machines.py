@@ -24,6 +24,17 @@ _TICKS = 24
 _BOW = 40  # points of the bow
 _COLOUR, _TRACK = "0.1", "0.75"
 _LONG, _SHORT = 0.84, 0.94  # of the radius: where the pointer and the other ticks begin
+_RIM = 0.1  # of the crank radius: room around the ring
+_ABOVE = 0.7  # of the crank radius: room above the heads for the gas's arrow
+_SEEN = (
+    "side_force",
+    "gas_force",
+    "friction_force",
+    "applied_force",
+    "main_bearing_force_x",
+    "main_bearing_force_y",
+)
+_PINS = tuple(f"{pin}_pin_force_{axis}" for pin in ("piston", "crank") for axis in "xy")
 
 
 class Ring:
@@ -61,19 +72,6 @@ class Ring:
     def _points(self, angle: Array) -> Array:
         """Points of the ring on paper, shape (n, 2)."""
         return self._radius * np.stack([-np.sin(angle), np.cos(angle)], axis=-1)
-
-
-_RIM = 0.1  # of the crank radius: room around the ring
-_ABOVE = 0.7  # of the crank radius: room above the heads for the gas's arrow
-_SEEN = (
-    "side_force",
-    "gas_force",
-    "friction_force",
-    "applied_force",
-    "main_bearing_force_x",
-    "main_bearing_force_y",
-)
-_PINS = tuple(f"{pin}_pin_force_{axis}" for pin in ("piston", "crank") for axis in "xy")
 
 
 class Machine:

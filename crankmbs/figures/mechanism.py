@@ -22,6 +22,7 @@ _MM = 1e3
 _METAL, _EDGE, _GAS, _ROD = "0.75", "0.25", "#E69F00", "0.6"
 _MARGIN = 0.06  # of the drawing's size, around it
 _STROKE_WIDTH = 0.14  # of the crank radius: rod and throw
+_ACROSS = 6  # cuts in one row
 
 
 def slices(scene: Scene) -> list[list[int]]:
@@ -122,9 +123,6 @@ def _points(ax: Axes, length: float) -> float:
 def on_paper(points: Array) -> tuple[Array, Array]:
     """Points [m] of shape (..., 2) as abscissae and ordinates [mm]."""
     return -points[..., 1] * _MM, points[..., 0] * _MM
-
-
-_ACROSS = 6  # cuts in one row
 
 
 @rc_context(STYLE)

@@ -25,6 +25,8 @@ _THERE = 1e-6  # deg: a cycle that begins so near to where the axis does is draw
 Plane = NDArray[np.complex128]
 """Forces in a plane: their parts upwards and to the left are real and imaginary."""
 
+_BETWEEN = 1000  # instants between which curves over time are drawn straight
+
 
 @dataclass(frozen=True)
 class View:
@@ -194,9 +196,6 @@ def last_view(result: Result) -> View:
         begun=begun,
         curves=curves,
     )
-
-
-_BETWEEN = 1000  # instants between which curves over time are drawn straight
 
 
 def over_time(result: Result, first: int = 0) -> dict[str, Array]:

@@ -21,6 +21,10 @@ from crankmbs.numerics.arrays import Array
 
 __all__ = ["cylinder_of"]
 
+_GAS_EXCHANGE = 200.0  # degrees from the firing dead centre: nothing burns behind
+_NORMAL = 1.4826  # standard deviations of a normal law in a median of deviations
+_FOURTH = math.sqrt(70.0)  # standard deviations of a row in that of its fourth differences
+
 
 def cylinder_of(
     cycles: Cycles, added: Array, shape: Shape | None, options: Options, absolute: bool
@@ -66,11 +70,6 @@ def _moved(
         work = float(_mean_effective_pressure(phi, smooth - rough, shape, period))
     peak = float(np.max(smooth) - np.max(rough))
     return peak, float(phi[np.argmax(smooth)] - phi[np.argmax(rough)]), work
-
-
-_GAS_EXCHANGE = 200.0  # degrees from the firing dead centre: nothing burns behind
-_NORMAL = 1.4826  # standard deviations of a normal law in a median of deviations
-_FOURTH = math.sqrt(70.0)  # standard deviations of a row in that of its fourth differences
 
 
 def _mean_effective_pressure(phi: Array, pressure: Array, shape: Shape, period: float) -> Array:
