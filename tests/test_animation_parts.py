@@ -12,9 +12,8 @@ from crankmbs.figures import last_view
 from crankmbs.figures.animation import Filming, save_animation
 from crankmbs.figures.arrows import Arrows, draw_bar, largest
 from crankmbs.figures.frames import frames_of, round_below
-from crankmbs.figures.machines import shown_forces
+from crankmbs.figures.machines import Ring, shown_forces
 from crankmbs.figures.outline import mechanism
-from crankmbs.figures.ring import Ring
 from crankmbs.figures.style import panels
 
 TWIN = dataclasses.replace(load_scene("v_twin"), run=Run(until="1 cycle"))  # without gravity

@@ -194,7 +194,7 @@ def test_many_marks_on_one_spot_leave_the_curve_its_size(sense):
     degrees = np.arange(0.0, 721.0)
     force = 60e3 * np.exp(-(((degrees % 360.0 - 180.0) / 12.0) ** 2))
     figure, (ax,) = panels(1, 1, 8.0, 8.0)
-    draw_polar(ax, ([force], [0.5 * sense * force]), degrees, {0: ""}, ("up", "left"))
+    draw_polar(ax, (1.0 + 0.5j * sense) * force[:, None], degrees, {0: ""}, ("up", "left"))
     figure.draw_without_rendering()
     low, high = ax.get_ylim()
     assert high - low < 120.0  # kN

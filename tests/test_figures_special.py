@@ -89,3 +89,10 @@ def test_a_title_is_written_as_it_is(title):
     figure.draw_without_rendering()
     assert figure.get_supxlabel() == f"{title}\ncrank speed (crank_angle)"
     assert not figure.texts[-1].get_parse_math()
+
+
+def test_a_run_without_any_order_has_one_panel():
+    figure = simulate(load_scene("turning_moment")).plot("orders")
+    (ax,) = figure.axes
+    assert not any(bar.get_height() for bar in ax.patches)
+    assert "torque" in figure.get_supxlabel()

@@ -7,7 +7,7 @@ import pytest
 
 from crankmbs import Constant, InputError, Run, load_scene, simulate
 from crankmbs.figures import plot, save_figures
-from crankmbs.figures.transient import varies_strongly
+from crankmbs.figures.cycles import varies_strongly
 
 pytestmark = pytest.mark.slow
 

@@ -76,7 +76,8 @@ MESSAGES = {
         '"absolute" or "gauge" unless the compression shows it'
     ),
     "no such column": (
-        'file a.csv: no column is named "PCYL7"; the columns are CA, PCYL1; did you mean "PCYL1"?'
+        'file a.csv: columns: no column is named "PCYL7"; the columns are CA, PCYL1; did you mean '
+        '"PCYL1"?'
     ),
     "no reference": (
         "file a.csv: the file does not say what its pressures are measured from; the gas "
@@ -178,7 +179,7 @@ MESSAGES = {
         "give a scene and compression_ratio"
     ),
     "smooth without rows": (
-        "cylinder 1: smooth must span at least five rows, 4 degrees here, and less than the "
+        "file a.csv: smooth must span at least five rows, 4 degrees here, and less than the "
         "cycle; 2 degrees came"
     ),
     "a cycle that is not there": ("file a.csv: cycles must be among the 3 whole ones; 7 came"),

@@ -16,7 +16,7 @@ from lesson_visit import LAPTOP, Opened
 
 from crankmbs import load_scene, simulate
 from crankmbs.lessons import LESSONS, write_lesson
-from crankmbs.lessons.shaking import reciprocating
+from crankmbs.lessons.balance import reciprocating
 from crankmbs.scene.parts import Layout
 
 pytestmark = pytest.mark.slow

@@ -6,7 +6,7 @@ from pathlib import PurePath
 
 from crankmbs.errors import InputError
 
-__all__ = ["refuse_binary"]
+__all__ = ["refuse_controls", "refuse_known"]
 
 _EXPORT = "export it from the indicating system as text (CSV, ASCII) over the crank angle"
 _CHANNELS = (
@@ -46,36 +46,37 @@ _ENDINGS = {
     ".d7d": "a data file of a recorder",
     ".open": "a data file of an indicating system",
 }
-_PROBE = 65_536  # bytes: more than any header before the first row of numbers
-_MARKS = (b"\xff\xfe", b"\xfe\xff", b"\x00\x00\xfe\xff")
-_CONTROLS = bytes(set(range(32)) - set(b"\t\n\r\x0c\x1a\x1b\x00"))
+_PROBE = 65_536  # characters: more than any header before the first row of numbers
+_CONTROLS = dict.fromkeys(set(range(1, 32)) - set(b"\t\n\r\x0c\x1a\x1b"))
 
 
-def refuse_binary(content: bytes, name: str) -> None:
-    """Refuse a file that is no text.
+def refuse_known(content: bytes, name: str) -> None:
+    """Refuse a file whose first bytes say that it is no text.
 
     Raises
     ------
-    InputError : what it is, by its first bytes, its ending or the bytes in it, and the way out
+    InputError : what it is, and the way out
 
-    >>> refuse_binary(b"angle,pressure", "a.csv")
+    >>> refuse_known(b"angle,pressure", "a.csv")
     """
     for begin, kind, way_out in _KINDS:
         if content.startswith(begin):
             raise InputError(f"file {name} is {kind}, and only text is read; {way_out}")
-    probe = content[:_PROBE]
-    if probe.startswith(_MARKS) or not _is_binary(probe):
+
+
+def refuse_controls(text: str, name: str) -> None:
+    """Refuse a decoded file with characters that no text has, in earnest.
+
+    Raises
+    ------
+    InputError : what it is by its ending, and the way out
+    """
+    probe = text[:_PROBE]
+    controls = len(probe) - len(probe.translate(_CONTROLS))
+    if "\0" not in probe and controls <= 0.001 * len(probe) + 1:
         return
     ending = PurePath(name).suffix.lower()
     numbered = ending[1:].isdigit() and len(ending) == 4
     kind = "an iFile of an indicating system" if numbered else _ENDINGS.get(ending, "")
     kind = f"binary, by its name {kind}" if kind else "binary"
     raise InputError(f"file {name} is {kind}, and only text is read; {_EXPORT}")
-
-
-def _is_binary(probe: bytes) -> bool:
-    """Bytes that no text has, in earnest; UTF-16 has its zeros in every other place."""
-    controls = len(probe) - len(probe.translate(None, _CONTROLS))
-    zeros = [probe[first::2].count(0) for first in (0, 1)]
-    of_utf16 = min(zeros) == 0 and max(zeros) > 0.4 * (len(probe) // 2)
-    return controls > 0.001 * len(probe) + 1 or (sum(zeros) > 0 and not of_utf16)

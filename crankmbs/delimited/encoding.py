@@ -5,7 +5,7 @@ from __future__ import annotations
 import codecs
 from typing import NamedTuple
 
-from crankmbs.delimited.binary import refuse_binary
+from crankmbs.delimited.binary import refuse_controls, refuse_known
 from crankmbs.errors import InputError
 
 __all__ = ["Text", "decode"]
@@ -39,15 +39,11 @@ def decode(content: bytes, name: str) -> Text:
     >>> decode("Druck;1,5".encode("utf-16"), "a.csv")
     Text(text='Druck;1,5', encoding='UTF-16')
     """
-    refuse_binary(content, name)
+    refuse_known(content, name)
     encoding = next((each for mark, each in _MARKS if content.startswith(mark)), "")
     encoding = encoding or _without_mark(content[:_PROBE])
     text, encoding = _decoded(content, encoding, name)
-    if "\0" in text[:_PROBE]:
-        raise InputError(
-            f"file {name} is binary, no text; export the pressures as text (CSV) over the crank "
-            "angle"
-        )
+    refuse_controls(text, name)
     return Text(text.replace("\r\n", "\n").replace("\r", "\n"), _NAMES.get(encoding, encoding))
 
 

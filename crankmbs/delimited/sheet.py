@@ -9,6 +9,7 @@ import io
 import re
 from collections import Counter
 from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import NamedTuple
 
 import numpy as np
@@ -49,10 +50,20 @@ class Sheet(NamedTuple):
     dialect: Dialect
     encoding: str
 
-    @property
-    def line(self) -> str:
-        """The place of the first row, for a sentence."""
-        return f"file {self.name}, line {self.first}"
+    def line(self, row: int) -> str:
+        """The place of a row of values, counted from 0, for a sentence."""
+        return f"line {self.first + row}"
+
+    @contextmanager
+    def errors(self) -> Iterator[None]:
+        """Put the file before the sentence of every InputError from inside."""
+        try:
+            yield
+        except InputError as error:
+            sentence = str(error)
+            mark = "," if sentence.startswith("line ") else ":"
+            error.args = (f"file {self.name}{mark} {sentence}",)
+            raise
 
 
 def read_sheet(

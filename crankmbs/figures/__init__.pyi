@@ -1,21 +1,30 @@
 """The figures and where each lives."""
 
-from .balance import balance_figure, save_balance_figure
 from .bearings import bearings_figure
 from .compare import budget_figure, comparison_figure, save_validation
-from .cycles import cycles_figure
+from .cycles import cycles_figure, transient_figure
+from .design import (
+    balance_figure,
+    flywheel_figure,
+    orders_figure,
+    save_balance_figure,
+    save_flywheel_figure,
+    save_orders_figure,
+)
 from .difference import difference_figure, save_differences
-from .flywheel import flywheel_figure, save_flywheel_figure
 from .indicated import pressure_figure, save_indicated_figures, scatter_figure, volume_figure
-from .indicator import indicator_figure
-from .machine import machine_figure
-from .orders import orders_figure, save_orders_figure
+from .mechanism import machine_figure
 from .polar import crank_pin_figure, main_bearing_figure, piston_pin_figure
 from .run import plot, save_figures
-from .strips import forces_figure, piston_motion_figure, speed_figure, torque_figure
+from .strips import (
+    forces_figure,
+    indicator_figure,
+    piston_motion_figure,
+    speed_figure,
+    torque_figure,
+)
 from .style import png
 from .sweep import sweep_figure
-from .transient import transient_figure
 from .view import last_view
 
 __all__ = [

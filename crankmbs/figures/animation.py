@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import io
 import math
 import subprocess
 import textwrap
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib import rc_context
@@ -16,12 +16,11 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.text import Text
-from numpy.typing import NDArray
 
 from crankmbs.errors import InputError, OutputError, shown
 from crankmbs.figures.arrows import BODIES, COLOUR, Force
 from crankmbs.figures.frames import Frames, frames_of
-from crankmbs.figures.machines import Machine, shown_forces
+from crankmbs.figures.machines import Machine, at_frames, shown_forces
 from crankmbs.figures.mechanism import slices
 from crankmbs.figures.outline import mechanism
 from crankmbs.figures.style import STYLE, caption, crank_axis, line_of
@@ -141,7 +140,7 @@ class _Film:
     ) -> None:
         self._frames, self._dpi = frames, dpi
         self._figure = Figure(figsize=_SIZE, dpi=dpi, layout="constrained")
-        FigureCanvasAgg(self._figure)
+        canvas: Any = FigureCanvasAgg(self._figure)
         machines, trace = _places(self._figure, len(cuts))
         view = last_view(result)
         shift = float(view.degrees[0]) - math.degrees(float(view.values("crank_angle")[0]))
@@ -157,7 +156,8 @@ class _Film:
         caption(
             self._figure, [f"{view.window.kind}, {frames.pace} ({result.formulation})", frames.ring]
         )
-        still = _pixels(self._figure)  # drawn once: text takes most of a frame's time
+        canvas.draw()
+        still = np.array(canvas.buffer_rgba())  # text takes most of a frame's time
         self._figure.set_layout_engine(None)  # it stays as it is now
         for artist in (*trace.get_children(), *self._figure.findobj(Text)):
             artist.set_visible(False)
@@ -194,24 +194,15 @@ class _Film:
             machine.move(k)
 
 
-def _pixels(figure: Figure) -> NDArray[np.uint8]:
-    """The figure as it is, shape (height, width, 4)."""
-    file = io.BytesIO()
-    figure.savefig(file, format="rgba", dpi=figure.dpi)
-    height, width = (round(side * figure.dpi) for side in figure.get_size_inches()[::-1])
-    return np.frombuffer(file.getvalue(), dtype=np.uint8).reshape(height, width, 4)
-
-
 def _places(figure: Figure, cuts: int) -> tuple[list[Axes], Axes]:
     """Axes of the mechanisms and of the speed: beside them, or below where they are many."""
     if cuts <= 2:
         grid = figure.add_gridspec(1, cuts + 1, width_ratios=[*[1.0] * cuts, 1.8])
-        machines = [figure.add_subplot(grid[0, k]) for k in range(cuts)]
         trace = figure.add_subplot(grid[0, cuts])
     else:
         grid = figure.add_gridspec(2, cuts, height_ratios=[1.9, 1.0])
-        machines = [figure.add_subplot(grid[0, k]) for k in range(cuts)]
         trace = figure.add_subplot(grid[1, :])
+    machines = [figure.add_subplot(grid[0, k]) for k in range(cuts)]
     for ax in machines:
         ax.axis("off")
     return machines, trace
@@ -236,7 +227,5 @@ def _heat(view: View, frames: Frames) -> Array | None:
     """How strongly the gas is coloured, by its pressure over the highest; None without gas."""
     if view.scene.gas is None:
         return None
-    pressure = np.maximum(view.values("gas_pressure"), 0.0)
-    time = view.values("time") - view.window.begin
-    at = [np.interp(frames.time, time, column) for column in pressure.T]
-    return _HOTTEST * np.sqrt(np.stack(at, axis=-1) / (float(pressure.max()) or 1.0))
+    pressure = np.maximum(at_frames(view, frames, "gas_pressure"), 0.0)
+    return _HOTTEST * np.sqrt(pressure / (float(pressure.max()) or 1.0))

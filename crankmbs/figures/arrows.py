@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -57,43 +57,45 @@ def forces_on(body: str, scene: Scene, parts: Mechanism, data: dict[str, Array])
 def _on_piston(k: int, scene: Scene, parts: Mechanism, data: dict[str, Array]) -> list[Force]:
     pin, corners = parts.piston_pin[:, k], parts.piston[:, k]
     none = np.zeros_like(data["side_force"])
+
+    def downwards(variable: str) -> Array:
+        return in_engine_frame(scene, -data[variable], none)[:, k]
+
     side = in_engine_frame(scene, none, data["side_force"])[:, k]
     forces = [
         Force("wall on piston", "wall", k, pin, side),
-        replace(_of_pin("rod on piston", k, scene, data, "piston_pin_force"), at=pin),
+        Force("rod on piston", "pin", k, pin, _of_pin(k, scene, data, "piston_pin")),
     ]
     if "friction_force" in data:
-        rubs = in_engine_frame(scene, -data["friction_force"], none)[:, k]
         away = np.where(data["side_force"][:, k, None] > 0.0, -0.5, 0.5)
         at = pin + away * (corners[:, 0] - corners[:, 3])  # on the side that the wall presses
+        rubs = downwards("friction_force")
         forces.append(Force("friction on piston", "bearing", k, at, rubs))
     if "applied_force" in data:
-        given = in_engine_frame(scene, -data["applied_force"], none)[:, k]
-        forces.append(Force("applied force on piston", "bearing", k, pin, given))
+        applied = downwards("applied_force")
+        forces.append(Force("applied force on piston", "bearing", k, pin, applied))
     if "gas_force" in data:
-        gas = in_engine_frame(scene, -data["gas_force"], none)[:, k]
         crown = 0.5 * (corners[:, 1] + corners[:, 2])
+        gas = downwards("gas_force")
         forces.append(Force("gas on piston", "gas", k, crown, gas, pushes=crown - pin))
     return forces
 
 
 def _on_rod(k: int, scene: Scene, parts: Mechanism, data: dict[str, Array]) -> list[Force]:
-    pin = _of_pin("piston on rod", k, scene, data, "piston_pin_force")
-    big = _of_pin("crank on rod", k, scene, data, "crank_pin_force")
+    small, big = (_of_pin(k, scene, data, pin) for pin in ("piston_pin", "crank_pin"))
     return [
-        replace(pin, at=parts.piston_pin[:, k], force=-pin.force),
-        replace(big, at=parts.crank_pin[:, k], kind="bearing"),
+        Force("piston on rod", "pin", k, parts.piston_pin[:, k], -small),
+        Force("crank on rod", "bearing", k, parts.crank_pin[:, k], big),
     ]
 
 
 def _on_crank(k: int, scene: Scene, parts: Mechanism, data: dict[str, Array]) -> list[Force]:
-    rod = _of_pin("rod on crank", k, scene, data, "crank_pin_force")
-    return [replace(rod, at=parts.crank_pin[:, k], force=-rod.force)]
+    force = -_of_pin(k, scene, data, "crank_pin")
+    return [Force("rod on crank", "pin", k, parts.crank_pin[:, k], force)]
 
 
-def _of_pin(name: str, k: int, scene: Scene, data: dict[str, Array], variable: str) -> Force:
-    force = in_engine_frame(scene, data[f"{variable}_x"], data[f"{variable}_y"])[:, k]
-    return Force(name, "pin", k, np.zeros_like(force), force)
+def _of_pin(k: int, scene: Scene, data: dict[str, Array], pin: str) -> Array:
+    return in_engine_frame(scene, data[f"{pin}_force_x"], data[f"{pin}_force_y"])[:, k]
 
 
 def largest(forces: list[Force]) -> float:

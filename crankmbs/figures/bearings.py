@@ -14,11 +14,9 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from crankmbs.figures.cylinders import one_curve_each
 from crankmbs.figures.polar import ENGINE, THROW, alike, draw_polar
-from crankmbs.figures.style import STYLE, footer, panels
-from crankmbs.figures.view import View
-from crankmbs.numerics.arrays import Array
+from crankmbs.figures.style import STYLE, footer, one_curve_each, panels
+from crankmbs.figures.view import Plane, View
 
 __all__ = ["bearings_figure"]
 
@@ -42,16 +40,16 @@ def bearings_figure(view: View) -> Figure:
 
 
 def _draw_journals(view: View, shell: Axes, journal: Axes) -> None:
-    force = _force(view, "main_journal_force")
+    force = view.force("main_journal_force")
     labels = {group[0]: _named("journal", group) for group in _shared(view, force)}
     turning = force * np.exp(-1j * np.radians(view.degrees))[:, None]
-    draw_polar(shell, _parts(-force), view.degrees, labels, ENGINE)
-    draw_polar(journal, _parts(turning), view.degrees, labels, _CRANK)
+    draw_polar(shell, -force, view.degrees, labels, ENGINE)
+    draw_polar(journal, turning, view.degrees, labels, _CRANK)
     shell.set_title("main shells: load, engine's frame")
     journal.set_title("main journals: load, turning with the crank")
 
 
-def _shared(view: View, force: Array) -> list[list[int]]:
+def _shared(view: View, force: Plane) -> list[list[int]]:
     """Journals, counted from 0, of one curve each: those of equal forces at the same crank angle
     or, in a cycle of two turns, one turn on."""
     forces, count = [force], force.shape[1]
@@ -72,40 +70,21 @@ def _shared(view: View, force: Array) -> list[list[int]]:
 
 
 def _draw_pins(view: View, shell: Axes, pin: Axes) -> None:
-    force, cycles = _force(view, "crank_pin_force"), _cycles(view)
+    force, cycles = view.force("crank_pin_force"), view.cycle_degrees
     swung = force * np.exp(1j * view.values("rod_angle"))
-    curves = _parts(swung)
-    draw_polar(shell, curves, cycles[0], alike(view, cycles, *curves), _ROD)
+    draw_polar(shell, swung, cycles[:, 0], alike(view, swung), _ROD)
     shell.set_title("big-end shells: load, swinging with the rod")
-    turned = -force * np.exp(-1j * np.radians(np.transpose(cycles)))
-    curves = _parts(turned)
-    labels = alike(view, cycles, *curves)
+    turned = -force * np.exp(-1j * np.radians(cycles))
+    labels = alike(view, turned)
     throws = view.scene.throws
     if throws is not None and throws.shared:
+        numbers = np.array(throws.numbers)
         count = len(throws.unbalances)
-        firsts = [throws.numbers.index(throw) for throw in range(count)]
-        turned = np.stack(
-            [turned[:, np.array(throws.numbers) == throw].sum(axis=1) for throw in range(count)],
-            axis=1,
-        )
-        curves, cycles = _parts(turned), [cycles[first] for first in firsts]
+        pins = [turned[:, numbers == throw].sum(axis=1) for throw in range(count)]
+        turned, cycles = np.stack(pins, axis=1), cycles[:, [throws.numbers.index(0)]]
         labels = {throw: _named("pin", [throw]) for throw in range(count)}
-    draw_polar(pin, curves, cycles[0], labels, THROW)
+    draw_polar(pin, turned, cycles[:, 0], labels, THROW)
     pin.set_title("crank pins: load of all rods, turning with the throw")
-
-
-def _cycles(view: View) -> list[Array]:
-    return [view.cycle_degrees(k) for k in range(len(view.scene.cylinders))]
-
-
-def _force(view: View, name: str) -> Array:
-    """A force as complex numbers, shape (n, how many)."""
-    return np.asarray(view.values(f"{name}_x") + 1j * view.values(f"{name}_y"))
-
-
-def _parts(force: Array) -> tuple[list[Array], list[Array]]:
-    """Upwards and to the left."""
-    return list(force.real.T), list(force.imag.T)
 
 
 def _named(part: str, group: list[int]) -> str:

@@ -25,7 +25,7 @@ from crankmbs.compare import (
 )
 from crankmbs.figures.headline import budget_headline, comparison_headline
 from crankmbs.figures.slide import SLIDE, slide, slide_legend
-from crankmbs.figures.style import crank_axis, footer, force_scale, line_of
+from crankmbs.figures.style import crank_axis, footer, force_scale, grouped, line_of, save
 from crankmbs.figures.view import last_view
 from crankmbs.numerics.arrays import Array
 from crankmbs.storage.files import together
@@ -86,7 +86,7 @@ def save_validation(comparison: Comparison, budget: Budget, folder: Path) -> lis
     with together(folder) as part:
         for name, figure in drawn.items():
             if figure is not None:
-                figure.savefig(part / name, format="png")
+                save(figure, part / name)
                 files.append(folder / name)
     return files
 
@@ -119,17 +119,13 @@ def comparison_figure(comparison: Comparison, quantities: tuple[str, ...]) -> Fi
 
 def _errors(rows: list[Deviation]) -> dict[str, Array]:
     """Errors by formula; those that coincide are one curve with both labels."""
-    groups: list[list[Deviation]] = []
-    for row in rows:
-        for group in groups:
-            if np.max(np.abs(group[0].error - row.error)) <= _APART * row.size.largest:
-                group.append(row)
-                break
-        else:
-            groups.append([row])
+
+    def coincide(first: Deviation, row: Deviation) -> bool:
+        return bool(np.max(np.abs(first.error - row.error)) <= _APART * row.size.largest)
+
     return {
         " and ".join(row.reference.partition(" (")[0] for row in group): group[0].error
-        for group in groups
+        for group in grouped(rows, coincide)
     }
 
 

@@ -1,4 +1,4 @@
-"""What changes from cycle to cycle, and what happens on the way of a run."""
+"""A run as a whole: what changes from cycle to cycle, its speed over time, events."""
 
 from __future__ import annotations
 
@@ -7,21 +7,32 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from crankmbs.figures.cylinders import one_curve_each, whose
-from crankmbs.figures.style import COLOURS, STYLE, footer, keep_flat, legend, line_of, panels
+from crankmbs.figures.style import (
+    COLOURS,
+    STYLE,
+    footer,
+    keep_flat,
+    legend,
+    line_of,
+    one_curve_each,
+    panels,
+    whose,
+)
+from crankmbs.figures.view import over_time
 from crankmbs.motion.labels import Table
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 from crankmbs.result.event_words import event_words
 from crankmbs.scene.units import BAR, RPM
 
-__all__ = ["FEWEST_CYCLES", "cycles_figure", "mark_events"]
+__all__ = ["FEWEST_CYCLES", "cycles_figure", "mark_events", "transient_figure", "varies_strongly"]
 
 FEWEST_CYCLES = 4  # fewer are seen in the figures of the run
 _MOST_MARKS = 8  # events that can be told apart in a panel
 _LABEL = 0.1  # of a panel's width, what the words of an event take
 _HAIR = 1e-9  # of a cycle: an event at its begin or end may be so far outside by rounding
 _HEAD = 0.3  # of a panel's height, kept free above the curve for them
+_STRONGLY = 0.5  # of the highest speed: in a start, a run-up, a run-down, a crank that turns back
 
 
 @rc_context(STYLE)
@@ -103,3 +114,32 @@ def mark_events(ax: Axes, result: Result, at: Array) -> None:
             bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5, "alpha": 0.8},
         )
         named[words[k]] = float(at[k])
+
+
+def varies_strongly(result: Result) -> bool:
+    """Whether the speed of a run covers half of the highest."""
+    speed = result.sampled("crank_speed")
+    return bool(np.ptp(speed) > _STRONGLY * np.max(np.abs(speed)))
+
+
+@rc_context(STYLE)
+def transient_figure(result: Result) -> Figure:
+    """Crank speed, and the torque of gas and inertia beside that of loads and drive, over time."""
+    names = "time", "crank_speed", "crank_torque", "external_torque"
+    time, speed, torque, outside = map(over_time(result).__getitem__, names)
+    figure, axes = panels(2, 1, 10.0, 8.0)
+    axes[0].plot(time, speed / RPM, color=COLOURS[0], linewidth=1.2)
+    axes[0].set_ylabel("crank speed [rpm]")
+    axes[1].plot(time, torque.sum(axis=1), color=COLOURS[4], linewidth=0.6, label="gas and inertia")
+    axes[1].plot(time, outside, color=COLOURS[1], linewidth=1.5, label="loads and drive")
+    axes[1].set_ylabel("torque on the crank [N m]")
+    for ax in axes:
+        ax.axhline(0.0, color="0.55", linewidth=1.0)
+        ax.tick_params(labelbottom=ax is axes[-1])
+    if result.keep is not None:
+        mark_events(axes[0], result, result.event_table.values("time"))
+    axes[-1].set_xlabel("time [s]")
+    legend(figure, axes[1])
+    figure.align_ylabels(axes)
+    footer(figure, result, "the whole run over time")
+    return figure

@@ -11,8 +11,17 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from crankmbs.compare.confirm import Difference
-from crankmbs.figures.cylinders import one_curve_each, whose
-from crankmbs.figures.style import STYLE, footer, legend, line_of, panels, save
+from crankmbs.figures.style import (
+    STYLE,
+    decades,
+    footer,
+    legend,
+    line_of,
+    one_curve_each,
+    save,
+    tiles,
+    whose,
+)
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 
@@ -29,18 +38,21 @@ def difference_figure(result: Result, differences: tuple[Difference, ...]) -> Fi
     Cylinders are one curve where they coincide in every panel. What is below a thousandth of the
     largest difference of its panel tells no two apart: near its zeros that is rounding.
     """
-    rows = -(-len(differences) // _COLUMNS)
-    figure, axes = panels(rows, _COLUMNS, 15.0, 2.9 * rows)
-    low, high = _limits(differences)
+    figure, axes = tiles(len(differences), _COLUMNS, (5.0, 2.9))
+    shares = [
+        value / (row.peak or 1.0)
+        for row in differences
+        for value in (row.largest[0], *row.errors)
+        if value > 0.0
+    ]
+    low, high = decades(max(share, _ROUNDING) for share in shares or [_ROUNDING])
     drawn = [np.maximum(row.size / (row.peak or 1.0), low) for row in differences]
     several = [sizes for sizes in drawn if sizes.shape[1] > 1]
     groups = one_curve_each(*several) if several else []
-    for ax, row, sizes in zip(axes, differences, drawn, strict=False):
+    for ax, row, sizes in zip(axes, differences, drawn, strict=True):
         _draw(ax, row, sizes, groups)
         ax.set_ylim(low, high)
-    for ax in axes[len(differences) :]:
-        ax.set_visible(False)
-    for ax in axes[: len(differences)][-_COLUMNS:]:
+    for ax in axes[-_COLUMNS:]:
         ax.set_xlabel("crank angle [rev]")
     figure.supylabel("difference / peak of the quantity [1]")
     legend(figure, max(axes, key=lambda ax: len(ax.lines)))
@@ -69,15 +81,3 @@ def _draw(ax: Axes, row: Difference, sizes: Array, groups: list[list[int]]) -> N
         ax.axhline(error / peak, color="black", linestyle=dashes, label=f"stated by {name}")
     ax.locator_params(axis="x", nbins=5)
     ax.set_title(row.quantity, loc="left")
-
-
-def _limits(differences: tuple[Difference, ...]) -> tuple[float, float]:
-    """Whole decades around all that is drawn, differences that pass through zero cut off."""
-    shown = [
-        value / (row.peak or 1.0)
-        for row in differences
-        for value in (row.largest[0], *row.errors)
-        if value > 0.0
-    ] or [_ROUNDING]
-    low = 10.0 ** math.floor(math.log10(max(min(shown), _ROUNDING)))
-    return low, 10.0 ** math.ceil(math.log10(max([*shown, low])) + 0.5)

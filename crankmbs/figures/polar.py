@@ -9,24 +9,26 @@ from __future__ import annotations
 
 import math
 import textwrap
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from crankmbs.figures.cylinders import one_curve_each, whose
 from crankmbs.figures.style import (
     STYLE,
     footer,
     force_scale,
+    grouped,
     legend,
     line_of,
     mark_points,
+    one_curve_each,
     panels,
+    whose,
 )
-from crankmbs.figures.view import View
+from crankmbs.figures.view import Plane, View
 from crankmbs.numerics.arrays import Array
 
 __all__ = [
@@ -48,23 +50,16 @@ _WIDEST = 9  # letters in a line of a label: two angles
 _GAP, _LINE, _LETTER = 0.04, 0.045, 0.017  # of the axes: to the labels; their height and width
 
 
-@dataclass(frozen=True)
-class _Mark:
-    left: float
-    up: float
-    angles: list[int]
-
-    @property
-    def lines(self) -> list[str]:
-        return textwrap.wrap(", ".join(map(str, sorted(self.angles))), _WIDEST)
+class _Mark(NamedTuple):
+    at: complex
+    lines: list[str]
 
 
 @rc_context(STYLE)
 def main_bearing_figure(view: View) -> Figure:
     """Force of the main bearings on the crank, all cylinders, in the engine's frame."""
     figure, (ax,) = panels(1, 1, 8.0, 8.0)
-    x, y = view.values("main_bearing_force_x"), view.values("main_bearing_force_y")
-    draw_polar(ax, ([x], [y]), view.degrees, {0: ""}, ENGINE)
+    draw_polar(ax, view.force("main_bearing_force"), view.degrees, {0: ""}, ENGINE)
     ax.set_title("main bearing: bearing on crank, engine's frame")
     _caption(figure, view, "crank angle")
     return figure
@@ -74,14 +69,11 @@ def main_bearing_figure(view: View) -> Figure:
 def crank_pin_figure(view: View) -> Figure:
     """Force of the crank on the rod: in the cylinder's frame, and turning with the crank."""
     figure, (fixed, turning) = panels(1, 2, 14.0, 8.0)
-    x, y, cycles = _columns(view, "crank_pin_force")
-    groups = alike(view, cycles, x, y)
-    draw_polar(fixed, (x, y), cycles[0], groups, _CYLINDER)
+    force, cycles = view.force("crank_pin_force"), view.cycle_degrees
+    labels = alike(view, force)
+    draw_polar(fixed, force, cycles[:, 0], labels, _CYLINDER)
     fixed.set_title("crank pin: crank on rod, cylinder's frame")
-    angle = [np.radians(cycle) for cycle in cycles]
-    radial = [np.cos(a) * u + np.sin(a) * v for a, u, v in zip(angle, x, y, strict=True)]
-    tangential = [np.cos(a) * v - np.sin(a) * u for a, u, v in zip(angle, x, y, strict=True)]
-    draw_polar(turning, (radial, tangential), cycles[0], groups, THROW)
+    draw_polar(turning, force * np.exp(-1j * np.radians(cycles)), cycles[:, 0], labels, THROW)
     turning.set_title("crank pin: crank on rod, turning with the crank")
     _finish(figure, fixed, view)
     return figure
@@ -91,35 +83,30 @@ def crank_pin_figure(view: View) -> Figure:
 def piston_pin_figure(view: View) -> Figure:
     """Force of the rod on the piston in the cylinder's frame."""
     figure, (ax,) = panels(1, 1, 8.0, 8.0)
-    x, y, cycles = _columns(view, "piston_pin_force")
-    draw_polar(ax, (x, y), cycles[0], alike(view, cycles, x, y), _CYLINDER)
+    force = view.force("piston_pin_force")
+    draw_polar(ax, force, view.cycle_degrees[:, 0], alike(view, force), _CYLINDER)
     ax.set_title("piston pin: rod on piston, cylinder's frame")
     _finish(figure, ax, view)
     return figure
 
 
-def _columns(view: View, name: str) -> tuple[list[Array], list[Array], list[Array]]:
-    x, y = view.values(f"{name}_x"), view.values(f"{name}_y")
-    count = x.shape[1]
-    return list(x.T), list(y.T), [view.cycle_degrees(k) for k in range(count)]
-
-
-def alike(view: View, cycles: list[Array], *panels: list[Array]) -> dict[int, str]:
+def alike(view: View, *panels: Plane | Array) -> dict[int, str]:
     """Which cylinders' curves are drawn, and whose each is: those of equal values at the same cycle
     angle coincide.
 
-    cycles : cycle angle of each cylinder [deg]; panels : a curve of each cylinder
+    panels : shape (n, cylinders), a curve of each cylinder
     """
+    cycles = view.cycle_degrees
     if not view.whole:
-        return {k: whose([k]) for k in range(len(cycles))}
+        return {k: whose([k]) for k in range(cycles.shape[1])}
     period = math.degrees(view.scene.period)
 
-    def side_by_side(curves: list[Array]) -> Array:
-        pairs = zip(cycles, curves, strict=True)
-        return np.stack([np.interp(cycles[0], *pair, period=period) for pair in pairs], axis=-1)
+    def beside(values: Array) -> Array:
+        pairs = zip(cycles.T, values.T, strict=True)
+        return np.stack([np.interp(cycles[:, 0], *pair, period=period) for pair in pairs], axis=-1)
 
-    groups = one_curve_each(*map(side_by_side, panels))
-    return {group[0]: whose(group) for group in groups}
+    parts = [part for panel in panels for part in (panel.real, panel.imag)]
+    return {group[0]: whose(group) for group in one_curve_each(*map(beside, parts))}
 
 
 def _finish(figure: Figure, ax: Axes, view: View) -> None:
@@ -134,53 +121,52 @@ def _caption(figure: Figure, view: View, angle: str) -> None:
 
 
 def draw_polar(
-    ax: Axes,
-    curves: tuple[list[Array], list[Array]],
-    degrees: Array,
-    labels: dict[int, str],
-    sense: tuple[str, str],
+    ax: Axes, force: Plane, degrees: Array, labels: dict[int, str], sense: tuple[str, str]
 ) -> None:
-    """Draw the curves with a label and mark the first one at every 90 degrees.
+    """Draw curves with a label and mark the first one at every 90 degrees.
 
-    curves : upwards and to the left; degrees : of the first; sense : what is upwards, to the left
+    force : shape (n, curves); degrees : of the first; sense : what is upwards, to the left
     """
-    up, left = curves
-    scale, unit = force_scale(*up, *left)
+    scale, unit = force_scale(force.real, force.imag)
+    curves = force / scale
     for k, label in labels.items():
-        ax.plot(left[k] / scale, up[k] / scale, **line_of(k), linewidth=1.8, label=label)
+        curve = curves[:, k]
+        ax.plot(curve.imag, curve.real, **line_of(k), linewidth=1.8, label=label)
     mark_points(ax)
     ax.axhline(0.0, color="0.55", linewidth=1.0, zorder=1)
     ax.axvline(0.0, color="0.55", linewidth=1.0, zorder=1)
     ax.set_ylabel(f"{sense[0]} [{unit}]")
     ax.set_xlabel(f"{sense[1]} [{unit}]")
-    marks = _marks(left[0] / scale, up[0] / scale, degrees)
-    _frame(ax, np.concatenate(left) / scale, np.concatenate(up) / scale, marks)
+    _frame(ax, curves, _marks(curves[:, 0], degrees))
 
 
-def _marks(left: Array, up: Array, degrees: Array) -> list[_Mark]:
+def _marks(curve: Plane, degrees: Array) -> list[_Mark]:
     """The samples nearest to every 90 degrees, those on one spot together."""
-    near = _CLOSE * max(float(np.ptp(left)), float(np.ptp(up)))
+    near = _CLOSE * max(float(np.ptp(curve.real)), float(np.ptp(curve.imag)))
     low, high = float(degrees.min()), float(degrees.max())
     first = math.ceil(low / 90.0 - 1e-6) * 90
-    marks: list[_Mark] = []
-    for angle in range(first, min(math.floor(high + 1e-6), first + 719) + 1, 90):
-        k = int(np.argmin(np.abs(degrees - angle)))
-        a, b = float(left[k]), float(up[k])
-        same = next((m for m in marks if math.hypot(m.left - a, m.up - b) <= near), None)
-        if same is None:
-            same = _Mark(a, b, [])
-            marks.append(same)
-        same.angles.append(angle % 720)
+    angles = range(first, min(math.floor(high + 1e-6), first + 719) + 1, 90)
+    nearest = {angle % 720: int(np.argmin(np.abs(degrees - angle))) for angle in angles}
+
+    def on_one_spot(one: int, other: int) -> bool:
+        return bool(abs(curve[nearest[one]] - curve[nearest[other]]) <= near)
+
+    marks = []
+    for spot in grouped(nearest, on_one_spot):
+        lines = textwrap.wrap(", ".join(map(str, sorted(spot))), _WIDEST)
+        marks.append(_Mark(complex(curve[nearest[spot[0]]]), lines))
     return marks
 
 
-def _frame(ax: Axes, left: Array, up: Array, marks: list[_Mark]) -> None:
+def _frame(ax: Axes, curves: Plane, marks: list[_Mark]) -> None:
     """Limits of equal scales around curve and origin, with the labels in a column on either side.
 
     The axes fill their place, so the limits of one grow: a box that shrinks needs several layouts.
     """
-    low, high = min(float(left.min()), 0.0), max(float(left.max()), 0.0)
-    bottom, top = min(float(up.min()), 0.0), max(float(up.max()), 0.0)
+    (low, high), (bottom, top) = (
+        (min(float(part.min()), 0.0), max(float(part.max()), 0.0))
+        for part in (curves.imag, curves.real)
+    )
     letters = max((len(line) for mark in marks for line in mark.lines), default=0)
     share = 1.0 - 2.0 * (_GAP + _LETTER * letters)
     span = max((high - low) / share, 1.1 * (top - bottom)) or 1.0
@@ -189,23 +175,23 @@ def _frame(ax: Axes, left: Array, up: Array, marks: list[_Mark]) -> None:
     ax.margins(0.0)
     ax.invert_xaxis()  # Y to the left
     ax.set_aspect("equal", adjustable="datalim")
-    weight = 0.5 * (float(left.min()) + float(left.max()))
+    weight = 0.5 * (float(curves.imag.min()) + float(curves.imag.max()))
     for side, edge in ((1.0, high), (-1.0, low)):
-        column = [mark for mark in marks if (mark.left > weight) == (side > 0.0)]
+        column = [mark for mark in marks if (mark.at.imag > weight) == (side > 0.0)]
         _label(ax, column, edge + side * _GAP * span, side, span)
 
 
 def _label(ax: Axes, marks: list[_Mark], at: float, side: float, span: float) -> None:
     """Write the labels of one side below one another, each joined to its mark by a thin line."""
-    ordered = sorted(marks, key=lambda mark: -mark.up)
+    ordered = sorted(marks, key=lambda mark: -mark.at.real)
     low, free = ax.get_ylim()
     heights = [_LINE * span * len(mark.lines) for mark in ordered]
     for k, mark in enumerate(ordered):
         half, below = 0.5 * heights[k], sum(heights[k + 1 :])
-        height = max(min(mark.up, free - half), low + below + half)
+        height = max(min(mark.at.real, free - half), low + below + half)
         free = height - half
-        ax.plot([mark.left, at], [mark.up, height], color="0.4", linewidth=0.7, zorder=3)
-        ax.plot(mark.left, mark.up, "o", color="black", markersize=6, zorder=4)
+        ax.plot([mark.at.imag, at], [mark.at.real, height], color="0.4", linewidth=0.7, zorder=3)
+        ax.plot(mark.at.imag, mark.at.real, "o", color="black", markersize=6, zorder=4)
         ax.text(
             at,
             height,

@@ -9,18 +9,17 @@ from matplotlib.figure import Figure
 
 from crankmbs.errors import InputError, shown
 from crankmbs.figures.bearings import bearings_figure
-from crankmbs.figures.cycles import FEWEST_CYCLES, cycles_figure
-from crankmbs.figures.indicator import indicator_figure
-from crankmbs.figures.orders import orders_figure
+from crankmbs.figures.cycles import FEWEST_CYCLES, cycles_figure, transient_figure, varies_strongly
+from crankmbs.figures.design import orders_figure
 from crankmbs.figures.polar import crank_pin_figure, main_bearing_figure, piston_pin_figure
 from crankmbs.figures.strips import (
     forces_figure,
+    indicator_figure,
     piston_motion_figure,
     speed_figure,
     torque_figure,
 )
 from crankmbs.figures.style import save
-from crankmbs.figures.transient import transient_figure, varies_strongly
 from crankmbs.figures.view import View, last_view
 from crankmbs.measures import engine_orders
 from crankmbs.result import Result
@@ -37,20 +36,15 @@ _FIGURES: dict[str, Callable[[View], Figure]] = {
     "crank_pin": crank_pin_figure,
     "piston_pin": piston_pin_figure,
     "torque": torque_figure,
+    "pressure": indicator_figure,
+    "transient": lambda view: transient_figure(view.result),
+    "bearings": bearings_figure,
+    "cycles": lambda view: cycles_figure(view.result),
 }
-
-_KINDS: dict[str, Callable[[Result], Figure]] = {
-    "speed": lambda result: speed_figure(last_view(result)),
-    "motion": lambda result: piston_motion_figure(last_view(result)),
-    "forces": lambda result: forces_figure(last_view(result)),
-    "torque": lambda result: torque_figure(last_view(result)),
-    "orders": lambda result: orders_figure(result, engine_orders(result)),
-    "cycles": lambda result: _cycles(result),
-    "bearings": lambda result: _bearings(result),
-    "pressure": lambda result: _pressure(result),
-    "transient": transient_figure,
-}
-_POLAR = {name: _FIGURES[name] for name in ("main_bearing", "crank_pin", "piston_pin")}
+_FILES = {"motion": "piston_motion", "forces": "gas_and_side_force"}  # kinds of other names
+_KINDS = ["speed", "motion", "forces", "torque", "orders", "cycles", "bearings", "pressure"]
+_KINDS += ["transient", "polar"]
+_JOINTS = ["main_bearing", "crank_pin", "piston_pin"]
 
 
 def plot(result: Result, kind: str = "speed", joint: str = "crank_pin") -> Figure:
@@ -71,9 +65,16 @@ def plot(result: Result, kind: str = "speed", joint: str = "crank_pin") -> Figur
     >>> len(plot(simulate(load_scene("propeller")), "motion").axes)
     3
     """
-    _check_word("kind", kind, [*_KINDS, "polar"])
-    _check_word("joint", joint, list(_POLAR))
-    return _POLAR[joint](last_view(result)) if kind == "polar" else _KINDS[kind](result)
+    _check_word("kind", kind, _KINDS)
+    _check_word("joint", joint, _JOINTS)
+    if kind == "orders":
+        return orders_figure(result, engine_orders(result))
+    name = joint if kind == "polar" else _FILES.get(kind, kind)
+    count = result.cycle_table.length if kind == "cycles" else 0
+    missing = _missing(result, count, FEWEST_CYCLES)
+    if name in missing:
+        raise InputError(missing[name])
+    return _FIGURES[name](last_view(result))
 
 
 def _check_word(option: str, word: str, known: list[str]) -> None:
@@ -84,29 +85,22 @@ def _check_word(option: str, word: str, known: list[str]) -> None:
     raise InputError(f"{option} must be {', '.join(most)} or {last}; {shown(word)} came{near}")
 
 
-def _cycles(result: Result) -> Figure:
-    count = result.cycle_table.length
-    if count < FEWEST_CYCLES:
-        raise InputError(
-            f"cycles are drawn from {FEWEST_CYCLES} on, and this run has {count}; result.cycles "
-            "has what there is of them"
-        )
-    return cycles_figure(result)
-
-
-def _bearings(result: Result) -> Figure:
+def _missing(result: Result, cycles: int, fewest: int) -> dict[str, str]:
+    """Figures that a result has not, by their names, and why."""
+    missing = {}
+    if result.scene.gas is None:
+        missing["pressure"] = "a pressure is drawn of a scene with [gas]; this one has none"
     if result.scene.throws is None:
-        raise InputError(
+        missing["bearings"] = (
             "loads of journals and pins are drawn of a scene with [bearings] whose throws have "
             "places along the crank; give them, such as bearings = Bearings()"
         )
-    return bearings_figure(last_view(result))
-
-
-def _pressure(result: Result) -> Figure:
-    if result.scene.gas is None:
-        raise InputError("a pressure is drawn of a scene with [gas]; this one has none")
-    return indicator_figure(last_view(result))
+    if cycles < fewest:
+        missing["cycles"] = (
+            f"cycles are drawn from {fewest} on, and this run has {cycles}; result.cycles has what "
+            "there is of them"
+        )
+    return missing
 
 
 def save_figures(result: Result, folder: Path) -> list[Path]:
@@ -119,21 +113,13 @@ def save_figures(result: Result, folder: Path) -> list[Path]:
     OutputError : the folder cannot be made or written
     """
     view = last_view(result)
+    cycles = 0 if result.keep is None else result.cycle_table.length
+    fewest = 2 if result.scene.settles else FEWEST_CYCLES  # what differs in a settled period
+    missing = set(_missing(result, cycles, fewest))
+    if not varies_strongly(result):
+        missing.add("transient")
+    names = [name for name in _FIGURES if name not in missing]
     with together(folder) as part:
-        for name, draw in _FIGURES.items():
-            save(draw(view), part / f"{name}.png")
-        names = list(_FIGURES)
-        if result.scene.gas is not None:
-            save(indicator_figure(view), part / "pressure.png")
-            names.append("pressure")
-        if varies_strongly(result):
-            save(transient_figure(result), part / "transient.png")
-            names.append("transient")
-        if result.scene.throws is not None:
-            save(bearings_figure(view), part / "bearings.png")
-            names.append("bearings")
-        fewest = 2 if result.scene.settles else FEWEST_CYCLES  # what differs in a settled period
-        if result.keep is not None and result.cycle_table.length >= fewest:
-            save(cycles_figure(result), part / "cycles.png")
-            names.append("cycles")
+        for name in names:
+            save(_FIGURES[name](view), part / f"{name}.png")
     return [folder / f"{name}.png" for name in names]

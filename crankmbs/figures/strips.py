@@ -1,4 +1,4 @@
-"""Quantities over the crank angle: speed, piston motion, forces along and across, torque."""
+"""Quantities over the crank angle: speed, piston motion, forces, torque, pressure."""
 
 from __future__ import annotations
 
@@ -7,9 +7,8 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from crankmbs.figures.curves import over_time
 from crankmbs.figures.cycles import mark_events
-from crankmbs.figures.cylinders import one_curve_each, whose
+from crankmbs.figures.polar import alike
 from crankmbs.figures.style import (
     STYLE,
     crank_axis,
@@ -19,13 +18,21 @@ from crankmbs.figures.style import (
     legend,
     line_of,
     mark_points,
+    one_curve_each,
     panels,
+    whose,
 )
-from crankmbs.figures.view import View
+from crankmbs.figures.view import View, over_time
 from crankmbs.numerics.arrays import Array
-from crankmbs.scene.units import RPM
+from crankmbs.scene.units import BAR, RPM
 
-__all__ = ["forces_figure", "piston_motion_figure", "speed_figure", "torque_figure"]
+__all__ = [
+    "forces_figure",
+    "indicator_figure",
+    "piston_motion_figure",
+    "speed_figure",
+    "torque_figure",
+]
 
 
 @rc_context(STYLE)
@@ -78,28 +85,22 @@ def piston_motion_figure(view: View) -> Figure:
 @rc_context(STYLE)
 def forces_figure(view: View) -> Figure:
     """Gas force, applied force and side force over the crank angle, those that there are."""
-    names = {
-        "gas_force": "gas on piston,\ntowards the crank",
-        "applied_force": "applied to piston,\ntowards the crank",
-        "side_force": "cylinder wall on\npiston, along Y",
-    }
-    if view.scene.gas is None:
-        del names["gas_force"]
-    if not view.scene.force:
-        del names["applied_force"]
+    names = {"side_force": ("side force", "cylinder wall on\npiston, along Y")}
+    if view.scene.force:
+        applied = "applied force", "applied to piston,\ntowards the crank"
+        names = {"applied_force": applied, **names}
+    if view.scene.gas is not None:
+        names = {"gas_force": ("gas", "gas on piston,\ntowards the crank"), **names}
     figure, axes = panels(len(names), 1, 10.0, 3.5 * len(names))
     groups = one_curve_each(*map(view.values, names))
-    for ax, (name, label) in zip(axes, names.items(), strict=True):
+    for ax, (name, (_, label)) in zip(axes, names.items(), strict=True):
         scale, unit = force_scale(view.values(name))
         _per_cylinder(ax, view, view.values(name) / scale, groups)
         ax.set_ylabel(f"{label} [{unit}]")
     crank_axis(axes, view)
     legend(figure, axes[0])
     figure.align_ylabels(axes)
-    titles = {"gas_force": "gas", "applied_force": "applied force", "side_force": "side force"}
-    footer(
-        figure, view.result, " and ".join(word for name, word in titles.items() if name in names)
-    )
+    footer(figure, view.result, " and ".join(word for word, _ in names.values()))
     return figure
 
 
@@ -147,3 +148,45 @@ def _speed(ax: Axes, angle: Array, speed: Array) -> None:
     ax.plot(angle, speed / RPM, **line_of(0))
     ax.set_ylabel("crank speed [rpm]")
     keep_flat(ax, speed / RPM)
+
+
+@rc_context(STYLE)
+def indicator_figure(view: View) -> Figure:
+    """Gauge pressure of each cylinder in the last cycle, over the crank angle and, as indicator
+    diagram, over the volume that its piston has displaced from the top dead centre; of
+    double-acting cylinders that of both ends, each over its area times the displacement. The
+    area of a loop is the work of a cycle; cylinders of one loop share it."""
+    pistons = [gear.piston for gear in view.scene.running_gear]
+    displacement = view.values("piston_displacement")
+    ends = {"head end": ("gas_pressure", [piston.gas_area or 0.0 for piston in pistons])}
+    if view.scene.double_acting:
+        ends["crank end"] = "crank_end_pressure", [piston.crank_end_area for piston in pistons]
+    pressures = {end: view.values(name) / BAR for end, (name, _) in ends.items()}
+    volumes = {end: 1e6 * displacement * np.array(areas) for end, (_, areas) in ends.items()}
+    over_angle = {group[0]: whose(group) for group in one_curve_each(*pressures.values())}
+    over_volume = alike(view, *pressures.values(), *volumes.values())
+    figure, axes = panels(1, 2, 13.0, 5.5, ratios=(1.5, 1.0))
+    for number, (end, pressure) in enumerate(pressures.items()):
+        lines = {k: line_of(k * len(ends) + number) for k in range(len(pistons))}
+        along, drawn = view.drawn(view.along, pressure)
+        for k, cylinders in over_angle.items():
+            axes[0].plot(along, drawn[:, k], **lines[k], label=_named(view, cylinders, end))
+        for k, cylinders in over_volume.items():
+            label = _named(view, cylinders, end)
+            axes[1].plot(volumes[end][:, k], pressure[:, k], **lines[k], label=label)
+    axes[0].set_ylabel("gauge pressure [bar]")
+    axes[1].set_ylabel("gauge pressure [bar]")
+    axes[1].set_xlabel("volume from top dead centre [cm$^3$]")
+    crank_axis(axes[:1], view)
+    legend(figure, axes[0])
+    if over_volume != over_angle:
+        axes[1].legend()
+    footer(figure, view.result, "gas pressure and indicator diagram")
+    return figure
+
+
+def _named(view: View, cylinders: str, end: str) -> str | None:
+    """Legend entry of a curve: whose it is and of which end, where there are several."""
+    parts = [cylinders] if len(view.scene.cylinders) > 1 else []
+    parts += [end] if view.scene.double_acting else []
+    return ", ".join(parts) or None

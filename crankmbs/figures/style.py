@@ -5,8 +5,9 @@ from __future__ import annotations
 import io
 import math
 import textwrap
+from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, TypeVar
 
 import numpy as np
 from matplotlib import rcParams
@@ -28,23 +29,31 @@ __all__ = [
     "STYLE",
     "caption",
     "crank_axis",
+    "decades",
     "footer",
     "force_scale",
+    "grouped",
     "keep_flat",
     "legend",
     "line_of",
     "logarithmic",
     "mark_points",
+    "one_curve_each",
     "panels",
     "png",
     "save",
+    "tiles",
+    "whose",
 ]
+
+T = TypeVar("T")
 
 # Okabe and Ito's palette without its yellow, which is too pale on white
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00")
 _DASHES = ("-", (0, (6, 2)), (0, (6, 2, 1.5, 2)), (0, (2.5, 1.5)))
 _GREY = "0.55"
 FLAT = 1e-6  # of the mean: what varies less is drawn as constant
+_SAME = 1e-3  # of the range of a panel's curves: less than a pixel of it, a fifth of a line
 _SMALLER = 2  # points: text at the dead centres and of the caption, than the type of the figure
 _FAST = {"compress_level": 3}  # of a PNG: a third less time for a sixth more bytes
 _LINE = 1.27  # of its size: a line of it
@@ -111,11 +120,30 @@ def panels(
     return figure, [axes for row in grid for axes in row]
 
 
+def tiles(
+    count: int, across: int, size: tuple[float, float], least: tuple[float, float] = (0.0, 0.0)
+) -> tuple[Figure, list[Axes]]:
+    """Panels of one size [inch], so many side by side at most; the figure has a least size."""
+    columns = min(count, across)
+    rows = -(-count // columns)
+    width, height = max(size[0] * columns, least[0]), max(size[1] * rows, least[1])
+    figure, axes = panels(rows, columns, width, height)
+    for ax in axes[count:]:
+        ax.set_visible(False)
+    return figure, axes[:count]
+
+
 def logarithmic(axis: Axis) -> None:
     """Plain numbers on a logarithmic axis of some decades, at 1, 2 and 5 of each."""
     axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     axis.set_minor_locator(NullLocator())
     axis.set_major_formatter(lambda value, _: f"{value:g}")
+
+
+def decades(values: Iterable[float]) -> tuple[float, float]:
+    """Whole decades around positive values."""
+    logarithms = np.log10([*values])
+    return 10.0 ** math.floor(logarithms.min() - 0.1), 10.0 ** math.ceil(logarithms.max() + 0.1)
 
 
 def line_of(cylinder: int) -> dict[str, Any]:
@@ -235,3 +263,50 @@ def footer(figure: Figure, result: Result, about: str) -> None:
 def caption(figure: Figure, lines: list[str]) -> None:
     """Write lines under the figure as they are: in a title a $ is no formula."""
     figure.supxlabel("\n".join(lines), fontsize=_small(), color="0.35", parse_math=False)
+
+
+def one_curve_each(*panels: Array) -> list[list[int]]:
+    """Cylinders, counted from 0, whose curves coincide in every panel.
+
+    panels : each of shape (n, cylinders), any unit
+
+    >>> one_curve_each([[0.0, 1.0, 0.0], [1.0, 0.0, 1.0]])
+    [[0, 2], [1]]
+    """
+    curves = [np.asarray(panel, dtype=np.float64) for panel in panels]
+
+    def coincide(first: int, second: int) -> bool:
+        return all(
+            bool(np.all(np.abs(panel[:, first] - panel[:, second]) <= _seen(panel)))
+            for panel in curves
+        )
+
+    return grouped(range(curves[0].shape[1]), coincide)
+
+
+def grouped(items: Iterable[T], alike: Callable[[T, T], bool]) -> list[list[T]]:
+    """Items in their order, each with those before that are like the first of its group."""
+    groups: list[list[T]] = []
+    for item in items:
+        for group in groups:
+            if alike(group[0], item):
+                group.append(item)
+                break
+        else:
+            groups.append([item])
+    return groups
+
+
+def whose(cylinders: list[int]) -> str:
+    """Legend entry of the cylinders of one curve, counted from 0.
+
+    >>> whose([0, 3])
+    'cylinders 1, 4'
+    """
+    numbers = ", ".join(str(k + 1) for k in cylinders)
+    return f"cylinder{'s' if len(cylinders) > 1 else ''} {numbers}"
+
+
+def _seen(panel: Array) -> float:
+    """What can be seen of a difference: nothing where the whole panel is drawn as constant."""
+    return max(_SAME * float(np.ptp(panel)), FLAT * float(np.max(np.abs(panel))))

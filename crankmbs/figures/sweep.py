@@ -16,7 +16,7 @@ from matplotlib.ticker import MaxNLocator
 from crankmbs.digits import error_digits
 from crankmbs.display import displayed
 from crankmbs.errors import InputError
-from crankmbs.figures.style import COLOURS, STYLE, caption, logarithmic, panels
+from crankmbs.figures.style import COLOURS, STYLE, caption, logarithmic, tiles
 from crankmbs.numerics.arrays import Array
 from crankmbs.sweep.columns import Column
 from crankmbs.sweep.reading import Reading, amount_of, reading_of
@@ -29,6 +29,7 @@ __all__ = ["sweep_figure"]
 _ON_AXES = {"1": (0.01, "%"), "N": (1e3, "kN")}  # else as in text
 _MOST = 12  # panels
 _COLUMNS = 3
+_SIZES = (4.6, 4.2), (9.0, 6.5)  # inch: of a panel, and of the smallest figure
 _LEVELS = 12
 _ROUND = [1, 2, 5, 10]  # steps of ticks and levels, times a power of ten
 _CELLS = 500  # along an axis: finer than the points that are drawn
@@ -101,7 +102,12 @@ def sweep_figure(data: xr.Dataset, show: str, limit: str | None = None) -> Figur
     at = None if limit is None else _limit(limit, reading) / scale
     drawn = _Drawn(values / scale, reading.words, unit, at)
     knobs = [str(name) for name in values.dims if name in data.coords]
-    figure = _over_cases(data, drawn) if values.dims == ("case",) else _over(data, drawn, knobs)
+    if len(knobs) > 1:
+        figure = _over(data, drawn, knobs)
+    else:
+        names = knobs or [str(name) for name in data.coords if data[name].dims == ("case",)]
+        figure = _over_each(data, drawn, names, joined=bool(knobs))
+    figure.suptitle(drawn.label, fontsize=14)
     missing = int(np.count_nonzero(np.isnan(values.values)))
     lines = [str(data.attrs.get("title", "")), f"{values.size} cases; error at most "]
     lines[1] += f"{error_digits(error / scale)} {unit}"
@@ -127,8 +133,7 @@ def _varied(data: xr.Dataset) -> xr.Dataset:
 
 
 def _over(data: xr.Dataset, drawn: _Drawn, knobs: list[str]) -> Figure:
-    if len(knobs) == 1:
-        return _curve(_axis(data, knobs[0]), drawn)
+    """Filled contours over the first two knobs, a panel for each combination of the others."""
     y, x, *further = knobs
     rest = drawn.values.stack(panel=further).transpose("panel", y, x) if further else None
     count = 1 if rest is None else rest.sizes["panel"]
@@ -137,42 +142,17 @@ def _over(data: xr.Dataset, drawn: _Drawn, knobs: list[str]) -> Figure:
             f"{', '.join(further)}: {count} panels are too many; at most {_MOST} are drawn, vary "
             "fewer values beside the first two"
         )
-    columns = min(count, _COLUMNS)
-    rows = -(-count // columns)
-    figure, axes = panels(rows, columns, max(4.6 * columns, 9.0), max(4.2 * rows, 6.5))
+    figure, axes = tiles(count, _COLUMNS, *_SIZES)
     levels = _levels(drawn.values.values)
     for k, ax in enumerate(axes):
-        ax.set_visible(k < count)
-        if k >= count:
-            continue
         table = drawn.values.values if rest is None else rest.values[k]
         filled = _contours(
             ax, (_axis(data, x), _axis(data, y)), drawn._replace(values=table), levels
         )
         if rest is not None:
-            ax.set_title(_where(data, further, rest["panel"].values[k]), fontsize=11)
+            ax.set_title(_title(data, further, rest["panel"].values[k]), fontsize=11)
     figure.colorbar(filled, ax=axes, ticks=levels)
-    figure.suptitle(drawn.label, fontsize=14)
     return figure
-
-
-def _curve(axis: _Axis, drawn: _Drawn) -> Figure:
-    figure, (ax,) = panels(1, 1, 9.0, 5.5)
-    marker = "o" if len(axis.at) < 40 else ""
-    line = "" if axis.words else "-"
-    ax.plot(axis.at, drawn.values, color=COLOURS[0], marker=marker or None, linestyle=line)
-    axis.along(ax.xaxis)
-    figure.suptitle(drawn.label, fontsize=14)
-    _limited(ax, drawn)
-    return figure
-
-
-def _limited(ax: Axes, drawn: _Drawn) -> None:
-    """The limit across an axis, named in a legend."""
-    if drawn.limit is not None:
-        dashes = (0, (6, 3))
-        ax.axhline(drawn.limit, color=COLOURS[1], linestyle=dashes, label=_amount(drawn))
-        ax.legend()
 
 
 def _contours(ax: Axes, at: tuple[_Axis, _Axis], drawn: _Drawn, levels: Array) -> Any:
@@ -198,34 +178,36 @@ def _amount(drawn: _Drawn) -> str:
     return f"{drawn.limit:.6g} {drawn.unit}"
 
 
-def _over_cases(data: xr.Dataset, drawn: _Drawn) -> Figure:
-    names = [str(name) for name in data.coords if data[name].dims == ("case",)]
-    columns = min(len(names), _COLUMNS)
-    rows = -(-len(names) // columns)
-    figure, axes = panels(rows, columns, max(4.6 * columns, 8.0), max(4.0 * rows, 5.0))
-    for ax, name in zip(axes, names, strict=False):
+def _over_each(data: xr.Dataset, drawn: _Drawn, names: list[str], *, joined: bool) -> Figure:
+    """A panel over each knob: a curve where the values of a grid are joined, else points."""
+    figure, axes = tiles(len(names), _COLUMNS, *_SIZES)
+    for ax, name in zip(axes, names, strict=True):
         axis = _axis(data, name)
-        ax.plot(*_apart(axis.at, drawn.values.values), ".", color=COLOURS[0], markersize=4)
+        at, values = axis.at, drawn.values.values
+        line: Any = {
+            "marker": "o" if len(at) < 40 else None,
+            "linestyle": "" if axis.words else "-",
+        }
+        if not joined:
+            (at, values), line = _apart(at, values), {"marker": ".", "linestyle": "", "ms": 4}
+        ax.plot(at, values, color=COLOURS[0], **line)
         axis.along(ax.xaxis)
-        _limited(ax, drawn)
-    for ax in axes[len(names) :]:
-        ax.set_visible(False)
-    figure.suptitle(drawn.label, fontsize=14)
+        if drawn.limit is not None:
+            dashes = (0, (6, 3))
+            ax.axhline(drawn.limit, color=COLOURS[1], linestyle=dashes, label=_amount(drawn))
+            ax.legend()
     return figure
 
 
 def _apart(x: Array, y: Array) -> tuple[Array, Array]:
     """Of points that nobody can tell apart in the figure one."""
-    if len(x) <= _CELLS:
-        return x, y
     there = np.isfinite(y)
     x, y = x[there], y[there]
-    cells = np.zeros(len(x), dtype=np.int64)
-    for values in (x, y):
-        share = (values - values.min()) * ((_CELLS - 1) / (float(np.ptp(values)) or 1.0))
-        cells *= _CELLS
-        cells += share.astype(np.int32)
-    first = np.unique(cells, return_index=True)[1]
+    across, up = (
+        np.floor((values - values.min()) * (_CELLS / (float(np.ptp(values)) or 1.0)))
+        for values in (x, y)
+    )
+    first = np.unique(across * (_CELLS + 1) + up, return_index=True)[1]
     return x[first], y[first]
 
 
@@ -261,17 +243,16 @@ def _on_axis(units: str) -> tuple[float, str]:
     return _ON_AXES.get(units) or displayed(units)
 
 
-def _where(data: xr.Dataset, names: list[str], values: Any) -> str:
-    several = values if isinstance(values, tuple) else (values,)
-    return ", ".join(_said(data, *pair) for pair in zip(names, several, strict=True))
-
-
-def _said(data: xr.Dataset, name: str, value: Any) -> str:
-    units = str(data[name].attrs.get("units", ""))
-    if isinstance(value, str):
-        return f"{name} {value}"
-    scale, unit = _on_axis(units)
-    return f"{name} {float(value) / scale:.4g} {_typeset(unit)}".rstrip()
+def _title(data: xr.Dataset, names: list[str], values: Any) -> str:
+    """The values of a panel's knobs, in words."""
+    words = []
+    for name, value in zip(names, values if isinstance(values, tuple) else [values], strict=True):
+        amount = value
+        if not isinstance(value, str):
+            scale, unit = _on_axis(str(data[name].attrs.get("units", "")))
+            amount = f"{float(value) / scale:.4g} {_typeset(unit)}".rstrip()
+        words.append(f"{name} {amount}")
+    return ", ".join(words)
 
 
 def _typeset(unit: str) -> str:

@@ -1,4 +1,4 @@
-"""What the figures draw: the last cycle of a result, its angles in degrees."""
+"""What the figures draw: the last cycle of a result, its angles in degrees; curves over time."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
-from crankmbs.figures.curves import over_time
-from crankmbs.measures import Span, last_span
+from crankmbs.measures import Span, interp, last_span
 from crankmbs.measures.span import TURNS_BACK
 from crankmbs.mechanics.geometry import dead_centres
 from crankmbs.numerics.arrays import Array
@@ -16,11 +16,16 @@ from crankmbs.result import Result
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.units import DEGREE
 
-__all__ = ["View", "last_view"]
-
+__all__ = ["Plane", "View", "last_view", "over_time"]
 
 _SAME = 0.5  # deg: dead centres closer than this share one line
 _THERE = 1e-6  # deg: a cycle that begins so near to where the axis does is drawn in one piece
+
+
+Plane = NDArray[np.complex128]
+"""Forces in a plane: their parts upwards and to the left are real and imaginary."""
+
+_BETWEEN = 1000  # instants between which curves over time are drawn straight
 
 
 @dataclass(frozen=True)
@@ -62,6 +67,11 @@ class View:
             return self.curves[name]
         return self.result.sampled(name)[self.window.first :]
 
+    def force(self, name: str) -> Plane:
+        """Forces of a name as complex numbers X + i Y, shape (n, how many)."""
+        force = self.values(f"{name}_x") + 1j * self.values(f"{name}_y")
+        return force.reshape(len(force), -1)
+
     def drawn(self, degrees: Array, values: Array) -> tuple[Array, Array]:
         """Values over crank angles of the cycle [deg], in its order, as a line shows them.
 
@@ -87,9 +97,11 @@ class View:
             return degrees
         return self.low + np.mod(degrees - self.low, self.high - self.low)
 
-    def cycle_degrees(self, cylinder: int) -> Array:
-        """Cycle angle of a cylinder, counted from 0, at the samples [deg]."""
-        return self.degrees + math.degrees(self.scene.cylinders[cylinder].phase)
+    @property
+    def cycle_degrees(self) -> Array:
+        """Cycle angle of every cylinder at the samples [deg], shape (n, cylinders)."""
+        phases = [math.degrees(cylinder.phase) for cylinder in self.scene.cylinders]
+        return np.add.outer(self.degrees, phases)
 
     def dead_centre_labels(self) -> dict[float, str]:
         """Crank angles [deg] of the dead centres that are shown, and what they are.
@@ -184,3 +196,26 @@ def last_view(result: Result) -> View:
         begun=begun,
         curves=curves,
     )
+
+
+def over_time(result: Result, first: int = 0) -> dict[str, Array]:
+    """Time [s], crank angle [rad] and the variables of a result from a sample on, by name.
+
+    Samples at equal angles lie far apart in time where the crank turns back. Between them the
+    motion is read as it was solved; without it, as of some loaded results, there are samples alone.
+    """
+    values = {
+        name: values[first:] for name, (of, values, _) in result.variables.items() if "time" in of
+    }
+    if result.motion is None:
+        return values
+    time = values["time"]
+    begin = max(time[0], result.passes.answer.begin)  # of a long run the end is kept
+    between = np.linspace(begin, time[-1], _BETWEEN)[1:-1]
+    added = interp(result, time=between)
+    places = np.searchsorted(time, between)
+    return {
+        name: np.insert(v, places, added[name].values, axis=0)
+        for name, v in values.items()
+        if name in added
+    }

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 from typing import Any
 
@@ -10,8 +9,7 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from crankmbs.figures.style import STYLE, caption, panels
-from crankmbs.storage.files import write_in_one_move
+from crankmbs.figures.style import STYLE, caption, decades, save, tiles
 from crankmbs.work_precision import END, MOTION, WorkPrecision
 
 __all__ = ["save_figure", "work_precision_figure"]
@@ -30,10 +28,7 @@ def save_figure(outcome: WorkPrecision, folder: Path) -> Path:
     ------
     OutputError : the folder cannot be made or written
     """
-    figure = work_precision_figure(outcome)
-    target = folder / "work_precision.png"
-    write_in_one_move(target, lambda part: figure.savefig(part, format="png"))
-    return target
+    return save(work_precision_figure(outcome), folder / "work_precision.png")
 
 
 @rc_context(STYLE)
@@ -43,15 +38,15 @@ def work_precision_figure(outcome: WorkPrecision) -> Figure:
     Grey is below the error that the reference states; what lies there is drawn on its edge.
     """
     names = outcome.quantities
-    rows = -(-len(names) // _COLUMNS)
-    figure, axes = panels(rows, _COLUMNS, 16.0, 4.7 * rows + 2.0)
+    figure, axes = tiles(len(names), _COLUMNS, (5.3, 5.5))
     styles = _styles(outcome)
-    left, right = _decades([*_errors(outcome), *outcome.reference.floors.values()])
-    limits = _decades([row.time for row in outcome.rows])
+    floors = outcome.reference.floors
+    errors = [
+        max(error, floors[name]) for row in outcome.rows for name, error in row.errors.items()
+    ]
+    left, right = decades([*errors, *floors.values()])
+    limits = decades(row.time for row in outcome.rows)
     for k, ax in enumerate(axes):
-        if k >= len(names):
-            ax.set_visible(False)
-            continue
         _draw(ax, outcome, names[k], styles)
         ax.set_xlim(left, min(right, 1.0))
         ax.set_ylim(limits)
@@ -95,15 +90,3 @@ def _styles(outcome: WorkPrecision) -> dict[str, dict[str, Any]]:
                 "markerfacecolor": "white" if part else None,
             }
     return styles
-
-
-def _errors(outcome: WorkPrecision) -> list[float]:
-    """All errors, those below the reference's set to it."""
-    floors = outcome.reference.floors
-    return [max(error, floors[name]) for row in outcome.rows for name, error in row.errors.items()]
-
-
-def _decades(values: list[float]) -> tuple[float, float]:
-    """Whole decades around values."""
-    low, high = math.log10(min(values)), math.log10(max(values))
-    return 10.0 ** math.floor(low - 0.1), 10.0 ** math.ceil(high + 0.1)

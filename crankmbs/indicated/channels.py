@@ -43,7 +43,7 @@ class Column(NamedTuple):
     reference: str = ""
 
 
-def angle_column(headings: Sequence[Heading], where: str) -> int:
+def angle_column(headings: Sequence[Heading]) -> int:
     """The place of the crank angle.
 
     Raises
@@ -55,14 +55,12 @@ def angle_column(headings: Sequence[Heading], where: str) -> int:
         return angles[0]
     listed = ", ".join(shown(heading.name) for heading in headings[:8])
     raise UndecidedError(
-        f"{where}: no column is a crank angle by its name or its unit; the columns are {listed}",
+        f"no column is a crank angle by its name or its unit; the columns are {listed}",
         ('the column\'s heading the name "crank_angle_deg"',),
     )
 
 
-def columns_of(
-    headings: Sequence[Heading], options: Options, where: str, angle: int
-) -> tuple[Column, ...]:
+def columns_of(headings: Sequence[Heading], options: Options, angle: int) -> tuple[Column, ...]:
     """The columns of pressures, each with its cylinder and cycle.
 
     Raises
@@ -71,18 +69,18 @@ def columns_of(
     """
     chosen = None
     if options.columns is not None:
-        chosen = [k for k in pick(headings, options.columns, where) if k != angle]
+        chosen = [k for k in pick(headings, options.columns, "columns") if k != angle]
     others = [k for k, heading in enumerate(headings) if k != angle and is_pressure(heading)]
     rest = list(dict.fromkeys([*(chosen or ()), *others]))
     if not rest or (chosen is not None and not chosen):
         listed = ", ".join(shown(heading.name) for heading in headings[:8])
         raise InputError(
-            f"{where}: no column is a pressure by its name or its unit; the columns are {listed}; "
+            f"no column is a pressure by its name or its unit; the columns are {listed}; "
             'name some, such as columns="PCYL1..4"'
         )
     named = [(k, _kind(headings[k].name) if k not in (chosen or ()) else "") for k in rest]
     read = [(k, kind) for k, kind in named if kind or chosen is None or k in chosen]
-    return _apart(_numbered(headings, read, options, where), chosen is not None, where)
+    return _apart(_numbered(headings, read, options), chosen is not None)
 
 
 def is_pressure(heading: Heading, units: Sequence[str] = ("",)) -> bool:
@@ -103,7 +101,7 @@ def _kind(name: str) -> str:
 
 
 def _numbered(
-    headings: Sequence[Heading], read: list[tuple[int, str]], options: Options, where: str
+    headings: Sequence[Heading], read: list[tuple[int, str]], options: Options
 ) -> list[Column]:
     numbers = [_numbers(headings[k].name) for k, _ in read]
     plain = {
@@ -115,7 +113,7 @@ def _numbered(
     each = options.each
     if each is None and len(bare) > 1 and len(bare) <= _MOST_CYLINDERS:
         raise UndecidedError(
-            f"{where}: the columns are named {bare[0]} to {bare[-1]}, and these may be cycles of "
+            f"the columns are named {bare[0]} to {bare[-1]}, and these may be cycles of "
             "one cylinder or cylinders",
             ('each="cycle"', 'each="cylinder"', f'columns="{bare[0]}" for a pressure alone'),
         )
@@ -125,7 +123,7 @@ def _numbered(
         heading = headings[k]
         if as_cycles and not kind and not cycle:
             cylinder, cycle = 1, cylinder
-        factor = _factor(heading, options, where)
+        factor = _factor(heading, options)
         columns.append(
             Column(
                 k, heading.name, factor, kind or "cycle", cylinder or 1, cycle, heading.reference
@@ -134,7 +132,7 @@ def _numbered(
     return columns
 
 
-def _apart(columns: list[Column], chosen: bool, where: str) -> tuple[Column, ...]:
+def _apart(columns: list[Column], chosen: bool) -> tuple[Column, ...]:
     """The columns, no two of them the same cycle of a cylinder: chosen ones count cylinders then.
 
     Raises
@@ -153,7 +151,7 @@ def _apart(columns: list[Column], chosen: bool, where: str) -> tuple[Column, ...
                 for each in columns
             )
         raise UndecidedError(
-            f"{where}: {shown(names[0])} and {shown(names[1])} may both be the pressure of "
+            f"{shown(names[0])} and {shown(names[1])} may both be the pressure of "
             f"cylinder {number}",
             tuple(f'columns="{name}"' for name in names[:2]),
         )
@@ -175,12 +173,12 @@ def _numbers(name: str) -> tuple[int, int]:
     return cylinder, cycle
 
 
-def _factor(heading: Heading, options: Options, where: str) -> float:
+def _factor(heading: Heading, options: Options) -> float:
     if heading.pressure is not None:
         return heading.pressure
     if options.unit is None:
         raise UndecidedError(
-            f"{where}: the pressures of column {shown(heading.name)} have no unit, neither in the "
+            f"the pressures of column {shown(heading.name)} have no unit, neither in the "
             "name nor in a row below the names",
             ('unit="bar"', f"another of kPa, Pa, MPa, psi{_and_reference(options)}"),
         )

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from crankmbs.errors import InputError
 from crankmbs.indicated.dead_centre import (
     DeadCentre,
     fired_dead_centre,
@@ -14,68 +15,125 @@ from crankmbs.indicated.dead_centre import (
 )
 from crankmbs.indicated.findings import CylinderPressure
 from crankmbs.indicated.options import Options
-from crankmbs.indicated.quality import closure, mean_effective_pressure, noise, smoothed
-from crankmbs.indicated.referencing import Raw
+from crankmbs.indicated.referencing import Cycles
 from crankmbs.indicated.shape import Shape
 from crankmbs.numerics.arrays import Array
 
 __all__ = ["cylinder_of"]
 
+_GAS_EXCHANGE = 200.0  # degrees from the firing dead centre: nothing burns behind
+_NORMAL = 1.4826  # standard deviations of a normal law in a median of deviations
+_FOURTH = math.sqrt(70.0)  # standard deviations of a row in that of its fourth differences
+
 
 def cylinder_of(
-    raw: Raw, added: Array, shape: Shape | None, period: float, options: Options, absolute: bool
+    cycles: Cycles, added: Array, shape: Shape | None, options: Options, absolute: bool
 ) -> CylinderPressure:
-    """The cylinder from its raw cycles and what is added to each, shape (cycles,) [Pa]."""
-    pressure = raw.pressure + added[:, None]
-    rough = noise(raw.phi, pressure)
-    before = pressure
+    """The cylinder from its cycles and what is added to each, shape (cycles,) [Pa]."""
+    phi, period = cycles.phi, cycles.period
+    before = cycles.pressure + added[:, None]
+    mean, rough = np.mean(before, axis=0), _noise(phi, before)
+    pressure, moved = before, None
     if options.smooth is not None:
-        width = math.degrees(options.smooth)
-        pressure = smoothed(raw.phi, pressure, width, f"cylinder {raw.number}")
-    mean = np.mean(pressure, axis=0)
-    fired = is_fired(raw.phi, mean)
-    imep = None
-    if shape is not None:
-        imep = mean_effective_pressure(raw.phi, pressure, shape, period)
+        pressure = _smoothed(phi, before, math.degrees(options.smooth))
+        moved = _moved(phi, mean, np.mean(pressure, axis=0), shape, period)
+    fired = is_fired(phi, np.mean(pressure, axis=0))
+    centre: DeadCentre | None
+    if fired is False:
+        loss = None if options.loss_angle is None else math.degrees(options.loss_angle)
+        centre = motored_dead_centre(phi, mean, rough / math.sqrt(len(before)), loss)
+    else:
+        centre = fired_dead_centre(phi, mean, shape if absolute else None)
     return CylinderPressure(
-        number=raw.number,
-        name=raw.name,
-        angle=raw.phi,
+        number=cycles.channel.cylinder,
+        name=cycles.channel.name,
+        angle=phi,
         pressure=pressure,
         offset=added,
-        firing=0.0,
-        lag=0.0,
-        imep=imep,
+        firing=cycles.firing,
+        lag=cycles.lag,
+        imep=None if shape is None else _mean_effective_pressure(phi, pressure, shape, period),
         fired=fired,
-        dead_centre=_motored(raw.phi, before, rough, options.loss_angle)
-        if fired is False
-        else _interval(raw.phi, before, shape if absolute else None),
+        dead_centre=centre,
         noise=rough,
-        closure=float(np.median(closure(pressure))),
-        moved=None if options.smooth is None else _moved(raw.phi, before, pressure, shape, period),
+        closure=float(np.median(_closure(pressure))),
+        moved=moved,
     )
 
 
-def _motored(phi: Array, pressure: Array, rough: float, loss_angle: float | None) -> DeadCentre:
-    loss = None if loss_angle is None else math.degrees(loss_angle)
-    row = rough / math.sqrt(len(pressure))
-    return motored_dead_centre(phi, np.mean(pressure, axis=0), row, loss)
-
-
-def _interval(phi: Array, pressure: Array, shape: Shape | None) -> DeadCentre | None:
-    if shape is None or shape.ratio is None:
-        return None
-    return fired_dead_centre(phi, np.mean(pressure, axis=0), shape)
-
-
 def _moved(
-    phi: Array, before: Array, after: Array, shape: Shape | None, period: float
+    phi: Array, rough: Array, smooth: Array, shape: Shape | None, period: float
 ) -> tuple[float, float, float]:
     """By how much smoothing moved peak [Pa], its angle [deg] and imep [Pa] of the mean cycle."""
-    rough, smooth = np.mean(before, axis=0), np.mean(after, axis=0)
     work = math.nan
     if shape is not None:
-        both = mean_effective_pressure(phi, np.array([rough, smooth]), shape, period)
-        work = float(both[1] - both[0])
+        work = float(_mean_effective_pressure(phi, smooth - rough, shape, period))
     peak = float(np.max(smooth) - np.max(rough))
     return peak, float(phi[np.argmax(smooth)] - phi[np.argmax(rough)]), work
+
+
+def _mean_effective_pressure(phi: Array, pressure: Array, shape: Shape, period: float) -> Array:
+    """Indicated mean effective pressure of each cycle.
+
+    imep = (1 / V_d) int p dV = int p (ds/dphi) dphi over the period, s the travel over the stroke
+
+    Parameters
+    ----------
+    phi : shape (n,) [deg] from the true firing dead centre; pressure : shape (cycles, n) [Pa]
+
+    Returns
+    -------
+    shape (cycles,) [Pa]: by the trapezoidal rule, whose error for a smooth periodic pressure at
+    even angles falls faster than any power of their distance
+    """
+    angle = np.radians(phi)
+    turned = np.radians(period)
+    gaps = np.diff(np.append(angle, angle[0] + turned))
+    weight = 0.5 * (gaps + np.roll(gaps, 1))
+    return pressure @ (weight * shape.travel_1(angle))
+
+
+def _noise(phi: Array, pressure: Array) -> float:
+    """Standard deviation of a row's noise [Pa], from fourth differences of the gas exchange, or of
+    all rows in a two-stroke cycle: their median, which neither valves nor knocking move.
+
+    0 where the rows are too few, or their angles uneven throughout.
+    """
+    steps = np.diff(phi)
+    even = np.isclose(steps, np.median(steps), rtol=1e-3)
+    inside = np.abs(phi) > _GAS_EXCHANGE if np.max(phi) > 300.0 else np.full(phi.shape, True)
+    differences = np.diff(pressure[:64], n=4, axis=1) / _FOURTH
+    whole = even[:-3] & even[1:-2] & even[2:-1] & even[3:] & inside[2:-2]
+    sizes = np.abs(differences[:, whole])
+    return float(_NORMAL * np.median(sizes)) if sizes.size > 20 else 0.0
+
+
+def _closure(pressure: Array) -> Array:
+    """How far each cycle's last row lies from the first of the next one, beyond the step before
+    it; the first of the same cycle where there is no next: shape (cycles,) [Pa]."""
+    following = np.append(pressure[1:, 0], pressure[-1, 0])
+    return following - (2.0 * pressure[:, -1] - pressure[:, -2])
+
+
+def _smoothed(phi: Array, pressure: Array, width: float) -> Array:
+    """Cycles under a sliding cubic of least squares (Savitzky and Golay) over ``width`` degrees.
+
+    Raises
+    ------
+    InputError : angles that are not evenly spaced, or a width of fewer than five rows
+    """
+    step = float(np.median(np.diff(phi)))
+    if not np.allclose(np.diff(phi), step, rtol=1e-3):
+        raise InputError(
+            "smooth needs evenly spaced angles, and the resolution changes within the "
+            "cycle; leave smooth out, or resample the file"
+        )
+    rows = 2 * round(0.5 * width / step) + 1
+    if not 5 <= rows < len(phi):
+        raise InputError(
+            f"smooth must span at least five rows, {4.0 * step:g} degrees here, and less "
+            f"than the cycle; {width:g} degrees came"
+        )
+    from scipy.signal import savgol_filter  # a fifth of a second: only where it is asked for
+
+    return savgol_filter(pressure, rows, 3, axis=1, mode="wrap")

@@ -13,12 +13,12 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import least_squares
 
-from crankmbs.indicated.reference import EXPONENTS
 from crankmbs.indicated.shape import Shape
 from crankmbs.numerics.arrays import Array
 
-__all__ = ["DeadCentre", "fired_dead_centre", "is_fired", "motored_dead_centre", "peak_of"]
+__all__ = ["EXPONENTS", "DeadCentre", "fired_dead_centre", "is_fired", "motored_dead_centre"]
 
+EXPONENTS = (1.28, 1.40)  # of the compression of air and mixture in engines
 _ABOUT = 8.0  # degrees about the peak: a quartic follows a motored one to 0.01 degrees
 _LOSS = (0.2, 1.2)  # degrees: loss angles that engines are taken to have where none is given
 _FIT = 0.02  # degrees: what the quartic may be off
@@ -32,14 +32,16 @@ _MOTORED, _FIRED = 1.06, 1.25  # of the pressures behind and before the peak
 class DeadCentre(NamedTuple):
     """Where the true dead centre lies, from that which the file has: ``low`` to ``high`` [deg].
 
-    how : "motored" or "fired", and what it rests on; peak : angle [deg] of the peak
+    peak : angle [deg] of the peak; motored : whether it rests on that, else on the compression
+    loss_angle [deg] : behind the peak, where it was given
     skew : how far [deg] the middle of the chord at 70 % of the peak lies from the peak
     """
 
     low: float
     high: float
-    how: str
     peak: float
+    motored: bool
+    loss_angle: float | None = None
     skew: float = math.nan
 
     @property
@@ -75,8 +77,7 @@ def peak_of(phi: Array, mean: Array, noise: float) -> tuple[float, float]:
     for _ in range(2):  # the second time about the peak itself
         window = np.abs(phi - middle) <= _ABOUT
         x, y = (phi[window] - middle) / _ABOUT, mean[window]
-        powers = np.vander(x, 5)
-        quartic, *_ = np.linalg.lstsq(powers, y, rcond=None)
+        quartic, variances = np.polyfit(x, y, 4, cov="unscaled")
         slope = np.polyder(quartic)
         turning = np.roots(slope)
         real = turning.real[(np.abs(turning.imag) < 1e-9) & (np.abs(turning.real) <= 1.0)]
@@ -84,7 +85,7 @@ def peak_of(phi: Array, mean: Array, noise: float) -> tuple[float, float]:
         middle += _ABOUT * at
     bend = abs(float(np.polyval(np.polyder(slope), at)))
     gradient = np.array([4.0 * at**3, 3.0 * at**2, 2.0 * at, 1.0, 0.0])
-    spread = gradient @ np.linalg.solve(powers.T @ powers, gradient)
+    spread = gradient @ variances @ gradient
     return middle, _ABOUT * noise * math.sqrt(max(float(spread), 0.0)) / max(bend, 1e-300)
 
 
@@ -99,26 +100,26 @@ def motored_dead_centre(
     at, spread = peak_of(phi, mean, noise)
     off = _FIT + _SIGMAS * spread
     least, most = _LOSS if loss_angle is None else (loss_angle, loss_angle)
-    source = "" if loss_angle is None else f", the loss angle of {loss_angle:g} degrees as given"
-    return DeadCentre(
-        at + least - off, at + most + off, f"motored{source}", at, _skew(phi, mean, at)
-    )
+    skew = _skew(phi, mean, at)
+    return DeadCentre(at + least - off, at + most + off, at, True, loss_angle, skew)
 
 
-def fired_dead_centre(phi: Array, mean: Array, shape: Shape) -> DeadCentre | None:
+def fired_dead_centre(phi: Array, mean: Array, shape: Shape | None) -> DeadCentre | None:
     """The interval of the dead centre in which the compression before the ignition is a polytrope
     of an exponent between 1.28 and 1.40, the pressure known to 0.05 bar.
 
     least squares of ln(p + c) = ln C - n ln V(phi - d) in d and C, from 100 to 30 degrees before;
-    None where the pressure is no absolute one there
+    None where the pressure is no absolute one there, or no compression ratio is known
     """
+    if shape is None or shape.ratio is None:
+        return None
     window = (phi >= _COMPRESSION[0]) & (phi <= _COMPRESSION[1])
     angle, pressure = phi[window], mean[window]
     if np.min(pressure) <= -_OFFSETS[0]:
         return None
     centres = [_shift(angle, pressure + c, shape, n) for n in EXPONENTS for c in _OFFSETS]
     peak = float(phi[np.argmax(mean)])
-    return DeadCentre(min(centres), max(centres), "fired, from its compression", peak)
+    return DeadCentre(min(centres), max(centres), peak, motored=False)
 
 
 def _shift(phi: Array, pressure: Array, shape: Shape, exponent: float) -> float:

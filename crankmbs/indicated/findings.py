@@ -10,6 +10,7 @@ import numpy as np
 from crankmbs.indicated.dead_centre import DeadCentre
 from crankmbs.indicated.shape import Shape
 from crankmbs.indicated.speed import MeasuredSpeed
+from crankmbs.indicated.write import write_table
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.tables import CylinderTable, Table
 
@@ -103,6 +104,4 @@ class Indicated:
         ------
         InputError : a table larger than a scene reads; OutputError : the file cannot be written
         """
-        from crankmbs.indicated.write import write_table  # it knows this class
-
         return write_table(self, Path(path))

@@ -23,7 +23,7 @@ _APART = 4.0  # degrees: how well a flank tells a dead centre
 _GRID = sorted({*range(0, 720, 30), *range(0, 720, 72), *range(0, 720, 45)})
 
 
-def firing_angle(angle: Array, mean: Array, period: float, where: str) -> float:
+def firing_angle(angle: Array, mean: Array, period: float) -> float:
     """The file's angle [deg] of the firing dead centre of the cylinder that counts as first: the
     multiple of 360 degrees next to the peak.
 
@@ -35,15 +35,15 @@ def firing_angle(angle: Array, mean: Array, period: float, where: str) -> float:
     nominal = 360.0 * round((peak - 5.0) / 360.0)
     if not -_BEFORE < peak - nominal < _BEHIND:
         raise UndecidedError(
-            f"{where}: the peak of the pressure lies at {peak:.4g} degrees, not near a multiple of "
+            f"the peak of the pressure lies at {peak:.4g} degrees, not near a multiple of "
             "360: the angles do not count from a dead centre of this cylinder",
             ('firing_tdc="... deg", the file\'s angle of the firing dead centre',),
         )
-    _check_alone(angle, mean, period, nominal, where)
+    _check_alone(angle, mean, period, nominal)
     return nominal
 
 
-def peak_or_given(record: Record, options: Options, where: str) -> float:
+def peak_or_given(record: Record, options: Options) -> float:
     """The angle [deg] of the firing dead centre of a record over time: the one given modulo 360
     that is next to the peak of the first cylinder, else the peak, next to which it lies.
 
@@ -54,43 +54,39 @@ def peak_or_given(record: Record, options: Options, where: str) -> float:
     sign = -1.0 if options.invert else 1.0
     mean = sign * np.mean(record.channels[0].values, axis=0)
     peak = float(record.angle[np.argmax(mean)])
-    _check_alone(record.angle, mean, record.period, peak, where)
+    _check_alone(record.angle, mean, record.period, peak)
     if options.firing_tdc is None:
         return peak
     centre = float(np.degrees(options.firing_tdc))
     before = _off_by(peak - centre - _USUAL, 360.0) + _USUAL
     if not -_BEFORE < before < _BEHIND:
         raise InputError(
-            f"{where}: the peak of the pressure lies {peak % 360.0:.4g} degrees after the first "
+            f"the peak of the pressure lies {peak % 360.0:.4g} degrees after the first "
             f"edge of a revolution, {before:.4g} degrees from the dead centre given, {centre:g}; "
             "correct firing_tdc, or leave it out"
         )
     return (peak - before) % record.period
 
 
-def _check_alone(angle: Array, mean: Array, period: float, at: float, where: str) -> None:
+def _check_alone(angle: Array, mean: Array, period: float, at: float) -> None:
     """Refuse a four-stroke cycle with a second peak 360 degrees behind."""
     if period < 700.0:
         return
     other = np.interp(at + 360.0, angle, mean, period=period)
     if other - np.min(mean) > 0.5 * (np.max(mean) - np.min(mean)):
         raise UndecidedError(
-            f"{where}: the pressure is as high at {at:.4g} degrees as 360 degrees later",
+            f"the pressure is as high at {at:.4g} degrees as 360 degrees later",
             ("stroke=2", "stroke=4 with firing_tdc"),
         )
 
 
 def flank(angle: Array, mean: Array, period: float, level: float) -> float:
     """The angle [deg] at which the pressure, on its way to the peak, last rises through a level."""
-    low, peak = float(np.min(mean)), int(np.argmax(mean))
-    n = len(mean)
-    k = peak
-    while mean[k % n] > low + level and peak - k < n:
-        k -= 1
-    a, b = mean[k % n] - low, mean[(k + 1) % n] - low
-    first = angle[k % n] + period * (k // n)
-    second = angle[(k + 1) % n] + period * ((k + 1) // n)
-    return float(first + (second - first) * (level - a) / (b - a))
+    first = int(np.argmax(mean)) + 1
+    at = np.concatenate([angle[first:] - period, angle[:first]])  # up to the peak
+    above = np.concatenate([mean[first:], mean[:first]]) - np.min(mean) - level
+    k = np.flatnonzero(above <= 0.0)[-1]
+    return float(at[k] - (at[k + 1] - at[k]) * above[k] / (above[k + 1] - above[k]))
 
 
 def lags(angle: Array, means: Sequence[Array], period: float) -> list[float]:
@@ -100,9 +96,7 @@ def lags(angle: Array, means: Sequence[Array], period: float) -> list[float]:
     return [(each - at[0]) % period for each in at]
 
 
-def places(
-    measured: Sequence[float], period: float, known: Sequence[float] | None, where: str
-) -> list[float]:
+def places(measured: Sequence[float], period: float, known: Sequence[float] | None) -> list[float]:
     """The lags [deg] that the measured ones stand for: that of the scene's layout where it is near,
     else the nearest even one; 0 for all where each cylinder runs over its cycle angle.
 
@@ -123,7 +117,7 @@ def places(
         nominal = min((g for g in _GRID if g < period), key=lambda g: _off(each, g, period))
         if _off(each, nominal, period) > _APART:
             raise UndecidedError(
-                f"{where}: the cylinder of pressure column {number} fires {each:.4g} degrees "
+                f"the cylinder of pressure column {number} fires {each:.4g} degrees "
                 "after the first one, which no even firing has",
                 (
                     "scene=..., whose layout says when it fires",

@@ -67,17 +67,23 @@ def _unit(value: str) -> str:
     return unit
 
 
-def _cycles(value: Any) -> str:
+def _cycles(value: Any) -> tuple[int, int | None] | None:
+    """First and last cycle, None for the last there is; None for the mean."""
     text = str(value) if isinstance(value, int) and not isinstance(value, bool) else value
     if not isinstance(text, str) or _CYCLES.fullmatch(text) is None:
         raise InputError(
             f'must be "mean", "all", the number of a cycle or a range such as "1-50"; '
             f"{shown(value)} came"
         )
-    first, _, last = text.partition("-")
-    if last and int(last) < int(first):
+    if text == "mean":
+        return None
+    if text == "all":
+        return 1, None
+    begin, _, end = text.partition("-")
+    first, last = int(begin), int(end or begin)
+    if last < first:
         raise InputError(f"a range of cycles goes up; {shown(value)} came")
-    return text
+    return first, last
 
 
 @part
@@ -111,7 +117,7 @@ class Options:
     delay: Annotated[Float, Ge(-0.1), Le(0.1), si("time")] | None = None
     invert: Annotated[bool, Strict()] = False
     smooth: Annotated[Float, Gt(0), Le(0.5), si("angle")] | None = None
-    cycles: Annotated[str, BeforeValidator(_cycles)] = "mean"
+    cycles: Annotated[tuple[int, int | None] | None, BeforeValidator(_cycles)] = None
 
     def sheet(self, file: str | Path, least: int = 2) -> Sheet:
         """The rows of a file that have at least so many numbers."""

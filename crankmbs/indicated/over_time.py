@@ -19,7 +19,7 @@ from crankmbs.numerics.arrays import Array
 from crankmbs.scene.headings import PRESSURE_UNITS, TIME_UNITS, Heading, is_time, pick
 from crankmbs.scene.units import BAR
 
-__all__ = ["clock", "edges_in", "record_over_time", "time_column", "turned"]
+__all__ = ["clock", "most_edges", "record_over_time", "time_column", "turned"]
 
 _JUMP = 1.5  # times the usual step: a clock that jumps
 _STEPS = (0.05, 0.1, 0.2, 0.25, 0.5, 1.0, 2.0)  # degrees
@@ -69,42 +69,54 @@ def record_over_time(
     InputError : a clock that jumps, a wheel without a gap, teeth missing or doubled, less than two
         cycles, a pressure that never compresses
     """
-    where = f"file {sheet.name}"
-    names = [each.name or f"column {k + 1}" for k, each in enumerate(headings)]
-    headings = [each._replace(name=name) for each, name in zip(headings, names, strict=True)]
-    columns = _columns(sheet, headings, at, options, where)
-    _ask(headings, columns, options, where, geometry=geometry)
+    headings = [h._replace(name=h.name or f"column {k}") for k, h in enumerate(headings, start=1)]
+    columns = _columns(sheet, headings, at, options)
+    _ask(headings, columns, options, geometry=geometry)
     assert options.wheel is not None
     time = clock(sheet, headings[at], at)
-    signals = {k: sheet.values[:, k] for k in (*columns.pressures, columns.wheel)}
-    _check_whole(signals, names, sheet)
+    for k in (*columns.pressures, columns.wheel):
+        missing = np.flatnonzero(np.isnan(sheet.values[:, k]))
+        if len(missing):
+            raise InputError(
+                f"{sheet.line(missing[0])}: column {shown(headings[k].name)} has no number; "
+                "complete the row, or cut the record there"
+            )
     marks = None if columns.mark is None else sheet.values[:, columns.mark]
     strokes = options.stroke or stroke or 4
-    rotation = turned(time, signals[columns.wheel], marks, options.wheel, strokes, where)
+    rotation = turned(time, sheet.values[:, columns.wheel], marks, options.wheel, strokes)
     delay = options.delay or 0.0
     begin, count, grid = _grid(rotation, time, delay)
     instants = rotation.time_at(begin + np.arange(count * len(grid)) * (grid[1] - grid[0])) + delay
     channels = []
     for number, k in enumerate(columns.pressures, start=1):
-        pascals = _pressure(signals[k], headings[k], options)
+        name, _, reference = headings[k]
+        pascals = _pressure(sheet.values[:, k], headings[k], options)
         values = CubicSpline(time, pascals)(instants).reshape(count, len(grid))
-        _check_compression(values, names[k], instants, where)
-        reference = headings[k].reference
-        channels.append(Channel(names[k], "cycle", number, values, reference))
-    remarks = _words(rotation, names, columns, options, strokes if stroke is None else None)
+        _check_compression(values, name, instants)
+        channels.append(Channel(name, "cycle", number, values, reference))
+    remarks = [
+        f"the record is over time: {shown(headings[columns.wheel].name)} is the wheel, angles "
+        f"count from its first {rotation.wheel.edge} edge "
+        + ("after the gap" if columns.mark is None else "at the index"),
+        *rotation.words(),
+    ]
+    if stroke is None and options.stroke is None:
+        remarks.append(
+            f"read as cycles of {rotation.period:g} degrees; stroke=2 is for a two-stroke engine"
+        )
+    if delay:
+        remarks.append(f"the sensor's delay, {1e3 * delay:g} ms, is taken off its times")
     return Record(grid, strokes, tuple(channels), True, remarks, rotation)
 
 
-def turned(
-    time: Array, signal: Array, marks: Array | None, wheel: Wheel, stroke: int, where: str
-) -> Rotation:
+def turned(time: Array, signal: Array, marks: Array | None, wheel: Wheel, stroke: int) -> Rotation:
     """The rotation that a wheel's signal shows; marks : the signal of an encoder's index."""
     at = edges(time, signal, falling=wheel.falling)
     if marks is None:
-        first = first_edges(at, wheel, where)
+        first = first_edges(at, wheel)
     else:
-        first = marked_edges(at, edges(time, marks, falling=wheel.falling), wheel, where)
-    return rotation_of(at, first, wheel, stroke, where)
+        first = marked_edges(at, edges(time, marks, falling=wheel.falling), wheel)
+    return rotation_of(at, first, wheel, stroke)
 
 
 def clock(sheet: Sheet, heading: Heading, at: int) -> Array:
@@ -121,45 +133,47 @@ def clock(sheet: Sheet, heading: Heading, at: int) -> Array:
     if len(bad):
         k = int(bad[0])
         raise InputError(
-            f"file {sheet.name}, line {sheet.first + k + 1}: the clock goes from {time[k]:.9g} to "
+            f"{sheet.line(k + 1)}: the clock goes from {time[k]:.9g} to "
             f"{time[k + 1]:.9g} s, and its steps are {usual:.4g} s; export the time with more "
             "digits, or cut the record there"
         )
-    return np.asarray(time)
+    return time
 
 
-def edges_in(signal: Array) -> int:
-    """How many rising edges a column has, missing cells left out."""
-    present = signal[~np.isnan(signal)]
-    return len(edges(np.arange(1.0 * len(present)), present)) if len(present) else 0
+def most_edges(sheet: Sheet, columns: Sequence[int]) -> int:
+    """Which of some columns has the most rising edges, missing cells left out."""
+
+    def count(column: int) -> int:
+        signal = sheet.values[:, column]
+        present = signal[~np.isnan(signal)]
+        return len(edges(np.arange(1.0 * len(present)), present)) if len(present) else 0
+
+    return max(columns, key=count)
 
 
-def _columns(
-    sheet: Sheet, headings: Sequence[Heading], at: int, options: Options, where: str
-) -> _Columns:
+def _columns(sheet: Sheet, headings: Sequence[Heading], at: int, options: Options) -> _Columns:
     """Which columns are pressures, the wheel and the index: by their names, the wheel by its many
     edges."""
-    index = None if options.index is None else pick(headings, options.index, where)[0]
+    index = None if options.index is None else pick(headings, options.index, "index")[0]
     rest = [k for k in range(len(headings)) if k not in (at, index)]
     if options.columns is not None:
-        named = [k for k in pick(headings, options.columns, where) if k in rest]
+        named = [k for k in pick(headings, options.columns, "columns") if k in rest]
     else:
         named = [k for k in rest if is_pressure(headings[k], ("", *_VOLTS))]
     others = [k for k in rest if k not in named]
     if not others:
         listed = ", ".join(shown(heading.name) for heading in headings)
         raise InputError(
-            f"{where}: the record is over time, and no column is left for the signal of a "
+            f"the record is over time, and no column is left for the signal of a "
             f"wheel; the columns are {listed}; record the wheel beside the pressure, or export the "
             "pressures over the crank angle"
         )
-    counts = [edges_in(sheet.values[:, k]) for k in others]
-    wheel = others[int(np.argmax(counts))]
+    wheel = most_edges(sheet, others)
     pressures = named or [k for k in others if k != wheel]
     if not pressures or (not named and len(pressures) > 1):
         ways = [f'columns="{headings[k].name}"' for k in others if k != wheel]
         raise UndecidedError(
-            f"{where}: column {shown(headings[wheel].name)} has the edges of a wheel, and which "
+            f"column {shown(headings[wheel].name)} has the edges of a wheel, and which "
             "of the others are pressures is not said",
             tuple(ways[:3]) or ("a record with a pressure",),
         )
@@ -170,7 +184,6 @@ def _ask(
     headings: Sequence[Heading],
     columns: _Columns,
     options: Options,
-    where: str,
     *,
     geometry: bool,
 ) -> None:
@@ -202,19 +215,9 @@ def _ask(
         )
     *most, last = needs
     raise UndecidedError(
-        f"{where}: the record is over time, and some of what it needs is not said",
+        "the record is over time, and some of what it needs is not said",
         ("; ".join([*most, f"and {last}"]) if most else last,),
     )
-
-
-def _check_whole(signals: dict[int, Array], names: Sequence[str], sheet: Sheet) -> None:
-    for k, values in signals.items():
-        missing = np.flatnonzero(np.isnan(values))
-        if len(missing):
-            raise InputError(
-                f"file {sheet.name}, line {sheet.first + missing[0]}: column {shown(names[k])} has "
-                "no number; complete the row, or cut the record there"
-            )
 
 
 def _grid(rotation: Rotation, time: Array, delay: float) -> tuple[float, int, Array]:
@@ -242,12 +245,12 @@ def _pressure(signal: Array, heading: Heading, options: Options) -> Array:
     return signal * PRESSURE_UNITS[options.unit]
 
 
-def _check_compression(values: Array, name: str, instants: Array, where: str) -> None:
+def _check_compression(values: Array, name: str, instants: Array) -> None:
     reach = np.ptp(values, axis=1)
     usual = float(np.median(reach))
     if usual < _FLAT:
         raise InputError(
-            f"{where}: the pressure of column {shown(name)} goes from {np.min(values) / BAR:.3g} "
+            f"the pressure of column {shown(name)} goes from {np.min(values) / BAR:.3g} "
             f"to {np.max(values) / BAR:.3g} bar and never compresses; check sensor and unit, or "
             "name another column by columns"
         )
@@ -255,29 +258,7 @@ def _check_compression(values: Array, name: str, instants: Array, where: str) ->
     if len(weak):
         begin = instants.reshape(values.shape)[weak[0], 0]
         raise InputError(
-            f"{where}: in the cycle from {begin:.6g} s on the pressure of column {shown(name)} "
+            f"in the cycle from {begin:.6g} s on the pressure of column {shown(name)} "
             f"never compresses: it rises by {reach[weak[0]] / BAR:.3g} bar, in the others by "
             f"{usual / BAR:.3g}; cut the record before or after that"
         )
-
-
-def _words(
-    rotation: Rotation,
-    names: Sequence[str],
-    columns: _Columns,
-    options: Options,
-    assumed: int | None,
-) -> list[str]:
-    sentences = [
-        f"the record is over time: {shown(names[columns.wheel])} is the wheel, angles "
-        f"count from its first {rotation.wheel.edge} edge "
-        + ("after the gap" if columns.mark is None else "at the index"),
-        *rotation.words(),
-    ]
-    if assumed is not None and options.stroke is None:
-        sentences.append(
-            f"read as cycles of {rotation.period:g} degrees; stroke=2 is for a two-stroke engine"
-        )
-    if options.delay:
-        sentences.append(f"the sensor's delay, {1e3 * options.delay:g} ms, is taken off its times")
-    return sentences

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -20,8 +19,8 @@ from crankmbs.indicated.gaps import without_gaps
 from crankmbs.indicated.options import Options
 from crankmbs.indicated.over_time import record_over_time, time_column
 from crankmbs.indicated.record import Channel, Record, record_of
-from crankmbs.indicated.referencing import Raw, decide, refer
-from crankmbs.indicated.report import said_of
+from crankmbs.indicated.referencing import Cycles, decide, refer
+from crankmbs.indicated.report import sentences_of
 from crankmbs.indicated.shape import Shape, differences, of_header, shape_of
 from crankmbs.indicated.speed import MeasuredSpeed, speed_of
 from crankmbs.indicated.tabulate import table_of
@@ -80,85 +79,89 @@ def read_pressure(file: str | Path, scene: Scene | None = None, **options: Any) 
     """
     settings = Options(**options)
     sheet = settings.sheet(file)
-    where = f"file {sheet.name}"
     known = scene.gas.stroke if scene is not None and scene.gas is not None else None
     header = of_header(sheet.above, sheet.dialect.decimal)
     shape = shape_of(scene, header, settings.compression_ratio)
-    record = _record(sheet, settings, known, shape)
-    sentences = [_read_as(sheet, record), *record.said]
-    if header:
-        sentences += [_header_words(header)]
-    if scene is not None:
-        sentences += differences(header, scene)
-    source = _Source(record, settings, scene, shape, where)
-    first = None if record.rotation is None else peak_or_given(record, settings, where)
-    cylinders, firsts, absolute, remarks = _cylinders(source, first)
-    if first is not None and settings.firing_tdc is None:
-        cylinders, firsts, absolute, remarks = _by_pressure(source, first)
-    sentences += remarks
-    aligned = len(cylinders) > 1 and len({each.firing for each in cylinders}) == 1
-    table, words = table_of(record, cylinders, firsts, shape, settings.cycles, where)
+    with sheet.errors():
+        record = _record(sheet, settings, known, shape)
+        remarks = [_read_as(sheet, record), *record.remarks]
+        if header:
+            remarks.append(_header_words(header))
+        if scene is not None:
+            remarks += differences(header, scene)
+        first = None if record.rotation is None else peak_or_given(record, settings)
+        if first is None or settings.firing_tdc is not None:
+            found = _cylinders(record, settings, scene, shape, first)
+        else:
+            found = _by_pressure(record, settings, scene, shape, first)
+        cylinders = found.cylinders
+        table, words = table_of(record, cylinders, found.firsts, shape, settings.cycles)
     speed = _speed(record, cylinders[0].firing, shape, sheet.name)
+    remarks += found.remarks
     for cylinder in cylinders:
-        sentences += said_of(cylinder, shape, absolute)
+        remarks += sentences_of(cylinder, shape, found.absolute)
+    if shape is None:
+        remarks.append(
+            "no stroke and rod length are known: without a scene no imep and no volumes are found"
+        )
     return Indicated(
         source=sheet.name,
         stroke=record.stroke,
-        absolute=absolute,
-        aligned=aligned,
+        absolute=found.absolute,
+        aligned=len(cylinders) > 1 and len({each.firing for each in cylinders}) == 1,
         cycles="sequence" if table.x[-1] - table.x[0] > np.radians(record.period) else "mean",
-        cylinders=tuple(cylinders),
+        cylinders=cylinders,
         shape=shape,
         table=table,
-        sentences=(*sentences, *_no_geometry(shape), *(speed.sentences if speed else ()), words),
+        sentences=(*remarks, *(speed.sentences if speed else ()), words),
         speed=speed,
     )
 
 
-class _Source(NamedTuple):
-    """What a file's cylinders are made of."""
+class _Found(NamedTuple):
+    """The cylinders, the row at which the cycles of each begin, as in `Cycles`; whether their
+    pressures are absolute; what was done."""
 
-    record: Record
-    options: Options
-    scene: Scene | None
-    shape: Shape | None
-    where: str
+    cylinders: tuple[CylinderPressure, ...]
+    firsts: list[int]
+    absolute: bool
+    remarks: list[str]
 
 
 def _record(sheet: Sheet, options: Options, stroke: int | None, shape: Shape | None) -> Record:
     headings = headings_of(sheet.above, sheet.values.shape[1])
     at = None if any(map(is_angle, headings)) else time_column(headings, sheet, options)
     if at is None:
-        return record_of(sheet, options, stroke)
+        return record_of(sheet, headings, options, stroke)
     geometry = shape is not None and shape.ratio is not None
     return record_over_time(sheet, headings, at, options, stroke, geometry=geometry)
 
 
 def _cylinders(
-    source: _Source, first: float | None
-) -> tuple[list[CylinderPressure], list[int], bool, list[str]]:
-    """The cylinders, the row at which the cycles of each begin, whether they are absolute, and what
-    was done.
+    record: Record,
+    options: Options,
+    scene: Scene | None,
+    shape: Shape | None,
+    first: float | None,
+) -> _Found:
+    """The cylinders by the first one's firing dead centre.
 
-    first : the file's angle [deg] of the first cylinder's firing dead centre; None: as the options
-        or the peak have it
+    first : the file's angle [deg] of it; None: as the options or the peak have it
     """
-    record, options, scene, shape, where = source
-    raws, firsts, measured, remarks = _cut(record, options, scene, where, first)
-    reference, why = decide([raw for raw, _ in raws], options, shape, record.period, where)
+    cut, remarks = _cut(record, options, scene, first)
+    reference, why = decide(cut, options, shape)
     cylinders, absolute = [], True
-    for (raw, firing), lag in zip(raws, measured, strict=True):
-        added, absolute, words = refer(raw, reference, shape, record.period, where)
+    for cycles in cut:
+        added, absolute, words = refer(cycles, reference, shape)
         look = "warning: " if "though" in why else ""
-        remarks.append(f"{look}cylinder {raw.number}: {words} ({why})")
-        cylinder = cylinder_of(raw, added, shape, record.period, options, absolute)
-        cylinders.append(replace(cylinder, firing=firing, lag=lag))
-    return cylinders, firsts, absolute, remarks
+        remarks.append(f"{look}cylinder {cycles.channel.cylinder}: {words} ({why})")
+        cylinders.append(cylinder_of(cycles, added, shape, options, absolute))
+    return _Found(tuple(cylinders), [each.first for each in cut], absolute, remarks)
 
 
 def _by_pressure(
-    source: _Source, first: float
-) -> tuple[list[CylinderPressure], list[int], bool, list[str]]:
+    record: Record, options: Options, scene: Scene | None, shape: Shape | None, first: float
+) -> _Found:
     """The same with the dead centre where the pressure has it, from a guess [deg].
 
     Raises
@@ -166,22 +169,22 @@ def _by_pressure(
     UndecidedError : the pressure does not show it
     """
     for _ in range(_ROUNDS):
-        cylinders, firsts, absolute, remarks = _cylinders(source, first)
-        centre = _centre(cylinders[0], source.shape if absolute else None)
+        found = _cylinders(record, options, scene, shape, first)
+        centre = _centre(found.cylinders[0], shape if found.absolute else None)
         if centre is None or not _PEAKS[0] < centre.peak < _PEAKS[1]:
             break
         if abs(centre.middle) < _SETTLED:
-            remarks.append(
+            found.remarks.append(
                 f"the dead centre is taken where the pressure shows it, {first % 360.0:.2f} +- "
                 f"{centre.half:.2f} degrees after the first edge of a revolution, by "
-                f"{'its motored peak' if centre.how.startswith('motored') else 'its compression'};"
+                f"{'its motored peak' if centre.motored else 'its compression'};"
                 " firing_tdc says where it is known"
             )
-            return cylinders, firsts, absolute, remarks
-        first = (first + centre.middle) % source.record.period
+            return found
+        first = (first + centre.middle) % record.period
     raise UndecidedError(
-        f"{source.where}: where the dead centre lies is not said, and the pressure does not show "
-        "it: a fired cycle has it in its compression alone, which must be a polytrope",
+        "where the dead centre lies is not said, and the pressure does not show it: a fired cycle "
+        "has it in its compression alone, which must be a polytrope",
         ('firing_tdc="25 deg"', "a scene, compression_ratio and another reference"),
     )
 
@@ -191,11 +194,8 @@ def _centre(cylinder: CylinderPressure, shape: Shape | None) -> DeadCentre | Non
     the compression."""
     centre = cylinder.dead_centre
     alike = np.std(cylinder.peaks) < _ALIKE * np.mean(cylinder.peaks)
-    motored = centre is not None and centre.how.startswith("motored")
-    if centre is not None and motored and alike and abs(centre.skew) < _SYMMETRIC:
+    if centre is not None and centre.motored and alike and abs(centre.skew) < _SYMMETRIC:
         return centre
-    if shape is None or shape.ratio is None:
-        return None
     return fired_dead_centre(cylinder.angle, cylinder.mean, shape)
 
 
@@ -230,59 +230,56 @@ def _header_words(header: dict[str, float]) -> str:
     return f"the header gives {', '.join(parts)}"
 
 
-def _no_geometry(shape: Shape | None) -> list[str]:
-    if shape is not None:
-        return []
-    return ["no stroke and rod length are known: without a scene no imep and no volumes are found"]
-
-
 def _cut(
-    record: Record, options: Options, scene: Scene | None, where: str, first: float | None
-) -> tuple[list[tuple[Raw, float]], list[int], list[float], list[str]]:
-    """Each cylinder's cycles from gas exchange to gas exchange, with its firing angle; the row at
-    which each begins; measured lags; what was done."""
-    channels, remarks = _pressures(record, where)
+    record: Record, options: Options, scene: Scene | None, first: float | None
+) -> tuple[list[Cycles], list[str]]:
+    """Each cylinder's cycles from gas exchange to gas exchange; what was done."""
+    channels, remarks = _pressures(record)
     sign = -1.0 if options.invert else 1.0
     filled, joined = [], []
     for channel in channels:
-        values, torn, words = without_gaps(record, channel, where)
+        values, torn, words = without_gaps(record, channel)
         filled.append(sign * values)
         joined.append(record.consecutive and not torn)
         remarks += words
     means = [np.mean(values, axis=0) for values in filled]
     for channel, mean in zip(channels, means, strict=True):
-        _check_sign(channel, mean, where)
+        _check_sign(channel, mean)
     if first is None:
         first = (
-            firing_angle(record.angle, means[0], record.period, where)
+            firing_angle(record.angle, means[0], record.period)
             if options.firing_tdc is None
             else float(np.degrees(options.firing_tdc))
         )
     measured = lags(record.angle, means, record.period)
     known = _of_layout(channels, scene, record.period)
-    nominal = places(measured, record.period, known, where)
+    nominal = places(measured, record.period, known)
     remarks += _lag_words(channels, measured, nominal, known)
-    raws, firsts = [], []
-    for channel, values, consecutive, lag in zip(channels, filled, joined, nominal, strict=True):
-        firing = first + lag
-        start, phi, cycles = cut_cycles(record.angle, values, record.period, firing, consecutive)
+    cut = []
+    for k, (channel, values) in enumerate(zip(channels, filled, strict=True)):
+        firing = first + nominal[k]
+        start, phi, cycles = cut_cycles(record.angle, values, record.period, firing, joined[k])
         if len(cycles) < len(values):
             remarks.append(
                 f"cylinder {channel.cylinder}: cut during the gas exchange, {len(values)} recorded "
                 f"cycles give {len(cycles)} whole ones"
             )
-        intake = _intake(record, channel.cylinder, start)
-        raws.append(
-            (
-                Raw(channel.cylinder, channel.name, phi, cycles, channel.reference, intake),
-                (firing + 180.0) % record.period - 180.0 if firing != first else firing,
+        cut.append(
+            Cycles(
+                channel,
+                phi,
+                cycles,
+                record.period,
+                (firing + 180.0) % record.period - 180.0 if nominal[k] else firing,
+                measured[k],
+                _intake(record, channel.cylinder, start),
+                start if len(cycles) < len(values) else -start,
             )
         )
-        firsts.append(start if len(cycles) < len(values) or start == 0 else -start)
-    return raws, firsts, measured, remarks
+    return cut, remarks
 
 
-def _pressures(record: Record, where: str) -> tuple[list[Channel], list[str]]:
+def _pressures(record: Record) -> tuple[list[Channel], list[str]]:
     """The channels of the cylinders, and what the others are."""
     of_kind: dict[str, list[Channel]] = {}
     for channel in record.channels:
@@ -296,7 +293,7 @@ def _pressures(record: Record, where: str) -> tuple[list[Channel], list[str]]:
     if not chosen:
         listed = ", ".join(each.name for each in record.channels)
         raise InputError(
-            f"{where}: no column is the pressure of a cylinder; {listed} came; name the column, "
+            f"no column is the pressure of a cylinder; {listed} came; name the column, "
             'such as columns="PCYL1"'
         )
     if "cycle" not in of_kind:
@@ -304,11 +301,11 @@ def _pressures(record: Record, where: str) -> tuple[list[Channel], list[str]]:
     return sorted(chosen, key=lambda channel: channel.cylinder), remarks
 
 
-def _check_sign(channel: Channel, mean: Array, where: str) -> None:
+def _check_sign(channel: Channel, mean: Array) -> None:
     middle = float(np.median(mean))
     if middle - np.min(mean) > 1.5 * (np.max(mean) - middle):
         raise InputError(
-            f"{where}: {channel.name} is upside down: its largest excursion is downwards, to "
+            f"{channel.name} is upside down: its largest excursion is downwards, to "
             f"{np.min(mean) / BAR:.4g} bar; give invert=True, or the names of the pressures alone, "
             'such as columns="PCYL1..4"'
         )

@@ -1,4 +1,12 @@
-"""Which reference a signal has, by word or by its compression, and the signal put upon it."""
+"""What a pressure is measured from, by word or by its compression, and the signal put upon it.
+
+A transducer of charge gives changes of pressure. Its zero comes from the inlet, where near the
+bottom dead centre the cylinder has the pressure of the manifold, or from the compression, which is
+nearly a polytrope: p + c = C V^-n is linear in c and C for a given n. Both are described by
+A. L. Randolph, Methods of Processing Cylinder-Pressure Transducer Signals to Maximize Data Accuracy
+(SAE 900170, 1990), and by M. F. J. Brunt and C. R. Pond, Evaluation of Techniques for Absolute
+Cylinder Pressure Correction (SAE 970036, 1997).
+"""
 
 from __future__ import annotations
 
@@ -6,36 +14,53 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from crankmbs.errors import InputError, UndecidedError
+from crankmbs.indicated.dead_centre import EXPONENTS
 from crankmbs.indicated.options import REFERENCES, Options, Reference
-from crankmbs.indicated.reference import at_inlet, by_inlet, by_polytrope, offset_range
+from crankmbs.indicated.record import Channel
 from crankmbs.indicated.shape import Shape
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.units import BAR
 
-__all__ = ["Raw", "decide", "refer"]
+__all__ = ["Cycles", "decide", "refer"]
 
 _NEAR = 0.15e5  # Pa: so near 0, or the ambient, an offset has to lie
 _AMBIENT = 1.0e5  # Pa, near enough at any site: `_NEAR` is wider than weather and height
+_COMPRESSION = (-100.0, -40.0)  # degrees from the firing dead centre
+_INLET = 10.0  # degrees about the bottom dead centre
+_MEAN = "its mean within 10 degrees of the bottom dead centre"
 
 
-class Raw(NamedTuple):
-    """One cylinder's cycles before they are referenced: phi [deg], shape (cycles, n) [Pa].
+class Cycles(NamedTuple):
+    """One cylinder's cycles from gas exchange to gas exchange, before they are referenced.
 
-    said : what the file says of the reference; intake : mean cycle [Pa] of the intake, over phi
+    phi : shape (n,) [deg] from the firing dead centre; pressure : shape (cycles, n) [Pa]
+    period [deg]; firing : the file's angle [deg] of the firing dead centre; lag [deg] : measured,
+        behind the first cylinder; intake : mean cycle [Pa] of the intake, over phi
+    first : how many rows behind the file's first they begin; negative: so many rows were moved
+        behind the others of the same cycle
     """
 
-    number: int
-    name: str
+    channel: Channel
     phi: Array
     pressure: Array
-    said: str
+    period: float
+    firing: float
+    lag: float
     intake: Array | None
+    first: int
+
+    @property
+    def at_inlet(self) -> NDArray[np.bool_]:
+        """The rows near the bottom dead centre before the compression."""
+        before = (self.phi < 0.0) | (self.period < 400.0)
+        return (np.abs(np.mod(self.phi, 360.0) - 180.0) <= _INLET) & before
 
 
 def decide(
-    raws: Sequence[Raw], options: Options, shape: Shape | None, period: float, where: str
+    cylinders: Sequence[Cycles], options: Options, shape: Shape | None
 ) -> tuple[Reference, str]:
     """The reference of the signals, and why: as given, as the file says, as the compression shows.
 
@@ -43,93 +68,102 @@ def decide(
     ------
     UndecidedError : nothing of these
     """
-    units = {raw.said for raw in raws}
+    units = {each.channel.reference for each in cylinders}
     if options.reference is not None:
         against = {"absolute": "gauge", "gauge": "absolute"}.get(options.reference.kind)
         though = f", though the unit says {against}" if against in units else ""
         return options.reference, f"as given{though}"
     if len(units) == 1 and "" not in units:
         return Reference(units.pop()), "as the unit says"
-    bars = ", ".join(f"{np.mean(_low(raw, period)) / BAR:.3g}" for raw in raws)
-    levels = f"the gas exchange lies at {bars} bar"
+    means = [each.pressure.mean(axis=0) for each in cylinders]
+    lows = [np.mean(mean[each.at_inlet]) for mean, each in zip(means, cylinders, strict=True)]
+    levels = f"the gas exchange lies at {', '.join(f'{low / BAR:.3g}' for low in lows)} bar"
     if shape is not None and shape.ratio is not None:
-        ranges = [offset_range(raw.phi, raw.pressure.mean(axis=0), shape) for raw in raws]
-        low, high = min(r[0] for r in ranges), max(r[1] for r in ranges)
-        least, most = max(r[0] for r in ranges), min(r[1] for r in ranges)
-        interval = f"{low / BAR:.2f} to {high / BAR:.2f}"
-        zero = all(r[0] - _NEAR <= 0.0 <= r[1] + _NEAR for r in ranges)
-        ambient = all(r[0] - _NEAR <= _AMBIENT <= r[1] + _NEAR for r in ranges)
+        ends = [
+            sorted(float(by_polytrope(each.phi, mean[None], shape, n)[0]) for n in EXPONENTS)
+            for mean, each in zip(means, cylinders, strict=True)
+        ]
+        low, high = min(r[0] for r in ends), max(r[1] for r in ends)
+        least, most = max(r[0] for r in ends), min(r[1] for r in ends)
+        asked = f"a polytrope of 1.28 to 1.40 asks for {low / BAR:.2f} to {high / BAR:.2f} bar more"
+        zero, ambient = (
+            all(r[0] - _NEAR <= offset <= r[1] + _NEAR for r in ends) for offset in (0.0, _AMBIENT)
+        )
         if zero != ambient and high - low < 2.0 * _AMBIENT and least <= most + 2.0 * _NEAR:
-            kind = "absolute" if zero else "gauge"
-            return Reference(kind), (
-                f"as the compression shows: a polytrope of 1.28 to 1.40 asks for {interval} bar "
-                "more"
-            )
-        levels += f", and a polytrope of 1.28 to 1.40 asks for {interval} bar more"
+            return Reference("absolute" if zero else "gauge"), f"as the compression shows: {asked}"
+        levels += f", and {asked}"
     raise UndecidedError(
-        f"{where}: the file does not say what its pressures are measured from; {levels}", REFERENCES
+        f"the file does not say what its pressures are measured from; {levels}", REFERENCES
     )
 
 
-def refer(
-    raw: Raw, reference: Reference, shape: Shape | None, period: float, where: str
-) -> tuple[Array, bool, str]:
+def refer(cycles: Cycles, reference: Reference, shape: Shape | None) -> tuple[Array, bool, str]:
     """What is added to each cycle, shape (cycles,) [Pa]; whether the sum is absolute; in words.
 
     Raises
     ------
     InputError : a reference that needs what is not there
     """
-    cycles = len(raw.pressure)
     kind, value = reference
+    nothing = np.zeros(len(cycles.pressure))
     if kind == "absolute":
-        return np.zeros(cycles), True, "the pressures are absolute and stay as they are"
-    if kind == "gauge":
-        if value is None:
-            return np.zeros(cycles), False, "the pressures are gauge and stay so"
-        return (
-            np.full(cycles, value),
-            True,
-            f"the pressures are gauge; {value / BAR:g} bar is added",
-        )
-    if kind == "polytrope":
+        return nothing, True, "the pressures are absolute and stay as they are"
+    if kind == "gauge" and value is None:
+        return nothing, False, "the pressures are gauge and stay so"
+    if kind == "gauge" and value is not None:
+        return nothing + value, True, f"the pressures are gauge; {value / BAR:g} bar is added"
+    if kind == "polytrope" and value is not None:
         if shape is None or shape.ratio is None:
             raise InputError(
-                f"{where}: a reference by polytrope needs stroke, rod length and compression ratio;"
-                " give a scene and compression_ratio"
+                "a reference by polytrope needs stroke, rod length and compression ratio; give a "
+                "scene and compression_ratio"
             )
-        assert value is not None
-        added = by_polytrope(raw.phi, raw.pressure, shape, value)
-        rest = f"the compression is a polytrope of {value:g} from 100 to 40 degrees before"
-        return added, True, _of_cycles(added, f"{rest} the dead centre")
-    if value is None and raw.intake is None:
+        added = by_polytrope(cycles.phi, cycles.pressure, shape, value)
+        why = (
+            f"the compression is a polytrope of {value:g} from 100 to 40 degrees before the dead "
+            "centre"
+        )
+    elif value is not None:
+        added = by_inlet(cycles, value)
+        why = f"{_MEAN} is the inlet's {value / BAR:g} bar"
+    elif cycles.intake is not None:
+        inlet = float(np.mean(cycles.intake[cycles.at_inlet]))
+        added = by_inlet(cycles, inlet)
+        why = f"{_MEAN} is the {inlet / BAR:.4g} bar of the intake's column"
+    else:
         raise InputError(
-            f"{where}: the file has no column of the intake's pressure; give it, such as "
+            "the file has no column of the intake's pressure; give it, such as "
             'reference="inlet 1.0 bar"'
         )
-    if value is not None:
-        added = by_inlet(raw.phi, raw.pressure, period, value)
-        rest = f"is the inlet's {value / BAR:g} bar"
-    else:
-        assert raw.intake is not None
-        inlet = float(np.mean(raw.intake[_at(raw, period)]))
-        added = by_inlet(raw.phi, raw.pressure, period, inlet)
-        rest = f"is the {inlet / BAR:.4g} bar of the intake's column"
-    mean = "its mean within 10 degrees of the bottom dead centre"
-    return added, True, _of_cycles(added, f"{mean} {rest}")
-
-
-def _of_cycles(added: Array, why: str) -> str:
     spread = ""
     if len(added) > 1:
         spread = f", cycle by cycle, from {np.min(added) / BAR:.4g} to {np.max(added) / BAR:.4g}"
-    return f"{np.mean(added) / BAR:.4g} bar is added{spread}, so that {why}"
+    return added, True, f"{np.mean(added) / BAR:.4g} bar is added{spread}, so that {why}"
 
 
-def _at(raw: Raw, period: float) -> np.ndarray:
-    return at_inlet(raw.phi, period)
+def by_polytrope(phi: Array, pressure: Array, shape: Shape, exponent: float) -> Array:
+    """What is to be added to each cycle so that its compression is a polytrope.
+
+    c of least squares in p + c = C V^-n, from 100 to 40 degrees before the firing dead centre
+
+    Parameters
+    ----------
+    phi : shape (n,) [deg] from the firing dead centre; pressure : shape (cycles, n) [Pa]
+    shape : with its compression ratio; exponent : n [1]
+
+    Returns
+    -------
+    shape (cycles,) [Pa]; an exponent too high by 0.01 adds some percent of the pressure at the
+    beginning of the compression
+    """
+    window = (phi >= _COMPRESSION[0]) & (phi <= _COMPRESSION[1])
+    basis = shape.volume(np.radians(phi[window])) ** -exponent
+    columns = np.column_stack([np.full_like(basis, -1.0), basis])
+    solved, *_ = np.linalg.lstsq(columns, pressure[:, window].T, rcond=None)
+    return np.asarray(solved[0])
 
 
-def _low(raw: Raw, period: float) -> Array:
-    """The mean cycle where it breathes."""
-    return np.asarray(raw.pressure.mean(axis=0)[_at(raw, period)])
+def by_inlet(cycles: Cycles, inlet: float) -> Array:
+    """What is to be added to each cycle so that it has the inlet's pressure [Pa] where its
+    compression begins: on average within 10 degrees of the bottom dead centre; shape (cycles,)."""
+    return np.asarray(inlet - np.mean(cycles.pressure[:, cycles.at_inlet], axis=1))

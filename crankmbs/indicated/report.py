@@ -11,7 +11,7 @@ from crankmbs.indicated.findings import CylinderPressure
 from crankmbs.indicated.shape import Shape
 from crankmbs.scene.units import BAR
 
-__all__ = ["said_of"]
+__all__ = ["sentences_of"]
 
 _LATE = -0.5  # degrees: a fired cycle that peaks before this burns too early, or is out of phase
 _EARLY = -3.0  # degrees: no loss of heat brings a motored peak so far
@@ -19,7 +19,9 @@ _EPSILON = 1e-9  # of the range: less is the rounding of digits, no noise
 _MOVED = 0.01  # of the range: how far a cycle may miss the next one's beginning
 
 
-def said_of(cylinder: CylinderPressure, shape: Shape | None, referenced: bool) -> Iterator[str]:
+def sentences_of(
+    cylinder: CylinderPressure, shape: Shape | None, referenced: bool
+) -> Iterator[str]:
     """The sentences of one cylinder."""
     name = f"cylinder {cylinder.number}"
     yield _size(cylinder, name)
@@ -86,19 +88,21 @@ def _dead_centre(cylinder: CylinderPressure, name: str, shape: Shape | None) -> 
         )
         return
     angle = cylinder.firing + centre.middle
-    if centre.how.startswith("motored"):
+    basis = f"{name}: fired, from its compression"
+    place = (
+        f"the true dead centre lies {centre.middle:+.2f} +- {centre.half:.2f} degrees from the "
+        "file's"
+    )
+    if centre.motored:
         basis = (
             f"{name}: the motored peak lies at {centre.peak:.3f} degrees, the middle of the chord "
             f"at 70 % {centre.skew:+.2f} degrees from it"
         )
-    else:
-        basis = f"{name}: {centre.how}"
-    middle = f"{centre.middle:+.2f} +- {centre.half:.2f} degrees"
-    place = f"the true dead centre lies {middle} from the file's"
-    if "as given" in centre.how:
-        place += f", with the loss angle{centre.how.split('loss angle')[1]}"
-    elif centre.how.startswith("motored"):
-        place += ", for a loss angle from 0.2 to 1.2 degrees, which loss_angle narrows"
+        place += (
+            ", for a loss angle from 0.2 to 1.2 degrees, which loss_angle narrows"
+            if centre.loss_angle is None
+            else f", with the loss angle of {centre.loss_angle:g} degrees as given"
+        )
     if centre.low <= 0.0 <= centre.high:
         yield f"{basis}; {place}: the file's may be right"
         return

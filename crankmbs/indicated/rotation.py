@@ -44,7 +44,7 @@ class _Series(NamedTuple):
         return np.hstack([ones, *parts])
 
     def at(self, angle: Array, slope: bool = False) -> Array:
-        return np.asarray(self.basis(angle, slope) @ self.coefficients)
+        return self.basis(angle, slope) @ self.coefficients
 
     def variance(self, basis: Array) -> Array:
         return np.asarray(np.einsum("ij,jk,ik->i", basis, self.covariance, basis))
@@ -81,7 +81,7 @@ class Rotation(NamedTuple):
 
     def time_at(self, angle: Array) -> Array:
         """Times [s] at angles [deg] from the first edge, by a cubic spline through all edges."""
-        return np.asarray(CubicSpline(self.angle, self.time)(angle))
+        return CubicSpline(self.angle, self.time)(angle)
 
     def words(self) -> list[str]:
         """The wheel's findings in sentences."""
@@ -112,8 +112,8 @@ class Rotation(NamedTuple):
     def speed(self, angle: Array) -> Array:
         """Of the mean cycle, over the angle [deg] from the first edge, in degrees per second."""
         place = angle + self.teeth[0]
-        slope = sum(np.asarray(each.at(place, slope=True)) for each in self.series)
-        return np.asarray(self.mean_speed / (1.0 + np.radians(slope)))
+        slope = sum(each.at(place, slope=True) for each in self.series)
+        return self.mean_speed / (1.0 + np.radians(slope))
 
     def speed_error(self, half: bool = False) -> float:
         """Largest error of `speed`, in degrees per second; of its half orders alone: that of the
@@ -130,7 +130,7 @@ class Rotation(NamedTuple):
         return float(self.mean_speed * np.radians(relative) + steepest * self.angle_error + mixed)
 
 
-def rotation_of(time: Array, first: Index, wheel: Wheel, stroke: int, where: str) -> Rotation:
+def rotation_of(time: Array, first: Index, wheel: Wheel, stroke: int) -> Rotation:
     """The rotation from the times [s] of a wheel's edges.
 
     first : the places of the first edges after the gaps; stroke : 2 or 4
@@ -143,7 +143,7 @@ def rotation_of(time: Array, first: Index, wheel: Wheel, stroke: int, where: str
     cycles = (len(first) - 1) // turns
     if cycles < 2:
         raise InputError(
-            f"{where}: {len(first) - 1} whole revolutions are less than two cycles of a "
+            f"{len(first) - 1} whole revolutions are less than two cycles of a "
             f"{stroke}-stroke engine, {2 * turns} revolutions; record longer"
             + (", or give stroke=2" if stroke == 4 else "")
         )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import operator
 import re
 from collections.abc import Callable
 from typing import Any
@@ -21,11 +22,11 @@ _POINT = r"\s*([+-]?[\d.]+(?:[eE][+-]?\d+)?)\s*(m?)V\s*=\s*([^,=]+?)\s*"
 _POINTS = re.compile(f"{_POINT},{_POINT}")
 _FORMULA = re.compile(r"(.*[\dV.)])\s+([^\s\d()]\S*)\s*")
 _OPERATIONS: dict[type[ast.AST], Callable[[Any, Any], Any]] = {
-    ast.Add: lambda a, b: a + b,
-    ast.Sub: lambda a, b: a - b,
-    ast.Mult: lambda a, b: a * b,
-    ast.Div: lambda a, b: a / b,
-    ast.Pow: lambda a, b: a**b,
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Div: operator.truediv,
+    ast.Pow: operator.pow,
 }
 
 
@@ -60,7 +61,7 @@ def sensor_of(value: Any) -> Sensor:
     except (SyntaxError, ZeroDivisionError, OverflowError, TypeError, ValueError):
         raise InputError(_rule(value)) from None
     unit = quantity(f"1 {formula[2]}", "pressure")
-    return lambda volts: np.asarray(_evaluated(tree, volts) * unit + 0.0 * volts)
+    return lambda volts: _evaluated(tree, volts) * unit + 0.0 * volts
 
 
 def _line(points: re.Match[str], value: str) -> Sensor:
@@ -69,7 +70,7 @@ def _line(points: re.Match[str], value: str) -> Sensor:
     if volts[0] == volts[1]:
         raise InputError(f"two points have two voltages; {shown(value)} came")
     slope = (pressures[1] - pressures[0]) / (volts[1] - volts[0])
-    return lambda signal: np.asarray(pressures[0] + slope * (signal - volts[0]))
+    return lambda signal: pressures[0] + slope * (signal - volts[0])
 
 
 def _evaluated(node: ast.expr, volts: Any) -> Any:

@@ -7,8 +7,6 @@ import re
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-import numpy as np
-
 from crankmbs.errors import InputError
 from crankmbs.mechanics.geometry import close_loop, dead_centres, top_position
 from crankmbs.numerics.arrays import Array
@@ -45,31 +43,29 @@ class Shape(NamedTuple):
     @property
     def top(self) -> float:
         """Cycle angle [rad] of the true top dead centre."""
-        return dead_centres(self.radius, self.rod_length, self.offset)[0]
+        return dead_centres(*self[:3])[0]
 
     def travel(self, angle: Array) -> Array:
         """Piston travel over the stroke, (x_top - x) / (x_top - x_bottom) [1].
 
         angle : shape (...) [rad] from the true top dead centre
         """
-        shape = (self.radius, self.rod_length, self.offset)
-        return (top_position(*shape) - close_loop(angle + self.top, *shape).x) / self._stroke
+        return (top_position(*self[:3]) - close_loop(angle + self.top, *self[:3]).x) / self.stroke
 
     def travel_1(self, angle: Array) -> Array:
         """Its derivative in the angle [1/rad]."""
-        shape = (self.radius, self.rod_length, self.offset)
-        return -close_loop(angle + self.top, *shape).x_1 / self._stroke
+        return -close_loop(angle + self.top, *self[:3]).x_1 / self.stroke
 
     def volume(self, angle: Array) -> Array:
         """V / V_clearance = 1 + (compression ratio - 1) travel [1]."""
         assert self.ratio is not None
-        return np.asarray(1.0 + (self.ratio - 1.0) * self.travel(angle))
+        return 1.0 + (self.ratio - 1.0) * self.travel(angle)
 
     @property
-    def _stroke(self) -> float:
-        shape = (self.radius, self.rod_length, self.offset)
-        bottom = float(close_loop(dead_centres(*shape)[1], *shape).x)
-        return top_position(*shape) - bottom
+    def stroke(self) -> float:
+        """From dead centre to dead centre [m]."""
+        bottom = float(close_loop(dead_centres(*self[:3])[1], *self[:3]).x)
+        return top_position(*self[:3]) - bottom
 
 
 def shape_of(scene: Scene | None, header: dict[str, float], ratio: float | None) -> Shape | None:
@@ -139,7 +135,7 @@ def differences(header: dict[str, float], scene: Scene) -> Iterator[str]:
     shape, area = of_scene(scene), scene.piston.gas_area
     theirs = {
         "bore": None if area is None else math.sqrt(4.0 * area / math.pi),
-        "stroke": shape._stroke,
+        "stroke": shape.stroke,
         "rod length": shape.rod_length,
         "offset": shape.offset,
         "compression ratio": shape.ratio,

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import io
-import textwrap
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -14,9 +12,10 @@ import numpy as np
 from crankmbs.delimited import Sheet
 from crankmbs.errors import InputError, UndecidedError, shown
 from crankmbs.indicated.options import Options
-from crankmbs.indicated.over_time import clock, edges_in, time_column, turned
+from crankmbs.indicated.over_time import clock, most_edges, time_column, turned
 from crankmbs.indicated.rotation import Rotation, rotation_of
-from crankmbs.indicated.wheel import Wheel, first_edges, wheel_of
+from crankmbs.indicated.wheel import Wheel, first_edges
+from crankmbs.indicated.write import table_text
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.headings import TIME_UNITS, Heading, headings_of, pick
 from crankmbs.scene.tables import Table
@@ -60,17 +59,15 @@ class MeasuredSpeed:
         ------
         OutputError : the file cannot be written
         """
-        stream = io.StringIO()
-        lines = [f"speed over the crank angle from {self.source}"]
-        for sentence in self.sentences:
-            lines += textwrap.wrap(sentence, 96)
-        lines += ["as [motion] of a scene:", motion_line(Path(path).name)]
-        stream.writelines(f"# {line}\n" for line in lines)
-        stream.write("crank_angle_deg,speed_rpm\n")
-        rows = np.column_stack([np.divide(self.table.x, DEGREE), np.divide(self.table.y, RPM)])
-        np.savetxt(stream, rows, fmt="%.10g", delimiter=",")
-        text_in_one_move(Path(path), stream.getvalue())
-        return Path(path)
+        path = Path(path)
+        columns = {
+            "crank_angle_deg": np.divide(self.table.x, DEGREE),
+            "speed_rpm": np.divide(self.table.y, RPM),
+        }
+        source = f"speed over the crank angle from {self.source}"
+        usage = ["as [motion] of a scene:", motion_line(path.name)]
+        text_in_one_move(path, table_text(source, self.sentences, usage, columns))
+        return path
 
 
 def motion_line(name: str) -> str:
@@ -133,37 +130,36 @@ def read_speed(file: str | Path, wheel: Any = None, **options: Any) -> MeasuredS
     3000
     """
     settings = Options(**{"wheel": wheel, "stroke": 4, **options})
-    sheet, name = settings.sheet(file, least=1), str(file)
-    if settings.wheel is None:
-        raise UndecidedError(
-            f"file {name}: which wheel has these teeth is not said",
-            ('wheel="60-2", the teeth less the missing ones',),
-        )
-    rotation = _rotation(sheet, settings, wheel_of(settings.wheel))
+    sheet = settings.sheet(file, least=1)
+    with sheet.errors():
+        if settings.wheel is None:
+            raise UndecidedError(
+                "which wheel has these teeth is not said",
+                ('wheel="60-2", the teeth less the missing ones',),
+            )
+        rotation = _rotation(sheet, settings, settings.wheel)
     zero = 0.0 if settings.firing_tdc is None else float(np.degrees(settings.firing_tdc))
-    measured = speed_of(rotation, zero, name)
+    measured = speed_of(rotation, zero, sheet.name)
     about = f"crank angle 0 lies {zero:g} degrees after the first {rotation.wheel.edge} edge"
-    sentences = (*rotation.words(), *measured.sentences, about)
-    return MeasuredSpeed(measured.table, measured.error, measured.half_order_error, name, sentences)
+    return replace(measured, sentences=(*rotation.words(), *measured.sentences, about))
 
 
 def _rotation(sheet: Sheet, options: Options, wheel: Wheel) -> Rotation:
-    where, width, stroke = f"file {sheet.name}", sheet.values.shape[1], options.stroke or 4
+    width, stroke = sheet.values.shape[1], options.stroke or 4
     headings = headings_of(sheet.above, width)
     at = time_column(headings, sheet, options) or 0
     steps = np.diff(sheet.values[:, at])
     if width == 1 or np.nanmax(steps) > _EVEN * np.nanmedian(steps):
         time = _teeth_times(sheet, headings[at], at)
-        return rotation_of(time, first_edges(time, wheel, where), wheel, stroke, where)
-    time = clock(sheet, headings[at], at)
-    index = None if options.index is None else pick(headings, options.index, where)[0]
-    rest = [k for k in range(width) if k not in (at, index)]
+        return rotation_of(time, first_edges(time, wheel), wheel, stroke)
+    index = None if options.index is None else pick(headings, options.index, "index")[0]
+    columns = [k for k in range(width) if k not in (at, index)]
     if options.columns is not None:
-        rest = pick(headings, options.columns, where)
-    counts = [edges_in(sheet.values[:, k]) for k in rest]
-    signal = sheet.values[:, rest[int(np.argmax(counts))]]
+        columns = pick(headings, options.columns, "columns")
+    time = clock(sheet, headings[at], at)
+    signal = sheet.values[:, most_edges(sheet, columns)]
     marks = None if index is None else sheet.values[:, index]
-    return turned(time, signal, marks, wheel, stroke, where)
+    return turned(time, signal, marks, wheel, stroke)
 
 
 def _teeth_times(sheet: Sheet, heading: Heading, at: int) -> Array:
@@ -172,8 +168,7 @@ def _teeth_times(sheet: Sheet, heading: Heading, at: int) -> Array:
     if len(bad):
         k = int(bad[0])
         raise InputError(
-            f"file {sheet.name}, line {sheet.first + k + 1}: the times of the teeth must rise; "
-            f"{shown(float(time[k + 1]))} s came after {shown(float(time[k]))} s; cut the record "
-            "there"
+            f"{sheet.line(k + 1)}: the times of the teeth must rise; {shown(float(time[k + 1]))} s "
+            f"came after {shown(float(time[k]))} s; cut the record there"
         )
-    return np.asarray(time)
+    return time

@@ -26,8 +26,7 @@ def table_of(
     cylinders: Sequence[CylinderPressure],
     firsts: Sequence[int],
     shape: Shape | None,
-    cycles: str,
-    where: str,
+    cycles: tuple[int, int | None] | None,
 ) -> tuple[Table | CylinderTable, str]:
     """The table [rad, Pa] over the cycle angle of the first cylinder, and what it holds.
 
@@ -48,17 +47,20 @@ def table_of(
             f"the true firing dead centre is at a cycle angle of {zero + top:.5g} degrees, as "
             "the offset asks for"
         )
-    if cycles == "mean":
+    if cycles is None:
         return _mean(cylinders, firsts, angle, period), f"the table holds the mean cycle; {words}"
-    sequence = _sequence(cylinders, firsts, where)
-    first, last = _wanted(cycles, sequence.shape[1], where)
+    sequence = _sequence(cylinders, firsts)
+    whole = sequence.shape[1]
+    first, last = cycles[0], cycles[1] or whole
+    if last > whole:
+        raise InputError(f"cycles must be among the {whole} whole ones; {last} came")
     chosen = sequence[:, first - 1 : last]
     count = chosen.shape[1]
     long = np.concatenate([angle + k * period for k in range(count)])
     which = f"cycle {first}" if first == last else f"cycles {first} to {last}"
     return (
         _tabulated(long, chosen.reshape(len(cylinders), -1)),
-        f"the table holds {which} of {sequence.shape[1]}; {words}",
+        f"the table holds {which} of {whole}; {words}",
     )
 
 
@@ -75,14 +77,14 @@ def _mean(
     return _tabulated(within[order], np.array(rows)[:, order])
 
 
-def _sequence(cylinders: Sequence[CylinderPressure], firsts: Sequence[int], where: str) -> Array:
+def _sequence(cylinders: Sequence[CylinderPressure], firsts: Sequence[int]) -> Array:
     """Whole cycles that all cylinders have, as the first one counts them; shape (cylinders,
     cycles, n)."""
     moved = [each.number for each, first in zip(cylinders, firsts, strict=True) if first < 0]
     counts = {len(each.pressure) for each in cylinders}
     if moved and (len(cylinders) > 1 or len(counts) > 1):
         raise InputError(
-            f"{where}: the cycles of cylinder {moved[0]} do not follow one another, so they cannot "
+            f"the cycles of cylinder {moved[0]} do not follow one another, so they cannot "
             'stand beside those of others; give cycles="mean", or one column'
         )
     n = len(cylinders[0].angle)
@@ -91,24 +93,12 @@ def _sequence(cylinders: Sequence[CylinderPressure], firsts: Sequence[int], wher
     begin = starts[0] + n * max(0, math.ceil((max(starts) - starts[0]) / n))
     whole = (min(start + len(each) for start, each in zip(starts, flat, strict=True)) - begin) // n
     if whole < 1:
-        raise InputError(
-            f'{where}: no cycle is whole in every cylinder; give cycles="mean", or one column'
-        )
+        raise InputError('no cycle is whole in every cylinder; give cycles="mean", or one column')
     parts = [
         each[begin - start : begin - start + whole * n]
         for each, start in zip(flat, starts, strict=True)
     ]
     return np.array(parts).reshape(len(cylinders), whole, n)
-
-
-def _wanted(cycles: str, count: int, where: str) -> tuple[int, int]:
-    if cycles == "all":
-        return 1, count
-    first, _, last = cycles.partition("-")
-    numbers = int(first), int(last or first)
-    if numbers[1] > count:
-        raise InputError(f"{where}: cycles must be among the {count} whole ones; {cycles} came")
-    return numbers
 
 
 def _tabulated(angle: Array, rows: Array) -> Table | CylinderTable:

@@ -87,10 +87,10 @@ def edges(time: Array, signal: Array, *, falling: bool = False) -> Array:
     crossings = np.flatnonzero((s[:-1] < middle) & (s[1:] >= middle)) + 1
     k = crossings[np.searchsorted(crossings, rises, side="right") - 1]
     share = (middle - s[k - 1]) / (s[k] - s[k - 1])
-    return np.asarray(time[k - 1] + share * (time[k] - time[k - 1]))
+    return time[k - 1] + share * (time[k] - time[k - 1])
 
 
-def first_edges(time: Array, wheel: Wheel, where: str) -> Index:
+def first_edges(time: Array, wheel: Wheel) -> Index:
     """The places of the first edges after the gaps.
 
     time : of the edges, shape (n,) [s]
@@ -101,12 +101,12 @@ def first_edges(time: Array, wheel: Wheel, where: str) -> Index:
     """
     if not wheel.missing:
         raise InputError(
-            f"{where}: a wheel {wheel} has no gap, so no tooth is the first; give wheel with its "
+            f"a wheel {wheel} has no gap, so no tooth is the first; give wheel with its "
             'missing teeth, such as "60-2", or of an encoder the column of its mark, index="Z"'
         )
     if len(time) < 2 * wheel.edges:
         raise InputError(
-            f"{where}: a wheel {wheel} has {wheel.edges} edges a revolution, and the record has "
+            f"a wheel {wheel} has {wheel.edges} edges a revolution, and the record has "
             f"{len(time)} {wheel.edge} ones; record two cycles at least, or check wheel"
         )
     ratio = _in_pitches(time)
@@ -115,16 +115,16 @@ def first_edges(time: Array, wheel: Wheel, where: str) -> Index:
     if len(first) < 2:
         other = "rising" if wheel.falling else "falling"
         raise InputError(
-            f"{where}: no gap of {wheel.missing} teeth comes again in the {wheel.edge} edges: the "
+            f"no gap of {wheel.missing} teeth comes again in the {wheel.edge} edges: the "
             f"widest interval, at {time[np.argmax(ratio)]:.6g} s, spans {np.max(ratio):.3g} "
             f"pitches, and {gap} are looked for; correct wheel, or take its other edges, "
             f'wheel="{wheel} {other}"'
         )
-    _check_revolutions(time, ratio, first, wheel, where)
-    return np.asarray(first)
+    _check_revolutions(time, ratio, first, wheel)
+    return first
 
 
-def marked_edges(time: Array, marks: Array, wheel: Wheel, where: str) -> Index:
+def marked_edges(time: Array, marks: Array, wheel: Wheel) -> Index:
     """The places of an encoder's edges next to the marks of its index.
 
     Raises
@@ -134,23 +134,23 @@ def marked_edges(time: Array, marks: Array, wheel: Wheel, where: str) -> Index:
     inside = marks[(marks >= time[0]) & (marks <= time[-1])] if len(time) else marks[:0]
     if len(inside) < 2:
         raise InputError(
-            f"{where}: the index has {len(inside)} {wheel.edge} edges, and one a revolution is "
+            f"the index has {len(inside)} {wheel.edge} edges, and one a revolution is "
             "needed; give the column that has them"
         )
     behind = np.clip(np.searchsorted(time, inside), 1, len(time) - 1)
     nearer = inside - time[behind - 1] < time[behind] - inside
     first = behind - nearer
-    _check_revolutions(time, _in_pitches(time), first, wheel, where)
-    return np.asarray(first)
+    _check_revolutions(time, _in_pitches(time), first, wheel)
+    return first
 
 
 def _in_pitches(time: Array) -> Array:
     """Intervals over the median of their neighbours."""
     steps = np.diff(time)
-    return np.asarray(steps / median_filter(steps, _NEIGHBOURS, mode="nearest"))
+    return steps / median_filter(steps, _NEIGHBOURS, mode="nearest")
 
 
-def _check_revolutions(time: Array, ratio: Array, first: Index, wheel: Wheel, where: str) -> None:
+def _check_revolutions(time: Array, ratio: Array, first: Index, wheel: Wheel) -> None:
     for a, b in pairwise(first):
         inner = ratio[a : b - 1 if wheel.missing else b]
         wide, narrow = a + int(np.argmax(inner)), a + int(np.argmin(inner))
@@ -160,7 +160,7 @@ def _check_revolutions(time: Array, ratio: Array, first: Index, wheel: Wheel, wh
         fault = "are missing" if missing else "are doubled"
         k = wide if missing else narrow
         raise InputError(
-            f"{where}: between {time[a]:.6g} and {time[b]:.6g} s the wheel shows {b - a} "
+            f"between {time[a]:.6g} and {time[b]:.6g} s the wheel shows {b - a} "
             f"{wheel.edge} edges, and {wheel} has {wheel.edges}: teeth {fault} near "
             f"{time[k]:.6g} s, where an interval spans {ratio[k]:.2g} pitches; cut the record "
             "before or after that, check wheel, or take its other edges, such as "

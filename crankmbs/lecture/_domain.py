@@ -12,11 +12,11 @@ from crankmbs.errors import InputError
 Real = float | NDArray[np.float64]
 
 
-def require(holds: ArrayLike, what: str, rule: str, came: Real, way_out: str) -> None:
+def require(holds: ArrayLike, what: str, rule: str, value: Real, way_out: str) -> None:
     """Raise InputError unless the rule holds for every entry; name the first that breaks it."""
     satisfied = np.asarray(holds, dtype=bool)
     if not satisfied.all():
-        wrong = np.broadcast_to(came, satisfied.shape)[~satisfied][0]
+        wrong = np.broadcast_to(value, satisfied.shape)[~satisfied][0]
         raise InputError(f"{what}: {rule}, got {wrong:.6g}; {way_out}")
 
 

@@ -14,7 +14,9 @@ from crankmbs.lessons.runs import (
     peak,
     peak_angle,
     ratio_knob,
+    rod_ratio,
     sample,
+    speed_of,
 )
 from crankmbs.page.knobs import Knob
 from crankmbs.result import Result
@@ -130,12 +132,11 @@ def _fork(scene: Scene) -> Section:
 
 def _within(scene: Scene) -> float:
     """The rod ratio, where the fork's plot has it."""
-    return min(max(scene.crank.radius / scene.rod.length, 0.15), 0.45)
+    return min(max(rod_ratio(scene), 0.15), 0.45)
 
 
 def _minimum(result: Result) -> Question:
-    scene = result.scene
-    ratio = scene.crank.radius / scene.rod.length
+    ratio = rod_ratio(result.scene)
     formula = lecture.acceleration_minimum_angle(rod_ratio=ratio)
     series = lecture.acceleration_minimum_angle_series(rod_ratio=ratio)
     lowest = peak_angle(result, "piston_acceleration", 90.0, 180.0, -1.0)
@@ -162,7 +163,7 @@ def _minimum(result: Result) -> Question:
 
 
 def _fastest(result: Result) -> Question:
-    scene, omega = result.scene, float(result.data["crank_speed"].values[0])
+    scene, omega = result.scene, speed_of(result.scene)
     gear = {"crank_radius": scene.crank.radius, "rod_length": scene.rod.length}
     root = lecture.maximum_piston_speed_sqrt(omega=omega, **gear)
     formula = lecture.maximum_piston_speed(omega=omega, **gear)
@@ -175,7 +176,7 @@ def _fastest(result: Result) -> Question:
         text="What is the greatest speed of the piston? The crank radius is "
         f"{exact('radius', gear['crank_radius'], 'mm', 1e3)}, the speed "
         f"{exact('turning', omega, 'rad/s')}, the rod ratio "
-        f"{exact('ratio', gear['crank_radius'] / gear['rod_length'], '')}.",
+        f"{exact('ratio', rod_ratio(scene))}.",
         solution=solution,
         hint="Near the crank angle at which the rod is square to the crank.",
         answer=f"{exact('speed_root', root, 'm/s', most=6)} by "

@@ -13,9 +13,8 @@ from markupsafe import Markup
 
 from crankmbs.errors import InputError
 from crankmbs.lessons.markup import formula, prose
-from crankmbs.lessons.pieces import Lesson
+from crankmbs.lessons.pieces import TITLES, Lesson
 from crankmbs.lessons.runs import named
-from crankmbs.lessons.sources import TITLES
 from crankmbs.page import FOLDER, encoded, filled, given_of, joined, refusals
 from crankmbs.page.knobs import knobs_of
 from crankmbs.scene.scene import Scene
@@ -45,9 +44,9 @@ def article(lesson: Lesson, name: str, titles: dict[str, str], *, linked: bool) 
         **given_of(lesson.scene),
         "knobs": [dataclasses.asdict(knob) for knob in knobs_of(lesson.scene)],
         "compression": gas.indicator.compression_ratio if gas and gas.indicator else None,
-        "figures": [section.figure.given for section in lesson.sections],
+        "figures": [section.figure.data for section in lesson.sections],
         **lesson.more,
-        "questions": [question.given for question in lesson.questions],
+        "questions": [question.data for question in lesson.questions],
     }
     names = list(titles)
     at = names.index(name)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import dataclasses
 import math
 
+import numpy as np
+
 from crankmbs import lecture
 from crankmbs.errors import InputError
 from crankmbs.lessons.pieces import (
@@ -17,14 +19,15 @@ from crankmbs.lessons.pieces import (
     exact,
     simulated,
 )
-from crankmbs.lessons.runs import changed, even, named
-from crankmbs.lessons.shaking import amplitude, reciprocating, twin
+from crankmbs.lessons.runs import changed, even, named, rod_ratio, speed_of
+from crankmbs.measures import Estimate, orders
 from crankmbs.page.knobs import FIRING_ORDERS, Choice, Knob, choices_of
-from crankmbs.scene.parts import Layout
+from crankmbs.result import Result
+from crankmbs.scene.parts import Cylinder, Layout
 from crankmbs.scene.scene import Scene
 from crankmbs.simulate import simulate
 
-__all__ = ["IDEA", "SCENE", "lesson"]
+__all__ = ["IDEA", "SCENE", "lesson", "reciprocating"]
 
 _RIGHT_ANGLE = 90.0  # deg between the cylinders of a twin
 
@@ -171,8 +174,8 @@ def _twin() -> Section:
 
 def _second_order(four: Scene) -> Question:
     run = simulate(reciprocating(four))
-    scene, omega = run.scene, float(run.data["crank_speed"].values[0])
-    ratio = float(lecture.rod_ratio(crank_radius=scene.crank.radius, rod_length=scene.rod.length))
+    scene, omega = run.scene, speed_of(run.scene)
+    ratio = rod_ratio(scene)
     unit = scene.piston.mass * scene.crank.radius * omega**2
     first, second = (amplitude(run, "frame_force_x", order) for order in (1.0, 2.0))
     solution = simulated("second", second, "kN", 1e-3)
@@ -200,7 +203,7 @@ def _force(name: str, value: float) -> str:
 def _rocking(scene: Scene, spacing: float) -> Question:
     layout = Layout(firing_order=FIRING_ORDERS["3"], spacing=spacing)
     run = simulate(reciprocating(dataclasses.replace(scene, layout=layout)))
-    omega = float(run.data["crank_speed"].values[0])
+    omega = speed_of(run.scene)
     unit = run.scene.piston.mass * scene.crank.radius * omega**2
     formula = exact("couple_lecture", math.sqrt(3.0) * unit * spacing, "N m")
     solution = simulated("couple_first", amplitude(run, "rocking_moment_y", 1.0), "N m")
@@ -222,8 +225,8 @@ def _counterweight(scene: Scene) -> Question:
     mass, r = pair.piston.mass, scene.crank.radius
     weight = {"mass": mass, "center_of_mass": -r}
     before, after = simulate(pair), simulate(changed(pair, crank=weight))
-    omega = float(before.data["crank_speed"].values[0])
-    ratio = float(lecture.rod_ratio(crank_radius=r, rod_length=scene.rod.length))
+    omega = speed_of(before.scene)
+    ratio = rod_ratio(scene)
     solution = exact("counterweight", mass, "kg")
     first = simulated("twin_before", amplitude(before, "frame_force_x", 1.0), "kN", 1e-3)
     second = simulated("twin_second", amplitude(after, "frame_force_y", 2.0), "kN", 1e-3)
@@ -261,4 +264,37 @@ def _lowest_torque(four: Scene) -> Question:
         f"to it: {both} are left. Inertia grows with the square of the speed, gas does not, so "
         "this holds at this speed only.",
         tolerance=0.1,
+    )
+
+
+def reciprocating(scene: Scene) -> Scene:
+    """The machine without gas, its rotating masses balanced, m_A with the piston."""
+    rod = {"mass": 0.0, "inertia": 0.0}
+    crank = {"mass": 0.0, "center_of_mass": 0.0, "inertia": None}
+    lumped = changed(scene, crank=crank, rod=rod, piston={"mass": _moving_mass(scene)})
+    return dataclasses.replace(lumped, gas=None)
+
+
+def twin(scene: Scene, angle: float) -> Scene:
+    """Two cylinders this many degrees apart, both rods on the pin at the crank's reference line."""
+    half = math.radians(0.5 * angle)
+    pair = (Cylinder(phase=half, bank=-half), Cylinder(phase=-half, bank=half))
+    return dataclasses.replace(reciprocating(scene), layout=Layout(cylinders=pair))
+
+
+def amplitude(result: Result, name: str, order: float) -> Estimate:
+    """Amplitude of one order of a variable."""
+    split = orders(result, name)
+    at = int(np.argmin(np.abs(split.order - order)))
+    return Estimate(float(split.amplitude[at]), split.error)
+
+
+def _moving_mass(scene: Scene) -> float:
+    """The lectures' reciprocating mass m_A [kg]."""
+    rod = scene.rod
+    share = lecture.two_mass_rod(
+        rod_mass=rod.mass, rod_length=rod.length, center_of_mass=rod.center_of_mass
+    ).piston_pin
+    return float(
+        lecture.reciprocating_mass(piston_mass=scene.piston.mass, rod_piston_pin_mass=share)
     )

@@ -6,7 +6,7 @@ import math
 
 from crankmbs import lecture
 from crankmbs.lessons.pieces import Figure, Formula, Lesson, Question, Section, exact, simulated
-from crankmbs.lessons.runs import changed, named, one_cylinder, ratio_knob, sample
+from crankmbs.lessons.runs import changed, named, one_cylinder, ratio_knob, rod_ratio, sample
 from crankmbs.measures import Estimate
 from crankmbs.result import Result
 from crankmbs.scene.scene import Scene
@@ -120,7 +120,7 @@ def _lead(result: Result) -> Question:
 
 
 def _middle(result: Result) -> Question:
-    r, ratio = result.scene.crank.radius, float(lecture.rod_ratio(**_gear(result.scene)))
+    r, ratio = result.scene.crank.radius, rod_ratio(result.scene)
     angle = math.acos(0.5 * ratio)
     there = simulate(changed(result.scene, motion={"angle": angle}))
     at = simulated("half_stroke", sample(there, "piston_displacement", 0), "mm", 1e3, 6)

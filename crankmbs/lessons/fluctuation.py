@@ -10,10 +10,9 @@ from crankmbs.lessons.freed import (
     free,
     settled,
     textbook,
-    with_inertia,
 )
 from crankmbs.lessons.pieces import Figure, Formula, Lesson, Question, Section, exact, simulated
-from crankmbs.lessons.runs import named, peak
+from crankmbs.lessons.runs import changed, joint, named, peak
 from crankmbs.measures import measure
 from crankmbs.page.knobs import Choice
 from crankmbs.result import Result
@@ -173,14 +172,12 @@ def _flywheel(scene: Scene, result: Result) -> Question:
 
 def _lightest(scene: Scene) -> Question:
     inertia = float(f"{flywheel_knob(scene).low:.2g}")
-    run = settled(with_inertia(scene, inertia))
+    run = settled(changed(scene, crank={"inertia": inertia}))
     numbers = {}
     for name, variable in (("free", run), ("held", textbook(run).even)):
-        joint = next(j for j in measure(variable).joints if j.joint == "crank pin")
-        most = peak(variable, "piston_acceleration")
         numbers[name] = (
-            simulated(f"acceleration_{name}", most, "m/s²"),
-            simulated(f"crank_pin_{name}", joint.peak, "kN", 1e-3),
+            simulated(f"acceleration_{name}", peak(variable, "piston_acceleration"), "m/s²"),
+            simulated(f"crank_pin_{name}", joint(variable, "crank pin").peak, "kN", 1e-3),
         )
     (fastest, pin), (even, even_pin) = numbers["free"], numbers["held"]
     return Question(

@@ -19,6 +19,7 @@ from crankmbs.lessons.runs import (
     peak_angle,
     ratio_knob,
     speed_knob,
+    speed_of,
 )
 from crankmbs.measures import Estimate, measure
 from crankmbs.page.knobs import Choice, Knob
@@ -180,7 +181,7 @@ def _greatest(result: Result) -> Question:
 def _missing(result: Result, split: Budget) -> Question:
     scene = result.scene
     r, l, e = scene.crank.radius, scene.rod.length, scene.piston.offset
-    omega = float(result.data["crank_speed"].values[0])
+    omega = speed_of(result.scene)
     row = split.split("side thrust")
     cause = row.cause("two-mass rod")
     missing = Estimate(

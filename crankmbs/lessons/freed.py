@@ -19,7 +19,7 @@ from crankmbs.scene.run import SETTLED
 from crankmbs.scene.scene import Scene
 from crankmbs.simulate import simulate
 
-__all__ = ["Textbook", "flywheel_knob", "free", "settled", "textbook", "with_inertia"]
+__all__ = ["Textbook", "flywheel_knob", "free", "settled", "textbook"]
 
 
 def free(scene: Scene, lesson: str) -> Scene:
@@ -66,11 +66,6 @@ def settled(scene: Scene) -> Result:
     if result.status != 0:
         raise InputError(f"the lesson needs a machine that settles: {result.message}")
     return result
-
-
-def with_inertia(scene: Scene, inertia: float) -> Scene:
-    """The scene with another inertia [kg m2] of crank and flywheel."""
-    return changed(scene, crank={"inertia": inertia})
 
 
 def flywheel_knob(scene: Scene) -> Knob:

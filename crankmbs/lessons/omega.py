@@ -190,7 +190,7 @@ def _fluctuation(result: Result) -> Question:
 
 def _inertia(result: Result) -> Question:
     def inertia(variables: Mapping[str, Array]) -> Array:
-        return np.asarray(2.0 * variables["kinetic_energy"] / variables["crank_speed"] ** 2)
+        return 2.0 * variables["kinetic_energy"] / variables["crank_speed"] ** 2
 
     solution = simulated("inertia_swing", _range(result, inertia), "kg m²")
     least = -largest(result, lambda variables: -inertia(variables)).value

@@ -9,12 +9,12 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from crankmbs.digits import digits, error_digits
-from crankmbs.lessons.sources import sources_in
 from crankmbs.measures import Estimate
 from crankmbs.page.knobs import Choice, Knob
 from crankmbs.scene.scene import Scene
 
 __all__ = [
+    "TITLES",
     "Figure",
     "Formula",
     "Lesson",
@@ -46,6 +46,27 @@ _UNITS = {
     "": {"": 1.0},
 }
 """What may be typed for a unit, without blanks and with its factor to it."""
+
+TITLES = {
+    "S0": (
+        "Grega",
+        "R. Grega: Automobile Design, part 5L, Kinematics and dynamics of crank mechanism. "
+        "Lecture, Technical University of Košice.",
+    ),
+    "S1": (
+        "Yi, Win, Htay",
+        "M. M. Yi, S. Y. Win, T. T. Htay: Kinematic Analysis of Crank Shaft for Diesel Engine. "
+        "Technological University Thanlyin.",
+    ),
+    "S2": (
+        "Kholbekov, Amonov, Omanov",
+        "T. K. Kholbekov, C. E. Amonov, E. N. Omanov: Kinematics of KShM of Internal Combustion "
+        "Engines. Termez.",
+    ),
+}
+"""By their key in the validation's bibliography: short, and in full."""
+
+_KEY = re.compile(r"\b(S[012])\b(?: (Eq\. \d+(?:(?:,| to| =) \d+)*))?")
 
 
 @dataclass(frozen=True)
@@ -107,7 +128,7 @@ class Formula:
     def sources(self) -> str:
         """Where it is from, by title."""
         paragraphs = [part for part in self._paragraphs if part.startswith("Source")]
-        return self.source or sources_in(" ".join(paragraphs))
+        return self.source or _sources_in(" ".join(paragraphs))
 
     @property
     def _paragraphs(self) -> list[str]:
@@ -142,7 +163,7 @@ class Figure:
     beside: bool = False
 
     @property
-    def given(self) -> dict[str, Any]:
+    def data(self) -> dict[str, Any]:
         """What the scripts take of it."""
         values = {knob.name: knob.value for knob in self.knobs}
         return {
@@ -185,7 +206,7 @@ class Question:
     also: tuple[float, ...] = ()
 
     @property
-    def given(self) -> dict[str, Any]:
+    def data(self) -> dict[str, Any]:
         """What the scripts take of it."""
         return {
             "name": self.name,
@@ -238,3 +259,17 @@ def _symbols(words: str) -> str:
         words = re.sub(rf"\b{name}\b", letter, words)
     words = re.sub(r"\^(\d)", lambda match: match[1].translate(_RAISED), words)
     return words.replace("`", "")
+
+
+def _sources_in(text: str) -> str:
+    """The sources that a docstring names by their keys, in words; equations that have numbers.
+
+    >>> _sources_in("Source: S0-F28, S1 Eq. 25 before its truncation.")
+    'Grega; Yi, Win, Htay, Eq. 25'
+    """
+    equations_of: dict[str, list[str]] = {}
+    for key, equations in _KEY.findall(text):
+        equations_of.setdefault(key, [])
+        if equations:
+            equations_of[key].append(equations)
+    return "; ".join(", ".join([TITLES[key][0], *where]) for key, where in equations_of.items())

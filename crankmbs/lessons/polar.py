@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 
 from crankmbs.lessons.pieces import Figure, Formula, Lesson, Question, Section, exact, simulated
-from crankmbs.lessons.runs import held, named, speed_knob
-from crankmbs.measures import JointForce, measure
+from crankmbs.lessons.runs import held, joint, named, speed_knob
 from crankmbs.result import Result
 from crankmbs.scene.scene import Scene
 from crankmbs.simulate import simulate
@@ -112,12 +111,8 @@ def _turning(scene: Scene) -> Section:
     )
 
 
-def _joint(result: Result, name: str) -> JointForce:
-    return next(each for each in measure(result).joints if each.joint == name)
-
-
 def _greatest(result: Result) -> Question:
-    solution = simulated("bearing_peak", _joint(result, "main bearing").peak, "kN", 1e-3)
+    solution = simulated("bearing_peak", joint(result, "main bearing").peak, "kN", 1e-3)
     return Question(
         name="ask_peak",
         text="How large is the greatest force of the main bearing?",
@@ -129,7 +124,7 @@ def _greatest(result: Result) -> Question:
 
 
 def _where(result: Result) -> Question:
-    load = _joint(result, "crank pin")
+    load = joint(result, "crank pin")
     degrees = math.degrees(load.crank_angle)
     solution = exact("pin_angle", degrees, "°")
     peak = simulated("pin_peak", load.peak, "kN", 1e-3)
@@ -144,7 +139,7 @@ def _where(result: Result) -> Question:
 
 
 def _mean(result: Result) -> Question:
-    load = _joint(result, "main bearing")
+    load = joint(result, "main bearing")
     solution = simulated("bearing_mean", load.mean, "kN", 1e-3)
     return Question(
         name="ask_mean",

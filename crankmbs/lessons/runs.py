@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from crankmbs.errors import InputError
-from crankmbs.measures import Estimate
+from crankmbs.measures import Estimate, JointForce, measure
 from crankmbs.measures.summary import largest
 from crankmbs.numerics.arrays import Array
 from crankmbs.page.knobs import Knob
@@ -27,11 +27,13 @@ __all__ = [
     "even",
     "finely",
     "held",
+    "joint",
     "named",
     "one_cylinder",
     "peak",
     "peak_angle",
     "ratio_knob",
+    "rod_ratio",
     "sample",
     "speed_knob",
     "speed_of",
@@ -130,7 +132,7 @@ def ratio_knob(
     scene: Scene, low: float = 0.1, high: float = 0.6, first: float | None = None
 ) -> Knob:
     """A slider of the rod ratio in which that of the scene lies; it begins there, or at first."""
-    ratio = scene.crank.radius / scene.rod.length
+    ratio = rod_ratio(scene)
     begin = ratio if first is None else first
     return Knob("rod_ratio", "rod ratio r/l", "", min(low, ratio), max(high, ratio), begin, 3)
 
@@ -147,12 +149,22 @@ def finely(scene: Scene, degrees: float = 0.01) -> Result:
     return simulate(changed(scene, run={"every": every}))
 
 
-def peak(result: Result, name: str, cylinder: int = 0, sign: float = 1.0) -> Estimate:
-    """Largest value of sign times a variable over the run, with its error."""
+def rod_ratio(scene: Scene) -> float:
+    """The rod ratio of the first cylinder."""
+    return scene.crank.radius / scene.rod.length
+
+
+def joint(result: Result, name: str) -> JointForce:
+    """The force of a joint over the run, by its name."""
+    return next(each for each in measure(result).joints if each.joint == name)
+
+
+def peak(result: Result, name: str, sign: float = 1.0) -> Estimate:
+    """Largest value of sign times a variable of the first cylinder over the run, with its error."""
 
     def quantity(variables: Mapping[str, Array]) -> Array:
         values = variables[name]
-        return np.asarray(sign * (values[:, cylinder] if values.ndim > 1 else values))
+        return sign * values.reshape(len(values), -1)[:, 0]
 
     value, error = largest(result, quantity)
     return Estimate(sign * value, error)
@@ -170,8 +182,7 @@ def peak_angle(result: Result, name: str, begin: float, end: float, sign: float 
     return Estimate(float(degrees[at]), float(np.max(np.diff(degrees))))
 
 
-def sample(result: Result, name: str, k: int, cylinder: int = 0) -> Estimate:
-    """One sample of a variable, with its error."""
-    values = result.data[name].values
-    value = values[k, cylinder] if values.ndim > 1 else values[k]
-    return Estimate(float(value), float(result.data[name].attrs["error_estimate"]))
+def sample(result: Result, name: str, k: int) -> Estimate:
+    """One sample of a variable of the first cylinder, with its error."""
+    data = result.data[name]
+    return Estimate(float(np.ravel(data.values[k])[0]), float(data.attrs["error_estimate"]))

@@ -82,7 +82,7 @@ def read_logged(path: Path, wheel: str, sensor: str) -> Logged:
     """A file of three columns without names: time in s, sensor in V, wheel in V."""
     content = path.read_bytes()
     time, volts, signal = read_sheet(path.name, decode(content, path.name)).values.T
-    rotation = turned(time, signal, None, wheel_of(wheel), 2 * _TURNS, path.name)
+    rotation = turned(time, signal, None, wheel_of(wheel), 2 * _TURNS)
     pressure = sensor_of(sensor)(volts)
     found = Logged(
         path.stem,
