@@ -46,16 +46,29 @@ def test_a_lesson_fits_every_screen(kept, name, size):
 @pytest.mark.parametrize("name", LESSONS)
 def test_on_a_laptop_the_first_figure_and_its_words_stand_in_view(kept, name):
     page = kept(name, LAPTOP).page
-    for each in (page.locator(".board").first, page.locator("figure .player").first):
+    for each in (page.locator(".board").first, controls(page)):
         box = each.bounding_box()
         assert box["y"] + box["height"] <= LAPTOP[1]
     assert page.locator(".words").first.bounding_box()["y"] < 0.5 * LAPTOP[1]
 
 
 @pytest.mark.parametrize("name", LESSONS)
-def test_on_a_phone_the_mechanism_of_the_first_figure_stands_in_view(kept, name):
-    box = kept(name, PHONE).page.locator(".machine").first.bounding_box()
-    assert box["y"] + box["height"] <= PHONE[1]
+def test_on_a_phone_the_first_figure_begins_in_view_with_all_that_can_be_turned(kept, name):
+    page = kept(name, PHONE).page
+    machine, plot, turned = (
+        each.bounding_box()
+        for each in (page.locator(".machine").first, page.locator(".plot").first, controls(page))
+    )
+    assert machine["y"] + machine["height"] <= turned["y"]
+    assert turned["y"] + turned["height"] <= plot["y"] <= PHONE[1] - 120.0
+    assert plot["y"] + plot["height"] - machine["y"] <= PHONE[1]  # a turn and what it does
+
+
+def controls(page):
+    """What of the first figure is turned: its sliders and choices, else the crank's angle."""
+    figure = page.locator("figure").first
+    turns = figure.locator(".turns:visible")
+    return turns if turns.count() else figure.locator(".player")
 
 
 @pytest.mark.parametrize("name", LESSONS)
