@@ -41,10 +41,6 @@ SHOWN = {
         ("angles[low] + (angles[high]", "angles[low] - (angles[high]", "vee"),
         ("(this.leads[k + 1] - this.leads[k])", "(this.leads[k] - this.leads[k + 1])", "vee"),
     ],
-    "flywheel": [
-        ("inertia * (at(inertia) - wanted)", "inertia * (at(inertia) - 1.01 * wanted)", "lumped"),
-        ("const CLOSE = 1e-9;", "const CLOSE = 1e-2;", "lumped"),
-    ],
     "forces": [
         ("place(0, at.side_force)", "place(0, -at.side_force)", "vee"),
         ("place(-at.gas_force, 0)", "place(at.gas_force, 0)", "vee"),

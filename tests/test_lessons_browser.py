@@ -90,6 +90,23 @@ def test_names_of_arrows_stand_within_their_drawing(kept, name, figure):
             assert box[along] + box[size] <= stage[along] + stage[size] + 2.0
 
 
+@pytest.mark.parametrize(
+    ("name", "figure"), [("forces", "side"), ("polar", "pin"), ("polar", "turning")]
+)
+def test_names_of_arrows_cover_nothing_of_an_upright_engine(kept, name, figure):
+    opened = kept(name, LAPTOP)
+    engine = [
+        opened.page.locator(f"#{figure} .stage {part}").first.bounding_box()
+        for part in (".chosen .wall", ".rim")
+    ]
+    low = min(box["x"] for box in engine)
+    high = max(box["x"] + box["width"] for box in engine)
+    names = opened.page.locator(f"#{figure} .arrows text").all()
+    assert names
+    for box in (each.bounding_box() for each in names):
+        assert box["x"] + box["width"] <= low + 2.0 or box["x"] >= high - 2.0
+
+
 @pytest.mark.parametrize("size", [PHONE, LAPTOP], ids=str)
 @pytest.mark.parametrize(
     ("name", "figures"), [("forces", ("along", "side")), ("polar", ("pin", "bearing", "turning"))]

@@ -45,11 +45,10 @@ def seen(page, script, case, about):
     about : its module, and the scenes that the knobs give without it
     """
     module, scenes = about
-    how = {"fresh": module == "cycle", "evens": module == "flywheel"}
     try:
         if module == "turned":
             return scene_of(page.page, script, case) != scenes[case]
-        return wrong(case, probe(page.page, script, case, **how)) != []
+        return wrong(case, probe(page.page, script, case, fresh=module == "cycle")) != []
     except Error as error:
         return "SyntaxError" not in str(error)
 

@@ -48,11 +48,6 @@ _FOLD = f"fold: the rod folds onto the crank, where the motion is not determined
 
 _PLAIN = {"given": "as given", "rebalanced": "for this speed"}
 
-_FLUCTUATION = (
-    "fluctuation: the {what} is {percent:.4g} %, with the flywheel of {end:g} kg m^2 at the end of "
-    "its knob; {came:g} came"
-)
-
 
 def page_of(scene: Scene, stem: str) -> str:
     """A scene's page as HTML that needs no network: computed in the browser as its knobs turn, or,
@@ -158,7 +153,6 @@ def given_of(scene: Scene) -> dict[str, Any]:
             "no_inertia": NO_INERTIA,
             "uncovered": [_uncovered(*numbered) for numbered in enumerate(scene.force, start=1)],
             "fold": _FOLD,
-            "fluctuation": _FLUCTUATION,
             **{kind: RULES[kind] for kind in _NUMBERS},
         },
     }

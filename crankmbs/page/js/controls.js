@@ -58,11 +58,10 @@ export function showSlower(cycle, changed) {
   return Number(slower.value);
 }
 
-/** Measures, badge, whether the pressure was carried over, and whether a flywheel can be sought.
- * error : of the quick pass */
+/** Measures, badge, and whether the pressure was carried over. error : of the quick pass */
 export function showWords(given, cycle, error) {
   const all = numbersOf(cycle);
-  write(find("trust"), trustOf(error));
+  write(find("trust"), trustOf(cycle, error));
   const list = find("numbers");
   while (list.children.length > all.length) list.lastChild.remove();
   all.forEach(([name, value], n) => {
@@ -75,7 +74,6 @@ export function showWords(given, cycle, error) {
   set(find("badge"), { class: good ? "good" : "drifts" });
   const own = given.scene.gas?.shape;
   find("carried").hidden = !own || isShape(cycle.train.shape, own);
-  find("fluctuation")?.toggleAttribute("disabled", cycle.prescribed);
 }
 
 function measure() {

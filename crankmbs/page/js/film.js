@@ -24,7 +24,8 @@ class Film {
     this.time = this.track.begin;
     this.stage = new Stage(find("stage"), given.compression, () => this.fit());
     const { begin, end } = this.track;
-    this.plot = new TimePlot(find("upper"), given, (time) => this.take(time));
+    const speedAt = (time) => this.track.motionAt(time).speed / RPM;
+    this.plot = new TimePlot(find("upper"), given, { speedAt, move: (time) => this.take(time) });
     // the player's angle is the time itself
     const run = { duration: end - begin, timeTo: (t) => t - begin, angleAt: (t) => t + begin };
     const finish = () => this.play(false);
@@ -45,15 +46,19 @@ class Film {
     for (const rate of RATES.slice(n, n + SLOWEST + 1)) {
       find("slower").append(new Option(rate === 1 ? "real time" : named(rate), String(rate)));
     }
-    this.player.slower = RATES[n];
+    this.player.slower = this.first = RATES[n];
+  }
+
+  /** Play so many times slower; of the run as small a part is then plotted. */
+  slow(rate) {
+    this.player.slower = rate;
+    this.plot.divide(Math.round(rate / this.first));
   }
 
   listen() {
     find("play").addEventListener("click", () => this.play(!this.player.playing));
     find("time").addEventListener("input", ({ target }) => this.take(Number(target.value)));
-    find("slower").addEventListener("change", ({ target }) => {
-      this.player.slower = Number(target.value);
-    });
+    find("slower").addEventListener("change", ({ target }) => this.slow(Number(target.value)));
     find("large").addEventListener("click", ({ target }) => {
       const on = document.documentElement.classList.toggle("projector");
       target.setAttribute("aria-pressed", String(on));

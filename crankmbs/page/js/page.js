@@ -5,7 +5,6 @@ import { enlarge, say, seenPlots, showWords, unfold, unused } from "./controls.j
 import { cycleOf } from "./cycle.js";
 import { dragged } from "./drag.js";
 import { Engine } from "./engine.js";
-import { inertiaFor } from "./flywheel.js";
 import { deadCentres } from "./geometry.js";
 import { Knobs } from "./knobs.js";
 import { Player } from "./player.js";
@@ -13,7 +12,7 @@ import { Plot } from "./plot.js";
 import { drawn } from "./quantities.js";
 import { Refused } from "./refused.js";
 import { Stage } from "./stage.js";
-import { Address, numberOf } from "./state.js";
+import { Address } from "./state.js";
 import { write } from "./svg.js";
 import { dataFile, save } from "./taken.js";
 import { Turner } from "./turned.js";
@@ -52,7 +51,6 @@ class Page {
       release: () => this.release(),
       refuse: say,
     });
-    find("fluctuation")?.addEventListener("change", ({ target }) => this.even(target.value));
     dragged(this.stage, {
       theta: () => this.theta,
       turn: (theta) => this.seek(theta),
@@ -151,28 +149,6 @@ class Page {
   turnPeak(wanted, present) {
     const ambient = this.given.scene.gas.ambient / 1e5;
     this.turnBy("pressure", (_, now) => (now * (wanted + ambient)) / (present + ambient));
-  }
-
-  /** Take the flywheel with which the speed fluctuates by so many percent. */
-  even(text) {
-    const { given, values } = this;
-    const knob = given.knobs.find((each) => each.name === "flywheel");
-    const present = { ...knob, value: values.flywheel ?? knob.value };
-    try {
-      const limits = { name: "fluctuation", low: 0, high: 100 };
-      const wanted = numberOf(text, limits, given.sentences) / 100;
-      const at = (flywheel) => {
-        const turned = { ...values, flywheel };
-        const asked = this.turner.scene(turned);
-        return this.pass(this.careful, asked, turned, { fine: true }).fluctuation;
-      };
-      this.turn("flywheel", inertiaFor(wanted, at, present, given.sentences.fluctuation));
-      this.knobs.show(this.values);
-      this.release();
-    } catch (refused) {
-      if (!(refused instanceof Refused)) throw refused;
-      say(refused.message);
-    }
   }
 
   reset() {
