@@ -132,13 +132,13 @@ FORCED = ("applied force",)  # of what forces from outside act on
 POSES = (40, 130, 222, 310)  # samples at which the drawing is looked at
 
 _MODULES = (
-    *("answers", "cycle", "drawing", "engine", "forces"),
+    *("cycle", "drawing", "engine", "forces", "given"),
     *("geometry", "quantities", "stage", "taken", "turned", "words"),
 )
 _PROBE = Path(__file__).with_name("page_probe.js").read_text(encoding="utf-8")
 _TURN = """([script, text, values]) => {
-  const { answers, turned } = eval(script);
-  return JSON.stringify(new turned.Turner(answers.decoded(JSON.parse(text))).scene(values));
+  const { given, turned } = eval(script);
+  return JSON.stringify(new turned.Turner(given.valuesOf(JSON.parse(text))).scene(values));
 }"""
 
 

@@ -1,7 +1,7 @@
 // a cycle that is computed is kept under the name of its case, for mutants that only show it
 ([script, text, { name, values, k, curves, poses, fresh }]) => {
   const page = eval(script);
-  const given = page.answers.decoded(JSON.parse(text));
+  const given = page.given.valuesOf(JSON.parse(text));
   const turner = new page.turned.Turner(given);
   const own = new page.engine.Engine(given.rules);
   window.cycles ??= {};

@@ -248,18 +248,3 @@ def test_colours_stand_out_from_their_ground(browser, tmp_path, scheme):
             for name in names:
                 found = visited.page.evaluate(LUMINANCE, [name, "--ground"])
                 assert found >= least, (name, found)
-
-
-def test_a_dragged_pressure_peak_scales_the_pressure(page):
-    page.page.select_option("[data-state=upper]", "gas pressure")
-    highest = r" to ([\d.]+) bar"
-    before = float(re.search(highest, page.page.get_attribute("#upper svg", "aria-label"))[1])
-    x, y = centre(page, "#upper .peak")
-    drag(page, (x, y), (x, y + 10), (x, y + 20))
-    after = float(re.search(highest, page.page.get_attribute("#upper svg", "aria-label"))[1])
-    share = float(page.page.input_value("#knob-pressure")) / 100.0
-    ambient = SCENE.gas.ambient / 1e5 if SCENE.gas.absolute else 0.0
-    assert share < 0.95
-    assert after + ambient == pytest.approx(share * (before + ambient), abs=0.02)
-    assert "pressure=" in page.address
-    assert page.degrees == pytest.approx(390.0)

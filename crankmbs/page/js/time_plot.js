@@ -3,6 +3,7 @@
 import { drawAxes, frameOf } from "./axis.js";
 import { readable } from "./format.js";
 import { spread } from "./shapes.js";
+import { slid } from "./slide.js";
 import { Pen, add, lineOf, set, watched } from "./svg.js";
 
 const RPM = Math.PI / 30;
@@ -11,7 +12,6 @@ const LINE = 1.2; // of the type: a row of words
 const STRIP = 0.24; // of the height, for the fuel
 const HEAD = 0.5; // of the speed's axis, at most kept free for words
 const POINTS = 300; // of a page's curve, besides the frames
-const SLIP = 8; // px that a finger moves across before it moves the cursor: else it scrolls
 
 export class TimePlot {
   /** root : a figure with an svg; given : { time, speed, marks, fuel } of a run, its marks each
@@ -19,7 +19,7 @@ export class TimePlot {
   constructor(root, { time, speed, marks, fuel }, on) {
     Object.assign(this, { marks, fuel, on, frame: null, strip: null, at: null, size: null });
     [this.pages, this.page] = [1, 0];
-    this.held = this.from = null;
+    this.held = false; // the page stays while it is
     this.svg = root.querySelector("svg");
     root.classList.toggle("strip", fuel !== null);
     this.curve = { x: Array.from(time), y: Array.from(speed, (each) => each / RPM) };
@@ -33,11 +33,14 @@ export class TimePlot {
       this.size = size;
       this.draw();
     });
-    this.svg.addEventListener("pointerdown", (event) => this.press(event));
-    this.svg.addEventListener("pointermove", (event) => this.move(event));
-    for (const end of ["pointerup", "pointercancel"]) {
-      this.svg.addEventListener(end, (event) => this.release(event));
-    }
+    slid(this.svg, {
+      press: ({ isPrimary, button }) => (this.held = this.frame && isPrimary && button === 0),
+      move: (event) => this.move(event),
+      release: () => {
+        this.held = false;
+        this.place(...this.at);
+      },
+    });
   }
 
   /** Show the run in so many pages, of which that of the cursor is seen. */
@@ -112,7 +115,7 @@ export class TimePlot {
   place(time, speed) {
     this.at = [time, speed];
     if (!this.frame) return;
-    const page = this.held === null ? this.pageOf(time) : this.page;
+    const page = this.held ? this.page : this.pageOf(time);
     if (page !== this.page) {
       this.page = page;
       this.draw(); // and places the cursor
@@ -126,33 +129,11 @@ export class TimePlot {
     pen.end();
   }
 
-  press(event) {
-    if (!this.frame || !event.isPrimary || event.button !== 0) return;
-    event.preventDefault();
-    this.svg.setPointerCapture?.(event.pointerId);
-    this.held = event.pointerId;
-    this.from = event.pointerType === "touch" ? event.clientX : null;
-    this.move(event);
-  }
-
-  move(event) {
-    if (this.held !== event.pointerId) return;
-    if (this.from !== null && Math.abs(event.clientX - this.from) < SLIP) return;
-    this.from = null;
+  move({ clientX }) {
     const { box, x } = this.frame;
     const { left } = this.svg.getBoundingClientRect();
-    const part = (event.clientX - left - box.left) / (box.right - box.left);
-    this.on.move(x.low + Math.min(Math.max(part, 0), 1) * (x.high - x.low));
-  }
-
-  /** A tap moves the cursor, too; a finger that scrolled does not. */
-  release(event) {
-    if (event.type === "pointerup") {
-      this.from = null;
-      this.move(event);
-    }
-    this.held = null;
-    if (this.at) this.place(...this.at);
+    const part = Math.min(Math.max((clientX - left - box.left) / (box.right - box.left), 0), 1);
+    this.on.move(x.low + part * (x.high - x.low));
   }
 
   described() {

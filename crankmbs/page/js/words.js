@@ -32,7 +32,6 @@ export function numbersOf(cycle) {
   }
   if (train.applies) found.push(["power of applied forces", power("force_power")]);
   found.splice(cycle.prescribed ? 4 : 1, 0, swing); // what swings by itself comes first
-  if (cycle.share !== 1) found.push(["load, rebalanced", `${readable(100 * cycle.share, 1)} %`]);
   const count = train.cylinders.length;
   return count > 1 ? [...found, ["cylinders", `${count}`]] : found;
 }
