@@ -1,6 +1,6 @@
 /** Names of arrows, beside the mechanism: they never cover what they name. */
 
-export const LETTER = 0.62; // of the type: how wide a bold letter is
+export const LETTER = 0.6; // of the type: how wide a bold letter is
 const APART = 1.25; // of the type, between names
 const LEANS = 0.3; // sine of the angle at which names stand on one side of a cylinder
 
