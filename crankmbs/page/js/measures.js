@@ -112,8 +112,8 @@ function rowOf(train, places, sample) {
   return [...places.map(({ size }) => size(v)), ...power];
 }
 
-/** The span cut into panels in which all is smooth but for the sizes of forces, each with rows at its
- * nodes. */
+/** The span cut into panels in which all is smooth but for the sizes of forces, each with rows at
+ * its nodes. */
 function panelsOf(motion, rule, { from: first, to: last }, row) {
   const edges = motion.smoothBetween(first, last);
   return edges.slice(1).map((to, k) => {
