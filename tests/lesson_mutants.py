@@ -40,7 +40,7 @@ MUTANTS = {
     "acceleration": [
         ("(Math.sqrt(21) - 3) / 6", "1 / 4"),
         ("360 - at, 2)", "350 - at, 2)"),
-        ("if (third(middle, ratio) < 0)", "if (third(middle, ratio) > 0)"),
+        ("(phi) => third(phi, ratio)", "(phi) => -third(phi, ratio)"),
         ("-4 * u + 4 *", "-4 * u + 3 *"),
         ("c * c - s * s + ratio ** 2", "c * c + s * s + ratio ** 2"),
         ("(3 * ratio ** 2 * u * inner)", "(2 * ratio ** 2 * u * inner)"),

@@ -28,8 +28,8 @@ SIZE = {"width": 400.0, "height": 300.0, "type": 14.0}
 """Of a drawing and its letters [px]."""
 
 _PROBE = """([script, text, { changed, fine, size }]) => {
-  const { lesson, engine, cycle, turned, answers } = eval(script);
-  const given = answers.decoded(JSON.parse(text));
+  const { lesson, engine, cycle, turned, given: taken } = eval(script);
+  const given = taken.valuesOf(JSON.parse(text));
   const turner = new turned.Turner(given);
   const figures = lesson.start();
   window.cycles ??= new Map();
@@ -96,7 +96,7 @@ def lesson_script(name):
         ("return begun(", "return ("),
         (
             f"return lesson_{name};\n}})()",
-            f"return {{ lesson: lesson_{name}, engine, cycle, turned, answers }};\n}})()",
+            f"return {{ lesson: lesson_{name}, engine, cycle, turned, given }};\n}})()",
         ),
     ):
         assert script.count(old) == 1

@@ -91,8 +91,6 @@ def press():
 
 MADE = {made.__name__: made for made in (absolute_steam, uneven_stages, press)}
 
-EVENED = "lumped"  # the case in which a flywheel for a fluctuation is sought
-
 CURVES = {
     "crank speed": ("crank_speed", 30.0 / math.pi, "rpm"),
     "turning moment": ("crank_torque", 1.0, "N m"),
@@ -134,13 +132,13 @@ FORCED = ("applied force",)  # of what forces from outside act on
 POSES = (40, 130, 222, 310)  # samples at which the drawing is looked at
 
 _MODULES = (
-    *("answers", "cycle", "drawing", "engine", "flywheel", "forces"),
+    *("cycle", "drawing", "engine", "forces", "given"),
     *("geometry", "quantities", "stage", "taken", "turned", "words"),
 )
 _PROBE = Path(__file__).with_name("page_probe.js").read_text(encoding="utf-8")
 _TURN = """([script, text, values]) => {
-  const { answers, turned } = eval(script);
-  return JSON.stringify(new turned.Turner(answers.decoded(JSON.parse(text))).scene(values));
+  const { given, turned } = eval(script);
+  return JSON.stringify(new turned.Turner(given.valuesOf(JSON.parse(text))).scene(values));
 }"""
 
 
@@ -160,11 +158,10 @@ def given(name):
     return text.partition('id="given">')[2].partition("</script>")[0]
 
 
-def probe(page, script, name, *, fresh=True, evens=True):
+def probe(page, script, name, *, fresh=True):
     """All that the modules say of a case.
 
-    fresh : whether the cycle is computed, else it is that of the last time; evens : whether a
-    flywheel is sought, in the case for it
+    fresh : whether the cycle is computed, else it is that of the last time
     """
     scene, values, k = CASES[name]
     asked = {
@@ -177,7 +174,6 @@ def probe(page, script, name, *, fresh=True, evens=True):
             *FORCED[: len(named(scene).force)],
         ],
         "poses": POSES,
-        "evens": evens and name == EVENED,
         "fresh": fresh,
     }
     return json.loads(page.evaluate(_PROBE, [script, given(scene), asked]))

@@ -91,12 +91,6 @@ def balanced():
     return running("yi_diesel_free", "settled", gas=None, torque=(Constant(torque=0.0),))
 
 
-def braked():
-    """Driven by one load, braked by another."""
-    loads = (Constant(torque=9.0), Quadratic(coefficient=1e-5))
-    return running("yi_diesel_free", "settled", gas=None, torque=loads)
-
-
 RUBBING = Friction(ring_force=30.0, ring_pressure=0.03, viscous=20.0)
 
 
@@ -251,9 +245,6 @@ def tasks(angles):
     for name in ("affine", "started", "pushed"):
         asked = {"scene": longer(GUARDS[name]), "angles": angles[name][::3]}
         found[f"dragged {name}"] = "dragged", asked
-    scenes = {"braked": braked()} | {name: GUARDS[name] for name in ("affine", "settling")}
-    for name, scene in scenes.items():
-        found[f"balancing {name}"] = "balancing", {"scene": exported(scene), "speed": 345.0}
     around = np.linspace(0.2, 12.0, 24)
     for name, scene in FREED.items():
         found[f"freeing {name}"] = "freeing", {"scene": exported(scene), "angles": around}

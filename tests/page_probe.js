@@ -1,7 +1,7 @@
 // a cycle that is computed is kept under the name of its case, for mutants that only show it
-([script, text, { name, values, k, curves, poses, evens, fresh }]) => {
+([script, text, { name, values, k, curves, poses, fresh }]) => {
   const page = eval(script);
-  const given = page.answers.decoded(JSON.parse(text));
+  const given = page.given.valuesOf(JSON.parse(text));
   const turner = new page.turned.Turner(given);
   const own = new page.engine.Engine(given.rules);
   window.cycles ??= {};
@@ -10,6 +10,7 @@
   const shown = fresh ? of(asked) : window.cycles[name];
   if (fresh) window.cycles[name] = shown;
   const root = document.createElementNS("http://www.w3.org/2000/svg", "svg");
+  root.style.width = "700px"; // room for names beside the drawing
   document.body.replaceChildren(root);
   const stage = new page.stage.Stage(root, given.compression, () => {});
   const attributes = (each) => each && Object.fromEntries(
@@ -32,8 +33,6 @@
   };
   const bodies = ["piston", "rod", "crank"];
   const dead = page.geometry.deadCentres(shown.train.gears[k].shape);
-  const knob = given.knobs.find(({ name }) => name === "flywheel");
-  const even = (inertia) => of(turner.scene({ ...values, flywheel: inertia })).fluctuation;
   const middle = 0.5 * (shown.angles[77] + shown.angles[78]);
   const [, csv] = page.taken.dataFile(given, shown);
   return csv.text().then((data) => JSON.stringify({
@@ -52,9 +51,5 @@
     numbers: page.words.numbersOf(shown), badge: page.words.badgeOf(shown, given.endings),
     marks: page.words.deadCentreMarks(shown, k, dead),
     rim: page.drawing.inertiaOfRim(posed("none", 0).rim.r / 1000, asked.crank.radius),
-    even: evens
-      ? page.flywheel.inertiaFor(0.04, even, { ...knob, value: asked.crank.inertia },
-        given.sentences.fluctuation)
-      : null,
   }));
 }

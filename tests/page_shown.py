@@ -1,16 +1,13 @@
 """What must be true of what the page says and shows as numbers and arrows: Python's motion, the law
 of Newton for every drawn body."""
 
-import dataclasses
 import io
 import math
-from functools import cache
 
 import numpy as np
 from page_cases import CASES, CURVES, POLARS, SAID, frame, of_cylinder, same, truth
 from page_drawing import drawing_holds
 
-from crankmbs import flywheel
 from crankmbs.compare.lectured import LECTURES, lectured
 from crankmbs.mechanics.train import crank_train
 from crankmbs.mechanics.variables import EVERY, SUMS
@@ -28,7 +25,6 @@ def wrong(name, said):
         "forces": lambda: forces_hold(said["forces"], *about),
         "drawing": lambda: drawing_holds(said, *about),
         "words": lambda: words_hold(said, *about),
-        "flywheel": lambda: flywheel_holds(said["even"], scene),
     }
     return [guard for guard, holds in guards.items() if not holds()]
 
@@ -354,15 +350,3 @@ def peaks(data):
     side = np.abs(data["side_force"].values)
     sizes = {"main bearing, peak": bearing, "side force, peak": side, "crank pin, peak": pin}
     return {name: size.max() for name, size in sizes.items()}
-
-
-def flywheel_holds(found, scene):
-    if found is None:
-        return True
-    settled = dataclasses.replace(scene, run=dataclasses.replace(scene.run, until="settled"))
-    return same(found, flywheel_of(settled), near=1e-6)
-
-
-@cache
-def flywheel_of(scene):
-    return flywheel(scene, 0.04).inertia.value

@@ -29,8 +29,8 @@ SHOWN = {
     "cycle": [
         ("this.mean = (to - from) / this.duration", "this.mean = 1 / this.duration", "vee"),
         (
-            "last.crank_speed - this.samples[0].crank_speed",
-            "this.samples[0].crank_speed - last.crank_speed",
+            "this.samples[POINTS].crank_speed - this.samples[0]",
+            "this.samples[0].crank_speed - this.samples[0]",
             "drifting",
         ),
         ("(this.drift * this.sense) / RPM", "this.drift * this.sense", "drifting"),
@@ -38,12 +38,8 @@ SHOWN = {
         ("shares, omega: mean, alpha: 0", "shares, omega: mean, alpha: 1e3", "vee"),
         ("- from - mean * (v.time - begin)", "- from + mean * (v.time - begin)", "vee"),
         ("leads.map((each) => each - middle)", "leads", "vee"),
-        ("angles[low] + (angles[high]", "angles[low] - (angles[high]", "vee"),
+        ("angles[k - 1] + (angles[k]", "angles[k - 1] - (angles[k]", "vee"),
         ("(this.leads[k + 1] - this.leads[k])", "(this.leads[k] - this.leads[k + 1])", "vee"),
-    ],
-    "flywheel": [
-        ("inertia * (at(inertia) - wanted)", "inertia * (at(inertia) - 1.01 * wanted)", "lumped"),
-        ("const CLOSE = 1e-9;", "const CLOSE = 1e-2;", "lumped"),
     ],
     "forces": [
         ("place(0, at.side_force)", "place(0, -at.side_force)", "vee"),
@@ -155,6 +151,7 @@ DRAWING = {
     "film": "listens and hands on; tests compare its numbers with Python's",
     "format": "writes numbers; its sentences are compared with Python's",
     "labels": "writes names beside what `stage` draws, whose guards look at their rows",
+    "keys": "listens; tests press its keys",
     "knobs": "listens; typed numbers and refusals are compared with Python's",
     "lesson": "begins figures and questions",
     "lesson_acceleration": "its formulas have their mutants in `lesson_mutants`",
@@ -173,6 +170,7 @@ DRAWING = {
     "refused": "an error's class",
     "row": "draws pistons in a row; its mutants are in `lesson_mutants`",
     "shapes": "hands curves on",
+    "slide": "listens; tests drag cursors by mouse and by finger",
     "state": "reads and writes the address; compared with Python's sentences, and read back",
     "svg": "writes elements",
     "time_plot": "draws a run over time; tests read its events and its cursor",

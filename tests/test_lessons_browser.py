@@ -46,16 +46,29 @@ def test_a_lesson_fits_every_screen(kept, name, size):
 @pytest.mark.parametrize("name", LESSONS)
 def test_on_a_laptop_the_first_figure_and_its_words_stand_in_view(kept, name):
     page = kept(name, LAPTOP).page
-    for each in (page.locator(".board").first, page.locator("figure .player").first):
+    for each in (page.locator(".board").first, controls(page)):
         box = each.bounding_box()
         assert box["y"] + box["height"] <= LAPTOP[1]
     assert page.locator(".words").first.bounding_box()["y"] < 0.5 * LAPTOP[1]
 
 
 @pytest.mark.parametrize("name", LESSONS)
-def test_on_a_phone_the_mechanism_of_the_first_figure_stands_in_view(kept, name):
-    box = kept(name, PHONE).page.locator(".machine").first.bounding_box()
-    assert box["y"] + box["height"] <= PHONE[1]
+def test_on_a_phone_the_first_figure_begins_in_view_with_all_that_can_be_turned(kept, name):
+    page = kept(name, PHONE).page
+    machine, plot, turned = (
+        each.bounding_box()
+        for each in (page.locator(".machine").first, page.locator(".plot").first, controls(page))
+    )
+    assert machine["y"] + machine["height"] <= turned["y"]
+    assert turned["y"] + turned["height"] <= plot["y"] <= PHONE[1] - 120.0
+    assert plot["y"] + plot["height"] - machine["y"] <= PHONE[1]  # a turn and what it does
+
+
+def controls(page):
+    """What of the first figure is turned: its sliders and choices, else the crank's angle."""
+    figure = page.locator("figure").first
+    turns = figure.locator(".turns:visible")
+    return turns if turns.count() else figure.locator(".player")
 
 
 @pytest.mark.parametrize("name", LESSONS)
@@ -75,6 +88,23 @@ def test_names_of_arrows_stand_within_their_drawing(kept, name, figure):
         for along, size in (("x", "width"), ("y", "height")):
             assert box[along] >= stage[along] - 2.0
             assert box[along] + box[size] <= stage[along] + stage[size] + 2.0
+
+
+@pytest.mark.parametrize(
+    ("name", "figure"), [("forces", "side"), ("polar", "pin"), ("polar", "turning")]
+)
+def test_names_of_arrows_cover_nothing_of_an_upright_engine(kept, name, figure):
+    opened = kept(name, LAPTOP)
+    engine = [
+        opened.page.locator(f"#{figure} .stage {part}").first.bounding_box()
+        for part in (".chosen .wall", ".rim")
+    ]
+    low = min(box["x"] for box in engine)
+    high = max(box["x"] + box["width"] for box in engine)
+    names = opened.page.locator(f"#{figure} .arrows text").all()
+    assert names
+    for box in (each.bounding_box() for each in names):
+        assert box["x"] + box["width"] <= low + 2.0 or box["x"] >= high - 2.0
 
 
 @pytest.mark.parametrize("size", [PHONE, LAPTOP], ids=str)

@@ -19,7 +19,6 @@ from page_visit import assert_same, expected, opened
 from turned import turned
 
 from crankmbs import Fuel, InputError, Misfire, load_scene, simulate
-from crankmbs.design.rebalance import rebalanced
 from crankmbs.page import page_of
 from crankmbs.page.knobs import knobs_of
 from crankmbs.scene.run import Extent
@@ -321,30 +320,3 @@ def test_the_policy_lets_the_pages_own_script_run_and_no_other(browser, tmp_path
         assert visit.page.evaluate("window.hacked") is None
         assert len(visit.errors) == 1
         assert "Content Security Policy" in visit.errors.pop()
-
-
-@pytest.mark.parametrize(
-    "values", [{"offset": 15.0}, {"speed": 2600.0, "pressure": 80.0}, {"load": 40.0}], ids=str
-)
-def test_a_rebalanced_load_keeps_the_mean_speed(browser, tmp_path, values):
-    """The mean is that of the knob, as where Python scales the load to it."""
-    scene = load_scene("propeller")
-    wanted = values.get("speed", scene.start.speed * 30.0 / math.pi) * math.pi / 30.0
-    address = address_of({**values, "load_is": "rebalanced"})
-    with opened(browser, tmp_path, scene, address) as visited:
-        data = visited.data()
-        assert "load, rebalanced" in visited.text("#numbers")
-        taken = scene.period / (data["time [s]"][-1] - data["time [s]"][0])
-        assert taken == pytest.approx(wanted, rel=1e-9)
-        python = turned(scene, values).with_(run__rtol=1e-11)
-        assert_same(data, expected(rebalanced(python, wanted)))
-
-
-def test_a_load_that_cannot_hold_the_speed_keeps_the_picture_and_says_why(page):
-    page.page.select_option("[data-state=load_is]", "rebalanced")
-    good = page.settle().curve()
-    page.page.select_option("[data-state=load_is]", "given")
-    page.type("load", "0")
-    page.page.select_option("[data-state=load_is]", "rebalanced")
-    assert page.message == "no share of the loads makes the crank settle to this mean speed"
-    assert page.curve() != good

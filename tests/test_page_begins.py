@@ -71,6 +71,26 @@ def test_names_of_forces_stand_beside_a_cylinder_that_leans(browser, tmp_path, n
                 assert right <= stage[1] + 1.0
 
 
+@pytest.mark.parametrize("name", SHOWN)
+def test_on_a_laptop_no_knob_and_no_hint_is_cut_off(browser, tmp_path, name):
+    with opened(browser, tmp_path, name, size=LAPTOP) as visited:
+        wanted, seen = visited.settle().page.evaluate(
+            "() => { const { scrollHeight, clientHeight } = document.getElementById('knobs');"
+            " return [scrollHeight, clientHeight] }"
+        )
+        assert wanted <= seen + 1
+        (foot,) = boxes(visited, "footer")
+        assert foot["y"] + foot["height"] <= LAPTOP[1] + 1.0
+        assert "Space plays" in visited.text("footer")
+
+
+def test_what_changes_comes_first_among_the_numbers(browser, tmp_path):
+    for name, second in (("propeller", "fluctuation"), ("grega_lecture", "side force, peak")):
+        with opened(browser, tmp_path, name, size=PHONE, everything=False) as visited:
+            shown = visited.settle().page.locator("#numbers dt:visible").all_inner_texts()
+            assert shown == ["mean speed", second]
+
+
 @pytest.mark.parametrize("everything", [False, True])
 def test_the_number_of_a_knob_is_seen_whole(browser, tmp_path, everything):
     with opened(browser, tmp_path, "propeller", size=PHONE, everything=everything) as visited:

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from page_engine import engine
+from page_engine import ANSWERS, engine
 from page_scenes import FILMS, POLYTROPE, fuelled
 from test_page_script import fold
 
@@ -46,7 +46,7 @@ def replayed(films):
     """What the page has of a film at times [s], by its own script."""
     with engine() as opened:
         yield lambda name, times: opened.page.evaluate(
-            REPLAYED, [joined("answers"), encoded({"film": films[name], "times": times})]
+            REPLAYED, [joined(ANSWERS), encoded({"film": films[name], "times": times})]
         )
 
 

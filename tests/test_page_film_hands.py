@@ -118,6 +118,39 @@ def test_it_plays_at_the_rate_that_is_chosen_pauses_and_stops_at_its_end(browser
         assert 0.0 < time(visited) < 0.01
 
 
+def test_played_slower_the_plot_shows_a_part_of_the_run(page):
+    """The first tenth, then that of the cursor; its speed is that of the whole run."""
+
+    def ticks():
+        texts = page.page.locator("#upper svg g:nth-of-type(2) text.tick:not(.end)")
+        return [float(text) for text in texts.all_text_contents()]
+
+    whole, slowest = end(page), page.page.locator("#slower option").last.get_attribute("value")
+    before, first = ticks(), float(page.page.input_value("#slower"))
+    assert 0.8 * whole < max(before) <= whole
+    page.page.select_option("#slower", str(round(10 * first)))
+    assert 0.05 * whole < max(ticks()) <= 0.1 * whole
+    slide(page, 0.45 * whole)
+    assert 0.4 * whole <= min(ticks()) < max(ticks()) <= 0.5 * whole
+    dot, speed = page.page.locator("#upper .cursor circle"), page.text("#now-speed")
+    line = page.page.locator("#upper path.simulated")
+    near = "(each, [x, y]) => each.isPointInStroke(new DOMPoint(10 * x, 10 * y))"
+    place = [float(dot.get_attribute(name)) for name in ("cx", "cy")]
+    assert line.evaluate(near, place)
+    page.page.select_option("#slower", slowest)
+    assert page.text("#now-speed") == speed
+    drag(page, centre_of(page, "#upper svg"), (1e4, 300.0))
+    at = time(page)
+    assert 0.45 * whole <= at <= 0.46 * whole
+    page.page.select_option("#slower", str(round(first)))
+    assert ticks() == before
+
+
+def centre_of(visited, what):
+    box = visited.page.locator(what).bounding_box()
+    return box["x"] + 0.5 * box["width"], box["y"] + 0.3 * box["height"]
+
+
 def test_it_stands_still_where_motion_is_to_be_reduced(page):
     page.page.wait_for_timeout(150)
     assert time(page) == 0.0

@@ -1,6 +1,5 @@
 """The page under hands: dragging, keys, playing, pinning, and how it stands on every screen."""
 
-import dataclasses
 import math
 import re
 
@@ -9,7 +8,7 @@ import pytest
 from browser import drawn, resize
 from page_visit import opened
 
-from crankmbs import flywheel, load_scene
+from crankmbs import load_scene
 
 pytestmark = pytest.mark.slow
 
@@ -68,24 +67,6 @@ def test_a_dragged_rim_makes_the_flywheel_heavier(page):
     assert inertia == pytest.approx(1.15**4 * SCENE.crank.inertia, rel=0.06)
     assert page.curve() != speed
     assert f"flywheel={inertia!r}"[:14] in page.address
-
-
-def test_a_flywheel_is_found_for_a_fluctuation(page):
-    page.page.fill("#fluctuation", "5")
-    page.page.press("#fluctuation", "Enter")
-    assert "5.000 %" in page.settle().text("#numbers")
-    settled = dataclasses.replace(SCENE, run=dataclasses.replace(SCENE.run, until="settled"))
-    inertia = float(page.page.input_value("#knob-flywheel"))
-    assert inertia == pytest.approx(flywheel(settled, 0.05).inertia.value, rel=1e-6)
-
-
-def test_a_fluctuation_out_of_reach_keeps_the_picture_and_says_what_could_be(page):
-    good = page.curve()
-    page.page.fill("#fluctuation", "0.01")
-    page.page.press("#fluctuation", "Enter")
-    assert page.message.startswith("fluctuation: the least is 3.")
-    assert page.message.endswith("flywheel of 0.08 kg m^2 at the end of its knob; 0.01 came")
-    assert page.draws(good)
 
 
 def test_a_dragged_cursor_turns_the_crank_and_hovering_reads_values(page):
@@ -187,6 +168,8 @@ def test_the_first_pass_comes_at_once_and_its_error_after_the_second(page):
     page.page.locator("#knob-flywheel").dispatch_event("change")
     assert "…" not in page.settle().text("#numbers")
     assert re.search(r"e-\d+ of its mean", page.text("#trust"))
+    page.page.select_option("[data-state=speed_is]", "prescribed")
+    assert page.settle().text("#trust").startswith("The speed is prescribed: ")
 
 
 @pytest.mark.parametrize("name", ["propeller", "yi_diesel_free"])
@@ -265,18 +248,3 @@ def test_colours_stand_out_from_their_ground(browser, tmp_path, scheme):
             for name in names:
                 found = visited.page.evaluate(LUMINANCE, [name, "--ground"])
                 assert found >= least, (name, found)
-
-
-def test_a_dragged_pressure_peak_scales_the_pressure(page):
-    page.page.select_option("[data-state=upper]", "gas pressure")
-    highest = r" to ([\d.]+) bar"
-    before = float(re.search(highest, page.page.get_attribute("#upper svg", "aria-label"))[1])
-    x, y = centre(page, "#upper .peak")
-    drag(page, (x, y), (x, y + 10), (x, y + 20))
-    after = float(re.search(highest, page.page.get_attribute("#upper svg", "aria-label"))[1])
-    share = float(page.page.input_value("#knob-pressure")) / 100.0
-    ambient = SCENE.gas.ambient / 1e5 if SCENE.gas.absolute else 0.0
-    assert share < 0.95
-    assert after + ambient == pytest.approx(share * (before + ambient), abs=0.02)
-    assert "pressure=" in page.address
-    assert page.degrees == pytest.approx(390.0)

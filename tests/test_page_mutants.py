@@ -8,7 +8,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from page_engine import differences
+from page_engine import ANSWERS, differences
 from page_guards import GUARDS, tasks
 from page_mutants import MUTANTS
 
@@ -64,7 +64,7 @@ def unbroken(page, asked):
 
     @cache
     def answer(key):
-        take(page, joined("answers"))
+        take(page, joined(ANSWERS))
         begin = time.perf_counter()
         text = page.page.evaluate(_RUN, [asked[key], 60.0])
         return text, time.perf_counter() - begin
@@ -124,7 +124,7 @@ def flat(value):
 @pytest.mark.parametrize("module", list(MUTANTS))
 def test_a_broken_law_shows_in_the_numbers(page, asked, unbroken, module):
     source = (FOLDER / f"{module}.js").read_text(encoding="utf-8")
-    script, survivors = joined("answers"), []
+    script, survivors = joined(ANSWERS), []
     for find, replace, by in MUTANTS[module]:
         assert source.count(find) == 1, f"{find!r} stands {source.count(find)} times"
         assert script.count(find) == 1, f"{find!r} stands in another module too"
@@ -136,5 +136,5 @@ def test_a_broken_law_shows_in_the_numbers(page, asked, unbroken, module):
 
 
 def test_every_module_of_the_engine_has_mutants():
-    modules = re.findall(r"^const (\w+) = \(\(\) => \{$", joined("answers"), re.MULTILINE)
-    assert set(modules) - {"answers"} == MUTANTS.keys()
+    modules = re.findall(r"^const (\w+) = \(\(\) => \{$", joined(ANSWERS), re.MULTILINE)
+    assert set(modules) - {ANSWERS.stem} == MUTANTS.keys()

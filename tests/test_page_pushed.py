@@ -99,7 +99,7 @@ def test_what_changes_with_time_is_left_to_python():
 def test_unlike_cylinders_have_no_knobs_of_one_geometry():
     names = [knob.name for knob in knobs_of(STAGES)]
     assert names == ["speed", "load", "pressure", "flywheel", "counterweight"]
-    assert [choice.name for choice in choices_of(STAGES)] == ["speed_is", "load_is"]
+    assert [choice.name for choice in choices_of(STAGES)] == ["speed_is"]
     driven = replace(uneven(load_scene("compressor")), force=())
     assert first_of(driven).knobs == ("speed", "pressure", "counterweight")
     one = replace(load_scene("propeller"), force=(ConstantForce(force=5.0, cylinder=1),))

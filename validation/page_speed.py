@@ -30,9 +30,9 @@ __all__ = ["main"]
 
 _SCENES = ("propeller", "v_twin", "yi_diesel_free")
 _TIMED = """([rules, text]) => {
-  const answers = ANSWERS;
-  const scene = answers.decoded(JSON.parse(text));
-  const engine = answers.engineOf(JSON.parse(rules));
+  const speed = SPEED;
+  const scene = speed.decoded(text);
+  const engine = speed.engineOf(rules);
   const { crank, rod, piston } = scene;
   const knobs = {
     rod: (by) => ({ rod: { ...rod, length: rod.length * (1 + by) } }),
@@ -42,7 +42,7 @@ _TIMED = """([rules, text]) => {
   };
   return Object.entries(knobs).map(([name, turned]) => {
     const turns = Array.from({ length: 300 }, (_, k) =>
-      answers.timed(engine, { ...scene, ...turned(1e-3 * (k + 1)) }));
+      speed.timed(engine, { ...scene, ...turned(1e-3 * (k + 1)) }));
     const middle = (part) => turns.slice(100).map(part).sort((a, b) => a - b)[100];
     return [name, ...turns[0].map((_, part) => middle((turn) => turn[part]))];
   });
@@ -87,7 +87,7 @@ def _print_engine(page: Page, name: str) -> None:
     scene = load_scene(name)
     scene = replace(scene, run=replace(scene.run, until=SETTLED))
     given = [encoded(rules()), encoded(exported(scene))]
-    script = _TIMED.replace("ANSWERS", joined("answers"))
+    script = _TIMED.replace("SPEED", joined(Path(__file__).with_suffix(".js")))
     for knob, *parts in page.evaluate(script, given):
         each = " + ".join(f"{part:.2f}" for part in parts)
         print(f"{name}, {knob}: {sum(parts):.2f} = {each}")

@@ -34,7 +34,6 @@ _ON = "run it with crankmbs run"
 _ENDINGS = {
     "runs_away": Ending.RUNS_AWAY.value[1].removeprefix("does not settle: "),
     "decays": Ending.STALLS.value[1].removeprefix("does not settle: "),
-    "unbalanced": "no share of the loads makes the crank settle to this mean speed",
     "wanders": "the search for the motion that repeats itself finds none",
     "uneven": (
         "misfires make cycles differ, and the motion that repeats itself is one of several cycles: "
@@ -45,13 +44,6 @@ _ENDINGS = {
     "held": f"a jump of the loads holds the speed from both sides; {_ON}",
 }
 _FOLD = f"fold: the rod folds onto the crank, where the motion is not determined; {_ON}"
-
-_PLAIN = {"given": "as given", "rebalanced": "for this speed"}
-
-_FLUCTUATION = (
-    "fluctuation: the {what} is {percent:.4g} %, with the flywheel of {end:g} kg m^2 at the end of "
-    "its knob; {came:g} came"
-)
 
 
 def page_of(scene: Scene, stem: str) -> str:
@@ -85,7 +77,6 @@ def page_of(scene: Scene, stem: str) -> str:
         prescribed=scene.motion is not None,
         uneven="" if scene.fuel is None else UNEVEN,
         choices={choice.name: choice for choice in choices},
-        plain=_PLAIN,
         first=first_of(shown),
         settles=shown.settles and not scene.settles,
     )
@@ -158,7 +149,6 @@ def given_of(scene: Scene) -> dict[str, Any]:
             "no_inertia": NO_INERTIA,
             "uncovered": [_uncovered(*numbered) for numbered in enumerate(scene.force, start=1)],
             "fold": _FOLD,
-            "fluctuation": _FLUCTUATION,
             **{kind: RULES[kind] for kind in _NUMBERS},
         },
     }

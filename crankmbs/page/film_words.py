@@ -93,8 +93,9 @@ def _governed(scene: Scene, governor: Governor) -> Idea:
     )
     begins = cranked if _starts_at_rest(scene) else "The"
     how = " and ".join(["is"] * (governor.kp > 0.0) + ["has been"] * (governor.ki > 0.0))
+    near = " Play it slower to see the first turns: the plot zooms in." * _starts_at_rest(scene)
     return Idea(
         "How does the governor catch the engine?",
         f"{begins} governor sets the share of the fuel, the steps below, "
-        f"by how far the mean speed {how} from {governor.speed / RPM:.6g} rpm.",
+        f"by how far the mean speed {how} from {governor.speed / RPM:.6g} rpm.{near}",
     )

@@ -118,7 +118,7 @@ def knobs_of(scene: Scene) -> tuple[Knob, ...]:
 
 
 def choices_of(scene: Scene) -> tuple[Choice, ...]:
-    """The choices that mean something for a scene; loads of one that settles can be rebalanced.
+    """The choices that mean something for a scene.
 
     >>> [choice.name for choice in choices_of(load_scene("yi_diesel"))]
     ['rod', 'cylinders', 'speed_is']
@@ -133,8 +133,6 @@ def choices_of(scene: Scene) -> tuple[Choice, ...]:
     if _can_be_free(scene):
         kind = "free" if scene.motion is None else "prescribed"
         choices.append(Choice("speed_is", "speed", ("free", "prescribed"), kind))
-    if scene.settles and scene.torque:
-        choices.append(Choice("load_is", "load", ("given", "rebalanced"), "given"))
     return tuple(choices)
 
 

@@ -13,8 +13,9 @@ _IMPORT = re.compile(r'^import \{([^}]*)\} from "\./(\w+)\.js";$', re.MULTILINE)
 _EXPORT = re.compile(r"^export (?=(?:async )?(?:function|class|const) (\w+))", re.MULTILINE)
 
 
-def joined(name: str) -> str:
-    """A module and all that it imports, as one script that gives what the module exports.
+def joined(module: str | Path) -> str:
+    """A module, by its name or its file, and all that it imports, as one script that gives what
+    the module exports.
 
     Each module is a function, so that their names do not meet.
 
@@ -25,30 +26,31 @@ def joined(name: str) -> str:
     >>> joined("geometry").startswith("(() => {")
     True
     """
+    source = module if isinstance(module, Path) else FOLDER / f"{module}.js"
     order: dict[str, str] = {}
-    _collect(name, order)
-    parts = [f"const {module} = (() => {{\n{text}}})();\n" for module, text in order.items()]
-    return f"(() => {{\n{''.join(parts)}return {name};\n}})()"
+    _collect(source, order)
+    parts = [f"const {name} = (() => {{\n{text}}})();\n" for name, text in order.items()]
+    return f"(() => {{\n{''.join(parts)}return {source.stem};\n}})()"
 
 
-def _collect(name: str, order: dict[str, str]) -> None:
+def _collect(source: Path, order: dict[str, str]) -> None:
     """Add a module after those that it imports."""
-    if name in order:
+    if source.stem in order:
         return
-    text, needed = _module(name)
+    text, needed = _module(source)
     for each in needed:
-        _collect(each, order)
-    order[name] = text
+        _collect(FOLDER / f"{each}.js", order)
+    order[source.stem] = text
 
 
 @cache
-def _module(name: str) -> tuple[str, tuple[str, ...]]:
+def _module(source: Path) -> tuple[str, tuple[str, ...]]:
     """The body of a module, and the modules that it imports."""
-    source = (FOLDER / f"{name}.js").read_text(encoding="utf-8")
-    needed = tuple(match[2] for match in _IMPORT.finditer(source))
-    exports = [match[1] for match in _EXPORT.finditer(source)]
-    body = _IMPORT.sub(r"const {\1} = \2;", source)
+    text = source.read_text(encoding="utf-8")
+    needed = tuple(match[2] for match in _IMPORT.finditer(text))
+    exports = [match[1] for match in _EXPORT.finditer(text)]
+    body = _IMPORT.sub(r"const {\1} = \2;", text)
     body = _EXPORT.sub("", body)
     if re.search(r"^(import|export)\b", body, re.MULTILINE):
-        raise ValueError(f"{name}.js: an import or export that cannot be joined")
+        raise ValueError(f"{source.name}: an import or export that cannot be joined")
     return f"{body}return {{ {', '.join(exports)} }};\n", needed

@@ -5,9 +5,9 @@
  * and once its fixed point is known the motion is one sweep without any solving.
  */
 import { Sum, eliminate } from "./arrays.js";
-import { ringTorqueIn } from "./friction.js";
-import { torqueOverAngle } from "./loads.js";
 import { Path } from "./path.js";
+import { fillSystem, nodesIn } from "./rule.js";
+import { givenAt } from "./tables.js";
 
 /** The maps of the cells of a period, in the order in which they are passed.
  *
@@ -32,22 +32,16 @@ export class AffinePeriod {
   fill() {
     const { section, branch, stages: s, count } = this;
     const { train, grid, sense, phases, first } = section;
-    const { friction } = train;
-    const { tables } = grid;
-    const { inertia, torque, angles } = tables;
-    const overAngle = train.loads.some((load) => load.over_angle !== null);
+    const state = { shares: [], phases, sense };
     for (let c = 0; c < count; c++) {
       const number = (first + count + (sense > 0 ? c : -1 - c)) % count;
       this.number[c] = number;
-      for (let j = 0; j < s; j++) {
-        const i = number * s + (sense > 0 ? j : s - 1 - j);
+      nodesIn(grid, number, sense).forEach((of, j) => {
         const to = c * s + j;
-        this.inertia[to] = train.crank.inertia + inertia[i];
-        this.push[to] = torque[i] + branch.c0;
-        if (overAngle) this.push[to] += torqueOverAngle(train.loads, phases, angles[i]);
-        this.push[to] -= sense * ringTorqueIn(friction, tables, i, []);
+        this.inertia[to] = train.crank.inertia + of.inertia;
+        this.push[to] = givenAt(train, of, state, 0) + branch.c0;
         this.rate[to] = (2 * branch.c2) / this.inertia[to];
-      }
+      });
     }
   }
 
@@ -59,14 +53,11 @@ export class AffinePeriod {
     const both = new Float64Array(2 * s);
     for (let c = 0; c < count; c++) {
       const width = this.width(c);
+      fillSystem(system, section.grid.rule, width, rate, c * s);
       for (let j = 0; j < s; j++) {
         both[2 * j] = 1;
         both[2 * j + 1] = 0;
-        for (let i = 0; i < s; i++) {
-          const step = width * matrix[j * s + i];
-          both[2 * j + 1] += step * push[c * s + i];
-          system[j * s + i] = (i === j ? 1 : 0) - step * rate[c * s + i];
-        }
+        for (let i = 0; i < s; i++) both[2 * j + 1] += width * matrix[j * s + i] * push[c * s + i];
       }
       eliminate(system, both, s, 2);
       for (let j = 0; j < s; j++) {

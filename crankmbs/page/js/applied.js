@@ -10,14 +10,13 @@
  * with the piston's velocity v = -x1 omega. The crank feels -x1 F: of the angle alone, but for
  * jumping, which resists as rings do, and viscous, which is a drag.
  */
-import { countUpTo, wrapped } from "./arrays.js";
-import { knotsOver, valueAt, valuesAlong } from "./cubics.js";
+import { countUpTo, repeated } from "./arrays.js";
+import { knotsOver, valueAt } from "./cubics.js";
 import { centresOver, slides } from "./friction.js";
 import { strokeOf, throwAngles } from "./geometry.js";
 import { strongOf } from "./strong.js";
 
 const KNOT = 1e-9; // rad: on a jump the force is that after it
-const TURN = 2 * Math.PI;
 const NONE = { steady: 0, jumping: 0 };
 
 /** Those that act on the piston of cylinder k, from 0. */
@@ -48,23 +47,6 @@ function addOverTravel(found, { forward, back }, s, x1) {
 function lineAt({ knots, pieces }, s, x1) {
   const k = 3 * countUpTo(knots, s - KNOT * x1);
   return pieces[k] + pieces[k + 1] * s;
-}
-
-/** The same at crank angles, as lists; null where none acts. loop : { s, x1 } there */
-export function appliedAlong(applied, { s, x1 }, angles, phase) {
-  if (!applied.length) return null;
-  const steady = new Float64Array(angles.length);
-  const jumping = new Float64Array(angles.length);
-  for (const law of applied) {
-    const cycle = law.over_angle && valuesAlong(law.over_angle, angles, phase);
-    for (let i = 0; i < angles.length; i++) {
-      const found = { steady: cycle ? cycle[i] : 0, jumping: 0 };
-      addOverTravel(found, law, s[i], x1[i]);
-      steady[i] += found.steady;
-      jumping[i] += found.jumping;
-    }
-  }
-  return { steady, jumping };
 }
 
 /** The whole force on a piston [N] at a speed [rad/s]. */
@@ -98,11 +80,8 @@ function travelMarks({ knots, jumps }, shape, phase, period, strong) {
   const found = [];
   for (const knot of strong ? jumps : knots) {
     if (!(knot > 0 && knot < stroke)) continue;
-    for (const angle of throwAngles(knot, stroke - knot, shape)) {
-      for (let turn = 0; turn < period - 1; turn += TURN) {
-        found.push(wrapped(angle + turn - phase, period));
-      }
-    }
+    const angles = throwAngles(knot, stroke - knot, shape);
+    found.push(...repeated(angles.map((angle) => angle - phase), period));
   }
   return found;
 }

@@ -6,6 +6,15 @@ export function wrapped(x, period) {
   return rest < 0 ? rest + period : rest;
 }
 
+/** Angles of every turn, or of every `own` period, over a period from 0 up to it [rad]. */
+export function repeated(angles, period, own = 2 * Math.PI) {
+  const found = [];
+  for (let turn = 0; turn < period - 1; turn += own) {
+    for (const angle of angles) found.push(wrapped(angle + turn, period));
+  }
+  return found;
+}
+
 /** How many of increasing values, from number `low` up to `high`, are not above x. */
 export function countUpTo(values, x, low = 0, high = values.length) {
   while (low < high) {
@@ -53,6 +62,32 @@ function swapRows(matrix, a, b, width) {
   }
 }
 
+/** A root of a function that is below 0 at one place and not below at a later one, by halving. */
+export function rootIn(f, low, high) {
+  if (f(low) >= 0) return low;
+  for (let n = 0; n < 60 && high - low > 1e-16; n++) {
+    const middle = 0.5 * (low + high);
+    if (f(middle) >= 0) high = middle;
+    else low = middle;
+  }
+  return high;
+}
+
+/** Where a rising function is 0, by Newton's method within [low, high] from x on; f : value and
+ * slope at a place; hair : of a place, its rounding. */
+export function rootOf(f, [low, high], x, hair) {
+  for (let n = 0; n < 100; n++) {
+    const [value, slope] = f(x);
+    if (value > 0) high = x;
+    else low = x;
+    let next = x - value / slope;
+    if (!(next >= low && next <= high)) next = 0.5 * (low + high);
+    if (Math.abs(next - x) <= hair(next)) return next;
+    x = next;
+  }
+  return x;
+}
+
 /** A sum that keeps what each step loses by rounding (Neumaier). */
 export class Sum {
   constructor(value = 0) {
@@ -78,17 +113,19 @@ export function distinct(values, hair) {
   return sorted.filter((value, k) => k === 0 || value - sorted[k - 1] > hair);
 }
 
-/** The function, which remembers its last answer and gives it again for the same arguments.
+/** The function, which remembers its last answer and gives it again for the same arguments, or for
+ * those of which `key` gives the same.
  *
- * Arguments are compared as objects, lists of them each by each: what is new must be a new object.
+ * They are compared as objects, lists of them each by each: what is new must be a new object.
  */
-export function remembering(compute) {
+export function remembering(compute, key = (...given) => given) {
   let before = null;
   let answer = null;
   return (...given) => {
-    if (before === null || !isSame(given, before)) {
+    const now = key(...given);
+    if (before === null || !isSame(now, before)) {
       answer = compute(...given);
-      before = given;
+      before = now;
     }
     return answer;
   };

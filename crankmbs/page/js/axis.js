@@ -18,12 +18,6 @@ export function frameOf(box, curves, { shape, overAngle, holds = {} }) {
   return { box, right, up, x, y };
 }
 
-/** The value of a frame's axis at a pointer. */
-export function valueAt({ clientY }, svg, { box, y }) {
-  const part = (box.bottom - clientY + svg.getBoundingClientRect().top) / (box.bottom - box.top);
-  return y.low + part * (y.high - y.low);
-}
-
 /** Draw the axes of a frame into a group.
  *
  * about : { type in pixels, shape, marks at dead centres, overAngle, last whether the values to the

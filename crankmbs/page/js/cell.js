@@ -1,11 +1,10 @@
 /** Gauss collocation in one cell of the crank angle: Newton's method on energies at its nodes. */
 import { eliminate } from "./arrays.js";
-import { torqueOf, torqueOverAngle } from "./loads.js";
-import { integralTo } from "./rule.js";
-import { ringTorqueIn } from "./friction.js";
-import { givenAt, reduceAt } from "./tables.js";
+import { torqueOf } from "./loads.js";
+import { fillSystem, integralTo } from "./rule.js";
+import { givenAt, movingAt } from "./tables.js";
 
-const SLOW = Math.PI / 360; // rad: where the energy would be gone within this angle, it is refused
+export const SLOW = Math.PI / 360; // rad: within which no energy may be gone, or it is refused
 const SETTLED = 1e-15; // relative change of the energy in Newton's last step
 const GOOD = 1e-11;
 const NEWTON = 30;
@@ -24,31 +23,20 @@ export class Stepper {
     this.work = this.spent = 0;
   }
 
-  /** Inertia and torque over the angle at the nodes of a whole cell, from the tables. */
-  load({ train, phases, firing }, { tables }, number, sense) {
-    const s = this.given.length;
-    const { shares } = firing;
-    const { friction } = train;
-    for (let j = 0; j < s; j++) {
-      const i = number * s + (sense > 0 ? j : s - 1 - j);
-      this.inertia[j] = train.crank.inertia + tables.inertia[i];
-      let given = tables.torque[i] + torqueOverAngle(train.loads, phases, tables.angles[i]);
-      for (let c = 0; c < shares.length; c++) given += shares[c] * tables.combustion[c][i];
-      this.given[j] = given - sense * ringTorqueIn(friction, tables, i, shares);
-      this.drag[j] = tables.drag[i];
-    }
+  /** Take what the crank train is at the nodes, `movingAt` each, in the order they are passed. */
+  load({ train, phases, firing: { shares }, sense }, nodes) {
+    nodes.forEach((of, j) => {
+      this.inertia[j] = train.crank.inertia + of.inertia;
+      this.given[j] = givenAt(train, of, { shares, phases, sense }, 0);
+      this.drag[j] = of.drag;
+    });
   }
 
-  /** The same from where a motion is to an angle. */
-  tabulate({ train, phases, firing, theta, sense }, target) {
-    this.rule.nodes.forEach((node, j) => {
-      const angle = theta + (target - theta) * node;
-      const of = reduceAt(train, angle);
-      this.inertia[j] = of.inertia;
-      this.given[j] = givenAt(train, of, firing.shares, sense, 0);
-      this.drag[j] = of.drag;
-      this.given[j] += torqueOverAngle(train.loads, phases, angle);
-    });
+  /** The same of a cell from where a motion is to an angle. */
+  tabulate(motion, target) {
+    const { train, theta } = motion;
+    const at = (node) => movingAt(train, theta + (target - theta) * node);
+    this.load(motion, Array.from(this.rule.nodes, at));
   }
 
   /** Solve the cell of a signed width from a motion's state on; whether that converges. */
@@ -101,12 +89,11 @@ export class Stepper {
   correct(begin, width) {
     const { rule, energy, torque, rate, right, system } = this;
     const s = energy.length;
+    fillSystem(system, rule, width, rate);
     for (let j = 0; j < s; j++) {
       right[j] = begin;
       for (let i = 0; i < s; i++) {
-        const step = width * rule.matrix[j * s + i];
-        right[j] += step * (torque[i] - rate[i] * energy[i]);
-        system[j * s + i] = (i === j ? 1 : 0) - step * rate[i];
+        right[j] += width * rule.matrix[j * s + i] * (torque[i] - rate[i] * energy[i]);
       }
     }
     eliminate(system, right, s, 1);
@@ -122,12 +109,8 @@ export class Stepper {
   growth(width) {
     const { rule, rate, right, system } = this;
     const s = rate.length;
-    for (let j = 0; j < s; j++) {
-      right[j] = 1;
-      for (let i = 0; i < s; i++) {
-        system[j * s + i] = (i === j ? 1 : 0) - width * rule.matrix[j * s + i] * rate[i];
-      }
-    }
+    fillSystem(system, rule, width, rate);
+    right.fill(1);
     eliminate(system, right, s, 1);
     let grown = 0;
     for (let j = 0; j < s; j++) grown += width * rule.weights[j] * rate[j] * right[j];

@@ -1,5 +1,6 @@
 /** The page's choices and words: selects, slow motion, measures, badge. */
 import { isShape } from "./gas.js";
+import { find } from "./keys.js";
 import { Player } from "./player.js";
 import { choices } from "./quantities.js";
 import { set, write } from "./svg.js";
@@ -7,10 +8,6 @@ import { spanOf } from "./view.js";
 import { badgeOf, numbersOf, trustOf } from "./words.js";
 
 let shownAs = ""; // the choices that stand there, as text
-
-export function find(id) {
-  return document.getElementById(id);
-}
 
 /** What a plot can show of a scene, as options. */
 export function fillChoices(select, scene) {
@@ -58,11 +55,10 @@ export function showSlower(cycle, changed) {
   return Number(slower.value);
 }
 
-/** Measures, badge, whether the pressure was carried over, and whether a flywheel can be sought.
- * error : of the quick pass */
+/** Measures, badge, and whether the pressure was carried over. error : of the quick pass */
 export function showWords(given, cycle, error) {
   const all = numbersOf(cycle);
-  write(find("trust"), trustOf(error));
+  write(find("trust"), trustOf(cycle, error));
   const list = find("numbers");
   while (list.children.length > all.length) list.lastChild.remove();
   all.forEach(([name, value], n) => {
@@ -75,7 +71,6 @@ export function showWords(given, cycle, error) {
   set(find("badge"), { class: good ? "good" : "drifts" });
   const own = given.scene.gas?.shape;
   find("carried").hidden = !own || isShape(cycle.train.shape, own);
-  find("fluctuation")?.toggleAttribute("disabled", cycle.prescribed);
 }
 
 function measure() {
@@ -91,9 +86,8 @@ function options(select, count) {
 }
 
 /** The knobs that change nothing at present. */
-export function unused(cycle, given, values) {
-  if (cycle.prescribed && given.scene.motion === null) return ["flywheel", "load"];
-  return values.load_is === "rebalanced" ? ["load"] : [];
+export function unused(cycle, given) {
+  return cycle.prescribed && given.scene.motion === null ? ["flywheel", "load"] : [];
 }
 
 /** Say a sentence in the place of the badge, or none. stale : whether the picture is another one
@@ -116,10 +110,4 @@ export function unfold(all = find("more").getAttribute("aria-expanded") === "fal
 export function seenPlots() {
   const all = document.documentElement.classList.contains("full");
   return all ? ["upper", "lower"] : ["upper"];
-}
-
-/** Large type for a projector, or no longer. */
-export function enlarge({ target }) {
-  const on = document.documentElement.classList.toggle("projector");
-  target.setAttribute("aria-pressed", String(on));
 }

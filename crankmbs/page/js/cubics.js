@@ -4,8 +4,9 @@
  * A cycle is { knots, coefficients }: knots (n + 1) [rad], the last one period above the first;
  * coefficients (4 x n), by descending power of the angle behind the knot.
  */
-import { countUpTo, eliminate, wrapped } from "./arrays.js";
+import { countUpTo, wrapped } from "./arrays.js";
 
+const AROUND = 60; // rows beside those of a period
 const NEAR = 1e-9; // rad: an angle this close below a knot counts as on it
 
 /** Value of a cycle at an angle [rad]; on a jump that after it. */
@@ -15,31 +16,9 @@ export function valueAt(cycle, angle) {
   const first = knots[0];
   const ahead = wrapped(angle - first + NEAR, knots[n] - first);
   const k = countUpTo(knots, ahead + first, 1, n) - 1;
-  return piece(coefficients, n, k, ahead - NEAR - (knots[k] - first));
-}
-
-/** Value of cubic k of n behind its knot [rad]. */
-function piece(coefficients, n, k, x) {
+  const x = ahead - NEAR - (knots[k] - first);
   const cubic = (coefficients[k] * x + coefficients[n + k]) * x + coefficients[2 * n + k];
   return cubic * x + coefficients[3 * n + k];
-}
-
-/** Values of a cycle at increasing angles [rad], all shifted by another: from knot to knot, without
- * looking for each. */
-export function valuesAlong(cycle, angles, shift) {
-  const { knots, coefficients } = cycle;
-  const n = knots.length - 1;
-  const first = knots[0];
-  const period = knots[n] - first;
-  const found = new Float64Array(angles.length);
-  let k = 0;
-  for (let i = 0; i < angles.length; i++) {
-    const ahead = wrapped(angles[i] + shift - first + NEAR, period);
-    if (ahead + first < knots[k]) k = 0;
-    while (k + 1 < n && knots[k + 1] <= ahead + first) k++;
-    found[i] = piece(coefficients, n, k, ahead - NEAR - (knots[k] - first));
-  }
-  return found;
 }
 
 /** The knots of a cycle, shifted by an angle and repeated over a period, from 0 to it [rad]. */
@@ -122,10 +101,16 @@ function openCubics(x, y, interpolation) {
   return straight(x, y, interpolation);
 }
 
+/** Rows repeated on either side make what the slopes at their ends are irrelevant: a slope takes of
+ * one so many rows away at most a factor 2 ** -60. */
 function periodicCubics(x, y, interpolation) {
-  if (interpolation === "cubic") return hermite(x, y, periodicSplineSlopes(x, y));
-  if (interpolation === "pchip") return hermite(x, y, periodicPchipSlopes(x, y));
-  return straight(x, y, interpolation);
+  const n = x.length - 1;
+  const period = x[n] - x[0];
+  const wide = Array.from({ length: n + 1 + 2 * AROUND }, (_, k) => k - AROUND);
+  const row = (k) => ((k % n) + n) % n;
+  const angle = wide.map((k) => x[row(k)] + Math.floor(k / n) * period);
+  const cubics = openCubics(angle, wide.map((k) => y[row(k)]), interpolation);
+  return cubics.map((each) => each.slice(AROUND, AROUND + n));
 }
 
 function straight(x, y, interpolation) {
@@ -157,22 +142,17 @@ function pchipSlopes(x, y) {
   return slope;
 }
 
-/** Three-point slope at an end, kept from overshooting. */
+/** Slope at an end of the parabola through three rows. */
+function threePoint(near, next, rise, riseNext) {
+  return ((2 * near + next) * rise - near * riseNext) / (near + next);
+}
+
+/** The same, kept from overshooting. */
 function endSlope(near, next, rise, riseNext) {
-  const slope = ((2 * near + next) * rise - near * riseNext) / (near + next);
+  const slope = threePoint(near, next, rise, riseNext);
   if (Math.sign(slope) !== Math.sign(rise)) return 0;
   const turns = Math.sign(rise) !== Math.sign(riseNext);
   return turns && Math.abs(slope) > 3 * Math.abs(rise) ? 3 * rise : slope;
-}
-
-function periodicPchipSlopes(x, y) {
-  // three rows more on either side make the one-sided end slopes irrelevant
-  const n = x.length - 1;
-  const period = x[n] - x[0];
-  const wide = Array.from({ length: n + 7 }, (_, k) => k - 3);
-  const row = (k) => ((k % n) + n) % n;
-  const angle = wide.map((k) => x[row(k)] + Math.floor(k / n) * period);
-  return pchipSlopes(angle, wide.map((k) => y[row(k)])).slice(3, 4 + n);
 }
 
 /** Slopes of the twice differentiable spline with the third derivative continuous at the second
@@ -208,57 +188,10 @@ function notAKnot(near, next, rise, riseNext) {
   return ((near + 2 * both) * next * rise + near * near * riseNext) / both;
 }
 
-function parabolaSlopes(width, rise) {
-  const matrix = Float64Array.of(1, 1, 0, width[1], 2 * (width[0] + width[1]), width[0], 0, 1, 1);
-  const slope = Float64Array.of(
-    2 * rise[0],
-    3 * (width[0] * rise[1] + width[1] * rise[0]),
-    2 * rise[1],
-  );
-  eliminate(matrix, slope, 3, 1);
-  return slope;
-}
-
-/** Slopes of the periodic spline, the last equal to the first. */
-function periodicSplineSlopes(x, y) {
-  const n = x.length - 1;
-  const width = Array.from({ length: n }, (_, k) => x[k + 1] - x[k]);
-  const rise = width.map((w, k) => (y[k + 1] - y[k]) / w);
-  const before = (k) => (k + n - 1) % n;
-  if (n < 3) return periodicByElimination(width, rise, n);
-  const diagonal = width.map((w, k) => 2 * (width[before(k)] + w));
-  const right = width.map((w, k) => 3 * (w * rise[before(k)] + width[before(k)] * rise[k]));
-  const lower = [...width];
-  const upper = width.map((_, k) => width[before(k)]);
-  // the two corners by the formula of Sherman and Morrison
-  const gamma = -diagonal[0];
-  const corner = lower[0];
-  const other = upper[n - 1];
-  diagonal[0] -= gamma;
-  diagonal[n - 1] -= (corner * other) / gamma;
-  const rank = new Array(n).fill(0);
-  rank[0] = gamma;
-  rank[n - 1] = other;
-  const plain = tridiagonal(lower, diagonal, upper, right);
-  const along = tridiagonal(lower, diagonal, upper, rank);
-  const share = (plain[0] + (corner / gamma) * plain[n - 1]) /
-    (1 + along[0] + (corner / gamma) * along[n - 1]);
-  const slope = plain.map((each, k) => each - share * along[k]);
-  return [...slope, slope[0]];
-}
-
-function periodicByElimination(width, rise, n) {
-  const matrix = new Float64Array(n * n);
-  const slope = new Float64Array(n);
-  for (let k = 0; k < n; k++) {
-    const before = (k + n - 1) % n;
-    matrix[k * n + before] += width[k];
-    matrix[k * n + k] += 2 * (width[before] + width[k]);
-    matrix[k * n + ((k + 1) % n)] += width[before];
-    slope[k] = 3 * (width[k] * rise[before] + width[before] * rise[k]);
-  }
-  eliminate(matrix, slope, n, 1);
-  return [...slope, slope[0]];
+/** Slopes of the parabola through three rows. */
+function parabolaSlopes([near, far], [first, last]) {
+  const middle = (far * first + near * last) / (near + far);
+  return [threePoint(near, far, first, last), middle, threePoint(far, near, last, first)];
 }
 
 /** Solve a tridiagonal system; the end rows of a spline may have a small diagonal, and are mild. */

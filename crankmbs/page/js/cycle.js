@@ -1,4 +1,5 @@
 /** One cycle of a scene as the page shows it: the settled one, or one that says how it drifts. */
+import { countUpTo } from "./arrays.js";
 import { filled } from "./format.js";
 import { LECTURES, cylinderLectured, lecturedAt } from "./lecture.js";
 import { measuredSpan, measuresOf } from "./measures.js";
@@ -12,14 +13,12 @@ const RPM = Math.PI / 30;
 
 /** The cycle of a scene.
  *
- * fine : with cells cut until they are good, and measures; warm : a cycle close by, or null;
- * speed : the mean [rad/s] to which the loads are rebalanced, or null
+ * fine : with cells cut until they are good, and measures; warm : a cycle close by, or null
  *
  * Raises Refused with the sentence of a motion that ends before its time.
  */
-export function cycleOf(engine, asked, endings, { fine = false, warm = null, speed = null } = {}) {
+export function cycleOf(engine, scene, endings, { fine = false, warm = null } = {}) {
   const settings = fine ? FINE : QUICK;
-  const { scene, share } = balanced(engine, asked, endings, { speed, settings });
   let motion = engine.run(scene, { ...settings, warm: warm?.energy ?? null });
   let why = null;
   if (scene.run.settled && !scene.freed && motion.ending !== "complete") {
@@ -32,32 +31,23 @@ export function cycleOf(engine, asked, endings, { fine = false, warm = null, spe
   }
   const span = measuredSpan(scene, motion.from, motion.to);
   const measures = fine ? measuresOf(motion, engine.rules[9], span) : null;
-  return new Cycle(scene, motion, span, { why, measures, share });
-}
-
-/** A scene with its loads so that it settles to a mean speed, and by what share they are scaled. */
-function balanced(engine, scene, endings, { speed, settings }) {
-  if (speed === null || !scene.run.settled) return { scene, share: 1 };
-  const found = engine.rebalanced(scene, speed, settings);
-  if (found.ending !== "complete") throw new Refused(endings[found.ending]);
-  return found;
+  return new Cycle(scene, motion, span, { why, measures });
 }
 
 /** Samples of one cycle, and what the formulas say at them. */
 class Cycle {
-  constructor(scene, motion, span, { why, measures, share }) {
-    const { from, to, kind } = span;
-    Object.assign(this, { scene, motion, from, to, why, measures, share, window: kind });
+  constructor(scene, motion, { from, to }, { why, measures }) {
+    Object.assign(this, { scene, motion, from, to, why, measures });
     this.train = motion.train;
     this.sense = Math.sign(to - from);
     this.angles = Array.from({ length: POINTS + 1 }, (_, k) => from + ((to - from) * k) / POINTS);
     this.rows = this.angles.map((theta) => motion.at(theta));
     this.samples = this.rows.map((row) => reactionsAt(this.train, row));
-    const last = this.samples[POINTS];
-    this.begin = this.samples[0].time;
-    this.duration = last.time - this.begin;
+    this.times = this.samples.map(({ time }) => time);
+    this.begin = this.times[0];
+    this.duration = this.times[POINTS] - this.begin;
     this.mean = (to - from) / this.duration;
-    this.drift = last.crank_speed - this.samples[0].crank_speed;
+    this.drift = this.samples[POINTS].crank_speed - this.samples[0].crank_speed;
     this.energy = motion.path?.cells[0]?.energy;
     this.answers = new Map();
     this.leads = leadsOf(this);
@@ -113,16 +103,18 @@ class Cycle {
 
   /** The angle at a time counted from the cycle's begin, which starts again after it. */
   angleAt(time) {
-    const { samples, begin, duration, angles } = this;
+    const { times, begin, duration, angles } = this;
     const within = begin + time - Math.floor(time / duration) * duration;
-    let [low, high] = [0, POINTS];
-    while (high - low > 1) {
-      const middle = (low + high) >> 1;
-      if (samples[middle].time <= within) low = middle;
-      else high = middle;
-    }
-    const part = (within - samples[low].time) / (samples[high].time - samples[low].time);
-    return angles[low] + (angles[high] - angles[low]) * part;
+    const k = Math.min(countUpTo(times, within, 1), POINTS);
+    const part = (within - times[k - 1]) / (times[k] - times[k - 1]);
+    return angles[k - 1] + (angles[k] - angles[k - 1]) * part;
+  }
+
+  /** The angle of the cycle that is whole periods away from another [rad]. */
+  within(theta) {
+    const [low, period] = [Math.min(this.from, this.to), Math.abs(this.to - this.from)];
+    const outside = theta > low + period + 1e-9 || theta < low - 1e-9;
+    return outside ? theta - Math.floor((theta - low) / period) * period : theta;
   }
 
   /** Time from the cycle's begin to an angle. */

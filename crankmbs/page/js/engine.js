@@ -13,25 +13,22 @@ import { Loop, runningGear, topPosition } from "./geometry.js";
 import { DIAGRAM, SEEN, pressuresOf } from "./gas.js";
 import { Travel } from "./motion.js";
 import { readCell } from "./path.js";
-import { rebalanced } from "./rebalance.js";
 import { partsOf } from "./refine.js";
 import { settle } from "./settled.js";
 import { speedLaw } from "./speed.js";
 import { strongOf } from "./strong.js";
-import { Tables, edgesOf, reduceAt, split } from "./tables.js";
+import { edgesOf, nodeMaker, reduceAt, split } from "./tables.js";
 
 const ROUNDS = 8; // of cutting cells
 const MOST_CELLS = 20000;
-const CLOSE = 1e-6; // of the mean speed, where loads are rebalanced while a knob moves
-const CLOSEST = 1e-12;
 const SAME = 1e-9; // rad: a decision so near has not been passed
 
 /** rules : of Gauss collocation, by their number of stages. */
 export class Engine {
   constructor(rules) {
     this.rules = rules;
-    this.tables = new Tables();
-    this.finer = new Tables();
+    this.nodes = nodeMaker();
+    this.finer = nodeMaker();
     this.shapes = remembering((lengths) =>
       lengths.map(([radius, length, offset]) => ({ radius, length, offset })));
     this.loops = remembering((shapes) => shapes.map((shape) => new Loop(shape)));
@@ -84,7 +81,7 @@ export class Engine {
     let edges = this.edgesFor(train, scene.grid_period, quick);
     if (scene.motion !== null) return new Prescribed(train, scene.motion, edges, scene.run);
     for (let round = 0; ; round++) {
-      const motion = this.pass(scene, train, this.grid(train, edges, stages, this.tables), warm);
+      const motion = this.pass(scene, train, this.grid(train, edges, stages, this.nodes), warm);
       if (quick || round >= ROUNDS || edges.length > MOST_CELLS) return motion;
       if (motion.ending !== "complete") return motion;
       const finer = this.grid(train, edges, stages + 2, this.finer);
@@ -92,18 +89,6 @@ export class Engine {
       if (parts.every((each) => each === 1)) return motion;
       edges = split(edges, parts);
     }
-  }
-
-  /** A scene with its loads scaled so that it settles to a mean speed [rad/s]: `rebalanced`. */
-  rebalanced(scene, speed, { stages = 5, tolerance = null } = {}) {
-    const train = this.train(scene, true);
-    const edges = this.edgesFor(train, scene.grid_period, true);
-    const grid = this.grid(train, edges, stages, this.tables);
-    const rough = rebalanced(scene, speed, { train, grid }, CLOSE);
-    if (tolerance === null || rough.ending !== "complete") return rough;
-    const motion = this.run(rough.scene, { stages, tolerance });
-    const fine = rebalanced(rough.scene, speed, motion, CLOSEST);
-    return { ...fine, share: rough.share * fine.share };
   }
 
   edgesFor(train, period, quick) {
@@ -120,9 +105,9 @@ export class Engine {
     return this.edges(shapes, cylinders, cycles, [...marks, bends, kinks], period);
   }
 
-  grid(train, edges, stages, tables) {
+  grid(train, edges, stages, maker) {
     const rule = this.rules[stages];
-    return { edges, rule, tables: tables.of(train, edges, rule) };
+    return { edges, rule, nodes: maker(train, edges, rule) };
   }
 
   pass(scene, train, grid, warm) {

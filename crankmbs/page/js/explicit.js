@@ -1,5 +1,5 @@
 /** Explicit one-step methods over the crank angle, as one would write them oneself. */
-import { branchAt, firstPhases, torqueOf, torqueOverAngle } from "./loads.js";
+import { branchAt, firstPhases, torqueOf } from "./loads.js";
 import { givenAt, reduceAt } from "./tables.js";
 
 /** By name: the order, and a step of dE/dtheta = Q(theta, E) by h. */
@@ -49,8 +49,7 @@ function torqueOn({ train, sense, samples: [first], rows: [{ shares }] }) {
   return (theta, energy) => {
     const of = reduceAt(train, theta);
     const omega = sense * Math.sqrt(Math.max(2 * energy, 0) / of.inertia);
-    const given = givenAt(train, of, shares, sense, omega);
     const branch = branchAt(train.loads, phases, 0, omega, Infinity);
-    return given + torqueOf(branch, 0, omega) + torqueOverAngle(train.loads, phases, theta);
+    return givenAt(train, of, { shares, phases, sense }, omega) + torqueOf(branch, 0, omega);
   };
 }

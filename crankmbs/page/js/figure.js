@@ -31,7 +31,9 @@ export class Figure {
     this.cycle = null;
     this.theta = null;
     this.stopped = false; // by hand
-    this.player = new Player({ cycle: () => this.cycle, move: (theta) => this.pose(theta) });
+    const [move, button] = [(theta) => this.pose(theta), this.find(".play")];
+    const words = { still: "►", moving: "❚❚" };
+    this.player = new Player({ cycle: () => this.cycle, move, button, ...words });
     this.listen();
     this.update();
   }
@@ -93,9 +95,6 @@ export class Figure {
 
   play(wanted) {
     this.player.play(wanted, this.theta);
-    const button = this.find(".play");
-    button.textContent = wanted ? "❚❚" : "►";
-    button.setAttribute("aria-pressed", String(wanted));
   }
 
   /** Stop for a hand. */
@@ -200,10 +199,7 @@ export class Figure {
 
   /** Turn to a crank angle [rad], back into the cycle that is shown. */
   seek(theta) {
-    const { from, to } = this.cycle;
-    const [low, period] = [Math.min(from, to), Math.abs(to - from)];
-    const outside = theta > low + period + 1e-9 || theta < low - 1e-9;
-    this.pose(outside ? theta - Math.floor((theta - low) / period) * period : theta);
+    this.pose(this.cycle.within(theta));
     this.player.seek(this.theta);
   }
 

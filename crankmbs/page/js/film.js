@@ -1,6 +1,7 @@
 /** The film: a run that Python computed, replayed over time. */
 import { readable } from "./format.js";
 import { valuesOf } from "./given.js";
+import { enlarge, find, listenToKeys } from "./keys.js";
 import { Player } from "./player.js";
 import { Stage } from "./stage.js";
 import { write } from "./svg.js";
@@ -24,11 +25,13 @@ class Film {
     this.time = this.track.begin;
     this.stage = new Stage(find("stage"), given.compression, () => this.fit());
     const { begin, end } = this.track;
-    this.plot = new TimePlot(find("upper"), given, (time) => this.take(time));
+    const speedAt = (time) => this.track.motionAt(time).speed / RPM;
+    this.plot = new TimePlot(find("upper"), given, { speedAt, move: (time) => this.take(time) });
     // the player's angle is the time itself
     const run = { duration: end - begin, timeTo: (t) => t - begin, angleAt: (t) => t + begin };
     const finish = () => this.play(false);
-    this.player = new Player({ cycle: () => run, move: (time) => this.pose(time), finish });
+    const [move, button] = [(time) => this.pose(time), find("play")];
+    this.player = new Player({ cycle: () => run, move, button, finish });
     Object.assign(find("time"), { min: begin, max: end });
     this.offer(end - begin);
     this.listen();
@@ -38,40 +41,32 @@ class Film {
 
   /** Offer slow motion, from the rate at which the film takes some seconds. */
   offer(duration) {
-    const wanted = Math.log(SECONDS / duration);
-    const far = (rate) => Math.abs(Math.log(rate) - wanted);
-    const n = RATES.reduce((best, rate, k) => (far(rate) < far(RATES[best]) ? k : best), 0);
+    this.player.slower = this.first = Player.fitting(duration, RATES, SECONDS);
+    const n = RATES.indexOf(this.first);
     const named = (rate) => (rate > 1 ? `${rate}× slower` : `${Math.round(1 / rate)}× faster`);
     for (const rate of RATES.slice(n, n + SLOWEST + 1)) {
       find("slower").append(new Option(rate === 1 ? "real time" : named(rate), String(rate)));
     }
-    this.player.slower = RATES[n];
+  }
+
+  /** Play so many times slower; of the run as small a part is then plotted. */
+  slow(rate) {
+    this.player.slower = rate;
+    this.plot.divide(Math.round(rate / this.first));
   }
 
   listen() {
     find("play").addEventListener("click", () => this.play(!this.player.playing));
     find("time").addEventListener("input", ({ target }) => this.take(Number(target.value)));
-    find("slower").addEventListener("change", ({ target }) => {
-      this.player.slower = Number(target.value);
-    });
-    find("large").addEventListener("click", ({ target }) => {
-      const on = document.documentElement.classList.toggle("projector");
-      target.setAttribute("aria-pressed", String(on));
-    });
-    document.addEventListener("keydown", (event) => this.key(event));
-  }
-
-  key(event) {
-    if (event.target.closest("input, select, button")) return;
-    if (event.ctrlKey || event.metaKey || event.altKey) return;
-    const step = { ArrowLeft: -1, ArrowRight: 1, ArrowDown: -1, ArrowUp: 1 }[event.key];
+    find("slower").addEventListener("change", ({ target }) => this.slow(Number(target.value)));
+    find("large").addEventListener("click", enlarge);
     const { begin, end } = this.track;
-    if (event.key === " ") this.play(!this.player.playing);
-    else if (event.key === "Home") this.take(begin);
-    else if (event.key === "End") this.take(end);
-    else if (step) this.take(this.time + (step * (end - begin)) / (event.shiftKey ? 1000 : 100));
-    else return;
-    event.preventDefault();
+    listenToKeys({
+      play: () => this.play(!this.player.playing),
+      step: (sign, fine) => this.take(this.time + (sign * (end - begin)) / (fine ? 1000 : 100)),
+      Home: () => this.take(begin),
+      End: () => this.take(end),
+    });
   }
 
   fit() {
@@ -111,11 +106,5 @@ class Film {
   /** Play on, from the begin where the film has ended, or pause. */
   play(wanted) {
     this.player.play(wanted, this.time < this.track.end ? this.time : this.track.begin);
-    write(find("play"), wanted ? "❚❚ pause" : "► play");
-    find("play").setAttribute("aria-pressed", String(wanted));
   }
-}
-
-function find(id) {
-  return document.getElementById(id);
 }

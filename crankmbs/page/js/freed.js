@@ -47,12 +47,9 @@ export function settleFree(train, grid, start) {
 /** Machine and grid whose drag is what it would be at a constant speed [rad/s]. */
 function evenly(train, grid, speed) {
   if (train.gears.every(({ drag }) => drag === 0)) return { train, grid };
-  const { torque: given, drag } = grid.tables;
-  const torque = given.map((each, i) => each - drag[i] * speed);
-  return {
-    train: { ...train, gears: train.gears.map((gear) => ({ ...gear, drag: 0 })) },
-    grid: { ...grid, tables: { ...grid.tables, torque } },
-  };
+  const nodes = grid.nodes.map((of) => ({ ...of, torque: of.torque - of.drag * speed, drag: 0 }));
+  const gears = train.gears.map((gear) => ({ ...gear, drag: 0 }));
+  return { train: { ...train, gears }, grid: { ...grid, nodes } };
 }
 
 /** The constant load [N m] under which a period gains nothing. */

@@ -7,34 +7,20 @@
  * but the last is a function of the angle, smooth between dead centres and changes of the gas's
  * sign. Forces from outside that resist as these do (`applied`) are among `rings` and `drag`.
  */
-import { wrapped } from "./arrays.js";
+import { repeated, rootIn, wrapped } from "./arrays.js";
 import { deadCentres } from "./geometry.js";
 
 const KNOT = 1e-9; // rad: at a dead centre the value after it counts
 const TURN = 2 * Math.PI;
 
-/** What rings oppose to either sense of rotation [N m].
- *
- * rings : of the ring force; gas, combustion : torques of each cylinder [N m]
- */
-export function ringTorque(friction, rings, gas, combustion, shares) {
+/** What rings oppose to either sense of rotation [N m], at an angle that is reduced. */
+export function ringTorque(friction, { rings, gas, combustion }, shares) {
   if (friction === null || friction.ring_pressure === 0) return rings;
   let pressed = 0;
   for (let k = 0; k < gas.length; k++) {
     pressed += Math.abs(gas[k] + (shares.length ? shares[k] * combustion[k] : 0));
   }
   return rings + friction.ring_pressure * pressed;
-}
-
-/** The same at node i of tables. */
-export function ringTorqueIn(friction, tables, i, shares) {
-  if (friction === null || friction.ring_pressure === 0) return tables.rings[i];
-  let pressed = 0;
-  for (let k = 0; k < tables.gas.length; k++) {
-    const burning = shares.length ? shares[k] * tables.combustion[k][i] : 0;
-    pressed += Math.abs(tables.gas[k][i] + burning);
-  }
-  return tables.rings[i] + friction.ring_pressure * pressed;
 }
 
 /** In which sense a piston slides towards the crank, 1 or -1, at a cycle angle and a speed. */
@@ -67,9 +53,7 @@ export function frictionMarks(friction, shapes, cylinders, pressure, combustion,
       const burning = coefficients.map((each, i) => each + combustion[k].coefficients[i]);
       roots.push(...signChanges(knots, burning));
     }
-    for (let turn = 0; turn < period - 1; turn += own) {
-      found.push(...roots.map((angle) => wrapped(angle + turn - phase, period)));
-    }
+    found.push(...repeated(roots.map((angle) => angle - phase), period, own));
   });
   return found;
 }
@@ -77,11 +61,7 @@ export function frictionMarks(friction, shapes, cylinders, pressure, combustion,
 /** Crank angles of a period at which a cylinder of a phase is at a dead centre [rad]. */
 export function centresOver(shape, phase, period) {
   const { top, bottom } = deadCentres(shape);
-  const found = [];
-  for (let turn = 0; turn < period - 1; turn += TURN) {
-    found.push(wrapped(top + turn - phase, period), wrapped(bottom + turn - phase, period));
-  }
-  return found;
+  return repeated([top - phase, bottom - phase], period);
 }
 
 /** Where piecewise cubics change their sign between knots. */
@@ -96,7 +76,8 @@ function signChanges(knots, coefficients) {
     const places = [0, ...turns.sort((x, y) => x - y), width];
     for (let j = 0; j + 1 < places.length; j++) {
       const [low, high] = [places[j], places[j + 1]];
-      if (value(low) * value(high) < 0) found.push(knots[k] + bisected(value, low, high));
+      const side = Math.sign(value(high));
+      if (value(low) * side < 0) found.push(knots[k] + rootIn((x) => side * value(x), low, high));
     }
   }
   return found;
@@ -108,14 +89,4 @@ function turningPoints(a, b, c) {
   if (!(root >= 0)) return [];
   const sum = -0.5 * (b + (b < 0 ? -root : root));
   return [sum / a, c / sum].filter(Number.isFinite);
-}
-
-function bisected(value, low, high) {
-  const rises = value(low) < 0;
-  for (let n = 0; n < 60; n++) {
-    const middle = 0.5 * (low + high);
-    if (value(middle) < 0 === rises) low = middle;
-    else high = middle;
-  }
-  return high;
 }

@@ -1,6 +1,6 @@
 /** Names of arrows, beside the mechanism: they never cover what they name. */
 
-export const LETTER = 0.62; // of the type: how wide a bold letter is
+export const LETTER = 0.6; // of the type: how wide a bold letter is
 const APART = 1.25; // of the type, between names
 const LEANS = 0.3; // sine of the angle at which names stand on one side of a cylinder
 
@@ -15,23 +15,29 @@ export function boxBeside({ left, top, width, height }, size, { letters, type, l
 }
 
 /** Write names { name, kind, x, y of the arrow's end } to the left and right of a stage's drawing,
- * each with a line to its arrow. */
+ * each with a line to its arrow; where there is little room, in two rows. */
 export function namesBeside(pen, names, { type, edge, sides }) {
   const middle = 0.5 * (sides.left + sides.right);
   for (const side of [-1, 1]) {
     const here = names.filter(({ x }) => (x < middle - 0.1 * type ? -1 : 1) === side);
     here.sort((one, two) => one.y - two.y);
+    const room = side > 0 ? edge.right - sides.right : sides.left - edge.left;
     let least = edge.top + 1.2 * type;
     for (const { name, kind, x, y } of here) {
-      const wide = LETTER * type * name.length;
+      const fits = LETTER * type * name.length <= room;
+      const rows = fits ? [name] : name.split(/ (.*)/, 2);
+      const wide = LETTER * type * Math.max(...rows.map((row) => row.length));
       const at = Math.max(y, least);
       const near = side > 0
         ? Math.min(sides.right, edge.right - wide)
         : Math.max(sides.left, edge.left + wide);
       pen.add("line", { x1: x, y1: y, x2: near - 0.3 * side * type, y2: at, class: kind });
-      const place = { "text-anchor": side > 0 ? "start" : "end", x: near, y: at + 0.35 * type };
-      pen.add("text", { "font-size": type, class: kind, ...place }, name);
-      least = at + APART * type;
+      const place = { "text-anchor": side > 0 ? "start" : "end", x: near };
+      rows.forEach((row, n) => {
+        const below = (0.35 + n) * type;
+        pen.add("text", { "font-size": type, class: kind, ...place, y: at + below }, row);
+      });
+      least = at + (APART + rows.length - 1) * type;
     }
   }
 }

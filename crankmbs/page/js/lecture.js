@@ -36,8 +36,8 @@ function truncatedMotion(phi, { radius: r, length: l, offset: e }, omega) {
   };
 }
 
-/** Side thrust, rod force, tangential and radial force on the crank pin from the net force [N]:
- * N = F tan beta, K = F / cos beta, T = K sin(phi + beta), R = K cos(phi + beta). */
+/** Side thrust and tangential force on the crank pin from the net force [N]: N = F tan beta,
+ * T = F sin(phi + beta) / cos beta. */
 function exactForces(phi, { radius: r, length: l, offset: e }, net) {
   const sine = (r * Math.sin(phi) - e) / l;
   const cosine = Math.sqrt((1 - sine) * (1 + sine));
@@ -45,9 +45,7 @@ function exactForces(phi, { radius: r, length: l, offset: e }, net) {
   const [across, along] = [Math.sin(phi), Math.cos(phi)];
   return {
     side: rod * sine,
-    rod,
     tangential: rod * (across * cosine + along * sine), // sin(phi + beta)
-    radial: rod * (along * cosine - across * sine),
   };
 }
 
@@ -56,23 +54,19 @@ function truncatedForces(phi, { radius: r, length: l, offset: e }, net) {
   const ratio = r / l;
   const k = e / r;
   const [across, along] = [Math.sin(phi), Math.cos(phi)];
-  const second = 1 - Math.cos(2 * phi);
   return {
     side: net * ratio * (across - k),
-    rod: net * (1 + (ratio ** 2 / 4) * second),
     tangential: net * (across + (ratio / 2) * Math.sin(2 * phi) - k * ratio * along),
-    radial: net * (along - (ratio / 2) * second + k * ratio * across),
   };
 }
 
-/** The lectures by the names under which they are compared. */
+/** The lectures that are shown, by the names under which they are compared. */
 export const LECTURES = {
   "untruncated lecture": { motion: exactMotion, forces: exactForces },
-  "S0 (motion truncated)": { motion: truncatedMotion, forces: exactForces },
   "S1 (motion and forces truncated)": { motion: truncatedMotion, forces: truncatedForces },
 };
 
-/** The compared quantities by a lecture's formulas: of every cylinder, and of the main bearing.
+/** What is shown of a lecture's formulas: of every cylinder, and of the main bearing.
  *
  * sample : { theta, omega, alpha, shares }, with the mean speed and alpha 0 what a lecture would
  * reckon with
@@ -109,15 +103,9 @@ export function cylinderLectured(train, { motion, forces }, sample, number) {
     "piston displacement": moved.displacement,
     "piston velocity": moved.velocity,
     "piston acceleration": moved.acceleration,
-    "net force": net,
     "side thrust": of.side,
-    "rod force": of.rod,
-    "tangential force": of.tangential,
-    "radial force": of.radial,
     torque: of.tangential * r - atCrankPin * r ** 2 * alpha,
-    "gas torque": forces(phi, shape, gas).tangential * r,
     "piston pin force x": forceWith(piston.mass),
-    "piston pin force y": -of.side,
     "crank pin force x": net + turningX,
     "crank pin force y": turningY - of.side,
   };

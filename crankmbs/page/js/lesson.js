@@ -1,6 +1,6 @@
 /** A lesson: its figures, of which the one that is seen plays, and its questions. */
-import { decoded } from "./answers.js";
 import { Figure } from "./figure.js";
+import { valuesOf } from "./given.js";
 import { asked } from "./question.js";
 import { Turner } from "./turned.js";
 
@@ -8,7 +8,7 @@ const SEEN = 0.6; // of a figure's board
 
 /** Begin with what Python wrote into the page. figures : what each computes, by its name */
 export function begun(figures) {
-  const given = decoded(JSON.parse(document.getElementById("given").textContent));
+  const given = valuesOf(JSON.parse(document.getElementById("given").textContent));
   const lesson = { given, turner: new Turner(given) };
   const made = given.figures.map((spec) =>
     new Figure(document.getElementById(spec.name), lesson, spec, figures[spec.name]));

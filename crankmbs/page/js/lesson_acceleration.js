@@ -1,4 +1,5 @@
 /** Velocity and acceleration: the least acceleration leaves bottom dead centre. */
+import { rootIn } from "./arrays.js";
 import { readable } from "./format.js";
 import { begun } from "./lesson.js";
 import { diagram, overAngle, spread } from "./shapes.js";
@@ -37,13 +38,7 @@ function ratioOf({ train: { shape } }) {
  * derivative of the displacement is zero, found by halving. */
 function leastAngle(ratio) {
   if (ratio <= LIMIT) return Math.PI;
-  let [low, high] = [Math.PI / 2, Math.PI - 1e-9];
-  for (let n = 0; n < 60; n++) {
-    const middle = 0.5 * (low + high);
-    if (third(middle, ratio) < 0) low = middle;
-    else high = middle;
-  }
-  return low;
+  return rootIn((phi) => third(phi, ratio), Math.PI / 2, Math.PI - 1e-9);
 }
 
 /** The third derivative of the displacement over the crank radius: that of

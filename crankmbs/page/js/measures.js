@@ -1,16 +1,10 @@
-/** What a motion amounts to over a stretch of angle: means, peaks, power, with refined peaks.
+/** What a motion amounts to over a stretch of angle: mean powers, and peaks between the samples.
  *
- * Integrals are Gauss sums over panels in which everything is smooth, halved where a quantity is
- * not: the size of a force has a kink where the force passes zero. Peaks are looked for between the
- * samples, panel by panel.
+ * Integrals are Gauss sums over panels in which everything is smooth; peaks are looked for panel by
+ * panel.
  */
-import { strokeOf } from "./geometry.js";
 import { reactionsAt } from "./reactions.js";
 
-const ROUGH = 1e-7; // of a quantity: such a tail of its polynomial, and the sum errs by its square
-const AT_ENDS = 1e-6; // of a quantity: so far off its polynomial at an end it has a kink beside it
-const HAIR = 2e-9; // rad: so far inside the end of a panel nothing counts as on a knot
-const SHORTEST = 10 * HAIR; // of panels that are halved
 const CANDIDATES = 6;
 const GOLDEN = 0.5 * (Math.sqrt(5) - 1);
 const CLOSENESS = 45; // steps of the golden section: to 4e-10 of a panel
@@ -25,25 +19,19 @@ const JOINTS = {
 /** Over what the motion of a scene that turns from `from` to `to` [rad] is measured: its last
  * period with the loads, or the one that it settles to. */
 export function measuredSpan(scene, from, to) {
-  const { settled } = scene.run;
-  const period = settled ? scene.grid_period : scene.load_period;
-  if (period < scene.period + 1e-9) return lastSpan(from, to, scene.period);
-  return lastSpan(from, to, period, settled ? "settled period" : "last period");
+  const period = scene.run.settled ? scene.grid_period : scene.load_period;
+  return lastSpan(from, to, Math.max(period, scene.period));
 }
 
-/** The last whole cycle of a motion that ends at `to` after turning from `from`, or the last period
- * of another kind; without one the last whole revolution, or else all of it: its kind, and where it
- * begins [rad]. */
-export function lastSpan(from, to, period, cycle = "last cycle") {
+/** The last whole period of a motion that turns from `from` to `to` [rad]; without one the last
+ * whole revolution, or else all of it. */
+export function lastSpan(from, to, period) {
   const turned = Math.abs(to - from);
-  const sense = Math.sign(to - from);
-  for (const [kind, wanted] of [[cycle, period], ["last revolution", 2 * Math.PI]]) {
-    if (turned >= wanted - 1e-9) return { kind, from: to - sense * wanted, to };
-  }
-  return { kind: "whole run", from, to };
+  const whole = [period, 2 * Math.PI].find((each) => turned >= each - 1e-9);
+  return { from: whole === undefined ? from : to - Math.sign(to - from) * whole, to };
 }
 
-/** The measures of a motion over a span, in SI units; joints as { joint, cylinder, peak, mean,
+/** The measures of a motion over a span, in SI units; joints as { joint, cylinder, peak,
  * crank_angle }. rule : of Gauss, with more nodes than the motion's own */
 export function measuresOf(motion, rule, span) {
   const { train } = motion;
@@ -55,20 +43,17 @@ export function measuresOf(motion, rule, span) {
   const angle = span.to - span.from;
   const speed = angle / duration;
   const peaks = places.map((place, q) => highest(motion, panels, place, q));
-  const joints = places.slice(0, -2).map(({ joint, cylinder }, k) => {
-    return { joint, cylinder, ...peaks[k], mean: means[k] };
-  });
+  const joints = places.slice(0, -2).map(({ joint, cylinder }, k) =>
+    ({ joint, cylinder, ...peaks[k] }));
   const [fastest, slowest] = peaks.slice(-2).map((each) => each.peak);
-  const [rods, outside, rubbed, applied, ...gas] = means.slice(places.length);
-  const power = indicated(train, span, gas, duration);
+  const [outside, rubbed, applied, ...gas] = means.slice(places.length);
+  const power = indicated(train, gas);
   const gained = power.indicated_power;
   return {
-    window: span.kind,
     mean_speed: speed,
     fluctuation: (fastest + slowest) / Math.abs(speed),
     speed_gain: last.omega - first.omega,
     joints,
-    crank_torque: rods / speed,
     external_torque: outside / speed,
     ...power,
     friction_power: train.friction === null ? null : -rubbed,
@@ -77,26 +62,18 @@ export function measuresOf(motion, rule, span) {
   };
 }
 
-/** Powers and mean effective pressures of the gas, and of both its ends, from its mean powers on
- * the pistons, and those of the crank ends, [W]. */
-function indicated(train, { kind, from, to }, powers, duration) {
-  const { gears, pressure, crank_end: ends, period } = train;
-  if (!pressure.length) return { indicated_power: null, imep: null };
-  const [all, below] = [powers.slice(0, pressure.length), powers.slice(pressure.length)];
-  const above = all.map((each, k) => each - (below[k] ?? 0));
+/** The power of the gas, and those of both its ends, from its mean powers on the pistons, and those
+ * of the crank ends, [W]. */
+function indicated({ pressure, crank_end: ends }, powers) {
+  if (!pressure.length) return { indicated_power: null };
   const sum = (each) => each.reduce((total, one) => total + one, 0);
-  const volumes = gears.map(({ piston, shape }) => piston.area * strokeOf(shape));
-  const cycles = Math.round(Math.abs(to - from) / period);
-  const whole = ["last cycle", "last period", "settled period"].includes(kind);
-  const imepOf = (each, swept) =>
-    whole ? each.map((one, k) => (one * duration) / (cycles * swept[k])) : null;
-  const found = { indicated_power: sum(all), imep: imepOf(above, volumes) };
-  if (!ends.length) return found;
+  const all = sum(powers.slice(0, pressure.length));
+  if (!ends.length) return { indicated_power: all };
+  const below = sum(powers.slice(pressure.length));
   return {
-    ...found,
-    imep_crank_end: imepOf(below, volumes.map((one, k) => gears[k].piston.crank_end_share * one)),
-    indicated_power_head_end: sum(above),
-    indicated_power_crank_end: sum(below),
+    indicated_power: all,
+    indicated_power_head_end: all - below,
+    indicated_power_crank_end: below,
   };
 }
 
@@ -119,11 +96,10 @@ function placesOf({ cylinders }) {
   return [...places, { size: (v) => v.crank_speed }, { size: (v) => -v.crank_speed }];
 }
 
-/** The sizes of all places, the power of the rods, from outside, of friction and of the forces on
- * the pistons, and that of the gas and of the crank ends by cylinder, at a sample. */
+/** The sizes of all places, the power from outside, of friction and of the forces on the pistons,
+ * and that of the gas and of the crank ends by cylinder, at a sample. */
 function rowOf(train, places, sample) {
   const v = reactionsAt(train, sample);
-  const rods = v.cylinders.reduce((sum, each) => sum + each.crank_torque, 0);
   const gas = v.cylinders.map((each) => each.gas_force * each.piston_velocity);
   const below = train.crank_end.map((_, k) => {
     const { area, crank_end_share: share } = train.gears[k].piston;
@@ -132,63 +108,19 @@ function rowOf(train, places, sample) {
   const [rubs, applied] = ["friction_force", "applied_force"].map((name) => v.cylinders.reduce(
     (sum, each) => sum + (each[name] ?? 0) * each.piston_velocity, 0));
   const outside = v.external_torque * v.crank_speed;
-  const power = [rods * v.crank_speed, outside, rubs, applied, ...gas, ...below];
+  const power = [outside, rubs, applied, ...gas, ...below];
   return [...places.map(({ size }) => size(v)), ...power];
 }
 
-/** The span cut into panels, each with rows at its nodes, halved where one is not smooth. */
-function panelsOf(motion, rule, span, row) {
-  const edges = motion.smoothBetween(span.from, span.to);
-  const open = [];
-  for (let k = edges.length - 1; k > 0; k--) open.push([edges[k - 1], edges[k]]);
-  const done = [];
-  const scale = [];
-  while (open.length) {
-    const [from, to] = open.pop();
+/** The span cut into panels in which all is smooth but for the sizes of forces, each with rows at
+ * its nodes. */
+function panelsOf(motion, rule, { from: first, to: last }, row) {
+  const edges = motion.smoothBetween(first, last);
+  return edges.slice(1).map((to, k) => {
+    const from = edges[k];
     const samples = Array.from(rule.nodes, (node) => motion.at(from + (to - from) * node));
-    const rows = samples.map(row);
-    rows.forEach((each) => each.forEach((value, q) => {
-      scale[q] = Math.max(scale[q] ?? 0, Math.abs(value));
-    }));
-    const hair = HAIR * Math.sign(to - from);
-    const ends = [from + hair, to - hair].map((theta) => row(motion.at(theta)));
-    const legendre = legendreAt(1.0 - 2.0 * HAIR / Math.abs(to - from), rule.nodes.length);
-    if (Math.abs(to - from) > SHORTEST && isRough(rows, ends, rule, scale, legendre)) {
-      const middle = 0.5 * (from + to);
-      open.push([middle, to], [from, middle]);
-    } else {
-      const spent = samples.map(({ omega }) => (to - from) / omega);
-      done.push({ from, to, rows, spent });
-    }
-  }
-  return done;
-}
-
-/** Legendre's polynomials below a degree, at a place from -1 to 1. */
-function legendreAt(z, count) {
-  const values = [1.0, z];
-  for (let j = 1; j + 1 < count; j++) {
-    values.push(((2 * j + 1) * z * values[j] - j * values[j - 1]) / (j + 1));
-  }
-  return values;
-}
-
-/** Whether the polynomial through the nodes still has much in its last two coefficients, or is off
- * beside an end, where no node sees a kink; legendre : Legendre's polynomials at the later of these
- * places. */
-function isRough(rows, [first, last], rule, scale, legendre) {
-  const s = rule.nodes.length;
-  return scale.some((size, q) => {
-    let [tail, atFirst, atLast] = [0, 0, 0];
-    for (let j = 0; j < s; j++) {
-      let sum = 0;
-      for (let i = 0; i < s; i++) sum += rule.to_legendre[j * s + i] * rows[i][q];
-      atFirst += (j % 2 ? -sum : sum) * legendre[j];
-      atLast += sum * legendre[j];
-      if (j >= s - 2) tail += Math.abs(sum);
-    }
-    const off = Math.abs(atFirst - first[q]) + Math.abs(atLast - last[q]);
-    return tail > ROUGH * size || off > AT_ENDS * size;
+    const spent = samples.map(({ omega }) => (to - from) / omega);
+    return { from, to, rows: samples.map(row), spent };
   });
 }
 

@@ -5,11 +5,12 @@
  * that are the knots of pressures and loads over the angle. Where a load bends or jumps in time or
  * speed the motion lands on the kink and goes on from there in a new cell.
  */
-import { countUpTo } from "./arrays.js";
+import { countUpTo, rootIn } from "./arrays.js";
 import { Stepper } from "./cell.js";
 import { Firing } from "./fuel.js";
-import { branchAt, firstPhases, laterPhases, torqueOf, torqueOverAngle } from "./loads.js";
+import { branchAt, firstPhases, laterPhases, torqueOf } from "./loads.js";
 import { Path } from "./path.js";
+import { nodesIn } from "./rule.js";
 import { givenAt, reduceAt } from "./tables.js";
 
 const SLIVER = 1e-12; // rad
@@ -18,7 +19,7 @@ const GRAZES = 16; // places in a cell at which a speed is looked at that comes 
 
 /** A motion on its way from a state, cell by cell.
  *
- * grid : { edges, tables, rule }; begin : { theta, time, energy, sense }; stop : { theta, time }
+ * grid : { edges, nodes, rule }; begin : { theta, time, energy, sense }; stop : { theta, time }
  * ending : "complete", "slow" where the crank comes near rest, "held" where a jump of a load holds
  * its speed; factor : by which a small difference of the energy has grown
  */
@@ -42,11 +43,8 @@ export class Travel {
 
   /** Take the branch of the loads that the motion enters; whether there is one. */
   enter(omega) {
-    const { train, theta, time, phases } = this;
-    const of = reduceAt(train, theta);
-    const given = givenAt(train, of, this.firing.shares, this.sense, omega);
-    const rest = given + torqueOverAngle(train.loads, phases, theta) - 0.5 * of.slope * omega ** 2;
-    this.branch = branchAt(train.loads, phases, time, omega, rest);
+    const { train, time, phases } = this;
+    this.branch = branchAt(train.loads, phases, time, omega, this.unloaded(omega));
     if (this.branch === null) {
       this.ending = "held";
       return false;
@@ -81,7 +79,7 @@ export class Travel {
     if (!last && this.sense * (target - this.theta) <= SLIVER) return;
     const short = high - low - Math.abs(target - this.theta);
     const whole = target === edge && Math.abs(short) < SLIVER;
-    if (whole) this.stepper.load(this, this.grid, k, this.sense);
+    if (whole) this.stepper.load(this, nodesIn(this.grid, k, this.sense));
     this.pass(target, whole ? k : -1);
     while (this.ending === null && this.theta !== target) this.pass(target, -1);
     if (this.ending !== null) return;
@@ -180,10 +178,7 @@ export class Travel {
     const speed = this.sense * Math.sqrt((2 * end) / of.inertia);
     const t = this.time + Math.abs(width) * stepper.spent;
     if (time !== null) return speed * (time - t);
-    const given = givenAt(this.train, of, this.firing.shares, this.sense, speed);
-    const outside = torqueOf(this.branch, t, speed);
-    const over = torqueOverAngle(this.train.loads, this.phases, at);
-    const alpha = (given + outside + over - 0.5 * of.slope * speed * speed) / of.inertia;
+    const alpha = (this.unloaded(speed, of) + torqueOf(this.branch, t, speed)) / of.inertia;
     return ((omega - speed) * speed) / alpha;
   }
 
@@ -208,23 +203,14 @@ export class Travel {
 
   /** Acceleration times inertia [N m] at the state, on the present branch. */
   accelerated(omega) {
-    const { train, theta, time, branch, phases } = this;
-    const of = reduceAt(train, theta);
-    const given = givenAt(train, of, this.firing.shares, this.sense, omega);
-    const outside = torqueOf(branch, time, omega) + torqueOverAngle(train.loads, phases, theta);
-    return given + outside - 0.5 * of.slope * omega * omega;
+    return this.unloaded(omega) + torqueOf(this.branch, this.time, omega);
   }
-}
 
-/** A root of a function that is below 0 at one place and not below at a later one. */
-function rootIn(f, low, high) {
-  if (f(low) >= 0) return low;
-  for (let n = 0; n < 60 && high - low > 1e-16; n++) {
-    const middle = 0.5 * (low + high);
-    if (f(middle) >= 0) high = middle;
-    else low = middle;
+  /** The same without the loads over time and speed; of : the crank train where the motion is. */
+  unloaded(omega, of = reduceAt(this.train, this.theta)) {
+    const { train, phases, sense, firing: { shares } } = this;
+    return givenAt(train, of, { shares, phases, sense }, omega) - 0.5 * of.slope * omega * omega;
   }
-  return high;
 }
 
 /** The first place, from 0 to 1, where a function rises above 0: between neighbouring places, or,

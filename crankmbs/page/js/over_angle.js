@@ -4,7 +4,7 @@
  * it is exact but for rounding. Knots, panels { begin, width, lead, piece, times } and the rule
  * come from Python; lead [rad] : how far a panel begins behind the knot of its piece.
  */
-import { countUpTo } from "./arrays.js";
+import { countUpTo, rootOf } from "./arrays.js";
 
 export class OverAngle {
   constructor(law) {
@@ -69,18 +69,10 @@ export class OverAngle {
 
   /** How far into panel k [rad] the crank is after a time [s]. */
   reached(k, time) {
-    let [low, high] = [0, this.width[k]];
-    let x = Math.min(time * Math.abs(this.speedIn(k, 0)[0]), high);
-    for (let n = 0; n < 100; n++) {
-      const late = this.within(k, x) - time;
-      if (late > 0) high = x;
-      else low = x;
-      let next = x - late * Math.abs(this.speedIn(k, x)[0]);
-      if (!(next >= low && next <= high)) next = 0.5 * (low + high);
-      if (Math.abs(next - x) <= 4e-16 * this.width[k]) return next;
-      x = next;
-    }
-    return x;
+    const whole = this.width[k];
+    const f = (x) => [this.within(k, x) - time, 1 / Math.abs(this.speedIn(k, x)[0])];
+    const start = Math.min(time * Math.abs(this.speedIn(k, 0)[0]), whole);
+    return rootOf(f, [0, whole], start, () => 4e-16 * whole);
   }
 
   /** Speed and its slope over the angle, x [rad] into panel k. */

@@ -1,19 +1,19 @@
 /** The page: knobs, mechanism and plots of one scene, and what happens between them. */
-import { decoded } from "./answers.js";
-import { fillChoices, find, listenToChoices, showChoices, showSlower } from "./controls.js";
-import { enlarge, say, seenPlots, showWords, unfold, unused } from "./controls.js";
+import { fillChoices, listenToChoices, showChoices, showSlower } from "./controls.js";
+import { say, seenPlots, showWords, unfold, unused } from "./controls.js";
 import { cycleOf } from "./cycle.js";
 import { dragged } from "./drag.js";
 import { Engine } from "./engine.js";
-import { inertiaFor } from "./flywheel.js";
 import { deadCentres } from "./geometry.js";
+import { valuesOf } from "./given.js";
+import { enlarge, find, listenToKeys } from "./keys.js";
 import { Knobs } from "./knobs.js";
 import { Player } from "./player.js";
 import { Plot } from "./plot.js";
 import { drawn } from "./quantities.js";
 import { Refused } from "./refused.js";
 import { Stage } from "./stage.js";
-import { Address, numberOf } from "./state.js";
+import { Address } from "./state.js";
 import { write } from "./svg.js";
 import { dataFile, save } from "./taken.js";
 import { Turner } from "./turned.js";
@@ -26,7 +26,7 @@ const PLOTS = ["upper", "lower"];
 
 /** Begin with what Python wrote into the page. */
 export function start() {
-  return new Page(decoded(JSON.parse(document.getElementById("given").textContent)));
+  return new Page(valuesOf(JSON.parse(document.getElementById("given").textContent)));
 }
 
 class Page {
@@ -40,7 +40,8 @@ class Page {
     this.cycle = null;
     this.address = new Address(keysOf(given), given.sentences);
     this.stage = new Stage(find("stage"), given.compression, () => this.redraw());
-    this.player = new Player({ cycle: () => this.cycle, move: (theta) => this.pose(theta) });
+    const move = (theta) => this.pose(theta);
+    this.player = new Player({ cycle: () => this.cycle, move, button: find("play") });
     this.listen();
     this.begin();
   }
@@ -52,11 +53,10 @@ class Page {
       release: () => this.release(),
       refuse: say,
     });
-    find("fluctuation")?.addEventListener("change", ({ target }) => this.even(target.value));
     dragged(this.stage, {
       theta: () => this.theta,
       turn: (theta) => this.seek(theta),
-      rim: (ratio) => this.turnBy("flywheel", (own) => ratio * own),
+      rim: (ratio) => this.turnRim(ratio),
       grip: (kind) => kind !== "rim" && this.play(false),
       release: () => this.release(),
     });
@@ -76,7 +76,14 @@ class Page {
       this.seek(Number(event.target.value) * DEGREE);
     });
     find("angle").addEventListener("change", () => this.release());
-    document.addEventListener("keydown", (event) => this.key(event));
+    listenToKeys({
+      play: () => this.play(!this.player.playing),
+      step: (sign, far) => {
+        this.play(false);
+        this.seek((Math.round(this.theta / DEGREE) + sign * (far ? 10 : 1)) * DEGREE);
+        this.release();
+      },
+    });
     addEventListener("hashchange", () => this.open(location.hash));
   }
 
@@ -90,7 +97,7 @@ class Page {
       if (degrees === null) return this.release();
       this.play(false);
       return this.seek(degrees * DEGREE);
-    }, (wanted, present) => this.turnPeak(wanted, present));
+    });
     fillChoices(root.querySelector("select"), this.given.scene);
     const pin = root.querySelector(".pin");
     pin.addEventListener("click", () => pin.setAttribute("aria-pressed", String(plot.pin())));
@@ -140,39 +147,11 @@ class Page {
     this.update();
   }
 
-  /** Give a knob the value that a hand makes of its own and its present one, between its ends. */
-  turnBy(name, made) {
-    const { low, high, value } = this.given.knobs.find((each) => each.name === name);
-    this.turn(name, Math.min(Math.max(made(value, this.values[name] ?? value), low), high));
+  /** Give the flywheel a ratio of its inertia to the scene's own, between the ends of its knob. */
+  turnRim(ratio) {
+    const { low, high, value } = this.given.knobs.find(({ name }) => name === "flywheel");
+    this.turn("flywheel", Math.min(Math.max(ratio * value, low), high));
     this.knobs.show(this.values);
-  }
-
-  /** Scale pressures, which are absolute, so that the highest, above ambient, is another [bar]. */
-  turnPeak(wanted, present) {
-    const ambient = this.given.scene.gas.ambient / 1e5;
-    this.turnBy("pressure", (_, now) => (now * (wanted + ambient)) / (present + ambient));
-  }
-
-  /** Take the flywheel with which the speed fluctuates by so many percent. */
-  even(text) {
-    const { given, values } = this;
-    const knob = given.knobs.find((each) => each.name === "flywheel");
-    const present = { ...knob, value: values.flywheel ?? knob.value };
-    try {
-      const limits = { name: "fluctuation", low: 0, high: 100 };
-      const wanted = numberOf(text, limits, given.sentences) / 100;
-      const at = (flywheel) => {
-        const turned = { ...values, flywheel };
-        const asked = this.turner.scene(turned);
-        return this.pass(this.careful, asked, turned, { fine: true }).fluctuation;
-      };
-      this.turn("flywheel", inertiaFor(wanted, at, present, given.sentences.fluctuation));
-      this.knobs.show(this.values);
-      this.release();
-    } catch (refused) {
-      if (!(refused instanceof Refused)) throw refused;
-      say(refused.message);
-    }
   }
 
   reset() {
@@ -198,8 +177,8 @@ class Page {
   compute() {
     const { values } = this;
     const asked = this.turner.scene(values);
-    this.cycle = this.pass(this.quick, asked, values, { warm: this.cycle });
-    Object.assign(this, { asked, good: values, error: null });
+    this.cycle = cycleOf(this.quick, asked, this.given.endings, { warm: this.cycle });
+    Object.assign(this, { good: values, error: null });
     clearTimeout(this.later);
   }
 
@@ -209,17 +188,10 @@ class Page {
     if (this.error === null && this.cycle) this.later = setTimeout(() => this.refine(), LATER);
   }
 
-  /** The cycle of a scene that is asked for, by an engine. */
-  pass(engine, asked, values, options) {
-    const balanced = values.load_is === "rebalanced" && asked.motion === null;
-    const speed = balanced ? asked.start.speed : null;
-    return cycleOf(engine, asked, this.given.endings, { ...options, speed });
-  }
-
   /** The second pass: cells cut until they are good, measures, and how far the first was off. */
   refine() {
-    const { cycle, asked, good } = this;
-    const better = this.pass(this.careful, asked, good, { fine: true, warm: cycle });
+    const { cycle, given: { endings } } = this;
+    const better = cycleOf(this.careful, cycle.scene, endings, { fine: true, warm: cycle });
     const apart = better.samples.map((v, k) =>
       Math.abs(v.crank_speed - cycle.samples[k].crank_speed));
     this.error = Math.max(...apart) / Math.abs(better.mean);
@@ -238,7 +210,7 @@ class Page {
     const marks = deadCentreMarks(cycle, k, deadCentres(cycle.train.gears[k].shape));
     for (const name of seenPlots()) this.plots[name].draw(drawn(view[name], cycle, k), marks);
     showChoices(given, cycle, { ...given.own, ...view, ...this.values, cylinder: String(k + 1) });
-    this.knobs.disable(unused(cycle, given, this.values));
+    this.knobs.disable(unused(cycle, given));
     this.player.slower = showSlower(cycle, (slower) => {
       this.player.slower = slower;
     });
@@ -248,11 +220,7 @@ class Page {
 
   /** Turn to a crank angle [rad], back into the cycle that is shown. */
   seek(theta) {
-    const { from, to } = this.cycle;
-    const [low, period] = [Math.min(from, to), Math.abs(to - from)];
-    const outside = theta > low + period + 1e-9 || theta < low - 1e-9;
-    const turns = outside ? Math.floor((theta - low) / period) : 0;
-    this.pose(theta - turns * period);
+    this.pose(this.cycle.within(theta));
     this.player.seek(this.theta);
   }
 
@@ -269,22 +237,6 @@ class Page {
 
   play(wanted) {
     this.player.play(wanted, this.theta);
-    find("play").textContent = wanted ? "❚❚ pause" : "► play";
-    find("play").setAttribute("aria-pressed", String(wanted));
-  }
-
-  key(event) {
-    if (event.target.closest("input, select, button, textarea")) return;
-    if (event.ctrlKey || event.metaKey || event.altKey) return;
-    const step = { ArrowLeft: -1, ArrowRight: 1, ArrowDown: -1, ArrowUp: 1 }[event.key];
-    if (event.key === " ") this.play(!this.player.playing);
-    else if (step) {
-      this.play(false);
-      const degrees = Math.round(this.theta / DEGREE) + step * (event.shiftKey ? 10 : 1);
-      this.seek(degrees * DEGREE);
-      this.release();
-    } else return;
-    event.preventDefault();
   }
 
   /** A hand lets go: refine, and keep in the address what is shown. */

@@ -43,8 +43,9 @@ export function readCell(train, rule, cell, theta) {
   const kinetic = energy + width * integralTo(rule, cell.torque, first, x);
   const of = reduceAt(train, theta);
   const omega = sense * Math.sqrt((2 * Math.max(kinetic, 0)) / of.inertia);
-  const outside = torqueOf(branch, t, omega) + torqueOverAngle(train.loads, phases, theta);
-  const given = givenAt(train, of, shares, sense, omega);
-  const alpha = (given + outside - 0.5 * of.slope * omega * omega) / of.inertia;
+  const load = torqueOf(branch, t, omega);
+  const given = givenAt(train, of, cell, omega);
+  const alpha = (given + load - 0.5 * of.slope * omega * omega) / of.inertia;
+  const outside = load + torqueOverAngle(train.loads, phases, theta);
   return { time: t, theta, omega, alpha, external_torque: outside, shares };
 }

@@ -1,10 +1,12 @@
 /** Lets the crank turn as fast as the run has it, so many times slower. */
+import { set, write } from "./svg.js";
 
 const SECONDS = 7; // that a cycle takes at first
 const SLOWER = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000];
 
 export class Player {
-  /** on : { cycle() the cycle shown, move(theta) }, and finish() of what does not begin again */
+  /** on : { cycle() the cycle shown, move(theta), button that says by two words whether it plays,
+   * still and moving }, and finish() of what does not begin again */
   constructor(on) {
     this.on = on;
     this.playing = false;
@@ -12,16 +14,13 @@ export class Player {
     this.turn = this.turn.bind(this);
   }
 
-  /** The factor of slow motion at which a cycle takes some seconds. */
-  static fitting(duration) {
-    const wanted = Math.log(SECONDS / duration);
-    const far = (factor) => Math.abs(Math.log(factor) - wanted);
-    return SLOWER.reduce((best, each) => (far(each) < far(best) ? each : best));
+  /** The factor of slow motion at which a time [s] takes some seconds, out of several. */
+  static fitting(duration, factors = SLOWER, seconds = SECONDS) {
+    const far = (factor) => Math.abs(Math.log((factor * duration) / seconds));
+    return factors.reduce((best, each) => (far(each) < far(best) ? each : best));
   }
 
-  static get choices() {
-    return SLOWER;
-  }
+  static choices = SLOWER;
 
   play(wanted, theta) {
     if (wanted && !this.playing) {
@@ -30,6 +29,9 @@ export class Player {
       requestAnimationFrame(this.turn);
     }
     this.playing = wanted;
+    const { button, still = "► play", moving = "❚❚ pause" } = this.on;
+    write(button, wanted ? moving : still);
+    set(button, { "aria-pressed": String(wanted) });
   }
 
   /** Go on from another angle. */

@@ -3,22 +3,19 @@
  * It is drawn in pixels of the page, so that its type has the size of the page's; the cursor can
  * be dragged, and what lies under the pointer is read out.
  */
-import { drawAxes, frameOf, valueAt } from "./axis.js";
+import { drawAxes, frameOf } from "./axis.js";
 import { decimalsFor, padded, readable } from "./format.js";
+import { slid } from "./slide.js";
 import { Pen, add, lineOf, set, watched, write } from "./svg.js";
 
 const STRIP = 0.3; // of the height, for the differences
-const PEAKED = "gas pressure"; // the curve of which the peak can be dragged
-const SLIP = 8; // px that a finger moves across before it turns the crank: else it scrolls
 const NOTHING = 1e-9; // of the largest value: a difference that is none
 
 export class Plot {
   /** root : a figure with .legend and svg; onMove : of the crank angle [deg] that is asked for, or
-   * null where a hand lets go; onPeak : of the highest gas pressure that is asked for, and the
-   * present one, or null where it cannot be dragged */
-  constructor(root, onMove, onPeak = null) {
+   * null where a hand lets go */
+  constructor(root, onMove) {
     this.root = root;
-    this.onPeak = onPeak;
     this.svg = root.querySelector("svg");
     this.legend = root.querySelector(".legend");
     this.onMove = onMove;
@@ -27,7 +24,6 @@ export class Plot {
     this.degrees = 0;
     this.hover = null;
     this.size = null;
-    this.held = this.peak = this.from = null;
     this.axes = { upper: add(this.svg, "g"), lower: add(this.svg, "g") };
     this.lines = add(this.svg, "g", { transform: "scale(0.1)" });
     this.cursor = add(this.svg, "g", { class: "cursor" });
@@ -35,8 +31,15 @@ export class Plot {
       this.size = size;
       this.redraw();
     });
-    this.svg.addEventListener("pointerdown", (event) => this.press(event));
-    this.svg.addEventListener("pointermove", (event) => this.move(event));
+    slid(this.svg, {
+      press: () => this.overAngle(),
+      move: (event) => {
+        this.hover = null;
+        this.onMove(this.degreesAt(event));
+      },
+      hover: (event) => this.overAngle() && this.point(this.degreesAt(event)),
+      release: () => this.onMove(null),
+    });
     this.svg.addEventListener("pointerleave", () => this.point(null));
   }
 
@@ -136,7 +139,6 @@ export class Plot {
       pen.add("line", { x1: x, x2: x, y1: upper.box.top, y2: bottom });
       const value = shape.of((degrees * Math.PI) / 180);
       pen.add("circle", { cx: x, cy: upper.up(value), r: 0.3 * this.type });
-      if (this.hasPeak()) this.drawPeak(pen, shape.curves[0]);
       if (this.hover !== null) {
         const h = upper.right(at);
         pen.add("line", { x1: h, x2: h, y1: upper.box.top, y2: bottom, class: "hover" });
@@ -144,19 +146,6 @@ export class Plot {
     }
     pen.end();
     this.read(at);
-  }
-
-  hasPeak() {
-    return this.onPeak !== null && this.shape.title === PEAKED;
-  }
-
-  /** A handle on the highest point of a curve. */
-  drawPeak(pen, { x, y }) {
-    const n = y.indexOf(Math.max(...y));
-    const { right, up } = this.upper;
-    const at = { cx: right(x[n]), cy: up(y[n]), r: 0.45 * this.type };
-    const peak = pen.add("circle", { ...at, class: "peak" });
-    if (peak.firstChild === null) add(peak, "title", {}, "drag the peak");
   }
 
   /** Write the values at an angle [deg] into the legend. */
@@ -201,42 +190,9 @@ export class Plot {
     return x.low + Math.min(Math.max(part, 0), 1) * (x.high - x.low);
   }
 
-  press(event) {
-    if (!this.shape || isDiagram(this.shape)) return;
-    event.preventDefault();
-    this.svg.setPointerCapture?.(event.pointerId);
-    this.held = event.pointerId;
-    this.peak = event.target.closest(".peak") && this.upper; // its scale stays while it is held
-    this.from = event.pointerType === "touch" && !this.peak ? event.clientX : null;
-    const listening = new AbortController();
-    const release = (last) => {
-      if (last.type === "pointerup") this.from = null; // a tap turns, too
-      this.move(last);
-      this.held = this.peak = null;
-      this.onMove(null);
-      listening.abort();
-    };
-    for (const end of ["pointerup", "pointercancel"]) {
-      this.svg.addEventListener(end, release, { signal: listening.signal });
-    }
-    this.move(event);
-  }
-
-  move(event) {
-    if (!this.shape || !this.upper || isDiagram(this.shape)) return;
-    const degrees = this.degreesAt(event);
-    if (this.held === event.pointerId && this.from !== null) {
-      if (Math.abs(event.clientX - this.from) < SLIP) return;
-      this.from = null;
-    }
-    if (this.held === event.pointerId && this.peak) {
-      this.onPeak(valueAt(event, this.svg, this.peak), Math.max(...this.shape.curves[0].y));
-    } else if (this.held === event.pointerId) {
-      this.hover = null;
-      this.onMove(degrees);
-    } else {
-      this.point(degrees);
-    }
+  /** Whether a curve over the crank angle is drawn. */
+  overAngle() {
+    return Boolean(this.upper) && !isDiagram(this.shape);
   }
 
   point(degrees) {

@@ -1,7 +1,7 @@
 /** What cells err, and which must be cut: a finer Gauss rule along the solution. */
-import { ringTorqueIn } from "./friction.js";
-import { torqueOf, torqueOverAngle } from "./loads.js";
-import { integralTo } from "./rule.js";
+import { torqueOf } from "./loads.js";
+import { integralTo, nodesIn } from "./rule.js";
+import { givenAt } from "./tables.js";
 
 const FINEST = 3e-14; // what rounding leaves of a cell
 const MOST = 4; // parts of a cell at once
@@ -9,7 +9,7 @@ const MOST = 4; // parts of a cell at once
 /** Into how many parts to cut every cell of a grid so that it errs, relatively, by no more than a
  * tolerance per radian at its end and by no more than the tolerance inside.
  *
- * finer : { rule, tables } of the same cells for a rule of more stages
+ * finer : { rule, nodes } of the same cells for a rule of more stages
  */
 export function partsOf(train, grid, finer, path, tolerance) {
   const worst = new Array(grid.edges.length - 1).fill(1);
@@ -46,24 +46,17 @@ function errorsOf(train, rule, finer, cell) {
 }
 
 /** Torque and slowness that the solution of a cell asks for at the nodes of the finer rule. */
-function alongFiner(train, rule, { rule: fine, tables }, cell) {
-  const { sense, branch, phases, shares, number, width } = cell;
-  const { friction } = train;
-  const s = fine.nodes.length;
+function alongFiner(train, rule, finer, cell) {
+  const { sense, branch, width } = cell;
   const torque = [];
   const slowness = [];
-  fine.nodes.forEach((x, j) => {
-    const i = number * s + (sense > 0 ? j : s - 1 - j);
-    const inertia = train.crank.inertia + tables.inertia[i];
+  nodesIn(finer, cell.number, sense).forEach((of, j) => {
+    const x = finer.rule.nodes[j];
     const energy = cell.energy + width * integralTo(rule, cell.torque, cell.first, x);
     const time = cell.time + Math.abs(width) * integralTo(rule, cell.slowness, cell.first, x);
+    const inertia = train.crank.inertia + of.inertia;
     const omega = sense * Math.sqrt((2 * Math.max(energy, 0)) / inertia);
-    let given = tables.torque[i] + torqueOverAngle(train.loads, phases, tables.angles[i]);
-    shares.forEach((share, c) => {
-      given += share * tables.combustion[c][i];
-    });
-    given -= sense * ringTorqueIn(friction, tables, i, shares) + tables.drag[i] * omega;
-    torque.push(given + torqueOf(branch, time, omega));
+    torque.push(givenAt(train, of, cell, omega) + torqueOf(branch, time, omega));
     slowness.push(sense / omega);
   });
   return { torque, slowness };

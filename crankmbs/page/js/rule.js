@@ -28,6 +28,15 @@ function coefficient(rule, values, first, j) {
   return sum;
 }
 
+/** Fill a matrix with that of E - width A (rate E) in a cell; its rates begin at number `first`. */
+export function fillSystem(system, { matrix, nodes: { length: s } }, width, rate, first = 0) {
+  for (let j = 0; j < s; j++) {
+    for (let i = 0; i < s; i++) {
+      system[j * s + i] = (i === j ? 1 : 0) - width * matrix[j * s + i] * rate[first + i];
+    }
+  }
+}
+
 /** The angles of the nodes in every cell between edges [rad]. */
 export function nodesBetween(edges, rule) {
   const stages = rule.nodes.length;
@@ -37,4 +46,11 @@ export function nodesBetween(edges, rule) {
     for (let j = 0; j < stages; j++) angles[k * stages + j] = edges[k] + width * rule.nodes[j];
   }
   return angles;
+}
+
+/** What is at the nodes of a cell of a grid, in the order in which a sense of rotation passes. */
+export function nodesIn({ rule, nodes }, number, sense) {
+  const stages = rule.nodes.length;
+  const found = nodes.slice(number * stages, (number + 1) * stages);
+  return sense > 0 ? found : found.reverse();
 }

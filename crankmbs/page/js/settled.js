@@ -7,11 +7,11 @@
  */
 import { AffinePeriod } from "./affine.js";
 import { countUpTo } from "./arrays.js";
-import { branchAt, firstPhases, isAffine, torqueOverAngle } from "./loads.js";
+import { SLOW } from "./cell.js";
+import { branchAt, firstPhases, isAffine } from "./loads.js";
 import { Travel } from "./motion.js";
 import { givenAt, reduceAt } from "./tables.js";
 
-const SLOW = Math.PI / 360; // rad: where the energy would be gone within this angle, it is refused
 const NONE = 1e-11; // of the energy: nothing but rounding
 const SHOTS = 400;
 const CLOSE = 1e-3; // of the energy: from so near Newton's method takes over from the run itself
@@ -54,10 +54,10 @@ export class Section {
   }
 
   branch(omega) {
-    const { train, phases } = this;
+    const { train, phases, sense } = this;
     const of = reduceAt(train, this.theta);
-    const over = torqueOverAngle(train.loads, phases, this.theta);
-    const rest = givenAt(train, of, [], this.sense, omega) + over - 0.5 * of.slope * omega * omega;
+    const given = givenAt(train, of, { shares: [], phases, sense }, omega);
+    const rest = given - 0.5 * of.slope * omega * omega;
     return branchAt(train.loads, phases, 0, omega, rest);
   }
 
@@ -68,19 +68,6 @@ export class Section {
     if (branch === null || !isAffine(branch) || drags) return null;
     const ends = (limit) => this.sense * limit > 0 && Number.isFinite(limit);
     return ends(branch.low) || ends(branch.high) ? null : branch;
-  }
-
-  /** What the period gains [J] that begins with an energy, and how long it takes [s]. */
-  once(energy, { speed }) {
-    const branch = this.affineBranch(speed);
-    if (branch === null) {
-      const shot = this.shot(energy);
-      return { ending: shot.ending, gained: shot.energy - energy, time: shot.time };
-    }
-    const period = new AffinePeriod(this, branch);
-    const { growth, rise } = period.whole;
-    const { time } = period.sweep(energy);
-    return { ending: time > 0 ? "complete" : "slow", gained: growth * energy + rise, time };
   }
 
   shot(energy) {
@@ -112,8 +99,8 @@ export class Section {
 
   /** The largest torque over the angle with that of a branch at rest [N m]. */
   largest(branch) {
-    return this.grid.tables.torque.reduce((most, each) => Math.max(most, Math.abs(each)), 0) +
-      Math.abs(branch.c0);
+    const most = this.grid.nodes.reduce((all, of) => Math.max(all, Math.abs(of.torque)), 0);
+    return most + Math.abs(branch.c0);
   }
 
   /** The motion of which a period lasts as long as at a mean speed [rad/s], by Newton's method: the

@@ -4,7 +4,7 @@
  * which the last may be infinite; or { kind: "oscillation", mean, amplitude, order, phase, angle },
  * omega = mean + amplitude cos(order theta + phase); or one "over_angle".
  */
-import { countUpTo } from "./arrays.js";
+import { countUpTo, rootOf } from "./arrays.js";
 import { OverAngle } from "./over_angle.js";
 
 /** The law as an object with `at(time)` -> [theta, omega, alpha], `timeAt(theta)` and the crank
@@ -43,27 +43,16 @@ class Polynomial {
     let k = countUpTo(angles.map((each) => sense * each), sense * theta) - 1;
     k = Math.max(k, 0);
     const whole = knots[k + 1] - knots[k];
-    let [low, high] = [0, Number.isFinite(whole) ? whole : 2 * this.least(k, theta)];
-    let x = 0.5 * (low + high);
-    for (let n = 0; n < 100; n++) {
-      const ahead = angles[k] + turned(cubics[k], x) - theta;
-      if (sense * ahead > 0) high = x;
-      else low = x;
-      let next = x - ahead / this.at(knots[k] + x)[1];
-      if (!(next >= low && next <= high)) next = 0.5 * (low + high);
-      if (Math.abs(next - x) <= 4e-16 * (knots[k] + next)) return knots[k] + next;
-      x = next;
-    }
-    return knots[k] + x;
+    const even = Math.abs((theta - angles[k]) / cubics[k][3]); // in an endless piece
+    const high = Number.isFinite(whole) ? whole : 2 * (even + 1e-9);
+    const f = (x) => [angles[k] + turned(cubics[k], x) - theta, this.at(knots[k] + x)[1]]
+      .map((each) => sense * each);
+    const hair = (x) => 4e-16 * (knots[k] + x);
+    return knots[k] + rootOf(f, [0, high], 0.5 * high, hair);
   }
 
   bendsBetween() {
     return Array.from(this.knots).slice(1).filter(Number.isFinite).map((time) => this.at(time)[0]);
-  }
-
-  /** Time [s] that an endless piece, of constant speed, takes to an angle. */
-  least(k, theta) {
-    return Math.abs((theta - this.angles[k]) / this.cubics[k][3]) + 1e-9;
   }
 }
 

@@ -3,15 +3,14 @@
  *     J = J_crank + sum of  m_p x1^2 + m_r (gx1^2 + gy1^2) + I_r beta1^2
  *
  * over the cylinders, with the rod's centre of mass g = (r cos(phi) + a cos(beta), r sin(phi) - a
- * sin(beta)). Over the cells of a period it is tabulated in layers, each made anew only when what
- * it depends on changes: loops of the geometry, inertia of the masses, torque of gas and weights.
- * The crank's inertia is added where it is used, so that a flywheel costs nothing here.
+ * sin(beta)). At the nodes of the cells of a period it is kept, without the crank's inertia, so
+ * that a flywheel or a load costs nothing here.
  */
-import { appliedAt, appliedAlong } from "./applied.js";
-import { distinct, remembering, wrapped } from "./arrays.js";
-import { knotsOver, valueAt, valuesAlong } from "./cubics.js";
+import { appliedAt } from "./applied.js";
+import { distinct, remembering, repeated } from "./arrays.js";
+import { knotsOver, valueAt } from "./cubics.js";
 import { ringTorque } from "./friction.js";
-import { Loop, topPosition } from "./geometry.js";
+import { torqueOverAngle } from "./loads.js";
 import { nodesBetween } from "./rule.js";
 
 const WIDEST = (6 * Math.PI) / 180;
@@ -29,15 +28,18 @@ export function gravityVector(gravity, bank) {
  * to it, and of friction the torque of each cylinder's gas, what rings oppose to either sense of
  * rotation without it [N m], and drag, torque per speed [N m s/rad]. */
 export function reduceAt(train, theta) {
+  const of = movingAt(train, theta);
+  of.inertia += train.crank.inertia;
+  return of;
+}
+
+/** The same without the crank's inertia. */
+export function movingAt(train, theta) {
   const { crank, gears, cylinders, gravity, pressure, combustion } = train;
   const force = train.friction?.ring_force ?? 0;
-  const gas = [];
-  let rings = 0;
-  let drag = 0;
-  let inertia = crank.inertia;
-  let slope = 0;
+  const [gas, burning] = [[], []];
+  let [inertia, slope, rings, drag] = [0, 0, 0, 0];
   let torque = crankWeight(crank, gravity, theta);
-  const burning = [];
   for (let k = 0; k < cylinders.length; k++) {
     const { rod, piston, loop } = gears[k];
     const phi = theta + cylinders[k].phase;
@@ -59,14 +61,15 @@ export function reduceAt(train, theta) {
     drag += gears[k].drag * at.x1 * at.x1;
     if (combustion.length) burning.push(-piston.area * valueAt(combustion[k], phi) * at.x1);
   }
-  return { inertia, slope, torque, combustion: burning, gas, rings, drag };
+  return { theta, inertia, slope, torque, combustion: burning, gas, rings, drag };
 }
 
-/** Torque of gas, weights and friction [N m] at an angle that is reduced, with these shares of the
- * combustion, in a sense of rotation at a speed. */
-export function givenAt({ friction }, of, shares, sense, omega) {
-  const rings = ringTorque(friction, of.rings, of.gas, of.combustion, shares);
-  return of.torque + burnt(of.combustion, shares) - sense * rings - of.drag * omega;
+/** Torque of gas, weights, friction and loads over the angle [N m] at an angle that is reduced, at
+ * a speed; shares of the combustion and phases of the loads : of a motion in a sense. */
+export function givenAt({ friction, loads }, of, { shares, phases, sense }, omega) {
+  const rings = ringTorque(friction, of, shares);
+  const over = torqueOverAngle(loads, phases, of.theta);
+  return of.torque + burnt(of.combustion, shares) + over - sense * rings - of.drag * omega;
 }
 
 /** Torque of the crank's own weight at a crank angle [N m]. */
@@ -132,150 +135,23 @@ function nearFolds({ radius, length, offset }, { phase }, period) {
     if (!(width > 0 && width < WIDEST)) continue;
     const around = [0];
     for (let far = width; far < WIDEST; far *= 2) around.push(-far, far);
-    for (let turn = 0; turn < period - 1; turn += 2 * Math.PI) {
-      marks.push(...around.map((each) => wrapped(fold * Math.PI + turn - phase + each, period)));
-    }
+    marks.push(...repeated(around.map((each) => fold * Math.PI - phase + each), period));
   }
   return marks;
 }
 
-/** A maker of tables, which remembers every layer of its last ones. */
-export class Tables {
-  constructor() {
-    this.nodes = remembering(nodesBetween);
-    this.loops = remembering(loopsAt);
-    this.inertia = remembering(inertiaOf);
-    this.gas = remembering(gasTorque);
-    this.burning = remembering(gasTorque);
-    this.weights = remembering(weightTorque);
-    this.applied = remembering(appliedTorque);
-    this.rings = remembering(ringsOf);
-    this.drag = remembering(dragOf);
-    this.total = remembering(totalOf);
-  }
-
-  /** Inertia without the crank's [kg m2], torque [N m] and what combustion adds to it, by cylinder,
-   * at the nodes of the cells. */
-  of(train, edges, rule) {
-    const { crank, gears, cylinders, gravity, friction } = train;
-    const first = crank.mass * crank.center_of_mass;
-    const angles = this.nodes(edges, rule);
-    const shapes = gears.map(({ shape, rod }) => [shape, rod.center_of_mass]);
-    const masses = gears.map(({ rod, piston }) => [piston.mass, rod.mass, rod.inertia]);
-    const areas = gears.map(({ piston }) => piston.area);
-    const loops = this.loops(shapes, cylinders, angles);
-    const gas = this.gas(loops, cylinders, train.pressure, areas, angles);
-    const weights = this.weights(loops, masses, first, cylinders, gravity, angles);
-    const laws = gears.map(({ applied }) => applied);
-    const { steady, jumping } = this.applied(loops, laws, cylinders, angles);
-    return {
-      angles,
-      inertia: this.inertia(loops, masses),
-      torque: this.total([weights, ...gas, ...steady]),
-      combustion: this.burning(loops, cylinders, train.combustion, areas, angles),
-      gas,
-      rings: this.rings(loops, friction?.ring_force ?? 0, jumping),
-      drag: this.drag(loops, gears.map((gear) => gear.drag)),
-    };
-  }
-}
-
-/** The sum of arrays. */
-function totalOf([first, ...others]) {
-  const total = first.slice();
-  for (const other of others) for (let i = 0; i < total.length; i++) total[i] += other[i];
-  return total;
-}
-
-/** Positions of every cylinder's piston and derivatives of its loop at crank angles.
- *
- * shapes : [shape, centre of mass of the rod from the crank pin] of each
- */
-function loopsAt(shapes, cylinders, angles) {
-  const empty = () => new Float64Array(angles.length);
-  return shapes.map(([shape, center], k) => {
-    const loop = new Loop(shape);
-    const top = topPosition(shape);
-    const { phase } = cylinders[k];
-    const own = { s: empty(), x1: empty(), gx1: empty(), gy1: empty(), beta1: empty() };
-    for (let i = 0; i < angles.length; i++) {
-      const at = loop.at(angles[i] + phase);
-      const gx1 = -at.radius * at.sinPhi - center * at.sinBeta * at.beta1;
-      const gy1 = at.radius * at.cosPhi - center * at.cosBeta * at.beta1;
-      own.s[i] = top - at.x;
-      own.x1[i] = at.x1;
-      own.gx1[i] = gx1;
-      own.gy1[i] = gy1;
-      own.beta1[i] = at.beta1;
-    }
-    return own;
-  });
-}
-
-/** masses : [piston's, rod's, its moment of inertia] of each cylinder */
-function inertiaOf(loops, masses) {
-  return summed(loops, ({ x1, gx1, gy1, beta1 }, k) => {
-    const [piston, rod, turn] = masses[k];
-    return (i) => piston * x1[i] * x1[i] + rod * (gx1[i] * gx1[i] + gy1[i] * gy1[i]) +
-      turn * beta1[i] * beta1[i];
-  });
-}
-
-/** What all cylinders sum up to, given for each by the number of the node. */
-function summed(loops, of) {
-  const sum = new Float64Array(loops[0].x1.length);
-  loops.forEach((loop, k) => {
-    const value = of(loop, k);
-    for (let i = 0; i < sum.length; i++) sum[i] += value(i);
-  });
-  return sum;
-}
-
-/** Torque per speed of what drags at each piston [N m s/rad]. */
-function dragOf(loops, drags) {
-  return summed(loops, ({ x1 }, k) => (i) => drags[k] * x1[i] * x1[i]);
-}
-
-/** What opposes either sense of rotation [N m]: the rings, and what jumps where a piston turns. */
-function ringsOf(loops, force, jumping) {
-  return summed(loops, ({ x1 }, k) => (i) =>
-    Math.abs(x1[i]) * (force + (jumping[k] ? jumping[k][i] : 0)));
-}
-
-/** Torque of the forces from outside on each piston, and half of what they are more on the way back
- * [N]; null for a piston on which none acts. */
-function appliedTorque(loops, laws, cylinders, angles) {
-  const each = loops.map((loop, k) => appliedAlong(laws[k], loop, angles, cylinders[k].phase));
-  const jumping = each.map((one) => one && one.jumping);
-  const acting = each.map((one, k) => one && one.steady.map((force, i) => -force * loops[k].x1[i]));
-  return { steady: acting.filter((one) => one !== null), jumping };
-}
-
-/** Torque of pressures on the crank, by cylinder. */
-function gasTorque(loops, cylinders, pressure, areas, angles) {
-  return pressure.map((cycle, k) => {
-    const torque = valuesAlong(cycle, angles, cylinders[k].phase);
-    const { x1 } = loops[k];
-    for (let i = 0; i < torque.length; i++) torque[i] *= -areas[k] * x1[i];
-    return torque;
-  });
-}
-
-/** Torque of the weights on the crank, of which first is the first moment [kg m]. */
-function weightTorque(loops, masses, first, cylinders, gravity, angles) {
-  const [gx, gy] = gravityVector(gravity, 0);
-  const torque = new Float64Array(angles.length);
-  if (gravity === null) return torque;
-  for (let i = 0; i < torque.length; i++) {
-    torque[i] = first * (gy * Math.cos(angles[i]) - gx * Math.sin(angles[i]));
-  }
-  cylinders.forEach(({ bank }, k) => {
-    const [ax, ay] = gravityVector(gravity, bank);
-    const { x1, gx1, gy1 } = loops[k];
-    const [piston, rod] = masses[k];
-    for (let i = 0; i < angles.length; i++) {
-      torque[i] += piston * ax * x1[i] + rod * (ax * gx1[i] + ay * gy1[i]);
-    }
-  });
-  return torque;
+/** A maker of what is at the nodes of cells, `movingAt` each, which remembers its last. */
+export function nodeMaker() {
+  const angles = remembering(nodesBetween);
+  const nodes = remembering(
+    (at, train) => Array.from(at, (theta) => movingAt(train, theta)),
+    (at, { crank, gears, cylinders, gravity, friction, pressure, combustion }) => {
+      const parts = gears.map(({ shape, rod, piston, drag, applied }) => [
+        shape, rod.mass, rod.center_of_mass, rod.inertia, piston.mass, piston.area, drag, applied,
+      ]);
+      const first = crank.mass * crank.center_of_mass;
+      return [at, parts, cylinders, first, gravity, friction, pressure, combustion];
+    },
+  );
+  return (train, edges, rule) => nodes(angles(edges, rule), train);
 }

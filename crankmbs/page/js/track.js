@@ -26,9 +26,15 @@ export class Track {
     this.to(this.begin);
   }
 
-  /** Go to a time [s]: { angle [rad], speed [rad/s] } there, by the cubic in time that has both at
-   * the frames beside it. */
+  /** Go to a time [s]: the motion there. */
   to(time) {
+    this.pressures = this.pressuresAt(time);
+    return this.motionAt(time);
+  }
+
+  /** { angle [rad], speed [rad/s] } at a time [s], by the cubic that has both at the frames beside
+   * it. */
+  motionAt(time) {
     const { time: at, angle, speed } = this.given;
     const k = cellOf(at, time);
     const h = at[k + 1] - at[k];
@@ -36,7 +42,6 @@ export class Track {
     const rise = (angle[k + 1] - angle[k]) / h;
     const bend = 3 * rise - 2 * speed[k] - speed[k + 1];
     const twist = speed[k] + speed[k + 1] - 2 * rise;
-    this.pressures = this.pressuresAt(time);
     return {
       angle: angle[k] + h * s * (speed[k] + s * (bend + s * twist)),
       speed: speed[k] + s * (2 * bend + 3 * s * twist),

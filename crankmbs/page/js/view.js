@@ -29,12 +29,10 @@ export function keysOf({ scene, knobs, words }) {
 }
 
 /** Where crank, rod and arrows are apart: 30 degrees after the firing dead centre. */
-export function tellingPose({ train, scene, from, to }) {
+export function tellingPose(cycle) {
+  const { train, scene } = cycle;
   const firing = scene.period > 3 * Math.PI && train.pressure.length ? 2 * Math.PI : 0;
-  const theta = firing + Math.PI / 6 - train.cylinders[0].phase;
-  const period = Math.abs(to - from);
-  const low = Math.min(from, to);
-  return theta - Math.floor((theta - low) / period) * period;
+  return cycle.within(firing + Math.PI / 6 - train.cylinders[0].phase);
 }
 
 /** The ends of a cycle [deg]. */

@@ -13,11 +13,11 @@ export function numbersOf(cycle) {
     (measures ? `${readable(of(measures) / si, decimals)} ${unit}` : "…");
   const peak = (joint) => shown((found) => peakIn(found, joint), 1e3, 2, "kN");
   const power = (name) => shown((found) => found[name], 1e3, 2, "kW");
+  const swing = ["fluctuation", `${readable(100 * cycle.fluctuation, 3)} %`];
   const found = [
     ["mean speed", `${readable(cycle.mean / RPM, 1)} rpm`],
-    ["fluctuation", `${readable(100 * cycle.fluctuation, 3)} %`],
-    ["main bearing, peak", peak("main bearing")],
     ["side force, peak", peak("side force")],
+    ["main bearing, peak", peak("main bearing")],
     ["crank pin, peak", peak("crank pin")],
     [drives ? "drive torque" : "load torque", shown(() => outside, 1, 1, "N m")],
   ];
@@ -31,7 +31,7 @@ export function numbersOf(cycle) {
     if (measures?.mechanical_efficiency !== null) found.push(["mechanical efficiency", left]);
   }
   if (train.applies) found.push(["power of applied forces", power("force_power")]);
-  if (cycle.share !== 1) found.push(["load, rebalanced", `${readable(100 * cycle.share, 1)} %`]);
+  found.splice(cycle.prescribed ? 4 : 1, 0, swing); // what swings by itself comes first
   const count = train.cylinders.length;
   return count > 1 ? [...found, ["cylinders", `${count}`]] : found;
 }
@@ -41,8 +41,11 @@ function peakIn({ joints }, wanted) {
   return Math.max(...joints.map(({ joint, peak }) => (joint === wanted ? peak : 0)));
 }
 
-/** How exact the speed is. error : of the quick pass, relative, or null */
-export function trustOf(error) {
+/** How exact what is shown is. error : of the quick pass, relative, or null */
+export function trustOf({ prescribed }, error) {
+  if (prescribed) {
+    return "The speed is prescribed: motion and forces follow by formulas, without integration.";
+  }
   const trust = error === null ? "…" : general(Math.max(error, 1e-15), 1);
   return `Numerical error of the speed: ${trust} of its mean while a knob moves, less at rest.`;
 }

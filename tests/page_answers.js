@@ -1,4 +1,4 @@
-/** What Python asks of the engine: a scene in, all numbers of its motion out. */
+/** What tests ask of the page's engine: a scene in, all numbers of its motion out. */
 import { pressuresOf } from "./gas.js";
 import { Engine } from "./engine.js";
 import { setFree } from "./freed.js";
@@ -46,31 +46,6 @@ export function dragged(engine, { scene, angles }) {
   const motion = engine.run(scene);
   if (motion.ending !== "complete") return { ending: motion.ending };
   return columns(Array.from(angles, (theta) => reactionsAt(motion.train, motion.at(theta))));
-}
-
-/** Milliseconds that a scene takes as a knob moves: pressures and cells, tables and motion, samples
- * with every reaction. */
-export function timed(engine, scene) {
-  const marks = [performance.now()];
-  const train = engine.train(scene, true);
-  engine.edgesFor(train, scene.grid_period, true);
-  marks.push(performance.now());
-  const motion = engine.run(scene);
-  marks.push(performance.now());
-  const { from, to } = motion;
-  for (let k = 0; k <= 360; k++) {
-    reactionsAt(motion.train, motion.at(from + ((to - from) * k) / 360));
-  }
-  marks.push(performance.now());
-  return marks.slice(1).map((mark, k) => mark - marks[k]);
-}
-
-/** By what share the loads of a scene are scaled to settle to a mean speed: at once, and finely. */
-export function balancing(engine, { scene, speed }) {
-  return [{}, FINE].map((settings) => {
-    const { ending, share } = engine.rebalanced(scene, speed, settings);
-    return { ending, share };
-  });
 }
 
 /** The quantities of a lecture, by its name, at samples of a scene's motion. */
