@@ -7,8 +7,9 @@ from collections.abc import Callable, Sequence
 from functools import cached_property
 
 from crankmbs import lecture
+from crankmbs.compare.bodies import bodies_of
 from crankmbs.compare.excerpt import Answer, Excerpt
-from crankmbs.compare.lectured import S1, gear_of
+from crankmbs.compare.lectured import S1
 from crankmbs.errors import InputError, shown
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
@@ -122,7 +123,7 @@ class Idealized:
         if "gas torque" in answer:  # the same at every speed, also where the mean is 0
             answer["gas torque"] = self.closed_form["gas torque"]
         if "datum" in idealized:
-            shift = lecture.datum_shift(**gear_of(scene, self.excerpt.cylinder)._asdict())
+            shift = lecture.datum_shift(**bodies_of(scene, self.excerpt.cylinder).lengths)
             answer["piston displacement"] = answer["piston displacement"] + shift
         if "solver" not in idealized:
             answer = {name: answer[name] + self._solver[name] for name in answer}
