@@ -236,13 +236,14 @@ def _at_states(result: Result, train: CrankTrain) -> tuple[Difference, ...]:
 
     count = result.data.sizes["time"]
     chosen = np.unique(np.linspace(0, count - 1, _STATES).astype(int))
-    names = [name for name, (dims, _, _) in result.variables.items() if dims[0] == "time"]
-    ours = {name: result.sampled(name)[chosen] for name in names}
+    of_time = {name: each for name, each in result.variables.items() if each[0][0] == "time"}
+    ours = {name: values[chosen] for name, (_, values, _) in of_time.items()}
+    stated = {name: about.get("error_estimate", 0.0) for name, (_, _, about) in of_time.items()}
     theirs = beside.consistent(train, ours, driven=result.scene.motion is not None)
     motion = {name: _MOTION[name] for name in ("crank acceleration", "piston acceleration")}
     rows = {**motion, **_forces(result.scene)}
     none = dict.fromkeys(theirs, 0.0)
-    return _rows(rows, ours, theirs, _stated_by(result), none, math.inf)
+    return _rows(rows, ours, theirs, stated, none, math.inf)
 
 
 def _rows(
@@ -286,10 +287,3 @@ def _forces(scene: Scene) -> dict[str, tuple[str, ...]]:
     if scene.throws is None:
         return _FORCES
     return _FORCES | {"main journal": ("main_journal_force_x", "main_journal_force_y")}
-
-
-def _stated_by(result: Result) -> dict[str, float]:
-    return {
-        str(name): float(variable.attrs.get("error_estimate", 0.0))
-        for name, variable in result.data.variables.items()
-    }
