@@ -70,8 +70,8 @@ class Deviations:
         (tables, made), s = self._tables, len(self.rule.nodes)
         missing = np.unique(cell[~made[cell]])
         if len(missing):
-            found = self._table(np.repeat(missing, s), np.tile(self.rule.nodes, len(missing)))
-            table = found.reshape(CURVES, 4, len(missing), s)
+            cells, places = np.repeat(missing, s), np.tile(self.rule.nodes, len(missing))
+            table = self._table(cells, places).reshape(CURVES, 4, len(missing), s)
             tables[missing], made[missing] = np.moveaxis(table, 2, 0), True
         return np.asarray(tables[cell, curve])
 
