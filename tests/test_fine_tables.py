@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from two_runs import differences
 
 from crankmbs import (
     Crank,
@@ -19,7 +20,6 @@ from crankmbs import (
     Table,
     simulate,
 )
-from crankmbs.compare.confirm import differences
 
 THROWS = ((0, -30), (300, 30), (240, -30), (540, 30), (480, -30), (60, 30))  # phase, bank
 

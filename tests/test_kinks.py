@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from two_runs import differences
 
 from crankmbs import (
     Constant,
@@ -16,7 +17,6 @@ from crankmbs import (
     load_scene,
     simulate,
 )
-from crankmbs.compare.confirm import differences
 from crankmbs.mechanics.torque import branch_of, course_of
 from crankmbs.mechanics.train import crank_train
 from crankmbs.motion.base import State

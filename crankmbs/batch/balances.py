@@ -35,8 +35,8 @@ class Balances(NamedTuple):
 def balances(train: CrankTrain, theta: Array, sense: float) -> Balances:
     """Those at crank angles of shape (n,) [rad]; friction that does not depend on the speed is in
     what belongs to 1."""
-    found = of_cylinders(train, theta, UNITS)
-    crank, cylinders = of_crank(train.scene, theta, UNITS, found), found.variables
+    every = of_cylinders(train, theta, UNITS)
+    crank, cylinders = of_crank(train.scene, theta, UNITS, every), every.variables
     friction = np.zeros((len(train.scene.cylinders), len(theta)))
     if train.scene.friction is not None:
         slides = np.full_like(theta, sense)
@@ -46,4 +46,4 @@ def balances(train: CrankTrain, theta: Array, sense: float) -> Balances:
                 cylinders[name][:, 2] += more
             else:
                 crank[name][2] += more[0]
-    return Balances(found.inertia.sum(axis=0)[0], crank, cylinders, friction)
+    return Balances(every.inertia.sum(axis=0)[0], crank, cylinders, friction)

@@ -15,10 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crankmbs.batch.balances import Balances, balances
-from crankmbs.compare.lectured import LECTURES, gear_of, of_cylinders, turning_crank
-from crankmbs.compare.quantities import QUANTITIES, observed_cylinders
+from crankmbs.compare.bodies import bodies_of
+from crankmbs.compare.lectured import LECTURES, quantities_by
+from crankmbs.compare.quantities import QUANTITIES, cycle_angles, observed
 from crankmbs.errors import InputError
-from crankmbs.mechanics.axes import axes_of
 from crankmbs.mechanics.newton_euler import UNITS
 from crankmbs.mechanics.train import CrankTrain
 from crankmbs.numerics.arrays import Array, Index
@@ -33,10 +33,8 @@ CURVES = len(QUANTITIES) * EACH
 _VELOCITY = list(QUANTITIES).index("piston velocity")
 LINEAR = slice(_VELOCITY * EACH, (_VELOCITY + 1) * EACH)
 """Curves that go with the speed, and not with its square."""
-_BEARING = ("main bearing force x", "main bearing force y")
 _OF_ANGLE = ("piston displacement", "gas torque")  # alone
-_MOVING = np.array([1.0, 0.0])[:, np.newaxis, np.newaxis]  # the speed, of what a lecture adds up:
-_PRESSED = 1.0 - _MOVING  # inertia at a speed of 1, and gas
+_MOVING = np.array([[1.0], [0.0]])  # the speed, of what a lecture adds up: inertia, and gas
 
 
 @dataclass(frozen=True)
@@ -72,8 +70,8 @@ class Deviations:
         (tables, made), s = self._tables, len(self.rule.nodes)
         missing = np.unique(cell[~made[cell]])
         if len(missing):
-            found = self._table(np.repeat(missing, s), np.tile(self.rule.nodes, len(missing)))
-            table = found.reshape(CURVES, 4, len(missing), s)
+            cells, places = np.repeat(missing, s), np.tile(self.rule.nodes, len(missing))
+            table = self._table(cells, places).reshape(CURVES, 4, len(missing), s)
             tables[missing], made[missing] = np.moveaxis(table, 2, 0), True
         return np.asarray(tables[cell, curve])
 
@@ -81,33 +79,37 @@ class Deviations:
         """At places in cells, shape (quantities, 1 + lectures, 4, n)."""
         turned = (np.cumsum(self.width) - self.width)[cells] + self.width[cells] * places
         theta = self.begin + self.sense * turned
-        found = balances(self.train, theta, self.sense)
-        own, scene = _observed(self.train.scene, found, theta), self.train.scene
-        gas = found.cylinders["gas_force"][:, 0] / (scene.piston.gas_area or 1.0)
-        said = _lectured(scene, gas, theta)
+        parts = balances(self.train, theta, self.sense)
+        run, scene = _observed(self.train.scene, parts, theta), self.train.scene
+        gas = parts.cylinders["gas_force"][:, 0].T / (scene.piston.gas_area or 1.0)
+        lectures = _lectured(scene, gas, theta)
         table = np.empty((len(QUANTITIES), EACH, 4, len(theta)))
-        table[:, :, :2] = own[:, None, :2]
-        table[:, 0, 2], table[:, 0, 3] = own[:, 2], own[:, 0]
-        table[:, 1:, 2] = own[:, None, 2] - said[:, :, 1]
-        table[:, 1:, 3] = own[:, None, 0] - said[:, :, 0]
+        table[:, :, :2] = run[:, None, :2]
+        table[:, 0, 2], table[:, 0, 3] = run[:, 2], run[:, 0]
+        table[:, 1:, 2] = run[:, None, 2] - lectures[:, :, 1]
+        table[:, 1:, 3] = run[:, None, 0] - lectures[:, :, 0]
         return table
 
 
-def _observed(scene: Scene, found: Balances, theta: Array) -> Array:
+def _first(name: str, values: Array) -> Array:
+    """Of a quantity that every cylinder has, shape (..., n, cylinders), that of cylinder 1."""
+    return values[..., 0] if QUANTITIES[name].per_cylinder else values
+
+
+def _observed(scene: Scene, balances: Balances, theta: Array) -> Array:
     """The quantities of cylinder 1: parts that belong to omega^2, alpha and 1, shape (quantities,
     3, n); of what goes with the speed the first belongs to omega."""
-    first = {name: values[0] for name, values in found.cylinders.items()}
-    phi = theta + scene.cylinders[0].phase
-    answer = observed_cylinders(scene, first, phi, UNITS.square, UNITS.alpha)
-    answer |= {name: found.crank[name.replace(" ", "_")] for name in _BEARING}
+    cylinders = {name: np.moveaxis(values, 0, -1) for name, values in balances.cylinders.items()}
+    answer = observed(scene, balances.crank | cylinders, theta, UNITS.square, UNITS.alpha)
     parts = np.zeros((len(QUANTITIES), 3, len(theta)))
     for part, name in zip(parts, QUANTITIES, strict=True):
+        values = _first(name, answer[name])
         if name in _OF_ANGLE:
-            part[2] = answer[name][0]
+            part[2] = values[0]
         elif name == "piston velocity":
-            part[0] = answer[name][0]
+            part[0] = values[0]
         else:
-            part[:] = answer[name]
+            part[:] = values
     return parts
 
 
@@ -115,30 +117,22 @@ def _lectured(scene: Scene, pressure: Array, theta: Array) -> Array:
     """What the lectures say of them at a constant speed: parts that belong to its square and to 1,
     shape (quantities, lectures, 2, n); no numbers where one says nothing.
 
-    pressure : shape (cylinders, n) [Pa]
+    pressure : shape (n, cylinders) [Pa]
     """
-    phi = theta + np.array([cylinder.phase for cylinder in scene.cylinders])[:, None]
-    gear, axes = gear_of(scene), axes_of(scene)
-    own = turning_crank(scene, theta, _MOVING[:, 0], 0.0)
+    phi, bodies = cycle_angles(scene, theta), bodies_of(scene)
+    difference, motion = np.stack([0.0 * pressure, pressure]), (_MOVING, 0.0 * _MOVING)
     parts = np.full((len(QUANTITIES), len(LECTURES), 2, len(theta)), np.nan)
     made: dict[object, Any] = {}
     for k, formulas in enumerate(LECTURES.values()):
         try:
-            at = [
-                made[one] if one in made else made.setdefault(one, one(phi, gear))
+            factors = [
+                made[one] if one in made else made.setdefault(one, one(phi, bodies))
                 for one in formulas
             ]
         except InputError:
             continue
-        said = of_cylinders(scene, (at[0], at[1]), phi, _PRESSED * pressure, (_MOVING, 0.0))
-        x, y = (said[f"crank pin force {axis}"] for axis in "xy")
-        bearing = axes.cos @ x - axes.sin @ y, axes.sin @ x + axes.cos @ y
+        answer = quantities_by(scene, (factors[0], factors[1]), theta, difference, motion)
         for part, name in zip(parts[:, k], QUANTITIES, strict=True):
-            if name in _BEARING:
-                axis = _BEARING.index(name)
-                part[:] = bearing[axis] + own[axis]
-            elif name == "piston displacement":
-                part[0], part[1] = 0.0, said[name][0]
-            else:
-                part[:] = said[name][:, 0]
+            part[:] = _first(name, answer[name])
+        parts[0, k, 0] = 0.0  # of the displacement, which depends on the angle alone
     return parts

@@ -175,8 +175,8 @@ def _tabulated(
     whole = np.tile(width, shares)
     turned = np.cumsum(width)[:, None] + width[:, None] * (rule.nodes - 1.0)
     theta = (begin + sense * turned).ravel()
-    found = balances(train, theta, sense)
-    crank, cylinders = found.crank, found.cylinders
+    parts = balances(train, theta, sense)
+    crank, cylinders = parts.crank, parts.cylinders
     bearing = np.array([[crank[f"main_bearing_force_{axis}"] for axis in "xy"]])
     pins = [np.stack([cylinders[f"{pin}_{axis}"] for axis in "xy"], axis=1) for pin in _PINS]
     side = np.stack([cylinders["side_force"], 0.0 * cylinders["side_force"]], axis=1)
@@ -188,22 +188,22 @@ def _tabulated(
         rule,
         width,
         _without_crank(train, begin, sense),
-        found.inertia.reshape(turned.shape),
+        parts.inertia.reshape(turned.shape),
         slope.reshape(turned.shape),
         torque.reshape(turned.shape),
         rods.reshape(3, *turned.shape),
         forces.reshape(-1, 2, 3, *turned.shape),
         Deviations(train, begin, sense, rule, whole, sparse_nodes(whole, len(rule.nodes))),
-        tuple((force * path).sum(axis=1) for force in _forces(train.scene, found)),
+        tuple((force * path).sum(axis=1) for force in _forces(train.scene, parts)),
     )
 
 
-def _forces(scene: Scene, found: Balances) -> list[Array]:
+def _forces(scene: Scene, balances: Balances) -> list[Array]:
     """Of the gas and the friction on the pistons, and of the gas of either end, shape (cylinders,
     n) [N]."""
-    forces = [found.cylinders["gas_force"][:, 0], found.friction]
+    forces = [balances.cylinders["gas_force"][:, 0], balances.friction]
     if scene.double_acting:
-        head = (scene.piston.gas_area or 0.0) * found.cylinders["gas_pressure"][:, 0]
+        head = (scene.piston.gas_area or 0.0) * balances.cylinders["gas_pressure"][:, 0]
         forces += [head, forces[0] - head]
     return forces
 

@@ -162,12 +162,12 @@ def _powers(machine: Machine, tables: Pass, time: Array) -> Numbers:
         for works in tables.works
     )
     works = Works(gas, rubbed, (ends[0], ends[1]) if ends else None)
-    found = powers(machine.scene, works, 1.0, time)
+    of_gas = powers(machine.scene, works, 1.0, time)
     numbers = {
         name: np.tile(number.value, (len(time), 1))
         if name.startswith("imep")
         else number.value + 0.0 * time
-        for name, number in found.items()
+        for name, number in of_gas.items()
     }
     if machine.scene.friction is not None:
         numbers.setdefault("mechanical_efficiency", np.full_like(time, np.nan))
@@ -269,15 +269,15 @@ def _of_lectures(tables: Pass, of: _Motions, mean: Array, cuts: Cuts | None) -> 
     def rows(which: Which) -> Array:
         case, curve, cell = which
         line = ((curve >= LINEAR.start) & (curve < LINEAR.stop)).astype(np.intp)
-        own = cell if cuts is None else np.where(cell == m - 1, cuts.cell[case], cell)
-        table, power = lectures.at(own, curve), powers[case, cell % m, line]
-        found = np.einsum("cps,cps->cs", table, power).T[:, None].copy()
+        whole = cell if cuts is None else np.where(cell == m - 1, cuts.cell[case], cell)
+        table, power = lectures.at(whole, curve), powers[case, cell % m, line]
+        values = np.einsum("cps,cps->cs", table, power).T[:, None].copy()
         if cuts is not None:
             low = np.where(cell == m - 1, cuts.place[case], 0.0)
             high = np.where(cell == cuts.cell[case], cuts.place[case], 1.0)
             part = high - low < 1.0
-            found[..., part] = at_nodes(s).part(found[..., part], low[part], high[part])
-        return np.asarray(found)
+            values[..., part] = at_nodes(s).part(values[..., part], low[part], high[part])
+        return np.asarray(values)
 
     always = None
     if cuts is not None:

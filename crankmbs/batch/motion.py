@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +21,7 @@ from crankmbs.numerics.arrays import Array, Index
 from crankmbs.numerics.collocation import Maps, Rule, summed
 from crankmbs.numerics.lagrange import ends_and_nodes
 
-__all__ = ["Cases", "Courses", "Cuts", "over_periods", "settled", "to_times"]
+__all__ = ["Cases", "Courses", "Cuts", "over_periods", "part_of", "settled", "to_times"]
 
 _ROUNDS, _CLOSE = 30, 1e-9  # of Newton's method; a change of the energies whose square is nothing
 _LEAST = 0.1  # of the energy where cells begin: no guess is lower
@@ -41,10 +41,6 @@ class Cases(NamedTuple):
     end: Array
     rtol: Array
 
-    def part(self, which: Index | NDArray[np.bool_] | slice) -> Cases:
-        """Some of them."""
-        return Cases(*(each[which] for each in self))
-
 
 class Cuts(NamedTuple):
     """Where periods of k cases begin and end: in which cells, at which places, 0 to 1; shape (k,).
@@ -53,10 +49,6 @@ class Cuts(NamedTuple):
 
     cell: Index
     place: Array
-
-    def part(self, which: NDArray[np.bool_]) -> Cuts:
-        """Some of them."""
-        return Cuts(self.cell[which], self.place[which])
 
 
 class Courses(NamedTuple):
@@ -76,9 +68,18 @@ class Courses(NamedTuple):
     growth: Array
     least: Array
 
-    def part(self, which: NDArray[np.bool_]) -> Courses:
-        """Some of them."""
-        return Courses(*(each[which] for each in self))
+
+R = TypeVar("R", Cases, Cuts, Courses)
+
+
+def part_of(record: R, which: Index | NDArray[np.bool_]) -> R:
+    """Some of the cases of a record.
+
+    >>> part_of(Cuts(np.array([3, 4]), np.array([0.1, 0.2])), np.array([1])).cell
+    array([4])
+    """
+    parts: list[Any] = [each[which] for each in record]
+    return type(record)(*parts)
 
 
 class _Equation:

@@ -9,7 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crankmbs.batch.machine import Machine, Pass, ahead_of
-from crankmbs.batch.motion import Cases, Courses, Cuts, over_periods, settled, to_times
+from crankmbs.batch.motion import (
+    Cases,
+    Courses,
+    Cuts,
+    over_periods,
+    part_of,
+    settled,
+    to_times,
+)
 from crankmbs.batch.serves import loads_of
 from crankmbs.numerics.arrays import Array, Index
 from crankmbs.scene.scene import Scene
@@ -30,8 +38,8 @@ class Solved(NamedTuple):
 
     def part(self, which: NDArray[np.bool_]) -> Solved:
         """Some of them."""
-        cuts = None if self.cuts is None else self.cuts.part(which)
-        return Solved(self.tables, self.courses.part(which), cuts)
+        cuts = None if self.cuts is None else part_of(self.cuts, which)
+        return Solved(self.tables, part_of(self.courses, which), cuts)
 
 
 class Pairs(NamedTuple):
@@ -77,7 +85,7 @@ def pairs_of(machine: Machine, which: Index, cases: Cases) -> Pairs:
         sure &= check.least > 0.0
     else:
         sure = _keeps_clear(machine, cases, least)
-    return Pairs(which[sure], cases.part(sure), (passes[0].part(sure), passes[1].part(sure)))
+    return Pairs(which[sure], part_of(cases, sure), (passes[0].part(sure), passes[1].part(sure)))
 
 
 def _passes(machine: Machine, cases: Cases, energy: Array) -> tuple[Solved, Solved]:

@@ -79,10 +79,10 @@ def sparse_nodes(width: Array, stages: int) -> Index:
 def find_peaks(curves: Curves) -> Peaks:
     """The largest sizes."""
     which = _candidates(curves)
-    found = Peaks(*np.full((4, *curves.shape), np.nan))
-    found = found._replace(cell=np.zeros(curves.shape, np.intp))
+    size, place, missed = np.full((3, *curves.shape), np.nan)
+    peaks = Peaks(size, np.zeros(curves.shape, np.intp), place, missed)
     if len(which.cell) == 0:
-        return found
+        return peaks
     rows = curves.rows(which)
     group = which.case * curves.shape[1] + which.curve
     starts = np.flatnonzero(np.append(True, np.diff(group) != 0))
@@ -91,27 +91,25 @@ def find_peaks(curves: Curves) -> Peaks:
     beyond = np.maximum.reduceat(best.heights + _TAILS * tail, starts) - best.size
     some = np.isfinite(best.size)
     at = which.case[starts][some], which.curve[starts][some]
-    found.size[at], found.place[at], found.missed[at] = (
-        each[some] for each in (best.size, best.place, beyond)
-    )
-    found.cell[at] = which.cell[best.which][some]
-    return found
+    size[at], place[at], missed[at] = (each[some] for each in (best.size, best.place, beyond))
+    peaks.cell[at] = which.cell[best.which][some]
+    return peaks
 
 
 def sizes_at(curves: Curves, peaks: Peaks) -> Array:
     """The sizes where the peaks of others are, shape (k, r)."""
-    found = np.full(peaks.size.shape, np.nan)
+    sizes = np.full(peaks.size.shape, np.nan)
     case, curve = np.nonzero(np.isfinite(peaks.size))
     if len(case):
         rows = curves.rows(Which(case, curve, peaks.cell[case, curve]))
         series = at_nodes(len(rows)).series(rows)[:, 0]
-        found[case, curve] = size_of(summed(series, peaks.place[case, curve]))
-    return found
+        sizes[case, curve] = size_of(summed(series, peaks.place[case, curve]))
+    return sizes
 
 
 def _candidates(curves: Curves) -> Which:
     """The cells in which a curve may be larger than at any node, case after case."""
-    (k, r), n, found = curves.shape, len(curves.cells), []
+    (k, r), n, codes = curves.shape, len(curves.cells), []
     many = max(1, _MANY // (r * n))
     for first in range(0, k, many):
         sizes = curves.sizes(slice(first, first + many))
@@ -124,11 +122,11 @@ def _candidates(curves: Curves) -> Which:
         sizes[[0, -1]] += apart[[0, -1]]
         may |= sizes >= best + nothing
         node, number = np.divmod(np.flatnonzero(may), best.size)
-        found.append((first * r + number) * (n + 1) + curves.cells[node])
+        codes.append((first * r + number) * (n + 1) + curves.cells[node])
     if curves.always is not None:
         every = (np.arange(k)[:, None, None] * r + np.arange(r)[:, None]) * (n + 1)
-        found.append((every + curves.always[:, None]).ravel())
-    code = np.sort(np.concatenate(found))
+        codes.append((every + curves.always[:, None]).ravel())
+    code = np.sort(np.concatenate(codes))
     code = code[np.append(True, np.diff(code) != 0)[: len(code)]]
     case, of_case = np.divmod(code, r * (n + 1))
     return Which(case, *np.divmod(of_case, n + 1))

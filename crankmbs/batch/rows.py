@@ -51,8 +51,8 @@ def rows_of(scenes: Sequence[Scene | None]) -> list[Rows]:
     and meaning are those of a sweep, what it has of one scene alone agrees within the errors.
 
     >>> scene = load_scene("propeller").with_(run__until="settled")
-    >>> (found,) = rows_of([scene])
-    >>> found.columns["fluctuation"].round(6).tolist()
+    >>> (rows,) = rows_of([scene])
+    >>> rows.columns["fluctuation"].round(6).tolist()
     [0.137409]
     """
     return [_rows(group) for group in solved_together(scenes)]
@@ -89,16 +89,16 @@ def _of_joints(group: Group, pairs: dict[str, tuple[Array, Array]]) -> dict[str,
         pairs[f"main_bearing_{what}"] = of[f"{what}s"][:, 0], error[f"{what}s"][:, 0]
     phases = np.array([cylinder.phase for cylinder in scene.cylinders])
     for number, joint in enumerate(_JOINTS):
-        own = slice(1 + number * len(phases), 1 + (number + 1) * len(phases))
-        peaks, best = of["peaks"][:, own], np.tile(np.arange(len(phases)), (len(turned), 1))
+        every = slice(1 + number * len(phases), 1 + (number + 1) * len(phases))
+        peaks, best = of["peaks"][:, every], np.tile(np.arange(len(phases)), (len(turned), 1))
         if machine.shares > 1:
             best[:] = np.argmax(peaks, axis=1)[:, None]
-        values = peaks, error["peaks"][:, own], np.mod(turned[:, own] + phases, scene.period)
+        values = peaks, error["peaks"][:, every], np.mod(turned[:, every] + phases, scene.period)
         peak, apart, angles[f"{joint}_peak_angle"] = (
             np.take_along_axis(each, best, axis=1) for each in values
         )
         pairs[f"{joint}_peak"] = peak, apart
-        mean, unsure = (by_turns(each["means"][:, own], machine.shares) for each in (of, error))
+        mean, unsure = (by_turns(each["means"][:, every], machine.shares) for each in (of, error))
         pairs[f"{joint}_mean"] = mean, unsure
     return angles
 

@@ -10,11 +10,10 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crankmbs.batch.machine import Machine, key_of, machine_of
 from crankmbs.batch.measures import Numbers, measure
-from crankmbs.batch.motion import Cases
+from crankmbs.batch.motion import Cases, part_of
 from crankmbs.batch.passes import cases_of, pairs_of
 from crankmbs.batch.serves import loads_of
 from crankmbs.design.rebalance import mean_speed_of
@@ -37,14 +36,6 @@ class Group(NamedTuple):
     numbers: Numbers
     errors: Numbers
 
-    def part(self, kept: NDArray[np.bool_]) -> Group:
-        """Some of the scenes."""
-        numbers, errors = (
-            {name: values[kept] for name, values in of.items()}
-            for of in (self.numbers, self.errors)
-        )
-        return Group(self.machine, self.which[kept], numbers, errors)
-
 
 def solved_together(scenes: Sequence[Scene | None]) -> Iterator[Group]:
     """Solve the scenes that can be solved so, and whose answers err no more than they ask for;
@@ -59,9 +50,9 @@ def solved_together(scenes: Sequence[Scene | None]) -> Iterator[Group]:
         if scene is not None and loads_of(scene) is not None:
             alike.setdefault(_Alike(key_of(scene), scene), []).append(number)
     for of, numbers in alike.items():
-        own = [scene for scene in (scenes[k] for k in numbers) if scene is not None]
+        of_machine = [scene for scene in (scenes[k] for k in numbers) if scene is not None]
         with suppress(CrankmbsError):  # alone the scene says what it lacks
-            yield from _of_machine(of, np.array(numbers), cases_of(own))
+            yield from _of_machine(of, np.array(numbers), cases_of(of_machine))
 
 
 def mean_speed_together(scene: Scene) -> float:
@@ -70,10 +61,10 @@ def mean_speed_together(scene: Scene) -> float:
     >>> round(mean_speed_together(load_scene("propeller").with_(run__until="settled")), 3)
     333.805
     """
-    found = next(solved_together([scene]), None)
-    if found is None:
+    group = next(solved_together([scene]), None)
+    if group is None:
         return mean_speed_of(scene)
-    return scene.settled_period / float(found.numbers["duration"][0])
+    return scene.settled_period / float(group.numbers["duration"][0])
 
 
 @dataclass(frozen=True)
@@ -96,33 +87,30 @@ def _of_machine(alike: _Alike, which: Index, cases: Cases) -> Iterator[Group]:
     left = np.arange(len(which))
     for finest in (False, True):
         machine = _machine(alike, finest)
-        groups = [] if machine.folds else _groups(machine, left, cases)
-        left = left[:0]
-        if groups:
-            numbers, errors = (
-                _joined([one.numbers for one in groups]),
-                _joined([one.errors for one in groups]),
-            )
-            left = np.concatenate([one.which for one in groups])
-            group = Group(machine, which[left], numbers, errors)
-            good = numbers["relative"] <= cases.rtol[left]
-            if good.any():
-                yield group.part(good)
-            left = left[~good]
+        parts = [] if machine.folds else list(_parts(machine, left, cases))
+        if not parts:
+            return
+        left = np.concatenate([part.which for part in parts])
+        numbers = _joined([part.numbers for part in parts])
+        errors = _joined([part.errors for part in parts])
+        good = numbers["relative"] <= cases.rtol[left]
+        if good.any():
+            chosen = ({name: of[name][good] for name in of} for of in (numbers, errors))
+            yield Group(machine, which[left[good]], *chosen)
+        left = left[~good]
         if machine.finest or len(left) == 0:
             return
 
 
 def _joined(parts: list[Numbers]) -> Numbers:
-    return {name: np.concatenate([one[name] for one in parts]) for name in parts[0]}
+    return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
 
-def _groups(machine: Machine, which: Index, cases: Cases) -> list[Group]:
+def _parts(machine: Machine, which: Index, cases: Cases) -> Iterator[Group]:
     """Those of some cases that have a motion, some after the others."""
-    many, found = max(1, _MANY // machine.answer.forces[:, :, 0].size), []
+    many = max(1, _MANY // machine.answer.forces[:, :, 0].size)
     for first in range(0, len(which), many):
         some = which[first : first + many]
-        pairs = pairs_of(machine, some, cases.part(some))
+        pairs = pairs_of(machine, some, part_of(cases, some))
         if len(pairs.which):
-            found.append(Group(machine, pairs.which, *measure(machine, pairs)))
-    return found
+            yield Group(machine, pairs.which, *measure(machine, pairs))

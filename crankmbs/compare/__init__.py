@@ -1,5 +1,5 @@
-"""A run against the exact closed form, the lectures' formulas and the user's; the error budget of
-formulas; and two runs of one scene compared.
+"""A run against the exact closed form, the lectures' formulas, the user's and exudyn's rigid
+bodies; and the error budget of formulas.
 
 The formulas themselves belong in lecture and mechanics, the measures of a run in measures.
 """

@@ -84,7 +84,7 @@ def at_angle(result: Result, angle: float | str) -> AtAngle:
     return AtAngle(crank_angle, time, (*_variables(data), *_lecture_forces(result.scene, data)))
 
 
-def angle_of(given: float | str) -> float:
+def angle_of(text: float | str) -> float:
     """A crank angle [rad] from a number, or from text with its unit.
 
     Raises
@@ -94,11 +94,11 @@ def angle_of(given: float | str) -> float:
     >>> round(angle_of("60 deg"), 3)
     1.047
     """
-    angle = quantity(given, "angle") if isinstance(given, str) else float(given)
+    angle = quantity(text, "angle") if isinstance(text, str) else float(text)
     if not abs(angle) <= _FARTHEST:
         raise InputError(
             f"the crank angle must be within {_FARTHEST:g} rad, or its place in a cycle is rounded "
-            f"away; {given!r} came"
+            f"away; {text!r} came"
         )
     return angle
 

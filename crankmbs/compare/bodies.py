@@ -17,25 +17,32 @@ __all__ = ["Bodies", "bodies_of"]
 class Bodies(NamedTuple):
     """In SI units: one number of all cylinders, or shape (cylinders,) where they are unlike.
 
-    center_of_mass, inertia : of the rod, from the crank pin and about itself
-    piston_area, crank_end : areas of both ends; 0 where the scene has none
+    rod_center_of_mass, rod_inertia : from the crank pin and about itself
+    piston_area, crank_end_area : of both ends; 0 where the scene has none
     """
 
     crank_radius: Array | float
     rod_length: Array | float
     offset: Array | float
     rod_mass: Array | float
-    center_of_mass: Array | float
-    inertia: Array | float
+    rod_center_of_mass: Array | float
+    rod_inertia: Array | float
     piston_mass: Array | float
     piston_area: Array | float
-    crank_end: Array | float
+    crank_end_area: Array | float
+
+    @property
+    def lengths(self) -> dict[str, Array | float]:
+        """What the kinematics of a cylinder depend on [m], as the lectures' formulas take it."""
+        return {name: getattr(self, name) for name in ("crank_radius", "rod_length", "offset")}
 
     @property
     def masses(self) -> TwoMassRod:
         """The rod as two masses."""
         return two_mass_rod(
-            rod_mass=self.rod_mass, rod_length=self.rod_length, center_of_mass=self.center_of_mass
+            rod_mass=self.rod_mass,
+            rod_length=self.rod_length,
+            center_of_mass=self.rod_center_of_mass,
         )
 
 

@@ -7,14 +7,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from crankmbs.compare.chain import Idealized, checked_chain, steps
+from crankmbs.compare.chain import REST, Idealized, checked_chain
 from crankmbs.compare.excerpt import Answer, LeftOut, excerpt_of, vanishing
 from crankmbs.compare.formula import Formula, formulas_of, variables_of
 from crankmbs.compare.lectured import LECTURES, S1
 from crankmbs.compare.quantities import QUANTITIES
 from crankmbs.compare.split import Budget, Cause, Split
 from crankmbs.errors import InputError
-from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 
 __all__ = ["budget"]
@@ -143,26 +142,31 @@ def _users(
 
 
 def _split(ideal: Idealized, chain: Sequence[str], evaluation: _Evaluation, name: str) -> Split:
-    reference, values, idealized, errors = evaluation
-    simulated = ideal.run[name]
-
-    def answer(remaining: frozenset[str]) -> Array:
-        exact = ideal.exact(remaining)[name]
-        return (
-            exact + errors["constant speed" in remaining][name] if "series" in remaining else exact
-        )
-
-    if not errors:
-        chain = [cause for cause in chain if cause != "series"]
-    curves = steps(chain, values[name], idealized, answer, simulated)
-    total = values[name] - simulated
+    """What each cause of a chain adds, from a formula's values to the run: they add up to formula
+    minus run, to rounding, whatever their order."""
+    reference, values, remaining, errors = evaluation
+    simulated, before, causes = ideal.run[name], values[name], []
     size = ideal.excerpt.size
+    for cause in chain:
+        if cause == "series" and not errors:
+            continue
+        lifted = frozenset[str]() if cause == REST else remaining - {cause}
+        after = before
+        if not lifted:
+            after = simulated
+        elif lifted != remaining:
+            after = ideal.exact(lifted)[name]
+            if "series" in lifted:
+                after = after + errors["constant speed" in lifted][name]
+        causes.append(Cause(cause, before - after, size(name, before - after)))
+        remaining, before = lifted, after
+    total = values[name] - simulated
     return Split(
         quantity=name,
         reference=reference,
         values=values[name],
         simulated=simulated,
-        causes=tuple(Cause(cause, curve, size(name, curve)) for cause, curve in curves.items()),
+        causes=tuple(causes),
         total=Cause("total", total, size(name, total)),
         peak=float(np.max(np.abs(simulated))),
     )

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import cached_property
 
 from crankmbs import lecture
+from crankmbs.compare.bodies import bodies_of
 from crankmbs.compare.excerpt import Answer, Excerpt
-from crankmbs.compare.lectured import S1, gear_of
+from crankmbs.compare.lectured import S1
 from crankmbs.errors import InputError, shown
-from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.sentences import did_you_mean
 
-__all__ = ["CAUSES", "REST", "Idealized", "checked_chain", "steps"]
+__all__ = ["CAUSES", "REST", "Idealized", "checked_chain"]
 
 
 CAUSES = {
@@ -116,13 +116,11 @@ class Idealized:
             scene = dataclasses.replace(scene, force=())
         if "two-mass rod" in idealized:
             scene = scene.two_mass
-        answer = dict(
-            self.excerpt.newton_euler(scene, constant_speed="constant speed" in idealized)
-        )
+        answer = self.excerpt.newton_euler(scene, constant_speed="constant speed" in idealized)
         if "gas torque" in answer:  # the same at every speed, also where the mean is 0
             answer["gas torque"] = self.closed_form["gas torque"]
         if "datum" in idealized:
-            shift = lecture.datum_shift(**gear_of(scene, self.excerpt.cylinder)._asdict())
+            shift = lecture.datum_shift(**bodies_of(scene, self.excerpt.cylinder).lengths)
             answer["piston displacement"] = answer["piston displacement"] + shift
         if "solver" not in idealized:
             answer = {name: answer[name] + self._solver[name] for name in answer}
@@ -132,24 +130,3 @@ class Idealized:
     def _solver(self) -> Answer:
         """Run minus closed form, at the motion of the run."""
         return {name: self.run[name] - self.closed_form[name] for name in self.closed_form}
-
-
-def steps(
-    chain: Sequence[str],
-    values: Array,
-    idealized: frozenset[str],
-    answer: Callable[[frozenset[str]], Array],
-    simulated: Array,
-) -> dict[str, Array]:
-    """What each cause of a chain adds, from a formula's values to the run: they add up to formula
-    minus run, to rounding, whatever their order.
-
-    idealized : what the formula idealizes; answer : the formula's under fewer idealizations
-    """
-    remaining, before, contributions = idealized, values, {}
-    for cause in chain:
-        lifted = frozenset[str]() if cause == REST else remaining - {cause}
-        after = before if lifted == remaining else answer(lifted) if lifted else simulated
-        contributions[cause] = before - after
-        remaining, before = lifted, after
-    return contributions

@@ -1,5 +1,4 @@
-"""A run beside exudyn's rigid bodies, and two runs of one scene sample by sample: how far they
-differ, and what both state of their error."""
+"""A run beside exudyn's rigid bodies: how far they differ, and what both state of their error."""
 
 from __future__ import annotations
 
@@ -17,7 +16,6 @@ from crankmbs.mechanics.train import CrankTrain, crank_train
 from crankmbs.mechanics.variables import EVERY
 from crankmbs.motion.cells import Cells
 from crankmbs.motion.motion import Motion
-from crankmbs.motion.plan import Plan, plan_of
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 from crankmbs.scene.scene import Scene
@@ -25,7 +23,7 @@ from crankmbs.scene.scene import Scene
 if TYPE_CHECKING:
     from crankmbs.motion.multibody.beside import Shares
 
-__all__ = ["Confirmation", "Difference", "confirm", "differences"]
+__all__ = ["Confirmation", "Difference", "confirm"]
 
 
 _RTOL = 5e-6  # of the last period
@@ -34,7 +32,6 @@ _PLACES = 360  # at which it is compared: between samples, beside jumps at whole
 _STATES = 60  # of the whole run
 _LATE = 1e-3  # of a stretch that begins at rest: where friction lets go, rounding decides
 _NOTHING = 1e-9  # of the largest of the same unit: what is smaller is compared with that
-_SAME = 1e-6  # of the sample spacing: so near each other two samples are one
 _MOTION = {
     "crank speed": ("crank_speed",),
     "crank acceleration": ("crank_acceleration",),
@@ -239,13 +236,14 @@ def _at_states(result: Result, train: CrankTrain) -> tuple[Difference, ...]:
 
     count = result.data.sizes["time"]
     chosen = np.unique(np.linspace(0, count - 1, _STATES).astype(int))
-    names = [name for name, (dims, _, _) in result.variables.items() if dims[0] == "time"]
-    ours = {name: result.sampled(name)[chosen] for name in names}
+    of_time = {name: each for name, each in result.variables.items() if each[0][0] == "time"}
+    ours = {name: values[chosen] for name, (_, values, _) in of_time.items()}
+    stated = {name: about.get("error_estimate", 0.0) for name, (_, _, about) in of_time.items()}
     theirs = beside.consistent(train, ours, driven=result.scene.motion is not None)
     motion = {name: _MOTION[name] for name in ("crank acceleration", "piston acceleration")}
     rows = {**motion, **_forces(result.scene)}
     none = dict.fromkeys(theirs, 0.0)
-    return _rows(rows, ours, theirs, _stated_by(result), none, math.inf)
+    return _rows(rows, ours, theirs, stated, none, math.inf)
 
 
 def _rows(
@@ -289,76 +287,3 @@ def _forces(scene: Scene) -> dict[str, tuple[str, ...]]:
     if scene.throws is None:
         return _FORCES
     return _FORCES | {"main journal": ("main_journal_force_x", "main_journal_force_y")}
-
-
-def _stated_by(result: Result) -> dict[str, float]:
-    return {
-        str(name): float(variable.attrs.get("error_estimate", 0.0))
-        for name, variable in result.data.variables.items()
-    }
-
-
-def differences(result: Result, check: Result) -> tuple[Difference, ...]:
-    """Compare two runs of one scene at equal samples, over the stretch that both cover.
-
-    A run that ends before the other has a sample at its end that the other has not, and where only
-    one of them comes to another angle before it reverses their samples part: they are compared up
-    to there. Forces are compared as vectors. With samples on crank angles the motion differs in the
-    time at which they are passed, with samples in time in the crank angle.
-
-    Raises
-    ------
-    InputError : the runs are not of one scene (their formulations and rtol may differ)
-
-    >>> scene = load_scene("coasting")
-    >>> differences(simulate(scene), simulate(scene, rtol=1e-6))[0].quantity
-    'time'
-    """
-    plan = plan_of(result.scene)
-    if plan != plan_of(check.scene) or _cylinders(result) != _cylinders(check):
-        raise InputError("only runs of one scene, sampled alike, can be compared")
-    base = {"crank angle": ("crank_angle",)} if plan.in_time else {"time": ("time",)}
-    rows = {**base, **_MOTION, **_forces(result.scene)}
-    n = min(result.data.sizes["time"], check.data.sizes["time"])
-    # where only the end is kept the samples agree from the end, else from the start
-    common = slice(-n, None)
-    if result.scene.run.every is not None:
-        common = slice(_shared(result, check, plan))
-    return tuple(_difference(result, check, common, *row) for row in rows.items())
-
-
-def _shared(result: Result, check: Result, plan: Plan) -> int:
-    """How many samples both runs have, counted from the start."""
-    runs = (result, check)
-    a, b = (run.data["time" if plan.in_time else "crank_angle"].values for run in runs)
-    n = min(len(a), len(b))
-    apart = np.abs(a[:n] - b[:n]) > _SAME * plan.every
-    if len(a) == len(b) and result.status == check.status:
-        apart[-1] = False  # the end, which each may reach elsewhere
-    return max(int(np.argmax(apart)) if apart.any() else n, 1)
-
-
-def _difference(
-    result: Result, check: Result, common: slice, title: str, names: tuple[str, ...]
-) -> Difference:
-    ours = [result.data[name].values for name in names]
-    theirs = [check.data[name].values for name in names]
-    size = np.sqrt(sum((a[common] - b[common]) ** 2 for a, b in zip(ours, theirs, strict=True)))
-    length = np.sqrt(sum(a**2 for a in ours))
-    return Difference(
-        quantity=title,
-        units=str(result.data[names[0]].attrs["units"]),
-        crank_angle=result.data["crank_angle"].values[common],
-        size=size.reshape(len(size), -1),
-        peak=float(np.max(length)),
-        errors=(_stated(result, names), _stated(check, names)),
-        formulations=(result.formulation, check.formulation),
-    )
-
-
-def _stated(result: Result, names: tuple[str, ...]) -> float:
-    return math.hypot(*(result.data[name].attrs["error_estimate"] for name in names))
-
-
-def _cylinders(result: Result) -> int:
-    return int(result.data.sizes["cylinder"])

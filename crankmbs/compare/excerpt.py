@@ -64,7 +64,7 @@ class Excerpt:
         """The run's values, in the lectures' quantities."""
         data = self.result.data.isel(time=self.samples)
         variables = {name: data[name].values for name in EVERY if name in data}
-        return self._quantities(variables, self.omega, self.alpha)
+        return self.quantities(variables, self.omega, self.alpha)
 
     def newton_euler(self, scene: Scene, *, constant_speed: bool = False) -> Answer:
         """The exact closed form at the run's theta, at its speed or the mean of it; ``scene`` may
@@ -75,12 +75,12 @@ class Excerpt:
             loads["applied_force"] = self.result.sampled("applied_force")[self.samples]
         train = replace(self.train, scene=scene)
         variables = reactions(train, self.theta, omega, alpha, loads)
-        return self._quantities(variables, omega, alpha)
+        return self.quantities(variables, omega, alpha)
 
     def lecture(self, formulas: Formulas, *, constant_speed: bool) -> Answer:
         """The lectures' formulas at the run's theta, at its speed or the mean of it."""
         omega, alpha = self._speeds(constant_speed)
-        return self.of_cylinder(lectured(formulas, self.train, self.theta, omega, alpha))
+        return self._of_cylinder(lectured(formulas, self.train, self.theta, omega, alpha))
 
     def angles(self, quantity: str) -> Array:
         """Cycle angle of the cylinder; for quantities of the whole engine the crank angle [rad]."""
@@ -99,13 +99,14 @@ class Excerpt:
         zeros = np.zeros_like(self.alpha)
         return zeros + self.mean_speed, zeros
 
-    def _quantities(self, variables: dict[str, Array], omega: Array, alpha: Array) -> Answer:
+    def quantities(self, variables: Answer, omega: Array, alpha: Array) -> Answer:
+        """Those of the variables of a result at theta, omega and alpha."""
         answer = observed(self.result.scene, variables, self.theta, omega, alpha)
         further = {name: variables.get(name.replace(" ", "_")) for name in self.others}
         answer |= {name: curve for name, curve in further.items() if curve is not None}
-        return self.of_cylinder(answer)
+        return self._of_cylinder(answer)
 
-    def of_cylinder(self, answer: Answer) -> Answer:
+    def _of_cylinder(self, answer: Answer) -> Answer:
         """The curves of the cylinder compared and of the whole engine, without those left out."""
         missing = self.left_out()
         return {
@@ -134,8 +135,8 @@ def vanishing(answers: Iterable[Answer]) -> dict[str, str]:
     for answer in answers:
         for name, curve in answer.items():
             peaks[name] = max(peaks.get(name, 0.0), float(np.max(np.abs(curve))))
-    units = {name: OBSERVABLES[name].units for name in peaks}
-    return dict.fromkeys(negligible(peaks, units), "it is zero but for rounding")
+    zero = negligible(peaks, {name: OBSERVABLES[name].units for name in peaks})
+    return {name: "it is zero but for rounding" for name in peaks if name in zero}
 
 
 def check_comparable(scene: Scene, cylinder: int) -> None:

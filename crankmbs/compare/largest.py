@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
 from crankmbs.compare.excerpt import Answer, Excerpt, at_fold, excerpt_of, vanishing
-from crankmbs.compare.lectured import LECTURES, lectured
-from crankmbs.compare.quantities import QUANTITIES, observed
+from crankmbs.compare.lectured import LECTURES
+from crankmbs.compare.quantities import QUANTITIES
 from crankmbs.errors import InputError
 from crankmbs.measures import Estimate
 from crankmbs.measures.estimate import Number, Numbers, estimates
@@ -75,17 +76,14 @@ def _shares(excerpt: Excerpt, pairs: list[Pair], motion: Motion) -> Numbers:
 
 def _answers(excerpt: Excerpt, variables: Answer) -> dict[str, Answer]:
     """The quantities along a motion, by the run and by each lecture."""
-    scene, train = excerpt.result.scene, excerpt.train
     names = ("crank_angle", "crank_speed", "crank_acceleration")
     theta, omega, alpha = (variables[name] for name in names)
-    zeros = np.zeros_like(alpha)
-    answers = {_RUN: observed(scene, variables, theta, omega, alpha)}
+    curves = replace(excerpt, theta=theta, omega=omega, alpha=alpha)
+    answers = {_RUN: curves.quantities(variables, omega, alpha)}
     for name, formulas in LECTURES.items():
-        try:
-            answers[name] = lectured(formulas, train, theta, zeros + excerpt.mean_speed, zeros)
-        except InputError:  # a rod ratio for which its series diverge
-            continue
-    return {name: excerpt.of_cylinder(answer) for name, answer in answers.items()}
+        with suppress(InputError):  # of a rod ratio for which its series diverge
+            answers[name] = curves.lecture(formulas, constant_speed=True)
+    return answers
 
 
 def _pairs(answers: dict[str, Answer]) -> list[Pair]:

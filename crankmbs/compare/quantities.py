@@ -24,7 +24,6 @@ __all__ = [
     "Quantity",
     "cycle_angles",
     "observed",
-    "observed_cylinders",
 ]
 
 
@@ -82,26 +81,16 @@ def observed(
 
     Parameters
     ----------
-    variables : by name, as in `crankmbs.result.VARIABLES`, SI units
-    theta, omega, alpha : shape (n,) [rad, rad/s, rad/s2], the motion they belong to
+    variables : by name, as in `crankmbs.result.VARIABLES`, SI units, shape (..., n, cylinders)
+    theta : shape (n,) [rad]; omega, alpha : shape (..., n) or (..., 1) [rad/s, rad/s2], the motion
+        they belong to
 
     Returns
     -------
-    dict over QUANTITIES: shape (n, cylinders), those of the whole engine (n,); "gas torque" is
-    the gas force's power over omega, not finite where the crank stands still
+    dict over QUANTITIES: shape (..., n, cylinders), those of the whole engine (..., n); "gas
+    torque" is the gas force's power over omega, not finite where the crank stands still
     """
-    phi = cycle_angles(scene, theta)
-    return observed_cylinders(scene, variables, phi, omega[:, None], alpha[:, None]) | {
-        "main bearing force x": variables["main_bearing_force_x"],
-        "main bearing force y": variables["main_bearing_force_y"],
-    }
-
-
-def observed_cylinders(
-    scene: Scene, variables: Mapping[str, Array], phi: Array, omega: Array, alpha: Array
-) -> dict[str, Array]:
-    """The quantities of `observed` that a cylinder has, at cycle angles of any shape [rad]; omega,
-    alpha and the variables in shapes that broadcast with it."""
+    phi, omega, alpha = cycle_angles(scene, theta), omega[..., None], alpha[..., None]
     sin_phi, cos_phi = np.sin(phi), np.cos(phi)
     square = omega**2
     bodies = bodies_of(scene)
@@ -126,4 +115,6 @@ def observed_cylinders(
         "piston pin force y": variables["piston_pin_force_y"],
         "crank pin force x": variables["crank_pin_force_x"],
         "crank pin force y": variables["crank_pin_force_y"],
+        "main bearing force x": variables["main_bearing_force_x"],
+        "main bearing force y": variables["main_bearing_force_y"],
     }

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from operator import attrgetter
 from typing import NamedTuple
 
 import numpy as np
@@ -35,7 +36,7 @@ class Words:
         """The cylinder's column; for the whole engine all of them."""
         return curves[:, self._excerpt.cylinder - 1] if self._per_cylinder else curves
 
-    def curve(self, name: str) -> Array:
+    def _curve(self, name: str) -> Array:
         """A variable that every cylinder has; zero where the scene has none of the kind."""
         data = self._excerpt.result.data
         zeros = np.zeros((len(self.theta), len(self.scene.cylinders)))
@@ -62,76 +63,63 @@ class Words:
         ------
         InputError : the scene has no such number
         """
-        value = WORDS[name].value(self)
+        _, _, read, lacking = WORDS[name]
+        if read is None:
+            return self._curve(name)
+        value: Array | float | None
+        value = attrgetter(read)(self) if isinstance(read, str) else read(self)
         if value is None:
             raise InputError(
-                f"{name}: {WORDS[name].lacking}, so that no formula can ask for it; give the "
-                "number itself in the formula"
+                f"{name}: {lacking}, so that no formula can ask for it; give the number itself in "
+                "the formula"
             )
         return value
 
 
 class Word(NamedTuple):
-    """units, meaning, value; lacking : why a scene may not have it."""
+    """read : an attribute of `Words`, or what computes it from these; None of a variable of the
+    result; lacking : why a scene may not have it."""
 
     units: str
     meaning: str
-    value: Callable[[Words], Array | float | None]
+    read: str | Callable[[Words], Array | float | None] | None = None
     lacking: str = ""
 
 
 WORDS = {
-    "theta": Word("rad", "crank angle, unwrapped", lambda w: w.theta),
+    "theta": Word("rad", "crank angle, unwrapped", "theta"),
     "phi": Word("rad", "cycle angle", lambda w: w.of_cylinder(cycle_angles(w.scene, w.theta))),
-    "omega": Word("rad/s", "the run's crank speed", lambda w: w.omega),
-    "alpha": Word("rad/s^2", "the run's crank acceleration", lambda w: w.alpha),
-    "mean_omega": Word("rad/s", "mean of the crank speed over time", lambda w: w.mean),
+    "omega": Word("rad/s", "the run's crank speed", "omega"),
+    "alpha": Word("rad/s^2", "the run's crank acceleration", "alpha"),
+    "mean_omega": Word("rad/s", "mean of the crank speed over time", "mean"),
     "start_omega": Word(
         "rad/s",
         "crank speed of [start]",
         lambda w: None if w.scene.start is None else w.scene.start.speed,
         "the scene has no [start]",
     ),
-    "gas_pressure": Word(
-        "Pa", "pressure of the head end less ambient", lambda w: w.curve("gas_pressure")
-    ),
-    "crank_end_pressure": Word(
-        "Pa", "pressure of the crank end less ambient", lambda w: w.curve("crank_end_pressure")
-    ),
-    "gas_force": Word(
-        "N", "gas force on the piston towards the crank", lambda w: w.curve("gas_force")
-    ),
-    "friction_force": Word(
-        "N", "wall's friction on the piston towards the crank", lambda w: w.curve("friction_force")
-    ),
-    "applied_force": Word(
-        "N",
-        "force from outside on the piston towards the crank",
-        lambda w: w.curve("applied_force"),
-    ),
-    "reduced_inertia": Word(
-        "kg m^2", "J(theta), of the whole crank train", lambda w: w.reduced.inertia
-    ),
-    "reduced_slope": Word("kg m^2/rad", "dJ/dtheta", lambda w: w.reduced.slope),
-    "generalized_force": Word("N m", "of gas and weights on the crank", lambda w: w.reduced.torque),
-    "crank_radius": Word("m", "r", lambda w: w.bodies.crank_radius),
+    "gas_pressure": Word("Pa", "pressure of the head end less ambient"),
+    "crank_end_pressure": Word("Pa", "pressure of the crank end less ambient"),
+    "gas_force": Word("N", "gas force on the piston towards the crank"),
+    "friction_force": Word("N", "wall's friction on the piston towards the crank"),
+    "applied_force": Word("N", "force from outside on the piston towards the crank"),
+    "reduced_inertia": Word("kg m^2", "J(theta), of the whole crank train", "reduced.inertia"),
+    "reduced_slope": Word("kg m^2/rad", "dJ/dtheta", "reduced.slope"),
+    "generalized_force": Word("N m", "of gas and weights on the crank", "reduced.torque"),
+    "crank_radius": Word("m", "r", "bodies.crank_radius"),
     "crank_inertia": Word(
         "kg m^2",
         "about the crank axis, with the flywheel",
-        lambda w: w.scene.crank.moment_of_inertia,
+        "scene.crank.moment_of_inertia",
     ),
-    "crank_mass": Word("kg", "of the crank", lambda w: w.scene.crank.mass),
-    "crank_center_of_mass": Word(
-        "m", "of the crank, from its axis", lambda w: w.scene.crank.center_of_mass
-    ),
-    "rod_length": Word("m", "l", lambda w: w.bodies.rod_length),
+    "crank_mass": Word("kg", "of the crank", "scene.crank.mass"),
+    "crank_center_of_mass": Word("m", "of the crank, from its axis", "scene.crank.center_of_mass"),
+    "rod_length": Word("m", "l", "bodies.rod_length"),
     "rod_ratio": Word("1", "lambda = r/l", lambda w: w.bodies.crank_radius / w.bodies.rod_length),
-    "rod_mass": Word("kg", "of the rod", lambda w: w.bodies.rod_mass),
-    "rod_center_of_mass": Word(
-        "m", "of the rod, from the crank pin", lambda w: w.bodies.center_of_mass
-    ),
-    "rod_inertia": Word("kg m^2", "about the rod's centre of mass", lambda w: w.bodies.inertia),
-    "piston_mass": Word("kg", "of the piston", lambda w: w.bodies.piston_mass),
+    "rod_mass": Word("kg", "of the rod", "bodies.rod_mass"),
+    "rod_center_of_mass": Word("m", "of the rod, from the crank pin", "bodies.rod_center_of_mass"),
+    "rod_inertia": Word("kg m^2", "about the rod's centre of mass", "bodies.rod_inertia"),
+    "piston_mass": Word("kg", "of the piston", "bodies.piston_mass"),
     "piston_area": Word(
         "m^2",
         "of the piston",
@@ -141,18 +129,16 @@ WORDS = {
     "crank_end_area": Word(
         "m^2",
         "of the piston less the piston rod's",
-        lambda w: w.area(w.bodies.crank_end),
+        lambda w: w.area(w.bodies.crank_end_area),
         "the scene has neither piston.bore nor piston.area",
     ),
-    "offset": Word("m", "e, of the cylinder axis in +Y", lambda w: w.bodies.offset),
+    "offset": Word("m", "e, of the cylinder axis in +Y", "bodies.offset"),
     "reciprocating_mass": Word(
         "kg",
         "piston, and the rod's mass at its pin",
         lambda w: w.bodies.piston_mass + w.bodies.masses.piston_pin,
     ),
-    "rod_crank_pin_mass": Word(
-        "kg", "the rod's mass at the crank pin", lambda w: w.bodies.masses.crank_pin
-    ),
+    "rod_crank_pin_mass": Word("kg", "the rod's mass at the crank pin", "bodies.masses.crank_pin"),
     "gravity_x": Word("m/s^2", "gravity along X", lambda w: w.gravity(0)),
     "gravity_y": Word("m/s^2", "gravity along Y", lambda w: w.gravity(1)),
     "cylinders": Word("1", "how many there are", lambda w: len(w.scene.cylinders)),

@@ -12,7 +12,7 @@ from crankmbs.measures.estimate import Estimate
 from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene
 
-__all__ = ["Joint", "JointForce", "joints_of"]
+__all__ = ["Joint", "JointForce", "joints_of", "shell_area"]
 
 
 @dataclass(frozen=True)
@@ -65,15 +65,10 @@ class Joint(NamedTuple):
             columns = [column[:, self.number - 1] for column in columns]
         return np.array([*columns, np.zeros_like(columns[0])][:2])
 
-    def labelled(self, scene: Scene, peak: Estimate, mean: Estimate, angle: float) -> JointForce:
-        """With its numbers; angle : of the crank where the peak is [rad]."""
-        cylinder, cycle_angle = None, None
-        if self.number is not None and self.of == "cylinder":
-            cylinder = self.number
-            cycle_angle = (angle + scene.cylinders[cylinder - 1].phase) % scene.period
-        area = _area(scene, self.joint)
-        numbers = peak, mean, angle, cycle_angle, self.number, area
-        return JointForce(self.joint, cylinder, *numbers)
+    @property
+    def cylinder(self) -> int | None:
+        """The number of its cylinder; None where it is none's."""
+        return self.number if self.of == "cylinder" else None
 
 
 def joints_of(scene: Scene) -> tuple[Joint, ...]:
@@ -103,13 +98,14 @@ def _alike(joint: str, variables: tuple[str, ...], of: str, count: int) -> list[
     return [Joint(joint, variables, of, number) for number in range(1, count + 1)]
 
 
-def _area(scene: Scene, joint: str) -> float | None:
-    """Projected area of the shell of a joint [m2], if it has one."""
+def shell_area(scene: Scene, joint: str) -> float | None:
+    """Projected area of the shell of a joint [m2], if it has one.
+
+    >>> shell_area(load_scene("propeller"), "crank pin") is None
+    True
+    """
     bearings = scene.bearings
-    shells = (
-        {}
-        if bearings is None
-        else {"crank pin": bearings.crank_pin, "main journal": bearings.main_journal}
-    )
-    shell = shells.get(joint)
+    if bearings is None:
+        return None
+    shell = {"crank pin": bearings.crank_pin, "main journal": bearings.main_journal}.get(joint)
     return None if shell is None else shell.area

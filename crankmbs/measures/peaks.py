@@ -2,23 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 
-from crankmbs.measures.estimate import ROUNDING, Estimate
+from crankmbs.measures.estimate import Estimate, Number, Numbers, estimates
 from crankmbs.measures.joints import Joint, joints_of
-from crankmbs.measures.nodes import Tops, nodes_of
+from crankmbs.measures.nodes import nodes_of
 from crankmbs.motion.cells import Cells
-from crankmbs.motion.motion import Motion
+from crankmbs.motion.motion import Motion, Passes
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 from crankmbs.scene.scene import Scene
 
-__all__ = ["Peak", "Quantity", "extremes_of", "run_peaks", "torque_of_rods"]
+__all__ = [
+    "SPEEDS",
+    "Peak",
+    "Quantity",
+    "peak_numbers",
+    "peaks_from",
+    "quantities_of",
+    "run_peaks",
+    "torque_of_rods",
+]
 
 _BLOCK = 512  # cells whose variables are in memory together: some ten cycles
 
@@ -39,11 +48,12 @@ class Quantity(NamedTuple):
     of: Callable[[Mapping[str, Array]], Array]
     sign: float = 1.0
 
-    def peak(self, value: Estimate, time: float, angle: float, scene: Scene) -> Peak:
-        """Its peak, at a time [s] and crank angle [rad], of its value times the sign."""
-        cycle = None if self.phase is None else (angle + self.phase) % scene.period
-        signed = Estimate(self.sign * value.value, value.error)
-        return Peak(self.name, self.units, self.number, signed, time, angle, cycle)
+
+SPEEDS = tuple(
+    Quantity(f"{word} speed", "rad/s", None, None, lambda variables: variables["crank_speed"], sign)
+    for word, sign in (("highest", 1.0), ("lowest", -1.0))
+)
+"""The highest speed, and the lowest."""
 
 
 @dataclass(frozen=True)
@@ -63,14 +73,22 @@ class Peak:
     cycle_angle: float | None
 
 
-def extremes_of(scene: Scene) -> tuple[Quantity, ...]:
-    """What has peaks beside the joints: the torque of the rods, its largest and least value, and
-    with gas the pressure in every cylinder, of a double-acting one at either end.
+def quantities_of(scene: Scene) -> tuple[Quantity, ...]:
+    """What has peaks in a scene beside the `SPEEDS`: the force of every joint, as
+    `crankmbs.measures.joints.joints_of` lists them, the torque of the rods, its largest and least
+    value, and with gas the pressure in every cylinder, of a double-acting one at either end.
 
-    >>> [one.name for one in extremes_of(load_scene("propeller"))][2]
+    >>> [quantity.name for quantity in quantities_of(load_scene("propeller"))][6]
     'gauge pressure'
     """
+    phases: dict[int | None, float] = {
+        number: cylinder.phase for number, cylinder in enumerate(scene.cylinders, start=1)
+    }
     quantities = [
+        Quantity(joint.joint, "N", joint.number, phases.get(joint.cylinder), partial(_force, joint))
+        for joint in joints_of(scene)
+    ]
+    quantities += [
         Quantity(f"{torque_of_rods(scene)}, {word}", "N m", None, None, _torque, sign)
         for word, sign in (("max", 1.0), ("min", -1.0))
     ]
@@ -81,9 +99,9 @@ def extremes_of(scene: Scene) -> tuple[Quantity, ...]:
             "gauge pressure, crank end": "crank_end_pressure",
         }
     quantities += [
-        Quantity(words, "Pa", k, cylinder.phase, partial(_pressure, name, k))
+        Quantity(words, "Pa", number, phases[number], partial(_pressure, name, number))
         for words, name in ends.items()
-        for k, cylinder in enumerate(scene.cylinders, start=1)
+        for number in range(1, len(scene.cylinders) + 1)
     ]
     return tuple(quantities)
 
@@ -109,22 +127,54 @@ def run_peaks(result: Result) -> tuple[Peak, ...]:
     'highest speed'
     """
     scene, passes = result.scene, result.passes
-    quantities = (*_speeds(), *_joints(scene), *extremes_of(scene))
-    blocks = list(_blocks(passes.answer))
-    tops = [_tops(block, quantities) for block in blocks]
-    best = np.argmax([top.value for top in tops], axis=0).tolist()
-    checks = {
-        b: [_tops(_between(check, blocks[b]), quantities) for check in passes.checks]
-        for b in set(best)
+    quantities = (*SPEEDS, *quantities_of(scene))
+    read, blocks = partial(peak_numbers, quantities), list(_blocks(passes.answer))
+    best = np.argmax([read(block)["peaks"].value for block in blocks], axis=0).tolist()
+    peaks = {}
+    for b in set(best):
+        checks = tuple(_between(check, blocks[b]) for check in passes.checks)
+        numbers = estimates(Passes(blocks[b], checks, passes.share), read)
+        peaks[b] = peaks_from(numbers, quantities, scene)
+    return tuple(peaks[b][k] for k, b in enumerate(best))
+
+
+def peak_numbers(quantities: Sequence[Quantity], motion: Motion) -> Numbers:
+    """Peaks over a motion of quantities times their signs, and the times [s] and crank angles [rad]
+    at which they are.
+
+    >>> motion = simulate(load_scene("torque_driven")).passes.answer
+    >>> sorted(peak_numbers(SPEEDS, motion))
+    ['angles', 'peaks', 'times']
+    """
+    tops = nodes_of(motion).tops(
+        lambda variables: np.array([each.sign * each.of(variables) for each in quantities])
+    )
+    sizes = tops.sizes
+    forces = np.array([each.units == "N" for each in quantities])
+    sums = forces & np.array([each.phase is None for each in quantities])
+    sizes[sums] = sizes[forces].max(initial=0.0)  # of the pins' forces
+    return {
+        "peaks": Number(tops.value, sizes),
+        "times": Number(tops.time, sizes),
+        "angles": Number(tops.angle, np.abs(tops.angle)),
     }
+
+
+def peaks_from(
+    numbers: Mapping[str, Sequence[Estimate]], quantities: Sequence[Quantity], scene: Scene
+) -> tuple[Peak, ...]:
+    """The peaks of quantities by the estimates of their `peak_numbers`.
+
+    >>> numbers = {name: (Estimate(1.0, 0.0),) for name in ("peaks", "times", "angles")}
+    >>> peaks_from(numbers, SPEEDS[:1], load_scene("torque_driven"))[0].time
+    1.0
+    """
     peaks = []
-    for k, (quantity, b) in enumerate(zip(quantities, best, strict=True)):
-        value, error = float(tops[b].value[k]), np.inf
-        if checks[b]:
-            difference = max(abs(float(check.value[k]) - value) for check in checks[b])
-            error = passes.share * difference + ROUNDING * float(tops[b].sizes[k])
-        where = float(tops[b].time[k]), float(tops[b].angle[k])
-        peaks.append(quantity.peak(Estimate(value, error), *where, scene))
+    rows = zip(quantities, *(numbers[name] for name in ("peaks", "times", "angles")), strict=True)
+    for quantity, (value, error), (time, _), (angle, _) in rows:
+        cycle = None if quantity.phase is None else (angle + quantity.phase) % scene.period
+        signed, number = Estimate(quantity.sign * value, error), quantity.number
+        peaks.append(Peak(quantity.name, quantity.units, number, signed, time, angle, cycle))
     return tuple(peaks)
 
 
@@ -136,31 +186,8 @@ def _pressure(name: str, cylinder: int, variables: Mapping[str, Array]) -> Array
     return variables[name][:, cylinder - 1]
 
 
-def _speed(variables: Mapping[str, Array]) -> Array:
-    return variables["crank_speed"]
-
-
 def _force(joint: Joint, variables: Mapping[str, Array]) -> Array:
     return np.asarray(np.hypot(*joint.force(variables)))
-
-
-def _speeds() -> list[Quantity]:
-    words = (("highest", 1.0), ("lowest", -1.0))
-    return [Quantity(f"{word} speed", "rad/s", None, None, _speed, sign) for word, sign in words]
-
-
-def _joints(scene: Scene) -> list[Quantity]:
-    phases = [cylinder.phase for cylinder in scene.cylinders]
-    return [
-        Quantity(
-            joint.joint,
-            "N",
-            joint.number,
-            phases[joint.number - 1] if joint.number and joint.of == "cylinder" else None,
-            partial(_force, joint),
-        )
-        for joint in joints_of(scene)
-    ]
 
 
 def _blocks(motion: Motion) -> Iterator[Motion]:
@@ -181,9 +208,3 @@ def _shared(cells: Cells, block: Motion) -> Cells | None:
     inside = (cells.time[:, -1] >= block.begin) & (cells.time[:, 0] <= block.end)
     k = np.flatnonzero(inside)
     return cells.since(int(k[0])).first(len(k)) if len(k) else None
-
-
-def _tops(motion: Motion, quantities: tuple[Quantity, ...]) -> Tops:
-    return nodes_of(motion).tops(
-        lambda variables: np.array([each.sign * each.of(variables) for each in quantities])
-    )

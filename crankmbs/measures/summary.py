@@ -6,14 +6,14 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from crankmbs.measures.estimate import Estimate, Number, Numbers, estimates
-from crankmbs.measures.joints import JointForce, joints_of
+from crankmbs.measures.joints import JointForce, joints_of, shell_area
 from crankmbs.measures.nodes import Nodes, nodes_of
-from crankmbs.measures.peaks import Peak, extremes_of
+from crankmbs.measures.peaks import SPEEDS, Peak, peak_numbers, peaks_from, quantities_of
 from crankmbs.measures.span import CYCLES, TURNS_BACK, Span, measured_span, passes_over
 from crankmbs.mechanics.axes import areas
 from crankmbs.motion.motion import Motion
@@ -33,11 +33,10 @@ __all__ = [
     "powers",
 ]
 
-_PLACES = "peaks", "times", "angles"
 _DRIFT, _OF_SWING = 0.01, 0.25  # what may change from a cycle to the next and be called periodic
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Measures:
     """What a run amounts to over its window. Means of forces are over time.
 
@@ -60,7 +59,7 @@ class Measures:
         friction or gas
     force_power [W] : what the forces from outside on all pistons give per time, negative where they
         take; None without
-    peaks : of torque and pressures, as `crankmbs.measures.peaks.extremes_of` lists them
+    peaks : of torque and pressures, as `crankmbs.measures.peaks.quantities_of` lists them
     energy_closure : max |energy residual| / peak kinetic energy over the whole run
     """
 
@@ -71,14 +70,14 @@ class Measures:
     joints: tuple[JointForce, ...]
     crank_torque: Estimate
     external_torque: Estimate
-    indicated_power: Estimate | None
-    imep: tuple[Estimate, ...] | None
-    imep_crank_end: tuple[Estimate, ...] | None
-    indicated_power_head_end: Estimate | None
-    indicated_power_crank_end: Estimate | None
-    friction_power: Estimate | None
-    mechanical_efficiency: Estimate | None
-    force_power: Estimate | None
+    indicated_power: Estimate | None = None
+    imep: tuple[Estimate, ...] | None = None
+    imep_crank_end: tuple[Estimate, ...] | None = None
+    indicated_power_head_end: Estimate | None = None
+    indicated_power_crank_end: Estimate | None = None
+    friction_power: Estimate | None = None
+    mechanical_efficiency: Estimate | None = None
+    force_power: Estimate | None = None
     peaks: tuple[Peak, ...]
     energy_closure: float
 
@@ -114,39 +113,28 @@ def measure(result: Result) -> Measures:
     window, scene = measured_span(result), result.scene
     passes = passes_over(result, window)
     numbers = estimates(passes, partial(_numbers, scene, window))
-    joints = zip(
-        joints_of(scene), numbers["peaks"], numbers["means"], numbers["angles"], strict=True
+    joints, quantities = joints_of(scene), quantities_of(scene)
+    speeds = len(quantities)
+    places = {name: numbers.pop(name)[:speeds] for name in ("peaks", "times", "angles")}
+    peaks, means = peaks_from(places, quantities, scene), numbers.pop("means")
+    forces = tuple(
+        JointForce(
+            joint=joint.joint,
+            cylinder=joint.cylinder,
+            peak=peak.value,
+            mean=mean,
+            crank_angle=peak.crank_angle,
+            cycle_angle=peak.cycle_angle,
+            number=joint.number,
+            area=shell_area(scene, joint.joint),
+        )
+        for joint, peak, mean in zip(joints, peaks[: len(joints)], means, strict=True)
     )
-
-    def single(name: str) -> Estimate | None:
-        return numbers[name][0] if name in numbers else None
-
-    return Measures(
-        window=window,
-        mean_speed=numbers["mean_speed"][0],
-        fluctuation=numbers["fluctuation"][0],
-        speed_gain=numbers["speed_gain"][0],
-        joints=tuple(
-            joint.labelled(scene, peak, mean, angle.value) for joint, peak, mean, angle in joints
-        ),
-        crank_torque=numbers["crank_torque"][0],
-        external_torque=numbers["external_torque"][0],
-        indicated_power=single("indicated_power"),
-        imep=numbers.get("imep"),
-        imep_crank_end=numbers.get("imep_crank_end"),
-        indicated_power_head_end=single("indicated_power_head_end"),
-        indicated_power_crank_end=single("indicated_power_crank_end"),
-        friction_power=single("friction_power"),
-        mechanical_efficiency=single("mechanical_efficiency"),
-        force_power=single("force_power"),
-        peaks=tuple(
-            quantity.peak(value, time.value, angle.value, scene)
-            for quantity, value, time, angle in zip(
-                extremes_of(scene), *(numbers[f"other {name}"] for name in _PLACES), strict=True
-            )
-        ),
-        energy_closure=_energy_closure(result),
-    )
+    named: dict[str, Any] = {
+        name: values if name.startswith("imep") else values[0] for name, values in numbers.items()
+    }
+    closure, others = _energy_closure(result), peaks[len(joints) :]
+    return Measures(window=window, joints=forces, peaks=others, energy_closure=closure, **named)
 
 
 def mean_speed(result: Result, window: Span) -> Estimate:
@@ -159,8 +147,8 @@ def fluctuation(result: Result, window: Span) -> Estimate:
     """Coefficient of fluctuation over a window [1]: (max - min) / |mean speed|; NaN at rest."""
 
     def numbers(motion: Motion) -> Numbers:
-        mean = _mean_speed(motion, window)
-        return {"fluctuation": _fluctuation(nodes_of(motion).tops(_speeds).value, mean)}
+        speeds = peak_numbers(SPEEDS, motion)["peaks"].value
+        return {"fluctuation": _fluctuation(speeds, _mean_speed(motion, window))}
 
     return estimates(passes_over(result, window), numbers)["fluctuation"][0]
 
@@ -198,38 +186,30 @@ def efficiency(indicated: Estimate | None, rubbed: Estimate | None) -> Estimate 
 def _numbers(scene: Scene, window: Span, motion: Motion) -> Numbers:
     """Everything that is measured of one motion."""
     nodes, mean = nodes_of(motion), _mean_speed(motion, window)
-    duration = motion.end - motion.begin
-    largest, forces = nodes.tops(partial(_sought, scene)), _forces(scene, nodes.variables)
-    tops = largest.value
+    duration, turned, joints = motion.end - motion.begin, motion.turned, joints_of(scene)
     variables, speed = nodes.variables, nodes.variables["crank_speed"]
-    torque = {
+    numbers = peak_numbers((*quantities_of(scene), *SPEEDS), motion)
+    peaks, sizes = (part[: len(joints)] for part in numbers["peaks"])
+    late = 1.0 + (motion.end / duration if duration else 0.0)  # units of rounding of the duration
+    means = peaks  # of one state
+    if duration:
+        means = nodes.magnitude(np.array([joint.force(variables) for joint in joints])) / duration
+    numbers |= {
+        "mean_speed": mean,
+        "fluctuation": _fluctuation(numbers["peaks"].value[-2:], mean),
+        "speed_gain": _speed_gain(motion),
+        "means": Number(means, late * sizes),
+    }
+    torques = {
         "crank_torque": variables["crank_torque"].sum(axis=1),
         "external_torque": variables["external_torque"],
     }
-    over = nodes.magnitude(forces) / duration if duration else _last(_magnitudes(forces))
-    sizes = largest.sizes[: len(forces)]
-    for k, joint in enumerate(joints_of(scene)):
-        if joint.of != "cylinder":
-            sizes[k] = sizes.max()  # a sum of the pins'
-    late = 1.0 + (motion.end / duration if duration else 0.0)  # units of rounding of the duration
-    numbers = {
-        "mean_speed": mean,
-        "fluctuation": _fluctuation(tops[-2:], mean),
-        "speed_gain": _speed_gain(motion),
-        "peaks": Number(tops[: len(forces)], sizes),
-        "angles": Number(largest.angle[: len(forces)], np.abs(largest.angle[: len(forces)])),
-        "means": Number(over, late * sizes),
-    }
-    others = slice(len(forces), -2)
-    for name, values in zip(_PLACES, (tops, largest.time, largest.angle), strict=True):
-        numbers[f"other {name}"] = Number(values[others], largest.sizes[others])
-    turned = motion.turned
-    for name, values in torque.items():
+    for name, torque in torques.items():
         if turned and duration:
-            work = Number(nodes.integral(values * speed), nodes.integral(np.abs(values * speed)))
+            work = Number(nodes.integral(torque * speed), nodes.integral(np.abs(torque * speed)))
             numbers[name] = work.over(turned)
         else:
-            numbers[name] = Number(_last(values[None]), np.abs(_last(values[None])))
+            numbers[name] = Number(torque[-1:], np.abs(torque[-1:]))
     return numbers | (_powers(scene, window, nodes, late) if duration else {})
 
 
@@ -316,32 +296,6 @@ def _speed_gain(motion: Motion) -> Number:
     begin = samples_in(first, motion.train, np.zeros(1, np.intp), np.zeros(1)).omega
     end = last.speed[-1:, -1]
     return Number(end - begin, np.maximum(np.abs(end), np.abs(begin)))
-
-
-def _forces(scene: Scene, variables: dict[str, Array]) -> Array:
-    """Components of every joint's force, shape (joints, 2, points)."""
-    return np.array([joint.force(variables) for joint in joints_of(scene)])
-
-
-def _speeds(variables: dict[str, Array]) -> Array:
-    """The speed and the negative speed."""
-    return np.array([variables["crank_speed"], -variables["crank_speed"]])
-
-
-def _sought(scene: Scene, variables: dict[str, Array]) -> Array:
-    """Whose largest values are measured: the force of every joint, torque and pressures, and the
-    speeds."""
-    others = [quantity.sign * quantity.of(variables) for quantity in extremes_of(scene)]
-    forces = _magnitudes(_forces(scene, variables))
-    return np.concatenate([forces, others, _speeds(variables)])
-
-
-def _magnitudes(forces: Array) -> Array:
-    return np.asarray(np.sqrt((forces**2).sum(axis=1)))
-
-
-def _last(values: Array) -> Array:
-    return np.asarray(values[:, -1])
 
 
 def _energy_closure(result: Result) -> float:

@@ -52,9 +52,9 @@ class Function:
 
     def angles_in(self, period: float) -> Array:
         """Its angles repeated over a period [rad] of which its own is a part."""
-        own = self.period or 2.0 * math.pi
-        turns = own * np.arange(round(period / own))[:, None]
-        return np.asarray((np.array(self.angles) % own + turns).ravel())
+        part = self.period or 2.0 * math.pi
+        turns = part * np.arange(round(period / part))[:, None]
+        return np.asarray((np.array(self.angles) % part + turns).ravel())
 
     def number(self, t: float, theta: float, omega: float) -> float:
         """Its value at one time [s], angle [rad] and speed [rad/s]; NaN where it has none."""

@@ -136,6 +136,6 @@ def total(functions: list[Piecewise], low: float, high: float) -> tuple[Array, A
         at = np.array([0.5 * (max(low, min(high, 0.0) - 1.0) + min(high, max(low, 0.0) + 1.0))])
     pieces = np.zeros((len(at), 3))
     for function in functions:
-        own, rows = function.arrays
-        pieces += rows[np.searchsorted(own, at)]
+        ends, rows = function.arrays
+        pieces += rows[np.searchsorted(ends, at)]
     return knots, pieces
