@@ -11,10 +11,9 @@ from crankmbs.scene.drives import Oscillation, Ramp, SpeedFile
 from crankmbs.scene.force import PistonForce
 from crankmbs.scene.forces import TravelTable
 from crankmbs.scene.fuel import Fuel
-from crankmbs.scene.gas import tables_of
 from crankmbs.scene.parts import RunningGear
 from crankmbs.scene.speed_rows import repeats
-from crankmbs.scene.tables import CylinderTable
+from crankmbs.scene.tables import CylinderTable, tables_of
 from crankmbs.scene.torque import Torque
 from crankmbs.scene.units import EXAMPLES
 
