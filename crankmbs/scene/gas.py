@@ -145,7 +145,7 @@ def _motored(value: Any, info: ValidationInfo) -> Any:
     return _source(value, info)
 
 
-_Given = Annotated[Float, si("pressure")] | Table | CylinderTable | tuple[Table, ...]
+_Given = float | Table | CylinderTable | tuple[Table, ...]
 PressureSource = Annotated[_Given, BeforeValidator(_source)]
 MotoredSource = Annotated[_Given | Polytrope, BeforeValidator(_motored)]
 

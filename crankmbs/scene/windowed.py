@@ -102,6 +102,7 @@ class Windowed(ABC):
 def registered(cls: T) -> T:
     """Make a part a torque or a force that a file names by its kind.
 
+    >>> from crankmbs.scene.torque import Torque
     >>> Torque.kinds["viscous"].__name__
     'Viscous'
     """

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from crankmbs.errors import InputError
+from crankmbs.scene.gas import Gas
 from crankmbs.scene.run import Extent
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.schema import dimension_of
@@ -18,6 +19,7 @@ from crankmbs.scene.windowed import Windowed
 __all__ = ["scene_files"]
 
 _READ_IN = {"angle": (DEGREE, "deg"), "angular speed": (RPM, "rpm")}  # else in SI
+_PRESSURES = ("pressure", "motored", "crank_end")  # constants where they are no tables
 _PRESSURE = Header({"crank_angle_deg": DEGREE}, {"pressure_Pa": 1.0})  # not of speeds and loads
 
 
@@ -91,7 +93,9 @@ def _values(part: Any) -> Iterator[tuple[str, Any, str | None]]:
     for name, field in type(part).__pydantic_fields__.items():
         value = getattr(part, name)
         if value is not None and value != field.default and name != "kind":
-            yield field.validation_alias or name, value, dimension_of(type(part), name)
+            constant = isinstance(part, Gas) and name in _PRESSURES
+            dimension = "pressure" if constant else dimension_of(type(part), name)
+            yield field.validation_alias or name, value, dimension
 
 
 def _scalar(value: Any, dimension: str | None) -> str:
