@@ -9,7 +9,7 @@ import time as clock
 import numpy as np
 
 from crankmbs.choose import choose, chosen
-from crankmbs.errors import InputError, shown
+from crankmbs.errors import InputError
 from crankmbs.mechanics.pressure import remarks
 from crankmbs.mechanics.speed import speed_remarks
 from crankmbs.mechanics.train import crank_train
@@ -19,7 +19,7 @@ from crankmbs.motion.ending import Ending
 from crankmbs.numerics.function import Function
 from crankmbs.result import Cost, Error, Result
 from crankmbs.scene.run import Extent
-from crankmbs.scene.scene import Scene
+from crankmbs.scene.scene import Scene, check_scene
 
 __all__ = ["functions_of", "simulate", "why"]
 
@@ -56,8 +56,7 @@ def simulate(
     >>> print(simulate(load_scene("torque_driven")).status)
     0
     """
-    if not isinstance(scene, Scene):
-        raise InputError(f"scene must be a Scene, such as load_scene reads; {shown(scene)} came")
+    check_scene(scene)
     if rtol is not None and not 1e-13 <= rtol <= 1e-2:
         raise InputError(f"rtol must be from 1e-13 to 1e-2; {rtol!r} came")
     if not cost_cap > 0.0:

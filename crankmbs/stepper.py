@@ -19,7 +19,7 @@ from crankmbs.motion.assemble import labelled
 from crankmbs.motion.stepwise.driven import Prescribed
 from crankmbs.motion.stepwise.free import Free
 from crankmbs.motion.stepwise.standing import Standing, Steps
-from crankmbs.scene.scene import Scene
+from crankmbs.scene.scene import Scene, check_scene
 from crankmbs.scene.units import check_size
 from crankmbs.simulate import functions_of, why
 
@@ -87,10 +87,7 @@ class Stepper:
     """
 
     def __init__(self, scene: Scene) -> None:
-        if not isinstance(scene, Scene):
-            raise InputError(
-                f"scene must be a Scene, such as load_scene reads; {shown(scene)} came"
-            )
+        check_scene(scene)
         if scene.run.formulation not in _SERVES:
             raise FormulationError(
                 f"formulation {scene.run.formulation!r} cannot step over time: it solves a run as "

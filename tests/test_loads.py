@@ -11,7 +11,8 @@ from crankmbs import Result, SceneError, simulate
 from crankmbs.numerics.piecewise import Piecewise
 from crankmbs.scene.read import parse_scene
 from crankmbs.scene.schema import Float, part
-from crankmbs.scene.torque import Parts, Torque, load
+from crankmbs.scene.torque import Parts, Torque
+from crankmbs.scene.windowed import registered
 from crankmbs.scene.write import scene_files
 
 TOY = """
@@ -40,7 +41,7 @@ def clutch(monkeypatch):
     """A load of no kind that there is: it pulls the crank towards a speed, up to a torque."""
     monkeypatch.setattr(Torque, "kinds", dict(Torque.kinds))
 
-    @load
+    @registered
     @part
     class SpringClutch(Torque):
         """Towards the speed ``slip`` [rad/s], by at most ``most`` [N m]."""

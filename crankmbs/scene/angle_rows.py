@@ -10,7 +10,7 @@ import numpy as np
 from crankmbs.errors import InputError
 from crankmbs.numerics.cycle import NEAR, Cycle
 from crankmbs.scene.pressure_rows import Period, interpolate
-from crankmbs.scene.tables import Table, check_abscissae
+from crankmbs.scene.tables import Table
 from crankmbs.scene.units import DEGREE
 
 __all__ = ["check_turns", "cycle_of", "is_of_halves"]
@@ -33,7 +33,6 @@ def check_turns(table: Table, given: float | None) -> None:
     ------
     InputError : the file, the rule, what came, and the way out
     """
-    check_abscissae(table, "crank angles", jumps=True)
     if given is not None and not is_of_halves(given):
         raise InputError(
             "period: must be a multiple of 180 degrees, so that it fits the engine's; "

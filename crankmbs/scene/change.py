@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import dataclasses
 import re
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from crankmbs.errors import InputError, shown
 from crankmbs.scene.sentences import did_you_mean
@@ -18,14 +18,14 @@ __all__ = ["changed", "field_at"]
 _STEP = re.compile(r"__|\.|\[|\]\.|\]__|\]$")
 _BARE = re.compile(r"[A-Za-z_]\w*(?:(?:\.|__)\w+|\[\d+\])*")
 _OF_ONE = re.compile(r"(\w+)((?:[.\[][^:]*)?): ")
-_Changes = dict[str, Any]  # by the first step of their names, what lies below as _Changes again
 
 
-class _Leaf:
-    """A new value, and what the caller named it by."""
+class _Change(NamedTuple):
+    """A new value, what the caller named it by, and the steps to its place from here on."""
 
-    def __init__(self, name: str, value: Any) -> None:
-        self.name, self.value = name, value
+    name: str
+    steps: Sequence[str]
+    value: Any
 
 
 def changed(scene: Scene, values: Mapping[str, Any]) -> Scene:
@@ -44,18 +44,8 @@ def changed(scene: Scene, values: Mapping[str, Any]) -> Scene:
     >>> changed(load_scene("propeller"), {"rod.length": "160 mm"}).rod.length
     0.16
     """
-    tree: _Changes = {}
-    for name, value in values.items():
-        *above, last = _steps(name)
-        branch = tree
-        for step in above:
-            branch = branch.setdefault(step, {})
-            if isinstance(branch, _Leaf):
-                raise InputError(_twice(branch.name, name))
-        if last in branch:
-            raise InputError(_twice(_names(branch[last])[0], name))
-        branch[last] = _Leaf(name, value)
-    new: Scene = _rebuilt(scene, tree, ())
+    changes = [_Change(name, _steps(name), value) for name, value in values.items()]
+    new: Scene = _rebuilt(scene, changes, ())
     return new
 
 
@@ -104,56 +94,61 @@ def _steps(name: str) -> list[str]:
     return [step for step in _STEP.split(name) if step]
 
 
-def _twice(one: str, other: str) -> str:
-    return f"{one} and {other} change the same part of the scene; give one of them"
+def _by_step(changes: Sequence[_Change]) -> dict[str, list[_Change]]:
+    """The changes below each of the next steps."""
+    below: dict[str, list[_Change]] = {}
+    for name, (step, *rest), value in changes:
+        below.setdefault(step, []).append(_Change(name, rest, value))
+    return below
 
 
-def _names(branch: _Leaf | _Changes) -> list[str]:
-    """What the caller named the values of a branch by."""
-    if isinstance(branch, _Leaf):
-        return [branch.name]
-    return [name for below in branch.values() for name in _names(below)]
-
-
-def _rebuilt(old: Any, changes: _Changes, place: tuple[str, ...]) -> Any:
+def _rebuilt(old: Any, changes: Sequence[_Change], place: tuple[str, ...]) -> Any:
     """A part or a list of parts, made anew from its old values and the changed ones."""
     if isinstance(old, tuple):
         return _list(old, changes, place)
     known = _fields(old)
     new, given = {}, {}
-    for key, below in changes.items():
+    for key, below in _by_step(changes).items():
         name = known.get(key, key)
         if name not in known.values():
             near = did_you_mean(key, list(known)) or f"; known are {', '.join(known)}"
-            raise InputError(f"{_names(below)[0]}: {_called(old)} has no {shown(key)}{near}")
+            raise InputError(f"{below[0].name}: {_called(old)} has no {shown(key)}{near}")
         new[name] = _below(getattr(old, name), below, (*place, key))
-        given[name] = _names(below)
+        given[name] = [change.name for change in below]
     try:
         return dataclasses.replace(old, **new)
     except InputError as error:
         raise InputError(_in_given_names(str(error), given)) from None
 
 
-def _list(old: tuple[Any, ...], changes: _Changes, place: tuple[str, ...]) -> tuple[Any, ...]:
+def _list(
+    old: tuple[Any, ...], changes: Sequence[_Change], place: tuple[str, ...]
+) -> tuple[Any, ...]:
     new = list(old)
-    for step, below in changes.items():
+    for step, below in _by_step(changes).items():
         if not step.isdigit() or not 1 <= int(step) <= len(old):
             raise InputError(
-                f"{_names(below)[0]}: {shown(step)} is none of the numbers 1 to {len(old)} of a "
+                f"{below[0].name}: {shown(step)} is none of the numbers 1 to {len(old)} of a "
                 "list; its first is 1"
             )
         new[int(step) - 1] = _below(old[int(step) - 1], below, (*place, step))
     return tuple(new)
 
 
-def _below(old: Any, change: _Leaf | _Changes, place: tuple[str, ...]) -> Any:
-    if isinstance(change, _Leaf):
-        return change.value
+def _below(old: Any, changes: Sequence[_Change], place: tuple[str, ...]) -> Any:
+    first = changes[0]
+    if any(not change.steps for change in changes):
+        if len(changes) > 1:
+            raise InputError(
+                f"{first.name} and {changes[1].name} change the same part of the scene; give one "
+                "of them"
+            )
+        return first.value
     if hasattr(type(old), "__pydantic_fields__") or (isinstance(old, tuple) and old):
-        return _rebuilt(old, change, place)
-    name, part = _names(change)[0], "__".join(place)
+        return _rebuilt(old, changes, place)
+    part = "__".join(place)
     state = f"is one value, {shown(old)}" if old not in (None, ()) else "is not there"
-    raise InputError(f"{name}: in this scene {part} {state}; give {part} as a whole")
+    raise InputError(f"{first.name}: in this scene {part} {state}; give {part} as a whole")
 
 
 def _called(part: Any) -> str:

@@ -55,10 +55,12 @@ class Ramp:
     over: Annotated[Float, Gt(0), si("time")]
 
 
-_HEADERS = {
-    "time_table": Header("time_s", 1.0, "speed_rpm", RPM),
-    "angle_table": Header("crank_angle_deg", DEGREE, "speed_rpm", RPM),
-}
+_SPEED = {"speed_rpm": RPM}
+_OVER_TIME = Header({"time_s": 1.0}, _SPEED)
+_OVER_ANGLE = Header({"crank_angle_deg": DEGREE}, _SPEED)
+_EITHER = Header(
+    _OVER_TIME.x | _OVER_ANGLE.x, _SPEED, "times [s] or crank angles [rad], speeds [rad/s]"
+)
 
 
 @part
@@ -73,14 +75,7 @@ class SpeedFile:
         continuous derivatives, is for smooth rows: pchip's acceleration errs there by 2 %
     """
 
-    file: Annotated[
-        Table,
-        from_file(
-            {header.x_name: header.x_factor for header in _HEADERS.values()},
-            {"speed_rpm": RPM},
-            "times [s] or crank angles [rad], speeds [rad/s]",
-        ),
-    ]
+    file: Annotated[Table, from_file(_EITHER)]
     interpolation: Literal["pchip", "cubic"] = "pchip"
     kind: Literal["time_table", "angle_table"] = "time_table"
 
@@ -95,7 +90,7 @@ class SpeedFile:
     @property
     def header(self) -> Header:
         """The headings of its file."""
-        return _HEADERS[self.kind]
+        return _OVER_TIME if self.kind == "time_table" else _OVER_ANGLE
 
 
 _SPEED_KEYS = {
@@ -138,7 +133,7 @@ def _of_columns(value: dict[str, object], info: ValidationInfo) -> dict[str, obj
         names = headings(folder_of(info) / file)
     except InputError:
         return value  # its reader says so
-    over_time, over_angle = (header.x_name in names for header in _HEADERS.values())
+    over_time, over_angle = (name in names for name in _EITHER.x)
     return {**value, "kind": "angle_table"} if over_angle and not over_time else value
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Callable
-from typing import Annotated, ClassVar, NamedTuple, TypeVar
+from typing import Annotated, ClassVar, NamedTuple
 
 from annotated_types import Ge
 from pydantic import PlainValidator, SerializeAsAny, Strict
@@ -18,9 +18,7 @@ from crankmbs.numerics.piecewise import Piecewise
 from crankmbs.scene.schema import part
 from crankmbs.scene.windowed import Windowed, one_of_kinds
 
-__all__ = ["AnyForce", "Given", "Law", "PistonForce", "force"]
-
-T = TypeVar("T", bound="type[PistonForce]")
+__all__ = ["AnyForce", "Given", "Law", "PistonForce"]
 
 
 class Given(NamedTuple):
@@ -73,6 +71,7 @@ class PistonForce(Windowed):
     kinds: ClassVar[dict[str, type[PistonForce]]] = {}
     unwritten: ClassVar[dict[str, type[PistonForce]]] = {}
     heading: ClassVar[str] = "force"
+    unit: ClassVar[str] = "N"
     cylinder: Annotated[int, Strict(), Ge(1)] | None = None
 
     @property
@@ -92,16 +91,6 @@ class PistonForce(Windowed):
     def acts_on(self) -> str:
         """On whose piston, in words."""
         return "each piston" if self.cylinder is None else f"piston {self.cylinder}"
-
-
-def force(cls: T) -> T:
-    """Make a part a force that a file names by its kind.
-
-    >>> PistonForce.kinds["spring"].__name__
-    'Spring'
-    """
-    PistonForce.kinds[cls.kind] = cls
-    return cls
 
 
 AnyForce = Annotated[SerializeAsAny[PistonForce], PlainValidator(one_of_kinds(PistonForce))]

@@ -59,9 +59,8 @@ class Misfire:
     @property
     def every(self) -> int | None:
         """n of "every n", else None."""
-        match = _CYCLES.fullmatch(self.cycles)
-        assert match is not None
-        return int(match[2]) if match[1] else None
+        first, _, every = self.bounds
+        return first if every else None
 
 
 @part
@@ -103,7 +102,7 @@ class Fuel:
     seed: Annotated[int, Strict(), Ge(0)] = 1
     governor: Governor | None = None
     after: Time = 0.0
-    until: Annotated[Time, Ge(0)] | None = None
+    until: Time | None = None
     from_speed: AngularSpeed | None = None
     until_speed: AngularSpeed | None = None
 

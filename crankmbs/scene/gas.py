@@ -18,21 +18,26 @@ from crankmbs.errors import InputError, shown
 from crankmbs.scene.cycles import mean_cycle
 from crankmbs.scene.measured_rows import HowRead, read_measured, sign_of
 from crankmbs.scene.pressure_rows import check_rows
-from crankmbs.scene.schema import SAVED, Float, dumped, folder_of, part, si, to_si
-from crankmbs.scene.tables import CylinderTable, Table, read_columns, undumped
+from crankmbs.scene.schema import CsvFile, Float, folder_of, part, si, to_si
+from crankmbs.scene.tables import CylinderTable, Header, Table, tables_of
 from crankmbs.scene.units import BAR, DEGREE
 
 __all__ = ["Gas", "Indicator", "Polytrope", "PressureGiven", "tables_of"]
 
 Pressure = Annotated[Float, Gt(0), si("pressure")]
 
-_PRESSURE_COLUMNS = {
-    "pressure_bar": 1e5,
-    "pressure_kPa": 1e3,
-    "pressure_Pa": 1.0,
-    "pressure_MPa": 1e6,
-    "pressure_kgf_cm2": 98066.5,
-}
+_COLUMNS = Header(
+    {"crank_angle_deg": DEGREE},
+    {
+        "pressure_bar": 1e5,
+        "pressure_kPa": 1e3,
+        "pressure_Pa": 1.0,
+        "pressure_MPa": 1e6,
+        "pressure_kgf_cm2": 98066.5,
+    },
+    "crank angles [rad], pressures [Pa]",
+)
+_FILE = CsvFile(_COLUMNS, numbered=True, others=', a list of them, or a pressure such as "1 bar"')
 
 
 @part
@@ -94,15 +99,12 @@ def _constant(value: Any, info: ValidationInfo) -> float | None:
     return pressure
 
 
-def _of_one(value: Any, info: ValidationInfo) -> Table:
+def _of_one(value: Any, info: ValidationInfo) -> Any:
     """The pressure of one cylinder, a constant as one in every quarter turn."""
     constant = _constant(value, info)
     if constant is not None:
-        stroke = (info.data or {}).get("stroke", 4)
-        quarters = range(2 * stroke)
-        return Table(
-            tuple(0.5 * math.pi * k for k in quarters), (constant,) * len(quarters), "a constant"
-        )
+        angles = tuple(0.5 * math.pi * k for k in range(2 * (info.data or {}).get("stroke", 4)))
+        return Table(angles, (constant,) * len(angles), "a constant")
     table = _table(value, info)
     if isinstance(table, CylinderTable):
         raise InputError(
@@ -112,29 +114,12 @@ def _of_one(value: Any, info: ValidationInfo) -> Table:
     return table
 
 
-def _table(value: Any, info: ValidationInfo) -> Table | CylinderTable:
-    if isinstance(value, Table | CylinderTable):
-        return value
-    if dumped(value, info):
-        return undumped(value)
-    if info.context is SAVED:
-        raise InputError(f"must hold its rows in a saved scene; {shown(value)} came")
-    if not isinstance(value, str | Path):
-        tables = " or a Table(crank angles [rad], pressures [Pa])" if info.context is None else ""
-        raise InputError(
-            f'must be the name of a CSV file{tables}, a list of them, or a pressure such as "1 '
-            f'bar"; {shown(value)} came'
-        )
-    how = _how(info)
-    if how != HowRead():
-        return read_measured(folder_of(info) / value, how)
-    return read_columns(folder_of(info) / value, {"crank_angle_deg": DEGREE}, _PRESSURE_COLUMNS)
-
-
-def _how(info: ValidationInfo) -> HowRead:
-    """How the files of this gas are to be read."""
+def _table(value: Any, info: ValidationInfo) -> Any:
     given = info.data or {}
-    return HowRead(*(given.get(name) for name in HowRead._fields))
+    how = HowRead(*(given.get(name) for name in HowRead._fields))
+    if how != HowRead() and isinstance(value, str | Path):
+        return read_measured(folder_of(info) / value, how)
+    return _FILE(value, info)
 
 
 @part
@@ -160,29 +145,12 @@ def _motored(value: Any, info: ValidationInfo) -> Any:
     return _source(value, info)
 
 
-PressureSource = Annotated[
-    Float | Table | CylinderTable | tuple[Table, ...], BeforeValidator(_source)
-]
-
-
-def tables_of(
-    source: PressureGiven | Polytrope | None,
-) -> tuple[Table, ...]:
-    """The tables of a pressure: of each cylinder, or one of all; none where no rows came."""
-    if isinstance(source, CylinderTable):
-        return source.tables
-    if isinstance(source, Table):
-        return (source,)
-    return source if isinstance(source, tuple) else ()
-
+_Given = float | Table | CylinderTable | tuple[Table, ...]
+PressureSource = Annotated[_Given, BeforeValidator(_source)]
+MotoredSource = Annotated[_Given | Polytrope, BeforeValidator(_motored)]
 
 _NO_FILE = ("gas_exchange_tdc", "pchip", None, None)
 _OF_FILES = "zero, interpolation, closing and cycles belong to a pressure file; remove them"
-
-
-MotoredSource = Annotated[
-    Float | Table | CylinderTable | tuple[Table, ...] | Polytrope, BeforeValidator(_motored)
-]
 
 
 @part

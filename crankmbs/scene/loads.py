@@ -9,16 +9,17 @@ from annotated_types import Ge, Gt
 
 from crankmbs.numerics.cycle import Cycle
 from crankmbs.numerics.piecewise import Piecewise
-from crankmbs.scene.angle_rows import check_turns, cycle_of
 from crankmbs.scene.schema import Float, from_file, part, si
-from crankmbs.scene.tables import Header, Table, check_abscissae
-from crankmbs.scene.torque import Parts, Torque, load
+from crankmbs.scene.table_loads import OfTable, OverAngle, OverTime
+from crankmbs.scene.tables import Header, Table
+from crankmbs.scene.torque import Parts, Torque
 from crankmbs.scene.units import DEGREE, RPM
+from crankmbs.scene.windowed import registered
 
 __all__ = ["AngleTable", "Constant", "Quadratic", "SpeedTable", "TimeTable", "Viscous"]
 
 
-@load
+@registered
 @part
 class Constant(Torque):
     """A constant torque [N m]."""
@@ -38,7 +39,7 @@ class Constant(Torque):
         return {"torque": self.torque * share}
 
 
-@load
+@registered
 @part
 class Viscous(Torque):
     """The torque -c omega, c = coefficient [N m s]."""
@@ -58,7 +59,7 @@ class Viscous(Torque):
         return {"coefficient": self.coefficient * share / faster}
 
 
-@load
+@registered
 @part
 class Quadratic(Torque):
     """The torque -c omega |omega|, c = coefficient [N m s2]: a propeller or a brake."""
@@ -79,75 +80,56 @@ class Quadratic(Torque):
         return {"coefficient": self.coefficient * share / faster**2}
 
 
-class _OfTable(Torque):
+_OVER_TIME = Header({"time_s": 1.0}, {"torque_Nm": 1.0}, "times [s], torques [N m]")
+_OVER_SPEED = Header({"speed_rpm": RPM}, {"torque_Nm": 1.0}, "speeds [rad/s], torques [N m]")
+_OVER_ANGLE = Header(
+    {"crank_angle_deg": DEGREE}, {"torque_Nm": 1.0}, "crank angles [rad], torques [N m]"
+)
+
+
+class _Rows(OfTable):
     """A torque whose ``file`` holds it in rows."""
 
     file: Table
-
-    @property
-    def words(self) -> str:
-        rows = self.file
-        return (
-            f"{min(rows.y):+.6g} to {max(rows.y):+.6g} N m in {len(rows.x)} rows of {rows.source}"
-        )
 
     def _scaled(self, share: float, faster: float) -> dict[str, Any]:
         return {"file": self.file.scaled(share)}
 
 
-_OVER_TIME = Header("time_s", 1.0, "torque_Nm", 1.0)
-_OVER_SPEED = Header("speed_rpm", RPM, "torque_Nm", 1.0)
-
-
-@load
+@registered
 @part
-class TimeTable(_OfTable):
+class TimeTable(_Rows, OverTime, Torque):
     """Torque [N m] over time [s], linear; two rows at one time are a jump. Covers the run."""
 
-    header: ClassVar[Header | None] = _OVER_TIME
+    header: ClassVar[Header] = _OVER_TIME
     kind: Literal["time_table"] = "time_table"
-    file: Annotated[Table, from_file(*_OVER_TIME.units, "times [s], torques [N m]")]
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        check_abscissae(self.file, "times", jumps=True)
+    file: Annotated[Table, from_file(_OVER_TIME)]
 
     @cached_property
     def parts(self) -> Parts[Cycle]:
-        return Parts(over_time=Piecewise.through(self.file.x, self.file.y))
-
-    @property
-    def table_over_time(self) -> Table | None:
-        return self.file
+        return Parts(over_time=self.lines[0])
 
 
-@load
+@registered
 @part
-class SpeedTable(_OfTable):
+class SpeedTable(OfTable, Torque):
     """Torque [N m] over speed [rad/s], linear, ends held; two rows at one speed are a jump."""
 
-    header: ClassVar[Header | None] = _OVER_SPEED
+    header: ClassVar[Header] = _OVER_SPEED
     kind: Literal["speed_table"] = "speed_table"
-    file: Annotated[Table, from_file(*_OVER_SPEED.units, "speeds [rad/s], torques [N m]")]
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        check_abscissae(self.file, "speeds", jumps=True)
+    file: Annotated[Table, from_file(_OVER_SPEED)]
 
     @cached_property
     def parts(self) -> Parts[Cycle]:
-        return Parts(over_speed=Piecewise.through(self.file.x, self.file.y))
+        return Parts(over_speed=self.lines[0])
 
     def _scaled(self, share: float, faster: float) -> dict[str, Any]:
         return {"file": self.file.scaled(share, faster)}
 
 
-_OVER_ANGLE = Header("crank_angle_deg", DEGREE, "torque_Nm", 1.0)
-
-
-@load
+@registered
 @part
-class AngleTable(_OfTable):
+class AngleTable(_Rows, OverAngle, Torque):
     """Torque [N m] over the crank angle [rad], modulo its period; linear, pchip or cubic. Two rows
     at one angle, or a closing row unlike the first, are a jump, up to which and from which it is
     interpolated.
@@ -156,21 +138,12 @@ class AngleTable(_OfTable):
         more, else 720
     """
 
-    header: ClassVar[Header | None] = _OVER_ANGLE
+    header: ClassVar[Header] = _OVER_ANGLE
     kind: Literal["angle_table"] = "angle_table"
-    file: Annotated[Table, from_file(*_OVER_ANGLE.units, "crank angles [rad], torques [N m]")]
+    file: Annotated[Table, from_file(_OVER_ANGLE)]
     interpolation: Literal["linear", "pchip", "cubic"] = "linear"
     period: Annotated[Float, Gt(0), si("angle")] | None = None
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        check_turns(self.file, self.period)
-
     @cached_property
     def parts(self) -> Parts[Cycle]:
-        return Parts(over_angle=cycle_of(self.file, self.interpolation, self.period))
-
-    @property
-    def words(self) -> str:
-        every = "" if self.period is None else f", every {self.period / DEGREE:g} degrees"
-        return f"{super().words}, {self.interpolation}{every}"
+        return Parts(over_angle=self.cycle)

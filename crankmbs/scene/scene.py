@@ -25,7 +25,7 @@ from crankmbs.scene.cycles import cycles_in
 from crankmbs.scene.drives import Motion, Start
 from crankmbs.scene.force import AnyForce
 from crankmbs.scene.fuel import Fuel
-from crankmbs.scene.gas import Gas, tables_of
+from crankmbs.scene.gas import Gas
 from crankmbs.scene.parts import (
     Crank,
     Cylinder,
@@ -38,6 +38,7 @@ from crankmbs.scene.parts import (
 )
 from crankmbs.scene.run import SETTLED, Run
 from crankmbs.scene.schema import part
+from crankmbs.scene.tables import tables_of
 from crankmbs.scene.torque import AnyTorque
 from crankmbs.scene.whole import check_whole
 

@@ -21,7 +21,7 @@ from pydantic import BeforeValidator, ConfigDict, Strict, ValidationError, Valid
 
 from crankmbs.errors import InputError, shown
 from crankmbs.scene.sentences import sentence
-from crankmbs.scene.tables import Table, read_table
+from crankmbs.scene.tables import CylinderTable, Header, Table, read_table
 from crankmbs.scene.units import EXAMPLES, check_size, quantity
 
 __all__ = [
@@ -151,32 +151,35 @@ def dumped(value: object, info: ValidationInfo) -> bool:
 
 @dataclass(frozen=True)
 class CsvFile:
-    """Reads a CSV file with a column of each of these; factors to SI by the columns' names.
+    """Reads a table from a CSV file with these columns.
 
-    columns : what a caller from Python puts into such a table
+    numbered : whether it may have a column for each cylinder
+    others : what else may stand in its place, in words
     """
 
-    x_units: dict[str, float]
-    y_units: dict[str, float]
-    columns: str
+    header: Header
+    numbered: bool = False
+    others: str = ""
 
     def __call__(self, value: Any, info: ValidationInfo) -> Any:
         """The table of what came for a key."""
-        if isinstance(value, Table) or dumped(value, info):
+        several = self.numbered or self.header.ways
+        tables = (Table, CylinderTable) if several else Table
+        if isinstance(value, tables) or dumped(value, info):
             return value
         if info.context is SAVED:
             raise InputError(f"must hold its rows in a saved scene; {shown(value)} came")
         if not isinstance(value, str | Path):
-            table = f" or a Table({self.columns})" if info.context is None else ""
-            raise InputError(f"must be the name of a CSV file{table}; {shown(value)} came")
-        return read_table(folder_of(info) / value, self.x_units, self.y_units)
+            table = f" or a Table({self.header.holds})" if info.context is None else ""
+            raise InputError(
+                f"must be the name of a CSV file{table}{self.others}; {shown(value)} came"
+            )
+        return read_table(folder_of(info) / value, self.header, numbered=self.numbered)
 
 
-def from_file(
-    x_units: dict[str, float], y_units: dict[str, float], columns: str
-) -> BeforeValidator:
-    """Accept the path of a CSV file (relative to the scene file), or a `Table` in SI units."""
-    return BeforeValidator(CsvFile(x_units, y_units, columns))
+def from_file(header: Header) -> BeforeValidator:
+    """Accept the path of a CSV file (relative to the scene file), or a table in SI units."""
+    return BeforeValidator(CsvFile(header))
 
 
 def folder_of(info: ValidationInfo) -> Path:

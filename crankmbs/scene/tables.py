@@ -8,7 +8,7 @@ import re
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from crankmbs.errors import InputError, shown
 from crankmbs.scene.content import content_of
@@ -19,30 +19,31 @@ __all__ = [
     "Table",
     "check_abscissae",
     "headings",
-    "read_columns",
     "read_table",
-    "undumped",
+    "tables_of",
 ]
 
 _LARGEST = 1e15  # a number in a table: beyond it nothing is a unit any more
 
 
 class Header(NamedTuple):
-    """Headings of a table's two columns, and the factors that bring them to SI.
+    """The columns of a table in a file, and what they hold.
 
-    y_names : of several columns of ordinates; left out, numbered
+    x, y : heading -> factor to SI, the one that is written first; of x the first that a file has is
+        read, of y it has exactly one
+    holds : the columns in words, "times [s], torques [N m]"
+    ways : headings of two ordinates that may stand in place of one
     """
 
-    x_name: str
-    x_factor: float
-    y_name: str
-    y_factor: float
-    y_names: tuple[str, ...] = ()
+    x: dict[str, float]
+    y: dict[str, float]
+    holds: str = ""
+    ways: tuple[str, ...] = ()
 
     @property
-    def units(self) -> tuple[dict[str, float], dict[str, float]]:
-        """Heading -> factor, of either column."""
-        return {self.x_name: self.x_factor}, {self.y_name: self.y_factor}
+    def abscissae(self) -> str:
+        """What the first column holds, in words."""
+        return self.holds.partition(" [")[0]
 
 
 @dataclass(frozen=True)
@@ -93,7 +94,7 @@ class Table:
         return Table(tuple(x * v for v in self.x), tuple(y * v for v in self.y), self.source)
 
 
-def check_abscissae(table: Table, abscissae: str, *, jumps: bool) -> None:
+def check_abscissae(table: Table | CylinderTable, abscissae: str, *, jumps: bool) -> None:
     """Refuse a table of fewer than two rows, or whose rows do not follow one another.
 
     what : name of its abscissae; jumps : whether two of them may be equal
@@ -150,37 +151,37 @@ class CylinderTable:
         )
 
 
-def undumped(value: dict[str, Any]) -> Table | CylinderTable:
-    """The table that a saved scene holds by its fields.
+def tables_of(source: object) -> tuple[Table, ...]:
+    """The tables of a pressure or a force: of each cylinder or way, or one of all; none where no
+    rows came."""
+    if isinstance(source, CylinderTable):
+        return source.tables
+    if isinstance(source, Table):
+        return (source,)
+    return source if isinstance(source, tuple) else ()
 
-    >>> undumped({"x": [0.0], "y": [[5.0], [7.0]]}).y
-    ((5.0,), (7.0,))
-    """
-    several = any(isinstance(each, list | tuple) for each in value.get("y", ()))
-    return CylinderTable(**value) if several else Table(**value)
 
-
-def read_table(path: Path, x_units: dict[str, float], y_units: dict[str, float]) -> Table:
-    """Read two columns of a CSV file into SI units.
+def read_table(path: Path, header: Header, *, numbered: bool = False) -> Table | CylinderTable:
+    """Read columns of a CSV file into SI units: two, or of several ordinates all.
 
     Parameters
     ----------
     path : the file; lines that start with ``#`` are comments, other columns are ignored
-    x_units, y_units : accepted column name -> factor to SI; exactly one of each must be there, but
-        where x_units names two quantities, as time_s and crank_angle_deg, the first is read
+    numbered : whether there may be a column for each cylinder, with _1, _2, ... behind its heading
 
     Raises
     ------
-    InputError : file missing or unreadable, header wrong, a cell empty or no finite number
+    InputError : file missing or unreadable, header wrong, a cell empty or no finite number;
+        numbers that do not go from 1 up
     """
     rows = _rows(path)
-    header = rows[0][1]
-    names = [name for name in x_units if name in header]
-    quantities = {name.rpartition("_")[0] for name in names}
-    several = len(quantities) == len(names) > 1
-    given = {names[0]: x_units[names[0]]} if several else x_units
-    x, y = _values(path, rows, [_column(path, header, given), _column(path, header, y_units)])
-    return Table(x, y, source=str(path))
+    names = rows[0][1]
+    first = next(({name: header.x[name]} for name in header.x if name in names), header.x)
+    columns = [_column(path, names, first)]
+    several = [] if set(header.y) & set(names) else _several(path, names, header, numbered)
+    columns += several or [_column(path, names, header.y)]
+    x, *y = _values(path, rows, columns)
+    return CylinderTable(x, tuple(y), str(path)) if several else Table(x, y[0], str(path))
 
 
 def headings(path: Path) -> list[str]:
@@ -193,36 +194,24 @@ def headings(path: Path) -> list[str]:
     return _rows(path)[0][1]
 
 
-def read_columns(
-    path: Path, x_units: dict[str, float], y_units: dict[str, float]
-) -> Table | CylinderTable:
-    """Read a CSV file as `read_table` does, or one with a numbered column for each cylinder.
-
-    y_units : accepted column name -> factor to SI; numbered, _1, _2, ... is put behind the name
-
-    Raises
-    ------
-    InputError : as `read_table` does, or numbers that do not go from 1 up
-    """
-    rows = _rows(path)
-    header = rows[0][1]
-    numbered = [
-        (int(match[2]), header.index(name), y_units[match[1]])
-        for name in header
-        if (match := _NUMBERED.fullmatch(name)) and match[1] in y_units
-    ]
-    if not numbered or any(name in y_units for name in header):
-        return read_table(path, x_units, y_units)
-    numbered.sort()
-    numbers = [number for number, _, _ in numbered]
+def _several(
+    path: Path, names: list[str], header: Header, numbered: bool
+) -> list[tuple[int, float]]:
+    """Place and factor of several columns of ordinates; none where they are not there."""
+    if header.ways and set(header.ways) <= set(names):
+        return [(names.index(way), factor) for way in header.ways for factor in header.y.values()]
+    found = sorted(
+        (int(match[2]), names.index(name), header.y[match[1]])
+        for name in names
+        if numbered and (match := _NUMBERED.fullmatch(name)) and match[1] in header.y
+    )
+    numbers = [number for number, _, _ in found]
     if numbers != list(range(1, len(numbers) + 1)):
         raise InputError(
             f"file {path}: the columns of the cylinders must be numbered from 1 up, each once; "
             f"{', '.join(map(str, numbers))} came"
         )
-    y = [(column, factor) for _, column, factor in numbered]
-    x, *columns = _values(path, rows, [_column(path, header, x_units), *y])
-    return CylinderTable(x, tuple(columns), source=str(path))
+    return [(place, factor) for _, place, factor in found]
 
 
 _NUMBERED = re.compile(r"(.+)_([1-9][0-9]?)")

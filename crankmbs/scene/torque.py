@@ -23,9 +23,8 @@ from crankmbs.scene.schema import part
 from crankmbs.scene.tables import Table
 from crankmbs.scene.windowed import Windowed, one_of_kinds
 
-__all__ = ["Acting", "AnyTorque", "Parts", "Torque", "load"]
+__all__ = ["Acting", "AnyTorque", "Parts", "Torque"]
 
-T = TypeVar("T", bound="type[Torque]")
 P = TypeVar("P", bound=Periodic, covariant=True)
 
 
@@ -118,6 +117,7 @@ class Torque(Windowed):
     kinds: ClassVar[dict[str, type[Torque]]] = {}
     unwritten: ClassVar[dict[str, type[Torque]]] = {}
     heading: ClassVar[str] = "torque"
+    unit: ClassVar[str] = "N m"
 
     @property
     @abstractmethod
@@ -150,16 +150,6 @@ class Torque(Windowed):
         array([-2.,  6.])
         """
         return self.parts(t, theta, omega)
-
-
-def load(cls: T) -> T:
-    """Make a part a load that a file names by its kind.
-
-    >>> Torque.kinds["viscous"].__name__
-    'Viscous'
-    """
-    Torque.kinds[cls.kind] = cls
-    return cls
 
 
 AnyTorque = Annotated[SerializeAsAny[Torque], PlainValidator(one_of_kinds(Torque))]

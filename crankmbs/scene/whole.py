@@ -6,17 +6,16 @@ import math
 from typing import TYPE_CHECKING
 
 from crankmbs.errors import InputError
-from crankmbs.scene.cover import check_angles, check_times
+from crankmbs.scene.cycles import SAME_ANGLE
 from crankmbs.scene.drives import Oscillation, Ramp, SpeedFile
 from crankmbs.scene.force import PistonForce
 from crankmbs.scene.forces import TravelTable
 from crankmbs.scene.fuel import Fuel
-from crankmbs.scene.gas import tables_of
 from crankmbs.scene.parts import RunningGear
 from crankmbs.scene.speed_rows import repeats
-from crankmbs.scene.tables import CylinderTable
+from crankmbs.scene.tables import CylinderTable, Table, tables_of
 from crankmbs.scene.torque import Torque
-from crankmbs.scene.units import EXAMPLES
+from crankmbs.scene.units import DEGREE, EXAMPLES
 
 if TYPE_CHECKING:
     from crankmbs.scene.scene import Scene
@@ -259,7 +258,7 @@ def _check_tables(scene: Scene) -> None:
             last = 0.0  # where it ends shows on the way
         span = "its window" if load.has_window else "the run"
         begin = load.after or 0.0
-        check_times(load.table_over_time, begin, max(begin, last), span)
+        _check_times(load.table_over_time, begin, max(begin, last), span)
 
 
 def _check_speed(scene: Scene, speed: SpeedFile, end: float) -> None:
@@ -267,11 +266,31 @@ def _check_speed(scene: Scene, speed: SpeedFile, end: float) -> None:
     assert scene.motion is not None
     table, begin = speed.file, scene.motion.angle
     if speed.kind == "time_table":
-        check_times(table, 0.0, end, "the run")
+        _check_times(table, 0.0, end, "the run")
     elif not repeats(table):
         until, until_time = scene.end
         reach = 0.0 if until_time else math.copysign(until, table.y[0])
-        check_angles(table, *sorted((begin, begin + reach)))
+        _check_angles(table, *sorted((begin, begin + reach)))
+
+
+def _check_times(table: Table, begin: float, end: float, span: str) -> None:
+    """Refuse a table over time that does not reach from one time to another [s]."""
+    if table.x[0] > begin or table.x[-1] < end:
+        raise InputError(
+            f"{table.source}: the table must cover {span}, {begin:g} to {end:g} s; it goes from "
+            f"{table.x[0]:g} to {table.x[-1]:g} s"
+        )
+
+
+def _check_angles(table: Table, low: float, high: float) -> None:
+    """Refuse a table over the angle that does not reach from one to another [rad]."""
+    first, last = table.x[0], table.x[-1]
+    if first - SAME_ANGLE > low or last + SAME_ANGLE < high:
+        raise InputError(
+            f"{table.source}: the table must cover the run, {low / DEGREE:g} to {high / DEGREE:g} "
+            f"degrees, or be 360 or 720 degrees whose last row repeats the first; it goes from "
+            f"{first / DEGREE:g} to {last / DEGREE:g} degrees"
+        )
 
 
 def _check_size(scene: Scene) -> None:

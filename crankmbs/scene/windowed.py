@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar, TypeVar
 
 from annotated_types import Ge
 from pydantic import TypeAdapter, ValidationError, ValidationInfo
@@ -12,10 +12,12 @@ from pydantic import TypeAdapter, ValidationError, ValidationInfo
 from crankmbs.errors import InputError, shown
 from crankmbs.scene.schema import SAVED, Float, of_file, part, si
 from crankmbs.scene.sentences import PartError, did_you_mean
-from crankmbs.scene.tables import Header, Table
+from crankmbs.scene.tables import Table
 from crankmbs.scene.units import RPM
 
-__all__ = ["Windowed", "one_of_kinds"]
+__all__ = ["Windowed", "one_of_kinds", "registered"]
+
+T = TypeVar("T", bound="type[Windowed]")
 
 Time = Annotated[Float, Ge(0), si("time")]
 AngularSpeed = Annotated[Float, si("angular speed")]
@@ -33,7 +35,6 @@ class Windowed(ABC):
     kinds: ClassVar[dict[str, type[Any]]] = {}
     unwritten: ClassVar[dict[str, type[Any]]] = {}  # no file names them, but a saved result
     heading: ClassVar[str]  # of its table in a file
-    header: ClassVar[Header | None] = None  # of its rows, if it has any
     kind: str
     after: Time | None = None
     until: Time | None = None
@@ -96,6 +97,17 @@ class Windowed(ABC):
                 f"file: {table.source}: the time table ends at {table.x[-1]:g} s, before the run "
                 "does; lengthen the table or shorten the run"
             )
+
+
+def registered(cls: T) -> T:
+    """Make a part a torque or a force that a file names by its kind.
+
+    >>> from crankmbs.scene.torque import Torque
+    >>> Torque.kinds["viscous"].__name__
+    'Viscous'
+    """
+    cls.kinds[cls.kind] = cls
+    return cls
 
 
 def one_of_kinds(base: type[Windowed]) -> Callable[[Any, ValidationInfo], Any]:

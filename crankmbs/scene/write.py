@@ -2,47 +2,25 @@
 
 from __future__ import annotations
 
-import dataclasses
 import json
 import math
 from collections.abc import Iterator
 from typing import Any
 
 from crankmbs.errors import InputError
-from crankmbs.scene.drives import Ramp
+from crankmbs.scene.gas import Gas
 from crankmbs.scene.run import Extent
 from crankmbs.scene.scene import Scene
-from crankmbs.scene.tables import CylinderTable, Header, Table
-from crankmbs.scene.units import DEGREE, RPM
+from crankmbs.scene.schema import dimension_of
+from crankmbs.scene.tables import CylinderTable, Header, Table, tables_of
+from crankmbs.scene.units import DEGREE, RPM, unit_of
 from crankmbs.scene.windowed import Windowed
 
 __all__ = ["scene_files"]
 
-_ANGULAR = {
-    **dict.fromkeys(("angle", "phase", "bank", "period"), (DEGREE, "deg", "rad")),
-    **dict.fromkeys(
-        ("speed", "mean", "amplitude", "from", "to", "from_speed", "until_speed"),
-        (RPM, "rpm", "rad/s"),
-    ),
-}
-_WORDS = ("title", "source")
-_PRESSURES = ("motored", "crank_end")  # beside that of the gas
-_UNITS = {
-    **dict.fromkeys(("radius", "length", "bore", "rod_diameter", "offset", "center_of_mass"), "m"),
-    **dict.fromkeys(("position", "spacing", "relaxed_at"), "m"),
-    **dict.fromkeys(("intake_pressure", "exhaust_pressure", "peak_pressure"), "Pa"),
-    **dict.fromkeys(("ambient", "closing", "pressure", "crank_end"), "Pa"),
-    "mass": "kg",
-    "inertia": "kg m^2",
-    "area": "m^2",
-    "acceleration": "m/s^2",
-    "torque": "N m",
-    **dict.fromkeys(("ring_force", "force"), "N"),
-    "stiffness": "N/m",
-    "viscous": "N s/m",
-    **dict.fromkeys(("over", "after", "until"), "s"),
-}
-_PRESSURE = Header("crank_angle_deg", DEGREE, "pressure_Pa", 1.0)  # not of speeds and loads
+_READ_IN = {"angle": (DEGREE, "deg"), "angular speed": (RPM, "rpm")}  # else in SI
+_PRESSURES = ("pressure", "motored", "crank_end")  # constants where they are no tables
+_PRESSURE = Header({"crank_angle_deg": DEGREE}, {"pressure_Pa": 1.0})  # not of speeds and loads
 
 
 def scene_files(scene: Scene, stem: str) -> dict[str, str]:
@@ -68,40 +46,34 @@ def scene_files(scene: Scene, stem: str) -> dict[str, str]:
     """
     tables: dict[str, str] = {}
 
-    def section(heading: str, part: Any, use: str, header: Header | None) -> list[str]:
-        lines = ["", heading]
-        for key, value in _values(part):
-            table = getattr(value, "file", value)
-            name = f"{stem}_{key if key in _PRESSURES else use}"
-            if isinstance(table, Table | CylinderTable):
-                assert header is not None
-                file = f"{name}.csv"
-                tables[file] = _csv(table, header)
-                rest = {} if table is value else {k: v for k, v in _values(value) if k != "file"}
-                value = file if table is value else {"file": file, **rest}
-            elif isinstance(value, tuple) and isinstance(value[0], Table):
-                assert header is not None
-                files = [f"{name}{k}.csv" for k in range(1, len(value) + 1)]
-                rows = (_csv(each, header) for each in value)
-                tables.update(zip(files, rows, strict=True))
-                value = tuple(files)
-            lines.append(f"{key} = {_written(key, value)}")
-        return lines
+    def written(value: Any, dimension: str | None, name: str, header: Header) -> str:
+        if isinstance(value, Table | CylinderTable):
+            tables[f"{name}.csv"] = _csv(value, header)
+            return _quoted(f"{name}.csv")
+        if isinstance(value, tuple):
+            items = (written(v, dimension, f"{name}{k}", header) for k, v in enumerate(value, 1))
+            return f"[{', '.join(items)}]"
+        if hasattr(value, "__pydantic_fields__"):
+            inside = ", ".join(keys(value, name, header))
+            return f"{{ {inside} }}" if inside else "{}"
+        return _scalar(value, dimension)
 
-    lines = [f"{key} = {_quoted(value)}" for key, value in _values(scene) if key in _WORDS]
-    for key, part in _values(scene):
-        if key not in _WORDS and key not in ("torque", "force", "run"):
-            use = "pressure" if key == "gas" else "speed"
-            header = getattr(getattr(part, "speed", None), "header", _PRESSURE)
-            lines += section(f"[{key}]", part, use, header)
-    every: tuple[tuple[Windowed, ...], ...] = (scene.torque, scene.force)
-    for loads in every:
-        for number, load in enumerate(loads, start=1):
-            heading = f"[[{load.heading}]]"
-            rows = section(heading, load, _use(load, number), load.header)[2:]
-            lines += ["", heading, f"kind = {_quoted(load.kind)}", *rows]
-    lines += section("[run]", scene.run, "", None)
-    if scene.run.every is None:
+    def keys(part: Any, name: str, header: Header) -> Iterator[str]:
+        header = getattr(part, "header", header)
+        for key, value, dimension in _values(part):
+            yield f"{key} = {written(value, dimension, name or f'{stem}_{key}', header)}"
+
+    parts = {key: value for key, value, _ in _values(scene)}
+    lines = [f"{key} = {_quoted(parts.pop(key))}" for key in ("title", "source") if key in parts]
+    run = parts.pop("run")
+    loads = parts.pop("torque", ()), parts.pop("force", ())
+    for heading, part in parts.items():
+        lines += ["", f"[{heading}]", *keys(part, "", _PRESSURE)]
+    for number, load in (each for loads_of in loads for each in enumerate(loads_of, start=1)):
+        lines += ["", f"[[{load.heading}]]", f"kind = {_quoted(load.kind)}"]
+        lines += keys(load, f"{stem}_{_use(load, number)}", _PRESSURE)
+    lines += ["", "[run]", *keys(run, "", _PRESSURE)]
+    if run.every is None:
         lines.append('every = "none"')
     return {f"{stem}.toml": "\n".join(lines).lstrip("\n") + "\n", **tables}
 
@@ -116,47 +88,36 @@ def _use(load: Windowed, number: int) -> str:
     return f"{'force_' * (load.heading == 'force')}{load.kind}{number}"
 
 
-def _values(part: Any) -> Iterator[tuple[str, Any]]:
-    """Key and value of a part's fields, those at their default left out."""
-    for field in dataclasses.fields(part):
-        value = getattr(part, field.name)
-        if value is not None and value != field.default and field.name != "kind":
-            yield (
-                ("from" if isinstance(part, Ramp) and field.name == "start" else field.name),
-                value,
-            )
+def _values(part: Any) -> Iterator[tuple[str, Any, str | None]]:
+    """Key, value and dimension of a part's fields, but of its kind and those at their default."""
+    for name, field in type(part).__pydantic_fields__.items():
+        value = getattr(part, name)
+        if value is not None and value != field.default and name != "kind":
+            constant = isinstance(part, Gas) and name in _PRESSURES
+            dimension = "pressure" if constant else dimension_of(type(part), name)
+            yield field.validation_alias or name, value, dimension
 
 
-def _written(key: str, value: Any) -> str:
+def _scalar(value: Any, dimension: str | None) -> str:
     if isinstance(value, Extent):
-        return _extent(value)
-    if isinstance(value, tuple):
-        return f"[{', '.join(_written(key, item) for item in value)}]"
-    if dataclasses.is_dataclass(value):
-        value = dict(_values(value))
-    if isinstance(value, dict):
-        inside = ", ".join(f"{k} = {_written(k, item)}" for k, item in value.items())
-        return f"{{ {inside} }}" if inside else "{}"
+        if value.unit == "rad":
+            return _number(value.value, "angle")
+        return f'"{_digits(value.value)} {value.unit}"'
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, float):
-        return _number(key, value)
+        return _number(value, dimension)
     return _quoted(value) if isinstance(value, str) else str(value)
 
 
-def _number(name: str, value: float) -> str:
-    if name in _ANGULAR:
-        factor, unit, si = _ANGULAR[name]
-        number = _divided(value, factor)
-        exact = factor * number == value
-        return f'"{_digits(number)} {unit}"' if exact else f'"{_digits(value)} {si}"'
-    return f'"{_digits(value)} {_UNITS[name]}"' if name in _UNITS else _digits(value)
-
-
-def _extent(extent: Extent) -> str:
-    if extent.unit != "rad":
-        return f'"{_digits(extent.value)} {extent.unit}"'
-    return _number("angle", extent.value)
+def _number(value: float, dimension: str | None) -> str:
+    if dimension is None:
+        return _digits(value)
+    factor, unit = _READ_IN.get(dimension, (1.0, unit_of(dimension)))
+    number = _divided(value, factor)
+    if factor * number != value:
+        number, unit = value, unit_of(dimension)
+    return f'"{_digits(number)} {unit}"'
 
 
 def _digits(value: float) -> str:
@@ -177,16 +138,18 @@ def _divided(value: float, factor: float) -> float:
 
 
 def _csv(table: Table | CylinderTable, header: Header) -> str:
-    x_name, x_factor, y_name, y_factor, y_names = header
-    of_each = [(x_name, table.x, x_factor)]
-    if isinstance(table, Table):
-        of_each.append((y_name, table.y, y_factor))
-    else:
-        names = y_names or [f"{y_name}_{k}" for k in range(1, len(table.y) + 1)]
-        of_each += [(name, y, y_factor) for name, y in zip(names, table.y, strict=True)]
-    cells = ([_digits(_divided(v, factor)) for v in values] for _, values, factor in of_each)
-    lines = [",".join(row) for row in zip(*cells, strict=True)]
-    return "\n".join([",".join(name for name, *_ in of_each), *lines]) + "\n"
+    (x_name, x_factor), *_ = header.x.items()
+    (y_name, y_factor), *_ = header.y.items()
+    columns, names = [each.y for each in tables_of(table)], [y_name]
+    if isinstance(table, CylinderTable):
+        names = list(header.ways) or [f"{y_name}_{k}" for k in range(1, len(columns) + 1)]
+    factors = [x_factor, *[y_factor] * len(columns)]
+    cells = (
+        [_digits(_divided(value, factor)) for value in column]
+        for column, factor in zip([table.x, *columns], factors, strict=True)
+    )
+    lines = [",".join(row) for row in ((x_name, *names), *zip(*cells, strict=True))]
+    return "\n".join(lines) + "\n"
 
 
 def _quoted(text: str) -> str:

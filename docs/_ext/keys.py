@@ -154,7 +154,8 @@ class _Found:
             number = _PLAIN[float]
             self.values = [EXAMPLES[check.dimension] if v == number else v for v in self.values]
         elif isinstance(check, CsvFile):
-            names = [" or ".join(f"`{n}`" for n in side) for side in (check.x_units, check.y_units)]
+            header = check.header
+            names = [" or ".join(f"`{n}`" for n in side) for side in (header.x, header.y)]
             self.rules.append(f"columns {' and '.join(names)}")
         elif isinstance(one, Len):
             self.rules.append(f"at least {one.min_length}")
