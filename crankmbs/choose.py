@@ -69,7 +69,5 @@ def _reasons(scene: Scene) -> tuple[str, ...]:
         else f"{parts} rigid and closed in loops, so one free rotation describes them exactly"
     ]
     if scene.start is not None and scene.start.speed == 0.0:
-        reasons.append(
-            "it starts from rest, where time must be the variable: minimal carries it off"
-        )
+        reasons.append("it starts from rest: the first part is integrated over time, by minimal")
     return tuple(reasons)

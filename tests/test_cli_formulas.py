@@ -78,7 +78,7 @@ def test_a_formula_stands_in_every_table_and_file(mine, tmp_path, monkeypatch):
     assert outcome.exit_code == 0, outcome.output
     text, label = outcome.stdout, "acceleration_series of mine.py"
     own, _, lectures = text.partition("formulas: those of Yi")
-    _, heading, _, row = own.partition(f"\n{label} less run, ")[2].splitlines()[:4]
+    _, heading, _, row = own.partition(f"\n{label} minus run, ")[2].splitlines()[:4]
     assert re.split(r"\s{2,}", heading)[2:] == [
         "error [%]",
         "at [deg]",

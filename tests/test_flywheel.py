@@ -194,7 +194,7 @@ def test_the_command(tmp_path, monkeypatch):
     written = simulate(load_scene("heavy.toml").with_(run__until="settled"))
     assert measure(written).fluctuation.value == pytest.approx(0.01, rel=1e-5)
     assert re.search(r"inertia of crank and flywheel \[kg m\^2\] +0\.439724", shown.output)
-    assert re.search(r"which is off by \[%\] +0\.0878", shown.output)
+    assert re.search(r"the formula is off by \[%\] +0\.0878", shown.output)
     balanced = crankmbs_("flywheel", "yi_diesel", "--no-figures", "-o", "free.toml")
     run = simulate(load_scene("free.toml"))
     assert measure(run).fluctuation.value == pytest.approx(0.01, rel=1e-5)

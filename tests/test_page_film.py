@@ -155,6 +155,10 @@ def test_each_film_asks_about_what_its_run_shows():
             "retraces its stroke",
         ),
         "What does uneven firing do": (replace(burning, fuel=Fuel(scatter=0.1)), "the steps below"),
+        "How does the fuel start and": (
+            replace(burning, fuel=Fuel(until=0.03)),
+            "each firing lifts",
+        ),
         "How does the speed change": (step, "A dashed line"),
         "How does the speed change ": (fold(free), "where the pistons stand"),
     }

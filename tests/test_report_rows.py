@@ -14,6 +14,7 @@ from crankmbs import (
     Rod,
     Run,
     Scene,
+    SpeedTable,
     Table,
     load_scene,
     simulate,
@@ -88,6 +89,19 @@ def test_a_machine_that_is_driven_takes_drive_power():
     result = simulate(load_scene("compressor"))
     names = [name for name, *_ in measure_rows(result.measures(), result.scene)]
     assert "drive power [kW]" in names
+
+
+def test_a_machine_without_gas_that_works_takes_drive_power():
+    """What the motor gives is what friction and the forces on the slide take."""
+    motor = SpeedTable(file=Table((0.0, 12.0), (3000.0, 0.0)))
+    press = load_scene("validation/scenes/press.toml").with_(torque=(motor,), run__until="settled")
+    result = simulate(press)
+    assert result.status == 0
+    rows = {name: float(value) for name, value, _ in measure_rows(result.measures(), result.scene)}
+    taken = rows["mechanical losses, friction of pistons [kW]"]
+    assert rows["power of the forces on the pistons [kW]"] < 0.0
+    works = taken - rows["power of the forces on the pistons [kW]"]
+    assert rows["drive power [kW]"] == pytest.approx(works, rel=1e-5)
 
 
 def test_a_run_that_speeds_up_has_peaks_of_the_whole_run():

@@ -143,7 +143,7 @@ def _report(name: str, scene: Scene, wheel: Flywheel) -> str:
         _row("W, excess of work at that constant speed [J]", wheel.work),
         _row("the formula's inertia, W / (fluctuation omega^2) [kg m^2]", wheel.lecture),
         *moving,
-        _row("which is off by [%]", wheel.lecture_error, 100.0, most=3),
+        _row("the formula is off by [%]", wheel.lecture_error, 100.0, most=3),
     ]
     headings = ["over the settled cycle", "value, to 6 digits", "num. error"]
     return "\n".join([*lines, "", table(headings, rows)])

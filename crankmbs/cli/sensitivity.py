@@ -80,7 +80,7 @@ def _derivatives(scene: Scene, names: list[str], measures: list[str]) -> str:
                     ),
                 ]
             )
-    return table(["measure", "knob", "derivative", "num. error", "% for 1 %"], rows)
+    return table(["measure", "knob", "derivative", "num. error", "change in % for 1 %"], rows)
 
 
 def _indices(shares: SobolIndices) -> str:
@@ -90,5 +90,5 @@ def _indices(shares: SobolIndices) -> str:
         [name, *cells(first), *cells(total)]
         for name, first, total in zip(shares.knobs, shares.first, shares.total, strict=True)
     ]
-    headings = ["knob", "first order", "num. error", "total", "num. error"]
+    headings = ["knob", "first order", "error", "total", "error"]  # of the sample, too
     return f"{shares.measure.words}, {shares.message}\n\n{table(headings, rows)}"

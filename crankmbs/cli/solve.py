@@ -87,8 +87,8 @@ def _minimum(answer: Minimum) -> str:
         for condition in answer.conditions
         for of in (condition.measure.about.units,)
     ]
-    message = f"{answer.message}, in {answer.evaluations} runs"
-    headings = [f"least of {answer.measure.words}", "value", "num. error", ""]
+    message = f"{answer.message}; {answer.evaluations} runs"
+    headings = [f"minimum of {answer.measure.words}", "value", "num. error", ""]
     return f"{message}\n\n{table(headings, rows)}"
 
 

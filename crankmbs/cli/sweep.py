@@ -24,7 +24,7 @@ __all__ = ["sweep", "varied"]
 
 _ENDED = {
     0: "reached their end",
-    1: "ended before it",
+    1: "ended before their end",
     -1: "broke off",
     2: "cannot be built",
     -2: "ended their worker",

@@ -106,7 +106,7 @@ def _user_formulas(comparison: Comparison, split: Budget) -> str:
     for label in by:
         rows = [row for row in formulas if row.reference == label]
         parts += [
-            f"{label} less run, in % of the run's peak, at its largest",
+            f"{label} minus run, in % of the run's peak, at its largest",
             *_rows(rows),
             "",
         ]
@@ -124,7 +124,7 @@ def _lectures(comparison: Comparison, split: Budget) -> str:
         return ""
     beside = comparison if _S0 in comparison.references else None
     lines = [
-        "error: formula less run, in % of the run's peak, at its largest; the causes add up to it",
+        "error: formula minus run, in % of the run's peak, at its largest; the causes add up to it",
         "formulas: those of Yi, Win and Htay (S1)"
         + ("; last column: the largest error of Grega's (S0)" if beside else ""),
         "angles: cycle angle of the cylinder"
@@ -148,7 +148,7 @@ def _numbers(comparison: Comparison) -> str:
     """The formulas that stand for one number of the run, beside it."""
     if not comparison.numbers:
         return ""
-    headings = ["single numbers", "formula", "run", "num. error", "formula less run [%]"]
+    headings = ["single numbers", "formula", "run", "num. error", "formula minus run [%]"]
     rows = [
         [
             f"{row.quantity} by {row.reference} [{row.units}]",

@@ -75,7 +75,7 @@ def at_angle(result: Result, angle: float | str) -> AtAngle:
     if window.kind != "last cycle":
         raise InputError(
             "a crank angle is looked up in the last whole cycle, and this run ends with none: it "
-            "is shorter, or the crank rests or turns back in it; look in the samples"
+            "is shorter, or the crank rests or turns back in it; look in motion.csv"
         )
     crank_angle = _in_last_cycle(result, modulo_period)
     passes = passes_over(result, window)

@@ -130,7 +130,7 @@ def torque_figure(view: View) -> Figure:
 def _cause(view: View, external: Array) -> str:
     """What the torque beside those of the rods is."""
     if view.scene.motion is not None:
-        return "holds the speed"
+        return "drive torque that holds the speed"
     if np.min(external) >= 0.0:
         return "drive"
     return "load" if np.max(external) <= 0.0 else "drive and load"

@@ -32,7 +32,7 @@ _QUANTITIES = (
 SCENE = "yi_diesel_free"
 IDEA = (
     "The torque of the cylinders comes in pulses, the load takes it evenly: the speed "
-    "swings. A formula for constant speed is wrong by what the flywheel lets through."
+    "swings. A formula for constant speed errs by what the flywheel does not smooth out."
 )
 
 
@@ -75,7 +75,7 @@ def _swing(scene: Scene) -> Section:
         formulas=(
             Formula(
                 r"\delta=\frac{\omega_{\max}-\omega_{\min}}{\omega_m}",
-                note="Exact: what is called coefficient of fluctuation.",
+                note="Exact: this defines the coefficient of fluctuation.",
             ),
         ),
     )

@@ -25,6 +25,11 @@ _UNEVEN = Idea(
     "Each firing burns another share of the fuel, the steps below the speed. Look at the crest "
     "that follows a firing: the larger its share, the higher the crest.",
 )
+_FIRES = Idea(
+    "How does the fuel start and stop the engine?",
+    "Where the share below the speed is one, each firing lifts the speed. Where it is zero, "
+    "friction and load take it down, and compressed gas only gives back what it took.",
+)
 _STOPS = Idea(
     "Why does the crank stop where it does?",
     "Compressed gas gives its work back as it expands; friction gives nothing back. In the end "
@@ -76,8 +81,8 @@ def idea_of(result: Result, *, fuel_varies: bool) -> Idea:
         return _STOPS if thrown else _SLOWS
     if "reversal" in words:
         return _TURNS_BACK
-    if fuel_varies:
-        return _UNEVEN
+    if fuel_varies and scene.fuel is not None:
+        return _UNEVEN if scene.fuel.misfire or scene.fuel.scatter > 0.0 else _FIRES
     if _starts_at_rest(scene) and scene.gas is None:
         return _GATHERS
     return _MARKED if any(words) else _WHOLE

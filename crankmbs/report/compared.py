@@ -1,6 +1,6 @@
 """A comparison with formulas and an error budget, as tables of words and numbers.
 
-Errors are formula less run, in percent of the largest value in the run.
+Errors are formula minus run, in percent of the largest value in the run.
 """
 
 from __future__ import annotations

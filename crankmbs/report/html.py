@@ -93,7 +93,7 @@ def budget_html(budget: Budget) -> str:
     >>> budget_html(budget(simulate(load_scene("propeller")))).count("<table>")
     1
     """
-    text = "formula less run, in % of its peak, where it is largest; the causes add up to it there"
+    text = "formula minus run, in % of its peak, where it is largest; the causes add up to it there"
     parts = [_head(budget.excerpt.result.scene, f"{_stretch(budget.excerpt)}: {text}")]
     for reference in dict.fromkeys(split.reference for split in budget.ranked):
         splits = [split for split in budget.ranked if split.reference == reference]

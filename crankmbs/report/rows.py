@@ -135,7 +135,7 @@ def measure_rows(measures: Measures, scene: Scene) -> list[list[str]]:
         power = getattr(measures, f"indicated_power_{end}")
         if power is not None:
             rows.append(_row(f"indicated power, {end.replace('_', ' ')}", "W", power))
-    if scene.gas is not None:
+    if scene.gas is not None or measures.friction_power or measures.force_power:
         power = measures.power
         brakes = power.value < 0.0
         name = "brake power" if brakes else "drive power"

@@ -198,7 +198,8 @@ def _solution(scene: Scene, answer: Pass, better: Pass, setup: Setup) -> Solutio
     if path.slow and answer.hand.by_angle:
         times = ", ".join(f"{t:.4g}" for t in path.slow[:5])
         more = " and later" if len(path.slow) > 5 else ""
-        reasons = (f"minimal carried it across slow stretches that begin at {times} s{more}",)
+        text = f"near standstill, from {times} s{more} on, it was integrated over time, by minimal"
+        reasons = (text,)
     evaluations = path.evaluations + better.path.evaluations
     steps = path.steps + better.path.steps
     unknown = {} if check else dict.fromkeys({**VARIABLES, **samples.own}, math.inf)
