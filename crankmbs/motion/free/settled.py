@@ -25,6 +25,9 @@ from crankmbs.numerics.arrays import Array
 
 __all__ = ["run"]
 
+_WIDE = 0.25, 0.5  # of the energy
+_EPS = float(np.finfo(float).eps)
+
 
 def run(train: CrankTrain, rtol: float, cost_cap: float, *, by_angle: bool) -> Assembled:
     """Solve a free motion, or the periodic motion that it settles to where that is asked for.
@@ -84,4 +87,5 @@ def _of_energy(period_map: PeriodMap, limit: Limit) -> Settling:
         return period_map.state(float(at[0]), limit.sense)
 
     at, slope = np.array([limit.energy]), np.array([[1.0 - limit.damping]])
-    return Settling(at, slope, image, state, lambda at: at, limit.swing)
+    settling = Settling(at, slope, image, state, lambda at: at, limit.swing)
+    return replace(settling, widths=_WIDE, errs=_EPS) if limit.affine else settling

@@ -49,6 +49,8 @@ class Settling:
     image : what a period makes of them on a grid, by steps of a tolerance
     state : that begins a period with them; sizes : what each of them is measured by
     swing : greatest energy in the period over the one where it begins
+    widths, errs : of the differences that tell the factor, and what an image errs in them; one that
+        is affine is as exact over wide ones
     """
 
     at: Array
@@ -57,6 +59,8 @@ class Settling:
     state: Callable[[Array], State]
     sizes: Callable[[Array], Array]
     swing: float = 1.0
+    widths: tuple[float, float] = (STEP, WIDE)
+    errs: float = FINE
     seen: list[tuple[Grid, Array]] = field(default_factory=list)
 
     @property
@@ -91,12 +95,13 @@ class Settling:
         """The largest factor by which a disturbance changes in a period, and its error: what it
         differs by between two differences, and between the grids of both passes."""
         (one, at), (other, there) = self.seen[-2:]
+        step, wide = self.widths
         factors = [
             largest(slope_of(partial(self.image, grid, FINE), here, self.sizes(here), width))
-            for grid, here, width in ((other, there, STEP), (other, there, WIDE), (one, at, STEP))
+            for grid, here, width in ((other, there, step), (other, there, wide), (one, at, step))
         ]
         apart = sum(abs(factor - factors[0]) for factor in factors[1:])
-        return Decay(factors[0], apart + FINE / STEP)
+        return Decay(factors[0], apart + self.errs / step)
 
 
 def slope_of(image: Callable[[Array], Array], at: Array, sizes: Array, width: float) -> Array:
