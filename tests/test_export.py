@@ -161,7 +161,11 @@ def test_a_hostile_title_stays_a_comment(tmp_path):
             TORQUE_DRIVEN.with_(force=(ConstantForce(force=1.0, until=0.1),)),
             "the window of force[1]; leave out when it sets in",
         ),
-        (load_scene("v_twin"), "it jumps (two rows at one angle), where a run must be cut"),
+        (load_scene("v_twin"), "gas.indicator: its pressure jumps where valves open"),
+        (
+            load_scene("validation/scenes/hard_pressure_jumps.toml"),
+            "it jumps (two rows at one angle), where a run must be cut",
+        ),
         (
             TORQUE_DRIVEN.with_(torque=(), start__angle=0.0),
             "at rest at 0 degrees: no torque moves the crank from here; give a run",

@@ -122,8 +122,8 @@ ODD = {
         "number is in kg",
     ),
     "rod in grams without a bore": (
-        reroded(BARS, mass=200.0),
-        "rod.mass: 200 kg is more than solid steel 200 mm wide and 300 mm long, 74 kg; a bare "
+        reroded(BARS, mass=2000.0),
+        "rod.mass: 2000 kg is more than solid steel 400 mm wide and 300 mm long, 296 kg; a bare "
         "number is in kg",
     ),
     "rod's inertia in kg cm^2": (
@@ -191,6 +191,12 @@ ODD = {
 def test_what_no_machine_has_is_said(name):
     scene, sentence = ODD[name]
     assert warnings(scene) == (sentence,)
+
+
+def test_the_slide_of_a_press_may_be_wide():
+    """150 kg at a stroke of 100 mm were called more than solid steel as wide as the stroke."""
+    crank, rod = Crank(radius=0.05, inertia=7.0), Rod(length=0.4)
+    assert warnings(replace(BARS, crank=crank, rod=rod, piston=Piston(mass=150.0))) == ()
 
 
 def test_every_number_is_named():

@@ -276,6 +276,10 @@ def test_the_commands_draw_and_solve(tmp_path):
     assert done.exit_code == 0, done.output
     assert "4 cases over rod.length\n3 reached their end\n" in done.stdout
     assert "1 cannot be built; the first: rod.length must be at least" in done.stdout
+    none = ["sweep", "yi_diesel", "--vary", "rod.length=0.03..0.04 m:2", "-o", f"{store}_none"]
+    done = crankmbs_(*none)
+    assert done.exit_code == 3
+    assert "2 cases over rod.length\nnone reached its end\n2 cannot be built; the" in done.stdout
     shown = ["--show", "side thrust by S1", "--show", "peak side force"]
     assert crankmbs_("plot", store, *shown, "-o", str(tmp_path / "f")).exit_code == 0
     assert names(tmp_path / "f") == {"side_thrust_by_S1.png", "peak_side_force.png"}

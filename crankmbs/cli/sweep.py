@@ -10,7 +10,7 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-from typer import Option, echo
+from typer import Exit, Option, echo
 
 from crankmbs.cli.options import SceneName
 from crankmbs.cli.text import cells, heading, table, with_unit
@@ -78,8 +78,10 @@ def sweep(
     if plan.series:
         echo(f"series of {plan.cases.count} cases take {_bytes(plan.bytes)} before packing")
     _fill(plan, out, workers, cluster)
-    title = heading(path.stem, plan.scene.title)
-    echo(f"{title}\n\n{_report(plan, summary(out))}\n\nwrote {out}")
+    title, result = heading(path.stem, plan.scene.title), summary(out)
+    echo(f"{title}\n\n{_report(plan, result)}\n\nwrote {out}")
+    if 0 not in result.ended:
+        raise Exit(3)
 
 
 def varied(texts: list[str]) -> dict[str, str]:
@@ -208,6 +210,8 @@ def _progress(count: int) -> Iterator[Callable[[int], None]]:
 
 def _report(plan: Plan, summary: Summary) -> str:
     lines = [f"{plan.cases.count} cases over {', '.join(plan.cases.names)}"]
+    if 0 not in summary.ended:
+        lines.append("none reached its end")
     for status, (count, message) in sorted(summary.ended.items(), key=lambda item: item[0] != 0):
         first = "" if status == 0 else f"; the first: {message}"
         lines.append(f"{count} {_ENDED[status]}{first}")

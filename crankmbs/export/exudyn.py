@@ -85,10 +85,16 @@ def exudyn_script(scene: Scene, stem: str) -> str:
         raise InputError(f"a script for exudyn cannot express {refused}")
     train = crank_train(scene)
     if Forces(train).jumps:
+        if scene.gas is not None and scene.gas.indicator is not None:
+            raise InputError(
+                "a script for exudyn cannot express gas.indicator: its pressure jumps where valves "
+                "open, and a run must be cut there and begun anew; give the pressure as a table "
+                "without two rows at one angle"
+            )
         raise InputError(
             "a script for exudyn cannot express the gas pressure or a force over the angle: it "
             "jumps (two rows at one angle), where a run must be cut and begun anew; give rows "
-            "without jumps, of an indicator diagram a table"
+            "without jumps"
         )
     result = simulate(scene)
     if result.status != 0:
