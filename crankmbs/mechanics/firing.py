@@ -89,8 +89,8 @@ class FuelLaw:
     def angles(self) -> tuple[float, ...]:
         """Crank angles [rad] in one period at which a cylinder decides, increasing."""
         period = self.scene.period
-        found = sorted((math.pi - c.phase) % period for c in self.scene.cylinders)
-        apart = [a for k, a in enumerate(found) if k == 0 or a - found[k - 1] > _SAME]
+        bottoms = sorted((math.pi - c.phase) % period for c in self.scene.cylinders)
+        apart = [a for k, a in enumerate(bottoms) if k == 0 or a - bottoms[k - 1] > _SAME]
         if len(apart) > 1 and apart[0] + period - apart[-1] <= _SAME:
             apart.pop()
         return tuple(apart)

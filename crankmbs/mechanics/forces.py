@@ -115,8 +115,8 @@ class OnCrank:
     def pistons(self) -> Array:
         """1 for each cylinder on whose piston it acts, else 0, shape (cylinders, 1)."""
         number, count = self.force.cylinder, len(self.scene.cylinders)
-        found = np.ones(count) if number is None else np.arange(1, count + 1) == number
-        return np.asarray(found, dtype=np.float64)[:, np.newaxis]
+        mask = np.ones(count) if number is None else np.arange(1, count + 1) == number
+        return np.asarray(mask, dtype=np.float64)[:, np.newaxis]
 
     @cached_property
     def parts(self) -> Parts[_OverAngle]:
@@ -143,37 +143,37 @@ class OnCrank:
             it is, at rest, the share of `jumping` that holds
         """
         law, loop = self.force.law, closed_loops(self.scene, theta)
-        found = self.by_angle(theta, loop)
+        total = self.by_angle(theta, loop)
         if law.over_time is not None or law.given is not None:
-            found += self.by_time(t, theta, omega, loop)
+            total += self.by_time(t, theta, omega, loop)
         if law.switches:
-            found -= np.abs(share) * self._sign(theta, share) * self.jumping(theta, loop)
+            total -= np.abs(share) * self._sign(theta, share) * self.jumping(theta, loop)
         if law.viscous:
-            found += self.pistons * (law.viscous * loop.x_1 * omega)
-        return np.asarray(found.T)
+            total += self.pistons * (law.viscous * loop.x_1 * omega)
+        return np.asarray(total.T)
 
     def by_angle(self, theta: Array, loop: Loop) -> Array:
         """What depends on the cycle angle alone [N], shape (cylinders, n), without `jumping`."""
-        law, found = self.force.law, np.zeros_like(loop.x)
+        law, total = self.force.law, np.zeros_like(loop.x)
         if law.forward is not None and law.back is not None:
-            found += 0.5 * self._over_travel(law.forward, theta, loop)
-            found += 0.5 * self._over_travel(law.back, theta, loop)
+            total += 0.5 * self._over_travel(law.forward, theta, loop)
+            total += 0.5 * self._over_travel(law.back, theta, loop)
         if law.over_angle is not None:
-            found += law.over_angle(self._cycle_angles(theta))
-        return self.pistons * found
+            total += law.over_angle(self._cycle_angles(theta))
+        return self.pistons * total
 
     def by_time(self, t: Array, theta: Array, omega: Array, loop: Loop) -> Array:
         """What depends on time, or is a function of Python [N], shape (cylinders, n)."""
-        law, found = self.force.law, np.zeros_like(loop.x)
+        law, total = self.force.law, np.zeros_like(loop.x)
         if law.over_time is not None:
-            found += law.over_time(t)
+            total += law.over_time(t)
         if law.given is not None:
             velocity = -loop.x_1 * omega
             at = t, self._cycle_angles(theta), displacements(self.scene, loop), velocity
             which = np.flatnonzero(self.pistons)
             each = (np.broadcast_to(one, loop.x.shape)[which] for one in at)
-            found[which] += _each(law.given.function, *each)
-        return self.pistons * found
+            total[which] += _each(law.given.function, *each)
+        return self.pistons * total
 
     def jumping(self, theta: Array, loop: Loop) -> Array:
         """Half of what the force is more on the way back than forwards [N], (cylinders, n)."""
@@ -206,11 +206,11 @@ class OnCrank:
         law = self.force.law
         rows = {k for way in (law.forward, law.back) if way is not None for k in way.knots}
         rows |= set(law.given.displacements if law.given else ())
-        found = []
+        knots = []
         for gear in self.scene.running_gear:
             inside = np.array(sorted(row for row in rows if 0.0 < row < gear.stroke))
-            found.append(np.concatenate(throw_angles(inside, gear.stroke - inside, *gear.shape)))
-        return found
+            knots.append(np.concatenate(throw_angles(inside, gear.stroke - inside, *gear.shape)))
+        return knots
 
     def at_crank(self, cycle_angles: list[Array], period: float) -> Array:
         """The crank angles [rad] in [0, period) at which a piston that it acts on is at one of its

@@ -111,11 +111,11 @@ def friction_torque(
     """
     if not train.rubs:
         return np.zeros(np.shape(theta))
-    found, more = rubbing(train, theta, phases), 0.0
+    rubbed, more = rubbing(train, theta, phases), 0.0
     if shares is not None and train.combustion is not None:
         more = fired_torque(train, theta) * np.asarray(shares)
-    against = np.asarray(sense) * found.coulomb(more)
-    return np.asarray(-against - found.drag * np.asarray(omega))
+    against = np.asarray(sense) * rubbed.coulomb(more)
+    return np.asarray(-against - rubbed.drag * np.asarray(omega))
 
 
 def friction_forces(

@@ -126,12 +126,12 @@ def reduce(train: CrankTrain, theta: ArrayLike, shares: ArrayLike | None = None)
     if shares is not None and train.combustion is not None:
         each = np.broadcast_to(shares, (*theta.shape, len(train.combustion)))
         each = each.reshape(len(angles), each.shape[-1]).T
-    found = np.empty((3, len(angles)))
+    reduced = np.empty((3, len(angles)))
     for begin in range(0, len(angles), _BLOCK):
         block = slice(begin, begin + _BLOCK)
         shared = None if each is None else each[:, block]
-        found[:, block] = _reduced(train, angles[block], shared)
-    return Reduction(*found.reshape(3, *theta.shape))
+        reduced[:, block] = _reduced(train, angles[block], shared)
+    return Reduction(*reduced.reshape(3, *theta.shape))
 
 
 def _reduced(train: CrankTrain, theta: Array, shares: Array | None) -> tuple[Array, Array, Array]:

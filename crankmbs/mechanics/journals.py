@@ -47,17 +47,17 @@ def of_journals(
     motion : omega^2, alpha and 1, shape (u, n) or (u, 1) each
     rods : the crank's force on each rod in its cylinder's axes, shape (cylinders, u, n)
     """
-    found, throws = of_rods(scene, *rods), scene.throws
+    joints, throws = of_rods(scene, *rods), scene.throws
     if throws is None:
-        return found
+        return joints
     square, alpha, one = motion
     weight = complex(*gravity_vector(scene)) * scene.crank.mass / len(throws.unbalances)
     turning = np.exp(1j * theta) * (1j * alpha - square)
     unbalance = np.array(throws.unbalances)[:, np.newaxis, np.newaxis]
     of_throws = np.tensordot(np.array(throws.throws), unbalance * turning - weight * one, 1)
     for name, part in zip(_JOURNAL, (of_throws.real, of_throws.imag), strict=True):
-        found[name] = found[name] + part
-    return found
+        joints[name] = joints[name] + part
+    return joints
 
 
 def of_rods(scene: Scene, x: Array, y: Array) -> dict[str, Array]:

@@ -192,7 +192,7 @@ def of_crank(scene: Scene, theta: Array, motion: Powers, cylinders: Cylinders) -
     shake, ones = (cylinders.shake_x, cylinders.shake_y), np.ones(len(throw_x))
     bearing, frame = (_in_the_engine(scene, ones, *each) for each in ((throw_x, throw_y), shake))
     torque = crank.moment_of_inertia * alpha - crank_weight(scene, theta) * one
-    found = {
+    sums = {
         "external_torque": torque - cylinders.variables["journal_torque"][-1],
         "main_bearing_force_x": pull_x + bearing[0],
         "main_bearing_force_y": pull_y + bearing[1],
@@ -203,8 +203,8 @@ def of_crank(scene: Scene, theta: Array, motion: Powers, cylinders: Cylinders) -
     }
     if scene.levers is not None:
         along_x, along_y = _in_the_engine(scene, np.array(scene.levers), *shake)
-        found |= {"rocking_moment_x": -along_y, "rocking_moment_y": along_x}
-    return found
+        sums |= {"rocking_moment_x": -along_y, "rocking_moment_y": along_x}
+    return sums
 
 
 def _in_the_engine(scene: Scene, weights: Array, x: Array, y: Array) -> tuple[Array, Array]:

@@ -123,11 +123,11 @@ def pressures_at(pressures: Sequence[PeriodicPressure], cycle_angles: Array) -> 
     once = list(dict.fromkeys(pressures))
     if len(once) == 1:
         return once[0](cycle_angles)
-    found = np.empty_like(cycle_angles)
+    values = np.empty_like(cycle_angles)
     for each in once:
         rows = [k for k, pressure in enumerate(pressures) if pressure is each]
-        found[rows] = each(cycle_angles[rows])
-    return found
+        values[rows] = each(cycle_angles[rows])
+    return values
 
 
 def _moved(cubics: Array, x: Array) -> Array:

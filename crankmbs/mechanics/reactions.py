@@ -57,8 +57,8 @@ class Table:
     def variables(self) -> dict[str, Array]:
         """By name, shape (samples,) those of the crank, (samples, cylinders) of a cylinder, as of
         a journal."""
-        found = ((name, self.values[rows]) for name, rows in self.places.items())
-        return {n: rows.T if EVERY[n].of else rows[0] for n, rows in found}
+        pairs = ((name, self.values[rows]) for name, rows in self.places.items())
+        return {n: rows.T if EVERY[n].of else rows[0] for n, rows in pairs}
 
     def largest(self, of_rows: Array) -> Array:
         """Of each variable, from something of its rows."""
@@ -100,10 +100,12 @@ def reactions(
     >>> float(reactions(train, [0.0], [10.0], [0.0])["rod_angle"][0, 0])
     0.0
     """
-    found = balances(train, theta, omega, alpha, given)
+    balanced = balances(train, theta, omega, alpha, given)
     # one piece of memory, so large that the system is not asked for every run's anew
-    table = Table(found.rows, np.empty((sum(found.rows.values()), len(found.period.which))))
-    found.fill(table.values)
+    table = Table(
+        balanced.rows, np.empty((sum(balanced.rows.values()), len(balanced.period.which)))
+    )
+    balanced.fill(table.values)
     return table.variables
 
 
@@ -240,13 +242,15 @@ def _added(
 ) -> dict[str, Array]:
     """What combustion and given forces on the pistons do at the samples, by variable."""
     forces: list[Array] = []
-    found: dict[str, Array] = {}
+    variables: dict[str, Array] = {}
     if fuel is not None and train.combustion is not None:
         phi = np.add.outer(axes_of(train.scene).phases, period.angles)
         more = period.times(pressures_at(train.combustion, phi), np.ascontiguousarray(fuel.T))
         forces.append(gears_of(train.scene).area * more)
-        found |= {"gas_pressure": more, "gas_force": forces[0]}
+        variables |= {"gas_pressure": more, "gas_force": forces[0]}
     for name, push in pushes.items():
         forces.append(np.ascontiguousarray(push.T))
-        found[name] = forces[-1]
-    return found | pushed(train.scene, period, sum(forces[1:], forces[0])) if forces else found
+        variables[name] = forces[-1]
+    return (
+        variables | pushed(train.scene, period, sum(forces[1:], forces[0])) if forces else variables
+    )

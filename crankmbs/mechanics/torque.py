@@ -252,11 +252,11 @@ def _outside(ends: list[float], low: float, high: float) -> tuple[float, float]:
 def over_angle(train: CrankTrain, phases: Phases = ()) -> Callable[[ArrayLike], Array] | None:
     """What the loads that act give over the crank angle [N m], at angles [rad] of any shape."""
     parts = [load.parts.over_angle for _, load in acting(train.loads, phases)]
-    found = [part for part in parts if part is not None]
-    tables = [part for part in found if isinstance(part, Cycle)]
-    if len(tables) == len(found):
+    present = [part for part in parts if part is not None]
+    tables = [part for part in present if isinstance(part, Cycle)]
+    if len(tables) == len(present):
         return summed(tables, common_period(part.period for part in tables))
-    return lambda angle: np.asarray(sum(part(angle) for part in found))
+    return lambda angle: np.asarray(sum(part(angle) for part in present))
 
 
 def pushing(train: CrankTrain, phases: Phases) -> tuple[OnCrank, ...]:

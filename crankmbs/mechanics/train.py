@@ -275,7 +275,7 @@ def sign_changes(train: CrankTrain, shares: Sequence[float] = ()) -> Array:
 
 def _roots(pressure: PeriodicPressure) -> Array:
     """Cycle angles [rad] of one period at which a pressure is 0 between two knots."""
-    found = PPoly(pressure.coefficients, pressure.knots).roots(
+    roots = PPoly(pressure.coefficients, pressure.knots).roots(
         discontinuity=False, extrapolate=False
     )
-    return np.unique(found[np.isfinite(found)])
+    return np.unique(roots[np.isfinite(roots)])

@@ -128,14 +128,14 @@ class _Passes(NamedTuple):
         before, places, first = self.table.values, self.table.places, len(MOTION)
         total = np.zeros(len(self.table.rows))
         for samples in self._chain():
-            found, apart = balances_of(self.perturbed, samples), np.zeros(len(before))
-            balanced = slice(first, first + sum(found.rows.values()))
-            apart[balanced] = found.apart(before[balanced])
+            balances, apart = balances_of(self.perturbed, samples), np.zeros(len(before))
+            balanced = slice(first, first + sum(balances.rows.values()))
+            apart[balanced] = balances.apart(before[balanced])
             missed = 0.0
             if samples.own:
                 row = places["external_torque"].start
                 given = samples.own.get("external_torque", before[row])
-                missed = peak(found.row("external_torque")[: len(given)] - given)
+                missed = peak(balances.row("external_torque")[: len(given)] - given)
             count = before.shape[1]
             apart[:first] = peaks_of(before[:first] - motion_rows(samples)[:, :count])
             for name, values in samples.own.items():
@@ -143,7 +143,7 @@ class _Passes(NamedTuple):
             total += self.table.largest(apart)
             if samples is not self.rounded:
                 before = table_of(self.perturbed, samples).values
-        return total, missed, found.period.angles
+        return total, missed, balances.period.angles
 
     def _chain(self) -> list[Samples]:
         if len(self.answer.time) > _FEW:
@@ -186,15 +186,15 @@ def _speed_change(samples: Samples, ahead: float) -> Array:
 def labelled(assembled: Assembled) -> Labelled:
     """The variables with dimensions, units, long names and error estimates."""
     variables, errors = assembled.variables, assembled.errors
-    found: Labelled = {
+    table: Labelled = {
         name: about.labelled(variables[name], errors[name])
         for name, about in EVERY.items()
         if name in variables
     }
     counts = {EVERY[name].of: values.shape[-1] for name, values in variables.items()}
     for of in filter(None, counts):
-        found[of] = ((of,), np.arange(1, counts[of] + 1), {"long_name": f"{of} number"})
-    return found
+        table[of] = ((of,), np.arange(1, counts[of] + 1), {"long_name": f"{of} number"})
+    return table
 
 
 def _sizes(peaks: dict[str, float]) -> list[float]:

@@ -160,13 +160,13 @@ def _holding(cells: Cells, train: CrankTrain, torque: Array) -> Array:
 def table_of(train: CrankTrain, samples: Samples) -> Table:
     """Every variable at the samples: the motion, what follows from it, and in place of that, or
     beside it, what the samples have of their own."""
-    found, own = balances_of(train, samples), samples.own
-    more = {name: one.shape[1] for name, one in own.items() if name not in found.rows}
-    rows = dict.fromkeys(MOTION, 1) | found.rows | more
+    balanced, own = balances_of(train, samples), samples.own
+    more = {name: one.shape[1] for name, one in own.items() if name not in balanced.rows}
+    rows = dict.fromkeys(MOTION, 1) | balanced.rows | more
     # one piece of memory, so large that the system is not asked for every run's anew
     table = Table(rows, np.empty((sum(rows.values()), len(samples.time))))
     table.values[: len(MOTION)] = motion_rows(samples)
-    found.fill(table.values[len(MOTION) :][: sum(found.rows.values())])
+    balanced.fill(table.values[len(MOTION) :][: sum(balanced.rows.values())])
     places = table.places
     for name, values in own.items():
         table.values[places[name]] = values.T
@@ -175,9 +175,9 @@ def table_of(train: CrankTrain, samples: Samples) -> Table:
 
 def variables_at(train: CrankTrain, samples: Samples) -> dict[str, Array]:
     """Every variable by name but the energy residual, shape (p,) or (p, cylinders)."""
-    found = table_of(train, samples).variables
-    del found["energy_residual"]
-    return found
+    values = table_of(train, samples).variables
+    del values["energy_residual"]
+    return values
 
 
 def balances_of(train: CrankTrain, samples: Samples) -> Balances:

@@ -321,9 +321,9 @@ class Grid:
     def _tabulate(self, start: Array, width: Array) -> _Tables:
         places = ends_and_nodes(len(self.rule.nodes)).places
         every = start[:, None] + width[:, None] * places
-        theta, found = every[:, 1:-1], reduce(self.train, every)
-        inertia, ends = found.inertia[:, 1:-1], found.inertia[:, [0, -1]]
-        torque, of_angle = found.torque[:, 1:-1], over_angle(self.train, self.phases)
+        theta, reduction = every[:, 1:-1], reduce(self.train, every)
+        inertia, ends = reduction.inertia[:, 1:-1], reduction.inertia[:, [0, -1]]
+        torque, of_angle = reduction.torque[:, 1:-1], over_angle(self.train, self.phases)
         torque = torque.copy() if of_angle is None else torque + of_angle(theta)
         combustion, rubbed = fired_torque(self.train, theta), self._rub(theta)
         return _Tables(inertia, torque, combustion, *rubbed, ends)
@@ -334,12 +334,12 @@ class Grid:
         nothing = np.empty((len(theta), 0))
         if not self.train.rubs:
             return nothing, empty, nothing
-        found = rubbing(self.train, theta, self.phases)
-        drag = found.drag if self.drags else nothing
+        rubs = rubbing(self.train, theta, self.phases)
+        drag = rubs.drag if self.drags else nothing
         pressed = friction is not None and friction.ring_pressure > 0.0
         if pressed and self.train.combustion is not None:
-            return found.rings, found.gas, drag
-        return found.coulomb(), empty, drag
+            return rubs.rings, rubs.gas, drag
+        return rubs.coulomb(), empty, drag
 
 
 def grid_of(train: CrankTrain, rule: Rule, widest: float = _WIDEST) -> Grid:

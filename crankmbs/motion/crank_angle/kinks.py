@@ -103,18 +103,18 @@ def what_misses(segment: AngleSegment, allowed: float) -> Missing:
     missed, gained = np.zeros_like(least), np.zeros_like(least)
     if not isinstance(segment.branch, Course):
         return Missing(x, gained)
-    found = [
+    blocks = [
         (points, _passed(points), _turns(points))
         for points in _near_rows(segment, segment.branch, least)
     ]
-    for points, rows, _ in found:
+    for points, rows, _ in blocks:
         missed += np.bincount(points.cell[rows.cell], rows.missed, len(least))
     bad = missed > least
     mended = bad & (missed < _MENDED * least) & segment.grid.checks & segment.branch.is_steady
     mended[mended] = np.abs(segment.rate(mended)).sum(axis=1) * width[mended] < _CALM
-    for points, _, (turning, _) in found:
+    for points, _, (turning, _) in blocks:
         mended[points.cell[turning]] = False
-    for points, rows, (turning, tops) in found:
+    for points, rows, (turning, tops) in blocks:
         worth = bad[points.cell][rows.cell] & (rows.missed > _LITTLE * points.least[rows.cell])
         passed = rows.select(worth)
         cell, at = points.cell[passed.cell], _located(points, passed)
@@ -250,9 +250,9 @@ def sign_changes_in(segment: AngleSegment) -> Array:
     """Angles turned [rad] at which gas forces change their sign inside cells and press rings;
     empty without fuel."""
     train, terms = segment.grid.train, segment.terms
-    found = [np.empty(0)]
+    bends = [np.empty(0)]
     if terms.rubbed.shape[-1] == 0 or train.pressure is None or train.combustion is None:
-        return found[0]
+        return bends[0]
     theta = terms.angles(segment.begin.theta, segment.sense, segment.grid.rule)
     nodes = segment.grid.rule.nodes
     to_cubic = np.linalg.pinv(np.vander(nodes, 4)).T
@@ -274,5 +274,5 @@ def sign_changes_in(segment: AngleSegment) -> Array:
             )
         behind = low * terms.width[cell]
         inside = np.minimum(behind, terms.width[cell] - behind) > _AT_EDGE
-        found.append((segment.edges[cell] + behind)[inside])
-    return np.concatenate(found)
+        bends.append((segment.edges[cell] + behind)[inside])
+    return np.concatenate(bends)

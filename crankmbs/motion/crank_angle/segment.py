@@ -164,8 +164,8 @@ class AngleSegment:
         speeds, times = self.speeds[k].tolist(), self.time[k].tolist()
         before = (mode.high if self.sense > 0.0 else mode.low for _, mode in self.modes)
         after = (mode for _, mode in self.modes[1:])
-        found = zip(times, before, speeds, after, strict=False)
-        return tuple(State(t, angle, speed, math.nan, mode) for t, angle, speed, mode in found)
+        rows = zip(times, before, speeds, after, strict=False)
+        return tuple(State(t, angle, speed, math.nan, mode) for t, angle, speed, mode in rows)
 
     @cached_property
     def errors(self) -> Errors:

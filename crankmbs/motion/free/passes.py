@@ -198,8 +198,8 @@ def _solution(scene: Scene, answer: Pass, better: Pass, setup: Setup) -> Solutio
     if path.slow and answer.hand.by_angle:
         times = ", ".join(f"{t:.4g}" for t in path.slow[:5])
         more = " and later" if len(path.slow) > 5 else ""
-        text = f"near standstill, from {times} s{more} on, it was integrated over time, by minimal"
-        reasons = (text,)
+        slow = f"near standstill, from {times} s{more} on, it was integrated over time, by minimal"
+        reasons = (slow,)
     evaluations = path.evaluations + better.path.evaluations
     steps = path.steps + better.path.steps
     unknown = {} if check else dict.fromkeys({**VARIABLES, **samples.own}, math.inf)

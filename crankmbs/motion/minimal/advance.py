@@ -223,8 +223,8 @@ class _Walk:
         row[0] = self._y
         knots = zip(equation.piece[:2], control.angles, (max, min), strict=True)
         low, high = (nearer(knot, angle) for knot, angle, nearer in knots)
-        found = first_exit(row, (low, high), self._speeds)
-        return _Step(row, float(solver.t), solver.y, float(solver.h_abs), *found)
+        first = first_exit(row, (low, high), self._speeds)
+        return _Step(row, float(solver.t), solver.y, float(solver.h_abs), *first)
 
     def _width(self) -> float:
         """Length of the next step [s]: what the errors allow, and not much beyond the next knot."""

@@ -37,10 +37,10 @@ def interpolant(solver: DOP853 | Radau) -> Array:
 
 def value(row: Array, x: float) -> list[float]:
     """(theta, omega, work) at the fraction x of a step."""
-    found = row[_DEGREE]
+    values = row[_DEGREE]
     for coefficients in row[_DEGREE - 1 :: -1]:
-        found = found * x + coefficients
-    return [float(one) for one in found]
+        values = values * x + coefficients
+    return [float(one) for one in values]
 
 
 def first_exit(
@@ -97,14 +97,14 @@ def _bracketed(row: list[float], high: float) -> float:
     """The root of a monotone polynomial between 0 and ``high``, by Newton's method."""
     low, rises, x = 0.0, row[0] < 0.0, high
     for _ in range(_NEWTON):
-        found = slope = 0.0
+        value = slope = 0.0
         for coefficient in reversed(row):
-            slope = slope * x + found
-            found = found * x + coefficient
-        if found == 0.0:
+            slope = slope * x + value
+            value = value * x + coefficient
+        if value == 0.0:
             return x
-        low, high = (x, high) if (found < 0.0) == rises else (low, x)
-        new = x - found / slope if slope != 0.0 else low
+        low, high = (x, high) if (value < 0.0) == rises else (low, x)
+        new = x - value / slope if slope != 0.0 else low
         if not low < new < high:
             new = 0.5 * (low + high)
         if new in (x, low, high):

@@ -148,10 +148,10 @@ class Reduced:
         parts, before = np.ones(len(edges) - 1, dtype=np.intp), np.full(len(edges) - 1, np.inf)
         while True:
             edges, before = _split(edges, parts), np.repeat(before, parts)
-            found = self._coefficients(edges, phases)
+            rows = self._coefficients(edges, phases)
             narrow = np.diff(edges) <= _NARROW
-            found[narrow, _STRAIGHT:] = 0.0
-            inside = found.reshape(*found.shape[:2], -1)
+            rows[narrow, _STRAIGHT:] = 0.0
+            inside = rows.reshape(*rows.shape[:2], -1)
             largest = np.abs(inside).max(axis=(0, 1), initial=1e-300)
             last = (np.abs(inside[:, _TERMS - 2 : _TERMS]) / largest).max(axis=(1, 2))
             rough = (last > _NOISE) | ((last > _ROUGH) & (last < _FALLS * before))
@@ -159,8 +159,8 @@ class Reduced:
                 break
             parts, before = np.where(rough, 2, 1), np.where(rough, last, before)
         end = _ALONE + len(train.scene.cylinders) * self._presses
-        inertia, slope, torque, rings, drag = np.moveaxis(found[..., :_ALONE], -1, 0)
-        of_cylinders = found[..., _ALONE:end], found[..., end:]
+        inertia, slope, torque, rings, drag = np.moveaxis(rows[..., :_ALONE], -1, 0)
+        of_cylinders = rows[..., _ALONE:end], rows[..., end:]
         return _Fits(edges.tolist(), inertia, slope, torque, rings, drag, *of_cylinders)
 
     @property
@@ -174,10 +174,12 @@ class Reduced:
         x = np.polynomial.chebyshev.chebpts1(self._terms)
         middle, half = _placed(edges[:-1], edges[1:])
         theta = np.asarray(middle[:, None] + half[:, None] * x)
-        found, rubs = reduce(self.train, theta), rubbing(self.train, theta, phases)
+        reduction, rubs = reduce(self.train, theta), rubbing(self.train, theta, phases)
         of_angle = over_angle(self.train, phases)
-        torque = found.torque if of_angle is None else found.torque + of_angle(theta)
-        alone = np.stack([found.inertia, found.slope, torque, rubs.rings, rubs.drag], axis=-1)
+        torque = reduction.torque if of_angle is None else reduction.torque + of_angle(theta)
+        alone = np.stack(
+            [reduction.inertia, reduction.slope, torque, rubs.rings, rubs.drag], axis=-1
+        )
         gas = rubs.gas if self._presses else rubs.gas[..., :0]
         values = np.concatenate([alone, gas, fired_torque(self.train, theta)], axis=-1)
         return np.asarray(self._to_chebyshev @ values)
@@ -214,11 +216,11 @@ class Pieces:
         i = bisect_right(self._bends, local)
         low = max([fits.edges[k], *self._bends[max(i - 1, 0) : i]])
         high = min([fits.edges[k + 1], *self._bends[i : i + 1]])
-        found, base = self._piece(k, low, high, sense), turns * period
+        one, base = self._piece(k, low, high, sense), turns * period
         if turns == 0:
-            return found
-        knots = found.low + base, found.high + base, found.middle + base
-        return Piece(*knots, found.half, found.powers)
+            return one
+        knots = one.low + base, one.high + base, one.middle + base
+        return Piece(*knots, one.half, one.powers)
 
     def _piece(self, k: int, low: float, high: float, sense: float) -> Piece:
         """A part of the piece k, where friction keeps its signs."""

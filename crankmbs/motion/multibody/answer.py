@@ -97,8 +97,8 @@ class Answers:
         applied = motion.get("applied_force", np.zeros_like(gas))
         given = {"alpha": "crank_acceleration"} if driven else {"torque": "external_torque"}
         known = {name: motion[variable] for name, variable in given.items()}
-        found = self.model.states(theta, omega, gas + friction + applied, **known)
-        values = self._of_bodies(found) | self._of_joints(found)
+        system = self.model.states(theta, omega, gas + friction + applied, **known)
+        values = self._of_bodies(system) | self._of_joints(system)
         values |= {"gas_force": gas, **self.forces.pressures(theta, gas)}
         values |= {} if self._scene.friction is None else {"friction_force": friction}
         return values | ({"applied_force": applied} if self._scene.force else {})
@@ -129,10 +129,10 @@ class Answers:
         work = (power.reshape(cells.time.shape) * cells.spent) @ cells.weights
         at, faster = (np.append(row[:1, 0], row[:, -1]) for row in (cells.angle, cells.speed))
         none = np.zeros((len(at), len(self._banks)))
-        found = self.model.states(at, faster, none, alpha=0.0 * at)
-        return np.asarray(np.diff(self.model.energy(found)) - work)
+        system = self.model.states(at, faster, none, alpha=0.0 * at)
+        return np.asarray(np.diff(self.model.energy(system)) - work)
 
-    def _of_bodies(self, found: Consistent) -> dict[str, Array]:
+    def _of_bodies(self, system: Consistent) -> dict[str, Array]:
         """Motion of all bodies, energy, and what they do to the frame by the balance of momentum.
 
         force = sum m (g - a)
@@ -142,12 +142,12 @@ class Answers:
         angles those of crank and rods, shape (m, 1 + n).
         """
         scene, mass = self._scene, self.model.mass
-        balance = self.model.weight - found.acceleration * mass
+        balance = self.model.weight - system.acceleration * mass
         (r, phi), (v, rate), (a, spin), (pull, turning) = (
             (each[:, self._x] + 1j * each[:, self._x + 1], each[:, self._turns])
-            for each in (*found[:3], balance)
+            for each in (*system[:3], balance)
         )
-        moment = found.torque + (r.conj() * pull).imag.sum(axis=1) + turning.sum(axis=1)
+        moment = system.torque + (r.conj() * pull).imag.sum(axis=1) + turning.sum(axis=1)
         turn = np.exp(-1j * self._banks)
         pistons = [(each[:, 2::2] * turn).real for each in (r, v, a)]
         tops = np.array([top_position(*gear.shape) for gear in scene.running_gear])
@@ -155,7 +155,7 @@ class Answers:
             "crank_angle": phi[:, 0],
             "crank_speed": rate[:, 0],
             "crank_acceleration": spin[:, 0],
-            "kinetic_energy": 0.5 * found.velocity**2 @ mass,
+            "kinetic_energy": 0.5 * system.velocity**2 @ mass,
             "frame_force_x": pull.real.sum(axis=1),
             "frame_force_y": pull.imag.sum(axis=1),
             "frame_moment": moment,
@@ -172,26 +172,26 @@ class Answers:
             values |= {"rocking_moment_x": -rocking.imag, "rocking_moment_y": rocking.real}
         return values
 
-    def _of_joints(self, found: Consistent) -> dict[str, Array]:
+    def _of_joints(self, system: Consistent) -> dict[str, Array]:
         """Joint forces, each cylinder's in its axes, with their moments on the crank, and what of
         them each journal carries."""
         scene = self._scene
-        forces = found.hinges[..., 0] + 1j * found.hinges[..., 1]
+        forces = system.hinges[..., 0] + 1j * system.hinges[..., 1]
         turn = np.exp(-1j * self._banks)
         crank_pin, piston_pin = forces[:, 1::2] * turn, forces[:, 2::2] * turn
         phases = np.array([cylinder.phase for cylinder in scene.cylinders])
         radii = np.array([gear.radius for gear in scene.running_gear])
-        lever = radii * np.exp(-1j * (found.position[:, 2:3] + phases))
+        lever = radii * np.exp(-1j * (system.position[:, 2:3] + phases))
         torque = -(lever * crank_pin).imag
-        theta, omega, alpha = (each[None, :, 2] for each in found[:3])
+        theta, omega, alpha = (each[None, :, 2] for each in system[:3])
         rods = crank_pin.real.T[:, None], crank_pin.imag.T[:, None]
         motion = omega**2, alpha, np.ones_like(alpha)
         journals = of_journals(scene, theta[0], motion, rods)
         return {name: each[:, 0].T for name, each in journals.items()} | {
-            "external_torque": found.torque,
+            "external_torque": system.torque,
             "main_bearing_force_x": forces[:, 0].real,
             "main_bearing_force_y": forces[:, 0].imag,
-            "side_force": found.walls,
+            "side_force": system.walls,
             "piston_pin_force_x": piston_pin.real,
             "piston_pin_force_y": piston_pin.imag,
             "crank_pin_force_x": crank_pin.real,

@@ -98,5 +98,5 @@ def initial(train: CrankTrain, step: float) -> tuple[Array, Array, Array]:
         forces, model = answers.forces, answers.model
         model.torque = forces.load(anywhere, Mode())
         model.pushes = forces.pushes(anywhere, Mode(), theta, 1.0)
-        _, *found = model.quiet_start((0.0, theta, omega), step, driven=scene.motion is not None)
-    return tuple(found)
+        _, *arrays = model.quiet_start((0.0, theta, omega), step, driven=scene.motion is not None)
+    return tuple(arrays)

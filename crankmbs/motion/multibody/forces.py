@@ -110,9 +110,9 @@ class Forces:
         """Times [s] at which a load jumps; or bends, where these are few."""
         scene, laws = self.train.scene, [force.law for force in self.train.scene.force]
         tables = [*(one.parts.over_time for one in scene.torque), *(law.over_time for law in laws)]
-        found = {time for table in tables if table is not None for time in _cuts_of(table)}
+        every = {time for table in tables if table is not None for time in _cuts_of(table)}
         given = (law.given.times for law in laws if law.given)
-        return tuple(found.union(times_of(scene.torque), *given))
+        return tuple(every.union(times_of(scene.torque), *given))
 
     @property
     def is_cut(self) -> bool:

@@ -227,9 +227,9 @@ class Model:
         parts = [self._block(*block, free=torque is not None) for block in blocks]
         return Consistent(*map(np.concatenate, zip(*parts, strict=True)))
 
-    def energy(self, found: Consistent) -> Array:
+    def energy(self, at: Consistent) -> Array:
         """Kinetic energy, and that of height [J], shape (m,)."""
-        return np.asarray(0.5 * found.velocity**2 @ self.mass - found.position @ self.weight)
+        return np.asarray(0.5 * at.velocity**2 @ self.mass - at.position @ self.weight)
 
     def _block(
         self, theta: Array, omega: Array, push: Array, given: Array, *, free: bool

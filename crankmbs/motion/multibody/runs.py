@@ -208,8 +208,8 @@ class Runs:
             rounded = math.sqrt(paths[-1].steps) * _EPS / _SHAKEN
             checks.append(answers[-1] + rounded * (unit[0] - unit[1]))
         before = self.paths[-2:][0].states  # with decisions of its own
-        found = [(answers[-1], self.states), *((each, before) for each in checks)]
-        return [Motion(paths, tuple(weights.tolist()), states) for weights, states in found]
+        weighted = [(answers[-1], self.states), *((each, before) for each in checks)]
+        return [Motion(paths, tuple(weights.tolist()), states) for weights, states in weighted]
 
     def _is_clean(self) -> bool:
         coarse, middle, fine = self.paths[-3:]
