@@ -204,10 +204,10 @@ def _apart(x: Array, y: Array) -> tuple[Array, Array]:
     there = np.isfinite(y)
     x, y = x[there], y[there]
     across, up = (
-        np.floor((values - values.min()) * (_CELLS / (float(np.ptp(values)) or 1.0)))
+        np.floor((values - values.min()) * ((_CELLS - 1) / (float(np.ptp(values)) or 1.0)))
         for values in (x, y)
     )
-    first = np.unique(across * (_CELLS + 1) + up, return_index=True)[1]
+    first = np.unique(across * _CELLS + up, return_index=True)[1]
     return x[first], y[first]
 
 

@@ -38,7 +38,7 @@ def work_precision_figure(outcome: WorkPrecision) -> Figure:
     Grey is below the error that the reference states; what lies there is drawn on its edge.
     """
     names = outcome.quantities
-    figure, axes = tiles(len(names), _COLUMNS, (5.3, 5.5))
+    figure, axes = tiles(len(names), _COLUMNS, (16.0 / _COLUMNS, 5.5))
     styles = _styles(outcome)
     floors = outcome.reference.floors
     errors = [

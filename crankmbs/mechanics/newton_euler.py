@@ -250,6 +250,7 @@ def pushed(scene: Scene, period: Period, forces: Array) -> dict[str, Array]:
     by variable of the result, in its unit: shape (1, samples) of the crank, (cylinders, samples) of
     each cylinder, as of each journal
 
+    >>> from crankmbs.numerics.periodic import single
     >>> scene = load_scene("coasting")
     >>> pushed(scene, single(np.zeros(1)), np.ones((1, 1)))["piston_pin_force_x"]
     array([[1.]])
