@@ -47,9 +47,9 @@ def work_precision_figure(outcome: WorkPrecision) -> Figure:
     left, right = decades([*errors, *floors.values()])
     limits = decades(row.time for row in outcome.rows)
     for k, ax in enumerate(axes):
+        # before anything is drawn, whose own limits may be one point
+        ax.set(xscale="log", yscale="log", xlim=(left, min(right, 1.0)), ylim=limits)
         _draw(ax, outcome, names[k], styles)
-        ax.set_xlim(left, min(right, 1.0))
-        ax.set_ylim(limits)
         if k + _COLUMNS >= len(names):
             ax.set_xlabel("relative error [1]")
         if k % _COLUMNS == 0:
@@ -66,7 +66,7 @@ def _draw(ax: Axes, outcome: WorkPrecision, name: str, styles: dict[str, dict[st
     for contender, rows in outcome.contenders.items():
         points = [(max(row.errors[name], floor), row.time) for row in rows if name in row.errors]
         if points:
-            ax.loglog(*zip(*points, strict=True), **styles[contender], label=contender)
+            ax.plot(*zip(*points, strict=True), **styles[contender], label=contender)
     ax.set_title(_TITLES.get(name, name), loc="left")
 
 
