@@ -18,12 +18,12 @@ from crankmbs.mechanics.inertia import fired_torque, reduce
 from crankmbs.mechanics.torque import over_angle
 from crankmbs.mechanics.train import CrankTrain, crank_angle_knots, friction_knots, knots_over_angle
 from crankmbs.mechanics.windows import Phases
-from crankmbs.numerics.arrays import Array
+from crankmbs.numerics.arrays import Array, largest_of_row
 from crankmbs.numerics.collocation import Rule, gauss
 from crankmbs.numerics.lagrange import ends_and_nodes
 from crankmbs.scene.units import DEGREE
 
-__all__ = ["FINEST_CELL", "Grid", "Terms", "edges_apart", "grid_of", "largest_of_row"]
+__all__ = ["FINEST_CELL", "Grid", "Terms", "edges_apart", "grid_of"]
 
 
 FINEST_CELL = 3e-14
@@ -392,12 +392,3 @@ def edges_apart(*marks: Array) -> Array:
     edges = edges[np.append(True, np.diff(edges) > _SLIVER)]
     edges[-1] = last
     return np.asarray(edges)
-
-
-def largest_of_row(table: Array) -> Array:
-    """Largest of each row, NaN where one is: ten times faster than along an axis of few columns.
-
-    >>> largest_of_row(np.array([[1.0, 2.0], [4.0, 3.0]]))
-    array([2., 4.])
-    """
-    return np.asarray(table.T.copy().max(axis=0))

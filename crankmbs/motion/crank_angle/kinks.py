@@ -23,9 +23,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crankmbs.mechanics.torque import Course
-from crankmbs.motion.crank_angle.grid import largest_of_row
 from crankmbs.motion.crank_angle.segment import AngleSegment
-from crankmbs.numerics.arrays import Array, Index
+from crankmbs.numerics.arrays import Array, Index, largest_of_row
 
 __all__ = ["Missing", "sign_changes_in", "what_misses"]
 

@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 from crankmbs.mechanics.torque import Branch, Course
 from crankmbs.motion.base import NOWHERE, Samples, State
 from crankmbs.motion.cells import Acting, Cells
-from crankmbs.motion.crank_angle.grid import Grid, Terms, largest_of_row
+from crankmbs.motion.crank_angle.grid import Grid, Terms
 from crankmbs.motion.crank_angle.solvers import torque_at
 from crankmbs.motion.mode import Mode, decided
 from crankmbs.motion.states import samples_in
-from crankmbs.numerics.arrays import Array
+from crankmbs.numerics.arrays import Array, largest_of_row
 from crankmbs.numerics.collocation import chain
 from crankmbs.numerics.roots import first_above
 

@@ -14,8 +14,8 @@ from typing import NamedTuple
 import numpy as np
 
 from crankmbs.mechanics.torque import Branch, Course
-from crankmbs.motion.crank_angle.grid import Grid, Terms, largest_of_row
-from crankmbs.numerics.arrays import Array, Index
+from crankmbs.motion.crank_angle.grid import Grid, Terms
+from crankmbs.numerics.arrays import Array, Index, largest_of_row
 from crankmbs.numerics.collocation import Maps, carried, chain
 
 __all__ = ["Begin", "Cells", "added", "lasting", "solve", "surplus", "torque_at"]
