@@ -114,7 +114,7 @@ def test_check_says_what_a_crank_without_inertia_counts_as(crank, said):
         ('{ from = "800 rpm", to = "3e3 rpm", over = "2 s" }', "from 800 rpm to 3000 rpm in 2 s, "),
         (
             '{ file = "speed.csv" }',
-            "800 rpm to 3000 rpm in 2 rows of speed.csv, pchip, from 0 deg",
+            "800 rpm to 3000 rpm over time in 2 rows of speed.csv, pchip, from 0 deg",
         ),
         (
             '{ file = "cycle.csv", interpolation = "cubic" }',

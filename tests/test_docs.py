@@ -7,12 +7,15 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from pydantic import TypeAdapter
 from typer.main import get_command
 
 import crankmbs
 from crankmbs.cli import app
 from crankmbs.compare import WORDS
 from crankmbs.mechanics.variables import EVERY
+from crankmbs.scene.examples import example_of
+from crankmbs.scene.schema import dimension_of
 from crankmbs.scene.shipped import shipped_scenes
 from crankmbs.scene.unit_table import PREFIXES, UNITS
 
@@ -91,12 +94,28 @@ def test_a_key_has_its_unit_default_and_rule():
     assert key_of(crankmbs.Crank, "radius")[1:4] == (('"46 mm"',), "needed", ("above 0",))
     assert key_of(crankmbs.Gravity, "angle").default == "180 deg"
     assert key_of(crankmbs.Polytrope, "closes").rules == ("at least -180 deg", "at most 0")
-    assert key_of(crankmbs.Rod, "inertia").values == ('"0.15 kg m^2"', '`"two-mass"`')
-    assert key_of(crankmbs.Ramp, "from").values == ('"3200 rpm"',)
+    assert key_of(crankmbs.Rod, "inertia").values == ('"5.8e-3 kg m^2"', '`"two-mass"`')
+    assert key_of(crankmbs.Ramp, "from").values == ('"800 rpm"',)
     assert key_of(crankmbs.Gas, "pressure").values[1:] == ("file name", "list of either")
     assert key_of(crankmbs.Run, "every").values[-1] == '`"none"`'
     assert key_of(crankmbs.TimeTable, "file").rules == ("columns `time_s` and `torque_Nm`",)
     assert "kind" not in {key.name for key in keys.keys_of(crankmbs.SpeedFile)}
+
+
+def test_an_example_is_of_its_key():
+    """Each is a value that its key takes, and no two lengths of a machine are one."""
+    lengths = []
+    for _, part in keys.sections():
+        for name, field in part.__pydantic_fields__.items():
+            dimension, key = dimension_of(part, name), field.validation_alias or name
+            if dimension is None:
+                continue
+            value = tomllib.loads(f"value = {example_of(part, key)}")["value"]
+            adapter = TypeAdapter(field.rebuild_annotation())
+            taken = adapter.validate_python(value, context={"folder": "."})
+            if dimension == "length" and part in (crankmbs.Crank, crankmbs.Rod, crankmbs.Piston):
+                lengths.append(taken)
+    assert len(set(lengths)) == len(lengths) == 7
 
 
 def test_every_command_variable_and_public_name_has_its_place():

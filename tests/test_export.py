@@ -205,7 +205,7 @@ def test_toml_is_the_same_scene_and_overwrites_nothing(tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        ((TORQUE_DRIVEN, "matlap", "x.mat"), '"matlab" or "exudyn"; "matlap" came; did you mean'),
+        ((TORQUE_DRIVEN, "matlap", "x.mat"), 'or "exudyn" (a script); "matlap" came; did you mean'),
         ((TORQUE_DRIVEN, "matlab", "x.py"), 'a file for "matlab" ends in .mat; .py came'),
         ((TORQUE_DRIVEN, "toml", "x"), "ends in .toml; no ending came"),
         (("propeller", "toml", "x.toml"), 'takes a Scene or a Result; "propeller" came'),
@@ -226,4 +226,4 @@ def test_the_command_writes_what_it_says(tmp_path, monkeypatch):
         assert said.stdout == f"wrote {file}\n"
     assert names(".") == {"torque_driven.toml", "x.mat", "x.py"}
     assert "exists already" in refused("export", "torque_driven.toml", "--to", "toml")
-    assert '"toml", "matlab" or "exudyn"' in refused("export", "torque_driven", "--to", "fmu")
+    assert "--to: must be" in refused("export", "torque_driven", "--to", "fmu")

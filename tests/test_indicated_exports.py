@@ -6,6 +6,7 @@ from exports import FIRED, columns_of_cycles, cycles, text
 from indicated_exports import EXACT, EXPORTS, FULL, rows, simple
 
 from crankmbs import Table, read_pressure
+from crankmbs.scene.headings import Heading, headings_of
 from validation.oracles.measured import pressure_of
 
 
@@ -39,6 +40,57 @@ def test_columns_are_chosen_by_name(tmp_path):
     two = read_pressure(path, columns="PCYL2..3", reference="absolute")
     assert [each.number for each in two.cylinders] == [2, 3]
     assert two.aligned
+
+
+@pytest.mark.parametrize(
+    "above",
+    [
+        "Angle/deg;Pressure/bar",
+        "Crank angle / °CA;p / bar(a)",
+        "angle in deg;pressure in bar",
+        "Kurbelwinkel in °KW;Zylinderdruck in bar",
+        "angle_deg;pressure_bar",
+        "α/deg;p/bar",
+        "angle [deg];pressure [bar]",
+        "deg;bar",
+    ],
+)
+def test_a_unit_stands_behind_its_quantity(tmp_path, above):
+    path = export(tmp_path, rows([EXACT], ["PCYL1"], ["bar"]).split("\n", 2)[2])
+    path.write_text(f"{above}\n{path.read_text()}", encoding="utf-8")
+    found = read_pressure(path, reference="absolute")
+    assert found.cylinders[0].peaks[0] == pytest.approx(1e5 * EXACT.max(), abs=10.0)
+    said = str(found)
+    assert ("cylinder 1: column 2, " in said) == (above == "deg;bar")
+
+
+@pytest.mark.parametrize(
+    ("above", "heading"),
+    [
+        ("J/deg", Heading("J/deg", "")),  # a quotient of units, and no angle
+        ("heat release J/deg", Heading("heat release J/deg", "")),
+        ("p in bar(g)", Heading("p", "bar", "gauge")),
+        ("p/V", Heading("p", "v")),
+        ("time_ms", Heading("time", "ms")),
+        ("p_s", Heading("p_s", "")),  # an intake's pressure, and no time
+    ],
+)
+def test_a_heading_is_a_name_and_a_unit(above, heading):
+    assert headings_of([[above, "x"]], 2)[0] == heading
+
+
+def test_the_angle_may_be_named(tmp_path):
+    names, units = ["PCYL1", "Position", "CA", "Theta"], ["bar", "", "deg", "deg"]
+    columns = [EXACT, FULL, 2.0 * FULL, 2.0 * FULL]
+    path = export(tmp_path, text(columns, names, units))
+    found = read_pressure(path, reference="absolute", angle="Position")
+    assert found.cylinders[0].peaks[0] == pytest.approx(1e5 * EXACT.max(), abs=10.0)
+    assert "crank angles" not in str(found)
+    path = export(tmp_path, text([EXACT, FULL, FULL], ["PCYL1", "CA", "Theta"], units[1:2] * 3))
+    assert (
+        '"CA" and "Theta" are crank angles: "CA" is read; angle="Theta" takes another'
+        in read_pressure(path, unit="bar", reference="absolute").sentences
+    )
 
 
 def test_the_inlet_may_be_a_column(tmp_path):

@@ -64,7 +64,7 @@ MESSAGES = {
     ),
     "no angle": (
         'file a.csv: no column is a crank angle by its name or its unit; the columns are "X", '
-        '"PCYL1"; give the column\'s heading the name "crank_angle_deg"'
+        '"PCYL1"; give angle="X"'
     ),
     "no pressure": (
         'file a.csv: no column is a pressure by its name or its unit; the columns are "CA", '

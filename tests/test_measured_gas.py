@@ -37,6 +37,30 @@ def test_a_range_of_columns_is_one_a_cylinder(read, tmp_path):
     assert gas.pressure.y[1] == pytest.approx((1.5e5, 2.5e5, 3.5e5))
 
 
+def test_the_angle_is_read_by_its_name(read, tmp_path):
+    rows = [f"{p};{angle};{angle}" for angle, p in ((-360, 1.0), (-120, 2.0), (120, 3.0))]
+    (tmp_path / "gas.csv").write_text("\n".join(["p/bar;CA/rad;Position", *rows]))
+    gas = read(given('columns = "p"\nangle = "position"')).gas
+    assert gas.angle is None
+    assert gas.pressure.x[0] == pytest.approx(-6.283185307179586)
+    (tmp_path / "gas.csv").write_text("\n".join(["p/bar;;Position", *rows]))
+    assert refusal(read, given('columns = "p"')) == (
+        "gas.pressure: file gas.csv: no column is a crank angle by its name or its unit, and the "
+        'first is a pressure; name it, such as angle = "CA"'
+    )
+
+
+def test_the_usual_headings_lead_to_columns(read, tmp_path):
+    (tmp_path / "gas.csv").write_text("Angle/deg,Pressure/bar\n-360,1\n-120,2\n120,3\n")
+    message = refusal(read, FREE)
+    assert message == (
+        "gas.pressure: file gas.csv: the header must name exactly one column crank_angle_deg, "
+        'with commas between the columns; "Angle/deg,Pressure/bar" came; columns = "..." with the '
+        "pressure's heading reads a file that has other headings"
+    )
+    assert read(given('columns = "Pressure"')).gas.pressure.y == pytest.approx((1e5, 2e5, 3e5))
+
+
 def test_what_says_how_to_read_is_done_with_reading(read, tmp_path):
     (tmp_path / "gas.csv").write_text(EXPORT)
     scene = read(given('columns = "PCYL1"\nseparator = ";"\ndecimal = ","\nskip = 1'))
@@ -64,6 +88,11 @@ def test_what_says_how_to_read_is_done_with_reading(read, tmp_path):
             'columns = "Crank Angle"',
             "gas.pressure: file gas.csv: no column of pressures; name some, such as columns = "
             '"PCYL1..4"',
+        ),
+        (
+            'columns = "PCYL1"\nangle = "Crank Angel"',
+            'gas.pressure: file gas.csv: no column is named "Crank Angel"; the columns are Crank '
+            'Angle, PCYL1, PCYL2, PINT; did you mean "Crank Angle"?',
         ),
         ("columns = 3", "gas.columns: must be a text in quotes; 3 came"),
         (

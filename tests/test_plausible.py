@@ -8,11 +8,13 @@ import pytest
 from turned import turned
 
 from crankmbs import (
+    Bearings,
     Constant,
     Crank,
     Piston,
     Quadratic,
     Rod,
+    Shell,
     SpeedTable,
     Start,
     Table,
@@ -26,6 +28,7 @@ from crankmbs.scene.template import template
 DIESEL, FOUR, V_TWIN = (load_scene(name) for name in ("yi_diesel", "yi_diesel_free", "v_twin"))
 COMPRESSOR, BARS = load_scene("compressor"), load_scene("torque_driven")
 BAR = 1e5
+SHELL = Shell(diameter="210 mm", width="120 mm")
 
 
 def pressed(scene, factor):
@@ -70,6 +73,19 @@ SPARED = {
         FOUR, start=Start(angle=0.0, speed=-335.0), torque=(Quadratic(coefficient=1e-4),)
     ),
     "an engine peaking 30 degrees late": turned_by(DIESEL, 16.0),
+    "a piston and a rod of a model engine": reroded(
+        repistoned(
+            replace(V_TWIN, crank=Crank(radius=0.005, inertia=1e-6)),
+            bore=0.01,
+            mass=0.8e-3,
+            offset=0.0,
+        ),
+        length=0.02,
+        mass=0.5e-3,
+        center_of_mass=0.007,
+        inertia="two-mass",
+    ),
+    "a crosshead's bearings": replace(DIESEL, bearings=Bearings(crank_pin=SHELL)),
     "a plunger": repistoned(replace(BARS, crank=Crank(radius=0.15, inertia=1.0)), bore=0.06),
 }
 
@@ -79,6 +95,7 @@ def test_what_machines_have_is_let_pass(name):
     assert warnings(SPARED[name]) == ()
 
 
+FOLDED = "folds onto the crank at a cycle angle of {} degrees, where the motion is not determined"
 DRIVING = Table((0.0, 500.0), (50.0, 50.0))
 ODD = {
     "MPa for bar": (
@@ -140,6 +157,38 @@ ODD = {
         reroded(FOUR, center_of_mass=-0.038),
         "rod.center_of_mass: -38 mm from the crank pin is not between the pins, 0 to 153.3 mm; "
         "check its unit",
+    ),
+    "a piston of a thousandth": (
+        repistoned(V_TWIN, mass=0.5e-3),
+        "piston.mass: 0.5 g is less than a disc of aluminium 94 mm wide and 1.88 mm high, 35.2 g; "
+        "check its unit",
+    ),
+    "a rod of a thousandth": (
+        reroded(FOUR, mass=1.602847e-3, inertia=5.8422e-6),
+        "rod.mass: 1.603 g is less than a bar of aluminium 153.3 mm long and 3.07 mm wide, 3.89 g; "
+        "check its unit",
+    ),
+    "a rod as long as the crank's radius": (
+        reroded(BARS, length=0.1, center_of_mass=0.05, inertia="two-mass"),
+        "rod.length: a rod as long as crank.radius + |piston.offset|, 100 mm, "
+        f"{FOLDED.format(90)}: a run ends there",
+    ),
+    "a rod that folds with an offset": (
+        reroded(
+            repistoned(BARS, offset=0.01), length=0.11, center_of_mass=0.05, inertia="two-mass"
+        ),
+        "rod.length: a rod as long as crank.radius + |piston.offset|, 110 mm, "
+        f"{FOLDED.format(270)}: a run ends there",
+    ),
+    "a shell wide in metres": (
+        replace(DIESEL, bearings=Bearings(crank_pin=Shell(diameter=0.056, width=42.0))),
+        "bearings.crank_pin: a width of 42 m is 750 times the diameter, 0.056 m; bearings have "
+        "0.05 to 5 times; check its unit",
+    ),
+    "a journal in metres": (
+        replace(DIESEL, bearings=Bearings(main_journal=Shell(diameter=65, width=42))),
+        "bearings.main_journal: a diameter of 65 m is outside 0.001 to 2 m, where bearings lie; a "
+        "bare number is in metres",
     ),
     "ambient of 1 Pa": (
         regassed(DIESEL, ambient=1.0),

@@ -250,6 +250,16 @@ def test_speed_from_times_of_teeth_alone(tmp_path, seed):
     assert np.abs(np.subtract(same.table.y, found.table.y)).max() < 0.1 * found.error
 
 
+def test_of_two_times_the_first_is_read_and_said(tmp_path):
+    teeth = [k for k in range(36 * 9) if k % 36 < 35]
+    rows = [f"{k / 1800:.9f},{k / 1.8:.6f}" for k in teeth]
+    path = written(tmp_path, "\n".join(["time_s,time_ms", *rows]))
+    found = read_speed(path, "36-1")
+    said = '"time [s]" and "time [ms]" are times: "time [s]" is read'
+    assert found.sentences[0] == said
+    assert found.table.y[0] / RPM == pytest.approx(3000.0, rel=1e-3)
+
+
 def test_bad_times_of_teeth(tmp_path):
     path = written(tmp_path, "0.1\n0.2\n0.15\n0.3\n")
     with pytest.raises(InputError, match=r"line 3: the times of the teeth must rise; 0\.15 s came"):

@@ -23,6 +23,18 @@ KINDS = "constant, viscous, quadratic, time_table, speed_table, angle_table"
             "give [motion] (the speed is prescribed) or [start] (the crank is free), exactly one "
             "of the two; both came",
         ),
+        (
+            'speed = "3200 rpm"',
+            '[motion]\nspeed = "1 rpm"',
+            "give [motion] (the speed is prescribed) or [start] (the crank is free), exactly one "
+            "of the two; both came",
+        ),
+        (
+            '[run]\nuntil = "0.75 s"',
+            "",
+            'run: this key is missing; add [run] with until, such as until = "20 cycles"; it may '
+            "have every, rtol, formulation",
+        ),
         ('"quadratic"', '"cubic"', f'torque[1]: kind must be one of {KINDS}; "cubic" came'),
         (
             '"quadratic"',
@@ -58,7 +70,11 @@ KINDS = "constant, viscous, quadratic, time_table, speed_table, angle_table"
             '"3 m"',
             'run.until: "3 m" is no angle or time: use cycles, rev, deg, rad or s',
         ),
-        ('until = "0.75 s"', "", "run.until: this key is missing; it has no default"),
+        (
+            'until = "0.75 s"',
+            "",
+            'run.until: this key is missing; give it, such as until = "20 cycles"',
+        ),
         ('"0.75 s"', '"1 s"\nevery = 1', f"run.every: {EXTENT}; 1 came"),
         (
             '"0.75 s"',
@@ -85,7 +101,10 @@ def test_a_bad_drive_gets_one_sentence(read, old, new, message):
             'speed.amplitud: unknown key; did you mean "amplitude"?',
         ),
         ('{ meen = "1 rpm", amplitude = 1 }', 'speed.meen: unknown key; did you mean "mean"?'),
-        ('{ mean = "1 rpm" }', "speed.amplitude: this key is missing; it has no default"),
+        (
+            '{ mean = "1 rpm" }',
+            'speed.amplitude: this key is missing; give it, such as amplitude = "40 rpm"',
+        ),
         (
             '{ mean = "3 rpm", amplitude = "-1 rpm", order = 1 }',
             'speed.amplitude: must be at least 0; "-1 rpm" came',
@@ -116,7 +135,10 @@ def test_a_bad_drive_gets_one_sentence(read, old, new, message):
             '{ frm = "1 rpm", to = "1 rpm", over = 1 }',
             'speed.frm: unknown key; did you mean "from"?',
         ),
-        ('{ to = "1 rpm", over = 1 }', "speed.from: this key is missing; it has no default"),
+        (
+            '{ to = "1 rpm", over = 1 }',
+            'speed.from: this key is missing; give it, such as from = "800 rpm"',
+        ),
         (
             "{}",
             'speed: must be a speed such as "3200 rpm", or a table with mean, amplitude, order, '

@@ -28,7 +28,12 @@ KEYS = (
             'torque[1].coeficient: unknown key; did you mean "coefficient"?',
         ),
         ("[run]", "[run]\nRtol = 1e-8", 'run.Rtol: unknown key; did you mean "rtol"?'),
-        ('radius = "46 mm"', "", "crank.radius: this key is missing; it has no default"),
+        (
+            'radius = "46 mm"',
+            "",
+            'crank.radius: this key is missing; give it, such as radius = "46 mm"',
+        ),
+        ("radius", "stroke", "crank.stroke: unknown key; give radius, half the stroke"),
         (
             'inertia = "0.02 kg m^2"',
             "",
@@ -38,12 +43,14 @@ KEYS = (
         (
             'coefficient = "9.5e-5 N m s^2"',
             "",
-            "torque[1].coefficient: this key is missing; it has no default",
+            "torque[1].coefficient: this key is missing; give it, such as coefficient = "
+            '"7.8e-4 N m s^2"',
         ),
         (
             '[rod]\nlength = "150 mm"',
             "",
-            "rod: this key is missing; add [rod] with length, mass, center_of_mass, inertia",
+            'rod: this key is missing; add [rod] with length, such as length = "153 mm"; it may '
+            "have mass, center_of_mass, inertia",
         ),
         (
             "title",
@@ -122,6 +129,13 @@ KEYS = (
             '"40 mm"',
             "rod.length must be at least crank.radius + |piston.offset| = 0.046 m, or the crank "
             "cannot turn; 0.04 m came",
+        ),
+        (
+            '"46 mm"',
+            "46",
+            "rod.length must be at least crank.radius + |piston.offset| = 46 m, or the crank "
+            'cannot turn; 0.15 m came; a bare number is in metres, give "46 mm" where that is '
+            "meant",
         ),
         (
             'area = "57 cm^2"',

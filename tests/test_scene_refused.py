@@ -37,7 +37,10 @@ from crankmbs.errors import SceneError
             lambda: Crank(radius=True, inertia=0.1),
             'radius: must be a number in SI units, or text such as "46 mm"; true came',
         ),
-        (lambda: Crank(inertia=1), "radius: this argument is missing; it has no default"),
+        (
+            lambda: Crank(inertia=1),
+            'radius: this argument is missing; give it, such as radius="46 mm"',
+        ),
         (
             lambda: scene(crank=Crank(radius=0.046)),
             "crank.inertia: this key is missing; a free crank needs it, only a prescribed speed, "

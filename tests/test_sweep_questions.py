@@ -15,6 +15,7 @@ from crankmbs import (
     load_scene,
     minimize,
     sensitivity,
+    sobol_indices,
     solve,
     sweep,
 )
@@ -158,6 +159,25 @@ def test_where_a_peak_bends_a_sensitivity_knows_nothing(monkeypatch):
         (
             lambda: solve(load_scene("misfire"), {"fuel.seed": "1..9"}, "fluctuation = 1 %"),
             "fuel.seed: is a whole number",
+        ),
+        (
+            lambda: solve(SMOOTH, {"rod.length": "1..2 m"}, "fluctuation = 1 %"),
+            "fluctuation: with [motion] the speed is prescribed, and what is varied does not "
+            "change it; free the crank with [start] and its loads, [[torque]], as crankmbs "
+            "flywheel does by itself, or vary motion.speed",
+        ),
+        (lambda: sensitivity(SMOOTH, "rod.length", "mean speed"), "mean speed: with [motion]"),
+        (
+            lambda: minimize(
+                SMOOTH, {"rod.length": "1..2 m"}, "peak side force", ["fluctuation < 1"]
+            ),
+            "fluctuation: with [motion]",
+        ),
+        (
+            lambda: sobol_indices(
+                SMOOTH, {"rod.length": "1..2 m", "rod.mass": "1..2 kg"}, "fluctuation", n=2
+            ),
+            "fluctuation: with [motion] the speed is prescribed",
         ),
         (lambda: minimize(SCENE, {}, "fluctuation"), "vary: needs ranges of numbers"),
         (lambda: sensitivity(SCENE, "piston.offset", "fluctuation"), "is 0 in this scene"),

@@ -9,13 +9,16 @@ from typer import Exit, Option, echo
 
 from crankmbs.cli.options import SceneName
 from crankmbs.cli.progress import progress
+from crankmbs.errors import InputError
 
 __all__ = ["export"]
 
 
 def export(
     scene: SceneName,
-    to: Annotated[str, Option(help="toml, matlab or exudyn.")],
+    to: Annotated[
+        str, Option(help="toml: a copy of the scene; matlab: its result; exudyn: a script.")
+    ],
     out: Annotated[
         Path | None,
         Option("--out", "-o", metavar="FILE", help="Default NAME.toml, NAME.mat or NAME.py."),
@@ -24,13 +27,15 @@ def export(
     """Copy a scene as it is, write its result for MATLAB, or its bodies as a script for exudyn."""
     from crankmbs.export import copy_scene
     from crankmbs.export import export as exported
-    from crankmbs.export.files import SUFFIXES
+    from crankmbs.export.files import SUFFIXES, refused_kind
     from crankmbs.scene.read import load_scene, scene_path
     from crankmbs.simulate import simulate
 
+    if to not in SUFFIXES:
+        raise InputError(f"--{refused_kind(to)}")
     path = scene_path(scene)
     loaded = load_scene(path)
-    target = out or Path(f"{path.stem}{SUFFIXES.get(to, '')}")
+    target = out or Path(f"{path.stem}{SUFFIXES[to]}")
     with progress("exporting"):
         result = simulate(loaded) if to == "matlab" else None
         copied = to == "toml"

@@ -13,7 +13,7 @@ from crankmbs.errors import InputError
 __all__ = ["as_options", "naming_options", "table_file"]
 
 _NAMES = (
-    "columns|reference|unit|each|stroke|firing_tdc|loss_angle|compression_ratio|invert|smooth"
+    "columns|angle|reference|unit|each|stroke|firing_tdc|loss_angle|compression_ratio|invert|smooth"
     "|cycles|separator|decimal|skip|scene|wheel|index|sensor|delay"
 )
 _GIVEN = re.compile(rf'\b({_NAMES})=(True\b|"[^"]*"|\.\.\.|[\w.]+)')

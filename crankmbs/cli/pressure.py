@@ -31,6 +31,9 @@ def pressure(
         str | None, Option(help="A scene: geometry, stroke and layout of the engine.")
     ] = None,
     columns: Annotated[str | None, Option(help='Pressures by name, "PCYL1..4" or "P1,P3".')] = None,
+    angle: Annotated[
+        str | None, Option(metavar="COLUMN", help="The crank angle by name, where it is not found.")
+    ] = None,
     unit: Annotated[str | None, Option(help="Of pressures that have none.")] = None,
     each: Annotated[
         str | None, Option(help="What numbered columns are: cycle or cylinder.")

@@ -15,7 +15,7 @@ from crankmbs.scene.write import scene_files
 from crankmbs.simulate import simulate
 from crankmbs.storage.files import text_in_one_move, together, write_in_one_move
 
-__all__ = ["SUFFIXES", "copy_scene", "export"]
+__all__ = ["SUFFIXES", "copy_scene", "export", "refused_kind"]
 
 SUFFIXES = {"toml": ".toml", "matlab": ".mat", "exudyn": ".py"}
 """What can be written, and how the file's name ends."""
@@ -47,8 +47,7 @@ def export(what: Scene | Result, to: str, file: str | Path) -> tuple[Path, ...]:
     if not isinstance(what, Scene | Result):
         raise InputError(f"export takes a Scene or a Result; {shown(what)} came")
     if not isinstance(to, str) or to not in SUFFIXES:
-        near = did_you_mean(to, list(SUFFIXES)) if isinstance(to, str) else ""
-        raise InputError(f'to must be "toml", "matlab" or "exudyn"; {shown(to)} came{near}')
+        raise InputError(refused_kind(to))
     target = _ending(Path(file), to)
     scene = what.scene if isinstance(what, Result) else what
     if to == "toml":
@@ -61,6 +60,19 @@ def export(what: Scene | Result, to: str, file: str | Path) -> tuple[Path, ...]:
 
         text_in_one_move(target, exudyn_script(scene, target.stem))
     return (target,)
+
+
+def refused_kind(to: object) -> str:
+    """What is wrong with a kind of file that is none.
+
+    >>> refused_kind("exudin").endswith('did you mean "exudyn"?')
+    True
+    """
+    near = did_you_mean(to, list(SUFFIXES)) if isinstance(to, str) else ""
+    return (
+        'to: must be "toml" (a copy of the scene), "matlab" (its result) or "exudyn" (a script); '
+        f"{shown(to)} came{near}"
+    )
 
 
 def copy_scene(

@@ -8,9 +8,9 @@ from typing import NamedTuple
 
 from crankmbs.errors import InputError, UndecidedError, shown
 from crankmbs.indicated.options import Options
-from crankmbs.scene.headings import PRESSURE_UNITS, Heading, is_angle, pick
+from crankmbs.scene.headings import PRESSURE_UNITS, Heading, angle_places, by_name, pick
 
-__all__ = ["Column", "angle_column", "columns_of", "is_pressure"]
+__all__ = ["Column", "angle_column", "columns_of", "is_pressure", "several_words"]
 
 _KINDS = {
     "intake": r"^p?[ _.-]*(int|inl|ein|saug|man(?!o)|map$|boost|lade)|intake|inlet|ansaug",
@@ -43,21 +43,40 @@ class Column(NamedTuple):
     reference: str = ""
 
 
-def angle_column(headings: Sequence[Heading]) -> int:
-    """The place of the crank angle.
+def angle_column(headings: Sequence[Heading], angle: str | None) -> int:
+    """The place of the crank angle, the column of this name where one is given.
 
     Raises
     ------
-    UndecidedError : no column is an angle by its name or unit
+    InputError : no column of this name; UndecidedError : none is an angle by its name or unit
     """
-    angles = [k for k, heading in enumerate(headings) if is_angle(heading)]
+    angles = angle_places(headings, angle, "angle")
     if angles:
         return angles[0]
     listed = ", ".join(shown(heading.name) for heading in headings[:8])
+    others = [each.name for each in headings if each.name and not is_pressure(each)]
     raise UndecidedError(
         f"no column is a crank angle by its name or its unit; the columns are {listed}",
-        ('the column\'s heading the name "crank_angle_deg"',),
+        tuple(f'angle="{name}"' for name in others[:1])
+        or ('the column a heading, such as "crank_angle_deg"',),
     )
+
+
+def several_words(headings: Sequence[Heading], at: int, *, time: bool) -> list[str]:
+    """Which of several columns named as a time, or as a crank angle, is read; nothing of one."""
+    places = by_name(headings, time=time)
+    if len(places) < 2:
+        return []
+    names = [shown(_with_unit(headings[k])) for k in places]
+    what, way_out = "times", ""
+    if not time:
+        another = next(headings[k].name for k in places if k != at)
+        what, way_out = "crank angles", f'; angle="{another}" takes another'
+    return [f"{' and '.join(names)} are {what}: {shown(_with_unit(headings[at]))} is read{way_out}"]
+
+
+def _with_unit(heading: Heading) -> str:
+    return f"{heading.name} [{heading.unit}]" if heading.unit else heading.name
 
 
 def columns_of(headings: Sequence[Heading], options: Options, angle: int) -> tuple[Column, ...]:

@@ -90,7 +90,7 @@ def _cycles(value: Any) -> tuple[int, int | None] | None:
 class Options:
     """What a user says of a measured file; all of it is optional.
 
-    columns, separator, decimal, skip : as in `[gas]`; unit : of pressures that have none
+    columns, angle, separator, decimal, skip : as in `[gas]`; unit : of pressures that have none
     each : whether numbered columns are cycles or cylinders; stroke : 2 or 4
     reference : absolute, gauge, inlet or polytrope; firing_tdc [rad] : the file's angle of the
         firing dead centre; loss_angle [rad] : by which a motored peak comes before it
@@ -101,6 +101,7 @@ class Options:
     """
 
     columns: Annotated[str, Strict()] | None = None
+    angle: Annotated[str, Strict()] | None = None
     separator: Annotated[str, Strict(), AfterValidator(sign_of)] | None = None
     decimal: Literal[".", ","] | None = None
     skip: Annotated[int, Strict(), Ge(0)] = 0

@@ -10,13 +10,13 @@ from scipy.interpolate import CubicSpline
 
 from crankmbs.delimited import Sheet
 from crankmbs.errors import InputError, UndecidedError, shown
-from crankmbs.indicated.channels import is_pressure
+from crankmbs.indicated.channels import is_pressure, several_words
 from crankmbs.indicated.options import Options
 from crankmbs.indicated.record import Channel, Record
 from crankmbs.indicated.rotation import Rotation, rotation_of
 from crankmbs.indicated.wheel import Wheel, edges, first_edges, marked_edges
 from crankmbs.numerics.arrays import Array
-from crankmbs.scene.headings import PRESSURE_UNITS, TIME_UNITS, Heading, is_time, pick
+from crankmbs.scene.headings import PRESSURE_UNITS, TIME_UNITS, Heading, by_name, is_time, pick
 from crankmbs.scene.units import BAR
 
 __all__ = ["clock", "most_edges", "record_over_time", "time_column", "turned"]
@@ -40,7 +40,8 @@ def time_column(headings: Sequence[Heading], sheet: Sheet, options: Options) -> 
     Without names it is the first column where a wheel is given, or where it rises evenly, and by
     too little to be an angle over a cycle.
     """
-    named = [k for k, heading in enumerate(headings) if is_time(heading)]
+    of_unit = [k for k, heading in enumerate(headings) if is_time(heading)]
+    named = by_name(headings, time=True) or of_unit
     if named or any(heading.name or heading.unit for heading in headings):
         return named[0] if named else None
     steps = np.diff(sheet.values[:, 0])
@@ -98,6 +99,7 @@ def record_over_time(
         f"the record is over time: {shown(headings[columns.wheel].name)} is the wheel, angles "
         f"count from its first {rotation.wheel.edge} edge "
         + ("after the gap" if columns.mark is None else "at the index"),
+        *several_words(headings, at, time=True),
         *rotation.words(),
     ]
     if stroke is None and options.stroke is None:

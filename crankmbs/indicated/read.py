@@ -48,7 +48,8 @@ def read_pressure(file: str | Path, scene: Scene | None = None, **options: Any) 
     file : a text file of pressures over the crank angle, or over time with the signal of a wheel
     scene : its geometry gives volumes, hence imep, the dead centre and references by polytrope;
         its layout the cylinders' firing; else a header's stroke and rod length are used
-    columns : names of the pressures, "PCYL1..4"; separator, decimal, skip : as in `Gas`
+    columns : names of the pressures, "PCYL1..4"; angle : name of the crank angle's column, where it
+        is not told by its name or unit; separator, decimal, skip : as in `Gas`
     unit : of pressures without one, "bar"; each : "cycle" or "cylinder", what numbers count
     stroke : 2 or 4; invert : True turns the signal over
     reference : "absolute"; "gauge", with the ambient "gauge 1 bar" made absolute; "inlet 1 bar", or
@@ -130,7 +131,8 @@ class _Found(NamedTuple):
 
 def _record(sheet: Sheet, options: Options, stroke: int | None, shape: Shape | None) -> Record:
     headings = headings_of(sheet.above, sheet.values.shape[1])
-    at = None if any(map(is_angle, headings)) else time_column(headings, sheet, options)
+    over_angle = options.angle is not None or any(map(is_angle, headings))
+    at = None if over_angle else time_column(headings, sheet, options)
     if at is None:
         return record_of(sheet, headings, options, stroke)
     geometry = shape is not None and shape.ratio is not None

@@ -15,7 +15,7 @@ import numpy as np
 from crankmbs.delimited import Sheet
 from crankmbs.delimited.dialect import is_number
 from crankmbs.errors import InputError, UndecidedError
-from crankmbs.indicated.channels import Column, angle_column, columns_of
+from crankmbs.indicated.channels import Column, angle_column, columns_of, several_words
 from crankmbs.indicated.options import Options
 from crankmbs.indicated.rotation import Rotation
 from crankmbs.numerics.arrays import Array, Index
@@ -84,7 +84,7 @@ def record_of(
     nameless = not any(heading.name or heading.unit for heading in headings)
     if nameless and _is_axis(sheet.values[:, 0]):
         headings = tuple(Heading(f"PCYL{k}" if k else "CA", "") for k in range(width))
-    at = angle_column(headings)
+    at = angle_column(headings, options.angle)
     columns = columns_of(headings, options, at)
     angle = np.degrees(sheet.values[:, at] * angle_factor(headings[at]))
     missing = np.flatnonzero(np.isnan(angle))
@@ -97,6 +97,8 @@ def record_of(
         others = f", the others as PCYL1 to PCYL{width - 1}" if width > 2 else ""
         first = f"no column has a name: the first is read as the crank angle{others}"
         record.remarks.insert(0, first)
+    if options.angle is None:
+        record.remarks.extend(several_words(headings, at, time=False))
     return record
 
 
@@ -118,7 +120,8 @@ def _over_angle(
         values = np.concatenate([sheet.values[rows, each.place] * each.factor for each in alike])
         if closing:
             apart = max(apart, np.nanmax(np.abs(values[:, -1] - values[:, 0])))
-        name = alike[0].name if len(alike) == 1 else f"{alike[0].name} to {alike[-1].name}"
+        first, *_, last = [each.name or f"column {each.place + 1}" for each in (alike[0], *alike)]
+        name = first if len(alike) == 1 else f"{first} to {last}"
         channels.append(Channel(name, kind, cylinder, values[:, :count], alike[0].reference))
     if closing:
         remarks.append(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -11,6 +11,7 @@ import numpy as np
 
 from crankmbs.delimited import Sheet
 from crankmbs.errors import InputError, UndecidedError, shown
+from crankmbs.indicated.channels import several_words
 from crankmbs.indicated.options import Options
 from crankmbs.indicated.over_time import clock, most_edges, time_column, turned
 from crankmbs.indicated.rotation import Rotation, rotation_of
@@ -137,17 +138,22 @@ def read_speed(file: str | Path, wheel: Any = None, **options: Any) -> MeasuredS
                 "which wheel has these teeth is not said",
                 ('wheel="60-2", the teeth less the missing ones',),
             )
-        rotation = _rotation(sheet, settings, settings.wheel)
+        headings = headings_of(sheet.above, sheet.values.shape[1])
+        at = time_column(headings, sheet, settings) or 0
+        rotation = _rotation(sheet, headings, at, settings, settings.wheel)
     zero = 0.0 if settings.firing_tdc is None else float(np.degrees(settings.firing_tdc))
     measured = speed_of(rotation, zero, sheet.name)
     about = f"crank angle 0 lies {zero:g} degrees after the first {rotation.wheel.edge} edge"
-    return replace(measured, sentences=(*rotation.words(), *measured.sentences, about))
+    times = several_words(headings, at, time=True)
+    return replace(measured, sentences=(*times, *rotation.words(), *measured.sentences, about))
 
 
-def _rotation(sheet: Sheet, options: Options, wheel: Wheel) -> Rotation:
+def _rotation(
+    sheet: Sheet, headings: Sequence[Heading], at: int, options: Options, wheel: Wheel
+) -> Rotation:
+    """The crank's turning by the times of teeth, or by a wheel's signal beside the times at
+    ``at``."""
     width, stroke = sheet.values.shape[1], options.stroke or 4
-    headings = headings_of(sheet.above, width)
-    at = time_column(headings, sheet, options) or 0
     steps = np.diff(sheet.values[:, at])
     if width == 1 or np.nanmax(steps) > _EVEN * np.nanmedian(steps):
         time = _teeth_times(sheet, headings[at], at)

@@ -100,6 +100,18 @@ def _masses(machine: _Sized) -> Iterator[str]:
             )
 
 
+def _fold(machine: _Sized) -> Iterator[str]:
+    """A crank that turns as far as the rod folds onto it, and no farther."""
+    radius, length, offset = machine.gear.shape
+    if length - radius - abs(offset) <= 1e-12 * length:
+        angle = 90 if offset <= 0.0 else 270
+        yield (
+            f"rod.length: a rod as long as crank.radius + |piston.offset|, {length * 1e3:.6g} mm, "
+            f"folds onto the crank at a cycle angle of {angle} degrees, where the motion is not "
+            "determined: a run ends there"
+        )
+
+
 # Rods are 3 to 5 crank radii long, in steam engines up to 8, in presses of a short stroke some 30.
 _ROD_OVER_RADIUS = 50.0
 
@@ -111,6 +123,32 @@ def _rod_length(machine: _Sized) -> Iterator[str]:
             f"rod.length: a rod of {length:.4g} m is {length / radius:.4g} times as long as the "
             f"crank's radius, and machines have up to {_ROD_OVER_RADIUS:g}; a bare number is in "
             "metres"
+        )
+
+
+# A disc of aluminium as wide as the bore and a fiftieth of that high; a bar of it as long as the
+# rod and a fiftieth of that wide. Pistons and rods weigh ten times that and more.
+_ALUMINIUM = 2700.0  # kg/m3
+_THIN = 0.02
+
+
+def _light_masses(machine: _Sized) -> Iterator[str]:
+    if any(True for rule in (_stroke, _bore, _rod_length) for _ in rule(machine)):
+        return  # what is wrong is a length
+    (_, rod, piston), d = machine
+    disc = math.inf if piston.gas_area is None else _ALUMINIUM * piston.gas_area * _THIN * d
+    bar = _ALUMINIUM * rod.length * (_THIN * rod.length) ** 2
+    if 0.0 < piston.mass < disc < math.inf:
+        yield (
+            f"piston.mass: {1e3 * piston.mass:.4g} g is less than a disc of aluminium "
+            f"{d * 1e3:.4g} mm wide and {_THIN * d * 1e3:.3g} mm high, {1e3 * disc:.3g} g; check "
+            "its unit"
+        )
+    if 0.0 < rod.mass < bar:
+        yield (
+            f"rod.mass: {1e3 * rod.mass:.4g} g is less than a bar of aluminium "
+            f"{rod.length * 1e3:.4g} mm long and {_THIN * rod.length * 1e3:.3g} mm wide, "
+            f"{1e3 * bar:.3g} g; check its unit"
         )
 
 
@@ -134,6 +172,34 @@ def _rod(machine: _Sized) -> Iterator[str]:
             f"the whole mass {gyration * 1e3:.4g} mm away from it, and the rod is "
             f"{rod.length * 1e3:.4g} mm long; check its unit"
         )
+
+
+# Main journals of ships' engines have a diameter of 1 m; plain bearings are 0.2 to 2 times as wide
+# as their diameter.
+_DIAMETER = 1e-3, 2.0
+_WIDTH = 0.05, 5.0
+
+
+def _shells(scene: Scene) -> Iterator[str]:
+    bearings = scene.bearings
+    if bearings is None:
+        return
+    for name, shell in (("crank_pin", bearings.crank_pin), ("main_journal", bearings.main_journal)):
+        if shell is None:
+            continue
+        if not _DIAMETER[0] <= shell.diameter <= _DIAMETER[1]:
+            yield (
+                f"bearings.{name}: a diameter of {shell.diameter:.4g} m is outside "
+                f"{_DIAMETER[0]:g} to {_DIAMETER[1]:g} m, where bearings lie; a bare number is in "
+                "metres"
+            )
+        ratio = shell.width / shell.diameter
+        if not _WIDTH[0] <= ratio <= _WIDTH[1]:
+            yield (
+                f"bearings.{name}: a width of {shell.width:.4g} m is {ratio:.3g} times the "
+                f"diameter, {shell.diameter:.4g} m; bearings have {_WIDTH[0]:g} to "
+                f"{_WIDTH[1]:g} times; check its unit"
+            )
 
 
 # 0.3 bar is the air on Mount Everest; refrigerating compressors have crankcases of up to 35 bar.
@@ -236,5 +302,5 @@ def _gas_work(scene: Scene) -> float:
 
 
 _Rules = tuple[Callable[..., Iterator[str]], ...]
-_OF_GEAR: _Rules = (_stroke, _bore, _masses, _rod_length, _rod)
-_OF_SCENE: _Rules = (_ambient, _peak, _loads)
+_OF_GEAR: _Rules = (_stroke, _bore, _masses, _light_masses, _rod_length, _fold, _rod)
+_OF_SCENE: _Rules = (_shells, _ambient, _peak, _loads)

@@ -300,8 +300,9 @@ def _speed(speed: float | Oscillation | Ramp | SpeedFile) -> str:
             return f"from {_rpm(speed.start)} to {_rpm(speed.to)} in {speed.over:.6g} s, then held"
         case SpeedFile(file=table):
             least, most = _rpm(min(table.y)), _rpm(max(table.y))
-            over = "" if speed.kind == "time_table" else " over the crank angle"
-            again = f", again every {_turned(table)}" if over and repeats(table) else ""
+            over_time = speed.kind == "time_table"
+            over = " over time" if over_time else " over the crank angle"
+            again = "" if over_time or not repeats(table) else f", again every {_turned(table)}"
             rows = f"{len(table.x)} rows of {table.source}, {speed.interpolation}"
             return f"{least} to {most}{over} in {rows}{again}"
         case _:

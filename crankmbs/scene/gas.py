@@ -36,6 +36,7 @@ _COLUMNS = Header(
         "pressure_kgf_cm2": 98066.5,
     },
     "crank angles [rad], pressures [Pa]",
+    way_out='; columns = "..." with the pressure\'s heading reads a file that has other headings',
 )
 _FILE = CsvFile(_COLUMNS, numbered=True, others=', a list of them, or a pressure such as "1 bar"')
 
@@ -168,12 +169,13 @@ class Gas:
     crank_end: the pressure on the side of the piston towards the crank, given alike, which makes a
     cylinder double-acting; pressure and motored are then those of the head end.
 
-    columns, separator, decimal, skip: how a file is read that an indicating system wrote: the
-    columns of its pressures by name, what separates them, the decimal sign, how many lines to
-    leave out at the beginning. They are None again once it is read.
+    columns, angle, separator, decimal, skip: how a file is read that an indicating system wrote:
+    the columns of its pressures and that of the crank angle by name, what separates them, the
+    decimal sign, how many lines to leave out at the beginning. They are None again once it is read.
     """
 
     columns: Annotated[str, Strict()] | None = None
+    angle: Annotated[str, Strict()] | None = None
     separator: Annotated[str, Strict(), AfterValidator(sign_of)] | None = None
     decimal: Literal[".", ","] | None = None
     skip: Annotated[int, Strict(), Ge(0)] | None = None

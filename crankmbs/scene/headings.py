@@ -21,6 +21,8 @@ __all__ = [
     "TIME_UNITS",
     "Heading",
     "angle_factor",
+    "angle_places",
+    "by_name",
     "headings_of",
     "is_angle",
     "is_time",
@@ -60,13 +62,14 @@ _NO_UNITS = {"", "-", "1", "%", "a", "v", "mv", "c", "°c", "k", "mm", "j/deg", 
 
 _ANGLE_NAME = re.compile(
     r"((crank|kurbel)[ _]?(angle|winkel).*|crk[ _]?ang.*|°?ca|cad|deg|degrees?|angle|winkel|kw|°kw"
-    r"|theta|phi|φ|ca[ _]?deg|deg[ _]?ca|degca|x[ _]?axis)([ _][ab]?tdc\w*)?"
+    r"|theta|alpha|phi|α|φ|ca[ _]?deg|deg[ _]?ca|degca|x[ _]?axis)([ _][ab]?tdc\w*)?"
 )
 _TIME_NAME = re.compile(r"time|zeit|t|timestamp|time[ _]?stamp|abs(olute)?[ _]?time|temps")
 _BRACKETED = re.compile(r"(.*?)\s*[\[(]([^\])]*(?:\([ag]\))?)[\])]\s*([ _.#-].*)?")
-_AFTER = re.compile(r"(.+?)\s+/\s+(\S.*)|(.+?),\s*(\S+)")  # "p / bar", "p, bar"
+_AFTER = re.compile(r"(.+?)(?:\s*/\s*|,\s*|\s+in\s+)(\S.*)")  # "p/bar", "p, bar", "p in bar"
 _OF_TDC = re.compile(r"\s*[ab]?tdcf?$")
 _NUMBERED_UNIT = re.compile(r"(.+?)_(bar|kPa|Pa|MPa|psi|kgf_cm2|deg|rad)((?:_[1-9][0-9]*)?)")
+_TIME_UNIT = re.compile(rf"({_TIME_NAME.pattern})_(s|ms|us)()", re.IGNORECASE)  # "p_s" is no time
 _RANGE = re.compile(r"(.*?)([0-9]+)\.\.([0-9]+)(.*)")
 _ROWS = 5  # above the numbers among which names and units are looked for
 _MOST = 10_000  # columns that a range names
@@ -126,8 +129,7 @@ def is_angle(heading: Heading) -> bool:
     """
     if heading.pressure is not None or heading.unit in TIME_UNITS:
         return False
-    named = _ANGLE_NAME.fullmatch(heading.name.lower().strip("# ")) is not None
-    return named or (heading.unit in _ANGULAR and heading.unit != "")
+    return _is_angle_name(heading.name) or heading.unit in _ANGULAR
 
 
 def is_time(heading: Heading) -> bool:
@@ -136,8 +138,34 @@ def is_time(heading: Heading) -> bool:
     >>> is_time(Heading("Time", "s"))
     True
     """
-    named = _TIME_NAME.fullmatch(heading.name.lower().strip("# ")) is not None
-    return heading.unit in TIME_UNITS or (named and heading.unit == "")
+    return heading.unit in TIME_UNITS or (_is_time_name(heading.name) and heading.unit == "")
+
+
+def by_name(headings: Sequence[Heading], *, time: bool) -> list[int]:
+    """The places of the columns that are named as a time, or as a crank angle; other columns of the
+    same unit may be durations, or the angles of events.
+
+    >>> by_name([Heading("Time", "s"), Heading("Injection", "ms")], time=True)
+    [0]
+    """
+    tells, is_named = (is_time, _is_time_name) if time else (is_angle, _is_angle_name)
+    return [k for k, each in enumerate(headings) if tells(each) and is_named(each.name)]
+
+
+def angle_places(headings: Sequence[Heading], angle: str | None, where: str) -> list[int]:
+    """The places of the columns that may be the crank angle: the one called ``angle``, else those
+    told by their names or units.
+
+    Raises
+    ------
+    InputError : no column has this name
+
+    >>> angle_places([Heading("p", "bar"), Heading("CA", "deg")], None, "a.csv")
+    [1]
+    """
+    if angle is not None:
+        return pick(headings, angle, where)[:1]
+    return [k for k, heading in enumerate(headings) if is_angle(heading)]
 
 
 def angle_factor(heading: Heading) -> float:
@@ -194,10 +222,18 @@ def _expanded(columns: str) -> list[str]:
     return names
 
 
+def _is_angle_name(name: str) -> bool:
+    return _ANGLE_NAME.fullmatch(name.lower().strip("# ")) is not None
+
+
+def _is_time_name(name: str) -> bool:
+    return _TIME_NAME.fullmatch(name.lower().strip("# ")) is not None
+
+
 def _has_angle(row: Sequence[str], units: Sequence[str]) -> bool:
     """Whether a row of names has that of a crank angle."""
     return any(
-        _ANGLE_NAME.fullmatch(_heading(name, unit).name.lower()) is not None
+        _is_angle_name(_heading(name, unit).name)
         for name, unit in zip(row, units, strict=True)
         if name
     )
@@ -243,15 +279,15 @@ def _are_cycles(names: Sequence[str]) -> bool:
 
 
 def _heading(name: str, unit: str) -> Heading:
-    text, said = name.strip().strip("#%").strip(), unit
+    text, written = name.strip().strip("#%").strip(), unit
     bracketed = _BRACKETED.fullmatch(text)
-    numbered = _NUMBERED_UNIT.fullmatch(text)
+    numbered = _NUMBERED_UNIT.fullmatch(text) or _TIME_UNIT.fullmatch(text)
     after = _AFTER.fullmatch(text)
-    if bracketed and bracketed[1] and _is_unit(bracketed[2]) and bracketed[2] != "1":
-        text, said = bracketed[1] + (bracketed[3] or ""), said or bracketed[2]
+    if not unit and after and _is_unit(after[2]) and not _is_unit(after[1].split()[-1]):
+        text, written = after[1], after[2]  # "heat release J/deg" has a quotient for its unit
+    elif bracketed and bracketed[1] and _is_unit(bracketed[2]) and bracketed[2] != "1":
+        text, written = bracketed[1] + (bracketed[3] or ""), written or bracketed[2]
     elif numbered and not unit:
-        text, said = numbered[1] + numbered[3], numbered[2]
-    elif not unit and after and _is_unit(after[2] or after[4]):
-        text, said = after[1] or after[3], after[2] or after[4]
-    plain, reference = _unit(said)
+        text, written = numbered[1] + numbered[numbered.re.groups], numbered[numbered.re.groups - 1]
+    plain, reference = _unit(written)
     return Heading(text, plain, reference)

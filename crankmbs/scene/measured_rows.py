@@ -10,7 +10,7 @@ import numpy as np
 from crankmbs.delimited import decode, read_sheet
 from crankmbs.errors import InputError, shown
 from crankmbs.scene.content import content_of
-from crankmbs.scene.headings import angle_factor, headings_of, is_angle, pick
+from crankmbs.scene.headings import angle_factor, angle_places, headings_of, pick
 from crankmbs.scene.tables import CylinderTable, Table
 
 __all__ = ["HowRead", "read_measured", "sign_of"]
@@ -19,9 +19,11 @@ _SEPARATORS = {"tab": "\t", "semicolon": ";", "comma": ",", "blank": " ", "bar":
 
 
 class HowRead(NamedTuple):
-    """How a file is read: the columns of pressures by name, and what is not to be detected."""
+    """How a file is read: the columns of pressures and of the crank angle by name, and what is not
+    to be detected."""
 
     columns: str | None = None
+    angle: str | None = None
     separator: str | None = None
     decimal: str | None = None
     skip: int | None = None
@@ -47,8 +49,8 @@ def sign_of(separator: str | None) -> str | None:
 def read_measured(path: Path, how: HowRead) -> Table | CylinderTable:
     """The crank angle and the pressures that ``how.columns`` names, in SI units.
 
-    The angle's column is told by its name or unit, else it is the first. Without ``columns`` all
-    columns with a unit of pressure are read.
+    The angle's column is the one called ``how.angle``, else told by its name or unit, else it is
+    the first. Without ``columns`` all columns with a unit of pressure are read.
 
     Raises
     ------
@@ -60,8 +62,12 @@ def read_measured(path: Path, how: HowRead) -> Table | CylinderTable:
         name, source, separator=sign_of(how.separator), decimal=how.decimal, skip=how.skip or 0
     )
     headings = headings_of(sheet.above, sheet.values.shape[1])
-    angles = [k for k, heading in enumerate(headings) if is_angle(heading)]
-    angle = angles[0] if angles else 0
+    angle = next(iter(angle_places(headings, how.angle, f"file {name}")), 0)
+    if headings[angle].pressure is not None:
+        raise InputError(
+            f"file {name}: no column is a crank angle by its name or its unit, and the first is a "
+            'pressure; name it, such as angle = "CA"'
+        )
     if how.columns is None:
         places = [k for k, each in enumerate(headings) if each.pressure is not None]
     else:
@@ -71,15 +77,16 @@ def read_measured(path: Path, how: HowRead) -> Table | CylinderTable:
             f'file {name}: no column of pressures; name some, such as columns = "PCYL1..4"'
         )
     for k in places:
+        column = f"file {name}: column {shown(headings[k].name or k + 1)}"
         if headings[k].pressure is None:
             raise InputError(
-                f"file {name}: column {shown(headings[k].name)} has no unit of pressure, neither "
+                f"{column} has no unit of pressure, neither "
                 "in its name nor in a row below the names; crankmbs pressure reads it with --unit"
             )
         missing = np.flatnonzero(np.isnan(sheet.values[:, k]))
         if len(missing):
             raise InputError(
-                f"file {name}: column {shown(headings[k].name)} has no number in row "
+                f"{column} has no number in row "
                 f"{missing[0] + 1} below its headings; crankmbs pressure deals with missing cells"
             )
     x = tuple((sheet.values[:, angle] * angle_factor(headings[angle])).tolist())

@@ -14,6 +14,7 @@ from crankmbs.scene.cylinder_tables import by_layout
 from crankmbs.scene.scene import Scene
 from crankmbs.scene.sentences import did_you_mean, sentence
 from crankmbs.scene.shipped import shipped_scenes
+from crankmbs.scene.whole import MOTION_OR_START
 
 __all__ = ["load_scene", "parse_scene", "scene_path"]
 
@@ -73,6 +74,8 @@ def parse_scene(text: str, path: Path) -> Scene:
     except (ValueError, RecursionError) as error:  # a number of 5000 digits is a ValueError
         way_out = _in_quotes(text, error) or "crankmbs new NAME writes a scene to compare with"
         raise SceneError(f"{path}: not valid TOML: {error}; {way_out}") from None
+    if {"motion", "start"} <= raw.keys():  # before what may be missing in either
+        raise SceneError(f"{path}: {MOTION_OR_START}; both came")
     try:
         raw = by_layout(raw)
         scene: Scene = _SCENE.validate_python(raw, context={"folder": path.parent}, by_name=False)

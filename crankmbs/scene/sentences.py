@@ -15,6 +15,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from crankmbs.errors import InputError, shown
+from crankmbs.scene.examples import example_of
 
 __all__ = ["RULES", "PartError", "did_you_mean", "sentence"]
 
@@ -75,7 +76,7 @@ def sentence(
         return f"{where}: this {word} is missing; {how}"
     if kind in _UNKNOWN:
         names = _names_at(root, loc[:-1], in_python)
-        return f"{where}: unknown {word}{_known(loc[-1], names, word)}"
+        return f"{where}: unknown {word}{_meant(loc[-1], names) or _known(loc[-1], names, word)}"
     if kind == "value_error":
         text = str(cause)
         text = _as_a_call(text) if in_python else text
@@ -170,19 +171,37 @@ def _as_a_call(text: str) -> str:
     return text.replace("=true", "=True").replace("=false", "=False")
 
 
+def _meant(word: int | str, names: Sequence[str]) -> str:
+    """The way out of a key that others have in place of one that is known."""
+    return "; give radius, half the stroke" if word == "stroke" and "radius" in names else ""
+
+
 def _known(word: int | str, names: Sequence[str], what: str) -> str:
     listed = f"; known {what}s are {', '.join(names)}" if names else ""
     return did_you_mean(str(word), names) or listed
 
 
 def _how_to_add(root: type[Any], loc: Sequence[int | str]) -> str:
-    names = _names_at(root, loc)
-    return f"add [{_dotted(loc)}] with {', '.join(names)}" if names else "it has no default"
+    parts = _parts_at(root, loc)
+    if len(parts) != 1:
+        return _such_as(root, loc, " = ")
+    needed = [key for key, field in _fields_of(parts[0]) if field.is_required()]
+    others = [key for key, field in _fields_of(parts[0]) if not field.is_required()]
+    lines = ", ".join(f"{key} = {example_of(parts[0], key)}" for key in needed)
+    may_have = f"; it may have {', '.join(others)}" if others else ""
+    return f"add [{_dotted(loc)}] with {' and '.join(needed)}, such as {lines}{may_have}"
 
 
 def _how_to_give(root: type[Any], loc: Sequence[int | str]) -> str:
     call = _call(root, loc)
-    return f"give {loc[-1]}={call}" if call else "it has no default"
+    return f"give {loc[-1]}={call}" if call else _such_as(root, loc, "=")
+
+
+def _such_as(root: type[Any], loc: Sequence[int | str], sign: str) -> str:
+    """The way out where a value is missing."""
+    owners = _parts_at(root, loc[:-1])
+    example = example_of(owners[0], str(loc[-1])) if len(owners) == 1 else None
+    return f"give it, such as {loc[-1]}{sign}{example}" if example else "it has no default"
 
 
 def _call(root: type[Any], loc: Sequence[int | str]) -> str:
@@ -204,8 +223,13 @@ def _names_at(root: type[Any], loc: Sequence[int | str], in_python: bool = False
     parts = _parts_at(root, loc)
     if len(parts) != 1:
         return []
-    fields = parts[0].__pydantic_fields__
-    return [(not in_python and field.validation_alias) or name for name, field in fields.items()]
+    return list(parts[0].__pydantic_fields__) if in_python else [k for k, _ in _fields_of(parts[0])]
+
+
+def _fields_of(part: type[Any]) -> list[tuple[str, Any]]:
+    """The fields of a part by their keys in a file."""
+    fields = part.__pydantic_fields__.items()
+    return [(field.validation_alias or name, field) for name, field in fields]
 
 
 def _parts_at(root: type[Any], loc: Sequence[int | str]) -> list[type[Any]]:

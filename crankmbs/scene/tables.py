@@ -33,12 +33,14 @@ class Header(NamedTuple):
         read, of y it has exactly one
     holds : the columns in words, "times [s], torques [N m]"
     ways : headings of two ordinates that may stand in place of one
+    way_out : what else may be done about other headings, in words
     """
 
     x: dict[str, float]
     y: dict[str, float]
     holds: str = ""
     ways: tuple[str, ...] = ()
+    way_out: str = ""
 
     @property
     def abscissae(self) -> str:
@@ -177,9 +179,9 @@ def read_table(path: Path, header: Header, *, numbered: bool = False) -> Table |
     rows = _rows(path)
     names = rows[0][1]
     first = next(({name: header.x[name]} for name in header.x if name in names), header.x)
-    columns = [_column(path, names, first)]
+    columns = [_column(path, names, first, header.way_out)]
     several = [] if set(header.y) & set(names) else _several(path, names, header, numbered)
-    columns += several or [_column(path, names, header.y)]
+    columns += several or [_column(path, names, header.y, header.way_out)]
     x, *y = _values(path, rows, columns)
     return CylinderTable(x, tuple(y), str(path)) if several else Table(x, y[0], str(path))
 
@@ -264,12 +266,14 @@ def _cells(path: Path, line: int, text: str) -> list[str]:
         raise InputError(f"file {path}, line {line}: cannot be read as CSV: {error}") from None
 
 
-def _column(path: Path, header: list[str], units: dict[str, float]) -> tuple[int, float]:
+def _column(
+    path: Path, header: list[str], units: dict[str, float], way_out: str
+) -> tuple[int, float]:
     names = [name for name in header if name in units]
     if len(names) != 1:
         raise InputError(
             f"file {path}: the header must name exactly one column {' | '.join(units)}, with "
-            f"commas between the columns; {shown(','.join(header))} came"
+            f"commas between the columns; {shown(','.join(header))} came{way_out}"
         )
     return header.index(names[0]), units[names[0]]
 

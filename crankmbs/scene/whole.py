@@ -20,7 +20,7 @@ from crankmbs.scene.units import DEGREE, EXAMPLES
 if TYPE_CHECKING:
     from crankmbs.scene.scene import Scene
 
-__all__ = ["NO_INERTIA", "OPEN_LOOP", "UNCOVERED", "check_whole"]
+__all__ = ["MOTION_OR_START", "NO_INERTIA", "OPEN_LOOP", "UNCOVERED", "check_whole"]
 
 OPEN_LOOP = (
     "rod.length must be at least crank.radius + |piston.offset| = {least:.12g} m, or the crank "
@@ -30,11 +30,15 @@ NO_INERTIA = (
     "crank.inertia: a free crank needs an inertia above 0, or nothing resists it at the dead "
     "centres; 0 came"
 )
+MOTION_OR_START = (
+    "give [motion] (the speed is prescribed) or [start] (the crank is free), exactly one of the two"
+)
 UNCOVERED = (
     "the rows must cover the stroke, 0 to {stroke:.6g} mm; they go from {low:.6g} to {high:.6g} mm"
 )
 
 _SPARE = 1e-3  # of the stroke, over which the ends of a table over the travel are held
+_LARGE_RADIUS = 2.5  # m: no machine has a longer stroke than 5 m
 _FARTHEST = 1e9  # rad or s: its last digit is 1e-7
 _MOST_CYCLES = 1000  # of the engine, after which its loads over the angle come again
 _MOST_SAMPLES = 2e7  # the memory of a machine may hold less: `crankmbs.motion.plan`
@@ -99,7 +103,10 @@ def _check_gear(gear: RunningGear, *, gas: bool) -> None:
     radius, rod, piston = gear
     least = radius + abs(piston.offset)
     if rod.length < least * (1.0 - 1e-15):
-        raise InputError(OPEN_LOOP.format(least=least, came=rod.length))
+        in_metres = ""
+        if radius > _LARGE_RADIUS and least - radius + 1e-3 * radius <= rod.length:
+            in_metres = f'; a bare number is in metres, give "{radius:g} mm" where that is meant'
+        raise InputError(OPEN_LOOP.format(least=least, came=rod.length) + in_metres)
     if rod.moment_of_inertia < 0.0:  # after its length, which may be what is wrong
         raise InputError(
             'rod: the inertia "two-mass" needs a center_of_mass between the pins, 0 to '
@@ -186,10 +193,7 @@ def _check_bearings(scene: Scene) -> None:
 def _check_motion(scene: Scene) -> None:
     if (scene.motion is None) == (scene.start is None):
         came = "neither" if scene.motion is None else "both"
-        raise InputError(
-            "give [motion] (the speed is prescribed) or [start] (the crank is free), "
-            f"exactly one of the two; {came} came"
-        )
+        raise InputError(f"{MOTION_OR_START}; {came} came")
     if scene.motion is not None and scene.torque:
         raise InputError(
             "torque: with [motion] the drive is an answer, not a load; remove [[torque]], or "

@@ -18,7 +18,7 @@ from crankmbs.sweep.cases import Listed
 from crankmbs.sweep.columns import columns_of
 from crankmbs.sweep.knobs import Interval, Knob, interval_of
 from crankmbs.sweep.plan import Plan
-from crankmbs.sweep.reading import Reading, reading_of
+from crankmbs.sweep.reading import Reading, check_free, reading_of
 from crankmbs.sweep.run import run_in_memory
 from crankmbs.sweep.sample import Sample
 
@@ -112,6 +112,8 @@ def sobol_indices(
     words = [measures] if isinstance(measures, str) else list(measures)
     readings = [reading_of(text, columns) for text in words]
     knobs = tuple(interval_of(scene, *item) for item in vary.items())
+    for reading in readings:
+        check_free(scene, reading, [knob.name for knob in knobs])
     plan = Plan(scene, Listed(_design(knobs, n, seed)), series=False)
     data = run_in_memory(plan, executor)
     return tuple(_indices_of(plan, data, reading, n, seed) for reading in readings)

@@ -17,7 +17,7 @@ from crankmbs.numerics.arrays import Array
 from crankmbs.scene.scene import Scene, check_scene
 from crankmbs.sweep.columns import columns_of
 from crankmbs.sweep.knobs import Interval, interval_of
-from crankmbs.sweep.reading import Reading, reading_of
+from crankmbs.sweep.reading import Reading, check_free, reading_of
 from crankmbs.sweep.sample import Sample
 from crankmbs.sweep.solve import Asked, asked_of
 
@@ -98,6 +98,8 @@ def minimize(
         raise InputError("vary: needs ranges of numbers that are not whole; sweep compares others")
     reading = reading_of(measure, columns_of(scene, series=False))
     conditions = [asked_of(scene, text, "<= >= < >") for text in subject_to]
+    for each in (reading, *(condition[0] for condition in conditions)):
+        check_free(scene, each, [knob.name for knob in knobs])
     return _Descent(scene, knobs, reading, conditions).minimum()
 
 

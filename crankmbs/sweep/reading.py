@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -18,13 +18,16 @@ from crankmbs.sweep.columns import Column, Row
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["Reading", "amount_of", "reading_of"]
+    from crankmbs.scene.scene import Scene
+
+__all__ = ["Reading", "amount_of", "check_free", "reading_of"]
 
 _DEVIATION = "lecture_deviation"
 _LECTURES = {name.partition(" ")[0].lower(): name for name in LECTURES}  # "s1", "untruncated"
 _DIMENSIONS = {"N": "force", "N m": "torque", "Pa": "pressure", "W": "power"}
 _DIMENSIONS |= {"rad": "angle", "rad/s": "angular speed"}
 _SHARE = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(%?)\s*")
+_OF_SPEED = ("fluctuation", "mean_speed")
 _PEAK = re.compile(r"(peak|largest|mean) (main bearing|crank pin|piston pin|side)(?: force)?")
 
 
@@ -92,6 +95,24 @@ def reading_of(text: str, columns: Mapping[str, Column]) -> Reading:
     listed = [name for name in known if not name.startswith("series ")]
     near = did_you_mean(words, listed) or f"; known are {', '.join(listed)}, and QUANTITY by S1"
     raise InputError(f"{shown(text)} is nothing that a case has{near}")
+
+
+def check_free(scene: Scene, reading: Reading, names: Sequence[str]) -> None:
+    """Refuse what a prescribed speed says itself, where nothing that is varied changes it.
+
+    Raises
+    ------
+    InputError : what is asked for, why it does not change, and the way out
+
+    >>> check_free(load_scene("propeller"), Reading("fluctuation", Column("1", "")), ["rod.length"])
+    """
+    of_speed = reading.column in _OF_SPEED and not any(name.startswith("motion") for name in names)
+    if scene.motion is not None and of_speed:
+        raise InputError(
+            f"{reading.column.replace('_', ' ')}: with [motion] the speed is prescribed, and "
+            "what is varied does not change it; free the crank with [start] and its loads, "
+            "[[torque]], as crankmbs flywheel does by itself, or vary motion.speed"
+        )
 
 
 def amount_of(text: str, reading: Reading) -> float:

@@ -13,7 +13,7 @@ from crankmbs.scene.scene import Scene, check_scene
 from crankmbs.sweep.columns import columns_of
 from crankmbs.sweep.knobs import number_at
 from crankmbs.sweep.pressure_table import step_from_zero
-from crankmbs.sweep.reading import Reading, reading_of
+from crankmbs.sweep.reading import Reading, check_free, reading_of
 from crankmbs.sweep.solve import Asked
 
 __all__ = ["Sensitivity", "sensitivity"]
@@ -68,6 +68,7 @@ def sensitivity(scene: Scene, name: str, measure: str) -> Sensitivity:
     check_scene(scene)
     knob, value = number_at(scene, name)
     reading = reading_of(measure, columns_of(scene, series=False))
+    check_free(scene, reading, [knob.name])
     step = step_from_zero(scene, knob.name) or _STEP * abs(value)
     if step == 0.0:
         raise InputError(f"{name}: is 0 in this scene, and steps are a share of it; give it a size")

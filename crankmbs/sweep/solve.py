@@ -16,7 +16,7 @@ from crankmbs.scene.scene import Scene, check_scene
 from crankmbs.sweep.block import Job, solved
 from crankmbs.sweep.columns import columns_of
 from crankmbs.sweep.knobs import Interval, interval_of
-from crankmbs.sweep.reading import Reading, amount_of, reading_of
+from crankmbs.sweep.reading import Reading, amount_of, check_free, reading_of
 
 __all__ = ["Asked", "Root", "Solved", "asked_of", "solve"]
 
@@ -138,6 +138,7 @@ def solve(scene: Scene, vary: dict[str, str], wanted: str) -> Solved:
     if knob.whole:
         raise InputError(f"{knob.name}: is a whole number, and sweep finds the best of those")
     reading, _, amount = asked_of(scene, wanted, "=")
+    check_free(scene, reading, [knob.name])
     return _Search(Asked(scene, (knob.name,)), knob, reading, amount).solved()
 
 

@@ -10,6 +10,7 @@ from typing import Annotated, Any, Literal, NamedTuple, get_args, get_origin
 from annotated_types import Ge, Gt, Le, Len, Lt
 
 from crankmbs.scene.drives import SpeedFile
+from crankmbs.scene.examples import example_of
 from crankmbs.scene.force import PistonForce
 from crankmbs.scene.run import Extent
 from crankmbs.scene.scene import Scene
@@ -27,7 +28,7 @@ _FILE = "file name"
 _BY_CHECK = {  # what a check of its own takes, by its name
     "_source": (EXAMPLES["pressure"], _FILE, "list of either"),
     "_motored": (EXAMPLES["pressure"], _FILE, "list of either", "a table"),
-    "_spacing": (EXAMPLES["extent"], '`"none"`'),
+    "_spacing": ('"0.5 deg" or "0.1 ms"', '`"none"`'),
     "_cycles": ('"5"', '"5-8"', '"every 4"'),
 }
 
@@ -47,7 +48,7 @@ def keys_of(part: type) -> list[Key]:
     """The keys of a part of a scene, in their order."""
     fields = part.__pydantic_fields__
     by_columns = part is SpeedFile  # its columns say of what kind it is
-    return [_key(n, field) for n, field in fields.items() if not (by_columns and n == "kind")]
+    return [_key(part, n, field) for n, field in fields.items() if not (by_columns and n == "kind")]
 
 
 def sections(part: type = Scene, path: str = "") -> Iterator[tuple[str, type]]:
@@ -91,8 +92,9 @@ def _table(title: str, part: type, keys: list[Key]) -> str:
     return "\n".join([*lines, *rows, ""])
 
 
-def _key(name: str, field: Any) -> Key:
-    found = _Found()
+def _key(part: type, name: str, field: Any) -> Key:
+    key = field.validation_alias or name
+    found = _Found(example_of(part, key))
     found.look(field.annotation)
     for one in field.metadata:
         found.note(one)
@@ -101,13 +103,14 @@ def _key(name: str, field: Any) -> Key:
         dict.fromkeys(found.rules + [_bound(one, found.dimension) for one in found.bounds])
     )
     default = "needed" if field.is_required() else _shown(field.get_default(), found.dimension)
-    return Key(field.validation_alias or name, values, default, rules, tuple(found.parts))
+    return Key(key, values, default, rules, tuple(found.parts))
 
 
 class _Found:
     """What an annotation says."""
 
-    def __init__(self) -> None:
+    def __init__(self, example: str | None) -> None:
+        self.example = example  # of a quantity
         self.values: list[str] = []
         self.rules: list[str] = []
         self.bounds: list[Any] = []
@@ -152,7 +155,8 @@ class _Found:
         if isinstance(check, Quantity):
             self.dimension = check.dimension
             number = _PLAIN[float]
-            self.values = [EXAMPLES[check.dimension] if v == number else v for v in self.values]
+            assert self.example is not None, f"no example of a {check.dimension}"
+            self.values = [self.example if v == number else v for v in self.values]
         elif isinstance(check, CsvFile):
             header = check.header
             names = [" or ".join(f"`{n}`" for n in side) for side in (header.x, header.y)]
