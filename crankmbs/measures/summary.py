@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import partial
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -21,6 +21,9 @@ from crankmbs.motion.states import samples_in
 from crankmbs.numerics.arrays import Array
 from crankmbs.result import Result
 from crankmbs.scene.scene import Scene
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 __all__ = [
     "Measures",
@@ -111,6 +114,23 @@ class Measures:
     def brake_power(self) -> Estimate:
         """What the loads take less what drives give [W]."""
         return Estimate(-self.power.value, self.power.error)
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """The measures as a pandas table in the units of its index, rpm, kW, bar, N, N m: value and
+        error, and of peaks where they are [deg]. A sweep takes the measures by these names.
+
+        >>> table = simulate(load_scene("yi_diesel")).measures().to_dataframe()
+        >>> table.loc["mean speed [rpm]", "value"].round(6).item()
+        3200.0
+        """
+        from crankmbs.report.readings import measures_frame
+
+        return measures_frame(self)
+
+    def _repr_html_(self) -> str:
+        from crankmbs.report.html import measures_html
+
+        return measures_html(self)
 
 
 def measure(result: Result) -> Measures:

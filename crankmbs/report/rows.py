@@ -24,8 +24,10 @@ __all__ = [
     "FORCE_HEADINGS",
     "Table",
     "degrees_within",
+    "labelled",
     "measure_rows",
     "measure_tables",
+    "not_periodic",
     "peak_rows",
     "tables",
     "unsteady",
@@ -105,17 +107,23 @@ def unsteady(result: Result, measures: Measures) -> str:
     >>> unsteady(result, result.measures())
     ''
     """
+    why = not_periodic(measures)
+    return f"{why}; peaks are of {_part(result)}" if why else ""
+
+
+def not_periodic(measures: Measures) -> str:
+    """Why a window does not stand for the cycles after it; nothing where it does.
+
+    >>> not_periodic(simulate(load_scene("torque_driven")).measures())
+    'not periodic: the speed changes by +131 rpm over the last cycle'
+    """
     if measures.steady:
         return ""
-    peaks = f"peaks are of {_part(result)}"
     if measures.window.kind == TURNS_BACK:
-        return f"not periodic: the crank rests or turns back; {peaks}"
+        return "not periodic: the crank rests or turns back"
     scale, unit = displayed("rad/s")
     drift = measures.speed_gain.value / scale
-    return (
-        f"not periodic: the speed changes by {drift:+.3g} {unit} over the {measures.window.kind}; "
-        f"{peaks}"
-    )
+    return f"not periodic: the speed changes by {drift:+.3g} {unit} over the {measures.window.kind}"
 
 
 def measure_rows(measures: Measures) -> list[list[str]]:
@@ -164,7 +172,7 @@ def peak_rows(measures: Measures) -> list[list[str]]:
     peaks = Counter(peak.name for peak in measures.peaks)
     rows = [
         [
-            _named(_words(joint), joint.number, joints[joint.joint], "N"),
+            labelled(_words(joint), joint.number, joints[joint.joint], "N"),
             *_cells("N", joint.peak),
             *_angles(joint.crank_angle, joint.cycle_angle, period),
             *_cells("N", joint.mean),
@@ -172,7 +180,7 @@ def peak_rows(measures: Measures) -> list[list[str]]:
         for joint in measures.joints
     ]
     for top in measures.peaks:
-        name = _named(top.name, top.number, peaks[top.name], top.units)
+        name = labelled(top.name, top.number, peaks[top.name], top.units)
         angles = _angles(top.crank_angle, top.cycle_angle, period)
         rows.append([name, *_cells(top.units, top.value), *angles, "", ""])
     return rows
@@ -190,7 +198,7 @@ def _of_run(peaks: tuple[Peak, ...], scene: Scene) -> list[list[str]]:
     assert start is not None
     return [
         [
-            _named(_words(top), top.number, counts[top.name], top.units),
+            labelled(_words(top), top.number, counts[top.name], top.units),
             *_cells(top.units, top.value),
             f"{top.time:.6g}",
             *_angles(top.crank_angle, top.cycle_angle, scene.period),
@@ -205,7 +213,7 @@ def _specific(measures: Measures) -> list[list[str]]:
     counts = Counter(joint.joint for joint in measures.joints)
     return [
         [
-            _named(joint.joint, joint.number, counts[joint.joint], "1"),
+            labelled(joint.joint, joint.number, counts[joint.joint], "1"),
             *(
                 cell
                 for estimate in (joint.specific_peak, joint.specific_mean)
@@ -223,14 +231,19 @@ def _words(load: JointForce | Peak) -> str:
     return "|side force|" if name == "side force" else name
 
 
-def _named(name: str, number: int | None, count: int, units: str) -> str:
+def labelled(name: str, number: int | None, count: int, units: str) -> str:
+    """A name, its number where there are many, and the unit that people read.
+
+    >>> labelled("crank pin", 2, 4, "Pa")
+    'crank pin 2 [bar]'
+    """
     number_of = f" {number}" if number is not None and count > 1 else ""
     unit = f" [{displayed(units)[1]}]" if units != "1" else ""
     return f"{name}{number_of}{unit}"
 
 
 def _row(name: str, units: str, estimate: Estimate) -> list[str]:
-    return [_named(name, None, 1, units), *_cells(units, estimate)]
+    return [labelled(name, None, 1, units), *_cells(units, estimate)]
 
 
 def _cells(units: str, estimate: Estimate) -> list[str]:
